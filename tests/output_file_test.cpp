@@ -3,7 +3,11 @@
 #include "support/output_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <iterator>
 
@@ -65,6 +69,80 @@ TEST_F(OutputFile, FollowsASymbolicLinkToAFileOrToNone) {
     EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
     EXPECT_EQ(read_file(folder_ / "target"), text);
   }
+}
+
+mode_t mode_of(const fs::path& path) {
+  struct stat found{};
+  EXPECT_EQ(::stat(path.c_str(), &found), 0);
+  return found.st_mode & 07777;
+}
+
+// Overwriting a private file once made it readable for all.
+TEST_F(OutputFile, KeepsTheModeOfTheFileThatItReplaces) {
+  const mode_t before = ::umask(027);
+  write_file(folder_ / "new", std::string_view("x"));
+  EXPECT_EQ(mode_of(folder_ / "new"), 0640u) << "as umask says";
+  for (const mode_t mode : {0600u, 0644u, 0666u, 0755u}) {
+    ::chmod((folder_ / "new").c_str(), mode);
+    write_file(folder_ / "new", std::string_view("y"));
+    EXPECT_EQ(mode_of(folder_ / "new"), mode);
+  }
+  ::umask(before);
+}
+
+// The temporary file's name was once longer than a name may be.
+TEST_F(OutputFile, NamesMayHaveTheirWholeLength) {
+  for (const std::size_t length : {240u, 242u, 254u, 255u}) {
+    const fs::path path = folder_ / std::string(length, 'a');
+    check_writable(path);
+    write_file(path, std::string_view("x"));
+    EXPECT_EQ(read_file(path), "x");
+  }
+  const std::string message =
+      error_of(ExitCode::run_time, [&] { check_writable(folder_ / std::string(256, 'a')); });
+  EXPECT_NE(message.find("File name too long"), std::string::npos) << message;
+}
+
+TEST_F(OutputFile, OneFileHasOneUse) {
+  write_file(folder_ / "scene.json", std::string_view("{}"));
+  fs::create_symlink("scene.json", folder_ / "link.json");
+  fs::create_hard_link(folder_ / "scene.json", folder_ / "hard.json");
+  fs::create_symlink("new.exr", folder_ / "link.exr");
+  fs::create_directory(folder_ / "below");
+  const std::vector<NamedFile> inputs{{"SCENE", folder_ / "scene.json"}, {"--model", ""}};
+  check_outputs({{"--output", folder_ / "new.exr"}, {"--stats", folder_ / "new.json"}, {"--log", ""}}, inputs);
+  for (const char* same : {"scene.json", "below/../scene.json", "link.json", "hard.json"}) {
+    const std::string message =
+        error_of(ExitCode::usage, [&] { check_outputs({{"--stats", folder_ / same}}, inputs); });
+    EXPECT_NE(message.find("--stats"), std::string::npos) << message;
+    EXPECT_NE(message.find("SCENE"), std::string::npos) << message;
+  }
+  for (const char* same : {"new.exr", "./new.exr", "link.exr"}) {
+    error_of(ExitCode::usage, [&] {
+      check_outputs({{"--output", folder_ / "new.exr"}, {"--stats", folder_ / same}}, {});
+    });
+  }
+}
+
+TEST_F(OutputFile, OneOfSeveralWritersWinsWhole) {
+  const fs::path path = folder_ / "shared";
+  std::vector<pid_t> writers;
+  for (char letter = 'a'; letter < 'e'; ++letter) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      for (int i = 0; i < 50; ++i) write_file(path, std::string(200000, letter));
+      ::_exit(0);
+    }
+    writers.push_back(child);
+  }
+  for (bool running = true; running;) {
+    running = std::ranges::any_of(writers, [](pid_t id) { return ::waitpid(id, nullptr, WNOHANG) == 0; });
+    const std::string found = read_file(path);
+    if (found.empty()) continue;  // before the first
+    ASSERT_EQ(found, std::string(200000, found.front()));
+  }
+  EXPECT_EQ(entries(), 1u);
 }
 
 TEST_F(OutputFile, NpyHasNumPysHeaderAndTheValues) {

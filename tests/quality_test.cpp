@@ -104,7 +104,7 @@ TEST(QualityReport, TableHasALineAVariant) {
 
 TEST(QualityStore, ReturnsStoredCells) {
   const test::TemporaryFolder folder;
-  const QualityStore store(folder.path());
+  QualityStore store(folder.path());
   EXPECT_FALSE(store.find("k"));
   for (const QualityCell& kept : {cell("sh2", "a", 0.9, 10), rejected("sh4", "a")}) {
     store.keep("k", kept);

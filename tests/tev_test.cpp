@@ -205,6 +205,29 @@ TEST_F(TevCommands, AViewerThatClosesIsAWarning) {
   EXPECT_TRUE(std::filesystem::exists(folder / "frames/frame-0007.exr"));
 }
 
+// A full backlog once gave 'Operation now in progress'.
+TEST_F(TevCommands, AViewerThatDoesNotAnswerIsAWarning) {
+  const int listener = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(listen(listener, 0), 0);
+  getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
+  std::vector<int> waiting;
+  for (int i = 0; i < 4; ++i) {
+    waiting.push_back(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
+    static_cast<void>(connect(waiting.back(), reinterpret_cast<sockaddr*>(&address), size));
+  }
+  const Outcome outcome =
+      run("render " + kCornell + kSmall + " -o a.exr --tev=127.0.0.1:" + std::to_string(ntohs(address.sin_port)));
+  for (const int each : waiting) close(each);
+  close(listener);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("no answer within 5 s"));
+}
+
 TEST_F(TevCommands, BadAddressesAreRejected) {
   for (const char* bad :
        {"host:0", "host:65536", "host:port", ":14158", "a:b:c", "[::1", "[::1]14158", "host:"}) {

@@ -135,6 +135,7 @@ Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
   state.frame->render(chosen);
   for (const OptionDescription& option : list_options(state.options))
     state.metadata[option.name] = option.value;
+  state.metadata["centres"] = std::filesystem::path(state.options.centres).filename().string();
   state.metadata["camera"] = chosen.name;
   state.metadata["time"] = fmt::format("{}", seconds);
   Image image = state.image(view);

@@ -123,9 +123,8 @@ void run(Options options, const Shared& shared) {
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.log = options.log;
   if (!options.output.empty()) require_extension("--output", options.output, {".json", ".csv"});
-  for (const std::string& file : {options.output, options.log}) {
-    if (!file.empty()) check_writable(file);
-  }
+  check_outputs({{"--output", options.output}, {"--log", options.log}},
+                {{"--scene", options.scene}, {"--model", options.model}, {"--compare", options.compare}});
   const std::unique_ptr<const Drawing> plot = prepared_plot(options);
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite = *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);

@@ -30,10 +30,18 @@ bool is_png(const std::filesystem::path& path) {
   return path.extension() == ".png";
 }
 
-void check_output(const std::string& output) {
-  if (output.empty()) return;
-  require_extension("--output", output, {".png", ".exr"});
-  check_writable(output);
+/// Returns the file and the layer in "FILE:LAYER", or the layer `usual` of "FILE". A file may have a colon in its name.
+std::pair<std::string, std::string> file_and_layer(const std::string& text, const std::string& usual) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || std::filesystem::exists(text)) return {text, usual};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+void check_output(const CompareOptions& options) {
+  if (options.output.empty()) return;
+  require_extension("--output", options.output, {".png", ".exr"});
+  check_outputs({{"--output", options.output}},
+                {{"A", file_and_layer(options.a, "").first}, {"B", file_and_layer(options.b, "").first}});
 }
 
 void write_difference(const std::string& output, const Image& difference) {
@@ -46,13 +54,9 @@ void write_difference(const std::string& output, const Image& difference) {
   }
 }
 
-/// Reads the layer of "FILE:LAYER", or the layer `usual` of "FILE". A file may have a colon in its name.
 Image read_layer(const std::string& text, const std::string& usual) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || std::filesystem::exists(text))
-    return extract_layer(read_image(text), usual, text);
-  const std::string file = text.substr(0, colon);
-  return extract_layer(read_image(file), text.substr(colon + 1), file);
+  const auto [file, layer] = file_and_layer(text, usual);
+  return extract_layer(read_image(file), layer, file);
 }
 
 bool is_report(const std::string& file) {
@@ -80,7 +84,7 @@ void run(const CompareOptions& options) {
   if (options.fail_above > 0)
     throw Error(ExitCode::usage, "--fail-above {}: found {} and {}, allowed with two reports (.json)",
                 options.fail_above, options.a, options.b);
-  check_output(options.output);
+  check_output(options);
   const Image a = read_layer(options.a, options.layer);
   const Image b = read_layer(options.b, options.layer);
   const Comparison comparison = compare(a, options.a, b, options.b, options.exposure);

@@ -1,21 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "cli/drawing.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
+#include <algorithm>
 #include <cstdlib>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "support/error.hpp"
+#include "support/log.hpp"
 #include "support/output_file.hpp"
-#include "support/process.hpp"
 
 namespace clpv {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Python isolated from the current folder, the user's packages and PYTHON... variables (-I), without writing bytecode (-B). The
+// package's folder comes first only while the package is imported. matplotlib reads settings from the current folder, hence '/'.
+constexpr const char* kMain = R"(
+import os, sys
+sys.path.insert(0, sys.argv.pop(1))
+import clpv.draw
+del sys.path[0]
+os.chdir('/')
+from clpv.draw.__main__ import main
+sys.exit(main(sys.argv[1:]))
+)";
 
 /// Folder of the Python package clpv: under the prefix of the installed program, or in the source tree.
 fs::path package_folder() {
@@ -28,48 +37,64 @@ fs::path package_folder() {
   return CLPV_PYTHON_SOURCE;
 }
 
+/// Interpreters to try, best first.
+std::vector<fs::path> interpreters() {
+  if (const char* given = std::getenv("CLPV_PYTHON"); given != nullptr && *given != '\0') {
+    const fs::path file = given;
+    return {file.has_parent_path() ? file : find_program(given).value_or(file)};
+  }
+  std::vector<fs::path> all;
+  std::error_code unknown;
+  for (const fs::path& file : {fs::path(CLPV_PYTHON_INSTALLED), find_program("python3").value_or(""),
+                               fs::path("/usr/bin/python3")}) {
+    if (fs::exists(file, unknown) && std::ranges::count(all, file) == 0) all.push_back(file);
+  }
+  return all;
+}
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
 }  // namespace
 
 Drawing::Drawing(std::string kind, std::string asked_by)
     : kind_(std::move(kind)), asked_by_(std::move(asked_by)) {
-  run({});
-  std::string name = (fs::temp_directory_path() / "clpv-draw-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr)
-    throw Error(ExitCode::run_time, "{}: cannot make {}: {}", asked_by_, name, std::strerror(errno));
-  folder_ = name;
-}
-
-Drawing::~Drawing() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+  std::string tried;
+  for (const fs::path& python : interpreters()) {
+    const Process::Result ended = run(python, {});
+    if (ended.code == 0) {
+      python_ = python;
+      spdlog::debug("{}: drawing with {}", asked_by_, python_.string());
+      return;
+    }
+    tried += fmt::format("\n  {}: {}", python.string(), first_line(ended.output));
+  }
+  throw Error(ExitCode::run_time,
+              "{}: no Python can draw; CLPV_PYTHON names one with matplotlib, NumPy and Jinja2 (Debian: "
+              "python3-matplotlib python3-numpy python3-jinja2). Tried:{}",
+              asked_by_, tried.empty() ? " none: there is no python3" : tried);
 }
 
 void Drawing::add(const std::string& file, const nlohmann::json& document) const {
-  write_file(folder_ / file, document.dump());
+  write_file(folder() / file, document.dump());
 }
 
 void Drawing::draw(const fs::path& output) const {
-  run({folder_.string(), output.string()});
-}
-
-/// `python3 -m clpv.draw KIND arguments...`. -B: no bytecode is written to the package.
-void Drawing::run(const std::vector<std::string>& arguments) const {
-  const char* path = std::getenv("PYTHONPATH");
-  std::vector<std::string> words{
-      "PYTHONPATH=" + package_folder().string() + (path ? ":" : "") + (path ? path : ""),
-      "python3",
-      "-B",
-      "-m",
-      "clpv.draw",
-      kind_};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  Process::Result ended = Process("/usr/bin/env", words).end();
+  const Process::Result ended = run(python_, {folder().string(), fs::absolute(output).string()});
   if (ended.code == 0) return;
-  while (ended.output.ends_with('\n')) ended.output.pop_back();
   if (ended.code == static_cast<int>(ExitCode::bad_input))
     throw Error(ExitCode::bad_input, "{}: {}", asked_by_, ended.output);
-  throw Error(ExitCode::run_time, "{}: python3 -m clpv.draw ended with {}: {}", asked_by_, ended.code,
-              ended.output);
+  throw Error(ExitCode::run_time, "{}: {} -m clpv.draw ended with {}: {}", asked_by_, python_.string(),
+              ended.code, ended.output);
+}
+
+Process::Result Drawing::run(const fs::path& python, const std::vector<std::string>& arguments) const {
+  std::vector<std::string> words{"-I", "-B", "-c", kMain, package_folder().string(), kind_};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  Process::Result ended = Process(python, words).end();
+  while (ended.output.ends_with('\n')) ended.output.pop_back();
+  return ended;
 }
 
 }  // namespace clpv

@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "support/process.hpp"
+#include "support/scratch_folder.hpp"
+
 namespace clpv {
 
 /// One run of the package: checked before the work, run after it.
@@ -14,24 +17,23 @@ class Drawing {
  public:
   /// `kind`: "bench", "basis" or "report", the package's file of that name.
   /// `asked_by`: the option or command, for messages.
-  /// Throws Error(run_time) with Python's message if it or a module is missing.
+  /// Takes the first interpreter that has the package's modules: CLPV_PYTHON alone where it is set; else the one found at build
+  /// time, the first python3 in PATH, /usr/bin/python3. Throws Error(run_time) with the message of each if none has them.
   Drawing(std::string kind, std::string asked_by);
-  ~Drawing();
-  Drawing(const Drawing&) = delete;
-  Drawing& operator=(const Drawing&) = delete;
 
   /// Temporary folder for the input; removed by the destructor.
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
   void add(const std::string& file, const nlohmann::json& document) const;
 
   /// Throws Error(bad_input) for a malformed document, Error(run_time) with Python's message on failure.
   void draw(const std::filesystem::path& output) const;
 
  private:
-  void run(const std::vector<std::string>& arguments) const;
+  Process::Result run(const std::filesystem::path& python, const std::vector<std::string>& arguments) const;
 
   std::string kind_, asked_by_;
-  std::filesystem::path folder_;
+  std::filesystem::path python_;
+  ScratchFolder folder_;
 };
 
 }  // namespace clpv

@@ -33,14 +33,6 @@ struct Options : SceneRequest {
   TracingOptions tracing;
 };
 
-/// Checks the output options before any tracing.
-void check_outputs(const Options& options) {
-  for (const Show view : options.views) require_traceable(view);
-  require_extension("--output", options.output, {".exr"});
-  check_writable(options.output);
-  if (!options.stats.empty()) check_writable(options.stats);
-}
-
 nlohmann::json resolved(const Options& options, const SceneCamera& camera) {
   nlohmann::json json = {{"scene", options.scene},
                          {"camera", camera.name},
@@ -89,8 +81,11 @@ void write_outputs(const Options& options, const SceneCamera& camera, const refe
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
   reference::PathTracerOptions tracing = options.tracing.resolved();
-  check_outputs(options);
-  MovingScene moving = options.open();
+  for (const Show view : options.views) require_traceable(view);
+  require_extension("--output", options.output, {".exr"});
+  const std::vector<NamedFile> outputs{{"--output", options.output}, {"--stats", options.stats}};
+  check_outputs(outputs, options.files());
+  MovingScene moving = options.open(outputs);
   for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
   moving.pose(options.time);
   const Scene& scene = moving.scene();

@@ -142,9 +142,7 @@ nlohmann::json options_json(const Options& options) {
 }
 
 void run(const Options& options, const Shared& shared) {
-  for (const std::string& path : {options.npy, options.vti}) {
-    if (!path.empty()) check_writable(path);
-  }
+  check_outputs({{"--output", options.npy}, {"--vti", options.vti}}, {{"--centres", options.frame.centres}});
   if (options.sources.empty()) spdlog::warn("no light is injected: --at x,y,z names a cell to inject into");
   const RenderOptions& frame = options.frame;
   const auto basis = make_basis(frame);

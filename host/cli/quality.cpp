@@ -126,7 +126,7 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
 
 /// Returns all cells by group and camera at rank 0, and this rank's cells at other ranks.
 std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::vector<Group>& groups,
-                                     const QualityStore& store, const Options& options) {
+                                     QualityStore& store, const Options& options) {
   const bool whole = groups.size() >= static_cast<std::size_t>(ranks.size());
   const auto each = [&](const auto& action) {
     std::size_t cell = 0;
@@ -196,12 +196,14 @@ void run(const Options& options, Shared& shared) {
   const reference::PathTracerOptions tracing = options.tracing.resolved();
   if (!options.baselines.names.empty() && ranks.size() > 1)
     throw Error(ExitCode::usage, "--baseline: found {} ranks; allowed: one", ranks.size());
+  std::vector<NamedFile> outputs;
   for (const std::string& output : options.outputs) {
     require_extension("--output", output, {".json", ".csv"});
-    check_writable(output);
+    outputs.push_back({"--output", output});
   }
+  check_outputs(outputs, files_of(options.subjects));
   const std::filesystem::path folder = quality_cache(options.cache);
-  const QualityStore store(folder / "cells");
+  QualityStore store(folder / "cells");
   Session session(ranks.device(shared.device));
   std::vector<Subject> subjects = load_subjects(options.subjects);
   const std::vector<Group> groups = groups_of(options, subjects, variants);

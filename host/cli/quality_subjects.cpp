@@ -39,6 +39,13 @@ void add_subject_options(CLI::App& command, QualitySubjects& subjects) {
   add_seconds(command, "--time", subjects.time, "time in the scene's animation [s]");
 }
 
+std::vector<NamedFile> files_of(const QualitySubjects& given) {
+  std::vector<NamedFile> all;
+  for (const std::string& scene : given.scenes)
+    all.insert(all.end(), {{"SCENE", scene}, {"--model", model_for(scene, given)}});
+  return all;
+}
+
 std::filesystem::path quality_cache(const std::string& given) {
   if (!given.empty()) return given;
   if (const auto folder = user_cache_folder()) return *folder / "quality";

@@ -10,6 +10,7 @@
 #include "cli/options.hpp"
 #include "quality/ground_truth.hpp"
 #include "scene/scene.hpp"
+#include "support/output_file.hpp"
 
 namespace clpv {
 
@@ -31,6 +32,9 @@ struct Subject {
   std::vector<SceneCamera> cameras;
   std::vector<reference::GroundTruth> truths;  ///< one per camera, after tracing
 };
+
+/// Returns the files that the command line names.
+std::vector<NamedFile> files_of(const QualitySubjects& given);
 
 /// Returns the cache folder of quality runs: `given` (--cache), or the user's cache if that is empty. Throws
 /// Error(usage) if neither exists.

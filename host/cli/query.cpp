@@ -57,10 +57,13 @@ RenderRequest of_volumes(RenderRequest request) {
 }
 
 void run(const Options& options, const Shared& shared) {
-  if (!options.output.empty()) check_writable(options.output);
+  const std::vector<NamedFile> outputs{{"--output", options.output}};
+  std::vector<NamedFile> inputs = options.request.files();
+  inputs.push_back({"--points", options.points});
+  check_outputs(outputs, inputs);
   const std::vector<SurfacePoint> points = read_points(options.points);
   const RenderRequest request = of_volumes(options.request);
-  MovingScene moving = request.open();
+  MovingScene moving = request.open(outputs);
   moving.pose(options.time);
   const RenderOptions resolved = resolve_request(request, moving.scene());
   const SceneCamera& camera = moving.scene().camera(request.camera);

@@ -43,20 +43,20 @@ fs::path png_path(const fs::path& output, Show view, bool several) {
   return path.replace_extension(fmt::format(".{}{}", name_of(view), output.extension().string()));
 }
 
-/// Checks the options before the device is opened.
-void check_outputs(const Options& options) {
+std::vector<NamedFile> outputs_of(const Options& options) {
   require_extension("--output", options.output, {".exr", ".png"});
-  const std::string extension = fs::path(options.output).extension().string();
-  if (extension == ".exr") check_writable(options.output);
-  for (const Show view : options.views) {
-    if (extension == ".png") check_writable(png_path(options.output, view, options.views.size() > 1));
-  }
-  if (!options.stats.empty() && options.stats != "-") check_writable(options.stats);
-  if (!options.normals.empty()) check_writable(options.normals);
+  const bool several = options.views.size() > 1 && fs::path(options.output).extension() == ".png";
+  std::vector<NamedFile> outputs;
+  for (const Show view : options.views) outputs.push_back({"--output", png_path(options.output, view, several)});
+  if (!several) outputs.resize(1);
+  if (options.stats != "-") outputs.push_back({"--stats", options.stats});
+  outputs.push_back({"--dump-normals", options.normals});
   if (!options.dump.empty()) {
     create_folder("--dump-volume", options.dump);
-    check_writable(fs::path(options.dump) / "cascade0.npy");
+    for (const char* file : {"cascade0.npy", "grids.json"})
+      outputs.push_back({"--dump-volume", fs::path(options.dump) / file});
   }
+  return outputs;
 }
 
 void write_images(Frame& frame, const Options& options, float exposure,
@@ -96,11 +96,12 @@ void dump_volume(Session& session, const Options& options, const CascadeVolumes&
 }
 
 void run(const Options& options, const Shared& shared) {
-  check_outputs(options);
+  const std::vector<NamedFile> outputs = outputs_of(options);
+  check_outputs(outputs, options.request.files());
   FrameStats stats;
   Progress progress("render", 4);
   const RenderRequest& request = options.request;
-  MovingScene moving = request.open();
+  MovingScene moving = request.open(outputs);
   const Scene& scene = moving.scene();
   moving.pose(options.time);
   const RenderOptions resolved = resolve_request(request, scene);

@@ -20,8 +20,20 @@ namespace {
 constexpr float kMaxExposure = 64;  // 2^64: beyond any scene, and finite
 }
 
-MovingScene SceneRequest::open() const {
+std::vector<NamedFile> SceneRequest::files() const {
+  return {{"SCENE", scene}, {"--model", model}};
+}
+
+std::vector<NamedFile> RenderRequest::files() const {
+  std::vector<NamedFile> all = SceneRequest::files();
+  if (const auto given = frame.find("centres"); given != frame.end())
+    all.push_back({"--centres", given->second});
+  return all;
+}
+
+MovingScene SceneRequest::open(const std::vector<NamedFile>& outputs) const {
   MovingScene moving(scene, model);
+  check_outputs(outputs, files_of(moving.scene()));
   changes.apply(moving);
   return moving;
 }
@@ -76,6 +88,12 @@ Compilation compilation_of(const RenderRequest& request, const std::string& devi
   return {std::move(arguments), std::nullopt};
 }
 
+std::vector<NamedFile> files_of(const Scene& scene) {
+  std::vector<NamedFile> all;
+  for (const std::filesystem::path& file : scene.files) all.push_back({"scene " + scene.name, file});
+  return all;
+}
+
 void log_scene(const Scene& scene, const SceneCamera& camera, const RenderOptions& options) {
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
   const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
@@ -109,6 +127,10 @@ std::map<std::string, std::string> metadata_of(const nlohmann::json& described) 
   std::map<std::string, std::string> metadata;
   for (const auto& [name, value] : described.items())
     metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
+  for (const char* file : {"scene", "model", "centres"}) {
+    if (const auto found = metadata.find(file); found != metadata.end())
+      found->second = std::filesystem::path(found->second).filename().string();
+  }
   return metadata;
 }
 

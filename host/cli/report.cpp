@@ -146,8 +146,10 @@ void run(const Options& options, const Shared& shared) {
     throw Error(ExitCode::usage, "report: nothing to show; allowed: scenes, --quality or --bench");
   create_folder("DIR", options.folder);
   const fs::path output = fs::path(options.folder) / "index.html";
-  check_writable(output);
-
+  std::vector<NamedFile> inputs = files_of(options.subjects);
+  for (const std::string& file : options.quality) inputs.push_back({"--quality", file});
+  for (const std::string& file : options.benchmarks) inputs.push_back({"--bench", file});
+  check_outputs({{"DIR", output}}, inputs);
   const Drawing drawing("report", "clpv report");
   nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},
                         {"benchmarks", read_documents(options.benchmarks, "benchmarks", "bench")}};

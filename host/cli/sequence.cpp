@@ -83,10 +83,10 @@ bool holds_frame(const fs::path& file, const std::string& key) {
 /// Renders the frames; scene, device and device resources persist between frames.
 class Sequence {
  public:
-  Sequence(const Options& options, const Shared& shared, Ranks& ranks)
+  Sequence(const Options& options, const std::vector<NamedFile>& outputs, const Shared& shared, Ranks& ranks)
       : options_(options),
         ranks_(ranks),
-        moving_(options.request.open()),
+        moving_(options.request.open(outputs)),
         resolved_(resolve_request(options.request, moving_.scene())),
         device_(ranks.device(shared.device)),
         compilation_(compilation_of(options.request, shared.device)) {
@@ -268,8 +268,8 @@ class Sequence {
   std::optional<Tev> tev_;
 };
 
-/// Checks the options before the scene is read.
-void check_outputs(const Options& options) {
+/// Checks the options before the scene is read. Returns the outputs.
+std::vector<NamedFile> prepare_outputs(const Options& options) {
   if (const double last = options.time_of(options.frames - 1); last > bounds::kSeconds) {
     throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s", options.frames,
                 last, bounds::kSeconds);
@@ -282,9 +282,11 @@ void check_outputs(const Options& options) {
   if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
     throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.output);
   create_folder("--output", folder);
-  check_writable(options.file(0));
-  check_writable(folder / "times.json");
-  if (options.stability) check_writable(folder / "stability.json");
+  std::vector<NamedFile> outputs{
+      {"--output", options.file(0)}, {"--output", folder / "times.json"}, {"--video", options.video}};
+  if (options.stability) outputs.push_back({"--stability", folder / "stability.json"});
+  check_outputs(outputs, options.request.files());
+  return outputs;
 }
 
 /// Warns if the folder holds frames of a longer run beyond this one's.
@@ -297,10 +299,10 @@ void warn_of_later_frames(const Options& options) {
 
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
-  check_outputs(options);
+  const std::vector<NamedFile> outputs = prepare_outputs(options);
   std::optional<Video> video;
   if (!options.video.empty() && ranks.is_root()) video.emplace(options.video, options.frames_per_second);
-  Sequence sequence(options, shared, ranks);
+  Sequence sequence(options, outputs, shared, ranks);
   sequence.render();
   if (!ranks.is_root()) return;
   warn_of_later_frames(options);

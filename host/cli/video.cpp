@@ -2,8 +2,6 @@
 #include "cli/video.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,14 +9,12 @@
 #include <sstream>
 
 #include "support/error.hpp"
-#include "support/output_file.hpp"
 
 namespace clpv {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFfmpeg = "ffmpeg";
 // Players need even sizes and 4:2:0 chroma; x264's loss is hardly visible at CRF 18.
 constexpr const char* kEncoding =
     "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart -f mp4 -y";
@@ -42,21 +38,19 @@ std::vector<std::string> words_of(const std::string& text) {
 
 Video::Video(fs::path file, double frames_per_second)
     : file_(std::move(file)), frames_per_second_(frames_per_second) {
-  if (Process(kFfmpeg, {"-version"}).end().code < 0)
-    throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)");
+  const auto found = find_program("ffmpeg");
+  if (!found) throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)");
+  ffmpeg_ = *found;
   check_writable(file_);
-  part_ = file_.parent_path() / fmt::format(".{}.{}.part", file_.filename().string(), ::getpid());
 }
 
 Video::~Video() {
-  process_.reset();
-  std::error_code ignored;
-  fs::remove(part_, ignored);
+  process_.reset();  // before part_, which it writes
 }
 
 void Video::fail(const Process::Result& ended) const {
-  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), kFfmpeg, ended.code,
-              ended.output);
+  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(),
+              ended.code, ended.output);
 }
 
 void Video::add(const Image& shown) {
@@ -65,8 +59,9 @@ void Video::add(const Image& shown) {
         words_of(fmt::format("-hide_banner -loglevel error -f rawvideo -pixel_format rgb24 -video_size {}x{} "
                              "-framerate {} -i pipe:0 {}",
                              shown.width, shown.height, frames_per_second_, kEncoding));
-    words.push_back(part_.string());
-    process_ = std::make_unique<Process>(kFfmpeg, words, true);
+    part_.emplace(file_);
+    words.push_back("file:" + part_->temporary().string());  // a name with a colon would be a protocol
+    process_ = std::make_unique<Process>(ffmpeg_, words, true);
   }
   const std::vector<std::uint8_t> bytes = rgb_bytes(shown);
   if (!process_->feed(std::as_bytes(std::span(bytes)))) fail(process_->end());
@@ -76,9 +71,7 @@ void Video::finish() {
   const Process::Result ended = process_->end();
   process_.reset();
   if (ended.code != 0) fail(ended);
-  std::error_code failed;
-  fs::rename(part_, file_, failed);
-  if (failed) throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(), failed.message());
+  part_->commit();
 }
 
 }  // namespace clpv

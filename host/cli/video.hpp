@@ -4,13 +4,15 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "image/image.hpp"
+#include "support/output_file.hpp"
 #include "support/process.hpp"
 
 namespace clpv {
 
-/// H.264 video in an MP4 file. Writes a temporary file and renames it when complete.
+/// H.264 video in an MP4 file, an OutputFile.
 class Video {
  public:
   /// Throws Error(run_time) if ffmpeg is not in the path (with what to install) or `file` is not writable. Construct
@@ -28,8 +30,9 @@ class Video {
  private:
   [[noreturn]] void fail(const Process::Result& ended) const;
 
-  std::filesystem::path file_, part_;
+  std::filesystem::path file_, ffmpeg_;
   double frames_per_second_;
+  std::optional<OutputFile> part_;
   std::unique_ptr<Process> process_;
 };
 

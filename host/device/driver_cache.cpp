@@ -2,10 +2,10 @@
 #include "device/driver_cache.hpp"
 
 #include <cstdlib>
-#include <fstream>
 #include <system_error>
 
 #include "support/fingerprint.hpp"
+#include "support/log.hpp"
 
 namespace clpv {
 namespace {
@@ -18,6 +18,10 @@ std::optional<fs::path> folder_of(const char* variable, const char* below) {
   const char* set = std::getenv(variable);
   if (set == nullptr || *set == '\0') return std::nullopt;
   return fs::path(set) / below;
+}
+
+std::string name_of_mark(const std::string& key) {
+  return Fingerprint().add(key).hex();
 }
 
 }  // namespace
@@ -38,23 +42,17 @@ bool driver_cache_is_full() {
 
 CompiledMarks::CompiledMarks(const Device& device) {
   if (device.platform != "Portable Computing Language") return;
-  if (const auto cache = driver_cache_folder()) folder_ = *cache / "clpv";
+  if (const auto cache = driver_cache_folder()) folder_.emplace(*cache / "clpv");
 }
 
 bool CompiledMarks::has(const std::string& key) const {
-  std::error_code failed;
-  return folder_ && fs::exists(file_of(key), failed);
+  return folder_ && folder_->read(name_of_mark(key)).has_value();
 }
 
 void CompiledMarks::add(const std::string& key) const {
   if (!folder_) return;
-  std::error_code failed;  // a mark that cannot be made costs only the helpers' start in later runs
-  fs::create_directories(*folder_, failed);
-  std::ofstream(file_of(key)).flush();
-}
-
-fs::path CompiledMarks::file_of(const std::string& key) const {
-  return *folder_ / Fingerprint().add(key).hex();
+  const std::string why = folder_->write(name_of_mark(key), std::string_view(""));
+  if (!why.empty()) spdlog::debug("no mark of compiled kernels: {}", why);  // costs later runs their helpers' start
 }
 
 }  // namespace clpv

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "device/device.hpp"
+#include "support/cache_folder.hpp"
 
 namespace clpv {
 
@@ -27,8 +28,7 @@ class CompiledMarks {
   void add(const std::string& key) const;
 
  private:
-  std::filesystem::path file_of(const std::string& key) const;
-  std::optional<std::filesystem::path> folder_;
+  std::optional<CacheFolder> folder_;
 };
 
 }  // namespace clpv

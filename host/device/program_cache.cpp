@@ -8,9 +8,7 @@
 
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
-#include "support/input_file.hpp"
 #include "support/log.hpp"
-#include "support/output_file.hpp"
 
 namespace clpv {
 namespace {
@@ -90,12 +88,12 @@ std::string ProgramCache::key(const Device& device, const std::string& options, 
 }
 
 fs::path ProgramCache::file_of(const std::string& key) const {
-  return folder_ / fmt::format("{:016x}{}", hash_of(key), kSuffix);
+  return folder() / fmt::format("{:016x}{}", hash_of(key), kSuffix);
 }
 
 std::optional<ProgramCache::Binary> ProgramCache::load(const std::string& key) const {
   const fs::path file = file_of(key);
-  const auto bytes = file_bytes(file);
+  const auto bytes = folder_.read(file.filename().string());
   if (!bytes) return std::nullopt;
   std::optional<Binary> binary = unpack(*bytes, key);
   if (!binary) {
@@ -108,12 +106,9 @@ std::optional<ProgramCache::Binary> ProgramCache::load(const std::string& key) c
 }
 
 bool ProgramCache::store(const std::string& key, const Binary& binary) const {
-  std::error_code failed;  // write_file() reports the error
-  fs::create_directories(folder_, failed);
-  try {
-    write_file(file_of(key), pack(key, binary));
-  } catch (const Error& error) {
-    spdlog::debug("compiled program not cached: {}", error.what());
+  const std::string why = folder_.write(file_of(key).filename().string(), pack(key, binary));
+  if (!why.empty()) {
+    spdlog::warn("compiled programs are not cached: {}", why);
     return false;
   }
   evict_oldest();
@@ -134,7 +129,7 @@ void ProgramCache::evict_oldest() const {
   std::vector<File> files;
   std::uint64_t total = 0;
   std::error_code error;  // other processes may evict files meanwhile: missing files are not counted
-  for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
+  for (fs::directory_iterator it(folder(), error), end; !error && it != end; it.increment(error)) {
     std::error_code gone;
     File file{it->last_write_time(gone), 0, it->path()};
     if (!gone) file.bytes = it->file_size(gone);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "device/device.hpp"
+#include "support/cache_folder.hpp"
 
 namespace clpv {
 
@@ -34,22 +35,22 @@ class ProgramCache {
   /// Returns the binary stored under `key`; nothing if the file is missing, damaged or has another key.
   std::optional<Binary> load(const std::string& key) const;
 
-  /// Stores `binary` under `key`, replacing any other. On failure (folder not writable, disk full) logs the
-  /// reason (debug) and returns false: a cache never makes the program fail.
+  /// Stores `binary` under `key`, replacing any other. On failure (folder not writable, disk full) warns
+  /// with the reason and returns false: a cache never makes the program fail.
   bool store(const std::string& key, const Binary& binary) const;
 
   /// Removes a binary that the driver rejected, if it exists.
   void remove(const std::string& key) const;
 
   std::filesystem::path file_of(const std::string& key) const;
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
   static constexpr std::uint64_t kDefaultMaxBytes = 256u << 20;  // a few hundred programs of PoCL
 
  private:
   void evict_oldest() const;
 
-  std::filesystem::path folder_;
+  CacheFolder folder_;
   std::uint64_t max_bytes_;
 };
 

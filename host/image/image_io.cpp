@@ -113,7 +113,9 @@ struct OpenImage {
   std::unique_ptr<ImageDecoder> decoder;
 
   OpenImage(const fs::path& path, const ImageLimits& limits)
-      : bytes(read_file(path, limits.file_bytes, path.string())), format(checked_format(path, bytes)) {
+      : OpenImage(path, read_file(path, limits.file_bytes, path.string()), limits) {}
+  OpenImage(const fs::path& path, Bytes content, const ImageLimits& limits)
+      : bytes(std::move(content)), format(checked_format(path, bytes)) {
     prepare_for_decoding(path, format, bytes, limits);
     std::string error;
     decoder = image_codec().open(format, path.string(), bytes, error);
@@ -134,8 +136,9 @@ void require_encoded(const std::string& name, const std::string& error) {
 
 }  // namespace
 
-Image read_image(const fs::path& path, const ImageLimits& limits) {
-  const OpenImage opened(path, limits);
+namespace {
+
+Image decoded(const fs::path& path, const OpenImage& opened) {
   const CodedImage& described = opened.decoder->described();
   Image image = make_image(described.width, described.height, described.channels);
   image.metadata = described.metadata;
@@ -145,13 +148,28 @@ Image read_image(const fs::path& path, const ImageLimits& limits) {
   return image;
 }
 
+}  // namespace
+
+Image read_image(const fs::path& path, const ImageLimits& limits) {
+  return decoded(path, OpenImage(path, limits));
+}
+
+Image decode_image(const fs::path& path, std::string_view bytes) {
+  return decoded(path, OpenImage(path, Bytes(bytes.begin(), bytes.end()), {}));
+}
+
 std::map<std::string, std::string> read_metadata(const fs::path& path, const ImageLimits& limits) {
   return OpenImage(path, limits).decoder->described().metadata;
 }
 
-void write_exr(const fs::path& path, const Image& image) {
+std::vector<unsigned char> exr_bytes(const Image& image) {
   std::vector<unsigned char> bytes;
-  require_encoded(path.string(), image_codec().encode_exr(coded(image), image.pixels.data(), bytes));
+  require_encoded("image.exr", image_codec().encode_exr(coded(image), image.pixels.data(), bytes));
+  return bytes;
+}
+
+void write_exr(const fs::path& path, const Image& image) {
+  const auto bytes = exr_bytes(image);
   write_file(path, std::as_bytes(std::span(bytes)));
 }
 

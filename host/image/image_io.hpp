@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/image.hpp"
@@ -26,12 +27,18 @@ struct ImageLimits {
 /// the value found and the values allowed.
 Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
 
+/// Decodes the bytes of such a file; `path` is its name. Throws as read_image.
+Image decode_image(const std::filesystem::path& path, std::string_view bytes);
+
 /// Reads only the metadata of a file. Throws as read_image, but does not decode pixels.
 std::map<std::string, std::string> read_metadata(const std::filesystem::path& path,
                                                  const ImageLimits& limits = {});
 
-/// Writes an EXR file of 32-bit floats with the image's channel names. Metadata become string attributes "clpv:NAME". Equal
-/// images give equal bytes. Throws Error(run_time).
+/// Encodes an image as EXR of 32-bit floats with its channel names. Metadata become string attributes "clpv:NAME". Equal images
+/// give equal bytes. Throws Error(run_time).
+std::vector<unsigned char> exr_bytes(const Image& image);
+
+/// Writes exr_bytes() to a file. Throws Error(run_time).
 void write_exr(const std::filesystem::path& path, const Image& image);
 
 /// Encodes an sRGB-encoded image (display_image) with R, G, B and optionally A in [0, 1] as 8-bit PNG, with metadata as text.

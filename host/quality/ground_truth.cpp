@@ -13,10 +13,10 @@
 #include "pipeline/raster/view.hpp"
 #include "scene/emission.hpp"
 #include "scene/sky.hpp"
+#include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/named_enum.hpp"
-#include "support/output_file.hpp"
 
 namespace clpv::reference {
 namespace {
@@ -68,10 +68,32 @@ void describe(Image& image, const Scene& scene, const SceneCamera& camera, const
   image.metadata["noise_reached"] = fmt::format("{}", traced.noise);
 }
 
-GroundTruth read_reference(const std::filesystem::path& file, const Scene& scene) {
+constexpr const char* kFingerprint = "fingerprint";  // metadata: of the rest of a cached image
+
+std::string fingerprint_of(const Image& image) {
+  Fingerprint print;
+  print.add(image.width).add(image.height);
+  std::map<std::string, std::size_t> sorted;  // files order channels by name
+  for (const std::string& name : image.channels) sorted[name] = *image.channel(name);
+  for (const auto& [name, channel] : sorted) {
+    std::vector<float> values(image.pixel_count());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = image.pixels[i * image.channels.size() + channel];
+    print.add(name).add(values);
+  }
+  for (const auto& [name, value] : image.metadata)
+    if (name != kFingerprint && !value.empty()) print.add(name).add(value);  // files lack empty values
+  return print.hex();
+}
+
+/// Returns the ground truth in an entry's bytes. Throws if they are damaged.
+GroundTruth decode(const std::filesystem::path& file, const std::string& bytes, const Scene& scene) {
   GroundTruth truth;
-  truth.image = read_image(file);
+  truth.image = decode_image(file, bytes);
   truth.file = file;
+  if (const auto found = truth.image.metadata.find(kFingerprint);
+      found == truth.image.metadata.end() || found->second != fingerprint_of(truth.image))
+    throw Error(ExitCode::bad_input, "{}: damaged: its fingerprint differs", file.string());
   for (const Show show : views_of(scene.medium.has_value()))
     extract_layer(truth.image, std::string(name_of(show)), file.string());  // throws
   truth.samples = static_cast<std::uint32_t>(std::stoul(truth.image.metadata.at("spp_traced")));
@@ -94,28 +116,24 @@ std::string scene_fingerprint(const Scene& scene) {
 
 namespace {
 
-/// Returns the cached ground truth if its file is readable.
-std::optional<GroundTruth> read_cached(const std::filesystem::path& file, const Scene& scene) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
+constexpr std::uintmax_t kMaxBytes = ImageLimits().file_bytes;
+
+/// Returns the cached ground truth if its entry is sound.
+std::optional<GroundTruth> read_cached(const CacheFolder& cache, const std::string& name, const Scene& scene) {
+  const auto bytes = cache.read(name, kMaxBytes);
+  if (!bytes) return std::nullopt;
   try {
-    return read_reference(file, scene);
+    return decode(cache.path() / name, *bytes, scene);
   } catch (const std::exception& error) {
     spdlog::warn("{}; traced again", error.what());
     return std::nullopt;
   }
 }
 
-/// Returns false, with a warning, if the ground truth cannot be cached.
-bool can_be_cached(const std::filesystem::path& file) {
-  std::error_code failure;  // check_writable reports any error of the folder
-  std::filesystem::create_directories(file.parent_path(), failure);
-  try {
-    check_writable(file);
-    return true;
-  } catch (const Error& error) {
-    spdlog::warn("{}: the ground truth is not cached", error.what());
-    return false;
-  }
+/// Warns of a problem of the cache. Returns true if there is none.
+bool can_be_cached(const std::string& problem) {
+  if (!problem.empty()) spdlog::warn("{}: the ground truth is not cached", problem);
+  return problem.empty();
 }
 
 }  // namespace
@@ -125,25 +143,31 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
                                 const PathTracerOptions& options, const TraceProgress& progress,
                                 Ranks& ranks) {
   const ClpvView view = camera_view(camera, width, height);
-  const std::filesystem::path file =
-      folder / fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
-                           key(scene, camera, view, options));
+  const CacheFolder cache(folder);
+  const std::string name = fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
+                                       key(scene, camera, view, options));
   std::optional<GroundTruth> kept;
   bool cached = false;
   const std::string found = ranks.from_root([&] {
-    kept = read_cached(file, scene);
-    if (!kept) cached = can_be_cached(file);
+    kept = read_cached(cache, name, scene);
+    if (!kept) cached = can_be_cached(cache.problem());
     return kept ? "there" : "";
   });
-  if (!found.empty()) {
-    GroundTruth truth = kept ? *std::move(kept) : read_reference(file, scene);
-    truth.exposure = scene.exposure;
-    return truth;
+  if (!found.empty() && !kept) kept = read_cached(cache, name, scene);
+  if (!found.empty() && !kept)
+    throw Error(ExitCode::run_time, "{}: root has it, but this rank cannot read it", (folder / name).string());
+  if (kept) {
+    kept->exposure = scene.exposure;
+    return *std::move(kept);
   }
   const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);
-  GroundTruth truth{all_views(traced), file, true, traced.samples, traced.noise, scene.exposure};
+  GroundTruth truth{all_views(traced), folder / name, true, traced.samples, traced.noise, scene.exposure};
   describe(truth.image, scene, camera, traced, options);
-  if (cached) write_exr(file, truth.image);  // at rank 0
+  if (cached) {  // at rank 0
+    truth.image.metadata[kFingerprint] = fingerprint_of(truth.image);
+    const auto bytes = exr_bytes(truth.image);
+    can_be_cached(cache.write(name, std::as_bytes(std::span(bytes))));
+  }
   return truth;
 }
 

@@ -22,9 +22,9 @@ struct GroundTruth {
 
 /// Returns the ground truth of `camera` from the cache in `folder`; traces and stores it if it is missing.
 /// The file name contains a key over scene content, camera, size, options and program version, but no file paths.
-/// An unreadable file is traced again, with a warning.
+/// A damaged file is traced again, with a warning; one that CacheFolder does not trust is ignored.
 /// Collective over all `ranks`; each rank receives the result. Rank 0 reads and writes the cache.
-/// A folder that cannot be written is a warning before tracing. Throws like trace_paths.
+/// A folder that cannot be written is a warning before tracing, and a failure to write one after it. Throws like trace_paths.
 GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene,
                                 const SceneCamera& camera, int width, int height,
                                 const PathTracerOptions& options, const TraceProgress& progress = {},

@@ -12,9 +12,7 @@
 #include "image/compare.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
-#include "support/input_file.hpp"
 #include "support/median.hpp"
-#include "support/output_file.hpp"
 
 namespace clpv {
 namespace {
@@ -133,35 +131,47 @@ std::string quality_key(const reference::GroundTruth& truth, const Device& devic
   return print.hex();
 }
 
-QualityStore::QualityStore(std::filesystem::path folder) : folder_(std::move(folder)) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder_, failure);  // check_writable reports any error
-  try {
-    check_writable(file("probe"));
-  } catch (const Error& error) {
-    writable_ = false;
-    spdlog::warn("{}: results are not cached", error.what());
-  }
+namespace {
+
+constexpr const char* kFingerprint = "fingerprint";  // of the other values of a cached cell
+
+std::string fingerprint_of(const nlohmann::json& cell) {
+  return Fingerprint().add(cell.dump()).hex();
 }
 
-std::filesystem::path QualityStore::file(const std::string& key) const {
-  return folder_ / (key + ".json");
+}  // namespace
+
+QualityStore::QualityStore(std::filesystem::path folder) : folder_(std::move(folder)) {
+  warn_of(folder_.problem());
+}
+
+void QualityStore::warn_of(const std::string& problem) {
+  if (problem.empty()) return;
+  writable_ = false;
+  spdlog::warn("{}: results are not cached", problem);
 }
 
 std::optional<QualityCell> QualityStore::find(const std::string& key) const {
-  const auto kept = file_bytes(file(key));
+  const std::string name = key + ".json";
+  const auto kept = folder_.read(name);
   if (!kept) return std::nullopt;
   try {
-    return cell_from_json(nlohmann::json::parse(*kept));
+    nlohmann::json json = nlohmann::json::parse(*kept);
+    const std::string found = json.at(kFingerprint);
+    json.erase(kFingerprint);
+    if (found == fingerprint_of(json)) return cell_from_json(json);
+    spdlog::warn("{}: damaged; measured again", (folder_.path() / name).string());
   } catch (const nlohmann::json::exception& error) {
-    spdlog::warn("{}: {}; measured again", file(key).string(), error.what());
-    return std::nullopt;
+    spdlog::warn("{}: {}; measured again", (folder_.path() / name).string(), error.what());
   }
+  return std::nullopt;
 }
 
-void QualityStore::keep(const std::string& key, const QualityCell& cell) const {
+void QualityStore::keep(const std::string& key, const QualityCell& cell) {
   if (!writable_) return;
-  write_file(file(key), to_json(cell).dump(2) + "\n");
+  nlohmann::json json = to_json(cell);
+  json[kFingerprint] = fingerprint_of(json);
+  warn_of(folder_.write(key + ".json", json.dump(2) + "\n"));
 }
 
 namespace {

@@ -12,6 +12,7 @@
 
 #include "pipeline/frame/frame.hpp"
 #include "quality/ground_truth.hpp"
+#include "support/cache_folder.hpp"
 
 namespace clpv {
 
@@ -69,17 +70,18 @@ std::string quality_key(const reference::GroundTruth& truth, const Device& devic
 /// Cells cached on disk, so that an interrupted run can resume.
 class QualityStore {
  public:
-  /// Creates the folder if it is missing. If it is not writable, warns, and keeps nothing.
+  /// Warns if the folder cannot be used.
   explicit QualityStore(std::filesystem::path folder);
 
-  /// Empty if the cell is missing or unreadable; logs the latter.
+  /// Empty if the cell is missing, damaged or not to be trusted (CacheFolder); logs damage.
   std::optional<QualityCell> find(const std::string& key) const;
-  void keep(const std::string& key, const QualityCell& cell) const;
+  /// Stores a cell. The first failure is a warning, and nothing is stored after it.
+  void keep(const std::string& key, const QualityCell& cell);
 
  private:
-  std::filesystem::path file(const std::string& key) const;
+  void warn_of(const std::string& problem);
 
-  std::filesystem::path folder_;
+  CacheFolder folder_;
   bool writable_ = true;
 };
 

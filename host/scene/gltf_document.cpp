@@ -125,6 +125,16 @@ void load_model(const Bytes& bytes, const json& parsed, GltfDocument& document) 
 
 }  // namespace
 
+std::vector<std::filesystem::path> GltfDocument::files() const {
+  std::vector<std::filesystem::path> all{file};
+  const auto add = [&](const std::string& uri) {
+    if (!uri.empty() && !uri.starts_with("data:")) all.push_back(folder / uri);
+  };
+  for (const tinygltf::Buffer& buffer : model.buffers) add(buffer.uri);
+  for (const tinygltf::Image& image : model.images) add(image.uri);
+  return all;
+}
+
 std::span<const std::uint8_t> GltfDocument::view(int index) const {
   const tinygltf::BufferView& view = entry(model.bufferViews, index);
   return std::span(entry(model.buffers, view.buffer).data).subspan(view.byteOffset, view.byteLength);

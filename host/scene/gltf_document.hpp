@@ -25,6 +25,9 @@ struct GltfDocument {
   std::filesystem::path folder;  ///< canonical path of the folder to which reads are restricted
   tinygltf::Model model;         ///< indices are in range; Image::image has the encoded bytes of a data URI
 
+  /// Its own file, and those of its buffers and images.
+  std::vector<std::filesystem::path> files() const;
+
   /// Bytes of a buffer view.
   std::span<const std::uint8_t> view(int index) const;
 };

@@ -27,6 +27,7 @@ Scene load_gltf(const std::filesystem::path& path, double metres_per_unit, Motio
   std::erase_if(ignored, reads_extension);
   if (!ignored.empty()) notes.add(fmt::format("extensions that are not read: {}", fmt::join(ignored, ", ")));
   Scene scene;
+  scene.files = document.files();
   motion.tree = read_nodes(document, read_animations(document, notes),
                            glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
   PosedTree posed(motion.tree, 0);
@@ -148,6 +149,7 @@ void MovingScene::load_scene_file(const std::filesystem::path& path, const std::
            "an existing file; option model says where it lies");
   }
   scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes);
+  if (!description_.sky_map.empty()) scene_.files.push_back(description_.sky_map);
   if (views.cameras) motion_.cameras.clear();
   if (views.lights) motion_.lights.clear();
   set_views(std::move(views));

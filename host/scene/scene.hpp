@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
@@ -66,6 +67,7 @@ struct MeshRange {
 struct Scene {
   std::string name;  ///< the file's stem
   std::string path;  ///< the scene's file
+  std::vector<std::filesystem::path> files;  ///< other files that it was read from: model, buffers, images
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;  ///< at least one if there are triangles

@@ -295,8 +295,11 @@ SceneDescription read_scene_file(const std::filesystem::path& path) {
     if (cascades.contains("count")) scene.cascades = cascades["count"].get<int>();
     if (cascades.contains("size_metres")) scene.cascade_size = cascades["size_metres"].get<float>();
   }
-  if (parsed.contains("sky"))
+  if (parsed.contains("sky")) {
     scene.sky = std::make_shared<const Sky>(read_sky_member(parsed["sky"], path, scene.file));
+    if (parsed["sky"].contains("map"))
+      scene.sky_map = path.parent_path() / parsed["sky"]["map"].get<std::string>();
+  }
   if (parsed.contains("medium"))
     scene.medium = read_medium(parsed["medium"], scene.metres_per_unit, scene.file);
   scene.cameras = read_entries(parsed, "cameras", keyed_cameras(), scene.file);

@@ -20,6 +20,7 @@ struct SceneDescription {
   std::optional<float> cascade_size;  ///< [m]
   std::optional<int> cascades;
   std::shared_ptr<const Sky> sky;                          ///< null if absent
+  std::filesystem::path sky_map;                           ///< its file; empty if absent
   std::optional<ClpvMedium> medium;                        ///< without a box: lower and upper are equal
   std::optional<std::vector<KeyedEntry>> cameras, lights;  ///< replace the model's, unless absent
 

@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <thread>
@@ -32,13 +31,6 @@ constexpr const char* kDone = ".done";
 std::string& helper_program() {
   static std::string file;
   return file;
-}
-
-fs::path new_folder() {
-  std::string name = (fs::temp_directory_path() / "clpv-helpers-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw Error(ExitCode::run_time, "{}: {}", name, std::strerror(errno));
-  return name;
 }
 
 }  // namespace
@@ -85,16 +77,14 @@ struct Helpers::Child {
   bool ended = false;
 };
 
-Helpers::Helpers(std::vector<std::string> arguments) : folder_(new_folder()), claims_(folder_) {
-  arguments.insert(arguments.end(), {"--claims", folder_.string()});
+Helpers::Helpers(std::vector<std::string> arguments) : claims_(folder_.path()) {
+  arguments.insert(arguments.end(), {"--claims", folder_.path().string()});
   for (unsigned i = 0; i < helper_count(); ++i) children_.push_back(std::make_unique<Child>(arguments));
 }
 
 Helpers::~Helpers() {
   for (const auto& child : children_) child->process.kill();
   children_.clear();
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
 }
 
 bool Helpers::wait() {

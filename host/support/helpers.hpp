@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "support/scratch_folder.hpp"
+
 namespace clpv {
 
 /// Sets the file of this program, which helpers run. Without it, as in a library, there are no helpers.
@@ -52,7 +54,7 @@ class Helpers {
 
  private:
   struct Child;
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
   Claims claims_;
   std::vector<std::unique_ptr<Child>> children_;
   std::string failures_;

@@ -2,11 +2,15 @@
 #include "support/output_file.hpp"
 
 #include <fcntl.h>
+#include <limits.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 #include "support/error.hpp"
 
@@ -17,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxLinks = 40;  // symbolic links in a row, as Linux allows
 constexpr int kMaxNames = 1000;
+constexpr mode_t kPermissions = 0777;
 
 std::string reason(int code) {
   return std::generic_category().message(code);
@@ -26,47 +31,12 @@ std::string reason(int code) {
   throw Error(ExitCode::run_time, "{}: cannot be written: {}", path.string(), why);
 }
 
-/// Temporary file in the folder of its target; the destructor removes it unless it was renamed.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& target) : target_(target) {
-    static std::atomic<unsigned> count{0};
-    // The name may exist: of a killed process, or of a process on another machine.
-    for (int tries = 0; descriptor_ < 0 && tries < kMaxNames && (tries == 0 || errno == EEXIST); ++tries) {
-      path_ = target.parent_path() /
-              fmt::format(".{}.{}-{}.part", target.filename().string(), ::getpid(), count++);
-      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    }
-    if (descriptor_ < 0) reject_output(target_, reason(errno));
-  }
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!renamed_) ::unlink(path_.c_str());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  void write(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) reject_output(target_, reason(errno));
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-  }
-
-  void rename_into_place() {
-    const int closed = ::close(std::exchange(descriptor_, -1));
-    if (closed != 0) reject_output(target_, reason(errno));
-    if (::rename(path_.c_str(), target_.c_str()) != 0) reject_output(target_, reason(errno));
-    renamed_ = true;
-  }
-
- private:
-  fs::path target_, path_;
-  int descriptor_ = -1;
-  bool renamed_ = false;
-};
+/// Name of a temporary file: hidden, unique in this process, and at most as long as a name may be.
+std::string temporary_name(const std::string& target) {
+  static std::atomic<unsigned> count{0};
+  const std::string suffix = fmt::format(".{}-{}.part", ::getpid(), count++);
+  return fmt::format(".{}{}", target.substr(0, NAME_MAX - 1 - suffix.size()), suffix);
+}
 
 /// Returns `path` with its symbolic links resolved. Throws Error(run_time) if no file can be written there.
 fs::path resolve(const fs::path& path) {
@@ -86,25 +56,84 @@ fs::path resolve(const fs::path& path) {
     reject_output(path, fmt::format("there is no folder {}", target.parent_path().string()));
   }
   const fs::file_status status = fs::status(target, error);
+  if (status.type() == fs::file_type::none)
+    reject_output(path, error.message());  // for example a name too long
   if (fs::is_directory(status)) reject_output(path, "it is a folder");
   if (fs::exists(status) && !fs::is_regular_file(status)) reject_output(path, "it is not a regular file");
   if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0) reject_output(path, reason(errno));
   return target;
 }
 
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code missing;
+  return fs::weakly_canonical(fs::absolute(a), missing) == fs::weakly_canonical(fs::absolute(b), missing) ||
+         fs::equivalent(a, b, missing);
+}
+
 }  // namespace
 
-void check_writable(const std::filesystem::path& path) {
-  TemporaryFile probe(resolve(path));
+OutputFile::OutputFile(const fs::path& path, Links links)
+    : target_(links == Links::follow ? resolve(path) : path) {
+  struct stat replaced {};
+  const bool replaces = ::lstat(target_.c_str(), &replaced) == 0 && S_ISREG(replaced.st_mode);
+  // The name may exist: of a killed process, or of a process on another machine.
+  for (int tries = 0; descriptor_ < 0 && tries < kMaxNames && (tries == 0 || errno == EEXIST); ++tries) {
+    temporary_ = target_.parent_path() / temporary_name(target_.filename().string());
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, replaces ? 0600 : 0666);
+  }
+  if (descriptor_ < 0) reject_output(target_, reason(errno));
+  // Some file systems have no modes.
+  if (replaces) static_cast<void>(::fchmod(descriptor_, replaced.st_mode & kPermissions));
 }
 
-void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  TemporaryFile file(resolve(path));
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!renamed_ && !temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) reject_output(target_, reason(errno));
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void OutputFile::commit() {
+  const int closed = ::close(std::exchange(descriptor_, -1));
+  if (closed != 0) reject_output(target_, reason(errno));
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) reject_output(target_, reason(errno));
+  renamed_ = true;
+}
+
+void check_writable(const fs::path& path) {
+  OutputFile probe(path);
+}
+
+void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
+  std::vector<NamedFile> others = inputs;
+  for (const NamedFile& output : outputs) {
+    if (output.path.empty()) continue;
+    const auto same = std::ranges::find_if(others, [&](const NamedFile& other) {
+      return !other.path.empty() && same_file(output.path, other.path);
+    });
+    if (same != others.end()) {
+      throw Error(ExitCode::usage, "{} {}: found the file of {} {}; allowed: another file", output.option,
+                  output.path.string(), same->option, same->path.string());
+    }
+    check_writable(output.path);
+    others.push_back(output);
+  }
+}
+
+void write_file(const fs::path& path, std::span<const std::byte> bytes) {
+  OutputFile file(path);
   file.write(bytes);
-  file.rename_into_place();
+  file.commit();
 }
 
-void write_file(const std::filesystem::path& path, std::string_view text) {
+void write_file(const fs::path& path, std::string_view text) {
   write_file(path, std::as_bytes(std::span(text)));
 }
 

@@ -2,14 +2,18 @@
 #include "support/process.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <sstream>
 #include <utility>
 
 extern char** environ;
@@ -24,6 +28,11 @@ std::vector<char*> argument_pointers(std::string& program, std::vector<std::stri
   return words;
 }
 
+std::FILE* file_in_memory() {
+  const int descriptor = ::memfd_create("output", MFD_CLOEXEC);
+  return descriptor >= 0 ? ::fdopen(descriptor, "w+") : nullptr;
+}
+
 std::string contents(std::FILE* file) {
   std::string text;
   std::rewind(file);
@@ -34,8 +43,36 @@ std::string contents(std::FILE* file) {
 
 }  // namespace
 
-Process::Process(const std::string& program, const std::vector<std::string>& arguments, bool with_input)
-    : output_(std::tmpfile()) {
+namespace {
+
+/// The absolute entries of PATH.
+std::vector<std::string> program_folders() {
+  const char* path = std::getenv("PATH");
+  std::istringstream entries(path != nullptr ? path : "/usr/bin:/bin");
+  std::vector<std::string> folders;
+  for (std::string entry; std::getline(entries, entry, ':');)
+    if (entry.starts_with('/')) folders.push_back(entry);
+  return folders;
+}
+
+}  // namespace
+
+void keep_absolute_path_entries() {
+  ::setenv("PATH", fmt::format("{}", fmt::join(program_folders(), ":")).c_str(), 1);
+}
+
+std::optional<std::filesystem::path> find_program(const std::string& name) {
+  for (const std::string& folder : program_folders()) {
+    const std::filesystem::path file = std::filesystem::path(folder) / name;
+    std::error_code unknown;
+    if (std::filesystem::is_regular_file(file, unknown) && ::access(file.c_str(), X_OK) == 0) return file;
+  }
+  return std::nullopt;
+}
+
+Process::Process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                 bool with_input)
+    : output_(file_in_memory()) {
   // Sockets instead of a pipe: writing to a closed reader is then an error, not SIGPIPE.
   int ends[2] = {-1, -1};
   if (output_ == nullptr || (with_input && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)) {
@@ -52,10 +89,10 @@ Process::Process(const std::string& program, const std::vector<std::string>& arg
   }
   posix_spawn_file_actions_adddup2(&actions, ::fileno(output_.get()), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, ::fileno(output_.get()), STDERR_FILENO);
-  std::string name = program;
+  std::string name = program.string();
   std::vector<std::string> words = arguments;
-  start_error_ = ::posix_spawnp(&child_, program.c_str(), &actions, nullptr,
-                                argument_pointers(name, words).data(), environ);
+  start_error_ = ::posix_spawn(&child_, program.c_str(), &actions, nullptr,
+                               argument_pointers(name, words).data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   if (with_input) ::close(ends[1]);
   if (start_error_ != 0) child_ = -1;

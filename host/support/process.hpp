@@ -6,12 +6,21 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace clpv {
+
+/// Removes the entries of PATH that depend on the current folder, since a scene's folder may hold anything. For drivers that start
+/// programs, as PoCL starts ld.
+void keep_absolute_path_entries();
+
+/// Returns the file of a program in the absolute entries of PATH.
+std::optional<std::filesystem::path> find_program(const std::string& name);
 
 /// A child process, started without a shell.
 class Process {
@@ -21,9 +30,10 @@ class Process {
     std::string output;  ///< stdout and stderr, or the reason why it did not start
   };
 
-  /// Starts `program`, searched for in PATH if the name has no '/'. `with_input`: its stdin reads the bytes of feed(); else
-  /// stdin is empty. end() reports a failure to start.
-  Process(const std::string& program, const std::vector<std::string>& arguments, bool with_input = false);
+  /// Starts the program of that file. `with_input`: its stdin reads the bytes of feed(); else stdin is empty. end() reports a
+  /// failure to start.
+  Process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+          bool with_input = false);
   ~Process();  ///< closes its input and waits for it to exit
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -43,7 +53,7 @@ class Process {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  std::unique_ptr<std::FILE, Close> output_;  ///< an unnamed temporary file
+  std::unique_ptr<std::FILE, Close> output_;  ///< a file in memory
   int input_ = -1;
   pid_t child_ = -1;
   int status_ = 0;  ///< of waitpid, once exited_

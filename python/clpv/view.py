@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Viewer in the browser: python3 -m clpv.view SCENE [--model PATH] [--port N] [--host ADDRESS]
 
-Drag to look round, W A S D Q E to walk, the wheel to move. Frames are small while the camera moves, sharp when it
-rests, and then nearer to path tracing.
-Needs viser: python3 -m pip install viser (in a virtual environment with --system-site-packages).
+Drag to look round, W A S D Q E to walk, the wheel to move, R to return to the scene's camera. Frames
+are small while the camera moves, sharp when it rests, and then nearer to path tracing.
+Needs viser: python3 -m pip install viser==1.1.1 (in a virtual environment with
+--system-site-packages).
 """
 import argparse
 import collections
@@ -14,6 +15,7 @@ import threading
 import time
 
 import clpv
+from clpv import view_gate
 
 VIEWS = "full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"
 STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "blockers", "visibility", "propagate",
@@ -21,6 +23,7 @@ STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light
 # Frames of a view that rests: seconds without a change, height [pixels], rays of the near field.
 LEVELS = (0, 288, "2"), (0.3, 720, "4"), (1, 720, "64")
 MAX_RENDERERS = 4     # kept, by size and options
+RATE_SPAN = 1.0       # [s] of motion that the frame rate is measured over
 PIVOT = 0.03          # distance from the eye to the point that a drag turns the camera about, of the scene's diagonal
 
 
@@ -61,27 +64,55 @@ class Renderers:
         return self.kept[key]
 
 
+class Rate:
+    """Frames per second over the last second of motion; it stays while the camera rests."""
+
+    def __init__(self):
+        self.times, self.shown = collections.deque(), "-"
+
+    def add(self, now):
+        """A frame of a moving camera was shown at `now` [s]."""
+        self.times.append(now)
+        while now - self.times[0] > RATE_SPAN:
+            self.times.popleft()
+        if len(self.times) > 1:
+            self.shown = f"{(len(self.times) - 1) / (now - self.times[0]):.0f}"
+
+
 class Controls:
     """The panel beside the image. Clients share it."""
 
-    def __init__(self, server, scene, changed):
+    def __init__(self, server, gate, scene, changed):
         self.lights = scene.lights
         gui = server.gui
+
+        def choice(name, values, initial):
+            return gate.allow(gui.add_dropdown(name, values, initial_value=initial), lambda value: value in values)
+
+        def checkbox(name, initial=False):
+            return gate.allow(gui.add_checkbox(name, initial_value=initial), lambda value: isinstance(value, bool))
+
+        def slider(name, low, high, step, initial, **more):
+            return gate.allow(gui.add_slider(name, low, high, step, initial_value=initial, **more),
+                              lambda value: view_gate.is_number(value, low, high))
+
         defaults = {option["name"]: option["value"] for option in clpv.options()}
         self.status = gui.add_markdown("starting")
-        self.view = gui.add_dropdown("view", VIEWS, initial_value="full")
-        self.basis = gui.add_dropdown("basis", clpv.bases(), initial_value=defaults["basis"])
-        self.transport = gui.add_dropdown("transport", ("sweep", "exact", "sampled"), initial_value=defaults["transport"])
-        self.near = gui.add_checkbox("near field", initial_value=True)
-        self.exposure = gui.add_slider("exposure [EV]", -10, 10, 0.25, initial_value=max(-10, min(10, scene.exposure)))
-        self.time = gui.add_slider("time [s]", 0, 20, 0.05, initial_value=0, visible=scene.moves)
+        self.view = choice("view", VIEWS, "full")
+        self.basis = choice("basis", clpv.bases(), defaults["basis"])
+        self.transport = choice("transport", ("sweep", "exact", "sampled"), defaults["transport"])
+        self.near = checkbox("near field", True)
+        self.exposure = slider("exposure [EV]", -10, 10, 0.25, max(-10, min(10, scene.exposure)))
+        self.time = slider("time [s]", 0, 20, 0.05, 0, visible=scene.moves)
         with gui.add_folder("sun"):
-            self.sun = gui.add_checkbox("sun instead of the lights", initial_value=False)
-            self.azimuth = gui.add_slider("azimuth [degrees]", 0, 360, 1, initial_value=30)
-            self.elevation = gui.add_slider("elevation [degrees]", 1, 90, 1, initial_value=60)
-            self.lux = gui.add_slider("illuminance [lx]", 0, 50, 0.5, initial_value=10)
+            self.sun = checkbox("sun instead of the lights")
+            self.azimuth = slider("azimuth [degrees]", 0, 360, 1, 30)
+            self.elevation = slider("elevation [degrees]", 1, 90, 1, 60)
+            self.lux = slider("illuminance [lx]", 0, 50, 0.5, 10)
         names = [camera.name for camera in scene.cameras]
-        self.camera = gui.add_dropdown("camera", names, initial_value=names[0])
+        self.camera = choice("camera", names, names[0])
+        self.back = gate.allow(gui.add_button("return to the camera (R)"), lambda value: isinstance(value, bool))
+        gui.add_markdown("W A S D Q E walk, through walls too; R returns to the camera.")
         for control in (self.view, self.basis, self.transport, self.near, self.exposure, self.time, self.sun, self.azimuth,
                         self.elevation, self.lux):
             control.on_update(lambda _: changed())
@@ -97,9 +128,9 @@ class Controls:
         return [clpv.Light(direction=sun_direction(self.azimuth.value, self.elevation.value), intensity=self.lux.value,
                            name="sun")]
 
-    def show(self, stats, size, seconds):
+    def show(self, stats, size, rate):
         rows = "\n".join(f"| {stage} | {stats[stage]:.1f} |" for stage in STAGES if stats[stage] > 0)
-        self.status.content = (f"{size[0]} x {size[1]}, {1 / max(seconds, 1e-3):.0f} frames/s, "
+        self.status.content = (f"{size[0]} x {size[1]}, {rate} frames/s in motion, "
                                f"{stats['device_bytes'] / 2**20:.0f} MiB\n\n| stage | ms |\n|---|---|\n{rows}\n"
                                f"| frame | {stats['frame']:.1f} |")
 
@@ -109,19 +140,20 @@ class Client:
 
     def __init__(self, handle):
         self.handle, self.changed, self.shown = handle, time.monotonic(), 0
+        self.rate, self.served = Rate(), 0.0  # served: when it last got a frame
 
     def touch(self):
         self.changed, self.shown = time.monotonic(), 0
 
 
 def next_client(clients, now):
-    """The client with the fewest levels whose next one is due, or None."""
+    """The client with the fewest levels whose next one is due, of these the one that waits longest; or None."""
     due = [client for client in clients if client.shown < len(LEVELS) and now - client.changed >= LEVELS[client.shown][0]]
-    return min(due, key=lambda client: client.shown, default=None)
+    return min(due, key=lambda client: (client.shown, client.served), default=None)
 
 
 class Viewer:
-    def __init__(self, server, scene, device=""):
+    def __init__(self, server, gate, scene, device=""):
         self.server, self.scene = server, scene
         self.renderers = Renderers(scene, device)
         self.clients, self.lock, self.wake = {}, threading.Lock(), threading.Event()
@@ -130,8 +162,10 @@ class Viewer:
         server.scene.set_up_direction("+y")
         server.gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False)
         self.place(server.initial_camera, scene.cameras[0])
-        self.controls = Controls(server, scene, self.touch_all)
+        self.controls = Controls(server, gate, scene, self.touch_all)
         self.controls.camera.on_update(self.jump)
+        self.controls.back.on_click(self.jump)
+        server.gui.add_command("return to the camera", hotkey="R").on_trigger(self.jump)
         server.on_client_connect(self.connect)
         server.on_client_disconnect(self.disconnect)
 
@@ -176,7 +210,9 @@ class Viewer:
             self.scene.lights = self.lit_by = lights
 
     def draw(self, client):
-        started, changed, handle = time.monotonic(), client.changed, client.handle
+        changed, handle = client.changed, client.handle
+        client.served = time.monotonic()
+        moving = client.shown == 0
         _, height, rays = LEVELS[client.shown]
         size = size_of(height, handle.camera.aspect)
         self.update_lights()
@@ -187,7 +223,9 @@ class Viewer:
         self.frames += 1
         if client.changed == changed:  # else it is old already
             client.shown += 1
-        self.controls.show(renderer.stats, size, time.monotonic() - started)
+        if moving:
+            client.rate.add(time.monotonic())
+        self.controls.show(renderer.stats, size, client.rate.shown)
 
     def step(self, wait=0.05):
         """Draws one image if one is due, else waits for a change."""
@@ -202,12 +240,9 @@ class Viewer:
         except clpv.Error as error:  # such as options that exclude each other: shown until the next change
             client.shown = len(LEVELS)
             self.controls.status.content = f"**{error}**"
-        except Exception as error:  # a client that left while it was drawn for
-            client.shown = len(LEVELS)
-            with self.lock:
-                if client.handle.client_id in self.clients:
-                    raise
-            print(f"clpv.view: a client left: {error}", file=sys.stderr)
+        except Exception as error:  # of this client alone: one that left while it was drawn for, for example
+            self.disconnect(client.handle)
+            print(f"clpv.view: lost a client: {error!r}", file=sys.stderr)
 
 
 def require_free(host, port):
@@ -224,20 +259,22 @@ def main(arguments=None):
     parser.add_argument("scene", help="scene file (.json) or model (.gltf, .glb)")
     parser.add_argument("--model", help="model file instead of the scene file's")
     parser.add_argument("--device", default="", help="OpenCL device: an index, or a part of its name")
-    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: %(default)s, this machine only)")
+    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: %(default)s, this machine only); whoever reaches it controls the viewer")
     parser.add_argument("--port", type=int, default=8080, choices=range(1, 65536), metavar="1..65535",
                         help="(default: %(default)s)")
     given = parser.parse_args(arguments)
     try:
-        import viser
+        import viser  # noqa: F401
     except ImportError:
-        sys.exit("clpv.view: viser is not installed; in a virtual environment: python3 -m pip install viser")
+        sys.exit("clpv.view: viser is not installed; in a virtual environment: python3 -m pip install "
+                 f"viser=={view_gate.VISER}")
     require_free(given.host, given.port)
     try:
         scene = clpv.Scene(given.scene, given.model)
-        server = viser.ViserServer(host=given.host, port=given.port, label="clpv", verbose=False)
-        viewer = Viewer(server, scene, given.device)
-    except clpv.Error as error:
+        gate = view_gate.Gate(given.host)
+        server = gate.open(given.host, given.port)
+        viewer = Viewer(server, gate, scene, given.device)
+    except (clpv.Error, RuntimeError) as error:
         sys.exit(f"clpv.view: {error}")
     print(f"clpv.view: http://{given.host}:{given.port}", flush=True)
     try:

@@ -126,8 +126,7 @@ void add_image(py::module_& module) {
   type.def(
       "save",
       [](const Image& image, const std::filesystem::path& path, float exposure) {
-        py::gil_scoped_release released;
-        save_image(path, image, exposure);
+        without_gil([&] { save_image(path, image, exposure); });
       },
       py::arg("path"), py::arg("exposure") = 0.0f,
       "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with metadata, .png "

@@ -2,6 +2,10 @@
 // The Python module clpv._native: a thin layer over include/clpv. python/clpv/__init__.py has its documentation.
 #include "module.hpp"
 
+#include <unistd.h>
+
+#include <thread>
+
 #include "clpv/device.hpp"
 #include "clpv/error.hpp"
 #include "clpv/options.hpp"
@@ -43,7 +47,65 @@ struct Errors {
 
 Errors errors;  // filled once, by add_errors
 
+// State of this process, guarded by the GIL.
+int running = 0;        // RunningCalls
+bool exiting = false;   // Python's exit has begun
+std::thread::id exiting_thread;
+pid_t device_user = 0;  // process that called note_device_use() first; a fork copies it
+constexpr std::chrono::milliseconds kPoll{5};
+
+/// Ends running calls at their next step, and waits for them.
+void end_running_calls() {
+  exiting = true;
+  exiting_thread = std::this_thread::get_id();
+  if (forked_from_device_use()) return;  // calls of the parent's threads
+  while (running > 0) {
+    set_interrupted(true);
+    py::gil_scoped_release released;
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+/// Makes copy and pickle name the class; Python's own pickling of some protocols makes objects without a value.
+void reject_pickling(py::module_& module) {
+  for (const auto& [key, value] : py::dict(module.attr("__dict__"))) {
+    if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
+    const auto name = "clpv." + key.cast<std::string>();
+    value.attr("__reduce_ex__") = py::cpp_function(
+        [name](const py::object&, int) -> py::object {
+          throw py::type_error(name + " cannot be copied or pickled; pass the arguments that make it");
+        },
+        py::is_method(value));
+  }
+}
+
 }  // namespace
+
+RunningCall::RunningCall() {
+  if (exiting && std::this_thread::get_id() != exiting_thread) {
+    PyErr_SetNone(PyExc_SystemExit);  // ends the thread without a message
+    throw py::error_already_set();
+  }
+  if (exiting) throw Error(ExitCode::run_time, "clpv: Python is exiting");
+  if (forked_from_device_use()) {
+    throw Error(ExitCode::run_time,
+                "clpv: this process was forked from one that used clpv; allowed: multiprocessing's start "
+                "method 'spawn' or 'forkserver'");
+  }
+  ++running;
+}
+
+RunningCall::~RunningCall() {
+  --running;
+}
+
+void note_device_use() {
+  if (device_user == 0) device_user = ::getpid();
+}
+
+bool forked_from_device_use() {
+  return device_user != 0 && device_user != ::getpid();
+}
 
 void add_errors(py::module_& module) {
   const auto builtin = [](PyObject* type) { return py::reinterpret_borrow<py::object>(type); };
@@ -65,7 +127,7 @@ void add_errors(py::module_& module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Interrupted& interrupted) {
-      PyErr_SetString(PyExc_KeyboardInterrupt, interrupted.what());
+      PyErr_SetString(exiting ? PyExc_SystemExit : PyExc_KeyboardInterrupt, interrupted.what());
     } catch (const Error& error) {
       PyErr_SetString(errors.of(error.code()), error.what());
     }
@@ -85,6 +147,8 @@ py::list all_options() {
 
 py::list devices() {
   py::list all;
+  const RunningCall call;
+  note_device_use();
   for (const DeviceDescription& device : all_devices()) {
     all.append(py::dict(py::arg("index") = device.index, py::arg("name") = device.name,
                         py::arg("platform") = device.platform, py::arg("driver") = device.driver,
@@ -106,6 +170,8 @@ PYBIND11_MODULE(_native, module) {
   add_image(module);
   add_renderer(module);
   add_basis(module);
+  reject_pickling(module);
+  py::module_::import("atexit").attr("register")(py::cpp_function(&end_running_calls));
   module.def("options", &all_options,
              "options() -> list of dict: name, help, allowed values and default of each option of Renderer.");
   module.def(

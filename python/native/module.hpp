@@ -11,6 +11,10 @@
 #include <future>
 #include <vector>
 
+#include "basis/basis.hpp"
+#include "clpv/compare.hpp"
+#include "clpv/image.hpp"
+#include "clpv/renderer.hpp"
 #include "clpv/scene.hpp"
 #include "support/interrupt.hpp"
 
@@ -69,10 +73,35 @@ inline py::tuple tuple_of(const Vec3& v) {
   return py::make_tuple(v[0], v[1], v[2]);
 }
 
+/// A call that releases the GIL. Exists while the GIL is held, before and after. Python's exit waits for all of them: a thread that
+/// asked for the GIL later would be ended inside C++, which aborts the process. The constructor throws Error(run_time) once Python
+/// exits, and in a process forked from one that has used a device, whose threads a fork does not copy.
+class RunningCall {
+ public:
+  RunningCall();
+  ~RunningCall();
+  RunningCall(const RunningCall&) = delete;
+  RunningCall& operator=(const RunningCall&) = delete;
+};
+
+/// Marks this process as one that uses a device or the path tracer, and thus threads.
+void note_device_use();
+/// Returns true in a process forked from a marked one.
+bool forked_from_device_use();
+
+/// Runs a short `action` without the GIL.
+template <typename Action>
+auto without_gil(const Action& action) {
+  const RunningCall call;
+  py::gil_scoped_release released;
+  return action();
+}
+
 /// Runs `work` on another thread without the GIL, so that Python can handle signals meanwhile. After Ctrl-C the work ends at its
 /// next step, and the signal's exception is raised.
 template <typename Work>
 auto interruptible(const Work& work) {
+  const RunningCall call;
   py::gil_scoped_release released;
   auto result = std::async(std::launch::async, work);
   while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
@@ -90,4 +119,42 @@ auto interruptible(const Work& work) {
   return result.get();
 }
 
+/// Converts arguments of type T. Unlike pybind11's, rejects objects made by __new__ without __init__, which hold no T.
+template <typename T>
+class InitialisedCaster : public py::detail::type_caster_base<T> {
+ public:
+  bool load(py::handle source, bool convert) {
+    if (py::isinstance<T>(source)) {
+      auto* object = reinterpret_cast<py::detail::instance*>(source.ptr());
+      const auto* type = py::detail::get_type_info(typeid(T));
+      if (!object->get_value_and_holder(type).holder_constructed()) {
+        throw py::type_error(std::string(py::str(py::type::of(source).attr("__name__"))) +
+                             ": __init__ was not called");
+      }
+    }
+    return py::detail::type_caster_base<T>::load(source, convert);
+  }
+};
+
 }  // namespace clpv::python
+
+namespace pybind11::detail {
+
+template <>
+class type_caster<clpv::Basis> : public clpv::python::InitialisedCaster<clpv::Basis> {};
+template <>
+class type_caster<clpv::Camera> : public clpv::python::InitialisedCaster<clpv::Camera> {};
+template <>
+class type_caster<clpv::Comparison> : public clpv::python::InitialisedCaster<clpv::Comparison> {};
+template <>
+class type_caster<clpv::Image> : public clpv::python::InitialisedCaster<clpv::Image> {};
+template <>
+class type_caster<clpv::Light> : public clpv::python::InitialisedCaster<clpv::Light> {};
+template <>
+class type_caster<clpv::Medium> : public clpv::python::InitialisedCaster<clpv::Medium> {};
+template <>
+class type_caster<clpv::Renderer> : public clpv::python::InitialisedCaster<clpv::Renderer> {};
+template <>
+class type_caster<clpv::SceneFile> : public clpv::python::InitialisedCaster<clpv::SceneFile> {};
+
+}  // namespace pybind11::detail

@@ -7,12 +7,20 @@
 #include "options/show.hpp"
 
 namespace clpv::python {
-namespace {
 
 /// Light of a cascade; the coefficients are a view that keeps it alive.
 struct PythonVolume {
   LightVolume volume;
   py::array_t<float> coefficients;
+};
+
+namespace {
+
+/// In a forked child the driver's threads are missing: releasing its objects there could wait for them without end.
+struct ReleaseUnlessForked {
+  void operator()(Renderer* renderer) const {
+    if (!forked_from_device_use()) delete renderer;
+  }
 };
 
 std::string option_text(const py::handle& value) {
@@ -77,6 +85,18 @@ std::vector<PythonVolume> volumes(Renderer& renderer) {
   return all;
 }
 
+}  // namespace
+}  // namespace clpv::python
+
+namespace pybind11::detail {
+template <>
+class type_caster<clpv::python::PythonVolume>
+    : public clpv::python::InitialisedCaster<clpv::python::PythonVolume> {};
+}  // namespace pybind11::detail
+
+namespace clpv::python {
+namespace {
+
 void add_volume(py::module_& module) {
   py::class_<PythonVolume> type(module, "Volume", "Light of one cascade after propagation: n^3 cubic cells.");
   type.def_property_readonly(
@@ -102,7 +122,7 @@ void add_volume(py::module_& module) {
 
 void add_renderer(py::module_& module) {
   add_volume(module);
-  py::class_<Renderer> type(
+  py::class_<Renderer, std::unique_ptr<Renderer, ReleaseUnlessForked>> type(
       module, "Renderer",
       "Renderer(scene, device='', **options): renders frames of one scene on one OpenCL device.\n\n"
       "device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the first usable "
@@ -113,6 +133,7 @@ void add_renderer(py::module_& module) {
       "Raises UsageError, DeviceError, ResourceError.");
   type.def(py::init([](const SceneFile& scene, const std::string& device, const py::kwargs& given) {
              const Options options = options_of(given);
+             note_device_use();
              return interruptible([&] { return Renderer(scene, options, device); });
            }),
            py::arg("scene"), py::arg("device") = "");
@@ -168,6 +189,7 @@ void add_renderer(py::module_& module) {
          int width, int height, int bounces, std::uint32_t samples, double noise, std::uint64_t seed,
          int threads, double time) {
         const View what = named<View>("view", view);
+        note_device_use();
         TraceOptions options{width, height, bounces, samples, noise, seed, threads, time, {}};
         return interruptible([&] { return pathtrace(scene, what, camera_choice(camera), options); });
       },

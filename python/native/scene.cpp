@@ -138,15 +138,13 @@ void add_scene(py::module_& module) {
   type.def_property(
       "cameras", [](const SceneFile& scene) { return py::tuple(py::cast(scene.cameras())); },
       [](SceneFile& scene, const std::vector<Camera>& cameras) {
-        py::gil_scoped_release released;
-        scene.set_cameras(cameras);
+        without_gil([&] { scene.set_cameras(cameras); });
       },
       "Tuple of all Cameras, at 0 s if animated. Assign a sequence to replace them.");
   type.def_property(
       "lights", [](const SceneFile& scene) { return py::tuple(py::cast(scene.lights())); },
       [](SceneFile& scene, const std::vector<Light>& lights) {
-        py::gil_scoped_release released;
-        scene.set_lights(lights);
+        without_gil([&] { scene.set_lights(lights); });
       },
       "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame of every "
       "renderer\n"
@@ -154,8 +152,7 @@ void add_scene(py::module_& module) {
   type.def_property(
       "medium", &SceneFile::medium,
       [](SceneFile& scene, const std::optional<Medium>& medium) {
-        py::gil_scoped_release released;
-        scene.set_medium(medium);
+        without_gil([&] { scene.set_medium(medium); });
       },
       "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates its "
       "memory again.");

@@ -2,6 +2,7 @@
 """The viewer: its arithmetic and errors; with viser and Chromium, a page that opens, shows an image and follows a drag."""
 import base64
 import contextlib
+import http.client
 import io
 import itertools
 import json
@@ -12,6 +13,7 @@ import shutil
 import socket
 import subprocess
 import sys
+import threading
 import time
 import types
 import urllib.request
@@ -19,7 +21,8 @@ import urllib.request
 import numpy as np
 import pytest
 
-from clpv import view
+import clpv
+from clpv import view, view_gate
 from conftest import CORNELL, ROOT
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -85,6 +88,195 @@ def test_bad_arguments(tmp_path):
     assert run(CORNELL, "--port", 0).returncode == 2
 
 
+def test_the_frame_rate_is_of_the_last_second_of_motion():
+    rate = view.Rate()
+    assert rate.shown == "-", "nothing moved yet"
+    for i in range(30):
+        rate.add(10 + i / 10)
+    assert rate.shown == "10"
+    for i in range(40):
+        rate.add(100 + i / 20)  # after a rest
+    assert rate.shown == "20"
+    rate.add(500)  # one frame of a new motion
+    assert rate.shown == "20"
+
+
+def camera_message(**changes):
+    return types.SimpleNamespace(**{
+        "wxyz": (1, 0, 0, 0), "position": (0, 1, 2), "fov": 1.0, "near": 0.01, "far": 1000.0, "image_height": 600,
+        "image_width": 960, "look_at": (0, 1, 3), "up_direction": (0, 1, 0), **changes})
+
+
+# The first two once ended the viewer for all.
+@pytest.mark.parametrize("change", [
+    {"image_height": 0}, {"position": (1,)}, {"position": 3}, {"position": ("a", "b", "c")}, {"position": (0, 0, math.nan)},
+    {"position": (0, 0, 1e30)}, {"wxyz": (0, 0, 0, 0)}, {"wxyz": (1, 0, 0)}, {"fov": 0}, {"fov": math.pi}, {"fov": None},
+    {"image_width": 10 ** 9}, {"image_width": 1.5}, {"image_height": True}, {"look_at": None}, {"up_direction": []},
+    {"near": math.inf}, {"far": "x"}])
+def test_cameras_from_which_no_frame_can_be_rendered_are_ignored(change):
+    assert view_gate.is_camera(camera_message())
+    assert not view_gate.is_camera(camera_message(**change))
+
+
+def headers(**given):
+    return types.SimpleNamespace(get_all=lambda name: given.get(name, []))
+
+
+def test_hosts_and_origins():
+    here, everywhere = view_gate.Gate("127.0.0.1"), view_gate.Gate("0.0.0.0")
+    for gate in (here, everywhere):
+        for host in ("127.0.0.1:8080", "localhost:9000", "localhost", "[::1]:8080"):
+            assert gate.refusal(headers(Host=[host])) is None
+            assert gate.refusal(headers(Host=[host], Origin=[f"http://{host}"])) is None
+            for origin in ("http://evil.example", "null", "http://localhost:1", "file://", ""):
+                assert "Origin: found" in gate.refusal(headers(Host=[host], Origin=[origin]))
+        for host in ([], ["evil.example"], ["evil.example:8080"], ["localhost.evil.example"], [""],
+                     ["localhost", "localhost"]):
+            assert "Host: found" in gate.refusal(headers(Host=host))
+    assert everywhere.refusal(headers(Host=["192.168.1.7:8080"])) is None
+    assert here.refusal(headers(Host=["192.168.1.7:8080"]))
+
+
+@pytest.fixture(scope="module")
+def viewer():
+    """A viewer of the scene that draws on its own thread; its port."""
+    pytest.importorskip("viser", reason="viser is not installed")
+    port = free_port()
+    gate = view_gate.Gate("127.0.0.1")
+    server = gate.open("127.0.0.1", port)
+    made = view.Viewer(server, gate, clpv.Scene(CORNELL))
+    done = threading.Event()
+
+    def draw():
+        while not done.is_set():
+            made.step()
+
+    thread = threading.Thread(target=draw)
+    thread.start()
+    yield made, port
+    done.set()
+    thread.join()
+    server.stop()
+
+
+@contextlib.contextmanager
+def browser(port, **more):
+    """A client that speaks viser's protocol, without a page."""
+    import viser
+    from websockets.sync.client import connect
+    with connect(f"ws://127.0.0.1:{port}", subprotocols=[f"viser-v{viser.__version__}"], max_size=None, **more) as client:
+        yield client
+
+
+def message(kind, **fields):
+    import msgspec
+    return msgspec.msgpack.encode({"type": kind, **fields})
+
+
+def moved(**changes):
+    return message("ViewerCameraMessage", **vars(camera_message(**{"position": (0.278, 0.273, -0.18), **changes})))
+
+
+def drawn_after(made, count, seconds=60):
+    end = time.monotonic() + seconds
+    while made.frames <= count and time.monotonic() < end:
+        time.sleep(0.02)
+    return made.frames > count
+
+
+def test_other_sites_are_refused(viewer):
+    from websockets.exceptions import InvalidStatus
+    _, port = viewer
+    with browser(port, origin=f"http://127.0.0.1:{port}"):
+        pass
+    for refused in ({"origin": "http://evil.example"}, {"additional_headers": {"Host": "evil.example"}}):
+        with pytest.raises(InvalidStatus, match="403"):
+            with browser(port, **refused):
+                pass
+    for path, host, status in (("/", "127.0.0.1", 200), ("/", "evil.example", 403), ("/../../_viser.py", "127.0.0.1", 404),
+                               ("/%2e%2e/%2e%2e/_viser.py", "127.0.0.1", 404)):
+        connection = http.client.HTTPConnection("127.0.0.1", port)
+        connection.request("GET", path, headers={"Host": host})
+        assert connection.getresponse().status == status, path
+        connection.close()
+
+
+def test_one_clients_messages_end_or_change_no_other(viewer):
+    from websockets.exceptions import ConnectionClosed
+    made, port = viewer
+    with browser(port) as good, browser(port) as bad:
+        before = made.frames
+        good.send(moved())
+        assert drawn_after(made, before)
+        basis, kept = made.controls.basis, made.controls.basis.value
+        for nonsense in (moved(image_height=0), moved(position=(1,)), message("ShareUrlRequest"),
+                         message("GuiUpdateMessage", uuid=basis._impl.uuid, updates={"value": "nonsense"}),
+                         message("GuiUpdateMessage", uuid=basis._impl.uuid, updates={"update_cb": 5}),
+                         message("GuiUpdateMessage", uuid=made.controls.exposure._impl.uuid, updates={"value": math.nan}),
+                         message("GuiUpdateMessage", uuid=["x"], updates=7)):
+            bad.send(nonsense)
+        before = made.frames
+        bad.send(moved())  # still connected
+        assert drawn_after(made, before)
+        assert basis.value == kept and made.controls.exposure.value == 0 and made.server._share_tunnel is None
+        for broken in (b"", b"\xff" * 100, b"\x91" * 10000, message("Nothing"), b"x" * 100000, "text"):
+            with browser(port) as other:
+                with pytest.raises(ConnectionClosed):
+                    other.send(broken)
+                    while True:
+                        other.recv(timeout=30)
+        before = made.frames
+        good.send(moved(position=(0.28, 0.27, -0.2)))
+        assert drawn_after(made, before), "the first client goes on"
+
+
+def test_an_error_ends_one_client(viewer, monkeypatch):
+    made, port = viewer
+    with browser(port) as good, browser(port) as bad:
+        before = made.frames
+        good.send(moved())
+        assert drawn_after(made, before)
+        spared = set(made.clients)
+        camera_of = view.camera_of
+        monkeypatch.setattr(view, "camera_of", lambda handle: camera_of(handle) if handle.client_id in spared else 1 / 0)
+        bad.send(moved())
+        end = time.monotonic() + 30
+        while time.monotonic() < end and set(made.clients) != spared:
+            time.sleep(0.02)
+        before = made.frames
+        good.send(moved(position=(0.28, 0.27, -0.21)))
+        assert drawn_after(made, before) and set(made.clients) == spared
+
+
+def test_twenty_clients_are_served_in_turn(viewer):
+    made, port = viewer
+    with contextlib.ExitStack() as stack:
+        clients = [stack.enter_context(browser(port)) for _ in range(20)]
+        for client in clients:
+            client.send(moved())
+        end = time.monotonic() + 120
+        while time.monotonic() < end and not (len(made.clients) >= 20 and all(c.served for c in made.clients.values())):
+            clients[0].send(moved(position=(0.27 + 0.01 * math.sin(time.monotonic()), 0.27, -0.18)))  # one that never rests
+            time.sleep(0.05)
+        assert len(made.clients) >= 20 and all(client.served for client in made.clients.values())
+
+
+def test_r_returns_to_the_scenes_camera(viewer):
+    made, port = viewer
+    commands = list(made.server.gui._command_handle_from_uuid.values())
+    assert [command._impl.props.hotkey for command in commands] == ["R"]
+    with browser(port) as client:
+        before = made.frames
+        client.send(moved(position=(5.0, 5.0, 5.0)))
+        assert drawn_after(made, before)
+        handle = max(made.clients.values(), key=lambda each: each.handle.client_id).handle
+        client.send(message("CommandTriggerMessage", uuid=commands[0]._impl.uuid))
+        end = time.monotonic() + 30
+        while time.monotonic() < end and np.allclose(handle.camera.position, (5, 5, 5)):
+            time.sleep(0.02)
+        assert np.allclose(handle.camera.position, made.scene.cameras[0].eye)
+
+
 class Tab:
     """A page of a headless Chromium, over its debugging protocol."""
 
@@ -122,6 +314,11 @@ class Tab:
 
     def mouse(self, kind, x, y, buttons=1):
         self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=1)
+
+    def press(self, letter):
+        for kind in ("keyDown", "keyUp"):
+            self.ask("Input.dispatchKeyEvent", type=kind, key=letter.lower(), code=f"Key{letter}", text=letter.lower(),
+                     windowsVirtualKeyCode=ord(letter))
 
     def drag(self, x, y, to_x, to_y):
         self.mouse("mouseMoved", x, y, 0)
@@ -173,6 +370,10 @@ def test_a_page_shows_the_scene_and_follows_a_drag(tmp_path):
         shot, after = tab.wait(lambda pixels: np.abs(pixels - before).mean() > 3, 60)
         if keep:
             (pathlib.Path(keep) / "viewer-dragged.png").write_bytes(shot)
+        tab.press("R")
+        tab.wait(lambda pixels: np.abs(pixels - before).mean() < 3, 60)
+        tab.drag(300, 300, 380, 320)
+        shot, after = tab.wait(lambda pixels: np.abs(pixels - before).mean() > 3, 60)
         # A second browser comes and goes.
         other = Tab(debug, f"http://127.0.0.1:{port}")
         other.wait(lambda pixels: pixels.std() > 10)

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "support/cache_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "support/error.hpp"
+#include "support/output_file.hpp"
+
+namespace clpv {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool trusted_owner(const struct stat& file) {
+  return file.st_uid == ::geteuid() || file.st_uid == 0;
+}
+
+/// Returns why nothing is read from this folder or written to it, else "".
+std::string distrust(const fs::path& folder) {
+  struct stat found {};
+  if (::stat(folder.c_str(), &found) != 0) return std::generic_category().message(errno);
+  if (!S_ISDIR(found.st_mode)) return "it is not a folder";
+  if (!trusted_owner(found)) return "it belongs to another user";
+  if ((found.st_mode & (S_IWGRP | S_IWOTH)) != 0)
+    return fmt::format("others can write it (mode {:o}); allowed: only its owner can (chmod go-w)",
+                       found.st_mode & 07777);
+  return {};
+}
+
+/// Creates a folder and those above it, for their owner only. distrust() reports failures.
+void make_private_folders(const fs::path& folder) {
+  if (folder.empty() || ::mkdir(folder.c_str(), 0700) == 0 || errno != ENOENT) return;
+  make_private_folders(folder.parent_path());
+  ::mkdir(folder.c_str(), 0700);
+}
+
+/// A file descriptor, closed by the destructor.
+struct Descriptor {
+  int number;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+};
+
+}  // namespace
+
+std::optional<std::string> CacheFolder::read(const std::string& name, std::uintmax_t limit) const {
+  if (!distrust(path_).empty()) return std::nullopt;
+  // O_NONBLOCK: opening a FIFO would wait for its writer.
+  const Descriptor file{::open((path_ / name).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)};
+  struct stat found {};
+  if (file.number < 0 || ::fstat(file.number, &found) != 0 || !S_ISREG(found.st_mode) ||
+      !trusted_owner(found) || static_cast<std::uintmax_t>(found.st_size) > limit)
+    return std::nullopt;
+  std::string bytes(static_cast<std::size_t>(found.st_size), '\0');
+  for (std::size_t at = 0; at < bytes.size();) {
+    const ssize_t count = ::read(file.number, &bytes[at], bytes.size() - at);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return std::nullopt;
+    at += static_cast<std::size_t>(count);
+  }
+  return bytes;
+}
+
+std::string CacheFolder::write(const std::string& name, std::span<const std::byte> bytes) const {
+  make_private_folders(path_);
+  if (const std::string why = distrust(path_); !why.empty())
+    return fmt::format("{}: not used as a cache: {}", path_.string(), why);
+  try {
+    OutputFile file(path_ / name, OutputFile::Links::replace);
+    file.write(bytes);
+    file.commit();
+    return {};
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+std::string CacheFolder::problem() const {
+  const std::string probe = fmt::format("probe-{}", ::getpid());
+  std::string why = write(probe, std::string_view(""));
+  if (why.empty()) ::unlink((path_ / probe).c_str());
+  return why;
+}
+
+}  // namespace clpv

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: MIT
+"""Gate of the viewer (clpv.view): admits requests of its own page, and its messages with valid values.
+
+viser itself accepts any Host and Origin, sets any attribute of a control, and opens a public tunnel
+on a client's request. The gate depends on viser's inner parts, hence on its version.
+"""
+import http
+import ipaddress
+import logging
+import math
+import socket
+import unittest.mock
+
+VISER = "1.1.1"          # tested version
+MAX_BYTES = 1 << 16      # of one message; a page sends less than 1 KiB
+MAX_SIDE = 16384         # of a window [pixels]
+FARTHEST = 1e7           # of a camera [m]
+
+
+def is_number(value, low=-FARTHEST, high=FARTHEST):
+    """True for a number within the range; NaN is in none."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and low <= value <= high
+
+
+def is_vector(value, count):
+    return (isinstance(value, (list, tuple)) and len(value) == count
+            and all(is_number(x) for x in value))
+
+
+def is_camera(message):
+    """True for a pose from which a frame can be rendered."""
+    return (is_vector(message.wxyz, 4) and abs(math.hypot(*message.wxyz) - 1) < 1e-3
+            and all(is_vector(value, 3)
+                    for value in (message.position, message.look_at, message.up_direction))
+            and is_number(message.fov, 1e-3, math.pi - 1e-3)
+            and all(is_number(value, 0) for value in (message.near, message.far))
+            and all(isinstance(side, int) and is_number(side, 1, MAX_SIDE)
+                    for side in (message.image_width, message.image_height)))
+
+
+def is_loopback(host):
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+class Ignored:
+    """A message without a handler."""
+
+
+class Gate:
+    """Checks requests (Host, Origin) and messages. `host`: address that the server listens on."""
+
+    def __init__(self, host):
+        # Other pages have names. An address as Host cannot be one of theirs.
+        self.any_address = not is_loopback(host)
+        self.names = {"localhost", "127.0.0.1", "::1", host.lower()}
+        if self.any_address:
+            self.names |= {socket.gethostname().lower(), socket.getfqdn().lower()}
+        self.controls = {}  # uuid -> True for a value that the control may have
+
+    def allow(self, control, is_value):
+        """Lets clients set a control to values for which `is_value` is true."""
+        self.controls[control._impl.uuid] = is_value
+        return control
+
+    def refusal(self, headers):
+        """Returns why a request is refused, or None: header, value found, values allowed."""
+        hosts, origins = headers.get_all("Host"), headers.get_all("Origin")
+        if len(hosts) != 1 or not self.is_own(hosts[0]):
+            return f"Host: found {hosts}, allowed: this machine's"
+        if origins not in ([], [f"http://{hosts[0]}"], [f"https://{hosts[0]}"]):
+            return f"Origin: found {origins}, allowed: http://{hosts[0]}"
+        return None
+
+    def is_own(self, host):
+        name = host.lower()
+        if ":" in name and not name.endswith("]"):
+            name = name[:name.rindex(":")]  # the port: a forwarded connection may have another
+        name = name.strip("[]")
+        if name in self.names:
+            return True
+        try:
+            return self.any_address and bool(ipaddress.ip_address(name))
+        except ValueError:
+            return False
+
+    def deserialize(self, raw):
+        """Returns viser's message in these bytes, or Ignored if it is not allowed.
+
+        Ends the connection if the bytes are no message.
+        """
+        from viser import _messages
+        from websockets.exceptions import ConnectionClosedError
+        try:
+            message = _messages.Message.deserialize(raw)
+        except Exception as error:  # whatever the decoders raise
+            raise ConnectionClosedError(None, None) from error
+        kind = type(message)
+        allowed = (kind is _messages.ViewerCameraMessage and is_camera(message)
+                   or kind is _messages.CommandTriggerMessage and isinstance(message.uuid, str)
+                   or kind is _messages.GuiUpdateMessage and self.is_update(message))
+        return message if allowed else Ignored()
+
+    def is_update(self, message):
+        if not isinstance(message.uuid, str) or message.uuid not in self.controls:
+            return False
+        updates = message.updates
+        return (isinstance(updates, dict) and list(updates) == ["value"]
+                and self.controls[message.uuid](updates["value"]))
+
+    def serve(self, handler, host, port, **options):
+        """websockets' serve() behind this gate."""
+        inner = options["process_request"]
+
+        def process_request(connection, request):
+            why = self.refusal(request.headers)
+            if why:
+                return connection.respond(http.HTTPStatus.FORBIDDEN, f"{why}\n")
+            return inner(connection, request)
+
+        options.update(process_request=process_request, max_size=MAX_BYTES)
+        return self.inner_serve(handler, host, port, **options)
+
+    def open(self, host, port):
+        """A ViserServer behind this gate. Raises RuntimeError for another version of viser."""
+        import viser
+        import viser.infra
+        import websockets.asyncio.server
+        if viser.__version__ != VISER:
+            raise RuntimeError(f"found viser {viser.__version__}, allowed: {VISER} "
+                               f"(python3 -m pip install viser=={VISER})")
+        # Connections that are no browser's would log tracebacks.
+        logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
+        self.inner_serve, inner_server = websockets.asyncio.server.serve, viser.infra.WebsockServer
+
+        def checked_server(**options):
+            return inner_server(**{**options, "message_class": self})
+
+        with unittest.mock.patch.object(websockets.asyncio.server, "serve", self.serve), \
+                unittest.mock.patch.object(viser.infra, "WebsockServer", checked_server):
+            return viser.ViserServer(host=host, port=port, label="clpv", verbose=False)

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: MIT
+"""The module where Python ends, forks, interrupts, pickles, or makes objects without their __init__: refused by name, never an
+abort or a hang."""
+import copy
+import inspect
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+import clpv
+from conftest import CORNELL, ROOT, SMALL
+
+START = f"""
+import os, sys, threading, time, clpv
+scene = clpv.Scene({str(CORNELL)!r})
+renderer = clpv.Renderer(scene, **{SMALL!r})
+renderer.render()
+"""
+
+
+def run(code, seconds=300):
+    return subprocess.run([sys.executable, "-c", START + code], capture_output=True, text=True, check=False, cwd=ROOT,
+                          timeout=seconds)
+
+
+# Each once aborted with 'terminate called'.
+@pytest.mark.parametrize("work", [
+    "renderer.render()", "clpv.pathtrace(scene, samples=1 << 20)", "renderer.render().save(path)",
+    "scene.lights = scene.lights", "clpv.Basis('sh4').project(lambda w: w[:, 0])"])
+def test_exit_while_a_daemon_thread_works(tmp_path, work):
+    ended = run(f"path = {str(tmp_path / 'a.exr')!r}\n"
+                f"def work():\n  while True: {work}\n"
+                "for _ in range(2): threading.Thread(target=work, daemon=True).start()\n"
+                "time.sleep(0.5)\nprint('leaving', flush=True)")
+    assert ended.returncode == 0 and ended.stdout == "leaving\n", ended.stderr
+    assert "terminate" not in ended.stderr and "Traceback" not in ended.stderr, ended.stderr
+
+
+def test_calls_during_exit_are_refused():
+    ended = subprocess.run([sys.executable, "-c", "import atexit\n"
+                            "def late():\n  try: clpv.Scene('a.json')\n  except clpv.Error as e: print(e)\n"
+                            "atexit.register(late)\n" + START], capture_output=True, text=True, check=False, cwd=ROOT)
+    assert ended.stdout == "clpv: Python is exiting\n" and ended.returncode == 0, ended.stderr
+
+
+FORK = """
+child = os.fork()
+if child == 0:
+  {}
+_, status = os.waitpid(child, 0)
+print("child", os.waitstatus_to_exitcode(status), flush=True)
+renderer.render()
+"""
+
+
+@pytest.mark.parametrize("work", ["renderer.render()", "clpv.Renderer(scene)", "renderer.stats", "scene.lights = []",
+                                  "clpv.pathtrace(scene, samples=1)", "clpv.devices()", "renderer.volumes()"])
+def test_a_forked_child_is_refused_by_name(work):  # a render there once hung
+    ended = run(FORK.format(f"try: {work}\n  except clpv.Error as e: print(e, flush=True)\n  os._exit(0)"))
+    assert "forked" in ended.stdout and "'spawn'" in ended.stdout and "child 0" in ended.stdout, ended.stderr
+    assert ended.returncode == 0
+
+
+def test_a_fork_before_any_render_works():
+    code = FORK.replace("renderer.render()\n", "").format(
+        f"print(clpv.Renderer(scene, **{SMALL!r}).render().width, flush=True)\n  sys.exit(0)")
+    ended = subprocess.run([sys.executable, "-c", START.split("renderer =")[0] + code], capture_output=True, text=True,
+                           check=False, cwd=ROOT, timeout=300)
+    assert ended.stdout == "48\nchild 0\n", ended.stderr
+
+
+# Each was once a segmentation fault.
+@pytest.mark.parametrize("name", [name for name in clpv.__all__ if inspect.isclass(getattr(clpv, name))
+                                  and not issubclass(getattr(clpv, name), Exception)])
+def test_objects_without_init_are_rejected(name):
+    kind = getattr(clpv, name)
+    hollow = kind.__new__(kind)
+    tried = 0
+    for member, value in vars(kind).items():
+        if isinstance(value, property):
+            with pytest.raises(TypeError, match=f"{name}: __init__ was not called"):
+                getattr(hollow, member)
+            tried += 1
+    if name == "Renderer":
+        with pytest.raises(TypeError, match="Renderer: __init__ was not called"):
+            hollow.render()
+    if name == "Scene":
+        with pytest.raises(TypeError, match="Scene: __init__ was not called"):
+            clpv.Renderer(hollow)
+    assert tried > 0
+    del hollow
+
+
+def test_objects_are_not_copied_or_pickled(scene, renderer):
+    image = renderer.render()
+    for each in (scene, renderer, image, clpv.Camera((0, 0, 0), (0, 0, 1)), clpv.Light(), clpv.Basis("sh2"),
+                 renderer.volumes()[0], clpv.compare(image, image)):
+        name = f"clpv.{type(each).__name__} cannot be copied or pickled"
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            with pytest.raises(TypeError, match=name):
+                pickle.dumps(each, protocol)
+        for function in (copy.copy, copy.deepcopy):
+            with pytest.raises(TypeError, match=name):
+                function(each)
+    assert isinstance(pickle.loads(pickle.dumps(clpv.UsageError("text"))), clpv.UsageError)
+
+
+def test_a_storm_of_interrupts(tmp_path):
+    code = START + f"""
+import signal
+expected = renderer.render().array.tobytes()
+hits, end = 0, time.monotonic() + 3
+print('started', flush=True)
+while time.monotonic() < end:
+  try:
+    renderer.render()
+    clpv.pathtrace(scene, width=16, height=9, samples=16)
+  except KeyboardInterrupt:
+    hits += 1
+signal.signal(signal.SIGINT, signal.SIG_IGN)
+assert hits > 10, hits
+assert renderer.render().array.tobytes() == expected
+renderer.render().save({str(tmp_path / 'a.exr')!r})
+print('done')
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          cwd=ROOT) as child:
+        assert child.stdout.readline() == "started\n"
+        while child.poll() is None:
+            child.send_signal(signal.SIGINT)
+            time.sleep(0.01)
+        out, errors = child.communicate(timeout=300)
+    # A signal may also come between two lines of the loop, which then ends as Python does.
+    assert (child.returncode == 0 and out == "done\n") or "KeyboardInterrupt" in errors, errors
+    assert child.returncode not in (-signal.SIGABRT, -signal.SIGSEGV), errors
+    assert os.listdir(tmp_path) in ([], ["a.exr"])

@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: MIT
+// Promises of docs/security.md: no program or package of the current folder runs; caches trust only what this user wrote and never
+// end a run; outputs spare inputs; images tell nothing about the machine.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "device/driver_cache.hpp"
+#include "device/program_cache.hpp"
+#include "image/image.hpp"
+#include "image/image_io.hpp"
+#include "quality/quality.hpp"
+#include "scene/load.hpp"
+#include "support/cache_folder.hpp"
+#include "support/log.hpp"
+#include "support/scratch_folder.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/run_here.hpp"
+
+namespace clpv::trust_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_file;
+using test::run_here;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
+const std::string kSmall =
+    " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2 "
+    "--transport sampled --gather all --blockers seen ";
+
+// ------------------------------------------------------------------------------------------------ programs
+
+/// A folder with a trap of every name that Python or a program search could take from it. Each writes a file "sprung".
+class Traps {
+ public:
+  Traps() {
+    const std::string sprung = (folder_ / "sprung").string();
+    for (const char* file :
+         {"clpv/__init__.py", "clpv/draw/__init__.py", "clpv/draw/__main__.py", "jinja2.py", "markupsafe.py",
+          "matplotlib.py", "numpy.py", "json.py", "sitecustomize.py", "usercustomize.py"}) {
+      folder_.write(file, "open('" + sprung + "', 'a').write('" + file + "\\n')\nraise SystemExit(0)\n");
+    }
+    for (const char* file :
+         {"python3", "python", "env", "sh", "ffmpeg", "ld", "cc", "clang", "mpirun", "clpv"}) {
+      folder_.write(file, "#!/bin/sh\necho " + std::string(file) + " >>" + sprung + "\n");
+      ::chmod((folder_ / file).c_str(), 0755);
+    }
+    folder_.write("matplotlibrc", "axes.labelsize: no size\n");  // a warning, were it read
+  }
+  /// `clpv arguments` in the folder, with the current folder in PATH in all its spellings.
+  test::Outcome run(const std::string& arguments, const std::string& variables = "") const {
+    return test::run("cd " + folder_.path().string() + " && PYTHONPATH=. PATH=.::./:\"$PATH\": " + variables +
+                     " " CLPV_PROGRAM " " + arguments);
+  }
+  std::string sprung() const { return read_file(folder_ / "sprung"); }
+  const test::TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST(Programs, NothingOfTheCurrentFolderRuns) {
+  const Traps traps;
+  for (const std::string& command :
+       {std::string("basis sh2 --figures figures"),
+        std::string("bench ceilings --repetitions 1 --plot plots"),
+        "report page " + kTiny + " --width 12 --height 9 --spp 1 --cache cache",
+        "sequence " + kTiny + kSmall + "--frames 1 --fps 1 -o film --video -v.mp4"}) {
+    const test::Outcome outcome = traps.run(command);
+    const bool no_ffmpeg = outcome.err.find("--video needs ffmpeg") != std::string::npos;
+    EXPECT_EQ(outcome.exit_code, no_ffmpeg ? 1 : 0) << command << "\n" << outcome.err;
+    EXPECT_EQ(traps.sprung(), "") << command;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("labelsize")));
+  }
+  EXPECT_TRUE(fs::exists(traps.folder() / "page/index.html"));
+}
+
+TEST(Programs, HelpersAndCompilersOfTheCurrentFolderDoNotRun) {
+  const Traps traps;
+  fs::create_directory(traps.folder() / "pocl");
+  const test::Outcome outcome = traps.run("render " + kTiny + kSmall + "-o a.exr",
+                                          "XDG_CACHE_HOME=cache POCL_CACHE_DIR=$PWD/pocl TMPDIR=.");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(traps.sprung(), "");
+}
+
+// A python3 without NumPy that comes first in PATH (pyenv, conda) once ended `clpv report`.
+TEST(Programs, APythonThatLacksModulesIsPassedOver) {
+  const test::TemporaryFolder folder;
+  folder.write("bin/python3", "#!/bin/sh\necho No module named numpy >&2\nexit 1\n");
+  ::chmod((folder / "bin/python3").c_str(), 0755);
+  const std::string figures = CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string();
+  const test::Outcome passed = test::run("PATH=" + (folder / "bin").string() + ":$PATH " + figures);
+  EXPECT_EQ(passed.exit_code, 0) << passed.err;
+  const test::Outcome named = test::run("CLPV_PYTHON=" + (folder / "bin/python3").string() + " " + figures);
+  EXPECT_EQ(named.exit_code, 1);
+  EXPECT_THAT(named.err, AllOf(HasSubstr("CLPV_PYTHON"), HasSubstr("python3-matplotlib"),
+                               HasSubstr((folder / "bin/python3").string() + ": No module named numpy")));
+}
+
+TEST(Programs, ANameWithAColonOrADashIsAFileToFfmpeg) {
+  const test::TemporaryFolder folder;
+  // Instead of ffmpeg: writes its arguments where the last one says.
+  folder.write("bin/ffmpeg",
+               "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho \"$*\" >\"${last#file:}\"\n");
+  ::chmod((folder / "bin/ffmpeg").c_str(), 0755);
+  for (const std::string& name :
+       {std::string("tcp:x.mp4"), std::string("-y.mp4"), std::string(251, 'a') + ".mp4"}) {
+    const test::Outcome outcome =
+        test::run("cd " + folder.path().string() + " && PATH=" + (folder / "bin").string() + ":$PATH " +
+                  CLPV_PROGRAM " sequence " + kTiny + kSmall + "--frames 1 --fps 1 -o film --video=" + name);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(read_file(folder / name), HasSubstr(" file:/")) << name;
+  }
+}
+
+// --------------------------------------------------------------------------------------------------- caches
+
+/// Mode bits of a file.
+mode_t mode_of(const fs::path& path) {
+  struct stat found {};
+  EXPECT_EQ(::lstat(path.c_str(), &found), 0) << path;
+  return found.st_mode & 07777;
+}
+
+struct CacheTest : ::testing::Test {
+  test::TemporaryFolder folder;
+  const CacheFolder cache{folder / "made/on demand"};
+  const fs::path entry = cache.path() / "entry", other = folder / "other";
+
+  void SetUp() override { folder.write("other", "of others"); }
+};
+
+TEST_F(CacheTest, FoldersAreForTheirOwnerOnly) {
+  const mode_t before = ::umask(002);
+  EXPECT_EQ(cache.write("entry", std::string_view("text")), "");
+  ::umask(before);
+  EXPECT_EQ(mode_of(cache.path()), 0700u);
+  EXPECT_EQ(mode_of(cache.path().parent_path()), 0700u);
+  EXPECT_EQ(cache.read("entry"), "text");
+  EXPECT_EQ(cache.read("entry", 3), std::nullopt) << "longer than allowed";
+  EXPECT_EQ(cache.read("absent"), std::nullopt);
+}
+
+TEST_F(CacheTest, LinksAndFifosAreNeitherReadNorWrittenThrough) {
+  ASSERT_EQ(cache.problem(), "");
+  const std::function<void()> plant[] = {[&] { fs::create_symlink(other, entry); },
+                                         [&] { fs::create_symlink(folder / "missing", entry); },
+                                         [&] { ASSERT_EQ(::mkfifo(entry.c_str(), 0666), 0); }};
+  for (const auto& make : plant) {
+    fs::remove(entry);
+    make();
+    EXPECT_EQ(cache.read("entry"), std::nullopt);
+    EXPECT_EQ(cache.write("entry", std::string_view("mine")), "");
+    EXPECT_EQ(cache.read("entry"), "mine");
+    EXPECT_EQ(read_file(other), "of others");
+    EXPECT_FALSE(fs::exists(folder / "missing"));
+  }
+  fs::remove(entry);
+  fs::create_directory(entry);
+  EXPECT_EQ(cache.read("entry"), std::nullopt);
+  EXPECT_THAT(cache.write("entry", std::string_view("mine")), HasSubstr("cannot be written"));
+}
+
+TEST_F(CacheTest, WhatOthersMayHaveWrittenIsNotUsed) {
+  ASSERT_EQ(cache.write("entry", std::string_view("mine")), "");
+  for (const mode_t mode : {0770u, 0707u, 0777u, 01777u}) {
+    ::chmod(cache.path().c_str(), mode);
+    EXPECT_EQ(cache.read("entry"), std::nullopt);
+    EXPECT_THAT(cache.write("second", std::string_view("x")), HasSubstr("chmod go-w"));
+    EXPECT_FALSE(fs::exists(cache.path() / "second"));
+  }
+  ::chmod(cache.path().c_str(), 0755);
+  EXPECT_EQ(cache.read("entry"), "mine");
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give files away";
+  ASSERT_EQ(::lchown(entry.c_str(), 65534, 65534), 0);
+  EXPECT_EQ(cache.read("entry"), std::nullopt) << "an entry of another user";
+  EXPECT_EQ(cache.write("entry", std::string_view("mine")), "");
+  EXPECT_EQ(cache.read("entry"), "mine");
+  ASSERT_EQ(::lchown(cache.path().c_str(), 65534, 65534), 0);
+  EXPECT_EQ(cache.read("entry"), std::nullopt) << "a folder of another user";
+  EXPECT_THAT(cache.write("entry", std::string_view("x")), HasSubstr("another user"));
+}
+
+TEST_F(CacheTest, AFolderThatCannotBeMadeIsAReason) {
+  EXPECT_THAT(CacheFolder(other / "below").write("entry", std::string_view("x")),
+              HasSubstr("Not a directory"));
+  EXPECT_EQ(CacheFolder(other / "below").read("entry"), std::nullopt);
+}
+
+TEST_F(CacheTest, ProgramsAndMarksAreEntries) {
+  const ProgramCache programs(cache.path());
+  const ProgramCache::Binary binary(10, 7);
+  ASSERT_TRUE(programs.store("key", binary));
+  fs::rename(programs.file_of("key"), folder / "moved");
+  fs::create_symlink(folder / "moved", programs.file_of("key"));
+  EXPECT_FALSE(programs.load("key"));
+  EXPECT_TRUE(programs.store("key", {1}));
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(programs.file_of("key"))));
+
+  ::setenv("POCL_CACHE_DIR", (folder / "pocl").c_str(), 1);
+  Device device;
+  device.platform = "Portable Computing Language";
+  const CompiledMarks marks(device);
+  ::unsetenv("POCL_CACHE_DIR");
+  EXPECT_FALSE(marks.has("key"));
+  marks.add("key");
+  EXPECT_TRUE(marks.has("key"));
+  const fs::path mark = *fs::directory_iterator(folder / "pocl/clpv");
+  fs::remove(mark);
+  fs::create_symlink(other, mark);
+  EXPECT_FALSE(marks.has("key"));
+  marks.add("key");
+  EXPECT_TRUE(marks.has("key"));
+  EXPECT_EQ(read_file(other), "of others");
+}
+
+TEST_F(CacheTest, ADamagedCellIsMeasuredAgain) {
+  set_log_level(true, 0);
+  QualityStore store(cache.path());
+  QualityCell cell;
+  cell.scene = "room", cell.nrmse = 0.25;
+  cell.stage_ms["gather"] = 1.5;
+  store.keep("k", cell);
+  ASSERT_TRUE(store.find("k"));
+  const std::string whole = read_file(cache.path() / "k.json");
+  for (std::size_t i = 0; i + 1 < whole.size(); ++i) {  // the last byte is the end of the line
+    std::string flipped = whole;
+    flipped[i] ^= 1;
+    for (const std::string& damaged : {flipped, whole.substr(0, i)}) {
+      fs::remove(cache.path() / "k.json");
+      CacheFolder(cache.path()).write("k.json", damaged);
+      const auto found = store.find("k");
+      EXPECT_TRUE(!found || to_json(*found) == to_json(cell)) << damaged;
+    }
+  }
+}
+
+TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
+  set_log_level(true, 0);
+  const Scene scene = load_scene(kTiny);
+  const auto traced = [&] {
+    return reference::cached_ground_truth(cache.path(), scene, scene.cameras[0], 8, 6, {.samples = 1});
+  };
+  const reference::GroundTruth first = traced();
+  ASSERT_TRUE(first.traced);
+  ASSERT_FALSE(traced().traced);
+  const std::string whole = read_file(first.file);
+  for (std::size_t i = 0; i < whole.size(); i += 97) {
+    std::string flipped = whole;
+    flipped[i] ^= 0x10;
+    for (const std::string& damaged : {flipped, whole.substr(0, i)}) {
+      CacheFolder(cache.path()).write(first.file.filename(), damaged);
+      const reference::GroundTruth again = traced();
+      EXPECT_TRUE(extract_layer(again.image, "indirect", "again").pixels ==
+                  extract_layer(first.image, "indirect", "first").pixels)
+          << i;
+    }
+  }
+  EXPECT_EQ(read_file(first.file), whole) << "and replaced";
+}
+
+/// `clpv quality` of one cell.
+std::string quality(const fs::path& cache) {
+  return " quality " + kTiny + kSmall + "--spp 1 --frames 1 --format csv --cache " + cache.string();
+}
+
+TEST_F(CacheTest, AFifoInPlaceOfACellOrTruthDoesNotEndQuality) {
+  const fs::path kept = folder / "kept";
+  ASSERT_EQ(run_here(quality(kept)).exit_code, 0);
+  for (const char* below : {"cells", "references"}) {
+    const fs::path file = *fs::directory_iterator(kept / below);
+    fs::remove(file);
+    ASSERT_EQ(::mkfifo(file.c_str(), 0666), 0);
+    const test::Outcome outcome = run_here(quality(kept));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("tiny"));
+    EXPECT_TRUE(fs::is_regular_file(file)) << below;
+  }
+}
+
+/// Disks of 4 to 48 kB as --cache, where one may be mounted.
+TEST_F(CacheTest, AFullDiskDoesNotEndQuality) {
+  const std::string disk = folder.path().string();
+  if (test::run("unshare -rm mount -t tmpfs none " + disk).exit_code != 0)
+    GTEST_SKIP() << "no tmpfs may be mounted here";
+  for (const char* size : {"4k", "16k", "48k"}) {
+    const test::Outcome outcome = test::run("unshare -rm sh -c 'mount -t tmpfs -o size=" + std::string(size) +
+                                            " none " + disk + " && " CLPV_PROGRAM + quality(folder.path()) +
+                                            " --vary gather-offset=0,1,2,3,4'");
+    EXPECT_EQ(outcome.exit_code, 0) << size << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 6) << size << outcome.out;
+    EXPECT_THAT(outcome.err, HasSubstr("not cached")) << size;
+  }
+}
+
+TEST_F(CacheTest, TwoProcessesShareOneQualityCacheAndOutput) {
+  const std::string command = CLPV_PROGRAM + quality(folder / "kept") + " --vary gather-offset=0,1 -o " +
+                              (folder / "a.json").string();
+  const test::Outcome both =
+      test::run("( " + command + " ) & " + command + "; code=$?; wait $! && exit $code");
+  EXPECT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_THAT(both.err, Not(HasSubstr("again")));
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder / "a.json")).at("cells").size(), 2u);
+  const test::Outcome third = run_here(quality(folder / "kept") + " --vary gather-offset=0,1");
+  EXPECT_THAT(third.err, Not(HasSubstr("again")));
+}
+
+// -------------------------------------------------------------------------------------- temporary folders
+
+TEST(ScratchFolders, OfKilledRunsAreRemovedByTheNext) {
+  const test::TemporaryFolder folder;
+  ::setenv("TMPDIR", folder.path().c_str(), 1);
+  folder.write("clpv-aaaaaa/below/file", "of a killed run");
+  folder.write("clpv-bbbbbb/file", "of a run that goes on");
+  folder.write("clpv-cccccc/file", "just made");
+  folder.write("clpv-data/file", "of the user");
+  const auto hours_ago = fs::file_time_type::clock::now() - std::chrono::hours(2);
+  for (const char* old : {"clpv-aaaaaa", "clpv-bbbbbb", "clpv-data"})
+    fs::last_write_time(folder / old, hours_ago);
+  const int running = ::open((folder / "clpv-bbbbbb").c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(running, LOCK_EX), 0);
+  fs::path made;
+  {
+    const ScratchFolder scratch;
+    made = scratch.path();
+    EXPECT_EQ(mode_of(made), 0700u);
+  }
+  ::unsetenv("TMPDIR");
+  ::close(running);
+  EXPECT_FALSE(fs::exists(made));
+  EXPECT_FALSE(fs::exists(folder / "clpv-aaaaaa"));
+  for (const char* kept : {"clpv-bbbbbb", "clpv-cccccc", "clpv-data"})
+    EXPECT_TRUE(fs::exists(folder / kept)) << kept;
+}
+
+TEST(ScratchFolders, AKilledProcessLosesItsLock) {
+  const test::TemporaryFolder folder;
+  ::setenv("TMPDIR", folder.path().c_str(), 1);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const ScratchFolder scratch;
+    ::raise(SIGKILL);
+  }
+  ::waitpid(child, nullptr, 0);
+  const fs::path left = *fs::directory_iterator(folder.path());
+  fs::last_write_time(left, fs::file_time_type::clock::now() - std::chrono::hours(2));
+  { const ScratchFolder scratch; }
+  ::unsetenv("TMPDIR");
+  EXPECT_FALSE(fs::exists(left));
+}
+
+TEST(ScratchFolders, AMissingTmpdirIsNamed) {
+  const test::TemporaryFolder folder;
+  const test::Outcome drawing =
+      test::run("TMPDIR=/nonexistent " CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string());
+  const test::Outcome cold =
+      test::run("TMPDIR=/nonexistent POCL_CACHE_DIR=" + folder.path().string() +
+                " XDG_CACHE_HOME=" + folder.path().string() + " " CLPV_PROGRAM " render " + kTiny + kSmall +
+                "-o " + (folder / "a.exr").string());
+  for (const test::Outcome& outcome : {drawing, cold}) {
+    if (outcome.exit_code == 0) continue;  // one core compiles without helpers
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("TMPDIR: found '/nonexistent'"));
+  }
+  EXPECT_EQ(drawing.exit_code, 1);
+}
+
+// -------------------------------------------------------------------------------------------------- outputs
+
+TEST(Outputs, SpareInputsAndEachOther) {
+  const test::TemporaryFolder folder;
+  for (const auto& entry : fs::directory_iterator(fs::path(kTiny).parent_path()))
+    if (entry.path().stem() == "tiny") fs::copy(entry.path(), folder.path());
+  folder.write("my.json", R"({"model": "tiny.gltf"})");
+  folder.write("times.json", R"({"model": "tiny.gltf"})");
+  folder.write("points.csv", "0,0,0,0,1,0\n");
+  const std::string scene = " my.json" + kSmall;
+  for (const std::string& command :
+       {"render" + scene + "-o o.exr --stats o.exr", "render" + scene + "-o o.exr --stats my.json",
+        "render" + scene + "-o o.exr --dump-normals ./o.exr",
+        "render" + scene + "-o o.exr --stats tiny.gltf",  // not named on the command line
+        std::string("pathtrace my.json -o o.exr --stats my.json"),
+        "query" + scene + "--points points.csv -o points.csv",
+        std::string("propagate --at 2,2,2 --grid 5 -o o.npy --vti o.npy"),
+        "quality" + scene + "--cache cache -o o.json -o o.json",
+        "sequence times.json" + kSmall + "--frames 1 --fps 1 -o ."}) {
+    const test::Outcome outcome = run_here(command, folder.path());
+    EXPECT_EQ(outcome.exit_code, 2) << command << "\n" << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("allowed: another file")) << command;
+    EXPECT_EQ(read_file(folder / "my.json"), R"({"model": "tiny.gltf"})");
+    EXPECT_FALSE(fs::exists(folder / "o.exr")) << command;
+  }
+  fs::copy(folder / "my.json", folder / "again.json");
+  EXPECT_EQ(run_here("render again.json" + kSmall + "-o o.exr --stats s.json", folder.path()).exit_code, 0);
+  EXPECT_EQ(run_here("compare o.exr o.exr -o o.exr", folder.path()).exit_code, 2);
+}
+
+TEST(Outputs, DevicesAndFifosAreRejectedBeforeTheWork) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "fifo.exr").c_str(), 0666), 0);
+  fs::create_symlink("/dev/full", folder / "full.exr");
+  for (const char* name : {"fifo.exr", "full.exr"}) {
+    const test::Outcome outcome = run_here("render " + kTiny + kSmall + "-o " + name, folder.path());
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr(std::string(name) + ": cannot be written: it is not a regular file"));
+  }
+}
+
+// Paths of scene and model, as given, were once in each image.
+TEST(Outputs, MetadataHoldsNoFolderUserOrHost) {
+  const test::TemporaryFolder folder;
+  folder.write("secret/my.json", "{\"model\": \"" + kTiny + "\"}");
+  const std::string scene = (folder / "secret/my.json").string();
+  char host[256] = "";
+  ::gethostname(host, sizeof host - 1);
+  for (const std::string& command :
+       {"render " + scene + " --model " + kTiny + kSmall + "-o a.exr",
+        "render " + scene + " --model " + kTiny + kSmall + "-o a.png",
+        "pathtrace " + scene + " --model " + kTiny + " --width 8 --height 6 --spp 1 -o a.exr"}) {
+    const test::Outcome outcome = run_here(command, folder.path());
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string file = command.substr(command.rfind(' ') + 1), bytes = read_file(folder / file);
+    EXPECT_EQ(read_metadata(folder / file).at("scene"), "my.json");
+    EXPECT_EQ(read_metadata(folder / file).at("model"), "tiny.gltf");
+    for (const std::string& told : {folder.path().string(), std::string(CLPV_SOURCE_DIR), std::string(host)})
+      EXPECT_EQ(bytes.find(told), std::string::npos) << told << " in " << file;
+  }
+}
+
+}  // namespace
+}  // namespace clpv::trust_test
