@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Cascades: nested grids around the camera, on whole cells.
 #include "pipeline/frame/cascade.hpp"
+#include "pipeline/sweep/sweep_tables.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
