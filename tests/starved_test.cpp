@@ -132,12 +132,12 @@ TEST_F(Starved, OfASmallDisk) {
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
 }
 
-/// A command under `ulimit`; then its folder's files on stderr.
+/// A command under `ulimit`, without descriptor 3 that it may inherit; then its folder's files on stderr.
 class Limited : public Starved {
  protected:
   Outcome limited(const std::string& limit, const std::string& command) {
     const std::string folder = folder_.path().string();
-    return run("ulimit -c 0; " + limit + " && timeout 600 env " + usual_kernels() +
+    return run("exec 3<&-; ulimit -c 0; " + limit + " && timeout 600 env " + usual_kernels() +
                "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() + " " CLPV_PROGRAM + command +
                "-o " + folder + "/a.exr; code=$?; ls -A " + folder + " >&2; exit $code");
   }
