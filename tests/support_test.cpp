@@ -101,7 +101,7 @@ TEST(Process, OneThatIsNotThere) {
   EXPECT_EQ(ended.code, -1);
   EXPECT_THAT(ended.output, HasSubstr("No such file"));
   EXPECT_EQ(Process("a program of this name", {}).end().code, -1);
-  EXPECT_EQ(Process("sh", {"-c", "exit 5"}).end().code, 5) << "found in the path";
+  EXPECT_EQ(Process("sh", {"-c", "exit 5"}).end().code, -1) << "not searched in the path";
 }
 
 }  // namespace

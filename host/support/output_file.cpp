@@ -38,20 +38,25 @@ std::string temporary_name(const std::string& target) {
   return fmt::format(".{}{}", target.substr(0, NAME_MAX - 1 - suffix.size()), suffix);
 }
 
-/// Returns `path` with its symbolic links resolved. Throws Error(run_time) if no file can be written there.
+/// Returns `path` with its symbolic links resolved, those to files that do not exist yet too.
+fs::path follow_links(const fs::path& path, std::error_code& error) {
+  // Absolute first: weakly_canonical drops the folder of a relative path that does not exist yet.
+  fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
+  std::error_code missing;
+  for (int hops = 0; !error && fs::is_symlink(fs::symlink_status(target, missing)); ++hops) {
+    if (hops == kMaxLinks) error = std::make_error_code(std::errc::too_many_symbolic_link_levels);
+    const fs::path next = error ? fs::path() : fs::read_symlink(target, error);
+    if (!error) target = fs::weakly_canonical(target.parent_path() / next, error);
+  }
+  return target;
+}
+
+/// Returns follow_links(). Throws Error(run_time) if no file can be written there.
 fs::path resolve(const fs::path& path) {
   if (path.filename().empty()) reject_output(path, "the path names no file");
   std::error_code error;
-  // Absolute first: weakly_canonical drops the folder of a relative path that does not exist yet.
-  fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
+  const fs::path target = follow_links(path, error);
   if (error) reject_output(path, error.message());
-  // A remaining link points to a file that does not exist yet.
-  for (int hops = 0; fs::is_symlink(fs::symlink_status(target, error)); ++hops) {
-    if (hops == kMaxLinks) reject_output(path, fmt::format("more than {} symbolic links", kMaxLinks));
-    const fs::path next = fs::read_symlink(target, error);
-    if (!error) target = fs::weakly_canonical(target.parent_path() / next, error);
-    if (error) reject_output(path, error.message());
-  }
   if (!fs::is_directory(target.parent_path(), error)) {
     reject_output(path, fmt::format("there is no folder {}", target.parent_path().string()));
   }
@@ -66,8 +71,7 @@ fs::path resolve(const fs::path& path) {
 
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code missing;
-  return fs::weakly_canonical(fs::absolute(a), missing) == fs::weakly_canonical(fs::absolute(b), missing) ||
-         fs::equivalent(a, b, missing);
+  return follow_links(a, missing) == follow_links(b, missing) || fs::equivalent(a, b, missing);
 }
 
 }  // namespace
