@@ -68,7 +68,7 @@ def test_a_forked_child_is_refused_by_name(work):  # a render there once hung
 
 def test_a_fork_before_any_render_works():
     code = FORK.replace("renderer.render()\n", "").format(
-        f"print(clpv.Renderer(scene, **{SMALL!r}).render().width, flush=True)\n  sys.exit(0)")
+        f"print(clpv.Renderer(scene, **{SMALL!r}).render().width, flush=True)\n  os._exit(0)")  # as multiprocessing ends
     ended = subprocess.run([sys.executable, "-c", START.split("renderer =")[0] + code], capture_output=True, text=True,
                            check=False, cwd=ROOT, timeout=300)
     assert ended.stdout == "48\nchild 0\n", ended.stderr
