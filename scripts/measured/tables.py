@@ -15,7 +15,7 @@ import re
 import sys
 
 from . import ROOT, RESULTS, rows as known
-from .rows import BEST, PAPER, SHARED
+from .rows import PAPER, SHARED
 
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 STATES = ("coefficients", "fluxes")
@@ -363,7 +363,7 @@ def quality_steps():
 def readme():
     """Frame times beside errors."""
     lines = [["", "propagate", "gather", "frame", "error"]]
-    for name, quality in {"the defaults": BEST, "`--preset fast`": known.FAST,
+    for name, quality in {"`--preset fast`": known.FAST,
                           "published scheme, sh2, in buffers": PAPER,
                           "published scheme, sh2, in images of halves": PAPER}.items():
         frame = found(load("frames")["frames"], given=known.FRAMES[name])

@@ -31,7 +31,7 @@ def run(code, seconds=300):
 # Each once aborted with 'terminate called'.
 @pytest.mark.parametrize("work", [
     "renderer.render()", "clpv.pathtrace(scene, samples=1 << 20)", "renderer.render().save(path)",
-    "scene.lights = scene.lights", "clpv.Basis('sh4').project(lambda w: w[:, 0])"])
+    "scene.lights = scene.lights"])
 def test_exit_while_a_daemon_thread_works(tmp_path, work):
     ended = run(f"path = {str(tmp_path / 'a.exr')!r}\n"
                 f"def work():\n  while True: {work}\n"
