@@ -27,7 +27,7 @@ static_assert(sizeof(ClpvSweepBin) == CLPV_SIZEOF_SWEEP_BIN &&
               sizeof(ClpvSweepDirection) == CLPV_SIZEOF_SWEEP_DIRECTION &&
               sizeof(ClpvSweepHalo) == CLPV_SIZEOF_SWEEP_HALO);
 
-/// What a sweep of a cascade transports.
+/// Light that a sweep of a cascade transports.
 struct SweepInput {
   std::size_t cascade;
   const std::vector<ClpvGrid>& grids;  ///< of all cascades, finest first

@@ -29,7 +29,7 @@ struct VoxelMaskShape {
   std::size_t bytes() const { return words_a_cascade() * cascades * sizeof(cl_uint); }
 };
 
-/// What triangles set in the cells of cascades: blocker_masks(), reflector_masks() or visibility_masks().
+/// Kind of masks that triangles set in the cells of cascades: blocker_masks(), reflector_masks() or visibility_masks().
 struct VoxelKind {
   std::string what;  ///< for errors
   VoxelMaskShape shape;
