@@ -4,13 +4,19 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "support/json_optional.hpp"
 
-namespace clpv::bench {
+namespace clpv {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Statistics, min, median, p95, max, mad)
+
+namespace verify {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell, triangles,
+                                   pixels)
+}
+
+namespace bench {
 namespace {
 
 nlohmann::json text_or_null(const std::string& text) {
@@ -45,24 +51,7 @@ nlohmann::json no_variant_json() {
   return json;
 }
 
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, sorted.size() - 1);
-  return std::lerp(sorted[low], sorted[high], at - static_cast<double>(low));
-}
-
 }  // namespace
-
-Statistics statistics_of(std::vector<double> samples) {
-  if (samples.empty()) return {};
-  std::sort(samples.begin(), samples.end());
-  Statistics result{samples.front(), quantile(samples, 0.5), quantile(samples, 0.95), samples.back()};
-  for (double& sample : samples) sample = std::abs(sample - result.median);
-  std::sort(samples.begin(), samples.end());
-  result.mad = quantile(samples, 0.5);
-  return result;
-}
 
 RenderOptions timed_options() {
   RenderOptions options;
@@ -87,10 +76,6 @@ double Row::gflops() const {
 double Row::gbps() const {
   return times.median > 0 ? cost.bytes / times.median * 1e-6 : 0;
 }
-
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Statistics, min, median, p95, max, mad)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
-                                   triangles, pixels)
 
 nlohmann::json to_json(const Row& row, int index) {
   nlohmann::json json = {{"name", row.name},
@@ -133,4 +118,5 @@ nlohmann::json to_json(const Row& row, int index) {
   return json;
 }
 
-}  // namespace clpv::bench
+}  // namespace bench
+}  // namespace clpv

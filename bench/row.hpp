@@ -8,26 +8,12 @@
 #include <vector>
 
 #include "options/render_options.hpp"
+#include "support/statistics.hpp"
+#include "verify/job.hpp"
 
-namespace clpv {
+namespace clpv::bench {
 
-namespace bench {
-enum class Status { ok, unsupported, wrong };
-}
-
-template <>
-inline constexpr auto kNames<bench::Status> = name_list("ok", "unsupported", "wrong");
-
-namespace bench {
-
-/// Statistics of a series, in its unit. All 0 for an empty series.
-struct Statistics {
-  double min = 0, median = 0, p95 = 0, max = 0;
-  double mad = 0;  ///< median absolute deviation from the median, robust against outliers
-};
-
-/// Quantiles interpolate linearly between the sorted samples; the first is quantile 0, the last quantile 1.
-Statistics statistics_of(std::vector<double> samples);
+using verify::Cost, verify::Status;
 
 /// Default settings of timed stages: transport, lobes and blocking as published, volumes of layout `soa` in float, no
 /// occlusion.
@@ -47,16 +33,6 @@ struct Variant {
 
 /// Name of the lobes: "exact", "rotate", or "rotate-kernel" for lobes rotated in the kernel at run time.
 std::string lobes_of(const RenderOptions& options);
-
-/// Operations and bytes of the timed work, counted and not measured.
-struct Cost {
-  double flops = 0;        ///< executed by the kernels; a fused multiply-add counts as 2
-  double bytes = 0;        ///< compulsory traffic: each input of a launch read once, each output written once
-  double working_set = 0;  ///< bytes touched in total; selects the bandwidth ceiling
-  double reads_per_cell = 0;  ///< values (or texels) read from volumes per cell, over all channels and steps
-  double writes_per_cell = 0;
-  double triangles = 0, pixels = 0;  ///< rasterising: sums over all views
-};
 
 struct Row {
   std::string suite, stage, name;
@@ -91,5 +67,4 @@ struct Row {
 /// steps; Google Benchmark's key of that name would always be 1.
 nlohmann::json to_json(const Row& row, int index);
 
-}  // namespace bench
-}  // namespace clpv
+}  // namespace clpv::bench

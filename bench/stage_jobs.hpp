@@ -18,14 +18,12 @@
 
 namespace clpv::bench {
 
-inline constexpr double kChannels = 3;  // red, green, blue
-
 /// Inputs and CPU references shared by the jobs of a suite.
 struct Bench {
   Session& session;
   std::function<std::shared_ptr<Inputs>()> make_inputs;  ///< called at the first use of inputs()
   /// Results of the CPU reference, by a key over what they depend on. Variants that should agree share one.
-  std::map<std::string, std::shared_ptr<const std::vector<double>>> references;
+  std::map<std::string, verify::Values> references;
 
   Inputs& inputs() {
     if (!made_inputs) made_inputs = make_inputs();
@@ -33,12 +31,13 @@ struct Bench {
   }
   std::shared_ptr<Inputs> made_inputs;
 
-  /// The CPU reference's result for `key`, computed by `make` at the first call; Volume's host order.
-  template <typename Make>
-  std::shared_ptr<const std::vector<double>> expected(const std::string& key, Make make) {
-    auto& entry = references[key];
-    if (!entry) entry = std::make_shared<const std::vector<double>>(make());
-    return entry;
+  /// Shares the result of the CPU reference under `key`.
+  verify::Share share(const std::string& key) {
+    return [this, key](const std::function<std::vector<double>()>& compute) {
+      verify::Values& entry = references[key];
+      if (!entry) entry = verify::not_shared(compute);
+      return entry;
+    };
   }
 };
 
@@ -88,10 +87,6 @@ Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const st
 /// The same work by OpenGL (bench/baseline/rasterize_gl.hpp).
 Job rasterize_gl_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera,
                      Pass pass, const RenderOptions& options);
-
-/// Compares light volumes of n^3 cells in Volume's host order: the largest difference over the largest expected value.
-Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& expected, int n,
-                          double tolerance);
 
 /// A case of `job` with `variant`, or with with_sweep(variant) for the sweep.
 Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Variant& variant);

@@ -51,20 +51,6 @@ TEST(BenchCeilings, TheLongestMinimumTimeIsTheCeiling) {
   EXPECT_EQ(ceilings.gbps(1e12), 10);
 }
 
-TEST(BenchReport, CsvQuotesWhatItMustAndKeepsColumns) {
-  Row plain, odd;
-  plain.name = "a", odd.name = "b";
-  odd.status = Status::unsupported;
-  odd.reason = "no \"images\", none";
-  const std::string csv = report_csv({plain, odd});
-  EXPECT_THAT(csv, HasSubstr("\"no \"\"images\"\", none\""));
-  std::istringstream lines(csv);
-  std::string head, first;
-  std::getline(lines, head);
-  std::getline(lines, first);
-  EXPECT_EQ(std::count(head.begin(), head.end(), ','), std::count(first.begin(), first.end(), ','));
-}
-
 nlohmann::json report(const std::vector<std::tuple<std::string, double, double>>& rows) {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [name, median, mad] : rows)

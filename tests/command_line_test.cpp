@@ -79,19 +79,5 @@ TEST(CommandLine, StartsWithoutImageCodecs) {
   EXPECT_THAT(libraries.out, Not(HasSubstr("libOpenImageIO")));
 }
 
-TEST(CommandLine, OldNamesOfOptionsNameTheNewOnes) {
-  const std::pair<const char*, const char*> renamed[] = {
-      {"check --json", "'--json' is now '--format json, or --output FILE.json'"},
-      {"bench bases --out a.json", "'--out' is now '--output'"},
-      {"quality a.json --csv=b.csv", "'--csv' is now '--output FILE.csv'"},
-      {"render a.json -o a.png --occlusion off", "'--occlusion' is now '--blockers none|scene|seen'"},
-      {"render a.json -o a.png --table=image", "'--table' is now '--evaluate buffer|image'"}};
-  for (const auto& [words, message] : renamed) {
-    const test::Outcome outcome = clpv(words);
-    EXPECT_EQ(outcome.exit_code, 2) << words;
-    EXPECT_THAT(outcome.err, HasSubstr(message));
-  }
-}
-
 }  // namespace
 }  // namespace clpv::command_line_test

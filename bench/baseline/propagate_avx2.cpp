@@ -319,10 +319,10 @@ PropagateBaseline::PropagateBaseline(const Basis& basis, const Transport& transp
   impl_ = std::make_unique<Impl>(basis, transport, grid);
 }
 
-void PropagateBaseline::set(const std::vector<float>& injected, const std::vector<float>* geometry) {
+void PropagateBaseline::set(const std::vector<double>& injected, const std::vector<double>* geometry) {
   Impl& p = *impl_;
   const int n = p.layout.n;
-  const auto copy = [&](const std::vector<float>& values, float* to, int planes, int side) {
+  const auto copy = [&](const std::vector<double>& values, float* to, int planes, int side) {
     std::size_t at = 0;
     for (int plane = 0; plane < planes; ++plane) {
       for (int z = 0; z < side; ++z) {
@@ -390,7 +390,7 @@ struct PropagateBaseline::Impl {};
 PropagateBaseline::PropagateBaseline(const Basis&, const Transport&, int) {
   throw Error(ExitCode::run_time, "baseline: needs a processor with AVX2");
 }
-void PropagateBaseline::set(const std::vector<float>&, const std::vector<float>*) {}
+void PropagateBaseline::set(const std::vector<double>&, const std::vector<double>*) {}
 void PropagateBaseline::propagate(int) {}
 std::vector<float> PropagateBaseline::accumulated() const {
   return {};

@@ -23,7 +23,7 @@ class PropagateBaseline {
 
   /// Sets injected light (3 channels x 4 coefficients x grid^3) and the geometry volume (4 x (grid + 1)^3; null: no
   /// occlusion), both in Volume's host order.
-  void set(const std::vector<float>& injected, const std::vector<float>* geometry);
+  void set(const std::vector<double>& injected, const std::vector<double>* geometry);
   /// Propagates as Propagator does: no occlusion in the first step, transmittances computed once.
   void propagate(int iterations);
   std::vector<float> accumulated() const;  ///< accumulated light, as `injected`

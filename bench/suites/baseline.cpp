@@ -11,6 +11,7 @@
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
+#include "verify/comparison.hpp"
 #include "verify/tolerances.hpp"
 
 namespace clpv::bench {
@@ -31,21 +32,17 @@ Job native_job(Bench& bench, const Variant& variant) {
   if (!baseline_supported()) throw Error(ExitCode::device, "this processor has no AVX2");
   const RenderOptions& o = variant.options;
   const auto p = std::make_shared<NativePropagation>(o);
-  const std::vector<float>& light = bench.inputs().light(*p->basis, 0);
-  const std::vector<float>& geometry = bench.inputs().geometry(*p->basis, 0);
-  p->baseline.set(light, o.blocked() ? &geometry : nullptr);
+  const verify::SharedVolume light = bench.inputs().light(*p->basis, 0),
+                             geometry = o.blocked() ? bench.inputs().geometry(*p->basis, 0) : nullptr;
+  p->baseline.set(light->values, geometry ? &geometry->values : nullptr);
   Job job;
   job.own_stages = true;  // runs on the host: wall time
   job.run = [p, steps = o.iterations] { p->baseline.propagate(steps); };
-  job.verify = [p, o, &light, &geometry] {
-    const int n = p->basis->size();
-    const reference::Volume injected = to_reference(light, o.grid, n, 3),
-                            corners = to_reference(geometry, o.grid + 1, n, 1);
-    return compare_volumes(
+  job.compare = [p, o, light, geometry] {
+    return verify::compare_volumes(
         p->baseline.accumulated(),
-        reference::propagate(p->transport, injected, o.blocked() ? &corners : nullptr, o.iterations)
-            .accumulated.values,
-        o.grid, reference::tolerance("propagate", o.format().storage));
+        reference::propagate(p->transport, *light, geometry.get(), o.iterations).accumulated.values, o.grid,
+        verify::tolerance("propagate", o.format().storage));
   };
   job.cost.flops = p->baseline.flops(o.iterations);
   job.cost.bytes = p->baseline.bytes(o.iterations);

@@ -73,8 +73,6 @@ void reject_misspelt_command(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands({})) {
     if (!command->get_group().empty()) names.push_back(command->get_name());
   }
-  if (const std::string renamed = reject_old_name(*word); !renamed.empty())
-    throw Error(ExitCode::usage, "{}", renamed);
   const auto nearest =
       std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
   if (edits(*word, *nearest) <= kMaxEdits)
@@ -101,14 +99,6 @@ void reject_misspelt_option(const CLI::App& app) {
     if (edits(given, nearest) > kMaxEdits) continue;
     throw Error(ExitCode::usage, "{}: unknown option '{}'; did you mean {}?", commands.front()->get_name(),
                 given, nearest);
-  }
-}
-
-/// Throws Error(usage) that names the successor of a renamed option.
-void reject_renamed_options(int argc, const char* const* argv) {
-  for (const std::string word : std::span(argv, static_cast<std::size_t>(argc))) {
-    const std::string renamed = word.starts_with("--") ? reject_old_name(word.substr(0, word.find('='))) : "";
-    if (!renamed.empty()) throw Error(ExitCode::usage, "{}", renamed);
   }
 }
 
@@ -170,9 +160,9 @@ Ranks& Shared::ranks() {
 std::span<const Command> all_commands() {
   static constexpr Command kCommands[] = {
       {"devices", add_devices}, {"render", add_render},       {"sequence", add_sequence},
-      {"query", add_query},     {"propagate", add_propagate}, {"check", add_check},
-      {"compare", add_compare}, {"pathtrace", add_pathtrace}, {"quality", add_quality},
-      {"basis", add_basis},     {"bench", add_bench},         {"report", add_report},
+      {"query", add_query},     {"check", add_check},         {"compare", add_compare},
+      {"quality", add_quality}, {"pathtrace", add_pathtrace}, {"basis", add_basis},
+      {"bench", add_bench},     {"report", add_report},
   };
   return kCommands;
 }
@@ -201,7 +191,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
     };
     if (is_one_of({"render", "sequence", "query", "pathtrace", "compare"}))
       command->group("Look");
-    else if (is_one_of({"quality", "bench", "basis", "propagate", "report"}))
+    else if (is_one_of({"quality", "bench", "basis", "report"}))
       command->group("Measure");
     else if (is_one_of({"devices", "check"}))
       command->group("Verify");
@@ -215,7 +205,6 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
 }
 
 void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
-  reject_renamed_options(argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ExtrasError&) {

@@ -18,7 +18,7 @@
 #include "pipeline/frame/frame_stats.hpp"
 #include "pipeline/raster/view.hpp"
 #include "quality/ground_truth.hpp"
-#include "quality/unreached.hpp"
+#include "cli/unreached.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
