@@ -138,10 +138,6 @@ void add_frame_options(CLI::App& command, OptionValues& given) {
   }
 }
 
-nlohmann::json to_json(const Device& device) {
-  return {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}};
-}
-
 CLI::Option* add_format(CLI::App& command, std::string& format, const std::vector<std::string>& formats) {
   format = formats.front();
   return command.add_option("--format", format, "format of the results on stdout")

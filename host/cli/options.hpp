@@ -80,9 +80,6 @@ inline constexpr std::string_view kMoreOptions = "More: ";
 /// Adds all frame options as text options, except those that `command` already has.
 void add_frame_options(CLI::App& command, OptionValues& given);
 
-/// Returns the keys "platform", "name" and "driver".
-nlohmann::json to_json(const Device& device);
-
 /// Adds --format, for the results on stdout; the first of `formats` is the default.
 CLI::Option* add_format(CLI::App& command, std::string& format,
                         const std::vector<std::string>& formats = {"table", "json"});

@@ -165,11 +165,4 @@ nlohmann::json describe(const RenderRequest& request, const RenderOptions& optio
   return all;
 }
 
-std::map<std::string, std::string> metadata_of(const nlohmann::json& described) {
-  std::map<std::string, std::string> metadata;
-  for (const auto& [name, value] : described.items())
-    metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
-  return metadata;
-}
-
 }  // namespace clpv

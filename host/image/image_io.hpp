@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ Image read_image(const std::filesystem::path& path, const ImageLimits& limits = 
 /// Reads only the metadata of a file. Throws as read_image, but does not decode pixels.
 std::map<std::string, std::string> read_metadata(const std::filesystem::path& path,
                                                  const ImageLimits& limits = {});
+
+/// Returns the members of a JSON object as metadata: texts as they are, others as JSON.
+std::map<std::string, std::string> metadata_of(const nlohmann::json& described);
 
 /// Writes an EXR file of 32-bit floats with the image's channel names. Metadata become string attributes "clpv:NAME". Equal
 /// images give equal bytes. Throws Error(run_time).

@@ -48,13 +48,12 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
   for (const Energy& e : energies_) {
     energy.push_back({{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
   }
-  const Device& device = session.device();
   const double frame_ms = median(times_.wall_ms());
   std::vector<StageTime> stages;
   for (const FrameTimes::Series& series : times_.stages())
     stages.push_back({series.mark, median(series.ms), series.from_events});
   return {{"schema", 1},
-          {"device", {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}}},
+          {"device", clpv::to_json(session.device())},
           {"options", options},
           {"frames", times_.count()},
           {"stages", clpv::to_json(stages)},

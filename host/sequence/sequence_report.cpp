@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/sequence_report.hpp"
+#include "sequence/sequence_report.hpp"
 
 #include <algorithm>
 
