@@ -23,7 +23,7 @@ struct Job : verify::Job {
 
 /// A row before its measurement: its identity, and a function that sets up its work.
 struct Case {
-  Row row;                    ///< suite, stage, name, n and variant
+  Row row;                    ///< suite, stage, name, n and problem
   std::function<Job()> make;  ///< builds kernels and allocates; Error(device) makes the row `unsupported`
 };
 

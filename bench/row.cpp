@@ -28,8 +28,8 @@ nlohmann::json number_or_null(const std::optional<double>& value) {
   return value && *value == *value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
-nlohmann::json variant_json(const Variant& variant) {
-  const RenderOptions& o = variant.options;
+nlohmann::json problem_json(const Problem& problem) {
+  const RenderOptions& o = problem.options;
   return {{"basis", o.basis},
           {"layout", name_of(o.layout)},
           {"storage", name_of(o.storage)},
@@ -39,13 +39,13 @@ nlohmann::json variant_json(const Variant& variant) {
           {"occlusion", o.blocked()},
           {"grid", o.grid},
           {"iterations", o.iterations},
-          {"cascade", variant.cascade},
-          {"filtered", variant.filtered}};
+          {"cascade", problem.cascade},
+          {"filtered", problem.filtered}};
 }
 
-/// The keys of variant_json with null values, for a row without volumes.
-nlohmann::json no_variant_json() {
-  nlohmann::json json = variant_json({});
+/// The keys of problem_json with null values, for a row without volumes.
+nlohmann::json no_problem_json() {
+  nlohmann::json json = problem_json({});
   for (auto& value : json) value = nullptr;
   json["occlusion"] = false;
   return json;
@@ -96,7 +96,7 @@ nlohmann::json to_json(const Row& row, int index) {
                {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
                {"preset", text_or_null(row.preset)},
                {"recompute", text_or_null(row.recompute)}});
-  json.update(row.variant ? variant_json(*row.variant) : no_variant_json());
+  json.update(row.problem ? problem_json(*row.problem) : no_problem_json());
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},
                {"timer", row.from_events ? "event" : "wall"},

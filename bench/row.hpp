@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One row of a benchmark's results: the timed variant, its times, cost and error.
+// One row of a benchmark's results: the timed problem, its times, cost and error.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -25,7 +25,7 @@ constexpr Blockers blockers_if(bool occlusion) {
 }
 
 /// Settings of a timed stage.
-struct Variant {
+struct Problem {
   RenderOptions options = timed_options();
   std::optional<int> cascade;
   bool filtered = true;  ///< gathering from images: true samples by the device's filter, false reads texels
@@ -37,7 +37,7 @@ std::string lobes_of(const RenderOptions& options);
 struct Row {
   std::string suite, stage, name;
   int n = 0;                       ///< coefficients of the basis
-  std::optional<Variant> variant;  ///< empty for rows without volumes: rasterising and ceilings
+  std::optional<Problem> problem;  ///< empty for rows without volumes: rasterising and ceilings
   Status status = Status::ok;
   std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`
   std::string axis;    ///< suite scaling: the varied quantity ("grid"), and its `value`

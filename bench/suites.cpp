@@ -18,11 +18,11 @@ const std::vector<Suite>& suites() {
   return all;
 }
 
-Variant basis_variant(const SuiteOptions& options, const std::string& basis) {
-  Variant variant;
-  variant.options = options.settings;
-  variant.options.basis = basis;
-  return variant;
+Problem basis_problem(const SuiteOptions& options, const std::string& basis) {
+  Problem problem;
+  problem.options = options.settings;
+  problem.options.basis = basis;
+  return problem;
 }
 
 RenderOptions published_options(const RenderOptions& sizes, const std::string& basis) {

@@ -63,7 +63,7 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
       report({{"same", 10, 0.1}, {"slow", 10, 0.1}, {"noisy", 10, 2}, {"fast", 10, 0}, {"gone", 1, 0}});
   const auto after =
       report({{"same", 10.05, 0.1}, {"slow", 13, 0.1}, {"noisy", 13, 2}, {"fast", 5, 0}, {"new", 1, 0}});
-  const Comparison found = compare_runs(before, after, "old.json");
+  const ReportChanges found = compare_runs(before, after, "old.json");
   ASSERT_EQ(found.changes.size(), 4u);
   EXPECT_FALSE(found.changes[0].significant);
   EXPECT_TRUE(found.changes[1].significant);
@@ -72,7 +72,7 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
   EXPECT_TRUE(found.changes[3].significant);
   EXPECT_EQ(found.only_before, std::vector<std::string>{"gone"});
   EXPECT_EQ(found.only_after, std::vector<std::string>{"new"});
-  const std::string table = comparison_table(found);
+  const std::string table = changes_table(found);
   EXPECT_THAT(table, HasSubstr("13.0000 +- 0.1000    1.300 HIGHER"));
   EXPECT_THAT(table, HasSubstr("0.500 lower"));
 }
@@ -80,18 +80,18 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
 TEST(BenchCompare, OneRepetitionHasNoSpread) {
   nlohmann::json once = report({{"row", 10, 0}});
   once["benchmarks"][0]["repetitions"] = 1;
-  const Comparison found = compare_runs(once, report({{"row", 12, 0}}), "old.json");
+  const ReportChanges found = compare_runs(once, report({{"row", 12, 0}}), "old.json");
   EXPECT_FALSE(found.changes.at(0).significant);
-  EXPECT_THAT(comparison_table(found), HasSubstr("spread unknown"));
+  EXPECT_THAT(changes_table(found), HasSubstr("spread unknown"));
   EXPECT_THROW(require_ratios(found, 1.1), Error);
   EXPECT_NO_THROW(require_ratios(found, 1.3));
 }
 
 TEST(BenchCompare, RatiosAboveALimitFail) {
-  const Comparison found = compare_runs(report({{"noisy", 10, 5}, {"fast", 10, 0.1}}),
+  const ReportChanges found = compare_runs(report({{"noisy", 10, 5}, {"fast", 10, 0.1}}),
                                         report({{"noisy", 15, 5}, {"fast", 5, 0.1}}), "o");
   EXPECT_NO_THROW(require_ratios(found, 1.2)) << "a change within the spread is none";
-  const Comparison slow = compare_runs(report({{"slow", 10, 0.1}}), report({{"slow", 15, 0.1}}), "o");
+  const ReportChanges slow = compare_runs(report({{"slow", 10, 0.1}}), report({{"slow", 15, 0.1}}), "o");
   EXPECT_NO_THROW(require_ratios(slow, 1.6));
   try {
     require_ratios(slow, 1.2);

@@ -28,9 +28,9 @@ struct NativePropagation {
       : basis(make_basis(o)), transport(make_transport(o, *basis)), baseline(*basis, transport, o.grid) {}
 };
 
-Job native_job(Bench& bench, const Variant& variant) {
+Job native_job(Bench& bench, const Problem& problem) {
   if (!baseline_supported()) throw Error(ExitCode::device, "this processor has no AVX2");
-  const RenderOptions& o = variant.options;
+  const RenderOptions& o = problem.options;
   const auto p = std::make_shared<NativePropagation>(o);
   const verify::SharedVolume light = bench.inputs().light(*p->basis, 0),
                              geometry = o.blocked() ? bench.inputs().geometry(*p->basis, 0) : nullptr;
@@ -54,15 +54,15 @@ Job native_job(Bench& bench, const Variant& variant) {
 std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const bool occlusion : {false, true}) {
-    Variant variant = basis_variant(options, kBasis);
-    variant.options.blockers = blockers_if(occlusion);
+    Problem problem = basis_problem(options, kBasis);
+    problem.options.blockers = blockers_if(occlusion);
     for (const State state : values_of<State>()) {
-      variant.options.state = state;
-      cases.push_back(stage_case(bench, "baseline", kPropagate, variant));
+      problem.options.state = state;
+      cases.push_back(stage_case(bench, "baseline", kPropagate, problem));
     }
-    variant.options.state = State::coefficients;
+    problem.options.state = State::coefficients;
     cases.push_back(
-        {make_row("baseline", kNative, variant), [&bench, variant] { return native_job(bench, variant); }});
+        {make_row("baseline", kNative, problem), [&bench, problem] { return native_job(bench, problem); }});
   }
   return cases;
 }
@@ -71,7 +71,7 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
 const Row* native_row(const std::vector<Row>& rows, const Row& row) {
   const auto native = std::ranges::find_if(rows, [&](const Row& other) {
     return other.stage == kNative && other.status == Status::ok &&
-           other.variant->options.blocked() == row.variant->options.blocked();
+           other.problem->options.blocked() == row.problem->options.blocked();
   });
   return native == rows.end() || row.stage == kNative ? nullptr : &*native;
 }

@@ -142,12 +142,12 @@ Case frame_case(Session& session, const SuiteOptions& options, PresetName preset
   apply_preset(render, preset);
   render.basis = basis;
   render.cascades = options.settings.cascades, render.cascade_size = options.settings.cascade_size;
-  Variant variant;
-  variant.options = render;
-  variant.options.lobe = LobeKind::exact;  // the row's name has the preset in place of the lobes
-  variant.options.lobe_time = LobeTime::host;
+  Problem problem;
+  problem.options = render;
+  problem.options.lobe = LobeKind::exact;  // the row's name has the preset in place of the lobes
+  problem.options.lobe_time = LobeTime::host;
   Case result;
-  result.row = make_row("frame", "frame", variant,
+  result.row = make_row("frame", "frame", problem,
                         fmt::format("/{}/recompute:{}", name_of(preset), clpv::name_of(recompute)));
   result.row.preset = name_of(preset);
   result.row.recompute = clpv::name_of(recompute);

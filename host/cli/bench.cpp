@@ -142,10 +142,10 @@ void run(Options options, const Shared& shared) {
     write_file(options.output, text("json"));
   fmt::print("{}", text(options.format));
   std::fflush(stdout);
-  bench::Comparison comparison;
+  bench::ReportChanges changes;
   if (!before.is_null()) {
-    comparison = bench::compare_runs(before, report_of(options, session, results), options.compare);
-    fmt::print("\n{}", bench::comparison_table(comparison));
+    changes = bench::compare_runs(before, report_of(options, session, results), options.compare);
+    fmt::print("\n{}", bench::changes_table(changes));
   }
   if (plot) {
     plot->add("bench.json", report_of(options, session, results));
@@ -153,7 +153,7 @@ void run(Options options, const Shared& shared) {
   }
   session.store_programs();
   require_right_results(results.rows);
-  if (options.fail_above > 0) bench::require_ratios(comparison, options.fail_above);
+  if (options.fail_above > 0) bench::require_ratios(changes, options.fail_above);
 }
 
 }  // namespace bench_command
