@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bench/baseline/rasterize_gl.hpp"
+#include "bench/native/rasterize_gl.hpp"
 #include "bench/stage_jobs.hpp"
 #include "pathtracer/ray_scene.hpp"
 #include "pipeline/frame/cascade.hpp"

@@ -84,7 +84,7 @@ inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kSweep, kGather};
 /// a pass needs a light and none applies.
 Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera, Pass pass,
                   const RenderOptions& options);
-/// The same work by OpenGL (bench/baseline/rasterize_gl.hpp).
+/// The same work by OpenGL (bench/native/rasterize_gl.hpp).
 Job rasterize_gl_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera,
                      Pass pass, const RenderOptions& options);
 

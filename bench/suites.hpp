@@ -42,7 +42,7 @@ Suite bases_suite();
 Suite scaling_suite();
 Suite ceilings_suite();
 Suite frame_suite();
-Suite baseline_suite();
+Suite native_suite();
 Suite rasterize_suite();
 Suite regression_suite();
 

@@ -9,8 +9,8 @@
 #include <regex>
 #include <sstream>
 
-#include "bench/baseline/propagate_avx2.hpp"
-#include "bench/baseline/rasterize_gl.hpp"
+#include "bench/native/propagate_avx2.hpp"
+#include "bench/native/rasterize_gl.hpp"
 #include "bench/compare_runs.hpp"
 #include "bench/published.hpp"
 #include "bench/report.hpp"
@@ -195,17 +195,17 @@ void expect_right(const std::vector<Row>& rows) {
   }
 }
 
-TEST(BenchSuites, BaselineComparesWithCodeByHand) {
-  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
+TEST(BenchSuites, NativeComparesWithCodeByHand) {
+  if (!avx2_supported()) GTEST_SKIP() << "no AVX2";
   const auto sh2 = make_basis("sh2");
-  EXPECT_THROW(PropagateBaseline(*sh2, make_transport(TransportKind::sampled, *sh2), 12), Error);
-  const std::vector<Row> rows = rows_of(baseline_suite(), "occlusion");
+  EXPECT_THROW(PropagateAvx2(*sh2, make_transport(TransportKind::sampled, *sh2), 12), Error);
+  const std::vector<Row> rows = rows_of(native_suite(), "occlusion");
   expect_right(rows);
   EXPECT_THAT(names_of(rows),
               ElementsAre("propagate/sh2/soa/float/occlusion", "propagate/sh2/soa/float/fluxes/occlusion",
                           "native/sh2/soa/float/occlusion"));
   EXPECT_THAT(
-      baseline_suite().table(rows),
+      native_suite().table(rows),
       ::testing::ContainsRegex("propagate/sh2/soa/float/occlusion .*[0-9]+[.][0-9]+ +[0-9.]+ +[0-9.e-]+\n"));
 }
 

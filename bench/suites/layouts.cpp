@@ -11,7 +11,7 @@
 namespace clpv::bench {
 namespace {
 
-// The paper's format, baseline of the speed-ups.
+// The paper's format, denominator of the speed-ups.
 constexpr VolumeFormat kPaperFormat{Layout::image, Storage::float16};
 
 struct StageSetup {
