@@ -309,7 +309,7 @@ TEST(BenchProgram, AnAlteredLiteralIsCaught) {
   const auto at = text.find(sum);
   ASSERT_NE(at, std::string::npos);
   text.replace(at, sum.size(), "r.c##i = a.c##i + 1.0001f * b.c##i;");
-  std::ofstream(folder.path() / "steps/propagate.cl") << text;
+  folder.write("steps/propagate.cl", text);
   const auto out = test::run("CLPV_KERNEL_DIR=" + folder.path().string() +
                              " CLPV_PROGRAM_CACHE=off " CLPV_PROGRAM " " + "bench " + kOneRow);
   EXPECT_EQ(out.exit_code, static_cast<int>(ExitCode::validation)) << out.out << out.err;

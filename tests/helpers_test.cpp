@@ -177,7 +177,8 @@ TEST(Check, APresetsCombination) {
   const test::Outcome outcome = test::run(CLPV_PROGRAM " check --preset paper --format json");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   std::vector<std::string> rows;
-  for (const nlohmann::json& check : nlohmann::json::parse(outcome.out).at("checks"))
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  for (const nlohmann::json& check : report.at("checks"))
     rows.push_back(check.at("stage").get<std::string>() + " " + check.at("variant").get<std::string>());
   EXPECT_THAT(rows, ::testing::ElementsAre("inject paper/srbf8v2/image/half/light",
                                            "inject paper/srbf8v2/image/half/geometry",
