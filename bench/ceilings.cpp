@@ -70,7 +70,7 @@ Case ceiling_case(const std::string& name, std::function<Job()> make) {
 
 /// Deviation of values that must all equal `expected`.
 Deviation deviation_from(const std::vector<float>& values, double expected) {
-  reference::WorstError worst;
+  verify::WorstError worst;
   for (std::size_t i = 0; i < values.size(); ++i) worst.take(std::abs(values[i] - expected) / expected, i);
   if (worst.value == 0) return {0, 0, {}};
   return {worst.value, 0, fmt::format("value {}: {}, expected {}", worst.at, values[worst.at], expected)};
@@ -89,7 +89,7 @@ Job fma_job(Session& session, int width) {
   const cl_uint passes = std::max<cl_uint>(kMinPasses, calibrated_passes(session, launch));
   Job job;
   job.run = [launch, passes] { launch(passes); };
-  job.verify = [&session, out, size] {
+  job.compare = [&session, out, size] {
     return deviation_from(session.read<float>(out, size.items), 2.0 * kChains);
   };
   job.cost.flops = 2.0 * kChains * kUnrolled * width * passes * static_cast<double>(size.items);
@@ -115,7 +115,7 @@ Job stream_job(Session& session, std::size_t bytes) {
   Job job;
   job.reset = [&session, c, values] { session.fill_zero(c, values * sizeof(float)); };
   job.run = [launch, passes] { launch(passes); };
-  job.verify = [&session, c, values, passes] {
+  job.compare = [&session, c, values, passes] {
     return deviation_from(session.read<float>(c, values), 1.0 + 2.0 * passes);
   };
   job.cost.working_set = 3.0 * static_cast<double>(values) * sizeof(float);
@@ -129,7 +129,7 @@ Job launch_job(Session& session) {
   Job job;
   job.reset = [&session, out] { session.fill_zero(out, sizeof(float)); };
   job.run = [kernel, out] { kernel->set(out).launch(1, 1); };
-  job.verify = [&session, out] { return deviation_from(session.read<float>(out, 1), 1.0); };
+  job.compare = [&session, out] { return deviation_from(session.read<float>(out, 1), 1.0); };
   return job;
 }
 

@@ -134,7 +134,7 @@ std::string with_spread(double value, double mad) {
 
 }  // namespace
 
-Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file,
+ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file,
                         const std::string& after_file) {
   const Kind &kind = kind_of(before, file), &after_kind = kind_of(after, after_file);
   if (&kind != &after_kind)
@@ -143,7 +143,7 @@ Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& afte
   const std::vector<Value> old_values = kind.values(before, file),
                            new_values = kind.values(after, after_file);
   const std::map<std::string, Value> old_named = by_name(old_values), new_named = by_name(new_values);
-  Comparison result;
+  ReportChanges result;
   for (const Value& value : new_values) {
     const auto old_value = old_named.find(value.name);
     if (old_value == old_named.end())
@@ -157,22 +157,22 @@ Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& afte
   return result;
 }
 
-void require_ratios(const Comparison& comparison, double limit) {
+void require_ratios(const ReportChanges& found, double limit) {
   std::vector<std::string> slower;
-  for (const Change& change : comparison.changes) {
+  for (const Change& change : found.changes) {
     if (change.ratio() > limit && (change.significant || !change.spread_known))
       slower.push_back(fmt::format("{} ({:.3f})", change.name, change.ratio()));
   }
   if (slower.empty()) return;
   throw Error(ExitCode::validation, "{} of {} rows have more than {} times their earlier value: {}",
-              slower.size(), comparison.changes.size(), limit, fmt::join(slower, ", "));
+              slower.size(), found.changes.size(), limit, fmt::join(slower, ", "));
 }
 
-std::string comparison_table(const Comparison& comparison) {
+std::string changes_table(const ReportChanges& found) {
   std::size_t width = 3;
-  for (const Change& change : comparison.changes) width = std::max(width, change.name.size());
+  for (const Change& change : found.changes) width = std::max(width, change.name.size());
   std::string text = fmt::format("{:<{}} {:>22} {:>22} {:>8}\n", "row", width, "before", "after", "ratio");
-  for (const Change& change : comparison.changes) {
+  for (const Change& change : found.changes) {
     const char* verdict = !change.spread_known  ? "spread unknown"
                           : !change.significant ? "within the spread"
                           : change.ratio() > 1  ? "HIGHER"
@@ -181,9 +181,9 @@ std::string comparison_table(const Comparison& comparison) {
                         with_spread(change.before, change.before_mad),
                         with_spread(change.after, change.after_mad), change.ratio(), verdict);
   }
-  for (const std::string& name : comparison.only_before)
+  for (const std::string& name : found.only_before)
     text += fmt::format("{}: only in the earlier run\n", name);
-  for (const std::string& name : comparison.only_after) text += fmt::format("{}: only in this run\n", name);
+  for (const std::string& name : found.only_after) text += fmt::format("{}: only in this run\n", name);
   return text;
 }
 

@@ -24,20 +24,20 @@ struct Change {
 inline constexpr double kSignificantDeviations = 3;
 inline constexpr double kMinRelativeChange = 0.02;
 
-struct Comparison {
+struct ReportChanges {
   std::vector<Change> changes;                       ///< rows of both reports, in the order of the new one
   std::vector<std::string> only_before, only_after;  ///< names of the other rows
 };
 
 /// Compares two reports. Throws Error(bad_input) if one is no report of schema 1, or if their kinds differ. `file`,
 /// `after_file`: where they are from, for errors.
-Comparison compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file,
+ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file,
                         const std::string& after_file = "this run");
 
 /// Throws Error(validation) that names the rows whose ratio exceeds `limit`: beyond the spread, or with unknown spread.
-void require_ratios(const Comparison& comparison, double limit);
+void require_ratios(const ReportChanges& found, double limit);
 
 /// Text with one line per change: medians with MAD, ratio and verdict. Rows of only one run follow.
-std::string comparison_table(const Comparison& comparison);
+std::string changes_table(const ReportChanges& found);
 
 }  // namespace clpv::bench

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 
-#include "pipeline/voxels/blockers.hpp"
 #include "pipeline/frame/cascade.hpp"
+#include "pipeline/inject/inject.hpp"
+#include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/view.hpp"
+#include "pipeline/voxels/blockers.hpp"
 #include "reference/inject.hpp"
 #include "support/error.hpp"
 #include "volume/volume.hpp"
@@ -50,15 +52,10 @@ Inputs::Inputs(Session& session, const Scene& scene, const SceneCamera& camera, 
         make_surface(session, rsm_views(lights.front().data, grid, scene_.bounds, options.rsm_size).front(),
                      options.rsm_format, false);
     rasterizer.rasterize_rsm(lights.front().data, rsm);
-    CascadeViews result{grid,
-                        {},
-                        {},
-                        without_boundary_texels(read_surface(session, rsm), grid),
-                        without_boundary_texels(image, grid)};
-    result.rsm = upload_surface(session, result.rsm_image, options.rsm_format, rsm.colour_scale);
-    result.rsm_image = read_surface(session, result.rsm);  // rounded to the RSM's format again
-    result.camera = upload_surface(session, result.camera_image);
-    views_.push_back(std::move(result));
+    views_.push_back({grid,
+                      verify::upload_injected(session, without_boundary_texels(read_surface(session, rsm), grid),
+                                              options.rsm_format, rsm.colour_scale),
+                      verify::upload_injected(session, without_boundary_texels(image, grid), RsmFormat::float32)});
   }
 }
 
@@ -76,29 +73,31 @@ const Inputs::InjectedVolumes& Inputs::injected(const Basis& basis, int cascade)
     Volume light(session_, {grid, basis.size(), 3}, "bench: injected light");
     Volume geometry(session_, {grid + 1, basis.size(), 1}, "bench: geometry volume");
     const CascadeViews& source = views(cascade);
-    injector.inject_light(source.rsm, source.grid, light);
-    injector.inject_geometry(source.rsm, source.grid, geometry);
-    injector.inject_geometry(source.camera, source.grid, geometry);
-    entry->second = {light.read(session_), geometry.read(session_)};
+    injector.inject_light(source.rsm.surface, source.grid, light);
+    injector.inject_geometry(source.rsm.surface, source.grid, geometry);
+    injector.inject_geometry(source.camera.surface, source.grid, geometry);
+    entry->second = {to_host(light), to_host(geometry)};
   }
   return entry->second;
 }
 
-const std::vector<float>& Inputs::areas(int cascade) {
+verify::SharedVolume Inputs::areas(int cascade) {
   const auto [entry, made] = areas_.try_emplace(cascade);
   if (made) {
     Volume geometry(session_, {options_.grid + 1, 3, 1}, "bench: geometry volume");
     VoxelField(session_, scene_, blocker_masks(scene_, options_.grid, 1, {}))
         .update(0, views(cascade).grid, geometry);
-    entry->second = geometry.read(session_);
+    entry->second = to_host(geometry);
   }
   return entry->second;
 }
 
-reference::Volume to_reference(const std::vector<float>& values, int n, int coefficients, int channels) {
-  reference::Volume volume(n, coefficients, channels);
-  volume.values.assign(values.begin(), values.end());
-  return volume;
+verify::SharedVolume Inputs::to_host(const Volume& volume) {
+  const auto& [n, coefficients, channels] = volume.shape();
+  const auto copy = std::make_shared<reference::Volume>(n, coefficients, channels);
+  const std::vector<float> values = volume.read(session_);
+  copy->values.assign(values.begin(), values.end());
+  return copy;
 }
 
 }  // namespace clpv::bench

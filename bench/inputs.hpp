@@ -8,12 +8,10 @@
 
 #include "device/session.hpp"
 #include "options/render_options.hpp"
-#include "pipeline/inject/inject.hpp"
-#include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
-#include "pipeline/raster/surface.hpp"
-#include "reference/volume.hpp"
 #include "scene/scene.hpp"
+#include "verify/inject.hpp"
+#include "volume/volume.hpp"
 
 namespace clpv::bench {
 
@@ -25,40 +23,35 @@ class Inputs {
   /// Error(bad_input) if no light applies.
   Inputs(Session& session, const Scene& scene, const SceneCamera& camera, const RenderOptions& options);
 
-  /// Views of one cascade, on the device and on the host.
+  /// Surfaces of one cascade.
   struct CascadeViews {
     ClpvGrid grid{};
-    Surface rsm, camera;  ///< the RSM in the options' format
-    SurfaceImage rsm_image, camera_image;
+    verify::InjectedSurface rsm, camera;  ///< the RSM in the options' format
   };
   const CascadeViews& views(int cascade) const { return views_.at(cascade); }
   std::vector<ClpvGrid> grids() const;
 
-  /// Injected light volume and geometry volume of a cascade in a basis, blocking one-sided as published. Volume's host order:
-  /// channel, coefficient, z, y, x. Computed at the first call.
-  const std::vector<float>& light(const Basis& basis, int cascade) { return injected(basis, cascade).light; }
-  const std::vector<float>& geometry(const Basis& basis, int cascade) {
-    return injected(basis, cascade).geometry;
-  }
-  /// Areas blocked by the scene's triangles in a cascade, at cell corners, as the sweep by default takes them. Same order,
-  /// computed at the first call.
-  const std::vector<float>& areas(int cascade);
+  /// Injected light volume and geometry volume of a cascade in a basis, blocking one-sided as published. Computed at the
+  /// first call.
+  verify::SharedVolume light(const Basis& basis, int cascade) { return injected(basis, cascade).light; }
+  verify::SharedVolume geometry(const Basis& basis, int cascade) { return injected(basis, cascade).geometry; }
+  /// Areas blocked by the scene's triangles in a cascade, at cell corners, as the sweep by default takes them. Computed at
+  /// the first call.
+  verify::SharedVolume areas(int cascade);
 
  private:
   struct InjectedVolumes {
-    std::vector<float> light, geometry;
+    verify::SharedVolume light, geometry;
   };
   const InjectedVolumes& injected(const Basis& basis, int cascade);
+  verify::SharedVolume to_host(const Volume& volume);
 
   Session& session_;
   RenderOptions options_;
   SceneBuffers scene_;
   std::vector<CascadeViews> views_;
   std::map<std::pair<std::string, int>, InjectedVolumes> injected_;
-  std::map<int, std::vector<float>> areas_;
+  std::map<int, verify::SharedVolume> areas_;
 };
-
-/// The volume of the CPU reference with `values` in Volume's host order; n^3 samples of `channels` x `coefficients` numbers.
-reference::Volume to_reference(const std::vector<float>& values, int n, int coefficients, int channels);
 
 }  // namespace clpv::bench

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bench/baseline/rasterize_gl.hpp"
+#include "bench/native/rasterize_gl.hpp"
 #include "bench/stage_jobs.hpp"
 #include "pathtracer/ray_scene.hpp"
 #include "pipeline/frame/cascade.hpp"
@@ -149,7 +149,7 @@ Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const st
     for (std::size_t v = 0; v < r->depths.size(); ++v) session.fill_zero(r->depths[v], bytes(v));
   };
   job.run = [r] { r->draw(); };
-  job.verify = [r, &session, bytes] {
+  job.compare = [r, &session, bytes] {
     std::vector<std::vector<float>> depths;
     for (std::size_t v = 0; v < r->depths.size(); ++v)
       depths.push_back(session.read<float>(r->depths[v], bytes(v) / sizeof(float)));
@@ -166,7 +166,7 @@ Job rasterize_gl_job(Session&, std::shared_ptr<const Scene> scene, const std::st
   Job job;
   job.own_stages = true;  // nothing runs on the device: wall time
   job.run = [gl] { gl->draw(); };
-  if (pass != Pass::rasterize_shadow) job.verify = [gl, task] { return compare(*task, gl->depths()); };
+  if (pass != Pass::rasterize_shadow) job.compare = [gl, task] { return compare(*task, gl->depths()); };
   job.cost = cost_of(*task);
   return job;
 }

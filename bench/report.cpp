@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes benchmark results as JSON, CSV and tables.
+// Writes benchmark results as JSON and tables.
 #include "bench/report.hpp"
 
 #include <fmt/chrono.h>
@@ -20,7 +20,6 @@
 #include "clpv/version.hpp"
 #include "device/kernel_files.hpp"
 #include "support/fingerprint.hpp"
-#include "support/text.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -89,23 +88,6 @@ nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilin
   for (std::size_t i = 0; i < rows.size(); ++i) list.push_back(to_json(rows[i], static_cast<int>(i)));
   with_ceilings["ceilings"] = ceilings;
   return {{"context", with_ceilings}, {"benchmarks", list}};
-}
-
-std::string report_csv(const std::vector<Row>& rows) {
-  std::string text;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    nlohmann::json row = to_json(rows[i], static_cast<int>(i));
-    row.erase("samples_ms");
-    std::vector<std::string> keys, values;
-    for (const auto& [key, value] : row.items()) {
-      keys.push_back(key);
-      values.push_back(
-          value.is_null() ? "" : csv_field(value.is_string() ? value.get<std::string>() : value.dump()));
-    }
-    if (i == 0) text += fmt::format("{}\r\n", fmt::join(keys, ","));
-    text += fmt::format("{}\r\n", fmt::join(values, ","));
-  }
-  return text;
 }
 
 std::string report_github_action(const std::vector<Row>& rows) {

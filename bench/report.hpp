@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Results of a benchmark as text: JSON with Google Benchmark's keys, CSV, or a table.
+// Results of a benchmark as text: JSON with Google Benchmark's keys, or a table.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,9 +19,6 @@ nlohmann::json context_json(const Session& session);
 /// {"context": ..., "benchmarks": [row, ...]}; `ceilings` becomes context/ceilings: gflops, bandwidths[], launch_ms.
 nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
                            const std::vector<Row>& rows);
-
-/// CSV by RFC 4180: a line of keys, then a line per row. All keys of JSON but `samples_ms`.
-std::string report_csv(const std::vector<Row>& rows);
 
 /// [{"name", "unit": "ms", "value", "range"}, ...]: medians and MADs of the rows of status ok, in the form that GitHub's
 /// benchmark actions read (smaller is better).

@@ -4,13 +4,19 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "support/json_optional.hpp"
 
-namespace clpv::bench {
+namespace clpv {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Statistics, min, median, p95, max, mad)
+
+namespace verify {
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell, triangles,
+                                   pixels)
+}
+
+namespace bench {
 namespace {
 
 nlohmann::json text_or_null(const std::string& text) {
@@ -22,8 +28,8 @@ nlohmann::json number_or_null(const std::optional<double>& value) {
   return value && *value == *value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
-nlohmann::json variant_json(const Variant& variant) {
-  const RenderOptions& o = variant.options;
+nlohmann::json problem_json(const Problem& problem) {
+  const RenderOptions& o = problem.options;
   return {{"basis", o.basis},
           {"layout", name_of(o.layout)},
           {"storage", name_of(o.storage)},
@@ -33,36 +39,19 @@ nlohmann::json variant_json(const Variant& variant) {
           {"occlusion", o.blocked()},
           {"grid", o.grid},
           {"iterations", o.iterations},
-          {"cascade", variant.cascade},
-          {"filtered", variant.filtered}};
+          {"cascade", problem.cascade},
+          {"filtered", problem.filtered}};
 }
 
-/// The keys of variant_json with null values, for a row without volumes.
-nlohmann::json no_variant_json() {
-  nlohmann::json json = variant_json({});
+/// The keys of problem_json with null values, for a row without volumes.
+nlohmann::json no_problem_json() {
+  nlohmann::json json = problem_json({});
   for (auto& value : json) value = nullptr;
   json["occlusion"] = false;
   return json;
 }
 
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, sorted.size() - 1);
-  return std::lerp(sorted[low], sorted[high], at - static_cast<double>(low));
-}
-
 }  // namespace
-
-Statistics statistics_of(std::vector<double> samples) {
-  if (samples.empty()) return {};
-  std::sort(samples.begin(), samples.end());
-  Statistics result{samples.front(), quantile(samples, 0.5), quantile(samples, 0.95), samples.back()};
-  for (double& sample : samples) sample = std::abs(sample - result.median);
-  std::sort(samples.begin(), samples.end());
-  result.mad = quantile(samples, 0.5);
-  return result;
-}
 
 RenderOptions timed_options() {
   RenderOptions options;
@@ -88,10 +77,6 @@ double Row::gbps() const {
   return times.median > 0 ? cost.bytes / times.median * 1e-6 : 0;
 }
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Statistics, min, median, p95, max, mad)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
-                                   triangles, pixels)
-
 nlohmann::json to_json(const Row& row, int index) {
   nlohmann::json json = {{"name", row.name},
                          {"run_name", row.name},
@@ -111,7 +96,7 @@ nlohmann::json to_json(const Row& row, int index) {
                {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
                {"preset", text_or_null(row.preset)},
                {"recompute", text_or_null(row.recompute)}});
-  json.update(row.variant ? variant_json(*row.variant) : no_variant_json());
+  json.update(row.problem ? problem_json(*row.problem) : no_problem_json());
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},
                {"timer", row.from_events ? "event" : "wall"},
@@ -133,4 +118,5 @@ nlohmann::json to_json(const Row& row, int index) {
   return json;
 }
 
-}  // namespace clpv::bench
+}  // namespace bench
+}  // namespace clpv

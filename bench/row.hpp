@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One row of a benchmark's results: the timed variant, its times, cost and error.
+// One row of a benchmark's results: the timed problem, its times, cost and error.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,26 +8,12 @@
 #include <vector>
 
 #include "options/render_options.hpp"
+#include "support/statistics.hpp"
+#include "verify/job.hpp"
 
-namespace clpv {
+namespace clpv::bench {
 
-namespace bench {
-enum class Status { ok, unsupported, wrong };
-}
-
-template <>
-inline constexpr auto kNames<bench::Status> = name_list("ok", "unsupported", "wrong");
-
-namespace bench {
-
-/// Statistics of a series, in its unit. All 0 for an empty series.
-struct Statistics {
-  double min = 0, median = 0, p95 = 0, max = 0;
-  double mad = 0;  ///< median absolute deviation from the median, robust against outliers
-};
-
-/// Quantiles interpolate linearly between the sorted samples; the first is quantile 0, the last quantile 1.
-Statistics statistics_of(std::vector<double> samples);
+using verify::Cost, verify::Status;
 
 /// Default settings of timed stages: transport, lobes and blocking as published, volumes of layout `soa` in float, no
 /// occlusion.
@@ -39,7 +25,7 @@ constexpr Blockers blockers_if(bool occlusion) {
 }
 
 /// Settings of a timed stage.
-struct Variant {
+struct Problem {
   RenderOptions options = timed_options();
   std::optional<int> cascade;
   bool filtered = true;  ///< gathering from images: true samples by the device's filter, false reads texels
@@ -48,20 +34,10 @@ struct Variant {
 /// Name of the lobes: "exact", "rotate", or "rotate-kernel" for lobes rotated in the kernel at run time.
 std::string lobes_of(const RenderOptions& options);
 
-/// Operations and bytes of the timed work, counted and not measured.
-struct Cost {
-  double flops = 0;        ///< executed by the kernels; a fused multiply-add counts as 2
-  double bytes = 0;        ///< compulsory traffic: each input of a launch read once, each output written once
-  double working_set = 0;  ///< bytes touched in total; selects the bandwidth ceiling
-  double reads_per_cell = 0;  ///< values (or texels) read from volumes per cell, over all channels and steps
-  double writes_per_cell = 0;
-  double triangles = 0, pixels = 0;  ///< rasterising: sums over all views
-};
-
 struct Row {
   std::string suite, stage, name;
   int n = 0;                       ///< coefficients of the basis
-  std::optional<Variant> variant;  ///< empty for rows without volumes: rasterising and ceilings
+  std::optional<Problem> problem;  ///< empty for rows without volumes: rasterising and ceilings
   Status status = Status::ok;
   std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`
   std::string axis;    ///< suite scaling: the varied quantity ("grid"), and its `value`
@@ -91,5 +67,4 @@ struct Row {
 /// steps; Google Benchmark's key of that name would always be 1.
 nlohmann::json to_json(const Row& row, int index);
 
-}  // namespace bench
-}  // namespace clpv
+}  // namespace clpv::bench

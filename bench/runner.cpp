@@ -88,10 +88,10 @@ void prepare(Session& session, const Case& source, CaseRun& run) {
 }
 
 void verify(CaseRun& run) {
-  if (!run.job.verify) return;
-  const Deviation deviation = run.job.verify();
+  if (!run.job.compare) return;
+  const Deviation deviation = run.job.compare();
   run.row.max_rel_error = deviation.worst;
-  run.row.tolerance = deviation.tolerance;
+  run.row.tolerance = deviation.allowed;
   if (deviation.passed()) return;
   run.row.status = Status::wrong;
   run.row.reason = deviation.place;

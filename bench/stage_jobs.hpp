@@ -18,14 +18,12 @@
 
 namespace clpv::bench {
 
-inline constexpr double kChannels = 3;  // red, green, blue
-
 /// Inputs and CPU references shared by the jobs of a suite.
 struct Bench {
   Session& session;
   std::function<std::shared_ptr<Inputs>()> make_inputs;  ///< called at the first use of inputs()
-  /// Results of the CPU reference, by a key over what they depend on. Variants that should agree share one.
-  std::map<std::string, std::shared_ptr<const std::vector<double>>> references;
+  /// Results of the CPU reference, by a key over what they depend on. Problems that should agree share one.
+  std::map<std::string, verify::Values> references;
 
   Inputs& inputs() {
     if (!made_inputs) made_inputs = make_inputs();
@@ -33,42 +31,43 @@ struct Bench {
   }
   std::shared_ptr<Inputs> made_inputs;
 
-  /// The CPU reference's result for `key`, computed by `make` at the first call; Volume's host order.
-  template <typename Make>
-  std::shared_ptr<const std::vector<double>> expected(const std::string& key, Make make) {
-    auto& entry = references[key];
-    if (!entry) entry = std::make_shared<const std::vector<double>>(make());
-    return entry;
+  /// Shares the result of the CPU reference under `key`.
+  verify::Share share(const std::string& key) {
+    return [this, key](const std::function<std::vector<double>()>& compute) {
+      verify::Values& entry = references[key];
+      if (!entry) entry = verify::not_shared(compute);
+      return entry;
+    };
   }
 };
 
-/// Makes a row for `stage` of `variant`. Its name is STAGE/BASIS/LAYOUT/STORAGE, then all settings that differ from
+/// Makes a row for `stage` of `problem`. Its name is STAGE/BASIS/LAYOUT/STORAGE, then all settings that differ from
 /// timed_options(), then `suffix` ("/grid:64").
-Row make_row(const std::string& suite, std::string_view stage, const Variant& variant,
+Row make_row(const std::string& suite, std::string_view stage, const Problem& problem,
              const std::string& suffix = {});
 
-/// RSM -> light volume and, with occlusion, RSM and G-buffer -> geometry volume. Cascade variant.cascade, default 0.
-Job inject_job(Bench& bench, const Variant& variant);
+/// RSM -> light volume and, with occlusion, RSM and G-buffer -> geometry volume. Cascade problem.cascade, default 0.
+Job inject_job(Bench& bench, const Problem& problem);
 /// RSM -> light volume only.
-Job inject_light_job(Bench& bench, const Variant& variant);
+Job inject_light_job(Bench& bench, const Problem& problem);
 /// RSM and G-buffer -> geometry volume only. Needs occlusion.
-Job inject_geometry_job(Bench& bench, const Variant& variant);
+Job inject_geometry_job(Bench& bench, const Problem& problem);
 /// Light volume -> accumulated light volume; occlusion by the geometry volume.
-Job propagate_job(Bench& bench, const Variant& variant);
+Job propagate_job(Bench& bench, const Problem& problem);
 /// Light volume -> swept light of one cascade in nine harmonics, with a dark border. Occlusion by the scene's triangles; the
-/// time includes the links' transmittance. Needs a variant of with_sweep().
-Job sweep_job(Bench& bench, const Variant& variant);
-/// The variant with the default transport: the sweep, with blockers as areas.
-Variant with_sweep(Variant variant);
+/// time includes the links' transmittance. Needs a problem of with_sweep().
+Job sweep_job(Bench& bench, const Problem& problem);
+/// The problem with the default transport: the sweep, with blockers as areas.
+Problem with_sweep(Problem problem);
 /// Accumulated volumes of all cascades -> irradiance of every pixel. Verifies every kCheckedPixels-th pixel.
-Job gather_job(Bench& bench, const Variant& variant);
+Job gather_job(Bench& bench, const Problem& problem);
 inline constexpr std::size_t kCheckedPixels =
     61;  // a prime, so that checked pixels lie in all rows and columns
 
 /// A stage that works on volumes, or one pass of it, and its job.
 struct StageJob {
   Stage stage;
-  Job (*make)(Bench& bench, const Variant& variant);
+  Job (*make)(Bench& bench, const Problem& problem);
   Pass pass = Pass::whole;
 
   std::string_view name() const { return pass == Pass::whole ? name_of(stage) : name_of(pass); }
@@ -85,15 +84,11 @@ inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kSweep, kGather};
 /// a pass needs a light and none applies.
 Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera, Pass pass,
                   const RenderOptions& options);
-/// The same work by OpenGL (bench/baseline/rasterize_gl.hpp).
+/// The same work by OpenGL (bench/native/rasterize_gl.hpp).
 Job rasterize_gl_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera,
                      Pass pass, const RenderOptions& options);
 
-/// Compares light volumes of n^3 cells in Volume's host order: the largest difference over the largest expected value.
-Deviation compare_volumes(const std::vector<float>& device, const std::vector<double>& expected, int n,
-                          double tolerance);
-
-/// A case of `job` with `variant`, or with with_sweep(variant) for the sweep.
-Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Variant& variant);
+/// A case of `job` with `problem`, or with with_sweep(problem) for the sweep.
+Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Problem& problem);
 
 }  // namespace clpv::bench

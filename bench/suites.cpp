@@ -14,15 +14,15 @@ namespace clpv::bench {
 const std::vector<Suite>& suites() {
   static const std::vector<Suite> all = {table1_suite(),   layouts_suite(),   bases_suite(),
                                          scaling_suite(),  ceilings_suite(),  frame_suite(),
-                                         baseline_suite(), rasterize_suite(), regression_suite()};
+                                         native_suite(), rasterize_suite(), regression_suite()};
   return all;
 }
 
-Variant basis_variant(const SuiteOptions& options, const std::string& basis) {
-  Variant variant;
-  variant.options = options.settings;
-  variant.options.basis = basis;
-  return variant;
+Problem basis_problem(const SuiteOptions& options, const std::string& basis) {
+  Problem problem;
+  problem.options = options.settings;
+  problem.options.basis = basis;
+  return problem;
 }
 
 RenderOptions published_options(const RenderOptions& sizes, const std::string& basis) {

@@ -42,12 +42,12 @@ Suite bases_suite();
 Suite scaling_suite();
 Suite ceilings_suite();
 Suite frame_suite();
-Suite baseline_suite();
+Suite native_suite();
 Suite rasterize_suite();
 Suite regression_suite();
 
 /// The suite's settings with `basis`.
-Variant basis_variant(const SuiteOptions& options, const std::string& basis);
+Problem basis_problem(const SuiteOptions& options, const std::string& basis);
 
 /// The paper's settings (`--preset paper`) with `basis`, and sizes and cascades from `sizes`.
 RenderOptions published_options(const RenderOptions& sizes, const std::string& basis);

@@ -9,8 +9,8 @@
 #include <regex>
 #include <sstream>
 
-#include "bench/baseline/propagate_avx2.hpp"
-#include "bench/baseline/rasterize_gl.hpp"
+#include "bench/native/propagate_avx2.hpp"
+#include "bench/native/rasterize_gl.hpp"
 #include "bench/compare_runs.hpp"
 #include "bench/published.hpp"
 #include "bench/report.hpp"
@@ -51,20 +51,6 @@ TEST(BenchCeilings, TheLongestMinimumTimeIsTheCeiling) {
   EXPECT_EQ(ceilings.gbps(1e12), 10);
 }
 
-TEST(BenchReport, CsvQuotesWhatItMustAndKeepsColumns) {
-  Row plain, odd;
-  plain.name = "a", odd.name = "b";
-  odd.status = Status::unsupported;
-  odd.reason = "no \"images\", none";
-  const std::string csv = report_csv({plain, odd});
-  EXPECT_THAT(csv, HasSubstr("\"no \"\"images\"\", none\""));
-  std::istringstream lines(csv);
-  std::string head, first;
-  std::getline(lines, head);
-  std::getline(lines, first);
-  EXPECT_EQ(std::count(head.begin(), head.end(), ','), std::count(first.begin(), first.end(), ','));
-}
-
 nlohmann::json report(const std::vector<std::tuple<std::string, double, double>>& rows) {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [name, median, mad] : rows)
@@ -77,7 +63,7 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
       report({{"same", 10, 0.1}, {"slow", 10, 0.1}, {"noisy", 10, 2}, {"fast", 10, 0}, {"gone", 1, 0}});
   const auto after =
       report({{"same", 10.05, 0.1}, {"slow", 13, 0.1}, {"noisy", 13, 2}, {"fast", 5, 0}, {"new", 1, 0}});
-  const Comparison found = compare_runs(before, after, "old.json");
+  const ReportChanges found = compare_runs(before, after, "old.json");
   ASSERT_EQ(found.changes.size(), 4u);
   EXPECT_FALSE(found.changes[0].significant);
   EXPECT_TRUE(found.changes[1].significant);
@@ -86,7 +72,7 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
   EXPECT_TRUE(found.changes[3].significant);
   EXPECT_EQ(found.only_before, std::vector<std::string>{"gone"});
   EXPECT_EQ(found.only_after, std::vector<std::string>{"new"});
-  const std::string table = comparison_table(found);
+  const std::string table = changes_table(found);
   EXPECT_THAT(table, HasSubstr("13.0000 +- 0.1000    1.300 HIGHER"));
   EXPECT_THAT(table, HasSubstr("0.500 lower"));
 }
@@ -94,18 +80,18 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
 TEST(BenchCompare, OneRepetitionHasNoSpread) {
   nlohmann::json once = report({{"row", 10, 0}});
   once["benchmarks"][0]["repetitions"] = 1;
-  const Comparison found = compare_runs(once, report({{"row", 12, 0}}), "old.json");
+  const ReportChanges found = compare_runs(once, report({{"row", 12, 0}}), "old.json");
   EXPECT_FALSE(found.changes.at(0).significant);
-  EXPECT_THAT(comparison_table(found), HasSubstr("spread unknown"));
+  EXPECT_THAT(changes_table(found), HasSubstr("spread unknown"));
   EXPECT_THROW(require_ratios(found, 1.1), Error);
   EXPECT_NO_THROW(require_ratios(found, 1.3));
 }
 
 TEST(BenchCompare, RatiosAboveALimitFail) {
-  const Comparison found = compare_runs(report({{"noisy", 10, 5}, {"fast", 10, 0.1}}),
+  const ReportChanges found = compare_runs(report({{"noisy", 10, 5}, {"fast", 10, 0.1}}),
                                         report({{"noisy", 15, 5}, {"fast", 5, 0.1}}), "o");
   EXPECT_NO_THROW(require_ratios(found, 1.2)) << "a change within the spread is none";
-  const Comparison slow = compare_runs(report({{"slow", 10, 0.1}}), report({{"slow", 15, 0.1}}), "o");
+  const ReportChanges slow = compare_runs(report({{"slow", 10, 0.1}}), report({{"slow", 15, 0.1}}), "o");
   EXPECT_NO_THROW(require_ratios(slow, 1.6));
   try {
     require_ratios(slow, 1.2);
@@ -209,17 +195,17 @@ void expect_right(const std::vector<Row>& rows) {
   }
 }
 
-TEST(BenchSuites, BaselineComparesWithCodeByHand) {
-  if (!baseline_supported()) GTEST_SKIP() << "no AVX2";
+TEST(BenchSuites, NativeComparesWithCodeByHand) {
+  if (!avx2_supported()) GTEST_SKIP() << "no AVX2";
   const auto sh2 = make_basis("sh2");
-  EXPECT_THROW(PropagateBaseline(*sh2, make_transport(TransportKind::sampled, *sh2), 12), Error);
-  const std::vector<Row> rows = rows_of(baseline_suite(), "occlusion");
+  EXPECT_THROW(PropagateAvx2(*sh2, make_transport(TransportKind::sampled, *sh2), 12), Error);
+  const std::vector<Row> rows = rows_of(native_suite(), "occlusion");
   expect_right(rows);
   EXPECT_THAT(names_of(rows),
               ElementsAre("propagate/sh2/soa/float/occlusion", "propagate/sh2/soa/float/fluxes/occlusion",
                           "native/sh2/soa/float/occlusion"));
   EXPECT_THAT(
-      baseline_suite().table(rows),
+      native_suite().table(rows),
       ::testing::ContainsRegex("propagate/sh2/soa/float/occlusion .*[0-9]+[.][0-9]+ +[0-9.]+ +[0-9.e-]+\n"));
 }
 

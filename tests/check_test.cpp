@@ -15,11 +15,12 @@ INSTANTIATE_TEST_SUITE_P(Check, Kernels, ::testing::ValuesIn(values_of<Stage>())
                          [](const auto& info) { return std::string(name_of(info.param)); });
 
 TEST_P(Kernels, AgreeWithTheReference) {
-  const reference::CheckResults results = reference::check(GetParam(), test::test_session());
+  const verify::CheckResults results = verify::check(GetParam(), test::test_session());
   EXPECT_FALSE(results.empty());
-  for (const reference::CheckResult& result : results) {
-    EXPECT_TRUE(result.passed()) << result.stage << " " << result.variant << ": " << result.worst
-                                 << ", allowed " << result.allowed << "; " << result.place;
+  for (const verify::CheckResult& result : results) {
+    const verify::Deviation& found = result.deviation;
+    EXPECT_TRUE(result.passed()) << result.stage << " " << result.variant << ": " << found.worst << ", allowed "
+                                 << found.allowed << "; " << found.place << result.reason;
   }
 }
 

@@ -13,7 +13,7 @@
 #include "tests/support/run_here.hpp"
 #include "verify/junit.hpp"
 
-namespace clpv::reference::comparison_test {
+namespace clpv::verify::comparison_test {
 namespace {
 
 using ::testing::AllOf;
@@ -48,16 +48,16 @@ TEST(Comparison, AReferenceOfNothingAllowsNothing) {
 TEST(Comparison, EitherOfTwoNearlyEqualBlockersIsRight) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
   const std::vector<double> up = basis->clamped_cosine({0, 1, 0}), along = basis->clamped_cosine({1, 0, 0});
-  Volume a(2, basis->size(), 1), b = a;
-  const auto put = [](Volume& to, int x, const std::vector<double>& c, double scale) {
+  reference::Volume a(2, basis->size(), 1), b = a;
+  const auto put = [](reference::Volume& to, int x, const std::vector<double>& c, double scale) {
     for (std::size_t i = 0; i < c.size(); ++i) to.at(0, static_cast<int>(i), x, 0, 0) = scale * c[i];
   };
   put(a, 0, up, 1), put(b, 0, along, 1.0005);  // as halves may round it
   put(a, 1, up, 1), put(b, 1, along, 1.01);
-  Volume merged = a;
-  merge_geometry(b, *basis, Blocking::one_sided, merged);
+  reference::Volume merged = a;
+  reference::merge_geometry(b, *basis, Blocking::one_sided, merged);
   EXPECT_EQ(merged.values, b.values);
-  const Volume other = merged_against_ties(a, b, *basis, Blocking::one_sided);
+  const reference::Volume other = reference::merged_against_ties(a, b, *basis, Blocking::one_sided);
   for (int i = 0; i < basis->size(); ++i) {
     EXPECT_EQ(other.value(0, i, 0, 0, 0), a.value(0, i, 0, 0, 0));
     EXPECT_EQ(other.value(0, i, 1, 0, 0), b.value(0, i, 1, 0, 0));
@@ -65,17 +65,23 @@ TEST(Comparison, EitherOfTwoNearlyEqualBlockersIsRight) {
 }
 
 TEST(Junit, ListsStagesCasesAndFailures) {
-  const std::string xml = junit({{"inject", "sh2", 1e-7, 1e-6, ""},
-                                 {"gather", "a<b", 0.5, 1e-6, "cell \"1\" & more"},
-                                 {"gather", "nan", NAN, 1e-6, "cell 2"}},
-                                "A & B");
-  EXPECT_THAT(xml,
-              AllOf(HasSubstr("<testsuites name=\"clpv check on A &amp; B\" tests=\"3\" failures=\"2\">"),
-                    HasSubstr("<testsuite name=\"inject\" tests=\"1\" failures=\"0\">"),
-                    HasSubstr("<testsuite name=\"gather\" tests=\"2\" failures=\"2\">"),
-                    HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\" time=\"0.000\"/>"),
-                    HasSubstr("name=\"a&lt;b\" time=\"0.000\">"),
-                    HasSubstr("cell &quot;1&quot; &amp; more</failure>")));
+  const auto of = [](const char* stage, const char* variant, double worst, const char* place) {
+    return result_of(stage, variant, {worst, 1e-6, place});
+  };
+  const std::string xml =
+      junit({of("inject", "sh2", 1e-7, ""), of("gather", "a<b", 0.5, "cell \"1\" & more"),
+             of("gather", "nan", NAN, "cell 2"), {"gather", "dead", {}, Status::failed, "signal <11>"},
+             {"gather", "image", {}, Status::unsupported, "no images"}},
+            "A & B");
+  EXPECT_THAT(
+      xml,
+      AllOf(HasSubstr("<testsuites name=\"clpv check on A &amp; B\" tests=\"5\" failures=\"2\" errors=\"1\" "
+                      "skipped=\"1\">"),
+            HasSubstr("<testsuite name=\"inject\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"0\">"),
+            HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\" time=\"0.000\"/>"),
+            HasSubstr("name=\"a&lt;b\" time=\"0.000\">"),
+            HasSubstr("cell &quot;1&quot; &amp; more</failure>"), HasSubstr("<error>signal &lt;11&gt;</error>"),
+            HasSubstr("<skipped message=\"no images\"/>")));
 }
 
 TEST(Junit, IsWrittenByTheCheck) {
@@ -87,4 +93,4 @@ TEST(Junit, IsWrittenByTheCheck) {
 }
 
 }  // namespace
-}  // namespace clpv::reference::comparison_test
+}  // namespace clpv::verify::comparison_test

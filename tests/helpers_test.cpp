@@ -6,13 +6,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <vector>
 
 #include "support/error.hpp"
 #include "tests/support/run_program.hpp"
+#include "verify/check.hpp"
 
 namespace clpv::helpers_test {
 namespace {
@@ -95,6 +98,92 @@ TEST(Check, HelpersFindWhatOneProcessFinds) {
   ASSERT_EQ(helped.exit_code, 0) << helped.err;
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
   EXPECT_EQ(results_of(helped), results_of(alone));
+}
+
+/// Outcome of `clpv check` with another file kernels/sizes.cl.
+test::Outcome check_with_sizes(const std::string& text, const std::string& arguments) {
+  const test::TemporaryFolder folder;
+  folder.write("sizes.cl", text);
+  return test::run("CLPV_KERNEL_DIR=" + folder.path().string() + " " CLPV_PROGRAM " check --format json " +
+                   arguments);
+}
+
+/// Status of each result, and the reason of stage `sizes`.
+std::map<std::string, std::string> statuses(const test::Outcome& outcome) {
+  std::map<std::string, std::string> all;
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  for (const nlohmann::json& check : report.at("checks")) {
+    all[check.at("variant")] = check.at("status");
+    if (check.at("stage") == "sizes") all["reason"] = check.at("reason");
+  }
+  EXPECT_FALSE(report.at("passed").get<bool>());
+  EXPECT_EQ(report.at("counts").at("failed"), std::ranges::count(all, "failed", [](const auto& e) {
+    return e.second;
+  }));
+  return all;
+}
+
+TEST(Check, AKernelThatDoesNotCompileFailsOnlyItsRow) {
+  for (const std::string stages : {"sizes,emit", "sizes"}) {  // in helpers, and in the process itself
+    const test::Outcome outcome = check_with_sizes("#error broken for a test\n", "--stage " + stages);
+    EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+    auto all = statuses(outcome);
+    EXPECT_EQ(all["shared structs"], "failed");
+    EXPECT_THAT(all["reason"], HasSubstr("broken for a test"));
+    EXPECT_EQ(all["plain"], stages == "sizes" ? "" : "ok");
+    EXPECT_THAT(outcome.err, HasSubstr("1 failed"));
+  }
+}
+
+TEST(Check, AKernelThatCrashesFailsOnlyItsRow) {
+  const test::Outcome outcome = check_with_sizes(
+      "__kernel void sizes(__global uint* bytes) { *(volatile __global uint*)(size_t)16 = *bytes; }\n",
+      "--stage sizes,emit");
+  EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+  auto all = statuses(outcome);
+  EXPECT_EQ(all["shared structs"], "failed");
+  EXPECT_THAT(all["reason"], HasSubstr("signal 11"));
+  EXPECT_EQ(all["plain"], "ok");
+  EXPECT_EQ(all["textures and holes"], "ok");
+}
+
+TEST(Check, AKernelThatDoesNotEndExceedsTheLimit) {
+  const test::Outcome outcome =
+      check_with_sizes("__kernel void sizes(volatile __global uint* bytes) { while (*bytes < 1u << 31) *bytes = 0; }\n",
+                       "--stage sizes,emit --limit 3");
+  EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+  auto all = statuses(outcome);
+  EXPECT_EQ(all["shared structs"], "failed");
+  EXPECT_EQ(all["reason"], "took more than --limit 3 s");
+  EXPECT_TRUE(all.contains("plain") && all.contains("textures and holes")) << "or over the limit too, if compiled";
+}
+
+TEST(Check, UnsupportedComparisonsAreNoPass) {
+  using verify::CheckResult, verify::Status;
+  const verify::Case lacking{Stage::gather, "images", [](Session&) -> verify::CheckResults {
+                               throw Error(ExitCode::device, "no images");
+                             }};
+  Session session(choose_device());
+  const verify::CheckResults results = verify::run_case(lacking, session);
+  ASSERT_EQ(results.size(), 1u);
+  EXPECT_EQ(results[0].status, Status::unsupported);
+  EXPECT_EQ(results[0].reason, "no images");
+  EXPECT_FALSE(verify::passed(results));
+  EXPECT_TRUE(verify::passed({results[0], CheckResult{"gather", "plain"}})) << "if another one is ok";
+  EXPECT_FALSE(verify::passed({{"gather", "plain"}, {"gather", "half", {1, 0.1}, Status::wrong}}));
+}
+
+TEST(Check, APresetsCombination) {
+  const test::Outcome outcome = test::run(CLPV_PROGRAM " check --preset paper --format json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::vector<std::string> rows;
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  for (const nlohmann::json& check : report.at("checks"))
+    rows.push_back(check.at("stage").get<std::string>() + " " + check.at("variant").get<std::string>());
+  EXPECT_THAT(rows, ::testing::ElementsAre("inject paper/srbf8v2/image/half/light",
+                                           "inject paper/srbf8v2/image/half/geometry",
+                                           "propagate paper/srbf8v2/image/half",
+                                           "gather paper/srbf8v2/image/half"));
 }
 
 TEST(Check, ListsAndSelects) {

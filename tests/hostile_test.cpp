@@ -162,17 +162,11 @@ TEST(HostileCommandLines, OfCommands) {
                        {"bench bases --filter (", {"--filter", "regular expression"}},
                        {"bench bases --repetitions 0", {"--repetitions"}},
                        {"bench bases --repetitions 99999", {"--repetitions"}},
-                       {"bench bases --format xml", {"--format", "csv"}},
+                       {"bench bases --format xml", {"--format", "github-action"}},
                        {"bench bases --basis sh99", {"sh99"}},
                        {"bench bases --model a.gltf", {"--model", "--scene"}},
                        {"bench bases --format json --compare @/a.json", {"--compare", "stdout"}},
                        {"check --stage cook", {"--stage", "gather"}},
-                       {"propagate --at 99,0,0 --grid 8 -o @/out.npy", {"--at", "99"}},
-                       {"propagate --at 1,2", {"--at", "'1,2'"}},
-                       {"propagate --at 99999999999,0,0", {"--at"}},
-                       {"propagate --at 4,4,4 --flux red,green,blue", {"--flux", "'red,green,blue'"}},
-                       {"propagate --at 4,4,4 --block 0,0,0", {"--block", "two corners"}},
-                       {"propagate --at 4,4,4 --block 3,3,3:1,1,1", {"--block", "beyond"}},
                        {"basis sh2 --axis 0,0,0", {"--axis"}},
                        {"basis sh2 --axis up", {"--axis", "'up'"}},
                        {"compare a.exr", {"B"}},
@@ -226,8 +220,7 @@ TEST(HostileSurroundings, Outputs) {
         "pathtrace " + kCornell + " -o @/out.exr --stats @/none/a.json",
         "quality " + kCornell + " --cache @/out --output @/none/a.json",
         std::string("compare a.exr b.exr -o @/none/a.png"),
-        "query " + kCornell + " --points @/points.csv -o @/none/a.csv",
-        std::string("propagate --at 4,4,4 --grid 8 -o @/none/a.npy")})
+        "query " + kCornell + " --points @/points.csv -o @/none/a.csv"})
     rejected(command, {"none/a.", "no folder"});
   for (const std::string& command :
        {"render " + kCornell + " -o @/out.exr --dump-volume @/file",

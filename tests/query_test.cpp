@@ -9,7 +9,7 @@
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/raster/view.hpp"
 #include "pipeline/voxels/visibility.hpp"
-#include "quality/points_file.hpp"
+#include "scene/points_file.hpp"
 #include "reference/radiance.hpp"
 #include "reference/view.hpp"
 #include "scene/load.hpp"

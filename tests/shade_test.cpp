@@ -264,7 +264,7 @@ TEST(Shade, RejectsMapsThatDoNotFit) {
   const SurfaceImage image = floor_image();
   const Surface camera = upload_surface(test_session(), image);
   Shader shader(test_session());
-  ShadowedLight shadowed = reference::on_device(test_session(), {sun({0, -1, 0}, 7, floor_at(0))})[0];
+  ShadowedLight shadowed = verify::on_device(test_session(), {sun({0, -1, 0}, 7, floor_at(0))})[0];
   shadowed.views[0].width = 3;
   EXPECT_THROW(shader.light(camera, {shadowed}), Error);
   shadowed.views[0].width = kTexels;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stability of light: closed cases of the measure, and frames of a moving camera.
-#include "quality/stability.hpp"
+#include "sequence/stability.hpp"
 
 #include <gtest/gtest.h>
 

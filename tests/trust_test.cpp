@@ -394,8 +394,8 @@ TEST(Outputs, SpareInputsAndEachOther) {
         "render" + scene + "-o o.exr --stats tiny.gltf",  // not named on the command line
         std::string("pathtrace my.json -o o.exr --stats my.json"),
         "query" + scene + "--points points.csv -o points.csv",
-        std::string("propagate --at 2,2,2 --grid 5 -o o.npy --vti o.npy"),
-        "quality" + scene + "--cache cache -o o.json -o o.json",
+        "quality" + scene + "--cache cache -o my.json",
+        std::string("bench regression --scene my.json -o my.json"),
         "sequence times.json" + kSmall + "--frames 1 --fps 1 -o ."}) {
     const test::Outcome outcome = run_here(command, folder.path());
     EXPECT_EQ(outcome.exit_code, 2) << command << "\n" << outcome.err;

@@ -10,15 +10,15 @@ namespace {
 std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
                            const std::string& basis) {
   std::vector<Case> cases;
-  const Variant usual = basis_variant(options, basis);
+  const Problem usual = basis_problem(options, basis);
   cases.push_back(stage_case(*bench, "bases", kInject, usual));
-  Variant variant = usual;
+  Problem problem = usual;
   for (const LobeKind lobe : values_of<LobeKind>()) {
     for (const State state : values_of<State>()) {
       for (const bool occlusion : {false, true}) {
-        variant.options.lobe = lobe, variant.options.state = state,
-        variant.options.blockers = blockers_if(occlusion);
-        cases.push_back(stage_case(*bench, "bases", kPropagate, variant));
+        problem.options.lobe = lobe, problem.options.state = state,
+        problem.options.blockers = blockers_if(occlusion);
+        cases.push_back(stage_case(*bench, "bases", kPropagate, problem));
       }
     }
   }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Suite `frame`: whole frames along a camera path, and the time of each stage, with and without cached results.
-#include "pipeline/frame/frame.hpp"
+#include "pipeline/frame/frame_times.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <map>
 
 #include "bench/suites.hpp"
 #include "options/render_options.hpp"
@@ -56,7 +55,7 @@ struct FrameSequence {
   Frame frame;
   int next = 0;
   bool warm = false;
-  std::map<std::string, std::vector<double>> stage_ms;
+  FrameTimes times;
 
   FrameSequence(Session& session, std::shared_ptr<const Scene> rendered, const std::string& camera,
                 const RenderOptions& options, Recompute recomputed)
@@ -81,20 +80,15 @@ struct FrameSequence {
     }
   }
 
-  void add(const std::vector<StageTime>& times) {
-    std::map<std::string, double> sums;  // over cascades and lights
-    for (const StageTime& time : times) sums[std::string(name_of(time.mark.pass))] += time.ms;
-    if (warm) {  // skips the warm-up, which compiles
-      for (const auto& [stage, ms] : sums) stage_ms[stage].push_back(ms);
-    }
+  void add(const std::vector<StageTime>& stages) {
+    if (warm) times.add(stages);  // skips the warm-up, which compiles
     warm = true;
   }
 };
 
 std::vector<Row> stage_rows(const FrameSequence& sequence, const Row& frame) {
   std::vector<Row> rows;
-  for (auto [stage, ms] : sequence.stage_ms) {
-    ms.resize(frame.samples_ms.size(), 0.0);  // frames that skipped the stage count as 0 ms
+  for (const auto& [stage, ms] : sequence.times.passes()) {
     Row row = frame;
     row.stage = stage;
     row.name = stage + frame.name.substr(frame.name.find('/'));
@@ -119,7 +113,7 @@ Deviation compare_uncached(FrameSequence& sequence, Session& session) {
   sequence.frame.render(sequence.camera(sequence.next - 1));
   session.queue().finish();
   const std::vector<float> uncached = sequence.frame.read(Show::full);
-  const reference::WorstError worst = reference::worst_difference(
+  const verify::WorstError worst = verify::worst_difference(
       uncached.size(), [&](std::size_t i) { return double{timed[i]}; },
       [&](std::size_t i) { return double{uncached[i]}; });
   if (worst.value == 0) return {0, 0, {}};
@@ -138,7 +132,7 @@ Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions
   job.run = [sequence] { sequence->frame.render(sequence->camera(sequence->next++)); };
   job.after_run = [sequence](const std::vector<StageTime>& times) { sequence->add(times); };
   job.more_rows = [sequence](const Row& row) { return stage_rows(*sequence, row); };
-  job.verify = [sequence, &session] { return compare_uncached(*sequence, session); };
+  job.compare = [sequence, &session] { return compare_uncached(*sequence, session); };
   return job;
 }
 
@@ -148,12 +142,12 @@ Case frame_case(Session& session, const SuiteOptions& options, PresetName preset
   apply_preset(render, preset);
   render.basis = basis;
   render.cascades = options.settings.cascades, render.cascade_size = options.settings.cascade_size;
-  Variant variant;
-  variant.options = render;
-  variant.options.lobe = LobeKind::exact;  // the row's name has the preset in place of the lobes
-  variant.options.lobe_time = LobeTime::host;
+  Problem problem;
+  problem.options = render;
+  problem.options.lobe = LobeKind::exact;  // the row's name has the preset in place of the lobes
+  problem.options.lobe_time = LobeTime::host;
   Case result;
-  result.row = make_row("frame", "frame", variant,
+  result.row = make_row("frame", "frame", problem,
                         fmt::format("/{}/recompute:{}", name_of(preset), clpv::name_of(recompute)));
   result.row.preset = name_of(preset);
   result.row.recompute = clpv::name_of(recompute);

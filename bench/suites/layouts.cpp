@@ -11,7 +11,7 @@
 namespace clpv::bench {
 namespace {
 
-// The paper's format, baseline of the speed-ups.
+// The paper's format, denominator of the speed-ups.
 constexpr VolumeFormat kPaperFormat{Layout::image, Storage::float16};
 
 struct StageSetup {
@@ -24,13 +24,13 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, const std::st
                         const StageSetup& setup) {
   std::vector<Case> cases;
   for (const VolumeFormat& format : all_formats()) {
-    Variant variant = basis_variant(options, basis);
-    variant.options.layout = format.layout, variant.options.storage = format.storage;
-    variant.options.blockers = blockers_if(setup.occlusion);
-    cases.push_back(stage_case(bench, "layouts", setup.job, variant));
+    Problem problem = basis_problem(options, basis);
+    problem.options.layout = format.layout, problem.options.storage = format.storage;
+    problem.options.blockers = blockers_if(setup.occlusion);
+    cases.push_back(stage_case(bench, "layouts", setup.job, problem));
     if (setup.job.stage != Stage::gather || format.layout != Layout::image) continue;
-    variant.filtered = false;
-    cases.push_back(stage_case(bench, "layouts", setup.job, variant));
+    problem.filtered = false;
+    cases.push_back(stage_case(bench, "layouts", setup.job, problem));
   }
   return cases;
 }
@@ -38,9 +38,9 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, const std::st
 /// The row of the same stage, basis and occlusion in half-float images; null if there is none.
 const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
   for (const Row& other : rows) {
-    const RenderOptions &a = row.variant->options, &b = other.variant->options;
+    const RenderOptions &a = row.problem->options, &b = other.problem->options;
     if (other.status == Status::ok && other.stage == row.stage && a.basis == b.basis &&
-        a.blocked() == b.blocked() && b.format() == kPaperFormat && other.variant->filtered)
+        a.blocked() == b.blocked() && b.format() == kPaperFormat && other.problem->filtered)
       return &other;
   }
   return nullptr;

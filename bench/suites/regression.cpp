@@ -18,7 +18,7 @@ std::vector<Row> build_row(const Row& timed) {
   row.stage = "build";
   row.name = "build/" + timed.name;
   row.n = timed.n;
-  row.variant = timed.variant;
+  row.problem = timed.problem;
   row.from_events = false;
   row.samples_ms = {timed.build_ms + timed.first_launch_ms};
   row.times = statistics_of(row.samples_ms);
@@ -48,14 +48,14 @@ SuiteOptions small(SuiteOptions options) {
 std::vector<Case> stages_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
                             const std::string& basis) {
   std::vector<Case> cases;
-  const Variant usual = basis_variant(options, basis);
+  const Problem usual = basis_problem(options, basis);
   for (const StageJob& job : kStageJobs)
     cases.push_back(with_build(stage_case(*bench, "regression", job, usual)));
-  Variant with_occlusion = usual;
+  Problem with_occlusion = usual;
   with_occlusion.options.blockers = Blockers::seen;
   for (const StageJob& job : {kPropagate, kSweep})
     cases.push_back(with_build(stage_case(*bench, "regression", job, with_occlusion)));
-  Variant in_half = usual;
+  Problem in_half = usual;
   in_half.options.storage = Storage::float16;
   for (const StageJob& job : {kPropagate, kSweep})
     cases.push_back(with_build(stage_case(*bench, "regression", job, in_half)));
@@ -66,9 +66,9 @@ std::vector<Case> layouts_of(const std::shared_ptr<Bench>& bench, const SuiteOpt
   std::vector<Case> cases;
   for (const Layout layout : values_of<Layout>()) {
     if (layout == Layout::soa) continue;  // part of stages_of()
-    Variant variant = basis_variant(options, "sh2");
-    variant.options.layout = layout;
-    cases.push_back(with_build(stage_case(*bench, "regression", kPropagate, variant)));
+    Problem problem = basis_problem(options, "sh2");
+    problem.options.layout = layout;
+    cases.push_back(with_build(stage_case(*bench, "regression", kPropagate, problem)));
   }
   return cases;
 }

@@ -19,9 +19,9 @@ void set_axis(Row& row, const std::string& axis, int value) {
   row.name += fmt::format("/{}:{}", axis, value);
 }
 
-Case scaling_case(const std::shared_ptr<Bench>& bench, const StageJob& job, const Variant& variant,
+Case scaling_case(const std::shared_ptr<Bench>& bench, const StageJob& job, const Problem& problem,
                   const std::string& axis, int value) {
-  Case result = stage_case(*bench, "scaling", job, variant);
+  Case result = stage_case(*bench, "scaling", job, problem);
   set_axis(result.row, axis, value);
   return result;
 }
@@ -32,10 +32,10 @@ std::vector<Case> grids(Session& session, const SuiteOptions& options, const std
     RenderOptions settings = options.settings;
     settings.grid = grid, settings.cascades = 1;
     const auto bench = make_bench(session, options, settings);
-    Variant variant = basis_variant(options, basis);
-    variant.options.grid = grid;
+    Problem problem = basis_problem(options, basis);
+    problem.options.grid = grid;
     for (const StageJob& job : {kPropagate, kInject}) {
-      Case added = scaling_case(bench, job, variant, "grid", grid);
+      Case added = scaling_case(bench, job, problem, "grid", grid);
       added.make = [bench, make = std::move(added.make)] { return make(); };  // keeps the bench alive
       cases.push_back(std::move(added));
     }
@@ -46,9 +46,9 @@ std::vector<Case> grids(Session& session, const SuiteOptions& options, const std
 std::vector<Case> coefficients(const std::shared_ptr<Bench>& bench, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const std::string basis : {"sh2", "srbf6", "srbf8v2", "sh3", "srbf14", "sh4", "sh5"}) {
-    const Variant variant = basis_variant(options, basis);
+    const Problem problem = basis_problem(options, basis);
     const int n = make_basis(basis)->size();
-    for (const StageJob& job : kStageJobs) cases.push_back(scaling_case(bench, job, variant, "n", n));
+    for (const StageJob& job : kStageJobs) cases.push_back(scaling_case(bench, job, problem, "n", n));
   }
   return cases;
 }
@@ -57,9 +57,9 @@ std::vector<Case> steps(const std::shared_ptr<Bench>& bench, const SuiteOptions&
                         const std::string& basis) {
   std::vector<Case> cases;
   for (const int iterations : {4, 8, 16, 32, 64}) {
-    Variant variant = basis_variant(options, basis);
-    variant.options.iterations = iterations;
-    cases.push_back(scaling_case(bench, kPropagate, variant, "iterations", iterations));
+    Problem problem = basis_problem(options, basis);
+    problem.options.iterations = iterations;
+    cases.push_back(scaling_case(bench, kPropagate, problem, "iterations", iterations));
   }
   return cases;
 }
@@ -84,7 +84,7 @@ std::vector<Case> rsms(Session& session, const SuiteOptions& options, const std:
     RenderOptions settings = options.settings;
     settings.rsm_size = size, settings.cascades = 1;
     const auto bench = make_bench(session, options, settings);
-    Case added = scaling_case(bench, kInject, basis_variant(options, basis), "rsm", size);
+    Case added = scaling_case(bench, kInject, basis_problem(options, basis), "rsm", size);
     added.make = [bench, make = std::move(added.make)] { return make(); };
     cases.push_back(std::move(added));
     cases.push_back(raster_case(session, scene, Pass::rasterize_rsm, settings, "rsm", size));
@@ -109,15 +109,15 @@ std::vector<Case> triangles(Session& session, const SuiteOptions& options) {
 /// Propagation on a sub-device of `units` compute units, in a separate session and therefore with wall times.
 Case units_case(Session& session, const SuiteOptions& options, const std::string& basis, unsigned units) {
   Case result;
-  const Variant variant = basis_variant(options, basis);
-  result.row = make_row("scaling", name_of(Stage::propagate), variant);
+  const Problem problem = basis_problem(options, basis);
+  result.row = make_row("scaling", name_of(Stage::propagate), problem);
   set_axis(result.row, "units", static_cast<int>(units));
-  result.make = [&session, options, variant, units] {
+  result.make = [&session, options, problem, units] {
     const auto part_session = std::make_shared<Session>(sub_device(session.device(), units));
     RenderOptions settings = options.settings;
     settings.cascades = 1;
     const auto bench = make_bench(*part_session, options, settings);
-    Job job = propagate_job(*bench, variant);
+    Job job = propagate_job(*bench, problem);
     const auto finish = [part_session, bench](const std::function<void()>& work) {
       work();
       part_session->queue().finish();
@@ -151,8 +151,8 @@ double growth_exponent(const std::vector<double>& x, const std::vector<double>& 
 
 /// Time of a propagation per cell and step [ns]; "-" for other stages.
 std::string ns_per_cell_step(const Row& row) {
-  if (row.stage != name_of(Stage::propagate) || !row.variant) return "-";
-  const RenderOptions& o = row.variant->options;
+  if (row.stage != name_of(Stage::propagate) || !row.problem) return "-";
+  const RenderOptions& o = row.problem->options;
   return fmt::format("{:.3f}", row.times.median * 1e6 / (std::pow(o.grid, 3) * o.iterations));
 }
 
@@ -168,8 +168,8 @@ std::string scaling_table(const std::vector<Row>& rows) {
   });
   for (const Row& row : rows) {
     if (row.status == Status::unsupported) continue;
-    const bool one_basis = row.axis != "n" && row.variant;
-    auto& [x, y] = series[{row.axis, row.stage + (one_basis ? "/" + row.variant->options.basis : "")}];
+    const bool one_basis = row.axis != "n" && row.problem;
+    auto& [x, y] = series[{row.axis, row.stage + (one_basis ? "/" + row.problem->options.basis : "")}];
     x.push_back(row.value), y.push_back(row.times.median);
   }
   text += "\nexponents of growth: time ~ value^exponent\n";

@@ -68,11 +68,11 @@ class TimeTable {
  public:
   explicit TimeTable(const std::vector<Row>& rows) {
     for (const Row& row : rows) {
-      if (!row.variant) continue;
-      const RenderOptions& o = row.variant->options;
+      if (!row.problem) continue;
+      const RenderOptions& o = row.problem->options;
       for (const TablePass& pass : kTablePasses) {
         if (row.stage != name_of(pass.pass)) continue;
-        const TimeKey key{settings_of(o), o.blocked(), pass.pass, row.variant->cascade.value_or(-1), o.basis};
+        const TimeKey key{settings_of(o), o.blocked(), pass.pass, row.problem->cascade.value_or(-1), o.basis};
         const bool timed = row.status == Status::ok;
         times_[key] = {row.published_ms, timed ? std::optional(row.times.median) : std::nullopt,
                        std::string(name_of(row.status))};
@@ -172,10 +172,10 @@ std::string table1_table(const std::vector<Row>& rows) {
   return text + "\npaper: Table 1, on a Radeon HD 6870; clpv: medians on this device.\n";
 }
 
-Variant variant_of(const SuiteOptions& options, Settings settings, const std::string& basis) {
-  Variant variant = basis_variant(options, basis);
-  if (settings == Settings::published) variant.options = published_options(options.settings, basis);
-  return variant;
+Problem problem_of(const SuiteOptions& options, Settings settings, const std::string& basis) {
+  Problem problem = basis_problem(options, basis);
+  if (settings == Settings::published) problem.options = published_options(options.settings, basis);
+  return problem;
 }
 
 std::vector<Case> cases(Bench& bench, const SuiteOptions& options, Settings settings, bool shadows) {
@@ -185,11 +185,11 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, Settings sett
     const bool all_cascades = job.stage == Stage::gather;
     for (int cascade = 0; cascade < (all_cascades ? 1 : options.settings.cascades); ++cascade) {
       for (const std::string& basis : bases_of(options)) {
-        Variant variant = variant_of(options, settings, basis);
-        variant.options.blockers = blockers_if(shadows);
-        if (!all_cascades) variant.cascade = cascade;
-        Case added = stage_case(bench, "table1", job, variant);
-        added.row.published_ms = published_ms(job.pass, basis, shadows, variant.cascade);
+        Problem problem = problem_of(options, settings, basis);
+        problem.options.blockers = blockers_if(shadows);
+        if (!all_cascades) problem.cascade = cascade;
+        Case added = stage_case(bench, "table1", job, problem);
+        added.row.published_ms = published_ms(job.pass, basis, shadows, problem.cascade);
         cases.push_back(std::move(added));
       }
     }
@@ -207,7 +207,7 @@ Suite table1_suite() {
       [](Session& session, const SuiteOptions& options) {
         std::vector<Group> groups;
         for (const Settings settings : {Settings::published, Settings::constant_lobes}) {
-          const auto bench = make_bench(session, options, variant_of(options, settings, kFirstBasis).options);
+          const auto bench = make_bench(session, options, problem_of(options, settings, kFirstBasis).options);
           for (const bool shadows : {true, false})
             groups.push_back(
                 {[bench, options, settings, shadows] { return cases(*bench, options, settings, shadows); }});

@@ -12,7 +12,7 @@
 #include "api/scene_contents.hpp"
 #include "clpv/pathtrace.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "pipeline/frame/frame.hpp"
+#include "pipeline/frame/frame_times.hpp"
 #include "pipeline/frame/scene_options.hpp"
 #include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
@@ -199,8 +199,9 @@ Stats Renderer::stats() const {
   for (const Pass pass : values_of<Pass>()) {
     if (pass != Pass::whole) stats.stages[std::string(name_of(pass))] = 0;
   }
-  for (const StageTime& time : state_->session.timeline().times())
-    stats.stages[std::string(name_of(time.mark.pass))] += time.ms;
+  FrameTimes times;
+  times.add(state_->session.timeline().times());
+  for (const auto& [pass, ms] : times.passes()) stats.stages[pass] = ms[0];
   stats.frame_ms = state_->frame_ms;
   stats.build_ms = state_->session.build_ms();
   stats.device_bytes = state_->session.device_bytes();

@@ -61,7 +61,6 @@ std::string as_text(const Options& options, std::string_view format, const bench
                     const Session& session, const bench::Results& results) {
   if (format == "json") return report_of(options, session, results).dump(2) + "\n";
   if (format == "github-action") return bench::report_github_action(results.rows);
-  if (format == "csv") return bench::report_csv(results.rows);
   return fmt::format("scene: {}\n", subject_of(options.bench.suite)) +
          (suite.table ? suite.table(results.rows) : bench::report_table(results.rows));
 }
@@ -122,7 +121,7 @@ void run(Options options, const Shared& shared) {
   if (!options.filter.empty()) options.bench.filter = parse_filter(options.filter);
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.log = options.log;
-  if (!options.output.empty()) require_extension("--output", options.output, {".json", ".csv"});
+  if (!options.output.empty()) require_extension("--output", options.output, {".json"});
   check_outputs({{"--output", options.output}, {"--log", options.log}},
                 {{"--scene", options.scene}, {"--model", options.model}, {"--compare", options.compare}});
   const std::unique_ptr<const Drawing> plot = prepared_plot(options);
@@ -139,13 +138,13 @@ void run(Options options, const Shared& shared) {
     return as_text(options, format, suite, session, results);
   };
   if (!options.output.empty())
-    write_file(options.output, text(options.output.ends_with(".csv") ? "csv" : "json"));
+    write_file(options.output, text("json"));
   fmt::print("{}", text(options.format));
   std::fflush(stdout);
-  bench::Comparison comparison;
+  bench::ReportChanges changes;
   if (!before.is_null()) {
-    comparison = bench::compare_runs(before, report_of(options, session, results), options.compare);
-    fmt::print("\n{}", bench::comparison_table(comparison));
+    changes = bench::compare_runs(before, report_of(options, session, results), options.compare);
+    fmt::print("\n{}", bench::changes_table(changes));
   }
   if (plot) {
     plot->add("bench.json", report_of(options, session, results));
@@ -153,7 +152,7 @@ void run(Options options, const Shared& shared) {
   }
   session.store_programs();
   require_right_results(results.rows);
-  if (options.fail_above > 0) bench::require_ratios(comparison, options.fail_above);
+  if (options.fail_above > 0) bench::require_ratios(changes, options.fail_above);
 }
 
 }  // namespace bench_command
@@ -180,10 +179,10 @@ void add_bench(CLI::App& app, Shared& shared) {
   command->add_option("--repetitions", options->bench.repetitions, "timed runs per row")
       ->capture_default_str()
       ->check(CLI::Range(1, bench::kMaxRepetitions));
-  add_format(*command, options->format, {"table", "json", "csv", "github-action"});
+  add_format(*command, options->format, {"table", "json", "github-action"});
   add(*command, "--log", "FILE.jsonl", options->log,
       "log of row starts and ends, one JSON line each; after a crash its last line names the row");
-  add(*command, "-o,--output", "FILE", options->output, "output file for the results, .json or .csv");
+  add(*command, "-o,--output", "FILE.json", options->output, "output file for the results, .json");
   add(*command, "--compare", "OLD.json", options->compare,
       "JSON of an earlier run, for a table of changes and their spread");
   add_fail_above(*command, options->fail_above);

@@ -163,9 +163,9 @@ Ranks& Shared::ranks() {
 std::span<const Command> all_commands() {
   static constexpr Command kCommands[] = {
       {"devices", add_devices}, {"render", add_render},       {"sequence", add_sequence},
-      {"query", add_query},     {"propagate", add_propagate}, {"check", add_check},
-      {"compare", add_compare}, {"pathtrace", add_pathtrace}, {"quality", add_quality},
-      {"basis", add_basis},     {"bench", add_bench},         {"report", add_report},
+      {"query", add_query},     {"check", add_check},         {"compare", add_compare},
+      {"quality", add_quality}, {"pathtrace", add_pathtrace}, {"basis", add_basis},
+      {"bench", add_bench},     {"report", add_report},
   };
   return kCommands;
 }
@@ -194,7 +194,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
     };
     if (is_one_of({"render", "sequence", "query", "pathtrace", "compare"}))
       command->group("Look");
-    else if (is_one_of({"quality", "bench", "basis", "propagate", "report"}))
+    else if (is_one_of({"quality", "bench", "basis", "report"}))
       command->group("Measure");
     else if (is_one_of({"devices", "check"}))
       command->group("Verify");

@@ -44,7 +44,6 @@ void add_devices(CLI::App& app, Shared& shared);
 void add_render(CLI::App& app, Shared& shared);
 void add_sequence(CLI::App& app, Shared& shared);
 void add_query(CLI::App& app, Shared& shared);
-void add_propagate(CLI::App& app, Shared& shared);
 void add_check(CLI::App& app, Shared& shared);
 void add_compare(CLI::App& app, Shared& shared);
 void add_pathtrace(CLI::App& app, Shared& shared);

@@ -65,10 +65,10 @@ bool is_report(const std::string& file) {
 
 /// Compares reports of bench, quality or --stats.
 void compare_reports(const CompareOptions& options) {
-  const bench::Comparison comparison =
+  const bench::ReportChanges changes =
       bench::compare_runs(read_json(options.b), read_json(options.a), options.b, options.a);
-  fmt::print("{}", bench::comparison_table(comparison));
-  if (options.fail_above > 0) bench::require_ratios(comparison, options.fail_above);
+  fmt::print("{}", bench::changes_table(changes));
+  if (options.fail_above > 0) bench::require_ratios(changes, options.fail_above);
 }
 
 void run(const CompareOptions& options) {

@@ -122,53 +122,20 @@ glm::dvec3 parse_dvec3(const std::string& text, const char* option) {
               text);
 }
 
-glm::ivec3 parse_ivec3(const std::string& text, const char* option) {
-  if (const auto v = parse_three<int>(text)) return *v;
-  throw Error(ExitCode::usage, "{}: '{}' is not three integers between commas, like 16,16,16", option, text);
-}
-
-std::pair<glm::ivec3, glm::ivec3> parse_box(const std::string& text, const char* option) {
-  const auto colon = text.find(':');
-  if (colon == std::string::npos)
-    throw Error(ExitCode::usage, "{}: '{}' is not two corners i0,j0,k0:i1,j1,k1", option, text);
-  const glm::ivec3 a = parse_ivec3(text.substr(0, colon), option),
-                   b = parse_ivec3(text.substr(colon + 1), option);
-  if (glm::any(glm::greaterThan(a, b)))
-    throw Error(ExitCode::usage, "{}: '{}': the first corner is beyond the second", option, text);
-  return {a, b};
-}
-
-void set_given(RenderOptions& options, const std::string& name, const std::string& value) {
-  try {
-    set_option(options, name, value);
-  } catch (const Error& error) {
-    throw Error(error.code(), "--{}", error.what());
-  }
-}
-
 void add_frame_options(CLI::App& command, OptionValues& given) {
   for (const OptionDescription& info : list_options(RenderOptions{})) {
     if (command.get_option_no_throw("--" + info.name) != nullptr) continue;
     const auto take = [&given, name = info.name](const std::string& text) {
       RenderOptions probe;
-      set_given(probe, name, text);  // rejects bad values before any scene is read
+      try {
+        set_option(probe, name, text);  // rejects bad values before any scene is read
+      } catch (const Error& error) {
+        throw Error(error.code(), "--{}", error.what());
+      }
       given[name] = text;
     };
     add_text(command, info, take)->group(group_of(info.name));
   }
-}
-
-void add_some_frame_options(CLI::App& command, RenderOptions& options,
-                            const std::vector<std::string>& names) {
-  for (const OptionDescription& info : list_options(options)) {
-    if (std::ranges::find(names, info.name) == names.end()) continue;
-    add_text(command, info,
-             [&options, name = info.name](const std::string& text) { set_given(options, name, text); });
-  }
-}
-
-nlohmann::json to_json(const Device& device) {
-  return {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}};
 }
 
 CLI::Option* add_format(CLI::App& command, std::string& format, const std::vector<std::string>& formats) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of several commands, and structured values: named choices, numbers in a range, vectors, boxes, and the frame
+// Options of several commands, and structured values: named choices, numbers in a range, vectors, and the frame
 // options of options/render_options.hpp. The target variable of an option must outlive the parse.
 #pragma once
 
@@ -71,26 +71,14 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, double& valu
 CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& seconds,
                          const std::string& help);
 
-/// Parse three comma-separated numbers. Throw Error(usage) with the option, the text and the allowed form.
+/// Parses three comma-separated numbers. Throws Error(usage) with the option, the text and the allowed form.
 glm::dvec3 parse_dvec3(const std::string& text, const char* option);
-glm::ivec3 parse_ivec3(const std::string& text, const char* option);
-/// Parses two corners "i0,j0,k0:i1,j1,k1"; the first must not exceed the second.
-std::pair<glm::ivec3, glm::ivec3> parse_box(const std::string& text, const char* option);
 
 /// Prefix of the groups of options that --help leaves to --help-all.
 inline constexpr std::string_view kMoreOptions = "More: ";
 
 /// Adds all frame options as text options, except those that `command` already has.
 void add_frame_options(CLI::App& command, OptionValues& given);
-
-/// Adds the frame options with these names. Each sets `options` during the parse; its current value is the default.
-void add_some_frame_options(CLI::App& command, RenderOptions& options, const std::vector<std::string>& names);
-
-/// Same as set_option, but errors name the option as on the command line.
-void set_given(RenderOptions& options, const std::string& name, const std::string& value);
-
-/// Returns the keys "platform", "name" and "driver".
-nlohmann::json to_json(const Device& device);
 
 /// Adds --format, for the results on stdout; the first of `formats` is the default.
 CLI::Option* add_format(CLI::App& command, std::string& format,

@@ -5,7 +5,7 @@
 //   --vary             ->  Variant: values of the options that vary             quality/quality.hpp
 //   subject x variant  ->  Group: the options of one frame, used for all cameras of the subject
 //   group x camera     ->  QualityCell: read from the cache, or rendered, compared and stored       QualityStore
-//   cells              ->  means of a variant; table, CSV and JSON               quality/quality.hpp
+//   cells              ->  means of a variant; table and JSON               quality/quality.hpp
 //
 // Ranks take every N-th group, or every N-th cell where groups are fewer than ranks.
 #include "quality/quality.hpp"
@@ -24,7 +24,7 @@
 #include "cli/quality_baselines.hpp"
 #include "cli/quality_subjects.hpp"
 #include "clpv/version.hpp"
-#include "quality/unreached.hpp"
+#include "cli/unreached.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 #include "support/output_file.hpp"
@@ -37,8 +37,7 @@ struct Options {
   QualitySubjects subjects;
   QualityBaselines baselines;
   std::vector<std::string> varied;
-  std::vector<std::string> outputs;
-  std::string cache, format;
+  std::string output, cache, format;
   Show view = Show::indirect;
   int frames = 3;
   bool fresh = false;
@@ -196,12 +195,8 @@ void run(const Options& options, Shared& shared) {
   const reference::PathTracerOptions tracing = options.tracing.resolved();
   if (!options.baselines.names.empty() && ranks.size() > 1)
     throw Error(ExitCode::usage, "--baseline: found {} ranks; allowed: one", ranks.size());
-  std::vector<NamedFile> outputs;
-  for (const std::string& output : options.outputs) {
-    require_extension("--output", output, {".json", ".csv"});
-    outputs.push_back({"--output", output});
-  }
-  check_outputs(outputs, files_of(options.subjects));
+  if (!options.output.empty()) require_extension("--output", options.output, {".json"});
+  check_outputs({{"--output", options.output}}, files_of(options.subjects));
   const std::filesystem::path folder = quality_cache(options.cache);
   QualityStore store(folder / "cells");
   Session session(ranks.device(shared.device));
@@ -220,11 +215,8 @@ void run(const Options& options, Shared& shared) {
                       std::back_inserter(cells));
   }
   const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
-  for (const std::string& output : options.outputs)
-    write_file(output, output.ends_with(".csv") ? quality_csv(cells) : json);
-  fmt::print("{}", options.format == "json"  ? json
-                   : options.format == "csv" ? quality_csv(cells)
-                                             : quality_table(cells));
+  if (!options.output.empty()) write_file(options.output, json);
+  fmt::print("{}", options.format == "json" ? json : quality_table(cells));
 }
 
 void add_options(CLI::App& command, Options& options) {
@@ -245,9 +237,8 @@ void add_options(CLI::App& command, Options& options) {
   add(command, "--cache", "DIR", options.cache,
       "folder for cached ground truths and cells (default: $XDG_CACHE_HOME/clpv/quality)");
   command.add_flag("--fresh", options.fresh, "new measurement of all cells, against cached ground truths");
-  add_format(command, options.format, {"table", "json", "csv"});
-  add(command, "-o,--output", "FILE", options.outputs,
-      "output file for the results, .json or .csv; repeatable");
+  add_format(command, options.format);
+  add(command, "-o,--output", "FILE.json", options.output, "output file for the results");
   add_frame_options(command, options.given);
   for (const auto& [name, size] : {std::pair{"width", "240"}, {"height", "135"}}) {
     options.given[name] = size;  // ground truths of a frame's default size take hours

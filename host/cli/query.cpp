@@ -10,7 +10,7 @@
 #include "cli/render_request.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "quality/points_file.hpp"
+#include "scene/points_file.hpp"
 #include "scene/load.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"

@@ -13,7 +13,7 @@
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/frame/frame_stats.hpp"
 #include "quality/normal_weights.hpp"
-#include "quality/unreached.hpp"
+#include "cli/unreached.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
@@ -128,13 +128,7 @@ void run(const Options& options, const Shared& shared) {
   warn_of_unreached(session, frame, camera.name);
   stop_if_interrupted();
   progress.advance();
-  for (int timed = 0; !options.stats.empty() && timed < options.frames; ++timed) {
-    stop_if_interrupted();
-    frame.invalidate_light();
-    stats.begin_frame();
-    frame.render(camera);
-    stats.end_frame(session);
-  }
+  if (!options.stats.empty()) stats.set_times(measure_frames(session, frame, camera, options.frames, 0));
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
   if (!options.tev.empty()) {

@@ -123,15 +123,4 @@ nlohmann::json describe(const RenderRequest& request, const RenderOptions& optio
   return all;
 }
 
-std::map<std::string, std::string> metadata_of(const nlohmann::json& described) {
-  std::map<std::string, std::string> metadata;
-  for (const auto& [name, value] : described.items())
-    metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
-  for (const char* file : {"scene", "model", "centres"}) {
-    if (const auto found = metadata.find(file); found != metadata.end())
-      found->second = std::filesystem::path(found->second).filename().string();
-  }
-  return metadata;
-}
-
 }  // namespace clpv

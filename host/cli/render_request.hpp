@@ -66,7 +66,4 @@ void log_scene(const Scene& scene, const SceneCamera& camera, const RenderOption
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const Scene& shown,
                         const SceneCamera& camera, double seconds);
 
-/// Returns the same as image metadata.
-std::map<std::string, std::string> metadata_of(const nlohmann::json& described);
-
 }  // namespace clpv

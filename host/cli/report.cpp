@@ -17,7 +17,7 @@
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "quality/unreached.hpp"
+#include "cli/unreached.hpp"
 #include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"

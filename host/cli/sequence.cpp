@@ -1,271 +1,33 @@
 // SPDX-License-Identifier: MIT
 // clpv sequence: renders an animated scene frame by frame into a folder, and optionally into a video.
-#include <fmt/format.h>
+#include "sequence/sequence.hpp"
 
-#include <chrono>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <optional>
+#include <fmt/format.h>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
-#include "cli/sequence_report.hpp"
 #include "cli/tev.hpp"
+#include "cli/unreached.hpp"
 #include "cli/video.hpp"
-#include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "pipeline/frame/frame_stats.hpp"
-#include "pipeline/raster/view.hpp"
-#include "quality/ground_truth.hpp"
-#include "quality/unreached.hpp"
 #include "scene/bounds.hpp"
-#include "scene/load.hpp"
 #include "support/error.hpp"
-#include "support/fingerprint.hpp"
-#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
-#include "support/progress.hpp"
 
 namespace clpv {
-
-enum class FrameFormat : unsigned { exr, png };
-
-template <>
-inline constexpr auto kNames<FrameFormat> = name_list("exr", "png");
-
 namespace sequence_command {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 constexpr int kMaxFrames = 1000000;
 constexpr double kMaxFramesPerSecond = 1000;
-constexpr const char* kKey = "frame_key";        // metadata: the key of a frame
-constexpr std::chrono::seconds kTimesEvery{10};  // interval of saving times.json
 
-/// Frame i shows `from` + i / `frames_per_second` [s].
-struct Options {
+struct Options : SequenceOptions {
   RenderRequest request;
-  std::string output, video, tev;
-  int frames = 0;
-  double frames_per_second = 0, from = 0;
-  Show view = Show::full;
-  FrameFormat format = FrameFormat::exr;
+  std::string video, tev;
   bool stability = false;
-  std::uint32_t traced = 0;
-
-  double time_of(int frame) const { return from + frame / frames_per_second; }
-  fs::path file(int frame) const {
-    return fs::path(output) / fmt::format("frame-{:04}.{}", frame, name_of(format));
-  }
-};
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-/// Returns true if the file holds a frame with that key. Warns about unreadable files.
-bool holds_frame(const fs::path& file, const std::string& key) {
-  std::error_code unknown;
-  if (!fs::exists(file, unknown)) return false;
-  try {
-    const std::map<std::string, std::string> metadata = read_metadata(file);
-    const auto found = metadata.find(kKey);
-    return found != metadata.end() && found->second == key;
-  } catch (const Error& error) {
-    spdlog::warn("{}; it is rendered again", error.what());
-    return false;
-  }
-}
-
-/// Renders the frames; scene, device and device resources persist between frames.
-class Sequence {
- public:
-  Sequence(const Options& options, const std::vector<NamedFile>& outputs, const Shared& shared, Ranks& ranks)
-      : options_(options),
-        ranks_(ranks),
-        moving_(options.request.open(outputs)),
-        resolved_(resolve_request(options.request, moving_.scene())),
-        device_(ranks.device(shared.device)),
-        compilation_(compilation_of(options.request, shared.device)) {
-    log_scene(moving_.scene(), camera(), resolved_);
-    if (!moving_.moves()) spdlog::warn("{}: nothing moves: all frames are equal", options.request.scene);
-    Fingerprint print;
-    print.add(program_fingerprint()).add(device_.platform).add(device_.name).add(device_.driver);
-    still_ = print.add(reference::scene_fingerprint(moving_.scene())).hex();
-    if (!options.tev.empty() && ranks.is_root()) tev_.emplace(options.tev);
-    if (ranks.is_root()) times_ = read_times(times_file(), options.frames);
-  }
-
-  /// Renders the missing frames of this rank; then rank 0 writes the times of all.
-  void render() {
-    const Clock::time_point started = Clock::now();
-    double mine = 0, counts[] = {0, 0};
-    auto& [rendered, there] = counts;
-    for (int i = 0; i < options_.frames; ++i) mine += ranks_.takes(static_cast<std::size_t>(i));
-    Progress progress("sequence", static_cast<std::uint64_t>(mine));
-    for (int i = 0; i < options_.frames; ++i) {
-      if (!ranks_.takes(static_cast<std::size_t>(i))) continue;
-      try {
-        stop_if_interrupted();
-        (render(i) ? rendered : there) += 1;  // a signal may also end it where it compiles kernels
-      } catch (const Interrupted&) {
-        write_times();
-        throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes", rendered + there,
-                                      mine, options_.output));
-      }
-      progress.advance();
-    }
-    ranks_.sum(counts);
-    if (there > 0) spdlog::info("{} of {} frames existed already", there, options_.frames);
-    if (rendered > 0) spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
-    for (const std::string& gathered : ranks_.gather(nlohmann::json(times_).dump()))
-      for (auto& [number, frame] : nlohmann::json::parse(gathered).get<SequenceTimes>())
-        times_[number] = frame;
-    write_times();
-    if (renderer_) renderer_->session.store_programs();
-    renderer_.reset();
-  }
-
-  /// Writes stability.json. One rank renders all frames again, because an earlier run may have written most of them.
-  void measure_stability() {
-    Renderer renderer(device_, moving_.scene(), resolved_, compilation_);
-    Stability stability(renderer.session, renderer.frame, options_.traced);
-    for_all_frames("stability", "stability.json is not written", [&](int i) {
-      moving_.pose(options_.time_of(i));
-      renderer.frame.scene_moved();
-      renderer.frame.render(camera());
-      stability.add(i, options_.time_of(i), moving_.scene(), camera());
-    });
-    nlohmann::json all = header_json();
-    all["traced_spp"] = options_.traced;
-    write_file(fs::path(options_.output) / "stability.json",
-               stability_json(all, stability.steps()).dump(1) + "\n");
-  }
-
-  /// Writes the video from the files of all frames, on one rank.
-  void write_video(Video& video) {
-    for_all_frames("video", "the video is not written", [&](int i) {
-      const Image image = read_image(options_.file(i));
-      video.add(image.encoding == Encoding::srgb ? image : displayed(image));
-    });
-    video.finish();
-  }
-
- private:
-  struct Renderer {
-    Session session;
-    Frame frame;
-    Renderer(const Device& device, const Scene& scene, const RenderOptions& options, Compilation compilation)
-        : session(device, ProgramCache::of_user(), std::move(compilation)), frame(session, scene, options) {}
-  };
-
-  /// `lost`: the data missing after an interrupted run.
-  template <typename Action>
-  void for_all_frames(const char* title, const char* lost, const Action& action) {
-    Progress progress(title, static_cast<std::uint64_t>(options_.frames));
-    for (int i = 0; i < options_.frames; ++i, progress.advance()) {
-      stop_if_interrupted(fmt::format("the frames are in {}, {}", options_.output, lost));
-      action(i);
-    }
-  }
-
-  Image displayed(const Image& image) const {
-    return display_image(image, options_.request.exposure_of(moving_.scene()), options_.request.tonemap);
-  }
-
-  const SceneCamera& camera() const { return moving_.scene().camera(options_.request.camera); }
-  fs::path times_file() const { return fs::path(options_.output) / "times.json"; }
-
-  nlohmann::json described(double seconds) const {
-    nlohmann::json all = describe(options_.request, resolved_, moving_.scene(), camera(), seconds);
-    all["view"] = name_of(options_.view);
-    return all;
-  }
-
-  /// Cache key over all inputs of a frame's pixels: program, device, options, scene content and its current pose.
-  std::string key(const nlohmann::json& described) const {
-    const Scene& posed = moving_.scene();
-    Fingerprint print;
-    print.add(still_).add(described.dump());
-    print.add(std::vector{camera_view(camera(), resolved_.width, resolved_.height)});
-    add_moving(print, posed);
-    for (const SceneLight& light : posed.lights_for(camera())) print.add(std::vector{light.data});
-    return print.hex();
-  }
-
-  /// Returns true if the frame was missing.
-  bool render(int number) {
-    const double seconds = options_.time_of(number);
-    Clock::time_point started = Clock::now();
-    moving_.pose(seconds);
-    double pose_ms = milliseconds_since(started);
-    const nlohmann::json description = described(seconds);
-    const std::string key = this->key(description);
-    if (holds_frame(options_.file(number), key)) return false;
-    const bool first = !renderer_;
-    if (first) renderer_.emplace(device_, moving_.scene(), resolved_, compilation_);
-    auto& [session, frame] = *renderer_;
-    started = Clock::now();
-    if (moving_.moves()) frame.scene_moved();
-    pose_ms += milliseconds_since(started);
-    started = Clock::now();
-    frame.render(camera());
-    session.queue().finish();
-    const double frame_ms = milliseconds_since(started);
-    nlohmann::json stages = to_json(session.timeline().times());
-    if (first) warn_of_unreached(session, frame, camera().name);
-    started = Clock::now();
-    write(number, frame, description, key);
-    times_[number] = {{"frame", number},
-                      {"time", seconds},
-                      {"first", first},
-                      {"pose_ms", pose_ms},
-                      {"frame_ms", frame_ms},
-                      {"write_ms", milliseconds_since(started)},
-                      {"stages", std::move(stages)}};
-    spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, seconds, frame_ms);
-    if (Clock::now() - times_written_ > kTimesEvery) write_times();
-    return true;
-  }
-
-  void write(int number, Frame& frame, const nlohmann::json& description, const std::string& key) {
-    Image image = view_image(frame, options_.view);
-    if (tev_) tev_->show(tev_name(moving_.scene(), camera(), options_.view), image);
-    image.metadata = metadata_of(description);
-    image.metadata[kKey] = key;
-    if (options_.format == FrameFormat::exr) return write_exr(options_.file(number), image);
-    write_png(options_.file(number), displayed(image));
-  }
-
-  nlohmann::json header_json() const {
-    nlohmann::json options = described(options_.from);
-    options.erase("time");
-    return {{"device", to_json(device_)},
-            {"options", options},
-            {"fps", options_.frames_per_second},
-            {"from", options_.from}};
-  }
-
-  void write_times() {
-    if (!ranks_.is_root()) return;
-    write_file(times_file(), times_json(header_json(), times_).dump(1) + "\n");
-    times_written_ = Clock::now();
-  }
-
-  const Options& options_;
-  Ranks& ranks_;
-  MovingScene moving_;
-  RenderOptions resolved_;
-  Device device_;
-  std::string still_;    ///< key of all static content
-  SequenceTimes times_;  ///< of this rank's frames; at rank 0 also those of an earlier run
-  Clock::time_point times_written_ = Clock::now();
-  Compilation compilation_;
-  std::optional<Renderer> renderer_;  ///< empty before the first frame
-  std::optional<Tev> tev_;
 };
 
 /// Checks the options before the scene is read. Returns the outputs.
@@ -278,9 +40,9 @@ std::vector<NamedFile> prepare_outputs(const Options& options) {
   if (options.traced > 0 && !options.stability)
     throw Error(ExitCode::usage, "--traced {}: needs --stability", options.traced);
   std::error_code failed;
-  const fs::path folder = options.output;
+  const fs::path folder = options.folder;
   if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
-    throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.output);
+    throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.folder);
   create_folder("--output", folder);
   std::vector<NamedFile> outputs{
       {"--output", options.file(0)}, {"--output", folder / "times.json"}, {"--video", options.video}};
@@ -294,7 +56,7 @@ void warn_of_later_frames(const Options& options) {
   int last = options.frames;
   while (fs::exists(options.file(last))) ++last;
   if (last > options.frames)
-    spdlog::warn("{} also holds frames {} to {} of a longer run", options.output, options.frames, last - 1);
+    spdlog::warn("{} also holds frames {} to {} of a longer run", options.folder, options.frames, last - 1);
 }
 
 void run(const Options& options, Shared& shared) {
@@ -302,12 +64,34 @@ void run(const Options& options, Shared& shared) {
   const std::vector<NamedFile> outputs = prepare_outputs(options);
   std::optional<Video> video;
   if (!options.video.empty() && ranks.is_root()) video.emplace(options.video, options.frames_per_second);
-  Sequence sequence(options, outputs, shared, ranks);
+  const RenderRequest& request = options.request;
+  MovingScene moving = request.open(outputs);
+  const RenderOptions resolved = resolve_request(request, moving.scene());
+  const Device device = ranks.device(shared.device);
+  const auto camera = [&](const Scene& scene) -> const SceneCamera& { return scene.camera(request.camera); };
+  log_scene(moving.scene(), camera(moving.scene()), resolved);
+  if (!moving.moves()) spdlog::warn("{}: nothing moves: all frames are equal", request.scene);
+  std::optional<Tev> tev;
+  if (!options.tev.empty() && ranks.is_root()) tev.emplace(options.tev);
+
+  SequenceSubject subject{request.camera, request.exposure_of(moving.scene()), request.tonemap, {}, {}, {}};
+  subject.describe = [&](const Scene& posed, double seconds) {
+    return describe(request, resolved, posed, camera(posed), seconds);
+  };
+  subject.first_frame = [&](Session& session, Frame& frame) {
+    warn_of_unreached(session, frame, camera(moving.scene()).name);
+  };
+  subject.shown = [&](const Scene& posed, const Image& image) {
+    if (tev) tev->show(tev_name(posed, camera(posed), options.view), image);
+  };
+  Sequence sequence(options, subject, moving, resolved, device, compilation_of(request, shared.device), ranks);
   sequence.render();
   if (!ranks.is_root()) return;
   warn_of_later_frames(options);
   if (options.stability) sequence.measure_stability();
-  if (video) sequence.write_video(*video);
+  if (!video) return;
+  sequence.for_all_images([&](const Image& image) { video->add(image); });
+  video->finish();
 }
 
 }  // namespace sequence_command
@@ -316,7 +100,7 @@ void add_sequence(CLI::App& app, Shared& shared) {
   using namespace sequence_command;
   CLI::App* command = app.add_subcommand("sequence", "Render an animated scene frame by frame");
   auto options = std::make_shared<sequence_command::Options>();
-  add(*command, "-o,--output", "DIR", options->output,
+  add(*command, "-o,--output", "DIR", options->folder,
       "output folder for frame-0000.exr, ... and times.json; created if missing")
       ->required();
   add(*command, "--frames", "N", options->frames, "number of frames")

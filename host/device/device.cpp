@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "device/cl_error.hpp"
 #include "support/limits.hpp"
@@ -231,6 +232,10 @@ Device sub_device(const Device& device, unsigned units, unsigned index) {
   result.handle = handles[index];
   result.compute_units = units;
   return result;
+}
+
+nlohmann::json to_json(const Device& device) {
+  return {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}};
 }
 
 }  // namespace clpv

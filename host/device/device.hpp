@@ -4,6 +4,7 @@
 
 #include <CL/opencl.hpp>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,9 @@ Device choose_device(const std::vector<Device>& devices, std::string_view choice
 /// Returns all supported devices that match `choice` (or CLPV_DEVICE), in order. If both are empty: the first supported
 /// device and all with its name and platform. Throws Error(device) if there is none.
 std::vector<Device> choose_devices(std::string_view choice = {});
+
+/// Returns the keys "platform", "name" and "driver".
+nlohmann::json to_json(const Device& device);
 
 /// Returns the `index`-th sub-device of `units` compute units, or the device itself if it has exactly `units`.
 /// Throws Error(device) if the device cannot be split.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "image/codec.hpp"
 #include "image/image_header.hpp"
@@ -191,6 +192,17 @@ std::vector<unsigned char> png_bytes(const Image& image) {
 void write_png(const fs::path& path, const Image& image) {
   const auto bytes = png_bytes(image);
   write_file(path, std::as_bytes(std::span(bytes)));
+}
+
+std::map<std::string, std::string> metadata_of(const nlohmann::json& described) {
+  std::map<std::string, std::string> metadata;
+  for (const auto& [name, value] : described.items())
+    metadata[name] = value.is_string() ? value.get<std::string>() : value.dump();
+  for (const char* file : {"scene", "model", "centres"}) {
+    if (const auto found = metadata.find(file); found != metadata.end())
+      found->second = fs::path(found->second).filename().string();
+  }
+  return metadata;
 }
 
 }  // namespace clpv

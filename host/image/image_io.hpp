@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,8 +35,12 @@ Image decode_image(const std::filesystem::path& path, std::string_view bytes);
 std::map<std::string, std::string> read_metadata(const std::filesystem::path& path,
                                                  const ImageLimits& limits = {});
 
-/// Encodes an image as EXR of 32-bit floats with its channel names. Metadata become string attributes "clpv:NAME". Equal images
-/// give equal bytes. Throws Error(run_time).
+/// Returns the members of a JSON object as metadata: texts as they are, others as JSON, and the files `scene`, `model`
+/// and `centres` without their folders.
+std::map<std::string, std::string> metadata_of(const nlohmann::json& described);
+
+/// Encodes an image as EXR of 32-bit floats with its channel names. Metadata become string attributes "clpv:NAME".
+/// Equal images give equal bytes. Throws Error(run_time).
 std::vector<unsigned char> exr_bytes(const Image& image);
 
 /// Writes exr_bytes() to a file. Throws Error(run_time).

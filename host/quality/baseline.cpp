@@ -7,10 +7,11 @@
 #include "baselines/filter.hpp"
 #include "baselines/methods.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "pipeline/frame/frame_times.hpp"
 #include "scene/emission.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
-#include "support/median.hpp"
+#include "support/statistics.hpp"
 
 namespace clpv {
 namespace {
@@ -102,30 +103,18 @@ Plan plan_for(Runner& run, double budget_ms) {
 }  // namespace
 
 BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera& camera, int frames) {
-  BaselineBudget budget;
-  std::map<std::string, std::vector<double>> shared;
-  std::vector<double> budgets, rsm;
   const int coarsest = frame.options().cascades - 1;
-  for (int i = 0; i <= frames; ++i) {
-    frame.invalidate_light();
-    frame.render(camera);
-    std::map<std::string, double> stages;
-    double rest = 0, rsms = 0;
-    for (const StageTime& time : session.timeline().times()) {
-      const Pass pass = time.mark.pass;
-      if (pass == Pass::rasterize_camera || pass == Pass::rasterize_shadow || pass == Pass::shade) {
-        stages[std::string(name_of(pass))] += time.ms;
-      } else {
-        rest += time.ms;
-      }
-      if (pass == Pass::rasterize_rsm && time.mark.cascade == coarsest) rsms += time.ms;
-    }
-    if (i == 0) continue;  // the first launch compiles kernels
-    budgets.push_back(rest), rsm.push_back(rsms);
-    for (const auto& [stage, ms] : stages) shared[stage].push_back(ms);
-  }
-  budget.budget_ms = median(budgets), budget.rsm_ms = median(rsm);
-  for (const auto& [stage, values] : shared) budget.shared_ms[stage] = median(values);
+  const auto shared = [](const StageMark& mark) {
+    return mark.pass == Pass::rasterize_camera || mark.pass == Pass::rasterize_shadow || mark.pass == Pass::shade;
+  };
+  const FrameTimes times = measure_frames(session, frame, camera, frames, 1);
+  BaselineBudget budget;
+  budget.budget_ms = median(times.sums([&](const StageMark& mark) { return !shared(mark); }));
+  budget.rsm_ms = median(times.sums([&](const StageMark& mark) {
+    return mark.pass == Pass::rasterize_rsm && mark.cascade == coarsest;
+  }));
+  for (const auto& [pass, ms] : times.pass_medians())
+    if (shared({named<Pass>("pass", pass)})) budget.shared_ms[pass] = ms;
   budget.rsms = frame.read_rsms(coarsest);
   budget.grids = frame.light().grids;
   return budget;

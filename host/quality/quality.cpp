@@ -10,9 +10,10 @@
 
 #include "device/kernel_files.hpp"
 #include "image/compare.hpp"
+#include "pipeline/frame/frame_times.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
-#include "support/median.hpp"
+#include "support/statistics.hpp"
 
 namespace clpv {
 namespace {
@@ -27,16 +28,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
     }
   }
   return parts;
-}
-
-/// Total times of one frame per stage.
-std::map<std::string, double> stage_sums(const std::vector<StageTime>& times, bool& from_events) {
-  std::map<std::string, double> sums;
-  for (const StageTime& time : times) {
-    sums[std::string(name_of(time.mark.pass))] += time.ms;
-    from_events = from_events && time.from_events;
-  }
-  return sums;
 }
 
 }  // namespace
@@ -94,25 +85,15 @@ std::string describe(const Variant& variant) {
 
 QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
                     const reference::GroundTruth& truth, Show show, int frames) {
+  Image image;
+  const FrameTimes times =
+      measure_frames(session, frame, camera, frames, 1, [&] { image = view_image(frame, show); });
   QualityCell cell;
   cell.compute_units = session.device().compute_units;
-  std::map<std::string, std::vector<double>> samples;
-  std::vector<double> totals;
-  for (int i = 0; i <= frames; ++i) {
-    frame.invalidate_light();
-    frame.render(camera);
-    const Image image = view_image(frame, show);
-    if (i == 0) continue;  // the first launch compiles kernels
-    double total = 0;
-    for (const auto& [stage, ms] : stage_sums(session.timeline().times(), cell.from_events)) {
-      samples[stage].push_back(ms);
-      total += ms;
-    }
-    totals.push_back(total);
-    if (i == frames) fill_errors(cell, image, truth, show);
-  }
-  for (const auto& [stage, values] : samples) cell.stage_ms[stage] = median(values);
-  cell.frame_ms = median(totals);
+  cell.from_events = times.from_events();
+  cell.stage_ms = times.pass_medians();
+  cell.frame_ms = median(times.sums());
+  fill_errors(cell, image, truth, show);
   return cell;
 }
 

@@ -101,10 +101,6 @@ nlohmann::json to_json(const QualityCell& cell);
 QualityCell cell_from_json(const nlohmann::json& json);
 nlohmann::json to_json(const QualitySummary& summary);
 
-/// Header line and one line per cell: scene, camera, the varied options, errors, frame_ms, and one column per stage.
-/// Missing values are empty fields.
-std::string quality_csv(const std::vector<QualityCell>& cells);
-
 /// One line per variant, best first: NRMSE of each view, their mean, means of the other metrics, and stage times.
 std::string quality_table(const std::vector<QualityCell>& cells);
 

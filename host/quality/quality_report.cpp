@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string_view>
 
 #include "options/stages.hpp"
 #include "quality/quality.hpp"
 #include "support/json_optional.hpp"
 #include "support/named_enum.hpp"
-#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -19,29 +17,6 @@ nlohmann::json json_of(const Variant& variant) {
   nlohmann::json json = nlohmann::json::object();
   for (const auto& [name, value] : variant) json[name] = value;
   return json;
-}
-
-std::string text_of(const std::optional<double>& value) {
-  return value ? fmt::format("{:.6g}", *value) : "";
-}
-
-std::set<std::string> stage_names(const std::vector<QualityCell>& cells) {
-  std::set<std::string> names;
-  for (const QualityCell& cell : cells) {
-    for (const auto& [name, ms] : cell.stage_ms) names.insert(name);
-  }
-  return names;
-}
-
-/// Names of the options of all variants, in order of first appearance. Baselines have other ones than frames.
-std::vector<std::string> option_names(const std::vector<QualityCell>& cells) {
-  std::vector<std::string> names;
-  for (const QualityCell& cell : cells) {
-    for (const auto& [name, value] : cell.variant) {
-      if (std::ranges::count(names, name) == 0) names.push_back(name);
-    }
-  }
-  return names;
 }
 
 /// Formats lines of equal width: first column left-aligned, others right-aligned.
@@ -108,36 +83,6 @@ nlohmann::json to_json(const QualitySummary& sum) {
   nlohmann::json json = sum;
   json["options"] = json_of(sum.variant);
   return json;
-}
-
-std::string quality_csv(const std::vector<QualityCell>& cells) {
-  if (cells.empty()) return "";
-  const std::set<std::string> stages = stage_names(cells);
-  const std::vector<std::string> options = option_names(cells);
-  std::string text = "scene,camera";
-  for (const std::string& name : options) text += ',' + csv_field(name);
-  text += ",rejected,nrmse,best_gain,nrmse_best_gain,energy_ratio,flip,frame_ms";
-  for (const std::string& stage : stages) text += ',' + csv_field(stage + "_ms");
-  text += '\n';
-  for (const QualityCell& cell : cells) {
-    text += csv_field(cell.scene) + ',' + csv_field(cell.camera);
-    for (const std::string& name : options) {
-      const auto found = std::ranges::find(cell.variant, name, &Variant::value_type::first);
-      text += ',' + (found == cell.variant.end() ? "" : csv_field(found->second));
-    }
-    text += ',' + csv_field(cell.rejected);
-    for (const auto& value :
-         {cell.nrmse, cell.best_gain, cell.nrmse_best_gain, cell.energy_ratio, cell.flip}) {
-      text += ',' + text_of(value);
-    }
-    text += ',' + (cell.rejected.empty() ? fmt::format("{:.4g}", cell.frame_ms) : "");
-    for (const std::string& stage : stages) {
-      const auto found = cell.stage_ms.find(stage);
-      text += ',' + (found == cell.stage_ms.end() ? "" : fmt::format("{:.4g}", found->second));
-    }
-    text += '\n';
-  }
-  return text;
 }
 
 std::string quality_table(const std::vector<QualityCell>& cells) {

@@ -11,13 +11,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <optional>
 #include <thread>
 
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 #include "support/output_file.hpp"
-#include "support/process.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -39,10 +38,14 @@ void set_helper_program(std::string file) {
   helper_program() = std::move(file);
 }
 
+bool has_helper_program() {
+  return !helper_program().empty();
+}
+
 unsigned helper_count() {
   cpu_set_t bound;  // to these cores; hardware_concurrency() counts all
   const unsigned cores = ::sched_getaffinity(0, sizeof bound, &bound) == 0 ? CPU_COUNT(&bound) : 1;
-  return helper_program().empty() || cores < 2 ? 0 : std::min(cores, kMaxHelpers);
+  return !has_helper_program() || cores < 2 ? 0 : std::min(cores, kMaxHelpers);
 }
 
 bool Claims::take(const std::string& name) const {
@@ -50,8 +53,16 @@ bool Claims::take(const std::string& name) const {
   const int opened = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
   if (opened < 0 && errno == EEXIST) return false;
   if (opened < 0) throw Error(ExitCode::run_time, "{}: {}", file.string(), std::strerror(errno));
+  ::dprintf(opened, "%d", ::getpid());
   ::close(opened);
   return true;
+}
+
+std::optional<Claims::Taken> Claims::taken(const std::string& name) const {
+  const fs::path file = folder_ / name;
+  const auto owner = parse_number<int>(file_bytes(file.string()).value_or(""));
+  if (!owner) return std::nullopt;
+  return Taken{*owner, fs::file_time_type::clock::now() - fs::last_write_time(file)};
 }
 
 void Claims::finish(const std::string& name, const std::string& result) const {
@@ -71,36 +82,43 @@ std::size_t Claims::finished_count() const {
                                [](const auto& entry) { return entry.path().extension() == kDone; });
 }
 
-struct Helpers::Child {
-  explicit Child(const std::vector<std::string>& arguments) : process(helper_program(), arguments) {}
-  Process process;
-  bool ended = false;
-};
-
-Helpers::Helpers(std::vector<std::string> arguments) : claims_(folder_.path()) {
-  arguments.insert(arguments.end(), {"--claims", folder_.path().string()});
-  for (unsigned i = 0; i < helper_count(); ++i) children_.push_back(std::make_unique<Child>(arguments));
+Helpers::Helpers(std::vector<std::string> arguments, unsigned count)
+    : claims_(folder_.path()), arguments_(std::move(arguments)) {
+  arguments_.insert(arguments_.end(), {"--claims", folder_.path().string()});
+  for (unsigned i = 0; i < count; ++i) start();
 }
 
 Helpers::~Helpers() {
-  for (const auto& child : children_) child->process.kill();
+  for (const auto& child : children_) child->kill();
   children_.clear();
+}
+
+void Helpers::start() {
+  children_.push_back(std::make_unique<Process>(helper_program(), arguments_));
 }
 
 bool Helpers::wait() {
   std::this_thread::sleep_for(kPoll);
-  bool running = false;
-  for (const auto& child : children_) {
-    if (child->ended) continue;
-    if (child->process.running()) {
-      running = true;
-      continue;
-    }
-    child->ended = true;
-    const Process::Result result = child->process.end();
-    if (result.code != 0) failures_ += result.output;
-  }
-  return running;
+  std::erase_if(children_, [&](const auto& child) {
+    const pid_t process = child->id();
+    if (child->running()) return false;
+    Process::Result result = child->end();
+    ended_.push_back({process, result.code, std::move(result.output)});
+    return true;
+  });
+  return !children_.empty();
+}
+
+void Helpers::kill(pid_t process) {
+  for (const auto& child : children_)
+    if (child->id() == process) child->kill();
+}
+
+std::string Helpers::failures() const {
+  std::string text;
+  for (const Ended& ended : ended_)
+    if (ended.code != 0) text += ended.output;
+  return text;
 }
 
 void become_helper() {

@@ -4,17 +4,23 @@
 // PoCL compiles one kernel at a time in a process, but processes compile side by side and share its cache.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "support/process.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace clpv {
 
 /// Sets the file of this program, which helpers run. Without it, as in a library, there are no helpers.
 void set_helper_program(std::string file);
+
+/// Returns true if set_helper_program() was called.
+bool has_helper_program();
 
 /// Number of helpers worth starting: one per core; 0 on one core or without a program.
 unsigned helper_count();
@@ -31,33 +37,51 @@ class Claims {
   bool finished(const std::string& name) const;
   /// Returns the result of a finished job.
   std::string result(const std::string& name) const;
+  /// Returns the process that took the job and the time since then; empty if no one did.
+  struct Taken {
+    pid_t process;
+    std::chrono::duration<double> age;
+  };
+  std::optional<Taken> taken(const std::string& name) const;
   std::size_t finished_count() const;
 
  private:
   std::filesystem::path folder_;
 };
 
-/// helper_count() processes of this program, and the folder of their claims.
+/// Processes of this program, and the folder of their claims.
 class Helpers {
  public:
-  /// Starts `clpv arguments... --claims FOLDER`. Throws Error(run_time) if the temporary folder cannot be made.
-  explicit Helpers(std::vector<std::string> arguments);
+  /// Starts `count` times `clpv arguments... --claims FOLDER`. Throws Error(run_time) if the temporary folder cannot be
+  /// made.
+  explicit Helpers(std::vector<std::string> arguments, unsigned count = helper_count());
   ~Helpers();  ///< ends helpers that still run, and removes the folder
   Helpers(const Helpers&) = delete;
   Helpers& operator=(const Helpers&) = delete;
 
+  /// Starts one more.
+  void start();
   /// Waits a moment. Returns true while a helper runs.
   bool wait();
+  /// Ends a helper at once, with SIGKILL.
+  void kill(pid_t process);
+  /// Helpers that wait() found to have ended, in that order.
+  struct Ended {
+    pid_t process;
+    int code;  ///< Process::Result::code
+    std::string output;
+  };
+  const std::vector<Ended>& ended() const { return ended_; }
   const Claims& claims() const { return claims_; }
   /// Returns the output of failed helpers once wait() returned false; empty if all succeeded.
-  std::string failures() const { return failures_; }
+  std::string failures() const;
 
  private:
-  struct Child;
   ScratchFolder folder_;
   Claims claims_;
-  std::vector<std::unique_ptr<Child>> children_;
-  std::string failures_;
+  std::vector<std::string> arguments_;
+  std::vector<std::unique_ptr<Process>> children_;  ///< that run
+  std::vector<Ended> ended_;
 };
 
 /// In a helper: ends this process when its parent ends, and on a signal at once.

@@ -41,6 +41,7 @@ class Process {
   /// Writes `bytes` to its stdin; blocks while it reads slowly. Returns false if it has closed stdin.
   bool feed(std::span<const std::byte> bytes);
 
+  pid_t id() const { return child_; }  ///< -1 if it did not start, and after end()
   /// Returns true until the process has exited.
   bool running();
   /// Ends the process at once, with SIGKILL.

@@ -38,13 +38,6 @@ std::string xml_escaped(const std::string& text) {
   return out;
 }
 
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
 std::string float_literal(double value) {
   const auto single = static_cast<float>(value);
   if (!std::isfinite(single)) throw Error(ExitCode::run_time, "no kernel literal for {}", value);

@@ -16,9 +16,6 @@ std::string printable(std::string_view text);
 /// Returns printable() text, escaped for an XML element or attribute.
 std::string xml_escaped(const std::string& text);
 
-/// Returns a field of a CSV file, in quotes where it needs them (RFC 4180).
-std::string csv_field(const std::string& text);
-
 /// Returns an OpenCL C float literal that reads back as float(value): "0.25f", "1e-05f", "(-0.5f)".
 /// Throws Error(run_time) if float(value) is not finite.
 std::string float_literal(double value);

@@ -5,27 +5,29 @@
 
 #include <algorithm>
 
-namespace clpv::reference {
+namespace clpv::verify {
 
-Comparison compare_volumes(std::span<const float> found, std::span<const double> expected, int n) {
+Deviation compare_volumes(std::span<const float> found, std::span<const double> expected, int n,
+                          double allowed) {
   const WorstError worst = worst_difference(
       expected.size(), [&](std::size_t i) { return static_cast<double>(found[i]); },
       [&](std::size_t i) { return expected[i]; });
-  if (worst.value == 0) return {};
+  if (worst.value == 0) return {0, allowed};
   const std::size_t side = n;
   const std::size_t at = worst.at;
-  return {worst.value,
+  return {worst.value, allowed,
           fmt::format("cell {},{},{} plane {}: {:.7g}, expected {:.7g}", at % side, at / side % side,
                       at / side / side % side, at / side / side / side, found[at], expected[at])};
 }
 
-Comparison compare_functions(std::span<const float> found, std::span<const double> expected,
-                             std::span<const double> other, int n, int numbers,
-                             const std::function<std::vector<double>(const glm::dvec3&)>& weights) {
+Deviation compare_functions(std::span<const float> found, std::span<const double> expected,
+                            std::span<const double> other, int n, int numbers,
+                            const std::function<std::vector<double>(const glm::dvec3&)>& weights,
+                            double allowed) {
   const std::size_t side = n, samples = side * side * side, size = numbers;
   double largest = 0;
   WorstError worst;
-  Comparison result;
+  Deviation result{0, allowed};
   for (int neighbour = 0; neighbour < 27; ++neighbour) {
     if (neighbour == 13) continue;  // the cell itself
     const glm::dvec3 w =
@@ -50,4 +52,4 @@ Comparison compare_functions(std::span<const float> found, std::span<const doubl
   return result;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::verify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Error between a result and its CPU reference, for checks and benchmarks.
+// Errors between results and their CPU references.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace clpv::reference {
+#include "verify/job.hpp"
+
+namespace clpv::verify {
 
 /// Largest of the recorded errors. A NaN exceeds any number and stays.
 struct WorstError {
@@ -36,19 +38,16 @@ WorstError worst_difference(std::size_t count, const Found& found, const Wanted&
   return worst;
 }
 
-struct Comparison {
-  double worst = 0;   ///< relative to the CPU reference's largest value
-  std::string place;  ///< "cell 3,4,5 plane 0: 0.25, CPU reference 0.26"; empty if nothing differs
-};
-
-/// Compares volumes of n^3 samples in Volume's host order.
-Comparison compare_volumes(std::span<const float> found, std::span<const double> expected, int n);
+/// Compares volumes of n^3 samples in Volume's host order, relative to the largest expected value.
+Deviation compare_volumes(std::span<const float> found, std::span<const double> expected, int n,
+                          double allowed = 0);
 
 /// Compares the functions that volumes represent, in 26 directions. With an ill-conditioned Gram matrix, coefficients
 /// differ while the functions agree. `numbers`: values per sample and channel. `weights`: their weights in a direction.
 /// `other`: a second reference result, as accurate as `expected`.
-Comparison compare_functions(std::span<const float> found, std::span<const double> expected,
-                             std::span<const double> other, int n, int numbers,
-                             const std::function<std::vector<double>(const glm::dvec3&)>& weights);
+Deviation compare_functions(std::span<const float> found, std::span<const double> expected,
+                            std::span<const double> other, int n, int numbers,
+                            const std::function<std::vector<double>(const glm::dvec3&)>& weights,
+                            double allowed = 0);
 
-}  // namespace clpv::reference
+}  // namespace clpv::verify

@@ -12,7 +12,7 @@
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 namespace {
 
 constexpr unsigned kGrid = 4;
@@ -33,20 +33,20 @@ Scene emissive_soup() {
   return scene;
 }
 
-CheckResult check_scene(Session& session, const Scene& scene, const std::string& variant) {
+Deviation compare_scene(Session& session, const Scene& scene) {
   const std::vector<ClpvGrid> grids = {{{-1, 2, 2.5f}, 0.5f, kGrid, {}}, {{-2, 1, 1.5f}, 1, kGrid, {}}};
   const EmissionPlan plan = plan_emission(scene, emissive_triangles(scene), grids);
   const SceneBuffers buffers = upload_scene(session, scene);
   Emitter emitter(session, buffers);
   emitter.emit(plan, kScale);
   const SurfaceImage found = read_surface(session, emitter.points());
-  const std::vector<EmittedPoint> expected = emit(scene, plan);
+  const std::vector<reference::EmittedPoint> expected = reference::emit(scene, plan);
   double largest = 0;
-  for (const EmittedPoint& point : expected)
+  for (const reference::EmittedPoint& point : expected)
     largest = std::max({largest, point.flux.x, point.flux.y, point.flux.z});
-  CheckResult result{"emit", variant, 0, tolerance("emit"), {}};
+  Deviation result{0, tolerance("emit")};
   for (std::size_t i = 0; i < found.normal.size(); ++i) {
-    const EmittedPoint wanted = i < expected.size() ? expected[i] : EmittedPoint{};
+    const reference::EmittedPoint wanted = i < expected.size() ? expected[i] : reference::EmittedPoint{};
     const glm::dvec3 flux = glm::dvec3(found.colour[i]) / double{kScale};
     const double off = glm::length(flux - wanted.flux) - 2 * wanted.tolerance;
     const double places = glm::length(glm::dvec3(found.position[i]) - wanted.position) / 10 +
@@ -62,21 +62,22 @@ CheckResult check_scene(Session& session, const Scene& scene, const std::string&
   return result;
 }
 
-}  // namespace
-
-CheckResults check_emit(Session& session, const CheckScope& scope) {
-  Scene plain = emissive_soup();
-  for (Material& material : plain.materials) {
+Scene plain_soup() {
+  Scene scene = emissive_soup();
+  for (Material& material : scene.materials) {
     material.flags = 0;
     material.texture = material.emissive_texture = CLPV_NO_TEXTURE;
   }
-  CheckResults results;
-  const auto add = [&](const Scene& scene, const char* variant) {
-    compare_selected(scope, "emit", variant, results, [&] { return check_scene(session, scene, variant); });
-  };
-  add(emissive_soup(), "textures and holes");
-  add(plain, "plain");
-  return results;
+  return scene;
 }
 
-}  // namespace clpv::reference
+}  // namespace
+
+Cases emit_cases(const CheckScope&) {
+  return {deviation_case(Stage::emit, "textures and holes",
+                         [](Session& session) { return compare_scene(session, emissive_soup()); }),
+          deviation_case(Stage::emit, "plain",
+                         [](Session& session) { return compare_scene(session, plain_soup()); })};
+}
+
+}  // namespace clpv::verify

@@ -1,142 +1,168 @@
 // SPDX-License-Identifier: MIT
-// Gathering: kernels against CPU reference, on random light in three nested cascades, for surfaces in and around them.
-#include "pipeline/gather/gather.hpp"
+// Gathering: kernels against CPU reference. Checks use random light in three nested cascades, and surfaces in and
+// around them.
+#include "verify/gather.hpp"
 
 #include <fmt/format.h>
 
-#include <cstdint>
+#include <cmath>
 #include <memory>
 #include <random>
 
 #include "basis/sweep.hpp"
-#include "pipeline/frame/cascade.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/gather/gather.hpp"
 #include "reference/gather.hpp"
+#include "reference/view.hpp"
 #include "verify/check.hpp"
-#include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 namespace {
 
 constexpr int kGrid = 9;  // odd, so that no pitch is a power of two
 constexpr int kCascades = 3;
 constexpr double kFinestEdge = 4;  // [m]; the coarsest is 16 m across
 
-struct Variant {
-  std::string name;
-  LobeOptions lobes = {};
-  TableStorage table = TableStorage::buffer;
-  VolumeFormat format = {};
-  bool filtered = true;  ///< images only
-  Gathering gather = Gathering::all;
+/// Volumes and kernels of one gathering.
+struct GatherWork {
+  GatherProblem problem;
+  CascadesOnDevice light;
+  Gatherer gatherer;
+  Buffer irradiance;
+
+  GatherWork(Session& session, const GatherProblem& p)
+      : problem(p),
+        light(session, problem.cascades, p.options.format),
+        gatherer(session, *p.basis, p.transport, p.options),
+        irradiance(session.buffer(bytes(), "irradiance")) {}
+  std::size_t pixels() const { return problem.image->depth.size(); }
+  std::size_t bytes() const { return pixels() * sizeof(cl_float4); }
 };
 
-/// One byte per point between cells of all cascades; each cell is occluded from half of them.
-std::vector<std::uint8_t> random_occlusion(std::mt19937& random) {
-  std::vector<std::uint8_t> occluded(kCascades * visibility_bytes(kGrid));
-  for (std::uint8_t& bits : occluded) bits = random() % 256;
-  return occluded;
+/// Returns true if the device's image filter interpolates.
+bool filtered_by_device(const GatherOptions& options) {
+  return options.format.layout == Layout::image && options.filtered && options.gather == Gathering::all;
 }
 
-std::string_view compared_as(const Variant& variant) {
-  if (variant.gather == Gathering::visible) return "gather-visible";
-  return variant.format.layout == Layout::image && variant.filtered ? "gather-filter" : "gather";
+std::string_view compared_as(const GatherOptions& options) {
+  if (options.gather == Gathering::visible) return "gather-visible";
+  return filtered_by_device(options) ? "gather-filter" : "gather";
 }
 
-CheckResult check_one(Session& session, const Basis& basis, TransportKind transport, const Variant& variant) {
-  std::mt19937 random(11);
-  SurfaceImage image = random_surfaces(random);
-  for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
-    if (rounding_decides(basis, variant.lobes, glm::dvec3(image.normal[pixel]))) image.depth[pixel] = 0;
+/// Expected irradiance of the compared pixels, four numbers each.
+std::vector<double> expected_pixels(const GatherWork& p) {
+  const GatherProblem& q = p.problem;
+  const SurfaceImage& image = *q.image;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < image.depth.size(); i += q.every) {
+    const glm::dvec3 e =
+        image.depth[i] > 0
+            ? reference::gather(*q.basis, q.transport, q.options, p.light.cascades,
+                                reference::surface_position(image.view, i, double{image.depth[i]}),
+                                glm::dvec3(image.normal[i]))
+            : glm::dvec3(0);
+    append_pixel(values, e, 0);
   }
-  const std::vector<ClpvGrid> grids = cascade_grids({0.1f, 0.2f, 0.3f}, kCascades, kFinestEdge, kGrid);
-  const GatherOptions options{.grid = kGrid,
-                              .gather = variant.gather,
-                              .lobes = variant.lobes,
-                              .table = variant.table,
-                              .format = variant.format,
-                              .filtered = variant.filtered};
-  const bool visible = variant.gather == Gathering::visible;
-  const std::vector<std::uint8_t> occluded = random_occlusion(random);
-  const Buffer occluded_on_device = session.upload(occluded, "check: occluded cells");
-  std::vector<Volume> light;
-  std::vector<clpv::Volume> lit;
-  for (int c = 0; c < kCascades; ++c) {
-    light.push_back(random_light(basis, kGrid, random));
-    lit.push_back(on_device(session, light.back(), variant.format));
-  }
-  std::vector<const clpv::Volume*> volumes;
-  std::vector<Cascade> cascades;
-  for (int c = 0; c < kCascades; ++c) {
-    volumes.push_back(&lit[c]);
-    cascades.push_back({grids[c], &light[c], occluded.data() + c * visibility_bytes(kGrid)});
-  }
-  const Surface camera = upload_surface(session, image);
-  Buffer irradiance = session.buffer(image.depth.size() * sizeof(cl_float4), "check: irradiance");
-  Gatherer(session, basis, transport, options)
-      .gather(camera, {grids, volumes, 1, visible ? occluded_on_device : Buffer()}, irradiance);
-  std::vector<glm::dvec4> expected;
-  for (const glm::dvec3& e : gather(basis, transport, options, cascades, image))
-    expected.emplace_back(e, 0.0);
-  CheckResult result = compare_pixels(session.read<cl_float4>(irradiance, image.depth.size()), expected,
-                                      image.view.width, "gather", variant.name);
-  result.allowed = tolerance(compared_as(variant), variant.format.storage);
-  return result;
+  return values;
 }
 
-void compare(Session& session, const CheckScope& scope, const Basis& basis, TransportKind transport,
-             const Variant& variant, CheckResults& results) {
-  compare_selected(scope, "gather", fmt::format("{}/{}/{}", basis.name(), name_of(transport), variant.name),
-                   results, [&] { return check_one(session, basis, transport, variant); });
-}
-
-/// Tests all other volume formats; images both with the device's filter and from texels.
-void check_formats(Session& session, const CheckScope& scope, CheckResults& results) {
-  const std::unique_ptr<Basis> basis = make_basis("sh2");
-  constexpr TransportKind transport = TransportKind::sweep;
-  for (const VolumeFormat& format :
-       other_formats(session.device(), {kGrid, basis->size(), 3}, scope.formats)) {
-    Variant variant{.name = format_name(format), .format = format};
-    if (format.layout == Layout::image) {
-      variant.name += " filter";
-      compare(session, scope, *basis, transport, variant, results);
-      variant.name = format_name(format) + " texels";
-      variant.filtered = false;
-    }
-    compare(session, scope, *basis, transport, variant, results);
-    variant.gather = Gathering::visible;
-    variant.name += " visible";
-    compare(session, scope, *basis, transport, variant, results);
-  }
+Cost cost_of(const GatherWork& p) {
+  const GatherOptions& o = p.problem.options;
+  const int n = p.problem.basis->size();
+  const auto pixels = static_cast<double>(p.pixels());
+  Cost cost;
+  cost.bytes = pixels * (sizeof(float) + 2 * sizeof(cl_float4));
+  for (const Volume& volume : p.light.stored)  // images are read once; buffers are packed: read, written, read again
+    cost.bytes += static_cast<double>(volume.bytes()) * (o.format.layout == Layout::image ? 1 : 3);
+  cost.working_set = cost.bytes;
+  // Reads per pixel in one cascade: eight cells, or one filtered texel. A read of packed buffers has two coefficients
+  // of three channels.
+  const double texels = kChannels * accesses_per_cell(o.format, n);
+  cost.reads_per_cell = o.format.layout != Layout::image ? 8.0 * ((n + 1) / 2)
+                        : o.filtered                     ? texels
+                                                         : 8 * texels;
+  // Per coefficient and channel: 8 multiply-adds of the trilinear interpolation, unless the filter does them, and one of
+  // the dot product g(n) . c.
+  cost.flops = pixels * kChannels * n * (filtered_by_device(o) ? 2 : 2 * 8 + 2);
+  return cost;
 }
 
 }  // namespace
 
-CheckResults check_gather(Session& session, const CheckScope& scope) {
-  CheckResults results;
-  for (const std::string& name : scope.bases) {
-    const std::unique_ptr<Basis> basis = make_basis(name);
-    if (!scope.thorough && name == "sh2") continue;  // sh3 has the same code
-    compare(session, scope, *basis, TransportKind::sampled, {"plain"}, results);
-    if (scope.thorough || name == "sh3") {
-      compare(session, scope, *basis, TransportKind::sampled,
-              {.name = "visible", .gather = Gathering::visible}, results);
-    }
-    if (basis->centres().empty()) continue;  // no table
-    if (!scope.thorough && basis->size() > 4) continue;
-    const LobeOptions functions{.table_functions = true};
-    compare(session, scope, *basis, TransportKind::sampled, {"table", functions}, results);
-    if (!session.device().images) continue;
-    compare(session, scope, *basis, TransportKind::sampled, {"table image", functions, TableStorage::image},
-            results);
-  }
-  const std::unique_ptr<Basis> swept = swept_basis();  // all bases of swept light
-  compare(session, scope, *swept, TransportKind::sweep, {"plain"}, results);
-  compare(session, scope, *swept, TransportKind::sweep, {.name = "visible", .gather = Gathering::visible},
-          results);
-  check_formats(session, scope, results);
-  return results;
+Job gather_job(Session& session, const GatherProblem& problem, const Share& share) {
+  const auto p = std::make_shared<GatherWork>(session, problem);
+  Job job;
+  job.cost = cost_of(*p);
+  job.reset = [p, &session] { session.fill_zero(p->irradiance, p->bytes()); };
+  job.run = [p] {
+    p->gatherer.gather(p->problem.camera, p->light.gathered(), p->irradiance);
+  };
+  job.compare = [p, &session, share] {
+    const GatherProblem& q = p->problem;
+    const Values expected = share([&] { return expected_pixels(*p); });
+    return compare_pixels(session.read<cl_float4>(p->irradiance, p->pixels()), *expected,
+                          q.image->view.width,
+                          tolerance(compared_as(q.options), q.options.format.storage), q.every);
+  };
+  return job;
 }
 
-}  // namespace clpv::reference
+GatherProblem random_gathering(Session& session, const std::shared_ptr<const Basis>& basis,
+                               TransportKind transport, const GatherOptions& options) {
+  std::mt19937 random(11);
+  SurfaceImage image = random_surfaces(random);
+  for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
+    if (rounding_decides(*basis, options.lobes, glm::dvec3(image.normal[pixel]))) image.depth[pixel] = 0;
+  }
+  std::vector<std::uint8_t> occluded = random_occlusion(kCascades, options.grid, random);
+  if (options.gather != Gathering::visible) occluded.clear();
+  return {basis,
+          transport,
+          options,
+          random_cascades(*basis, kCascades, kFinestEdge, options.grid, std::move(occluded), random),
+          upload_surface(session, image),
+          std::make_shared<const SurfaceImage>(image)};
+}
+
+Cases gather_cases(const CheckScope& scope) {
+  Cases cases;
+  const auto add = [&](const std::string& basis, TransportKind transport, const std::string& name,
+                       GatherOptions options) {
+    options.grid = kGrid;
+    cases.push_back(job_case(
+        Stage::gather, fmt::format("{}/{}/{}", basis, name_of(transport), name), [=](Session& session) {
+          return gather_job(session, random_gathering(session, make_basis(basis), transport, options));
+        }));
+  };
+  const GatherOptions visible{.gather = Gathering::visible};
+  for (const std::string& name : scope.bases) {
+    if (!scope.thorough && name == "sh2") continue;  // sh3 has the same code
+    add(name, TransportKind::sampled, "plain", {});
+    if (scope.thorough || name == "sh3") add(name, TransportKind::sampled, "visible", visible);
+    const std::unique_ptr<Basis> basis = make_basis(name);
+    if (basis->centres().empty()) continue;  // no table
+    if (!scope.thorough && basis->size() > 4) continue;
+    GatherOptions table{.lobes = {.table_functions = true}};
+    add(name, TransportKind::sampled, "table", table);
+    table.table = TableStorage::image;
+    add(name, TransportKind::sampled, "table image", table);
+  }
+  const std::string swept = swept_basis()->name();  // all bases of swept light
+  add(swept, TransportKind::sweep, "plain", {});
+  add(swept, TransportKind::sweep, "visible", visible);
+  for (const VolumeFormat& format : scope.formats) {  // images both with the device's filter and from texels
+    GatherOptions options{.format = format};
+    std::string name = format_name(format);
+    if (format.layout == Layout::image) {
+      add("sh2", TransportKind::sweep, name + " filter", options);
+      name += " texels";
+      options.filtered = false;
+    }
+    add("sh2", TransportKind::sweep, name, options);
+    options.gather = Gathering::visible;
+    add("sh2", TransportKind::sweep, name + " visible", options);
+  }
+  return cases;
+}
+
+}  // namespace clpv::verify

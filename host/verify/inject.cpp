@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Injection: kernels against CPU reference on small random surfaces.
-#include "pipeline/inject/inject.hpp"
+// Injection: kernels against CPU reference. Checks use small random surfaces.
+#include "verify/inject.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,9 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <span>
 
+#include "pipeline/inject/inject.hpp"
 #include "pipeline/raster/view.hpp"
 #include "reference/inject.hpp"
 #include "reference/view.hpp"
@@ -18,7 +20,7 @@
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 namespace {
 
 constexpr int kGrid = 5;  // odd and small: many texels per cell, several segments in some cells
@@ -65,7 +67,7 @@ SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool o
     surface.depth[i] = uniform(random) > 0.8f ? 0 : kDistance + kSpread * uniform(random);
     surface.normal[i] = glm::vec4(glm::normalize(1.2f * around - forward), 0);
     surface.colour[i] = 0.5f + 0.5f * glm::vec4(uniform(random), uniform(random), uniform(random), 0);
-    const glm::dvec3 point = grid_point(surface, i, kCells, light);
+    const glm::dvec3 point = reference::grid_point(surface, i, kCells, light);
     const bool unsure =
         lobes.kind == LobeKind::rotate && rounding_decides(basis, lobes, glm::dvec3(surface.normal[i]));
     if (unsure || near_border(light ? point : point + 0.5)) surface.depth[i] = 0;
@@ -80,7 +82,7 @@ SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool o
 /// The same surface as points without a view.
 SurfaceImage as_points(SurfaceImage surface) {
   for (std::size_t i = 0; i < surface.depth.size(); ++i) {
-    const glm::dvec3 at = surface_position(surface.view, static_cast<double>(i % kWidth),
+    const glm::dvec3 at = reference::surface_position(surface.view, static_cast<double>(i % kWidth),
                                            static_cast<double>(i / kWidth), surface.depth[i]);
     surface.position.emplace_back(glm::vec3(at), 1);
     if (surface.depth[i] == 0) surface.normal[i] = glm::vec4(0);
@@ -89,15 +91,106 @@ SurfaceImage as_points(SurfaceImage surface) {
   return surface;
 }
 
-/// One comparison of injected light, or of geometry with blockers.
+/// Volumes and kernels of one injection.
+struct InjectWork {
+  InjectProblem problem;
+  std::optional<Volume> light, geometry;
+  Injector injector;
+
+  InjectWork(Session& session, const InjectProblem& p)
+      : problem(p), injector(session, *p.basis, problem.options) {
+    const InjectOptions& o = p.options;
+    if (p.light) light.emplace(session, VolumeShape{o.grid, p.basis->size(), 3}, "injected light", o.format);
+    if (!p.blockers.empty())
+      geometry.emplace(session, VolumeShape{o.grid + 1, blocking_size(o.blocking, *p.basis), 1},
+                       "geometry volume", o.format);
+  }
+
+  void clear(Session& session) {
+    if (light) light->clear(session);
+    if (geometry) geometry->clear(session);
+  }
+  void run() {
+    if (light) injector.inject_light(problem.light->surface, problem.grid, *light);
+    for (const InjectedSurface& blocker : problem.blockers)
+      injector.inject_geometry(blocker.surface, problem.grid, *geometry, problem.stride);
+  }
+};
+
+/// Expected volumes: light (if injected), then geometry (if injected) and the alternative geometry that is equally
+/// correct where rounding decides between two surfaces.
+std::vector<double> expected_volumes(const InjectProblem& p) {
+  const InjectOptions& o = p.options;
+  std::vector<double> values;
+  if (p.light) {
+    reference::Volume light(o.grid, p.basis->size(), 3);
+    reference::inject_light(*p.light->image, p.grid, *p.basis, o, light);
+    values = std::move(light.values);
+  }
+  if (p.blockers.empty()) return values;
+  reference::Volume merged(o.grid + 1, blocking_size(o.blocking, *p.basis), 1), alternative = merged;
+  const reference::Volume none = merged;
+  for (const InjectedSurface& blocker : p.blockers) {
+    reference::Volume found = none;
+    reference::inject_geometry(*blocker.image, p.grid, *p.basis, o, found, p.stride);
+    alternative = reference::merged_against_ties(merged, found, *p.basis, o.blocking);
+    reference::merge_geometry(found, *p.basis, o.blocking, merged);
+  }
+  values.insert(values.end(), merged.values.begin(), merged.values.end());
+  values.insert(values.end(), alternative.values.begin(), alternative.values.end());
+  return values;
+}
+
+/// The larger deviation of both volumes.
+Deviation compare(Session& session, const InjectWork& p, const std::vector<double>& expected) {
+  const Basis& basis = *p.problem.basis;
+  const InjectOptions& o = p.problem.options;
+  const bool usual = o.lobes.kind == LobeKind::exact || o.format.storage == Storage::float16;
+  Deviation result{0, tolerance(usual ? "inject" : "inject-rotated", o.format.storage)};
+  const auto take = [&](const Volume& volume, bool light) {
+    const std::vector<float> values = volume.read(session);
+    const std::size_t size = values.size();
+    const std::span<const double> all(expected);
+    const auto merged = light ? all.first(size) : all.last(2 * size).first(size);
+    const auto weights = [&](const glm::dvec3& w) {
+      return light ? basis.evaluate(w) : blocking_weights(o.blocking, basis, o.lobes, w);
+    };
+    const VolumeShape& shape = volume.shape();
+    const Deviation found = compare_functions(values, merged, light ? merged : all.last(size), shape.n,
+                                              shape.coefficients, weights);
+    result.take(found.worst,
+                [&] { return fmt::format("{}, {}", light ? "light" : "geometry", found.place); });
+  };
+  if (p.light) take(*p.light, true);
+  if (p.geometry) take(*p.geometry, false);
+  return result;
+}
+
+/// Bytes of each texel's depth and normal, and of its colour for the light volume. Clearing volumes is not timed.
+Cost cost_of(const InjectWork& p) {
+  const auto bytes = [](const Surface& surface, int fields) {
+    const std::size_t field = surface.format == RsmFormat::paper ? sizeof(cl_uint) : sizeof(cl_float4);
+    return static_cast<double>(surface.view.width) * surface.view.height *
+           static_cast<double>(sizeof(float) + fields * field);
+  };
+  Cost cost;
+  if (p.problem.light) cost.bytes += bytes(p.problem.light->surface, 2);
+  for (const InjectedSurface& blocker : p.problem.blockers) cost.bytes += bytes(blocker.surface, 1);
+  cost.working_set = cost.bytes;
+  for (const std::optional<Volume>* volume : {&p.light, &p.geometry})
+    if (*volume) cost.working_set += static_cast<double>((*volume)->bytes());
+  return cost;
+}
+
+/// One case of injected light, or of geometry with blockers.
 struct InjectCase {
   InjectOptions options = {};
   bool light = true, orthographic = true, points = false;
   RsmFormat format = RsmFormat::float32;
   int stride = 1;
 
-  std::string name(const Basis& basis) const {
-    std::string name = fmt::format("{}/{}/{}", basis.name(),
+  std::string name(const std::string& basis) const {
+    std::string name = fmt::format("{}/{}/{}", basis,
                                    points  ? "points"
                                    : light ? "light"
                                            : "geometry",
@@ -112,51 +205,17 @@ struct InjectCase {
   }
 };
 
-/// Blockers come from two surfaces, to test merging.
-CheckResult check_one(Session& session, const Basis& basis, InjectCase c) {
-  c.options.grid = kGrid;
-  const InjectOptions& options = c.options;
-  const int samples = kGrid + (c.light ? 0 : 1),
-            numbers = c.light ? basis.size() : blocking_size(options.blocking, basis),
-            channels = c.light ? 3 : 1;
-  clpv::Volume volume(session, {samples, numbers, channels}, "check: injection", options.format);
-  Volume expected(samples, numbers, channels);
-  Injector injector(session, basis, options);
-  if (c.light) {
-    SurfaceImage image = random_surface(basis, options.lobes, c.orthographic, true, c.format, 11);
-    if (c.points) image = as_points(std::move(image));
-    const Surface surface = upload_surface(session, image, c.format);
-    injector.inject_light(surface, kCells, volume);
-    inject_light(read_surface(session, surface), kCells, basis, options, expected);
-  }
-  for (unsigned seed = 12; seed < 14 && !c.light; ++seed) {
-    const bool from_above = c.orthographic == (seed == 12);
-    const SurfaceImage image = random_surface(basis, options.lobes, from_above, false, c.format, seed);
-    const Surface surface = upload_surface(session, image, c.format);
-    injector.inject_geometry(surface, kCells, volume, c.stride);
-    inject_geometry(read_surface(session, surface), kCells, basis, options, expected, c.stride);
-  }
-  const auto weights = [&](const glm::dvec3& w) {
-    return c.light ? basis.evaluate(w) : blocking_weights(options.blocking, basis, options.lobes, w);
-  };
-  const Comparison apart =
-      compare_functions(volume.read(session), expected.values, expected.values, samples, numbers, weights);
-  const bool rotated = options.lobes.kind == LobeKind::rotate;
-  const double allowed = rotated ? tolerance("inject-rotated") : tolerance("inject", options.format.storage);
-  return {"inject", c.name(basis), apart.worst, allowed, apart.place};
-}
-
-/// Returns the comparisons of one basis. Light and blockers evaluate the same lobes, so without `thorough` only the small
+/// Returns the cases of one basis. Light and blockers evaluate the same lobes, so without `thorough` only the small
 /// bases compare both. Features nearly independent of the basis use them too.
-std::vector<InjectCase> cases_of(const Device& device, const Basis& basis, bool thorough) {
+std::vector<InjectCase> cases_of_basis(const Basis& basis, bool thorough) {
   const bool both = thorough || basis.size() == 4;
   std::vector<InjectCase> cases = {{}};
   if (both) cases.push_back({.light = false});
   if (!basis.centres().empty()) {  // rotated lobes of other bases are exact
     const InjectOptions rotated{.lobes = {.kind = LobeKind::rotate}};
     cases.push_back({.options = rotated});
-    if (both) cases.push_back({.options = rotated, .light = false});
-    if (device.images && both) {
+    if (both) {
+      cases.push_back({.options = rotated, .light = false});
       cases.push_back({.options = rotated, .orthographic = false});
       cases.back().options.table = TableStorage::image;
     }
@@ -174,29 +233,64 @@ std::vector<InjectCase> cases_of(const Device& device, const Basis& basis, bool 
 
 }  // namespace
 
-CheckResults check_inject(Session& session, const CheckScope& scope) {
-  CheckResults results;
-  const auto add = [&](const Basis& basis, const InjectCase& c) {
-    compare_selected(scope, "inject", c.name(basis), results, [&] { return check_one(session, basis, c); });
-  };
-  for (const std::string& name : scope.bases) {
-    const std::unique_ptr<Basis> basis = make_basis(name);
-    for (const InjectCase& c : cases_of(session.device(), *basis, scope.thorough)) add(*basis, c);
-  }
-  // Independent of the basis: areas, points without a view, and all other volume formats.
-  const InjectOptions areas{.blocking = Blocking::areas};
-  std::vector<InjectCase> cases = {{.options = areas, .light = false},
-                                   {.orthographic = false, .points = true}};
-  for (const int stride : {1, 2, 3})
-    cases.push_back({.options = areas, .light = false, .orthographic = false, .stride = stride});
-  const std::unique_ptr<Basis> basis = make_basis("sh2");
-  for (const VolumeFormat& format :
-       other_formats(session.device(), {kGrid + 1, basis->size(), 3}, scope.formats)) {
-    cases.push_back({.options = {.format = format}, .orthographic = false});
-    if (scope.thorough) cases.push_back({.options = {.format = format}, .light = false});
-  }
-  for (const InjectCase& c : cases) add(*basis, c);
-  return results;
+InjectedSurface upload_injected(Session& session, const SurfaceImage& image, RsmFormat format,
+                                float colour_scale) {
+  const Surface surface = upload_surface(session, image, format, colour_scale);
+  return {surface, std::make_shared<const SurfaceImage>(read_surface(session, surface))};
 }
 
-}  // namespace clpv::reference
+Job inject_job(Session& session, const InjectProblem& problem, const Share& share) {
+  const auto p = std::make_shared<InjectWork>(session, problem);
+  Job job;
+  job.cost = cost_of(*p);
+  job.reset = [p, &session] { p->clear(session); };
+  job.run = [p] { p->run(); };
+  job.compare = [p, &session, share] {
+    return compare(session, *p, *share([&] { return expected_volumes(p->problem); }));
+  };
+  return job;
+}
+
+InjectProblem random_injection(Session& session, const std::shared_ptr<const Basis>& basis,
+                               const InjectOptions& options, bool light, bool orthographic, RsmFormat format,
+                               bool points) {
+  InjectProblem problem{basis, options, kCells, {}, {}};
+  problem.options.grid = kGrid;
+  const auto surface = [&](bool above, unsigned seed) {
+    SurfaceImage image = random_surface(*basis, options.lobes, above, light, format, seed);
+    if (points) image = as_points(std::move(image));
+    return upload_injected(session, image, format);
+  };
+  if (light)
+    problem.light = surface(orthographic, 11);
+  else
+    problem.blockers = {surface(orthographic, 12), surface(!orthographic, 13)};
+  return problem;
+}
+
+Cases inject_cases(const CheckScope& scope) {
+  Cases cases;
+  const auto add = [&](const std::string& basis, const InjectCase& c) {
+    cases.push_back(job_case(Stage::inject, c.name(basis), [basis, c](Session& session) {
+      InjectProblem problem = random_injection(session, make_basis(basis), c.options, c.light, c.orthographic,
+                                               c.format, c.points);
+      problem.stride = c.stride;
+      return inject_job(session, problem);
+    }));
+  };
+  for (const std::string& name : scope.bases)
+    for (const InjectCase& c : cases_of_basis(*make_basis(name), scope.thorough)) add(name, c);
+  // Independent of the basis: areas, points without a view, and all other volume formats.
+  const InjectOptions areas{.blocking = Blocking::areas};
+  add("sh2", {.options = areas, .light = false});
+  add("sh2", {.orthographic = false, .points = true});
+  for (const int stride : {1, 2, 3})
+    add("sh2", {.options = areas, .light = false, .orthographic = false, .stride = stride});
+  for (const VolumeFormat& format : scope.formats) {
+    add("sh2", {.options = {.format = format}, .orthographic = false});
+    if (scope.thorough) add("sh2", {.options = {.format = format}, .light = false});
+  }
+  return cases;
+}
+
+}  // namespace clpv::verify

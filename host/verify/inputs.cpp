@@ -7,11 +7,12 @@
 #include <cmath>
 #include <random>
 
+#include "pipeline/frame/cascade.hpp"
 #include "pipeline/raster/view.hpp"
+#include "pipeline/voxels/visibility.hpp"
 #include "verify/comparison.hpp"
-#include "verify/tolerances.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 namespace {
 
 constexpr unsigned kWidth = 45, kHeight = 31;  // no multiples of a work-group
@@ -30,9 +31,9 @@ void add_materials(Scene& scene, std::mt19937& random) {
 
 constexpr int kMapSize = 16;  // texels along each side of a shadow map
 
-MappedLight mapped(ClpvLight light, const ClpvMedium& medium, float depth) {
+reference::MappedLight mapped(ClpvLight light, const ClpvMedium& medium, float depth) {
   light.medium = medium;
-  MappedLight result{light, {}};
+  reference::MappedLight result{light, {}};
   for (const ClpvView& view : shadow_views(light, {{-30, -30, -30}, {30, 30, 30}}, kMapSize))
     result.maps.push_back({view, std::vector<float>(kMapSize * kMapSize, depth)});
   return result;
@@ -78,17 +79,20 @@ bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm:
   return false;
 }
 
-CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vector<glm::dvec4>& expected,
-                           unsigned width, std::string_view stage, const std::string& variant) {
-  const auto found = [&](std::size_t i) { return static_cast<double>(device[i / 4].s[i % 4]); };
-  const auto wanted = [&](std::size_t i) { return expected[i / 4][i % 4]; };
-  const WorstError worst = worst_difference(4 * expected.size(), found, wanted);
-  CheckResult result{std::string(stage), variant, worst.value, tolerance(stage), {}};
-  if (worst.value == 0) return result;
-  const std::size_t pixel = worst.at / 4;
-  result.place = fmt::format("pixel {},{} channel {}: {:.7g}, expected {:.7g}", pixel % width, pixel / width,
-                             worst.at % 4, found(worst.at), wanted(worst.at));
-  return result;
+Deviation compare_pixels(const std::vector<cl_float4>& device, std::span<const double> expected,
+                         unsigned width, double allowed, std::size_t every) {
+  const auto found = [&](std::size_t i) { return static_cast<double>(device[i / 4 * every].s[i % 4]); };
+  const auto wanted = [&](std::size_t i) { return expected[i]; };
+  const WorstError worst = worst_difference(expected.size(), found, wanted);
+  if (worst.value == 0) return {0, allowed};
+  const std::size_t pixel = worst.at / 4 * every;
+  return {worst.value, allowed,
+          fmt::format("pixel {},{} channel {}: {:.7g}, expected {:.7g}", pixel % width, pixel / width,
+                      worst.at % 4, found(worst.at), wanted(worst.at))};
+}
+
+void append_pixel(std::vector<double>& values, const glm::dvec3& colour, double alpha) {
+  values.insert(values.end(), {colour.x, colour.y, colour.z, alpha});
 }
 
 Scene triangle_soup() {
@@ -117,41 +121,73 @@ Scene triangle_soup() {
   return scene;
 }
 
-Volume random_light(const Basis& basis, int n, std::mt19937& random) {
+std::shared_ptr<reference::Volume> random_light(const Basis& basis, int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-0.3f, 1);
-  Volume volume(n, basis.size());
-  for (double& value : volume.values) value = uniform(random) > 0.5f ? uniform(random) : 0;
+  auto volume = std::make_shared<reference::Volume>(n, basis.size());
+  for (double& value : volume->values) value = uniform(random) > 0.5f ? uniform(random) : 0;
   return volume;
 }
 
-Volume random_blockers(int numbers, int n, std::mt19937& random) {
+std::shared_ptr<reference::Volume> random_blockers(int numbers, int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-0.5f, 1);
-  Volume volume(n + 1, numbers, 1);
-  for (double& value : volume.values) value = std::max(0.0f, uniform(random));
+  auto volume = std::make_shared<reference::Volume>(n + 1, numbers, 1);
+  for (double& value : volume->values) value = std::max(0.0f, uniform(random));
   return volume;
 }
 
-clpv::Volume on_device(Session& session, const Volume& from, const VolumeFormat& format) {
-  clpv::Volume volume(session, {from.n, from.coefficients, from.channels}, "check: volume", format);
+Volume on_device(Session& session, const reference::Volume& from, const VolumeFormat& format) {
+  Volume volume(session, {from.n, from.coefficients, from.channels}, "volume", format);
   volume.write(session, {from.values.begin(), from.values.end()});
   return volume;
 }
 
-std::vector<MappedLight> lights_in(const ClpvMedium& medium) {
+std::vector<std::uint8_t> random_occlusion(int cascades, int grid, std::mt19937& random) {
+  std::vector<std::uint8_t> occluded(cascades * visibility_bytes(grid));
+  for (std::uint8_t& bits : occluded) bits = random() % 256;
+  return occluded;
+}
+
+CascadeLight random_cascades(const Basis& basis, int count, double edge, int grid,
+                             std::vector<std::uint8_t> occluded, std::mt19937& random) {
+  CascadeLight result{cascade_grids({0.1f, 0.2f, 0.3f}, count, edge, grid), {}, std::move(occluded)};
+  for (int c = 0; c < count; ++c) result.light.push_back(random_light(basis, grid, random));
+  return result;
+}
+
+CascadesOnDevice::CascadesOnDevice(Session& session, const CascadeLight& from, const VolumeFormat& format)
+    : grids(from.grids) {
+  for (const SharedVolume& light : from.light) stored.push_back(on_device(session, *light, format));
+  const bool occludes = !from.occluded.empty();
+  if (occludes) occluded = session.upload(from.occluded, "occluded cells");
+  for (std::size_t c = 0; c < from.grids.size(); ++c) {
+    const std::size_t first = c * visibility_bytes(static_cast<int>(from.grids[c].n));
+    cascades.push_back(
+        {from.grids[c], from.light[c].get(), occludes ? from.occluded.data() + first : nullptr});
+  }
+}
+
+GatheredLight CascadesOnDevice::gathered() const {
+  GatheredLight light{grids, {}};
+  for (const Volume& volume : stored) light.accumulated.push_back(&volume);
+  light.occluded = occluded;
+  return light;
+}
+
+std::vector<reference::MappedLight> lights_in(const ClpvMedium& medium) {
   const ClpvLight sun{{}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {},
                       {}};
   const ClpvLight point{{1, 1.5f, -2.3f}, CLPV_LIGHT_POINT, {}, 0, {6, 5, 4}, 0, 0, {}, {}};
   const ClpvLight spot{{-1, 2.5f, -3}, CLPV_LIGHT_SPOT, {0.6f, -0.8f, 0}, 9, {20, 30, 20}, 2, -1, {}, {}};
-  MappedLight unshadowed{spot, {}};
+  reference::MappedLight unshadowed{spot, {}};
   unshadowed.light.medium = medium;
   return {mapped(sun, medium, 0), mapped(sun, medium, 1e-3f), mapped(point, medium, 0), unshadowed};
 }
 
-std::vector<ShadowedLight> on_device(Session& session, const std::vector<MappedLight>& lights) {
+std::vector<ShadowedLight> on_device(Session& session, const std::vector<reference::MappedLight>& lights) {
   std::vector<ShadowedLight> shadowed;
-  for (const MappedLight& light : lights) {
+  for (const reference::MappedLight& light : lights) {
     ShadowedLight& there = shadowed.emplace_back(ShadowedLight{light.light, {}, {}});
-    for (const ShadowMap& map : light.maps) {
+    for (const reference::ShadowMap& map : light.maps) {
       there.views.push_back(map.view);
       there.depths.push_back(session.upload(map.depth, "check: shadow map"));
     }
@@ -160,4 +196,4 @@ std::vector<ShadowedLight> on_device(Session& session, const std::vector<MappedL
   return shadowed;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::verify

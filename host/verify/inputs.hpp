@@ -1,36 +1,41 @@
 // SPDX-License-Identifier: MIT
-// Random inputs for checks (surfaces, triangles, volumes), and comparison of images and volumes.
+// Random inputs for checks (surfaces, triangles, volumes), and comparison of images.
 #pragma once
 
 #include <CL/opencl.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <random>
-#include <string>
-#include <string_view>
+#include <span>
 #include <vector>
 
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "pipeline/gather/gather.hpp"
 #include "pipeline/raster/shade.hpp"
 #include "pipeline/raster/surface.hpp"
+#include "reference/gather.hpp"
 #include "reference/shade.hpp"
 #include "reference/volume.hpp"
 #include "scene/scene.hpp"
-#include "verify/check.hpp"
-#include "verify/comparison.hpp"
+#include "verify/job.hpp"
 #include "volume/volume.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 
 /// Returns the G-buffer of a camera near the origin: random depths up to 12 m, normals, colours and emission. 10 % of
 /// the pixels show no surface.
 SurfaceImage random_surfaces(std::mt19937& random);
 
-/// Compares red, green and blue of every pixel (and alpha, if the CPU reference has it) with the CPU reference. Errors
-/// are relative to its largest value and compared with the stage's tolerance. `width`: image width, for places.
-CheckResult compare_pixels(const std::vector<cl_float4>& device, const std::vector<glm::dvec4>& expected,
-                           unsigned width, std::string_view stage, const std::string& variant);
+/// Compares red, green, blue and alpha of every `every`-th pixel with the CPU reference: `expected` has four numbers for
+/// each. Errors are relative to its largest value. `width`: image width, for places.
+Deviation compare_pixels(const std::vector<cl_float4>& device, std::span<const double> expected,
+                         unsigned width, double allowed, std::size_t every = 1);
+
+/// Appends red, green and blue of `colour`, and `alpha`.
+void append_pixel(std::vector<double>& values, const glm::dvec3& colour, double alpha);
 
 /// Returns true if single and double precision may read different table entries. This concerns looking up `direction`,
 /// and rotating a lobe to it or to its opposite. Returns false without a table.
@@ -41,19 +46,44 @@ bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm:
 Scene triangle_soup();
 
 /// Returns light in 1 of 3 cells, of either sign, as from bases with negative lobes.
-Volume random_light(const Basis& basis, int n, std::mt19937& random);
+std::shared_ptr<reference::Volume> random_light(const Basis& basis, int n, std::mt19937& random);
 
 /// Returns `numbers` values in [0, 1] per corner.
-Volume random_blockers(int numbers, int n, std::mt19937& random);
+std::shared_ptr<reference::Volume> random_blockers(int numbers, int n, std::mt19937& random);
 
-/// Returns a sun in the open and one that is blocked, a point light and a spot without maps, in a medium. Maps are empty or block
-/// everything, so that rounding decides no texel.
-std::vector<MappedLight> lights_in(const ClpvMedium& medium);
+/// Returns a sun in the open and one that is blocked, a point light and a spot without maps, in a medium. Maps are empty
+/// or block everything, so that rounding decides no texel.
+std::vector<reference::MappedLight> lights_in(const ClpvMedium& medium);
 
 /// Returns lights with their maps on the device.
-std::vector<ShadowedLight> on_device(Session& session, const std::vector<MappedLight>& lights);
+std::vector<ShadowedLight> on_device(Session& session, const std::vector<reference::MappedLight>& lights);
 
 /// Returns a volume on the device with the same values.
-clpv::Volume on_device(Session& session, const Volume& from, const VolumeFormat& format);
+Volume on_device(Session& session, const reference::Volume& from, const VolumeFormat& format);
 
-}  // namespace clpv::reference
+/// Light in nested cascades, as stages read it.
+struct CascadeLight {
+  std::vector<ClpvGrid> grids;
+  std::vector<SharedVolume> light;
+  std::vector<std::uint8_t> occluded;  ///< of visibility_masks() for all cascades; empty: nothing is occluded
+};
+
+/// Returns random light in `count` cascades about a point near the origin. `edge`: of the finest [m].
+CascadeLight random_cascades(const Basis& basis, int count, double edge, int grid,
+                             std::vector<std::uint8_t> occluded, std::mt19937& random);
+
+/// Returns random occlusion: each cell is occluded from half of the points.
+std::vector<std::uint8_t> random_occlusion(int cascades, int grid, std::mt19937& random);
+
+/// The same light on the device and for the CPU reference. `from` must outlive it.
+struct CascadesOnDevice {
+  CascadesOnDevice(Session& session, const CascadeLight& from, const VolumeFormat& format);
+  std::vector<ClpvGrid> grids;
+  std::vector<Volume> stored;
+  Buffer occluded;  ///< null if nothing is
+  std::vector<reference::Cascade> cascades;
+  /// What Gatherer::gather() takes; must not outlive this.
+  GatheredLight gathered() const;
+};
+
+}  // namespace clpv::verify

@@ -6,9 +6,10 @@
 
 #include "verify/check.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 
-/// Writes one <testsuite> per stage, in order, and one <testcase> per comparison; failures report error and place.
+/// Writes one <testsuite> per stage, in order, and one <testcase> per result. Wrong results are failures with error and
+/// place, failed ones errors, unsupported ones skipped.
 std::string junit(const CheckResults& results, const std::string& device);
 
-}  // namespace clpv::reference
+}  // namespace clpv::verify

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Propagation: kernels against CPU reference on a small grid of random light and random blockers.
-#include "pipeline/steps/propagate.hpp"
+// Propagation: kernels against CPU reference. Checks use a small grid of random light and random blockers.
+#include "verify/propagate.hpp"
 
 #include <fmt/format.h>
 
@@ -11,20 +11,109 @@
 #include <string>
 #include <string_view>
 
+#include "codegen/transmittance_source.hpp"
+#include "pipeline/steps/propagate.hpp"
 #include "reference/propagate.hpp"
 #include "support/named_enum.hpp"
 #include "verify/check.hpp"
+#include "verify/comparison.hpp"
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 namespace {
 
 constexpr int kGrid = 7;         // no multiple of a work-group: tests borders and partial work-groups
 constexpr int kFormatGrid = 17;  // whole blocks of 8 cells plus one cell
 constexpr int kSteps = 5;        // light crosses the grid and meets blockers
 
-/// One comparison: a basis, its transport, and options of the kernels.
+/// Volumes and kernels of one propagation.
+struct PropagateWork {
+  PropagateProblem problem;
+  Volume injected, accumulated;
+  std::optional<Volume> geometry;
+  Propagator propagator;
+
+  PropagateWork(Session& session, const PropagateProblem& p)
+      : problem(p),
+        injected(on_device(session, *p.light, p.options.format)),
+        accumulated(session, injected.shape(), "accumulated light", p.options.format),
+        propagator(session, *p.basis, problem.transport, p.options) {
+    if (p.geometry) geometry.emplace(on_device(session, *p.geometry, p.options.format));
+  }
+  void run(int steps) {
+    propagator.propagate({injected, geometry ? &*geometry : nullptr, accumulated}, steps);
+  }
+};
+
+/// Bytes and memory accesses to read or write `coefficients` numbers of a cell in a format.
+struct Access {
+  VolumeFormat format;
+  double bytes(int coefficients) const { return static_cast<double>(bytes_per_cell(format, coefficients)); }
+  double count(int coefficients) const { return accesses_per_cell(format, coefficients); }
+};
+
+/// Adds the cost of one step. Bytes count each value once; reads count every access. `separate_sum`: the step reads the
+/// sum so far besides its source.
+void add_step(Cost& cost, const PropagateOptions& options, const TransportSource& source, bool separate_sum,
+              double blocker_bytes, double blocker_reads) {
+  const double cells = std::pow(options.grid, 3);
+  const Access access{options.format};
+  const int carried = source.target_count;
+  const double sum_in = separate_sum ? access.bytes(carried) : 0.0;
+  cost.bytes +=
+      cells *
+      (kChannels * (access.bytes(source.source_count) + sum_in + 2 * access.bytes(carried)) + blocker_bytes);
+  cost.flops += cells * kChannels * (source.arrive.flops() + carried);
+  cost.reads_per_cell =
+      kChannels * (source.neighbours * access.count(source.source_count) + access.count(carried)) +
+      blocker_reads;
+  cost.writes_per_cell = kChannels * 2 * access.count(carried);
+}
+
+/// Cost of the generated kernels, after a first run has built them. Reads and writes per cell are those of a later step.
+Cost cost_of(PropagateWork& p) {
+  const PropagateOptions& o = p.problem.options;
+  const Basis& basis = *p.problem.basis;
+  const int n = basis.size();
+  const bool fluxes = o.state == State::fluxes;
+  const int carried = fluxes ? 6 : n;
+  const double cells = std::pow(o.grid, 3), corners = std::pow((o.grid + 1.0) / o.grid, 3);
+  const Access access{o.format};
+  // Transmittance is computed once for all steps, a number per link, or in each step from the eight corners.
+  const LinkTransmittance* transmitter = p.propagator.transmitter();
+  const int links = transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
+  const double blocker_bytes = transmitter != nullptr ? access.bytes(links) : corners * access.bytes(n);
+  const double blocker_reads = transmitter != nullptr ? access.count(links) : 8 * access.count(n);
+  const OperationCount evaluation =
+      p.geometry ? transmittance_source(basis, p.problem.transport).operations : OperationCount{};
+  Cost cost;
+  for (int step = 1; step <= p.problem.steps; ++step) {
+    const bool blocked = p.geometry && p.propagator.reads_transmittance(step);
+    if (step == 1 && fluxes) {
+      add_step(cost, o,
+               transport_source(basis, p.problem.transport, {State::coefficients, State::fluxes, false}), true,
+               0, 0);
+      continue;
+    }
+    add_step(cost, o, p.propagator.step_source(blocked), step > 1, blocked ? blocker_bytes : 0,
+             blocked ? blocker_reads : 0);
+    if (blocked && transmitter == nullptr) cost.flops += cells * evaluation.flops();
+  }
+  if (transmitter != nullptr) {
+    cost.bytes += cells * (corners * access.bytes(n) + access.bytes(links));
+    cost.flops += cells * evaluation.flops();
+  }
+  if (fluxes) {  // conversion of six fluxes to coefficients: a product with the lobes, and a sum
+    cost.bytes += cells * kChannels * (2 * access.bytes(n) + access.bytes(carried));
+    cost.flops += cells * kChannels * (2.0 * carried * n + n);
+  }
+  if (o.lobe_time == LobeTime::kernel) cost.flops = 0;  // lobes rotated at run time are not counted
+  cost.working_set = cells * (3 * kChannels * access.bytes(carried) + (p.geometry ? blocker_bytes : 0));
+  return cost;
+}
+
+/// One case: a basis, its transport, and options of the kernels.
 struct PropagateCase {
   TransportKind kind;
   LobeOptions lobes = {};
@@ -32,8 +121,8 @@ struct PropagateCase {
   PropagateOptions options = {};
   bool blockers = true;
 
-  std::string name(const Basis& basis) const {
-    return fmt::format("{}/{}/{}/{}{}{}", basis.name(), name_of(kind), name_of(options.state),
+  std::string name(const std::string& basis) const {
+    return fmt::format("{}/{}/{}/{}{}{}", basis, name_of(kind), name_of(options.state),
                        !blockers                     ? "free"
                        : blocking == Blocking::areas ? "areas"
                                                      : "blockers",
@@ -45,28 +134,8 @@ struct PropagateCase {
   }
 };
 
-CheckResult check_one(Session& session, const Basis& basis, const PropagateCase& c) {
-  const PropagateOptions& options = c.options;
-  const Transport transport = make_transport(c.kind, basis, c.lobes, c.blocking);
-  std::mt19937 random(7);
-  const int n = options.grid;
-  const Volume light = random_light(basis, n, random);
-  const Volume geometry = random_blockers(blocking_size(transport.blocking, basis), n, random);
-  const clpv::Volume injected = on_device(session, light, options.format),
-                     corners = on_device(session, geometry, options.format);
-  clpv::Volume accumulated(session, {n, basis.size(), 3}, "check: accumulated light", options.format);
-  Propagator propagator(session, basis, transport, options);
-  propagator.propagate({injected, c.blockers ? &corners : nullptr, accumulated}, kSteps);
-  const Propagation expected = propagate(transport, light, c.blockers ? &geometry : nullptr, kSteps);
-  const Comparison apart = compare_volumes(accumulated.read(session), expected.accumulated.values, n);
-  const double allowed = options.lobe_time == LobeTime::kernel
-                             ? tolerance("propagate-run-time-lobes")
-                             : tolerance("propagate", options.format.storage);
-  return {"propagate", c.name(basis), apart.worst, allowed, apart.place};
-}
-
-/// Runs the comparison if the scope selects it.
-using Add = std::function<void(const Basis&, const PropagateCase&)>;
+/// Adds a case of the basis of that name.
+using Add = std::function<void(const std::string&, const PropagateCase&)>;
 
 /// A basis and its kernels, with lobes as constants.
 struct ConstantsCase {
@@ -88,13 +157,13 @@ constexpr ConstantsCase kConstants[] = {
     {"bins24", TransportKind::sampled, State::fluxes},
 };
 
-void check_constants(const Basis& basis, const LobeOptions& lobes, bool thorough, const Add& compare) {
+void add_constants(const std::string& basis, const LobeOptions& lobes, bool thorough, const Add& add_case) {
   const auto add = [&](TransportKind kind, State state, bool blockers) {
-    compare(basis,
-            {.kind = kind, .lobes = lobes, .options = {.grid = kGrid, .state = state}, .blockers = blockers});
+    add_case(basis,
+             {.kind = kind, .lobes = lobes, .options = {.grid = kGrid, .state = state}, .blockers = blockers});
   };
   for (const ConstantsCase& c : kConstants) {
-    if (!thorough && c.basis == basis.name()) add(c.kind, c.state, c.blockers);
+    if (!thorough && c.basis == basis) add(c.kind, c.state, c.blockers);
   }
   if (!thorough) return;
   for (const TransportKind kind : stepped_transports()) {
@@ -105,12 +174,11 @@ void check_constants(const Basis& basis, const LobeOptions& lobes, bool thorough
 }
 
 /// Lobes computed in the kernel: exact and rotated ones, with the table as a buffer and as an image.
-void check_run_time_lobes(const Device& device, const Basis& basis, bool full, const Add& compare) {
+void add_run_time_lobes(const std::string& basis, bool full, const Add& add_case) {
   const auto add = [&](TransportKind transport, LobeKind kind, TableStorage table) {
-    if (table == TableStorage::image && !device.images) return;
-    compare(basis, {.kind = transport,
-                    .lobes = {.kind = kind, .table_functions = kind == LobeKind::rotate},
-                    .options = {.grid = kGrid, .lobe_time = LobeTime::kernel, .table = table}});
+    add_case(basis, {.kind = transport,
+                     .lobes = {.kind = kind, .table_functions = kind == LobeKind::rotate},
+                     .options = {.grid = kGrid, .lobe_time = LobeTime::kernel, .table = table}});
   };
   add(TransportKind::sampled, LobeKind::rotate, TableStorage::buffer);
   if (!full) return;
@@ -118,48 +186,67 @@ void check_run_time_lobes(const Device& device, const Basis& basis, bool full, c
   add(TransportKind::exact, LobeKind::rotate, TableStorage::image);
 }
 
-/// Blockers as areas: tests the sets of links, since the basis has little effect.
-void check_areas(bool thorough, const Add& compare) {
-  for (const char* name : {"sh2", "bins24"}) {
-    if (!thorough && std::string(name) != "sh2") continue;
-    const std::unique_ptr<Basis> basis = make_basis(name);
-    for (const TransportKind transport : stepped_transports()) {
-      compare(*basis, {.kind = transport, .blocking = Blocking::areas, .options = {.grid = kGrid}});
-    }
-  }
-}
-
-/// Tests all other volume formats with one basis and transport, which do not affect them.
-void check_formats(const Device& device, const CheckScope& scope, const Add& compare) {
-  const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const VolumeShape corners{kFormatGrid + 1, basis->size(), 1};
-  for (const VolumeFormat& format : other_formats(device, corners, scope.formats)) {
-    compare(*basis, {.kind = TransportKind::sampled, .options = {.grid = kFormatGrid, .format = format}});
-  }
-}
-
 }  // namespace
 
-CheckResults check_propagate(Session& session, const CheckScope& scope) {
-  CheckResults results;
-  const Add compare = [&](const Basis& basis, const PropagateCase& c) {
-    compare_selected(scope, "propagate", c.name(basis), results,
-                     [&] { return check_one(session, basis, c); });
+Job propagate_job(Session& session, const PropagateProblem& problem, const Share& share) {
+  const auto p = std::make_shared<PropagateWork>(session, problem);
+  p->run(std::min(2, problem.steps));  // builds the kernels for cost_of()
+  Job job;
+  job.cost = cost_of(*p);
+  job.reset = [p, &session] { p->accumulated.clear(session); };
+  job.run = [p] { p->run(p->problem.steps); };
+  job.compare = [p, &session, share] {
+    const PropagateProblem& q = p->problem;
+    const Values expected = share([&] {
+      return reference::propagate(q.transport, *q.light, q.geometry.get(), q.steps).accumulated.values;
+    });
+    // In half-floats, the rounding of storage is larger than that of lobes rotated at run time.
+    const Storage storage = q.options.format.storage;
+    const bool at_run_time = q.options.lobe_time == LobeTime::kernel && storage == Storage::float32;
+    return compare_volumes(p->accumulated.read(session), *expected, q.options.grid,
+                           tolerance(at_run_time ? "propagate-run-time-lobes" : "propagate", storage));
+  };
+  return job;
+}
+
+PropagateProblem random_propagation(const std::shared_ptr<const Basis>& basis, const Transport& transport,
+                                    const PropagateOptions& options, bool blocked) {
+  std::mt19937 random(7);
+  PropagateProblem problem{basis, transport, options, kSteps, random_light(*basis, options.grid, random), {}};
+  if (blocked)
+    problem.geometry = random_blockers(blocking_size(transport.blocking, *basis), options.grid, random);
+  return problem;
+}
+
+Cases propagate_cases(const CheckScope& scope) {
+  Cases cases;
+  const Add add = [&](const std::string& name, const PropagateCase& c) {
+    cases.push_back(job_case(Stage::propagate, c.name(name), [name, c](Session& session) {
+      const std::shared_ptr<const Basis> basis = make_basis(name);
+      return propagate_job(
+          session, random_propagation(basis, make_transport(c.kind, *basis, c.lobes, c.blocking), c.options,
+                                      c.blockers));
+    }));
   };
   for (const std::string& name : scope.bases) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     const bool centred = !basis->centres().empty();
-    check_constants(*basis, {}, scope.thorough, compare);
+    add_constants(name, {}, scope.thorough, add);
     // Only the small bases, without and with a table.
-    if (scope.thorough || basis->size() == 4)
-      check_run_time_lobes(session.device(), *basis, scope.thorough || centred, compare);
-    if (centred && scope.thorough) {
-      check_constants(*basis, {.kind = LobeKind::rotate, .table_functions = true}, true, compare);
-    }
+    if (scope.thorough || basis->size() == 4) add_run_time_lobes(name, scope.thorough || centred, add);
+    if (centred && scope.thorough)
+      add_constants(name, {.kind = LobeKind::rotate, .table_functions = true}, true, add);
   }
-  check_areas(scope.thorough, compare);
-  check_formats(session.device(), scope, compare);
-  return results;
+  // Blockers as areas test the sets of links; the basis has little effect.
+  for (const char* name : {"sh2", "bins24"}) {
+    if (!scope.thorough && std::string(name) != "sh2") continue;
+    for (const TransportKind transport : stepped_transports())
+      add(name, {.kind = transport, .blocking = Blocking::areas, .options = {.grid = kGrid}});
+  }
+  // Basis and transport do not affect formats.
+  for (const VolumeFormat& format : scope.formats)
+    add("sh2", {.kind = TransportKind::sampled, .options = {.grid = kFormatGrid, .format = format}});
+  return cases;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::verify

@@ -15,7 +15,7 @@
 #include "verify/check.hpp"
 #include "verify/tolerances.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 namespace {
 
 constexpr int kWidth = 41, kHeight = 27;  // no multiples of a tile
@@ -138,14 +138,14 @@ double relative_difference(const std::vector<glm::vec4>& device, const std::vect
 
 /// Compares a device's surface with the CPU reference pixel by pixel. Checks values where the reference is certain,
 /// and the share of the other pixels that differ.
-void append(CheckResults& results, const SurfaceImage& device, const RasterizedImage& expected,
+void append(CheckResults& results, const SurfaceImage& device, const reference::RasterizedImage& expected,
             const std::string& variant) {
-  CheckResult values{"rasterize", variant, 0, tolerance("rasterize"), {}};
+  Deviation values{0, tolerance("rasterize")};
   const SurfaceImage& image = expected.image;
   const double deepest = std::max(1.0f, std::ranges::max(image.depth));
   std::size_t differing = 0;
   for (std::size_t at = 0; at < expected.uncertain.size(); ++at) {
-    CheckResult pixel{{}, {}, 0, values.allowed, {}};
+    Deviation pixel{0, values.allowed};
     const double errors[] = {std::abs(double{device.depth[at]} - image.depth[at]) / deepest,
                              relative_difference(device.normal, image.normal, at),
                              relative_difference(device.colour, image.colour, at),
@@ -161,35 +161,40 @@ void append(CheckResults& results, const SurfaceImage& device, const RasterizedI
     if (!pixel.passed()) ++differing;
   }
   const double pixels = expected.uncertain.size();
-  results.push_back(values);
-  results.push_back({"rasterize-edges", variant, differing / pixels, tolerance("rasterize-edges"),
-                     fmt::format("{} of {} pixels, {} of them uncertain", differing, pixels,
-                                 std::ranges::count(expected.uncertain, true))});
+  results.push_back(result_of("rasterize", variant, values));
+  results.push_back(result_of("rasterize-edges", variant,
+                              {differing / pixels, tolerance("rasterize-edges"),
+                               fmt::format("{} of {} pixels, {} of them uncertain", differing, pixels,
+                                           std::ranges::count(expected.uncertain, true))}));
 }
 
-void check_camera(Session& session, const Scene& scene, const std::string& name, CheckResults& results) {
+CheckResults compare_camera(Session& session, const Scene& scene, const std::string& name) {
   SceneCamera camera;
   camera.near_depth = 0.3f;
   const ClpvView view = camera_view(camera, kWidth, kHeight);
   Rasterizer rasterizer(session, upload_scene(session, scene));
   Surface surface = make_surface(session, view, RsmFormat::float32, true);
   rasterizer.rasterize_camera(surface);
-  append(results, read_surface(session, surface), rasterize_camera(scene, view), "camera/" + name);
+  CheckResults results;
+  append(results, read_surface(session, surface), reference::rasterize_camera(scene, view), "camera/" + name);
+  return results;
 }
 
-void check_light(Session& session, const Scene& scene, const ClpvLight& light, const ClpvView& view,
-                 const std::string& name, CheckResults& results) {
+CheckResults compare_light(Session& session, const Scene& scene, const ClpvLight& light, const ClpvView& view,
+                           const std::string& name) {
   Rasterizer rasterizer(session, upload_scene(session, scene));
   Surface surface = make_surface(session, view, RsmFormat::float32, false);
   rasterizer.rasterize_rsm(light, surface);
   const SurfaceImage device = read_surface(session, surface);
-  const RasterizedImage expected = rasterize_rsm(scene, light, view);
+  const reference::RasterizedImage expected = reference::rasterize_rsm(scene, light, view);
+  CheckResults results;
   append(results, device, expected, "rsm/" + name);
   Buffer depth = session.buffer(device.depth.size() * sizeof(float), "check: shadow map");
   rasterizer.rasterize_shadow(view, depth);
   SurfaceImage shadow = expected.image;
   shadow.depth = session.read<float>(depth, device.depth.size());
   append(results, shadow, expected, "shadow/" + name);
+  return results;
 }
 
 ClpvLight sun() {
@@ -224,31 +229,27 @@ ClpvLight spot() {
 
 }  // namespace
 
-CheckResults check_rasterize(Session& session, const CheckScope& scope) {
-  CheckResults results;
+Cases rasterize_cases(const CheckScope&) {
+  Cases cases;
   SceneMaker maker(3);
   const Scene soup = maker.soup(), sheet = maker.sheet(), lattice = maker.lattice();
-  const Bounds bounds{glm::vec3(-12, -12, -12), glm::vec3(12, 12, 8)};
-  const auto add = [&](const std::string& variant, const auto& compare) {
-    compare_selected(scope, "rasterize", variant, results, [&] {
-      CheckResults found;
-      compare(found);
-      return found;
-    });
+  const auto add_camera = [&](const std::string& name, const Scene& scene) {
+    cases.push_back({Stage::rasterize, "camera/" + name,
+                     [=](Session& session) { return compare_camera(session, scene, name); }});
   };
-  add("camera/soup", [&](CheckResults& found) { check_camera(session, soup, "soup", found); });
-  add("camera/sheet", [&](CheckResults& found) { check_camera(session, sheet, "sheet", found); });
-  add("light/lattice",
-      [&](CheckResults& found) { check_light(session, lattice, sun(), lattice_view(), "lattice", found); });
+  const auto add_light = [&](const std::string& name, const Scene& scene, const ClpvLight& light,
+                             const ClpvView& view) {
+    cases.push_back({Stage::rasterize, "light/" + name,
+                     [=](Session& session) { return compare_light(session, scene, light, view, name); }});
+  };
+  add_camera("soup", soup);
+  add_camera("sheet", sheet);
+  const Bounds bounds{glm::vec3(-12, -12, -12), glm::vec3(12, 12, 8)};
   const ClpvGrid cascade{{-2, -2, -6}, 0.5f, 8, {}};
-  add("light/directional", [&](CheckResults& found) {
-    check_light(session, soup, sun(), directional_rsm_view(sun(), cascade, bounds, kLightSize), "directional",
-                found);
-  });
-  add("light/spot", [&](CheckResults& found) {
-    check_light(session, sheet, spot(), spot_view(spot(), kLightSize, bounds), "spot", found);
-  });
-  return results;
+  add_light("lattice", lattice, sun(), lattice_view());
+  add_light("directional", soup, sun(), directional_rsm_view(sun(), cascade, bounds, kLightSize));
+  add_light("spot", sheet, spot(), spot_view(spot(), kLightSize, bounds));
+  return cases;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::verify

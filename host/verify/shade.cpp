@@ -3,6 +3,7 @@
 #include "pipeline/raster/shade.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <random>
 
 #include "pipeline/raster/view.hpp"
@@ -10,17 +11,18 @@
 #include "support/named_enum.hpp"
 #include "verify/check.hpp"
 #include "verify/inputs.hpp"
+#include "verify/tolerances.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 namespace {
 
 constexpr unsigned kMapWidth = 24, kMapHeight = 20;
 constexpr float kMapReach = 20;  // [m]: range of depths in a map
 
 /// Independent random depths per texel, 1 of 3 empty, so that a wrong filter address causes an error.
-ShadowMap random_map(const ClpvView& view, std::mt19937& random) {
+reference::ShadowMap random_map(const ClpvView& view, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-0.5f, 1);
-  ShadowMap map{view, {}};
+  reference::ShadowMap map{view, {}};
   for (unsigned texel = 0; texel < kMapWidth * kMapHeight; ++texel) {
     map.depth.push_back(std::max(0.0f, kMapReach * uniform(random)));
   }
@@ -34,9 +36,9 @@ const ClpvLight kSpot{
 const ClpvLight kPoint{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, {}, {}};
 
 /// The sun's map is smaller than the camera's view: some surfaces lie on and beyond its edge.
-MappedLight mapped(const ClpvLight& light, std::mt19937& random) {
+reference::MappedLight mapped(const ClpvLight& light, std::mt19937& random) {
   const Bounds bounds{{-2, -2, -4}, {8, 8, 6}};
-  MappedLight mapped{light, {}};
+  reference::MappedLight mapped{light, {}};
   for (ClpvView view : shadow_views(light, bounds, kMapWidth)) {
     view.height = kMapHeight;
     mapped.maps.push_back(random_map(view, random));
@@ -44,39 +46,57 @@ MappedLight mapped(const ClpvLight& light, std::mt19937& random) {
   return mapped;
 }
 
-}  // namespace
+/// Surfaces, their indirect light, and lights of all kinds, in the order of kKinds.
+struct ShadeInputs {
+  SurfaceImage image;
+  std::vector<cl_float4> irradiance;
+  std::vector<reference::MappedLight> lights;
+};
+constexpr const char* kKinds[] = {"directional", "spot", "point", "no shadow"};
 
-CheckResults check_shade(Session& session, const CheckScope& scope) {
+ShadeInputs random_inputs() {
   std::mt19937 random(17);
   std::uniform_real_distribution<float> uniform(0, 5);
-  const SurfaceImage image = random_surfaces(random);
-  const std::size_t pixels = image.depth.size();
-  std::vector<cl_float4> irradiance;
-  std::vector<glm::dvec3> indirect;
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    irradiance.push_back({{uniform(random), uniform(random), uniform(random), 0}});
-    indirect.push_back(vector(irradiance.back().s));
-  }
-  const Surface camera = upload_surface(session, image);
-  const Buffer gathered = session.upload(irradiance, "check: irradiance");
-  Buffer shown = session.buffer(pixels * sizeof(cl_float4), "check: image");
-  Shader shader(session);
-  CheckResults results;
-  const auto check = [&](Show show, const std::vector<MappedLight>& lights, const std::string& variant) {
-    compare_selected(scope, "shade", variant, results, [&] {
-      shader.light(camera, on_device(session, lights));
-      shader.show(show, camera, gathered, shown);
-      return compare_pixels(session.read<cl_float4>(shown, pixels),
-                            shade(show, image, direct_irradiance(lights, image), indirect), image.view.width,
-                            "shade", variant);
-    });
-  };
-  const std::vector<MappedLight> lights = {
-      mapped(kSun, random), mapped(kSpot, random), mapped(kPoint, random), {kPoint, {}}};
-  const char* kinds[] = {"directional", "spot", "point", "no shadow"};
-  for (std::size_t i = 0; i < lights.size(); ++i) check(Show::direct, {lights[i]}, kinds[i]);
-  for (const Show show : kSurfaceViews) check(show, lights, fmt::format("view {}", name_of(show)));
-  return results;
+  ShadeInputs inputs{random_surfaces(random), {}, {}};
+  for (std::size_t pixel = 0; pixel < inputs.image.depth.size(); ++pixel)
+    inputs.irradiance.push_back({{uniform(random), uniform(random), uniform(random), 0}});
+  inputs.lights = {mapped(kSun, random), mapped(kSpot, random), mapped(kPoint, random), {kPoint, {}}};
+  return inputs;
 }
 
-}  // namespace clpv::reference
+/// Compares a view under one of the lights, or under all.
+Deviation compare_view(Session& session, Show show, std::optional<std::size_t> chosen) {
+  ShadeInputs inputs = random_inputs();
+  if (chosen) inputs.lights = {inputs.lights[*chosen]};
+  const SurfaceImage& image = inputs.image;
+  const std::size_t pixels = image.depth.size();
+  const Surface camera = upload_surface(session, image);
+  const Buffer gathered = session.upload(inputs.irradiance, "check: irradiance");
+  Buffer shown = session.buffer(pixels * sizeof(cl_float4), "check: image");
+  Shader shader(session);
+  shader.light(camera, on_device(session, inputs.lights));
+  shader.show(show, camera, gathered, shown);
+  std::vector<glm::dvec3> indirect;
+  for (const cl_float4& e : inputs.irradiance) indirect.push_back(vector(e.s));
+  std::vector<double> expected;
+  for (const glm::dvec4& pixel :
+       reference::shade(show, image, reference::direct_irradiance(inputs.lights, image), indirect))
+    append_pixel(expected, glm::dvec3(pixel), pixel.w);
+  return compare_pixels(session.read<cl_float4>(shown, pixels), expected, image.view.width,
+                        tolerance("shade"));
+}
+
+}  // namespace
+
+Cases shade_cases(const CheckScope&) {
+  Cases cases;
+  const auto add = [&](const std::string& name, Show show, std::optional<std::size_t> chosen) {
+    cases.push_back(deviation_case(
+        Stage::shade, name, [=](Session& session) { return compare_view(session, show, chosen); }));
+  };
+  for (std::size_t i = 0; i < std::size(kKinds); ++i) add(kKinds[i], Show::direct, i);
+  for (const Show show : kSurfaceViews) add(fmt::format("view {}", name_of(show)), show, std::nullopt);
+  return cases;
+}
+
+}  // namespace clpv::verify

@@ -18,7 +18,7 @@
 #include "verify/check.hpp"
 #include "verify/tolerances.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 namespace {
 
 static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
@@ -45,13 +45,13 @@ constexpr Place kHost[] = {
 #undef CLPV_OFFSET
 };
 
-CheckResult compare_sizes(Session& session) {
+Deviation compare_sizes(Session& session) {
   const std::size_t count = std::size(kHost);
   Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
   Kernel(session, {"sizes.cl", {}, {}}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));
   const auto device = session.read<std::uint32_t>(bytes, count);
 
-  CheckResult result{"sizes", "shared structs", 0, tolerance("sizes"), {}};
+  Deviation result{0, tolerance("sizes")};
   for (std::size_t i = 0; i < count; ++i) {
     const double error = device[i] > kHost[i].bytes ? device[i] - kHost[i].bytes : kHost[i].bytes - device[i];
     result.take(error, [&] {
@@ -63,10 +63,8 @@ CheckResult compare_sizes(Session& session) {
 
 }  // namespace
 
-CheckResults check_sizes(Session& session, const CheckScope& scope) {
-  CheckResults results;
-  compare_selected(scope, "sizes", "shared structs", results, [&] { return compare_sizes(session); });
-  return results;
+Cases sizes_cases(const CheckScope&) {
+  return {deviation_case(Stage::sizes, "shared structs", compare_sizes)};
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::verify

@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Sweep and bounces: kernels against CPU references, on small cascades of random light, blockers and reflectors.
-#include "basis/sweep.hpp"
+// Sweep and bounces: kernels against CPU references. Checks use small cascades of random light, blockers and reflectors.
+#include "verify/sweep.hpp"
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "basis/bounce.hpp"
+#include "basis/sweep.hpp"
+#include "codegen/sweep_source.hpp"
+#include "codegen/transmittance_source.hpp"
 #include "pipeline/frame/cascade.hpp"
+#include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/sweep/sweep.hpp"
 #include "reference/bounce.hpp"
 #include "reference/medium.hpp"
+#include "reference/sweep.hpp"
 #include "verify/check.hpp"
+#include "verify/comparison.hpp"
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 namespace {
 
 constexpr double kEdge = 4;  // edge of the finest grid [m]
@@ -28,6 +35,105 @@ constexpr float kSkyScale = 0.5f;
 const ClpvMedium kSweptMedium{
     {-1.1f, -0.7f, -3.3f}, {1.3f, 4, 0.9f}, {0.1f, 0.4f, 0.3f}, {0.2f, 0.4f, 2}, 0.4f, {}};
 constexpr float kMediumScale = 0.25f;
+
+SweepOptions with_sky(const SweepProblem& problem) {
+  SweepOptions options = problem.options;
+  options.sky = problem.sky ? &*problem.sky : nullptr;
+  return options;
+}
+
+/// Volumes and kernels of one sweep.
+struct SweepWork {
+  SweepProblem problem;
+  std::vector<Volume> light, blockers, reflectors, swept;
+  std::vector<ShadowedLight> lights;
+  Sweeper sweeper;
+
+  SweepWork(Session& session, const SweepProblem& p)
+      : problem(p),
+        lights(scaled(on_device(session, p.lights), p.medium_scale)),
+        sweeper(session, *p.basis, problem.transport, with_sky(problem)) {
+    const SweepOptions& o = p.options;
+    for (std::size_t i = 0; i < p.grids.size(); ++i) {
+      light.push_back(on_device(session, *p.light[i], o.format));
+      if (o.blocking) blockers.push_back(on_device(session, *p.blockers[i], o.format));
+      if (bounces()) reflectors.push_back(on_device(session, *p.reflectors[i], o.format));
+      swept.emplace_back(session, VolumeShape{o.grid, swept_basis()->size(), 3}, "swept light", o.format);
+    }
+  }
+  bool bounces() const { return problem.options.bounces != Bounces::one; }
+
+  void run() {
+    for (std::size_t i = problem.grids.size(); i-- > 0;) {
+      if (problem.options.blocking) sweeper.set_blockers(i, blockers[i]);
+      if (bounces()) sweeper.set_reflectors(i, problem.grids[i], reflectors[i]);
+      sweeper.sweep({i, problem.grids, light[i], problem.sky_scale, lights}, swept[i]);
+    }
+  }
+};
+
+/// Expected light of all cascades.
+std::vector<double> expected_light(const SweepProblem& p) {
+  const SweepOptions& o = p.options;
+  std::vector<reference::Volume> scattered(p.grids.size());
+  std::vector<reference::SweptCascade> cascades;
+  std::vector<const reference::Volume*> reflecting;
+  for (std::size_t i = 0; i < p.grids.size(); ++i) {
+    cascades.push_back(
+        {p.grids[i], p.light[i].get(), o.blocking ? p.blockers[i].get() : nullptr, o.parts[i]});
+    if (o.bounces != Bounces::one) reflecting.push_back(p.reflectors[i].get());
+    if (!o.medium) continue;
+    scattered[i] = reference::scattered_in_cells(*o.medium, p.lights, p.grids[i]);
+    for (double& source : scattered[i].values) source *= double{p.medium_scale};
+    cascades.back().medium = &*o.medium, cascades.back().scattered = &scattered[i];
+  }
+  std::optional<Sky> sky = p.sky;
+  if (sky)
+    for (glm::vec3& texel : sky->texels) texel *= p.sky_scale;
+  std::vector<double> values;
+  for (const reference::Volume& swept :
+       o.bounces == Bounces::one
+           ? reference::sweep(*p.basis, p.transport, cascades, sky ? &*sky : nullptr)
+           : reference::sweep_bounced(*p.basis, p.transport, cascades, reflecting, o.bounces)) {
+    const reference::Volume projected = reference::project_bins(swept);
+    values.insert(values.end(), projected.values.begin(), projected.values.end());
+  }
+  return values;
+}
+
+/// Cost of the kernels in use, without sources: few rows hold light. Plane buffers and sums have the sweep's layout, not
+/// that of the volumes.
+Cost cost_of(const SweepWork& p) {
+  const SweepProblem& q = p.problem;
+  const VolumeFormat& format = q.options.format;
+  const double n = q.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
+  const double directions = kSweepBins * std::pow(q.options.parts.front(), 2);
+  const int coefficients = q.basis->size(), harmonics = swept_basis()->size();
+  const double bins = kChannels * kSweepBins, links = q.options.blocking ? link_volumes().count() : 0;
+  const double swept = kChannels * directions, sides = 2 * swept * n * n;
+  const auto number = static_cast<double>(number_bytes(format.storage));
+  const double light = kChannels * static_cast<double>(bytes_per_cell(format, coefficients) +
+                                                       bytes_per_cell(format, harmonics));
+  // With a launch per plane, each launch reads one plane of every direction and writes the next; the dark border is read.
+  const double planes = p.sweeper.whole_bins() ? 1 : 1 + 2 * n, dark = p.sweeper.whole_bins() ? 0 : 2 * sides;
+  Cost cost;
+  cost.bytes =
+      cells * (light + (2 * bins + links) * number) + dark * number + swept * n * n * sizeof(float) * planes;
+  const double flops_per_direction = kChannels * (4 + 1) * 2 + (q.options.blocking ? 4 : 0);
+  cost.flops =
+      cells * (kChannels * sweep_collect_text().operations.flops() + directions * flops_per_direction);
+  cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + bins;
+  cost.writes_per_cell = kChannels * accesses_per_cell(format, harmonics) + bins;
+  cost.working_set =
+      cells * (light + (bins + links) * number) + dark * number / 2 + swept * n * n * sizeof(float);
+  if (!q.options.blocking) return cost;
+  const int areas = blocking_size(q.transport.blocking, *q.basis);
+  cost.bytes += corners * static_cast<double>(bytes_per_cell(format, areas)) + cells * links * number;
+  cost.flops += cells * transmittance_source(*q.basis, q.transport).operations.flops();
+  cost.reads_per_cell += 8 * accesses_per_cell(format, areas) + 4 * kSweepBins;
+  cost.writes_per_cell += links;
+  return cost;
+}
 
 struct SweepCase {
   std::string basis;
@@ -54,102 +160,98 @@ struct SweepCase {
 };
 
 /// A sky that is dark below, with varied colours above.
-Sky uneven_sky(float scale) {
+Sky uneven_sky() {
   Sky sky;
   sky.width = 5, sky.height = 4, sky.rotation = 0.7;
   sky.texels.assign(20, glm::vec3(0));
-  for (int i = 0; i < 12; ++i) sky.texels[i] = scale * glm::vec3(i % 4, i % 3, 0.3f * i);
+  for (int i = 0; i < 12; ++i) sky.texels[i] = glm::vec3(i % 4, i % 3, 0.3f * i);
   return sky;
 }
 
 /// Random light in the first cell and in 1 of 30: rows with and without sources.
-Volume sparse_light(const Basis& basis, int n, std::mt19937& random) {
-  Volume light = random_light(basis, n, random);
-  for_each_cell(n, [&](const glm::ivec3& p) {
+SharedVolume sparse_light(const Basis& basis, int n, std::mt19937& random) {
+  const std::shared_ptr<reference::Volume> light = random_light(basis, n, random);
+  reference::for_each_cell(n, [&](const glm::ivec3& p) {
     if (p == glm::ivec3(0) || random() % 30 == 0) return;
     for (int channel = 0; channel < 3; ++channel)
-      light.set_cell(channel, p, std::vector<double>(basis.size(), 0.0));
+      light->set_cell(channel, p, std::vector<double>(basis.size(), 0.0));
   });
   return light;
 }
 
 /// 1 of 3 faces reflects.
-Volume random_reflectors(int n, std::mt19937& random) {
+SharedVolume random_reflectors(int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-2, 1);
-  Volume volume(n, kCellFaces);
-  for (double& value : volume.values) value = std::max(0.0f, uniform(random));
+  auto volume = std::make_shared<reference::Volume>(n, kCellFaces);
+  for (double& value : volume->values) value = std::max(0.0f, uniform(random));
   return volume;
 }
 
-CheckResult check_one(Session& session, const SweepCase& c, const char* stage) {
-  std::mt19937 random(3);
-  const std::unique_ptr<Basis> basis = make_basis(c.basis);
-  const Transport transport = make_transport(TransportKind::sweep, *basis, {}, c.blocked_by);
-  const int count = c.parts.size();
-  const float cell = kEdge / c.grid;
-  const std::vector<ClpvGrid> grids = cascade_grids(cell * glm::vec3(0.5f, 1.5f, 2.5f), count, kEdge, c.grid);
-  const Sky unscaled_sky = uneven_sky(1);
-  Sweeper sweeper(session, *basis, transport,
-                  {.grid = c.grid,
-                   .parts = c.parts,
-                   .blocking = c.blocking,
-                   .bounces = c.bounces,
-                   .format = c.format,
-                   .form = c.form,
-                   .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt,
-                   .sky = c.sky ? &unscaled_sky : nullptr});
-  const std::vector<MappedLight> in_medium = lights_in(kSweptMedium);
-  const std::vector<ShadowedLight> shadowed = scaled(on_device(session, in_medium), kMediumScale);
-  std::vector<Volume> lights, blockers, reflectors, scattered(count);
-  std::vector<SweptCascade> cascades;
-  std::vector<const Volume*> reflecting;
-  for (int i = 0; i < count; ++i) {
-    lights.push_back(sparse_light(*basis, c.grid, random));
-    blockers.push_back(random_blockers(blocking_size(c.blocked_by, *basis), c.grid, random));
-    reflectors.push_back(random_reflectors(c.grid, random));
-    if (!c.medium) continue;
-    scattered[i] = scattered_in_cells(kSweptMedium, in_medium, grids[i]);
-    for (double& source : scattered[i].values) source *= double{kMediumScale};
-  }
-  for (int i = 0; i < count; ++i) {
-    cascades.push_back({grids[i], &lights[i], c.blocking ? &blockers[i] : nullptr, c.parts[i],
-                        c.medium ? &kSweptMedium : nullptr, c.medium ? &scattered[i] : nullptr});
-    reflecting.push_back(&reflectors[i]);
-  }
-  std::vector<std::vector<float>> found(count);
-  for (int i = count; i-- > 0;) {
-    const clpv::Volume light = on_device(session, lights[i], c.format),
-                       geometry = on_device(session, blockers[i], c.format),
-                       sides = on_device(session, reflectors[i], c.format);
-    clpv::Volume swept(session, {c.grid, swept_basis()->size(), 3}, "check: swept", c.format);
-    if (c.blocking) sweeper.set_blockers(i, geometry);
-    if (c.bounces != Bounces::one) sweeper.set_reflectors(i, grids[i], sides);
-    sweeper.sweep({static_cast<std::size_t>(i), grids, light, kSkyScale, shadowed}, swept);
-    found[i] = swept.read(session);
-  }
-  const Sky sky = uneven_sky(kSkyScale);
-  const std::vector<Volume> expected =
-      c.bounces == Bounces::one ? sweep(*basis, transport, cascades, c.sky ? &sky : nullptr)
-                                : sweep_bounced(*basis, transport, cascades, reflecting, c.bounces);
-  CheckResult result{stage, c.name(), 0, tolerance(stage, c.format.storage), {}};
-  for (int i = 0; i < count; ++i) {
-    const Comparison apart = compare_volumes(found[i], project_bins(expected[i]).values, c.grid);
-    result.take(apart.worst, [&] { return fmt::format("cascade {} {}", i, apart.place); });
-  }
-  return result;
+Job job_of(Session& session, const SweepCase& c) {
+  const std::shared_ptr<const Basis> basis = make_basis(c.basis);
+  SweepProblem problem =
+      random_sweep(basis, make_transport(TransportKind::sweep, *basis, {}, c.blocked_by),
+                   {.grid = c.grid,
+                    .parts = c.parts,
+                    .blocking = c.blocking,
+                    .bounces = c.bounces,
+                    .format = c.format,
+                    .form = c.form,
+                    .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt});
+  if (c.sky) problem.sky = uneven_sky(), problem.sky_scale = kSkyScale;
+  return sweep_job(session, problem);
 }
 
-CheckResults check_all(Session& session, const CheckScope& scope, const std::vector<SweepCase>& cases,
-                       const char* stage) {
-  CheckResults results;
-  for (const SweepCase& c : cases)
-    compare_selected(scope, stage, c.name(), results, [&] { return check_one(session, c, stage); });
-  return results;
+Cases named_cases(Stage stage, const std::vector<SweepCase>& all) {
+  Cases cases;
+  for (const SweepCase& c : all)
+    cases.push_back(job_case(stage, c.name(), [c](Session& session) { return job_of(session, c); }));
+  return cases;
 }
 
 }  // namespace
 
-CheckResults check_sweep(Session& session, const CheckScope& scope) {
+Job sweep_job(Session& session, const SweepProblem& problem, const Share& share) {
+  const auto p = std::make_shared<SweepWork>(session, problem);
+  Job job;
+  job.cost = cost_of(*p);
+  job.reset = [p, &session] {
+    for (Volume& volume : p->swept) volume.clear(session);
+  };
+  job.run = [p] { p->run(); };
+  job.compare = [p, &session, share] {
+    const SweepOptions& o = p->problem.options;
+    const Values expected = share([&] { return expected_light(p->problem); });
+    Deviation result{0, tolerance(p->bounces() ? "bounce" : "sweep", o.format.storage)};
+    for (std::size_t i = 0; i < p->swept.size(); ++i) {
+      const std::vector<float> found = p->swept[i].read(session);
+      const Deviation apart = compare_volumes(
+          found, std::span(*expected).subspan(i * found.size(), found.size()), o.grid);
+      result.take(apart.worst, [&] { return fmt::format("cascade {} {}", i, apart.place); });
+    }
+    return result;
+  };
+  return job;
+}
+
+SweepProblem random_sweep(const std::shared_ptr<const Basis>& basis, const Transport& transport,
+                          const SweepOptions& options) {
+  std::mt19937 random(3);
+  const float cell = kEdge / options.grid;
+  const int count = options.parts.size();
+  SweepProblem problem{basis, transport, options, {}, {}, {}, {}};
+  problem.grids = cascade_grids(cell * glm::vec3(0.5f, 1.5f, 2.5f), count, kEdge, options.grid);
+  for (int i = 0; i < count; ++i) {
+    problem.light.push_back(sparse_light(*basis, options.grid, random));
+    problem.blockers.push_back(
+        random_blockers(blocking_size(transport.blocking, *basis), options.grid, random));
+    problem.reflectors.push_back(random_reflectors(options.grid, random));
+  }
+  if (options.medium) problem.lights = lights_in(*options.medium), problem.medium_scale = kMediumScale;
+  return problem;
+}
+
+Cases sweep_cases(const CheckScope& scope) {
   // Cases of one grid size and basis share kernels.
   std::vector<SweepCase> cases = {
       {.basis = "sh3", .grid = 9, .parts = {2, 1, 1}},
@@ -161,7 +263,7 @@ CheckResults check_sweep(Session& session, const CheckScope& scope) {
       {.basis = "sh3", .grid = 9, .parts = {2, 1}, .medium = true},
       {.basis = "sh3", .grid = 9, .parts = {1, 1}, .form = SweepForm::planes, .medium = true},
   };
-  for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats))
+  for (const VolumeFormat& format : scope.formats)
     cases.push_back({.basis = "sh3", .grid = 9, .parts = {1, 1}, .format = format});
   if (scope.thorough) {
     cases.push_back({.basis = "sh3", .grid = 8, .parts = {2, 2}, .form = SweepForm::planes});
@@ -170,18 +272,18 @@ CheckResults check_sweep(Session& session, const CheckScope& scope) {
       for (const int parts : {1, 2, 3, 4}) cases.push_back({.basis = name, .grid = 6, .parts = {parts, 1}});
     }
   }
-  return check_all(session, scope, cases, "sweep");
+  return named_cases(Stage::sweep, cases);
 }
 
-CheckResults check_bounce(Session& session, const CheckScope& scope) {
+Cases bounce_cases(const CheckScope& scope) {
   const Bounces all = Bounces::all;
   std::vector<SweepCase> cases = {
       {.basis = "sh3", .grid = 9, .parts = {2, 1}, .bounces = all},
       {.basis = "sh3", .grid = 9, .parts = {1, 3}, .bounces = Bounces::two, .form = SweepForm::planes},
       {.basis = "sh3", .grid = 9, .parts = {2, 1}, .bounces = all, .medium = true},
   };
-  // check_sweep compares the sweep in every format, so without `thorough` only one layout of buffers and images follow.
-  for (const VolumeFormat& format : other_formats(session.device(), {9, kSweepBins, 3}, scope.formats)) {
+  // Stage `sweep` compares the sweep in every format, so without `thorough` only one layout of buffers and images follow.
+  for (const VolumeFormat& format : scope.formats) {
     if (!scope.thorough && format.layout != Layout::soa && format.layout != Layout::image) continue;
     cases.push_back({.basis = "sh3", .grid = 9, .parts = {1, 1}, .bounces = all, .format = format});
   }
@@ -195,7 +297,7 @@ CheckResults check_bounce(Session& session, const CheckScope& scope) {
     for (const std::string& name : basis_names())
       cases.push_back({.basis = name, .grid = 6, .parts = {2, 1}, .bounces = all});
   }
-  return check_all(session, scope, cases, "bounce");
+  return named_cases(Stage::bounce, cases);
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::verify

@@ -8,7 +8,7 @@
 
 #include "options/choices.hpp"
 
-namespace clpv::reference {
+namespace clpv::verify {
 
 struct Tolerance {
   std::string_view stage;
@@ -80,4 +80,4 @@ constexpr double tolerance(std::string_view stage, Storage storage = Storage::fl
   return storage == Storage::float16 ? found->half : found->allowed;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::verify

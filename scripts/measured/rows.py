@@ -99,7 +99,7 @@ DOCS_SUITES = {
     "layouts": [],
     "bases": [],
     "scaling": [],
-    "baseline": ["--repetitions=41"],
+    "native": ["--repetitions=41"],
     "frame": ["sponza", "--repetitions=9", "--basis=sh3", "--filter=best"],
     "rasterize": ["sponza"],
 }

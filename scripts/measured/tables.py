@@ -238,7 +238,7 @@ def baseline():
     lines = [["sh2", "OpenCL, minimum [ms]", "GFLOP/s", "of the ceiling", "C++, minimum [ms]", "GFLOP/s", "of the ceiling",
               "OpenCL / C++"]]
     for occlusion, name in ((False, "without blockers"), (True, "with blockers")):
-        rows = [found(bench("baseline"), stage=stage, state="coefficients", occlusion=occlusion)
+        rows = [found(bench("native"), stage=stage, state="coefficients", occlusion=occlusion)
                 for stage in ("propagate", "native")]
         cells = [cell for row in rows for cell in (number(row["min"]), f"{row['gflops'] * row['median'] / row['min']:.0f}",
                                                    f"{100 * row['ceiling_share'] * row['median'] / row['min']:.0f} %")]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A file of points for clpv query.
-#include "quality/points_file.hpp"
+#include "scene/points_file.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

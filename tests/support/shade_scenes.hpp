@@ -138,7 +138,7 @@ inline std::vector<glm::vec4> lit_colours(const SurfaceImage& image, const std::
   Buffer shown = test_session().buffer(pixels * sizeof(glm::vec4), "test: image");
   const Surface camera = upload_surface(test_session(), image);
   Shader shader(test_session());
-  shader.light(camera, reference::on_device(test_session(), lights));
+  shader.light(camera, verify::on_device(test_session(), lights));
   shader.show(Show::direct, camera, irradiance, shown);
   return test_session().read<glm::vec4>(shown, pixels);
 }

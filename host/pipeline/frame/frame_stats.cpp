@@ -4,26 +4,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "support/json_optional.hpp"
-#include "support/median.hpp"
+#include "support/statistics.hpp"
 
 namespace clpv {
-namespace {
-
-/// Returns the stages of one frame, each with the median of its times over all frames.
-std::vector<StageTime> median_times(const std::vector<std::vector<StageTime>>& frames) {
-  if (frames.empty()) return {};
-  std::vector<StageTime> result = frames.front();
-  for (std::size_t stage = 0; stage < result.size(); ++stage) {
-    std::vector<double> ms;
-    for (const auto& frame : frames) ms.push_back(frame.at(stage).ms);
-    result[stage].ms = median(std::move(ms));
-  }
-  return result;
-}
-
-}  // namespace
-
 std::array<double, 3> volume_energy(Session& session, const Basis& basis, const Volume& volume) {
   const std::vector<float> values = volume.read(session);
   const auto plane = values.size() / 3 / static_cast<std::size_t>(basis.size());
@@ -39,18 +22,6 @@ std::array<double, 3> volume_energy(Session& session, const Basis& basis, const 
   return energy;
 }
 
-nlohmann::json to_json(const std::vector<StageTime>& times) {
-  nlohmann::json stages = nlohmann::json::array();
-  for (const StageTime& time : times) {
-    stages.push_back({{"stage", name_of(time.mark.pass)},
-                      {"cascade", time.mark.cascade},
-                      {"light", time.mark.light},
-                      {"ms", time.ms},
-                      {"timer", time.from_events ? "event" : "wall"}});
-  }
-  return stages;
-}
-
 void FrameStats::end_startup() {
   startup_ms_ = since_mark();
   mark_ = Clock::now();
@@ -59,12 +30,6 @@ void FrameStats::end_startup() {
 void FrameStats::end_first_frame(Session& session) {
   session.queue().finish();
   first_frame_ms_ = since_mark();
-}
-
-void FrameStats::end_frame(Session& session) {
-  session.queue().finish();
-  frame_ms_.push_back(since_mark());
-  stages_.push_back(session.timeline().times());
 }
 
 void FrameStats::add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes) {
@@ -83,13 +48,15 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
   for (const Energy& e : energies_) {
     energy.push_back({{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
   }
-  const Device& device = session.device();
-  const double frame_ms = median(frame_ms_);
+  const double frame_ms = median(times_.wall_ms());
+  std::vector<StageTime> stages;
+  for (const FrameTimes::Series& series : times_.stages())
+    stages.push_back({series.mark, median(series.ms), series.from_events});
   return {{"schema", 1},
-          {"device", {{"platform", device.platform}, {"name", device.name}, {"driver", device.driver}}},
+          {"device", clpv::to_json(session.device())},
           {"options", options},
-          {"frames", frame_ms_.size()},
-          {"stages", clpv::to_json(median_times(stages_))},
+          {"frames", times_.count()},
+          {"stages", clpv::to_json(stages)},
           {"frame_ms", frame_ms},
           {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
           {"build_ms", session.build_ms()},

@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "pipeline/frame/frame.hpp"
+#include "pipeline/frame/frame_times.hpp"
 
 namespace clpv {
 
@@ -15,12 +15,10 @@ namespace clpv {
 class FrameStats {
  public:
   void begin_startup() { mark_ = Clock::now(); }
-  void end_startup();  ///< device opened, programs built, scene uploaded
+  void end_startup();                      ///< device opened, programs built, scene uploaded
   void end_first_frame(Session& session);  ///< the first launches compile kernels for their work-group sizes
-  void begin_frame() { mark_ = Clock::now(); }
-  /// Adds the stage times of the timeline; frames of one camera have equal stages. The statistics report medians over
-  /// all frames, since the first frame still warms memory and caches.
-  void end_frame(Session& session);
+  /// Sets the times of the timed frames, of one camera. The statistics report their medians.
+  void set_times(FrameTimes times) { times_ = std::move(times); }
   void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes);
 
   /// Returns JSON of schema 1: device, options, frames (number of timed ones), stages, frame_ms, first_launch_ms,
@@ -39,13 +37,9 @@ class FrameStats {
   };
   Clock::time_point mark_;
   double startup_ms_ = 0, first_frame_ms_ = 0;
-  std::vector<double> frame_ms_;                ///< one per timed frame
-  std::vector<std::vector<StageTime>> stages_;  ///< one per timed frame
+  FrameTimes times_;
   std::vector<Energy> energies_;
 };
-
-/// Lists each stage with its cascade, light, time [ms] and timer.
-nlohmann::json to_json(const std::vector<StageTime>& times);
 
 /// Returns the integral over directions summed over all cells of a light volume, per channel [W].
 std::array<double, 3> volume_energy(Session& session, const Basis& basis, const Volume& volume);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rasterising passes by OpenGL ES 3.2 without a window (EGL): baseline for the OpenCL rasteriser, with the same views,
+// Rasterising passes by OpenGL ES 3.2 without a window (EGL), for comparison with the OpenCL rasteriser: with the same views,
 // triangles, materials and formats. Mesa's llvmpipe runs it on machines without a GPU.
 #pragma once
 

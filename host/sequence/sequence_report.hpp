@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "quality/stability.hpp"
+#include "sequence/stability.hpp"
 
 namespace clpv {
 

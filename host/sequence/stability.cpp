@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quality/stability.hpp"
+#include "sequence/stability.hpp"
 
 #include <algorithm>
 #include <cmath>

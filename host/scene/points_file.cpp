@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quality/points_file.hpp"
+#include "scene/points_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "cli/sequence_report.hpp"
+#include "sequence/sequence_report.hpp"
 
 #include <algorithm>
 
-#include "bench/row.hpp"
+#include "pipeline/frame/frame_times.hpp"
 #include "support/input_file.hpp"
 #include "support/json_optional.hpp"
 #include "support/log.hpp"
+#include "support/statistics.hpp"
 
 namespace clpv {
 namespace {
@@ -19,34 +20,22 @@ constexpr const char* kSpans[] = {"pose", "frame", "write"};
 /// Null without samples.
 json summary_of(std::vector<double> samples) {
   if (samples.empty()) return nullptr;
-  const bench::Statistics figures = bench::statistics_of(std::move(samples));
+  const Statistics figures = statistics_of(std::move(samples));
   return {{"median_ms", figures.median}, {"p95_ms", figures.p95}, {"worst_ms", figures.max}};
 }
 
-/// Times of each stage, cascade and light, in order of first occurrence.
-json summary_of_stages(const std::vector<const json*>& frames) {
-  std::vector<std::pair<json, std::vector<double>>> stages;
-  for (const json* frame : frames) {
-    for (const json& stage : frame->at("stages")) {
-      const json which = {
-          {"stage", stage.at("stage")}, {"cascade", stage.at("cascade")}, {"light", stage.at("light")}};
-      auto found = std::ranges::find(stages, which, &std::pair<json, std::vector<double>>::first);
-      if (found == stages.end()) found = stages.emplace(found, which, std::vector<double>());
-      found->second.push_back(stage.at("ms"));
-    }
-  }
-  json all = json::array();
-  for (auto& [which, samples] : stages) {
-    samples.resize(frames.size(), 0.0);
-    json summary = which;
-    summary.update(summary_of(std::move(samples)));
-    all.push_back(std::move(summary));
-  }
-  return all;
-}
-
 json summary_of(const std::vector<const json*>& frames) {
-  json summary = {{"frames", frames.size()}, {"stages", summary_of_stages(frames)}};
+  FrameTimes times;
+  for (const json* frame : frames) times.add(stage_times_from_json(frame->at("stages")));
+  json stages = json::array();
+  for (const FrameTimes::Series& series : times.stages()) {
+    json summary = to_json({{series.mark, 0, series.from_events}})[0];
+    summary.erase("ms");
+    summary.erase("timer");
+    summary.update(summary_of(series.ms));
+    stages.push_back(std::move(summary));
+  }
+  json summary = {{"frames", frames.size()}, {"stages", std::move(stages)}};
   for (const std::string span : kSpans) {
     std::vector<double> samples;
     for (const json* frame : frames) samples.push_back(frame->at(span + "_ms"));
@@ -69,7 +58,7 @@ SequenceTimes read_times(const std::filesystem::path& file, int frames) {
       if (const int number = frame.at("frame"); number < frames) times[number] = frame;
     }
     return times;
-  } catch (const json::exception& error) {
+  } catch (const std::exception& error) {
     spdlog::warn("{}: times of existing frames are left out: {}", file.string(), error.what());
     return {};
   }
@@ -108,7 +97,7 @@ json stability_json(const json& about, std::span<const StabilityStep> steps) {
       all["note"] = "null: no two successive frames of an unchanged scene show light under that condition";
       continue;
     }
-    const bench::Statistics figures = bench::statistics_of(samples);
+    const Statistics figures = statistics_of(samples);
     all["summary"][name] = {
         {"frames", samples.size()}, {"median", figures.median}, {"p95", figures.p95}, {"worst", figures.max}};
   }

@@ -2,7 +2,7 @@
 // Propagation of sh2 by intrinsics. A cell takes from each of its 6 neighbours the flux through the neighbour's far face
 // and 4 side faces, and reprojects it as a lobe. Kaplanyan and Dachsbacher, 'Cascaded Light Propagation Volumes for
 // Real-Time Indirect Illumination' (I3D 2010).
-#include "bench/baseline/propagate_avx2.hpp"
+#include "bench/native/propagate_avx2.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@
 
 namespace clpv::bench {
 
-bool baseline_supported() {
+bool avx2_supported() {
 #if CLPV_HAS_AVX2
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #else
@@ -84,7 +84,7 @@ struct Constants {
 
 void require(bool supported) {
   if (!supported)
-    throw Error(ExitCode::run_time, "baseline: unsupported basis or transport; allowed: sh2, face transport");
+    throw Error(ExitCode::run_time, "native: unsupported basis or transport; allowed: sh2, face transport");
 }
 
 bool equal(double a, double b) {
@@ -144,7 +144,7 @@ FaceTable links_of(const FaceTransport& faces) {
 
 }  // namespace
 
-struct PropagateBaseline::Impl {
+struct PropagateAvx2::Impl {
   PlaneLayout layout;
   Constants constants;
   FaceTable links;
@@ -176,7 +176,7 @@ struct PropagateBaseline::Impl {
 
 namespace {
 
-using Impl = PropagateBaseline::Impl;
+using Impl = PropagateAvx2::Impl;
 
 /// Positive flux through a face, times the link's transmittance with occlusion.
 template <bool kOcclusion>
@@ -313,16 +313,16 @@ constexpr double kTransmittanceFlops = kN * 6 * 3 + kLinks * (1 + 3 * 2 + 3);
 
 }  // namespace
 
-PropagateBaseline::PropagateBaseline(const Basis& basis, const Transport& transport, int grid) {
+PropagateAvx2::PropagateAvx2(const Basis& basis, const Transport& transport, int grid) {
   if (grid % kLane != 0)
-    throw Error(ExitCode::run_time, "baseline: grid {}; allowed: multiples of {}", grid, kLane);
+    throw Error(ExitCode::run_time, "native: grid {}; allowed: multiples of {}", grid, kLane);
   impl_ = std::make_unique<Impl>(basis, transport, grid);
 }
 
-void PropagateBaseline::set(const std::vector<float>& injected, const std::vector<float>* geometry) {
+void PropagateAvx2::set(const std::vector<double>& injected, const std::vector<double>* geometry) {
   Impl& p = *impl_;
   const int n = p.layout.n;
-  const auto copy = [&](const std::vector<float>& values, float* to, int planes, int side) {
+  const auto copy = [&](const std::vector<double>& values, float* to, int planes, int side) {
     std::size_t at = 0;
     for (int plane = 0; plane < planes; ++plane) {
       for (int z = 0; z < side; ++z) {
@@ -337,7 +337,7 @@ void PropagateBaseline::set(const std::vector<float>& injected, const std::vecto
   if (p.occlusion) copy(*geometry, p.corners.data(), kN, n + 1);
 }
 
-void PropagateBaseline::propagate(int iterations) {
+void PropagateAvx2::propagate(int iterations) {
   Impl& p = *impl_;
   if (p.occlusion && iterations > 1) compute_transmittances(p);
   const float* from = p.injected.data();
@@ -354,7 +354,7 @@ void PropagateBaseline::propagate(int iterations) {
   }
 }
 
-std::vector<float> PropagateBaseline::accumulated() const {
+std::vector<float> PropagateAvx2::accumulated() const {
   const Impl& p = *impl_;
   std::vector<float> values;
   for (int plane = 0; plane < kChannels * kN; ++plane) {
@@ -368,14 +368,14 @@ std::vector<float> PropagateBaseline::accumulated() const {
   return values;
 }
 
-double PropagateBaseline::flops(int iterations) const {
+double PropagateAvx2::flops(int iterations) const {
   const auto cells = static_cast<double>(impl_->cells());
   const double occluded_steps = impl_->occlusion ? iterations - 1 : 0;
   return cells * (iterations * kChannels * (kFluxFlops + kSumFlops + kLobeFlops + kAddFlops) +
                   occluded_steps * kChannels * kLinks + (impl_->occlusion ? kTransmittanceFlops : 0));
 }
 
-double PropagateBaseline::bytes(int iterations) const {
+double PropagateAvx2::bytes(int iterations) const {
   const auto cells = static_cast<double>(impl_->cells());
   const double step = kChannels * 4.0 * kN,
                transmittances =
@@ -386,24 +386,24 @@ double PropagateBaseline::bytes(int iterations) const {
 
 #else  // other architectures
 
-struct PropagateBaseline::Impl {};
-PropagateBaseline::PropagateBaseline(const Basis&, const Transport&, int) {
-  throw Error(ExitCode::run_time, "baseline: needs a processor with AVX2");
+struct PropagateAvx2::Impl {};
+PropagateAvx2::PropagateAvx2(const Basis&, const Transport&, int) {
+  throw Error(ExitCode::run_time, "native: needs a processor with AVX2");
 }
-void PropagateBaseline::set(const std::vector<float>&, const std::vector<float>*) {}
-void PropagateBaseline::propagate(int) {}
-std::vector<float> PropagateBaseline::accumulated() const {
+void PropagateAvx2::set(const std::vector<double>&, const std::vector<double>*) {}
+void PropagateAvx2::propagate(int) {}
+std::vector<float> PropagateAvx2::accumulated() const {
   return {};
 }
-double PropagateBaseline::flops(int) const {
+double PropagateAvx2::flops(int) const {
   return 0;
 }
-double PropagateBaseline::bytes(int) const {
+double PropagateAvx2::bytes(int) const {
   return 0;
 }
 
 #endif
 
-PropagateBaseline::~PropagateBaseline() = default;
+PropagateAvx2::~PropagateAvx2() = default;
 
 }  // namespace clpv::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Propagation of sh2 with the paper's transport in C++, OpenMP and AVX2: baseline for the OpenCL kernels.
+// Propagation of sh2 with the paper's transport in C++, OpenMP and AVX2, for comparison with the OpenCL kernels.
 #pragma once
 
 #include <memory>
@@ -10,20 +10,20 @@
 
 namespace clpv::bench {
 
-/// Returns true if the build has the baseline and this processor has AVX2 and FMA.
-bool baseline_supported();
+/// Returns true if the build has it and this processor has AVX2 and FMA.
+bool avx2_supported();
 
 /// Hand-written propagation with the constants of `transport`: vectors of eight cells, slices shared out over all threads.
-class PropagateBaseline {
+class PropagateAvx2 {
  public:
   /// `transport`: `sampled` or `exact` for sh2. `grid`: cells along each axis, a multiple of 8. Throws Error(run_time) for
   /// other values.
-  PropagateBaseline(const Basis& basis, const Transport& transport, int grid);
-  ~PropagateBaseline();
+  PropagateAvx2(const Basis& basis, const Transport& transport, int grid);
+  ~PropagateAvx2();
 
   /// Sets injected light (3 channels x 4 coefficients x grid^3) and the geometry volume (4 x (grid + 1)^3; null: no
   /// occlusion), both in Volume's host order.
-  void set(const std::vector<float>& injected, const std::vector<float>* geometry);
+  void set(const std::vector<double>& injected, const std::vector<double>* geometry);
   /// Propagates as Propagator does: no occlusion in the first step, transmittances computed once.
   void propagate(int iterations);
   std::vector<float> accumulated() const;  ///< accumulated light, as `injected`

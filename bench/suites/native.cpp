@@ -1,54 +1,51 @@
 // SPDX-License-Identifier: MIT
-// Suite `baseline`: propagation of sh2 in OpenCL, compared with C++, OpenMP and AVX2 on the host.
+// Suite `native`: propagation of sh2 in OpenCL, compared with C++, OpenMP and AVX2 on the host.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "basis/basis.hpp"
-#include "bench/baseline/propagate_avx2.hpp"
+#include "bench/native/propagate_avx2.hpp"
 #include "bench/suites.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
+#include "verify/comparison.hpp"
 #include "verify/tolerances.hpp"
 
 namespace clpv::bench {
 namespace {
 
-constexpr const char* kBasis = "sh2";  // the baseline's only basis
+constexpr const char* kBasis = "sh2";  // of the hand-written code
 constexpr const char* kNative = "native";
 
 struct NativePropagation {
   std::unique_ptr<Basis> basis;
   Transport transport;
-  PropagateBaseline baseline;
+  PropagateAvx2 propagation;
   explicit NativePropagation(const RenderOptions& o)
-      : basis(make_basis(o)), transport(make_transport(o, *basis)), baseline(*basis, transport, o.grid) {}
+      : basis(make_basis(o)), transport(make_transport(o, *basis)), propagation(*basis, transport, o.grid) {}
 };
 
-Job native_job(Bench& bench, const Variant& variant) {
-  if (!baseline_supported()) throw Error(ExitCode::device, "this processor has no AVX2");
-  const RenderOptions& o = variant.options;
+Job native_job(Bench& bench, const Problem& problem) {
+  if (!avx2_supported()) throw Error(ExitCode::device, "this processor has no AVX2");
+  const RenderOptions& o = problem.options;
   const auto p = std::make_shared<NativePropagation>(o);
-  const std::vector<float>& light = bench.inputs().light(*p->basis, 0);
-  const std::vector<float>& geometry = bench.inputs().geometry(*p->basis, 0);
-  p->baseline.set(light, o.blocked() ? &geometry : nullptr);
+  const verify::SharedVolume light = bench.inputs().light(*p->basis, 0),
+                             geometry = o.blocked() ? bench.inputs().geometry(*p->basis, 0) : nullptr;
+  p->propagation.set(light->values, geometry ? &geometry->values : nullptr);
   Job job;
   job.own_stages = true;  // runs on the host: wall time
-  job.run = [p, steps = o.iterations] { p->baseline.propagate(steps); };
-  job.verify = [p, o, &light, &geometry] {
-    const int n = p->basis->size();
-    const reference::Volume injected = to_reference(light, o.grid, n, 3),
-                            corners = to_reference(geometry, o.grid + 1, n, 1);
-    return compare_volumes(
-        p->baseline.accumulated(),
-        reference::propagate(p->transport, injected, o.blocked() ? &corners : nullptr, o.iterations)
-            .accumulated.values,
-        o.grid, reference::tolerance("propagate", o.format().storage));
+  job.run = [p, steps = o.iterations] { p->propagation.propagate(steps); };
+  job.compare = [p, o, light, geometry] {
+    return verify::compare_volumes(
+        p->propagation.accumulated(),
+        reference::propagate(p->transport, *light, geometry.get(), o.iterations).accumulated.values, o.grid,
+        verify::tolerance("propagate", o.format().storage));
   };
-  job.cost.flops = p->baseline.flops(o.iterations);
-  job.cost.bytes = p->baseline.bytes(o.iterations);
+  job.cost.flops = p->propagation.flops(o.iterations);
+  job.cost.bytes = p->propagation.bytes(o.iterations);
   job.cost.working_set =
       sizeof(float) * std::pow(o.grid, 3) * (3 * 3.0 * p->basis->size() + (o.blocked() ? 30 : 0));
   return job;
@@ -57,29 +54,29 @@ Job native_job(Bench& bench, const Variant& variant) {
 std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
   std::vector<Case> cases;
   for (const bool occlusion : {false, true}) {
-    Variant variant = basis_variant(options, kBasis);
-    variant.options.blockers = blockers_if(occlusion);
+    Problem problem = basis_problem(options, kBasis);
+    problem.options.blockers = blockers_if(occlusion);
     for (const State state : values_of<State>()) {
-      variant.options.state = state;
-      cases.push_back(stage_case(bench, "baseline", kPropagate, variant));
+      problem.options.state = state;
+      cases.push_back(stage_case(bench, "native", kPropagate, problem));
     }
-    variant.options.state = State::coefficients;
+    problem.options.state = State::coefficients;
     cases.push_back(
-        {make_row("baseline", kNative, variant), [&bench, variant] { return native_job(bench, variant); }});
+        {make_row("native", kNative, problem), [&bench, problem] { return native_job(bench, problem); }});
   }
   return cases;
 }
 
-/// The row of the hand-written baseline with the same occlusion; null if there is none, or for such a row itself.
+/// The row of the hand-written code with the same occlusion; null if there is none, or for such a row itself.
 const Row* native_row(const std::vector<Row>& rows, const Row& row) {
   const auto native = std::ranges::find_if(rows, [&](const Row& other) {
     return other.stage == kNative && other.status == Status::ok &&
-           other.variant->options.blocked() == row.variant->options.blocked();
+           other.problem->options.blocked() == row.problem->options.blocked();
   });
   return native == rows.end() || row.stage == kNative ? nullptr : &*native;
 }
 
-std::string baseline_table(const std::vector<Row>& rows) {
+std::string native_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
   const std::string head = fmt::format(
       "{:<{}} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>15} {:>9} {:>10} {:>9}\n", "row", width, "median ms",
@@ -97,19 +94,19 @@ std::string baseline_table(const std::vector<Row>& rows) {
                        row.max_rel_error.value_or(0));
   };
   return head + row_lines(rows, width, columns) +
-         "\n/ C++: median over that of the hand-written baseline (native), which the host's clock times. "
+         "\n/ C++: median over that of the hand-written code (native), which the host's clock times. "
          "/ C++ wall: the host's clock for both.\n";
 }
 
 }  // namespace
 
-Suite baseline_suite() {
-  return {"baseline", "propagation of sh2, compared with C++, OpenMP and AVX2",
+Suite native_suite() {
+  return {"native", "propagation of sh2, compared with C++, OpenMP and AVX2",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
             return std::vector<Group>{{[bench, options] { return cases(*bench, options); }}};
           },
-          baseline_table};
+          native_table};
 }
 
 }  // namespace clpv::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quality/unreached.hpp"
+#include "cli/unreached.hpp"
 
 #include <vector>
 

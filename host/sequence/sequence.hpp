@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Renders an animated scene frame by frame into a folder. An interrupted run resumes.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "device/session.hpp"
+#include "image/image.hpp"
+#include "image/tone_map.hpp"
+#include "options/render_options.hpp"
+#include "options/show.hpp"
+#include "parallel/ranks.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "scene/load.hpp"
+#include "sequence/sequence_report.hpp"
+#include "support/named_enum.hpp"
+
+namespace clpv {
+
+enum class FrameFormat : unsigned { exr, png };
+
+template <>
+inline constexpr auto kNames<FrameFormat> = name_list("exr", "png");
+
+/// Frame i shows `from` + i / `frames_per_second` [s].
+struct SequenceOptions {
+  std::string folder;  ///< of frame-0000.exr, ... and times.json
+  int frames = 0;
+  double frames_per_second = 0, from = 0;
+  Show view = Show::full;
+  FrameFormat format = FrameFormat::exr;
+  std::uint32_t traced = 0;  ///< paths per pixel of the path-traced noise in stability.json; 0: none
+
+  double time_of(int frame) const { return from + frame / frames_per_second; }
+  std::filesystem::path file(int frame) const;
+};
+
+/// What the frames show, and who is told of them.
+struct SequenceSubject {
+  std::string camera;
+  float exposure;
+  ToneMap tonemap;
+  std::function<nlohmann::json(const Scene& posed, double seconds)> describe;  ///< inputs of a frame, by name
+  std::function<void(Session&, Frame&)> first_frame;                           ///< called after the first frame
+  std::function<void(const Scene& posed, const Image&)> shown;  ///< called with the linear image of each new frame
+};
+
+/// Renders the frames; scene, device and device resources persist between frames. The ranks share them out.
+class Sequence {
+ public:
+  Sequence(const SequenceOptions& options, SequenceSubject subject, MovingScene& scene,
+           const RenderOptions& resolved, const Device& device, Compilation compilation, Ranks& ranks);
+
+  /// Renders the missing frames of this rank; then rank 0 writes the times of all. Throws Interrupted, which names the
+  /// frames that are kept.
+  void render();
+
+  /// Writes stability.json. One rank renders all frames again, because an earlier run may have written most of them.
+  void measure_stability();
+
+  /// Calls action(image) for the display image of each frame, from its file.
+  void for_all_images(const std::function<void(const Image&)>& action);
+
+ private:
+  struct Renderer {
+    Session session;
+    Frame frame;
+    Renderer(const Device& device, const Scene& scene, const RenderOptions& options, Compilation compilation)
+        : session(device, ProgramCache::of_user(), std::move(compilation)), frame(session, scene, options) {}
+  };
+  using Clock = std::chrono::steady_clock;
+
+  template <typename Action>
+  void for_all_frames(const char* title, const char* lost, const Action& action);
+  Image displayed(const Image& image) const {
+    return display_image(image, subject_.exposure, subject_.tonemap);
+  }
+  const SceneCamera& camera() const { return moving_.scene().camera(subject_.camera); }
+  std::filesystem::path times_file() const { return std::filesystem::path(options_.folder) / "times.json"; }
+  nlohmann::json described(double seconds) const;
+  std::string key(const nlohmann::json& described) const;
+  bool render(int number);
+  void write(int number, Frame& frame, const nlohmann::json& description, const std::string& key);
+  nlohmann::json header_json() const;
+  void write_times();
+
+  SequenceOptions options_;
+  SequenceSubject subject_;
+  MovingScene& moving_;
+  RenderOptions resolved_;
+  Device device_;
+  Compilation compilation_;
+  Ranks& ranks_;
+  std::string still_;    ///< key of all static content
+  SequenceTimes times_;  ///< of this rank's frames; at rank 0 also those of an earlier run
+  Clock::time_point times_written_ = Clock::now();
+  std::optional<Renderer> renderer_;  ///< empty before the first frame
+};
+
+}  // namespace clpv

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// A job: work of one stage on a device that can be repeated, and the comparison of its output with the CPU reference.
+// `clpv check` runs jobs on small random inputs, `clpv bench` times them on a scene's.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "reference/volume.hpp"
+#include "support/named_enum.hpp"
+
+namespace clpv {
+
+namespace verify {
+
+enum class Status {
+  ok,
+  wrong,        ///< the output differs from the reference by more than the tolerance
+  failed,       ///< the driver reported an error, crashed, or took too long
+  unsupported,  ///< the device lacks a capability
+};
+
+}  // namespace verify
+
+template <>
+inline constexpr auto kNames<verify::Status> = name_list("ok", "wrong", "failed", "unsupported");
+
+namespace verify {
+
+/// Largest error of an output against its reference, as verify/tolerances.hpp defines it for the stage.
+struct Deviation {
+  double worst = 0, allowed = 0;
+  std::string place = {};  ///< of the largest error, with both values; empty without an error
+
+  bool passed() const { return worst <= allowed; }  // false for NaN
+  /// Records an error if it is the largest so far, with its place from `where`. A NaN exceeds any number and stays.
+  template <typename Where>
+  void take(double error, const Where& where) {
+    if (std::isnan(worst) || error <= worst) return;
+    worst = error;
+    place = where();
+  }
+};
+
+/// Operations and bytes of the work, counted and not measured.
+struct Cost {
+  double flops = 0;        ///< executed by the kernels; a fused multiply-add counts as 2
+  double bytes = 0;        ///< compulsory traffic: each input of a launch read once, each output written once
+  double working_set = 0;  ///< bytes touched in total; selects the bandwidth ceiling
+  double reads_per_cell = 0;  ///< values (or texels) read from volumes per cell, over all channels and steps
+  double writes_per_cell = 0;
+  double triangles = 0, pixels = 0;  ///< rasterising: sums over all views
+};
+
+struct Job {
+  std::function<void()> reset = {};         ///< clears outputs before a repetition; may be null
+  std::function<void()> run = {};           ///< enqueues the work
+  std::function<Deviation()> compare = {};  ///< checks the last repetition's output; null: no reference
+  Cost cost = {};
+};
+
+inline constexpr double kChannels = 3;  ///< red, green, blue
+
+using SharedVolume = std::shared_ptr<const reference::Volume>;
+
+/// Result of a CPU reference, in Volume's host order.
+using Values = std::shared_ptr<const std::vector<double>>;
+/// Returns the values that `compute` gives. Jobs that should agree share them.
+using Share = std::function<Values(const std::function<std::vector<double>()>& compute)>;
+
+/// Computes the values.
+inline Values not_shared(const std::function<std::vector<double>()>& compute) {
+  return std::make_shared<const std::vector<double>>(compute());
+}
+
+}  // namespace verify
+}  // namespace clpv
