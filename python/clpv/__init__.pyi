@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Written by scripts/stubs.
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -66,9 +66,11 @@ class Basis:
         """energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source after `steps` steps of
         propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for clamped_cosine().
         """
-    def project(self, function: Callable[[NDArray[np.float64]], ArrayLike]) -> NDArray[np.float64]:
-        """project(function) -> float64 array (N,): least-squares projection of a function that takes directions
-        (K, 3) and returns (K,) values.
+    def directions(self) -> NDArray[np.float64]:
+        """directions() -> float64 array (K, 3): directions at which project() takes values of a function."""
+    def project(self, values: ArrayLike) -> NDArray[np.float64]:
+        """project(values (K,)) -> float64 array (N,): least-squares projection of a function that has these
+        values at directions().
         """
     def lobe(self, axis: ArrayLike, coefficients: ArrayLike | None = None) -> dict[str, float]:
         """lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) against the clamped

@@ -59,19 +59,24 @@ DoubleArray coefficients(const Basis& basis, const py::object& given) {
   return c;
 }
 
-/// A^-1 Int b f dw by quadrature.
-py::array_t<double> project(const Basis& basis, const py::function& function) {
-  std::vector<QuadratureNode> nodes = quadrature(basis, octants());
-  py::array_t<double> directions({static_cast<py::ssize_t>(nodes.size()), py::ssize_t{3}});
-  double* out = directions.mutable_data();
+/// (n,3): nodes of the quadrature that project() sums over.
+py::array_t<double> directions(const Basis& basis) {
+  const std::vector<QuadratureNode> nodes = quadrature(basis, octants());
+  py::array_t<double> found({static_cast<py::ssize_t>(nodes.size()), py::ssize_t{3}});
+  double* out = found.mutable_data();
   for (const QuadratureNode& node : nodes) {
     for (int i = 0; i < 3; ++i) *out++ = node.w[i];
   }
-  const DoubleArray values = real_array<DoubleArray>(function(directions), "values of the function");
-  if (values.ndim() != 1 || values.shape(0) != directions.shape(0)) {
-    throw py::value_error("values of the function: found shape " +
-                          std::string(py::str(values.attr("shape"))) + ", allowed: (" +
-                          std::to_string(directions.shape(0)) + ",)");
+  return found;
+}
+
+/// A^-1 Int b f dw by quadrature. Takes values, not a function: Python's exit ends daemon threads that run Python code below C++.
+py::array_t<double> project(const Basis& basis, const py::object& given) {
+  const std::vector<QuadratureNode> nodes = quadrature(basis, octants());
+  const DoubleArray values = real_array<DoubleArray>(given, "values");
+  if (values.ndim() != 1 || values.shape(0) != static_cast<py::ssize_t>(nodes.size())) {
+    throw py::value_error("values: found shape " + std::string(py::str(values.attr("shape"))) +
+                          ", allowed: (" + std::to_string(nodes.size()) + ",), one for each of directions()");
   }
   std::vector<double> moments(static_cast<std::size_t>(basis.size()));
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -169,10 +174,11 @@ void add_basis(py::module_& module) {
            py::arg("table_size") = py::none(),
            "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source after `steps` steps of\n"
            "propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for clamped_cosine().");
-  type.def("project", &project, py::arg("function"),
-           "project(function) -> float64 array (N,): least-squares projection of a function that takes "
-           "directions\n"
-           "(K, 3) and returns (K,) values.");
+  type.def("directions", &directions,
+           "directions() -> float64 array (K, 3): directions at which project() takes values of a function.");
+  type.def("project", &project, py::arg("values"),
+           "project(values (K,)) -> float64 array (N,): least-squares projection of a function that has these\n"
+           "values at directions().");
   type.def("lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
            "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) against the "
            "clamped\n"

@@ -163,6 +163,9 @@ py::list devices() {
 PYBIND11_MODULE(_native, module) {
   using namespace clpv::python;
   clpv::set_log_level(false, 0);  // to stderr
+  // pybind11 looks NumPy up in a static variable that it sets while the GIL may change hands: two threads
+  // whose first arrays meet there wait for each other without end. Here is one thread.
+  py::dtype::of<float>();
   module.doc() = "Native part of clpv.";
   module.attr("__version__") = clpv::version();
   add_errors(module);

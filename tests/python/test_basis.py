@@ -28,7 +28,7 @@ def test_projection_reproduces_functions_of_the_basis():
     for name in clpv.bases():
         basis = clpv.Basis(name)
         c = np.random.default_rng(3).normal(size=len(basis))
-        assert np.allclose(basis.project(lambda w: basis.evaluate(w) @ c), c, atol=1e-6 * basis.condition), name
+        assert np.allclose(basis.project(basis.evaluate(basis.directions()) @ c), c, atol=1e-6 * basis.condition), name
 
 
 def test_lobes():
@@ -71,8 +71,7 @@ def test_own_centres():
     (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], 2 ** 21), clpv.UsageError),
     (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], "many"), TypeError),
     (lambda: clpv.Basis().evaluate([[1, 0]]), ValueError), (lambda: clpv.Basis().evaluate([0, 0, 0]), clpv.UsageError),
-    (lambda: clpv.Basis().lobe([0, 0, 1], [1, 2]), ValueError), (lambda: clpv.Basis().project(lambda w: w), ValueError),
-    (lambda: clpv.Basis().project(lambda w: 1 / 0), ZeroDivisionError),
+    (lambda: clpv.Basis().lobe([0, 0, 1], [1, 2]), ValueError), (lambda: clpv.Basis().project([1, 2]), ValueError),
 ])
 def test_bad_input(make, error):
     with pytest.raises(error):

@@ -31,7 +31,7 @@ def run(code, seconds=300):
 # Each once aborted with 'terminate called'.
 @pytest.mark.parametrize("work", [
     "renderer.render()", "clpv.pathtrace(scene, samples=1 << 20)", "renderer.render().save(path)",
-    "scene.lights = scene.lights"])
+    "scene.lights = scene.lights", "basis = clpv.Basis('sh4'); basis.project(basis.directions()[:, 0])"])
 def test_exit_while_a_daemon_thread_works(tmp_path, work):
     ended = run(f"path = {str(tmp_path / 'a.exr')!r}\n"
                 f"def work():\n  while True: {work}\n"
@@ -39,6 +39,14 @@ def test_exit_while_a_daemon_thread_works(tmp_path, work):
                 "time.sleep(0.5)\nprint('leaving', flush=True)")
     assert ended.returncode == 0 and ended.stdout == "leaving\n", ended.stderr
     assert "terminate" not in ended.stderr and "Traceback" not in ended.stderr, ended.stderr
+
+
+def test_first_arrays_of_two_threads():  # each once waited for the other without end
+    code = ("import sys, threading\nsys.setswitchinterval(1e-6)\nimport clpv\n"
+            "work = lambda: clpv.Basis('sh2').directions()\n"
+            "threads = [threading.Thread(target=work) for _ in range(8)]\n"
+            "[t.start() for t in threads]; [t.join() for t in threads]")
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=60)
 
 
 def test_calls_during_exit_are_refused():
