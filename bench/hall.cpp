@@ -11,8 +11,8 @@ namespace {
 constexpr int kColumns = 6, kBoxes = 5 + kColumns, kFaces = 6;
 
 /// Adds one side of a box: the parallelogram corner, corner + u, corner + v, as divisions^2 pairs of triangles.
-void add_side(Scene& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v, int divisions,
-              unsigned material) {
+void add_side(SceneData& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v,
+              int divisions, unsigned material) {
   const glm::vec3 normal = glm::normalize(glm::cross(u, v));
   const auto first = static_cast<unsigned>(scene.vertices.size());
   const auto row = static_cast<unsigned>(divisions + 1);
@@ -34,7 +34,7 @@ void add_side(Scene& scene, const glm::vec3& corner, const glm::vec3& u, const g
   }
 }
 
-void add_box(Scene& scene, const glm::vec3& lower, const glm::vec3& upper, int divisions,
+void add_box(SceneData& scene, const glm::vec3& lower, const glm::vec3& upper, int divisions,
              const glm::vec3& albedo) {
   const auto material = static_cast<unsigned>(scene.materials.size());
   scene.materials.push_back(
@@ -51,10 +51,10 @@ void add_box(Scene& scene, const glm::vec3& lower, const glm::vec3& upper, int d
 
 }  // namespace
 
-Scene make_hall(int triangles) {
+SceneData make_hall(int triangles) {
   const int divisions =
       std::max(1, static_cast<int>(std::lround(std::sqrt(triangles / (2.0 * kFaces * kBoxes)))));
-  Scene scene;
+  SceneData scene;
   scene.name = "hall";
   constexpr float kHalf = 12, kThick = 0.5f, kHeight = 10;
   const glm::vec3 stone(0.7f, 0.65f, 0.6f);

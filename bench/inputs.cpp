@@ -37,7 +37,8 @@ SurfaceImage without_boundary_texels(SurfaceImage image, const ClpvGrid& grid) {
 
 }  // namespace
 
-Inputs::Inputs(Session& session, const Scene& scene, const SceneCamera& camera, const RenderOptions& options)
+Inputs::Inputs(Session& session, const SceneData& scene, const SceneCamera& camera,
+               const RenderOptions& options)
     : session_(session), options_(options), scene_(upload_scene(session, scene)) {
   const std::vector<SceneLight> lights = scene.lights_for(camera);
   if (lights.empty()) throw Error(ExitCode::bad_input, "{}: no light; bench needs one", scene.name);

@@ -21,7 +21,7 @@ class Inputs {
  public:
   /// Rasterises `scene` from `camera` and from the first light that applies there. `options` gives sizes and cascades. Throws
   /// Error(bad_input) if no light applies.
-  Inputs(Session& session, const Scene& scene, const SceneCamera& camera, const RenderOptions& options);
+  Inputs(Session& session, const SceneData& scene, const SceneCamera& camera, const RenderOptions& options);
 
   /// Surfaces of one cascade.
   struct CascadeViews {

@@ -23,7 +23,7 @@ constexpr double kDepthTolerance = 1e-2, kMaxDifferentShare = 0.02;
 
 /// One pass of rasterising: its scene, light and views.
 struct RasterTask {
-  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const SceneData> scene;
   Pass pass;
   ClpvLight light{};  ///< unused by rasterize_camera
   std::vector<ClpvView> views;
@@ -35,7 +35,7 @@ struct RasterTask {
   }
 };
 
-RasterTask make_task(std::shared_ptr<const Scene> scene, const std::string& camera_name, Pass pass,
+RasterTask make_task(std::shared_ptr<const SceneData> scene, const std::string& camera_name, Pass pass,
                      const RenderOptions& options) {
   const SceneCamera& camera = scene->camera(camera_name);
   const Bounds bounds = bounds_of(scene->vertices, scene->triangles);
@@ -123,7 +123,7 @@ Deviation compare(const RasterTask& task, const std::vector<std::vector<float>>&
 
 /// Compulsory traffic: vertices and triangles read once per view, every pixel written once.
 Cost cost_of(const RasterTask& task) {
-  const Scene& scene = *task.scene;
+  const SceneData& scene = *task.scene;
   const double pixel =
       task.pass == Pass::rasterize_shadow ? sizeof(float) : sizeof(float) + 2 * sizeof(cl_float4);
   Cost cost;
@@ -138,8 +138,8 @@ Cost cost_of(const RasterTask& task) {
 
 }  // namespace
 
-Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera, Pass pass,
-                  const RenderOptions& options) {
+Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene, const std::string& camera,
+                  Pass pass, const RenderOptions& options) {
   const auto r = std::make_shared<Rasterization>(session, make_task(std::move(scene), camera, pass, options));
   const auto bytes = [r](std::size_t v) {
     return std::size_t{r->task.views[v].width} * r->task.views[v].height * sizeof(float);
@@ -159,7 +159,7 @@ Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const st
   return job;
 }
 
-Job rasterize_gl_job(Session&, std::shared_ptr<const Scene> scene, const std::string& camera, Pass pass,
+Job rasterize_gl_job(Session&, std::shared_ptr<const SceneData> scene, const std::string& camera, Pass pass,
                      const RenderOptions& options) {
   const auto task = std::make_shared<RasterTask>(make_task(std::move(scene), camera, pass, options));
   const auto gl = std::make_shared<GlRasterizer>(*task->scene, pass, task->views, task->light);

@@ -82,10 +82,10 @@ inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kSweep, kGather};
 /// Rasterises a scene for `camera` (empty: its first) and the first light that applies there. `pass` is rasterize_camera (the
 /// camera's G-buffer), rasterize_shadow (shadow maps) or rasterize_rsm (RSMs of all cascades). Throws Error(bad_input) if
 /// a pass needs a light and none applies.
-Job rasterize_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera, Pass pass,
-                  const RenderOptions& options);
+Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene, const std::string& camera,
+                  Pass pass, const RenderOptions& options);
 /// The same work by OpenGL (bench/native/rasterize_gl.hpp).
-Job rasterize_gl_job(Session& session, std::shared_ptr<const Scene> scene, const std::string& camera,
+Job rasterize_gl_job(Session& session, std::shared_ptr<const SceneData> scene, const std::string& camera,
                      Pass pass, const RenderOptions& options);
 
 /// A case of `job` with `problem`, or with with_sweep(problem) for the sweep.

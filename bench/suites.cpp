@@ -61,9 +61,9 @@ std::string row_lines(const std::vector<Row>& rows, std::size_t width,
   return text;
 }
 
-std::shared_ptr<const Scene> scene_of(const SuiteOptions& options) {
+std::shared_ptr<const SceneData> scene_of(const SuiteOptions& options) {
   if (options.scene) return options.scene;
-  return std::make_shared<const Scene>(make_hall(kHallTriangles));
+  return std::make_shared<const SceneData>(make_hall(kHallTriangles));
 }
 
 std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options,

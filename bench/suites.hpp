@@ -15,7 +15,7 @@ namespace clpv::bench {
 
 /// Scene, camera, bases and settings for a suite.
 struct SuiteOptions {
-  std::shared_ptr<const Scene> scene;        ///< null: the hall of hall.hpp
+  std::shared_ptr<const SceneData> scene;    ///< null: the hall of hall.hpp
   std::string camera;                        ///< by name; empty: the scene's first
   std::vector<std::string> bases;            ///< empty: the suite's default bases
   RenderOptions settings = timed_options();  ///< settings of all rows, apart from those that the suite varies
@@ -63,7 +63,7 @@ std::string row_lines(const std::vector<Row>& rows, std::size_t width,
                       const std::function<std::string(const Row&)>& columns);
 
 /// The scene of the options, else the hall.
-std::shared_ptr<const Scene> scene_of(const SuiteOptions& options);
+std::shared_ptr<const SceneData> scene_of(const SuiteOptions& options);
 /// A Bench whose inputs are rasterised from scene_of(options) with `settings`.
 std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options,
                                   const RenderOptions& settings);

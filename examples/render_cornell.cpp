@@ -4,7 +4,7 @@
 #include <iostream>
 
 int main(int argc, char** argv) try {
-  const clpv::SceneFile scene(argc > 1 ? argv[1] : "scenes/cornell.json");
+  const clpv::Scene scene(argc > 1 ? argv[1] : "scenes/cornell.json");
   clpv::Renderer renderer(scene, clpv::Options().set("basis", "sh2").set("width", "160").set("height", "90"));
   const clpv::Image image = renderer.render(clpv::View::indirect);
   if (argc > 2) clpv::save_image(argv[2], image);

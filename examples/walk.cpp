@@ -4,7 +4,7 @@
 #include <iostream>
 
 int main(int argc, char** argv) try {
-  clpv::SceneFile scene(argc > 1 ? argv[1] : "scenes/cornell.json");
+  clpv::Scene scene(argc > 1 ? argv[1] : "scenes/cornell.json");
   clpv::Renderer renderer(scene, clpv::Options().set("basis", "sh2").set("width", "160").set("height", "90"));
 
   // A moving camera keeps the volumes until a cascade moves by a cell.

@@ -119,7 +119,7 @@ TEST_F(AnimationTest, CamerasAndLightsFollowTheirNodes) {
   animate<float>(head, "translation", {0, 2}, {0, 0, 0, 0, 4, 0});
   MovingScene moving = load();
   moving.pose(1);
-  const Scene& scene = moving.scene();
+  const SceneData& scene = moving.scene();
   EXPECT_THAT(scene.cameras[0].eye, IsNear(glm::vec3(0, 2, 0), kClose));
   EXPECT_THAT(scene.cameras[0].forward, IsNear(glm::vec3(-1, 0, 0), kClose));
   EXPECT_THAT(scene.lights[0].data.direction,

@@ -33,7 +33,7 @@ Options small() {
 }
 
 TEST(Api, RendersCornell) {
-  Renderer made(SceneFile(kCornell), small());
+  Renderer made(Scene(kCornell), small());
   Renderer renderer = std::move(made);
   const Image full = renderer.render(), direct = renderer.render(View::direct),
               indirect = renderer.render(View::indirect);
@@ -45,7 +45,7 @@ TEST(Api, RendersCornell) {
 }
 
 TEST(Api, ReturnsLightAtAnyPoint) {
-  Renderer renderer(SceneFile(kCornell), small());
+  Renderer renderer(Scene(kCornell), small());
   EXPECT_THROW(renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}), Error) << "before the first frame";
   renderer.render();
   const auto up = renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}),
@@ -59,9 +59,9 @@ TEST(Api, ReturnsLightAtAnyPoint) {
 
 TEST(Api, AnimatedScenesRenderAtAnyTime) {
   const test::TemporaryFolder folder;
-  const SceneFile scene(test::write_moving_scene(folder));
+  const Scene scene(test::write_moving_scene(folder));
   EXPECT_TRUE(scene.moves());
-  EXPECT_FALSE(SceneFile(kCornell).moves());
+  EXPECT_FALSE(Scene(kCornell).moves());
   Renderer renderer(scene, small()), other(scene, small());
   const Image start = renderer.render(), later = renderer.render(View::full, {}, 0.6);
   const auto light = renderer.irradiance({0, 0.5, 0}, {0, -1, 0});
@@ -85,12 +85,12 @@ double difference(const Image& a, const Image& b) {
 }
 
 Camera front() {
-  const auto all = SceneFile(kCornell).cameras();
+  const auto all = Scene(kCornell).cameras();
   return *std::ranges::find(all, "front", &Camera::name);
 }
 
 TEST(Api, AnyCameraRenders) {
-  const SceneFile scene(kCornell);
+  const Scene scene(kCornell);
   Renderer renderer(scene, small());
   EXPECT_THROW(renderer.render(View::full, "nowhere"), Error);
   const Image named = renderer.render(View::full, "front"), given = renderer.render(View::full, front());
@@ -103,7 +103,7 @@ TEST(Api, AnyCameraRenders) {
 }
 
 TEST(Api, BadCamerasAreRejectedWithTheirMember) {
-  Renderer renderer(SceneFile(kCornell), small());
+  Renderer renderer(Scene(kCornell), small());
   const auto rejected = [&](const std::string& member, auto change) {
     Camera camera = front();
     change(camera);
@@ -123,7 +123,7 @@ TEST(Api, BadCamerasAreRejectedWithTheirMember) {
 }
 
 TEST(Api, CamerasOfASceneCanBeChanged) {
-  SceneFile scene(kCornell);
+  Scene scene(kCornell);
   Renderer renderer(scene, small());
   const Image before = renderer.render(View::full, "front");
   std::vector<Camera> cameras = scene.cameras();
@@ -140,7 +140,7 @@ TEST(Api, CamerasOfASceneCanBeChanged) {
 }
 
 TEST(Api, AChangedLightRecomputesOnlyItsLight) {
-  SceneFile scene(kCornell);
+  Scene scene(kCornell);
   Renderer renderer(scene, small());
   const Image before = renderer.render(View::indirect);
   std::vector<Light> lights = scene.lights();
@@ -166,7 +166,7 @@ TEST(Api, AChangedLightRecomputesOnlyItsLight) {
 }
 
 TEST(Api, LightsKeepTheirNumbers) {
-  SceneFile scene(kCornell);
+  Scene scene(kCornell);
   const Light spot{LightKind::spot, {1, 2, 3}, {0, 0, -2}, {1, 2, 4}, 5, 20, 60, "a"};
   const Light sun{.direction = {1, -1, 0}, .name = "b"};
   scene.set_lights({spot, sun});
@@ -199,7 +199,7 @@ TEST(Api, LightsKeepTheirNumbers) {
 }
 
 TEST(Api, AMediumCanBeSetAndRemoved) {
-  SceneFile scene(kCornell);
+  Scene scene(kCornell);
   Renderer renderer(scene, small());
   const Image clear = renderer.render();
   EXPECT_FALSE(scene.medium());
@@ -224,7 +224,7 @@ TEST(Api, AMediumCanBeSetAndRemoved) {
 }
 
 TEST(Api, ARendererOutlivesItsSceneHandle) {
-  auto scene = std::make_unique<SceneFile>(kCornell);
+  auto scene = std::make_unique<Scene>(kCornell);
   Renderer renderer(*scene, small());
   const Image before = renderer.render();
   scene.reset();
@@ -232,7 +232,7 @@ TEST(Api, ARendererOutlivesItsSceneHandle) {
 }
 
 TEST(Api, CallsFromSeveralThreadsRunOneAfterTheOther) {
-  SceneFile scene(kCornell);
+  Scene scene(kCornell);
   Renderer renderer(scene, small());
   const Image expected = renderer.render();
   std::vector<std::future<Image>> images;
@@ -243,7 +243,7 @@ TEST(Api, CallsFromSeveralThreadsRunOneAfterTheOther) {
 }
 
 TEST(Api, VolumesHoldTheLight) {
-  Renderer renderer(SceneFile(kCornell), small());
+  Renderer renderer(Scene(kCornell), small());
   EXPECT_THROW(renderer.volumes(), Error) << "before the first frame";
   renderer.render();
   const auto volumes = renderer.volumes();
@@ -275,7 +275,7 @@ TEST(Api, VolumesHoldTheLight) {
 }
 
 TEST(Api, IrradianceOfManyPointsIsThatOfEach) {
-  Renderer renderer(SceneFile(kCornell), small());
+  Renderer renderer(Scene(kCornell), small());
   renderer.render();
   std::vector<std::array<float, 3>> positions, normals;
   for (int i = 0; i < 1100; ++i) {  // more than a row of the points' image
@@ -298,7 +298,7 @@ TEST(Api, IrradianceOfManyPointsIsThatOfEach) {
 }
 
 TEST(Api, OtherViewsOfTheLastFrame) {
-  Renderer renderer(SceneFile(kCornell), small());
+  Renderer renderer(Scene(kCornell), small());
   EXPECT_THROW(renderer.show(View::depth), Error);
   renderer.render(View::full, front());
   const Image depth = renderer.show(View::depth);
@@ -306,7 +306,7 @@ TEST(Api, OtherViewsOfTheLastFrame) {
 }
 
 TEST(Api, PathtraceIsComparable) {
-  const SceneFile scene(kCornell);
+  const Scene scene(kCornell);
   TraceOptions options;
   options.width = 48;
   options.height = 27;
@@ -339,8 +339,8 @@ TEST(Api, OptionsAreThoseOfTheProgram) {
 }
 
 TEST(Api, ErrorsHaveTheirExitCode) {
-  test::error_of(ExitCode::bad_input, [] { SceneFile("/nowhere/scene.json"); });
-  test::error_of(ExitCode::device, [] { Renderer(SceneFile(kCornell), small(), "no device of this name"); });
+  test::error_of(ExitCode::bad_input, [] { Scene("/nowhere/scene.json"); });
+  test::error_of(ExitCode::device, [] { Renderer(Scene(kCornell), small(), "no device of this name"); });
 }
 
 TEST(Api, ListsTheDeviceThatTestsRunOn) {

@@ -38,7 +38,7 @@ using test::scene_file;
 class Cornell : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    scene_ = std::make_unique<Scene>(load_scene(scene_file("cornell.json")));
+    scene_ = std::make_unique<SceneData>(load_scene(scene_file("cornell.json")));
     camera_ = scene_->camera("front");
     view_ = std::make_unique<baselines::View>(*scene_, camera_, kWidth, kHeight, 1, 2);
     RenderOptions options;
@@ -63,7 +63,7 @@ class Cornell : public ::testing::Test {
     return compare(traced_view(view_->with(irradiance), Show::indirect), "baseline", truth_, "ground truth");
   }
 
-  static inline std::unique_ptr<Scene> scene_;
+  static inline std::unique_ptr<SceneData> scene_;
   static inline SceneCamera camera_;
   static inline std::unique_ptr<baselines::View> view_;
   static inline BaselineBudget budget_;
@@ -123,7 +123,7 @@ TEST_F(Cornell, FilterKeepsAConstant) {
 }
 
 TEST(BaselineFilter, DoesNotMixWallAndFloor) {
-  Scene scene = test::floor_scene(0.5f);
+  SceneData scene = test::floor_scene(0.5f);
   test::add_quad(scene, {-10, 0, -1}, {20, 0, 0}, {0, 10, 0}, 0);
   scene.lights = {test::sun({0, -1, -1}, 1)};
   const SceneCamera camera = camera_at({0, 1, 2}, {0, -0.2f, -1});
@@ -137,7 +137,7 @@ TEST(BaselineFilter, DoesNotMixWallAndFloor) {
 
 // A plane's irradiance that rises along a row is interpolated exactly.
 TEST(BaselineFilter, InterpolatesBetweenThinnedPixels) {
-  Scene scene = test::floor_scene(0.5f);
+  SceneData scene = test::floor_scene(0.5f);
   scene.lights = {test::sun({0, -1, 0}, 1)};
   SceneCamera camera;
   camera.eye = {0, 2, 0}, camera.forward = {0, -1, 0}, camera.up = {0, 0, -1};
@@ -150,8 +150,8 @@ TEST(BaselineFilter, InterpolatesBetweenThinnedPixels) {
 }
 
 /// A closed cube of edge 2 m seen from inside; its walls emit radiance 2.
-Scene furnace() {
-  Scene scene;
+SceneData furnace() {
+  SceneData scene;
   scene.path = "furnace";
   const unsigned wall = test::add_grey(scene, 0.5f);
   for (float& e : scene.materials[wall].emissive) e = 2;
@@ -160,7 +160,7 @@ Scene furnace() {
 }
 
 TEST(BaselineProbes, FurnaceIsEvenlyLit) {
-  const Scene scene = furnace();
+  const SceneData scene = furnace();
   const SceneCamera camera = camera_at({1, 1, 1.5f}, {0, -0.2f, -1.5f});
   const baselines::View view(scene, camera, 16, 9, 1, 2);
   ClpvGrid grid{{-0.5f, -0.5f, -0.5f}, 0.375f, 8, {1, 1, 1}};
@@ -187,10 +187,10 @@ TEST(BaselineLights, CarryAllFluxAndArea) {
 }
 
 TEST(BaselineRejection, NamesWhatAMethodDoesNotHave) {
-  const auto reason = [](Baseline baseline, const Scene& scene, int bounces, Show show) {
+  const auto reason = [](Baseline baseline, const SceneData& scene, int bounces, Show show) {
     return test::error_of(ExitCode::usage, [&] { require_baseline(baseline, scene, bounces, show); });
   };
-  const Scene lit = load_scene(scene_file("cornell.json")), glowing = furnace();
+  const SceneData lit = load_scene(scene_file("cornell.json")), glowing = furnace();
   EXPECT_THAT(reason(Baseline::vpl, glowing, 1, Show::indirect), HasSubstr("emissive"));
   EXPECT_THAT(reason(Baseline::ddgi_first, lit, 2, Show::indirect), HasSubstr("allowed: bounces 1"));
   EXPECT_THAT(reason(Baseline::paths, lit, 1, Show::full),

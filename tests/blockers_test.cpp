@@ -26,7 +26,7 @@ struct Shares {
   }
 };
 
-Shares blocked(const Scene& scene) {
+Shares blocked(const SceneData& scene) {
   Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   VoxelField(test_session(), buffers, blocker_masks(buffers, kGrid, 1, {})).update(0, kCells, geometry);
@@ -40,7 +40,7 @@ float sum(const Shares& shares, int axis) {
 }
 
 TEST(Blockers, AWallBlocksExactlyTheSquaresItCovers) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
   const Shares shares = blocked(scene);
   for (int y = 0; y <= kGrid; ++y) {
@@ -52,14 +52,14 @@ TEST(Blockers, AWallBlocksExactlyTheSquaresItCovers) {
 }
 
 TEST(Blockers, OverlappingWallsCountOnce) {
-  Scene scene;
+  SceneData scene;
   const unsigned material = add_material(scene);
   for (const float x : {1.6f, 1.9f, 2.3f}) add_quad(scene, {x, -9, -9}, {0, 20, 0}, {0, 0, 20}, material);
   EXPECT_EQ(sum(blocked(scene), 0), 25);
 }
 
 TEST(Blockers, BlockingIsProportionalToCoveredArea) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {1.5f, 2.1f, 1.5f}, {0.5f, 0, 0}, {0, 0, -0.25f},
            add_material(scene));  // beyond the corner's cell
   add_quad(scene, {2.5f, 2.1f, 1.5f}, {0.5f, 0, 0}, {0, 0, 0.25f}, 0);
@@ -71,7 +71,7 @@ TEST(Blockers, BlockingIsProportionalToCoveredArea) {
 }
 
 TEST(Blockers, ASlantedWallBlocksAlongEachAxisItCrosses) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {-5, -5, -5}, {20, 20, 0}, {0, 0, 20}, add_material(scene));  // x = y
   const Shares shares = blocked(scene);
   for (int i = 0; i <= kGrid; ++i) {
@@ -82,7 +82,7 @@ TEST(Blockers, ASlantedWallBlocksAlongEachAxisItCrosses) {
 }
 
 TEST(Blockers, HolesOfMaskedMaterialsLetLightPass) {
-  Scene scene;
+  SceneData scene;
   Texture stripes{.width = 2, .height = 1, .rgba = {255, 255, 255, 255, 255, 255, 255, 0}, .name = "stripes"};
   scene.textures.push_back(stripes);
   const unsigned material = add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED);
@@ -96,7 +96,7 @@ TEST(Blockers, HolesOfMaskedMaterialsLetLightPass) {
 }
 
 TEST(Blockers, AHugeTriangleIsAWall) {
-  Scene scene;
+  SceneData scene;
   add_triangle(scene, {-3e7f, 2, -1e7f}, {3e7f, 2, -1e7f}, {0, 2, 5e7f}, add_material(scene));
   EXPECT_EQ(sum(blocked(scene), 1), 25);
 }

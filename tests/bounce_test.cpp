@@ -76,8 +76,8 @@ bool inside(const glm::ivec3& p) {
 
 /// A closed box with one albedo; its walls lie in the middle of the blocking corners next to the
 /// inner cells.
-Scene room_scene(float albedo, const ClpvGrid& grid) {
-  Scene scene;
+SceneData room_scene(float albedo, const ClpvGrid& grid) {
+  SceneData scene;
   const unsigned material = add_material(scene, glm::vec3(albedo));
   const glm::vec3 origin(grid.origin[0], grid.origin[1], grid.origin[2]);
   const float low = kFirst - 0.49f, edge = kLast + 1.49f - low;
@@ -88,7 +88,7 @@ Scene room_scene(float albedo, const ClpvGrid& grid) {
 /// The room's walls, as stages find them; and light that leaves each of them by 1 W a face.
 struct Room {
   ClpvGrid grid = cascade_grids(glm::vec3(0.5f), 1, kGrid, kGrid).front();
-  Scene scene;
+  SceneData scene;
   reference::Volume light{kGrid, kSweepBins}, blockers, reflectors;
 
   explicit Room(float albedo) : scene(room_scene(albedo, grid)) {
@@ -142,7 +142,7 @@ RenderOptions small_frame(Bounces bounces, int cascades) {
 }
 
 double irradiance(const RenderOptions& options, const char* file = "scenes/cornell.json") {
-  const Scene scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / file);
+  const SceneData scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / file);
   Frame frame(test_session(), scene, options);
   frame.render(scene.camera(""));
   const std::vector<float> pixels = frame.read(Show::irradiance);

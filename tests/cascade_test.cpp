@@ -68,8 +68,8 @@ TEST(Cascade, RejectsCellsBelowTheResolutionOfCoordinates) {
 }
 
 /// A floor of that edge [m], and a camera in its middle.
-Scene floor_of(float edge) {
-  Scene scene;
+SceneData floor_of(float edge) {
+  SceneData scene;
   const float half = edge / 2;
   test::add_quad(scene, {-half, 0, -half}, {0, 0, edge}, {edge, 0, 0}, test::add_material(scene));
   scene.lower = {-half, 0, -half}, scene.upper = {half, 0, half};
@@ -80,7 +80,7 @@ Scene floor_of(float edge) {
 TEST(Cascade, TheDefaultSizeIsKeptWhereItFits) {
   for (const float edge : {10.0f, 20.0f, 37.0f})
     EXPECT_EQ(fitting_cascade_size(floor_of(edge), 3, 12.5), 12.5) << edge;
-  EXPECT_EQ(fitting_cascade_size(Scene{}, 3, 12.5), 12.5) << "nothing to hold";
+  EXPECT_EQ(fitting_cascade_size(SceneData{}, 3, 12.5), 12.5) << "nothing to hold";
 }
 
 TEST(Cascade, TheCoarsestIsFittedToTheScene) {
@@ -92,11 +92,11 @@ TEST(Cascade, TheCoarsestIsFittedToTheScene) {
 }
 
 TEST(Cascade, ItIsKnownWhetherCascadesMeetTheScene) {
-  const Scene scene = floor_of(10);
+  const SceneData scene = floor_of(10);
   EXPECT_TRUE(cascades_meet(scene, {0, 1, 0}, 3, 1, 32));
   EXPECT_TRUE(cascades_meet(scene, {0, 1.9f, 0}, 3, 1, 32));
   EXPECT_FALSE(cascades_meet(scene, {0, 2.3f, 0}, 3, 1, 32)) << "the coarsest ends 2 m from the eye";
-  EXPECT_FALSE(cascades_meet(Scene{}, {0, 0, 0}, 3, 1, 32));
+  EXPECT_FALSE(cascades_meet(SceneData{}, {0, 0, 0}, 3, 1, 32));
 }
 
 /// A bare model: a floor 700 m across, without camera or light.

@@ -55,7 +55,7 @@ TEST(CellSpheres, NoneBesideThemAndNextToTheEye) {
 }
 
 TEST(CellSpheres, AreShadedByTheirIrradiance) {
-  const Scene scene = load_scene(kCornell);
+  const SceneData scene = load_scene(kCornell);
   RenderOptions options;
   options.width = 64;
   options.height = 36;

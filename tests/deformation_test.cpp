@@ -45,7 +45,7 @@ TEST_F(SkinTest, VerticesFollowTheirJoints) {
   model.document["nodes"][0]["translation"] = {50, 50, 50};  // of no account: the joints place it
   model.document["nodes"][1]["translation"] = {0, 0, 4};
   model.document["nodes"][2]["translation"] = {2, 10, 0};
-  const Scene scene = load_scene(model.write(folder));
+  const SceneData scene = load_scene(model.write(folder));
   EXPECT_THAT(position(scene, 0, 0), IsNear(glm::vec3(0, 0, 4), kNear));
   EXPECT_THAT(position(scene, 0, 1), IsNear(glm::vec3(1, 10, 0), kNear)) << "its bind matrix takes 2 off";
   EXPECT_THAT(position(scene, 0, 2), IsNear(glm::vec3(0, 6, 2), kNear)) << "half way between the two";
@@ -70,7 +70,7 @@ TEST_F(SkinTest, NormalsTurnWithTheirJoints) {
   primitive()["attributes"]["NORMAL"] = model.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
   const float half = std::sqrt(0.5f);
   model.document["nodes"][2] = {{"translation", {2, 0, 0}}, {"rotation", {0, half, 0, half}}};  // z to x
-  const Scene scene = load_scene(model.write(folder));
+  const SceneData scene = load_scene(model.write(folder));
   EXPECT_THAT(normal(scene, 0, 0), IsNear(glm::vec3(0, 0, 1), kNear));
   EXPECT_THAT(normal(scene, 0, 1), IsNear(glm::vec3(1, 0, 0), kNear));
 }
@@ -79,7 +79,7 @@ TEST_F(SkinTest, WeightsAreSharesAndNoneMeansTheFirstJoint) {
   model.document["nodes"][2]["translation"] = {2, 10, 0};
   primitive()["attributes"]["WEIGHTS_0"] =
       model.accessor<float>("VEC4", {0, 0, 0, 0, 5, 0, 0, 0, 3, 1, 0, 0});
-  const Scene scene = load_scene(model.write(folder));
+  const SceneData scene = load_scene(model.write(folder));
   EXPECT_THAT(position(scene, 0, 0), IsNear(glm::vec3(0), kNear));
   EXPECT_THAT(position(scene, 0, 1), IsNear(glm::vec3(1, 10, 0), kNear));
   EXPECT_THAT(position(scene, 0, 2), IsNear(glm::vec3(0, 3.5f, 0), kNear));
@@ -96,11 +96,11 @@ struct MorphTest : AnimationTest {
 TEST_F(MorphTest, TargetsAddUpByTheWeightsOfTheNodeElseTheMesh) {
   EXPECT_THAT(position(load_scene(model.write(folder)), 0, 2), IsNear(glm::vec3(0, 1, 0), kNear));
   model.document["meshes"][0]["weights"] = {0.5, -1};
-  const Scene of_mesh = load_scene(model.write(folder));
+  const SceneData of_mesh = load_scene(model.write(folder));
   EXPECT_THAT(position(of_mesh, 0, 2), IsNear(glm::vec3(0, 1, 1), kNear));
   EXPECT_THAT(position(of_mesh, 0, 1), IsNear(glm::vec3(-2, 0, 0), kNear));
   model.document["nodes"][0]["weights"] = {1, 0};
-  const Scene of_node = load_scene(model.write(folder));
+  const SceneData of_node = load_scene(model.write(folder));
   EXPECT_THAT(position(of_node, 0, 2), IsNear(glm::vec3(0, 1, 2), kNear));
   EXPECT_THAT(normal(of_node, 0, 0), IsNear(face_normal(of_node, 0), kNear)) << "flat normals are recomputed";
   EXPECT_TRUE(of_node.moving.empty());
@@ -110,7 +110,7 @@ TEST_F(MorphTest, StoredNormalsTakeTheirTargets) {
   primitive()["attributes"]["NORMAL"] = model.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
   primitive()["targets"][0]["NORMAL"] = model.accessor<float>("VEC3", {1, 0, 0, 0, 0, 0, 0, 0, -2});
   model.document["meshes"][0]["weights"] = {1, 0};
-  const Scene scene = load_scene(model.write(folder));
+  const SceneData scene = load_scene(model.write(folder));
   EXPECT_THAT(normal(scene, 0, 0), IsNear(glm::normalize(glm::vec3(1, 0, 1)), kNear));
   EXPECT_THAT(normal(scene, 0, 1), IsNear(glm::vec3(0, 0, 1), kNear));
   EXPECT_THAT(normal(scene, 0, 2), IsNear(glm::vec3(0, 0, -1), kNear));

@@ -25,7 +25,7 @@ namespace {
 using namespace test;
 using std::numbers::pi;
 
-unsigned add_lamp_material(Scene& scene, const glm::vec3& radiance, unsigned flags = 0) {
+unsigned add_lamp_material(SceneData& scene, const glm::vec3& radiance, unsigned flags = 0) {
   const unsigned material = add_material(scene, glm::vec3(0), flags);
   for (int i = 0; i < 3; ++i) scene.materials[material].emissive[i] = radiance[i];
   return material;
@@ -36,14 +36,14 @@ std::vector<ClpvGrid> grids_about(const glm::vec3& eye, int count = 2) {
 }
 
 /// Points by the kernel, as injection gets them.
-SurfaceImage emitted(const Scene& scene, const EmissionPlan& plan, float scale = 1) {
+SurfaceImage emitted(const SceneData& scene, const EmissionPlan& plan, float scale = 1) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   Emitter emitter(test_session(), buffers);
   emitter.emit(plan, scale);
   return read_surface(test_session(), emitter.points());
 }
 
-EmissionPlan plan_of(const Scene& scene, const std::vector<ClpvGrid>& grids) {
+EmissionPlan plan_of(const SceneData& scene, const std::vector<ClpvGrid>& grids) {
   return plan_emission(scene, emissive_triangles(scene), grids);
 }
 
@@ -55,7 +55,7 @@ glm::dvec3 total(const SurfaceImage& points) {
 
 TEST(Emit, FluxIsPiTimesRadianceTimesArea) {
   for (const unsigned sides : {1u, 2u}) {
-    Scene scene;
+    SceneData scene;
     const unsigned flags = sides == 2 ? CLPV_MATERIAL_DOUBLE_SIDED : 0;
     add_quad(scene, {-0.6f, 0.3f, 0.1f}, {0.7f, 0.2f, 0}, {0, 0.3f, 0.5f},
              add_lamp_material(scene, {5, 1, 0.25f}, flags));
@@ -71,7 +71,7 @@ TEST(Emit, FluxIsPiTimesRadianceTimesArea) {
 // counted twice.
 TEST(Emit, ASmallBrightSpotCountsOnceAnywhere) {
   for (const unsigned at : {3u, 517u, 1020u}) {
-    Scene scene;
+    SceneData scene;
     Texture spot{.width = 1024, .height = 1024, .rgba = {}, .name = "spot"};
     spot.wrap_u = spot.wrap_v = CLPV_WRAP_CLAMP;
     spot.rgba.assign(4u * 1024 * 1024, 0);
@@ -95,7 +95,7 @@ TEST(Emit, ASmallBrightSpotCountsOnceAnywhere) {
 }
 
 TEST(Emit, HolesDoNotEmit) {
-  Scene scene;
+  SceneData scene;
   scene.textures.push_back({.width = 2,
                             .height = 1,
                             .wrap_u = CLPV_WRAP_CLAMP,
@@ -111,7 +111,7 @@ TEST(Emit, HolesDoNotEmit) {
 // A surface that reaches through all cascades: points are dense near the eye, sparse far off,
 // nowhere twice, none outside.
 TEST(Emit, PointsAreAsFarApartAsTheCellsThere) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0}, add_lamp_material(scene, glm::vec3(1)));
   const std::vector<ClpvGrid> grids = grids_about({0.3f, 0.2f, -0.4f}, 3);
   const EmissionPlan plan = plan_of(scene, grids);
@@ -138,7 +138,7 @@ TEST(Emit, PointsAreAsFarApartAsTheCellsThere) {
 }
 
 TEST(Emit, TheNumberOfPointsIsBounded) {
-  Scene scene;
+  SceneData scene;
   const unsigned lamp = add_lamp_material(scene, glm::vec3(1));
   add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, lamp);
   const std::vector<ClpvGrid> grids = grids_about({0, 0, 0});
@@ -154,7 +154,7 @@ TEST(Emit, TheNumberOfPointsIsBounded) {
 }
 
 TEST(Emit, MaximumFluxIsThatOfACellOrTheTotal) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {0, 0, 0}, {0, 0, 1}, {2, 0, 0}, add_lamp_material(scene, {3, 1, 1}));
   const std::vector<std::uint32_t> triangles = emissive_triangles(scene);
   EXPECT_NEAR(max_emitted_flux(scene, triangles, 0.5), pi * 3 * 0.25, 1e-6);
@@ -164,8 +164,8 @@ TEST(Emit, MaximumFluxIsThatOfACellOrTheTotal) {
 }
 
 /// A small lamp over a visible floor, without a ceiling.
-Scene lamp_over_floor(float edge = 0.5f) {
-  Scene scene = floor_scene(0.5f);
+SceneData lamp_over_floor(float edge = 0.5f) {
+  SceneData scene = floor_scene(0.5f);
   add_quad(scene, {-edge / 2, 1.5f, -edge / 2}, {edge, 0, 0}, {0, 0, edge},
            add_lamp_material(scene, {8, 4, 2}));
   scene.cameras.push_back({});
@@ -185,7 +185,7 @@ RenderOptions small_frame() {
 // A square over a parallel plane: the mean of the visible E against path tracing, which
 // path_tracer_test.cpp compares with closed forms.
 TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
-  const Scene scene = lamp_over_floor();
+  const SceneData scene = lamp_over_floor();
   Frame frame(test_session(), scene, small_frame());
   frame.render(scene.cameras[0]);
   const std::vector<float> found = frame.read(Show::irradiance);
@@ -201,7 +201,7 @@ TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
 }
 
 TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
-  Scene scene = lamp_over_floor();
+  SceneData scene = lamp_over_floor();
   const auto passes = [](Frame& frame, const SceneCamera& camera) {
     frame.render(camera);
     int emitted = 0, injected = 0;
@@ -228,7 +228,7 @@ TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
 }
 
 TEST(EmissiveFrame, StaticEmittersKeepTheirPoints) {
-  Scene scene = lamp_over_floor();
+  SceneData scene = lamp_over_floor();
   scene.moving = {{0, 4, 0, 2}};  // the floor
   Frame frame(test_session(), scene, small_frame());
   frame.render(scene.cameras[0]);

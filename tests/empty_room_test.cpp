@@ -26,7 +26,7 @@ struct Quality {
   double nrmse, energy;  ///< energy: over the ground truth's
 };
 
-Quality quality(const Scene& scene, const Image& truth, const std::string& basis, int grid) {
+Quality quality(const SceneData& scene, const Image& truth, const std::string& basis, int grid) {
   RenderOptions options;
   options.basis = basis, options.grid = grid;
   options.cascades = scene.cascades.value(), options.cascade_size = scene.cascade_size.value();
@@ -39,7 +39,7 @@ Quality quality(const Scene& scene, const Image& truth, const std::string& basis
 }
 
 TEST(EmptyRoom, FinerCellsAreNoWorse) {
-  const Scene scene = load_scene(test::scene_file("empty_room.json"));
+  const SceneData scene = load_scene(test::scene_file("empty_room.json"));
   reference::PathTracerOptions traced;
   traced.noise = 0.04;
   const Image truth = traced_view(

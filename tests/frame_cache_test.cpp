@@ -98,7 +98,7 @@ class CachedFrame : public ::testing::Test {
   MovingScene moving_{test::write_moving_scene(folder_)};
   RenderOptions options_;
   Session session_{choose_device()};
-  Scene scene_;
+  SceneData scene_;
   Frame frame_;
 };
 

@@ -32,7 +32,7 @@ constexpr int kWidth = 96, kHeight = 54;
 // Another device rounds otherwise, which moves single pixels across edges of shadows and triangles.
 constexpr double kGoldenTolerance = 0.03;
 
-RenderOptions small_options(const Scene& scene) {
+RenderOptions small_options(const SceneData& scene) {
   RenderOptions options;
   options.width = kWidth;
   options.height = kHeight;
@@ -41,7 +41,8 @@ RenderOptions small_options(const Scene& scene) {
   return options;
 }
 
-Image render(const Scene& scene, const RenderOptions& options, Show view, const std::string& camera = {}) {
+Image render(const SceneData& scene, const RenderOptions& options, Show view,
+             const std::string& camera = {}) {
   Frame frame(test::test_session(), scene, options);
   frame.render(scene.camera(camera));
   Image image = make_image(options.width, options.height, {"R", "G", "B", "A"});
@@ -71,23 +72,23 @@ static_assert(!std::is_move_constructible_v<Frame> && !std::is_copy_constructibl
               !std::is_move_assignable_v<Frame> && !std::is_copy_assignable_v<Frame>);
 
 TEST(Frame, AtriumEqualsItsGoldenImage) {
-  const Scene scene = load_scene(scene_file("atrium.json"));
+  const SceneData scene = load_scene(scene_file("atrium.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "atrium");
 }
 
 TEST(Frame, CornellBoxEqualsItsGoldenImage) {
-  const Scene scene = load_scene(scene_file("cornell.json"));
+  const SceneData scene = load_scene(scene_file("cornell.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "cornell");
 }
 
 TEST(Frame, SponzaEqualsItsGoldenImage) {
   if (sponza().empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA names it";
-  const Scene scene = load_scene(scene_file("sponza.json"), sponza());
+  const SceneData scene = load_scene(scene_file("sponza.json"), sponza());
   expect_golden(render(scene, small_options(scene), Show::indirect, "curtains"), "sponza");
 }
 
 TEST(Frame, TheBackWallIsRedNearTheRedWall) {
-  const Scene scene = load_scene(scene_file("cornell.json"));
+  const SceneData scene = load_scene(scene_file("cornell.json"));
   for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep}) {
     RenderOptions options = small_options(scene);
     options.transport = transport;
@@ -103,11 +104,11 @@ TEST(Frame, TheBackWallIsRedNearTheRedWall) {
 }
 
 TEST(Frame, VolumesOf16BitsServeLuxAndCandleLight) {
-  Scene scene = load_scene(scene_file("cornell.json"));
+  SceneData scene = load_scene(scene_file("cornell.json"));
   RenderOptions options = small_options(scene);
   const Image usual = render(scene, options, Show::indirect);
   for (const float brightness : {1e-5f, 1e6f}) {
-    Scene other = scene;
+    SceneData other = scene;
     for (SceneLight& light : other.lights) light.data = scaled(light.data, brightness);
     Image image = render(other, options, Show::indirect);
     for (std::size_t at = 0; at < image.pixels.size(); ++at)
@@ -117,7 +118,7 @@ TEST(Frame, VolumesOf16BitsServeLuxAndCandleLight) {
 }
 
 TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
-  const Scene scene = load_scene(scene_file("cornell.json"));
+  const SceneData scene = load_scene(scene_file("cornell.json"));
   RenderOptions options = small_options(scene);
   Device device = choose_device();
   {
@@ -134,14 +135,14 @@ TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
 }
 
 TEST(Frame, RejectsOptionsThatDoNotGoTogether) {
-  const Scene scene = load_scene(scene_file("cornell.json"));
+  const SceneData scene = load_scene(scene_file("cornell.json"));
   RenderOptions options;
   options.lobe_time = LobeTime::kernel;  // the transport is a sweep, which has no lobes
   test::error_of(ExitCode::usage, [&] { Frame(test::test_session(), scene, options); });
 }
 
 /// Accumulated light of the finest cascade, seen from `eye`.
-std::vector<float> finest_light(const Scene& scene, const RenderOptions& options, const glm::vec3& eye) {
+std::vector<float> finest_light(const SceneData& scene, const RenderOptions& options, const glm::vec3& eye) {
   Frame frame(test::test_session(), scene, options);
   SceneCamera camera = scene.camera("");
   camera.eye = eye;
@@ -154,7 +155,7 @@ std::vector<float> finest_light(const Scene& scene, const RenderOptions& options
 }
 
 TEST(Frame, MovingByACellShiftsLightByOne) {
-  const Scene scene = load_scene(scene_file("cornell.json"));
+  const SceneData scene = load_scene(scene_file("cornell.json"));
   RenderOptions options = small_options(scene);
   options.blockers = Blockers::none;
   options.transport = TransportKind::sampled;

@@ -243,7 +243,7 @@ struct Walled {
 };
 
 Walled walled(const Basis& basis) {
-  Scene wall;
+  SceneData wall;
   add_quad(wall, {0, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(wall));
   return {volume_of(4,
                     [&](int channel, const glm::dvec3& centre) {
@@ -283,7 +283,7 @@ TEST(Gather, AllCellsCountWhereNoneIsVisible) {
 
 TEST(Gather, LightIsContinuousWhereCellsBecomeHidden) {
   const auto basis = make_basis("sh2");
-  Scene wall;  // ends within the grid: behind its edge cells come into sight
+  SceneData wall;  // ends within the grid: behind its edge cells come into sight
   add_quad(wall, {0, -9, -9}, {0, 9, 0}, {0, 0, 20}, add_material(wall));
   const std::vector<std::uint8_t> occluded = reference::occlude(wall, grid_of(0)).lower;
   const SurfaceImage image = walk({0.1, -0.4, 0.13}, {0.1, 0.4, 0.13}, {0, 0, 1});

@@ -20,7 +20,7 @@ TEST_F(GltfMaterialTest, MaterialFactorsAndFlags) {
     {"name": "mask by default", "alphaMode": "MASK"},
     {"name": "glass", "alphaMode": "BLEND", "alphaCutoff": 0.9}])");
   model.triangle({{"material", 0}});
-  const Scene scene = load();
+  const SceneData scene = load();
   ASSERT_EQ(scene.materials.size(), 4u);
   EXPECT_THAT(scene.materials[0].base_colour, ElementsAre(0.1f, 0.2f, 0.3f, 0.4f)) << "of a metal too";
   EXPECT_THAT(scene.materials[0].emissive, ElementsAre(4, 2, 8));
@@ -36,7 +36,7 @@ TEST_F(GltfMaterialTest, MaterialFactorsAndFlags) {
 TEST_F(GltfMaterialTest, TexturesKeepTheirBytes) {
   textured(kPngRgba2x2);
   textured_triangle();
-  const Scene scene = load();
+  const SceneData scene = load();
   ASSERT_EQ(scene.textures.size(), 1u);
   const Texture& texture = scene.textures[0];
   EXPECT_EQ(texture.width, 2u);
@@ -71,7 +71,7 @@ TEST_F(GltfMaterialTest, ImagesInBuffersAndDataUris) {
     model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
   }
   textured_triangle();
-  const Scene scene = load_scene(folder.write("model.glb", model.glb()));
+  const SceneData scene = load_scene(folder.write("model.glb", model.glb()));
   ASSERT_EQ(scene.textures.size(), 2u);
   EXPECT_THAT(scene.textures[0].rgba, ElementsAre(77, 77, 77, 255));
   EXPECT_THAT(scene.textures[1].rgba, ElementsAre(10, 20, 30, 255));
@@ -82,7 +82,7 @@ TEST_F(GltfMaterialTest, WrapModesComeFromTheSampler) {
   textured_triangle();
   model.document["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}, {{"magFilter", 9728}}};
   model.document["textures"][0]["sampler"] = 0;
-  Scene scene = load();
+  SceneData scene = load();
   EXPECT_EQ(scene.textures[0].wrap_u, CLPV_WRAP_CLAMP);
   EXPECT_EQ(scene.textures[0].wrap_v, CLPV_WRAP_MIRROR);
   model.document["textures"][0]["sampler"] = 1;
@@ -104,7 +104,7 @@ TEST_F(GltfMaterialTest, TextureTransformScalesTurnsAndMoves) {
       {"offset", {0.5, 0.25}}, {"rotation", glm::half_pi<double>()}, {"scale", {2, 4}}};
   model.document["extensionsRequired"] = {"KHR_texture_transform"};
   textured_triangle();
-  const Scene scene = load();
+  const SceneData scene = load();
   EXPECT_THAT(uv(scene, 0), IsNear(glm::vec2(0.5f, 0.25f), kClose));
   EXPECT_THAT(uv(scene, 1), IsNear(glm::vec2(0.5f, -1.75f), kClose))
       << "u turns towards -v, upwards in the image";
@@ -133,7 +133,7 @@ TEST_F(GltfMaterialTest, EmissiveTextures) {
   textured_triangle();
   EXPECT_EQ(load().materials[0].emissive_texture, CLPV_NO_TEXTURE) << "the factor is 0";
   material["emissiveFactor"] = {1, 1, 1};
-  Scene scene = load();
+  SceneData scene = load();
   EXPECT_EQ(scene.materials[0].emissive_texture, 0u);
   EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/materials/0/emissiveTexture")));
   material["emissiveTexture"].erase("texCoord");

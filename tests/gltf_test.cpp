@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 
 TEST_F(GltfTest, APlainTriangleComesOutAsItIs) {
   model.triangle();
-  const Scene scene = load();
+  const SceneData scene = load();
   ASSERT_EQ(scene.triangles.size(), 1u);
   EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), kX, kY));
   EXPECT_THAT(normal(scene, 0, 0), IsNear(kZ, kClose));
@@ -33,7 +33,7 @@ TEST_F(GltfTest, TransformsMultiplyDownTheHierarchy) {
     {"translation": [10, 0, 0], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476], "children": [1]},
     {"scale": [2, 2, 2], "children": [2]},
     {"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,3,1], "mesh": 0}])");
-  const Scene scene = load();
+  const SceneData scene = load();
   EXPECT_THAT(position(scene, 0, 0), IsNear(glm::vec3(10, 0, 6), 1e-5f));
   EXPECT_THAT(position(scene, 0, 1), IsNear(glm::vec3(10, 2, 6), 1e-5f));
   EXPECT_THAT(position(scene, 0, 2), IsNear(glm::vec3(8, 0, 6), 1e-5f));
@@ -45,7 +45,7 @@ TEST_F(GltfTest, OnlyTheDefaultSceneIsShown) {
   model.document["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
   EXPECT_THAT(position(load(), 0, 0), IsNear(glm::vec3(0), kClose));
   model.document["scene"] = 1;
-  const Scene second = load();
+  const SceneData second = load();
   ASSERT_EQ(second.triangles.size(), 1u);
   EXPECT_THAT(position(second, 0, 0), IsNear(glm::vec3(5, 0, 0), kClose));
 }
@@ -53,7 +53,7 @@ TEST_F(GltfTest, OnlyTheDefaultSceneIsShown) {
 TEST_F(GltfTest, EachNodePlacesItsMesh) {
   model.triangle();
   for (int i = 1; i <= 2; ++i) model.add("nodes", {{"mesh", 0}, {"translation", {i, 0, 0}}});
-  const Scene scene = load();
+  const SceneData scene = load();
   ASSERT_EQ(scene.triangles.size(), 3u);
   EXPECT_EQ(scene.vertices.size(), 9u);
   for (int i = 0; i < 3; ++i) {
@@ -67,7 +67,7 @@ TEST_F(GltfTest, AMirroredMeshKeepsItsFront) {
   model.mesh({{"POSITION", position}, {"NORMAL", normals}});
   for (const glm::vec3 scale : {glm::vec3(-1, 1, 1), glm::vec3(1, 1, -1), glm::vec3(-2, -3, -1)}) {
     model.document["nodes"][0]["scale"] = {scale.x, scale.y, scale.z};
-    const Scene scene = load();
+    const SceneData scene = load();
     const glm::vec3 outside = kZ * glm::sign(scale.z);  // away from the origin
     EXPECT_THAT(face_normal(scene, 0), IsNear(outside, kClose)) << scale.x << ' ' << scale.z;
     EXPECT_THAT(normal(scene, 0, 1), IsNear(outside, kClose)) << scale.x << ' ' << scale.z;
@@ -81,7 +81,7 @@ TEST_F(GltfTest, NormalsTurnByTheInverseTranspose) {
   const int normals = model.accessor<float>("VEC3", {h, h, 0, h, h, 0, h, h, 0});
   model.mesh({{"POSITION", position}, {"NORMAL", normals}});
   model.document["nodes"][0]["scale"] = {1, 3, 1};
-  const Scene scene = load();
+  const SceneData scene = load();
   EXPECT_THAT(normal(scene, 0, 0), IsNear(glm::normalize(glm::vec3(3, 1, 0)), kClose));
   EXPECT_THAT(normal(scene, 0, 0), IsNear(face_normal(scene, 0), kClose));
 }
@@ -100,7 +100,7 @@ TEST_F(GltfTest, IndicesOfEverySize) {
     const int position = square_model.accessor<float>("VEC3", square);
     const int indices = square_model.accessor<T>("SCALAR", {1, 2, 3, 1, 3, 4});
     square_model.mesh({{"POSITION", position}}, {{"indices", indices}});
-    const Scene scene = load_scene(square_model.write(folder));
+    const SceneData scene = load_scene(square_model.write(folder));
     ASSERT_EQ(scene.triangles.size(), 2u);
     EXPECT_THAT(corners(scene, 1), ElementsAre(glm::vec3(0), glm::vec3(1, 1, 0), kY));
     EXPECT_EQ(scene.upper, glm::vec3(1, 1, 0)) << "an unused vertex counts";
@@ -125,7 +125,7 @@ TEST_F(GltfTest, StripsAndFansFaceOneWay) {
   for (const int mode : {5, 6}) {
     GltfBuilder made;
     made.mesh({{"POSITION", made.accessor<float>("VEC3", mode == 5 ? strip : fan)}}, {{"mode", mode}});
-    const Scene scene = load_scene(made.write(folder));
+    const SceneData scene = load_scene(made.write(folder));
     ASSERT_EQ(scene.triangles.size(), mode == 5 ? 3u : 2u);
     const glm::vec3 first = face_normal(scene, 0);
     EXPECT_THAT(first, IsNear(mode == 5 ? -kZ : kZ, kClose));
@@ -148,7 +148,7 @@ TEST_F(GltfTest, InterleavedAttributes) {
   normals["byteOffset"] = 12;
   const int first = model.add("accessors", base), second = model.add("accessors", normals);
   model.mesh({{"POSITION", first}, {"NORMAL", second}});
-  const Scene scene = load();
+  const SceneData scene = load();
   EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), kX, kY));
   EXPECT_THAT(normal(scene, 0, 2), IsNear(-kZ, kClose));
 }
@@ -163,8 +163,8 @@ TEST_F(GltfTest, SparseAccessorsReplaceElementsOfAViewOrOfZeros) {
 
 TEST_F(GltfTest, GlbAndBase64HoldTheSame) {
   model.triangle();
-  const Scene glb = load_scene(folder.write("model.glb", GltfBuilder(model).glb()));
-  const Scene base64 = load_scene(model.write_base64(folder));
+  const SceneData glb = load_scene(folder.write("model.glb", GltfBuilder(model).glb()));
+  const SceneData base64 = load_scene(model.write_base64(folder));
   EXPECT_THAT(corners(glb, 0), ElementsAre(glm::vec3(0), kX, kY));
   EXPECT_THAT(corners(base64, 0), ElementsAre(glm::vec3(0), kX, kY));
 }
@@ -181,7 +181,7 @@ TEST_F(GltfTest, MissingNormalsAreFlatAndSplitVertices) {
   const int position = model.accessor<float>("VEC3", {0, 1, 0, 0, 1, 1, 1, 0, 0, -1, 0, 0});
   const int indices = model.accessor<std::uint8_t>("SCALAR", {0, 1, 2, 1, 0, 3});
   model.mesh({{"POSITION", position}}, {{"indices", indices}});
-  const Scene scene = load();
+  const SceneData scene = load();
   EXPECT_EQ(scene.vertices.size(), 6u);
   for (std::size_t t = 0; t < 2; ++t) {
     for (int k = 0; k < 3; ++k) EXPECT_THAT(normal(scene, t, k), IsNear(face_normal(scene, t), kClose));
@@ -194,7 +194,7 @@ TEST_F(GltfTest, ZeroNormalsTakeTheirTriangles) {
   const int position = model.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 2, 0, 0, 2, 0, 0});
   const int normals = model.accessor<float>("VEC3", {0, 0, 5, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   model.mesh({{"POSITION", position}, {"NORMAL", normals}});
-  const Scene scene = load();
+  const SceneData scene = load();
   for (int k = 0; k < 3; ++k) EXPECT_THAT(normal(scene, 0, k), IsNear(kZ, kClose));
   EXPECT_NEAR(glm::length(normal(scene, 1, 0)), 1, kClose) << "a degenerate triangle has a finite normal too";
 }
@@ -205,7 +205,7 @@ TEST_F(GltfTest, VertexColoursOfEveryFormat) {
     const int position = made.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
     const int index = made.accessor(type, values, normalized);
     made.mesh({{"POSITION", position}, {"COLOR_0", index}});
-    const Scene scene = load_scene(made.write(folder));
+    const SceneData scene = load_scene(made.write(folder));
     const float* c = scene.vertices[scene.triangles[0].vertex[1]].colour;
     return glm::vec4(c[0], c[1], c[2], c[3]);
   };
@@ -237,7 +237,7 @@ TEST_F(GltfTest, QuantizedAttributes) {
   textured(kPngGrey);
   model.mesh({{"POSITION", position}, {"NORMAL", normals}, {"TEXCOORD_0", uv_index}}, {{"material", 0}});
   model.document["nodes"][0]["scale"] = {10, 10, 10};
-  const Scene scene = load();
+  const SceneData scene = load();
   EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), glm::vec3(10, 0, 0), glm::vec3(0, -10, 0)));
   EXPECT_THAT(normal(scene, 0, 0), IsNear(-kZ, kClose));
   EXPECT_EQ(uv(scene, 2), glm::vec2(0, 3));
@@ -247,7 +247,7 @@ TEST_F(GltfTest, PointsAndLinesGetANote) {
   model.triangle();
   model.triangle({{"mode", 0}});
   model.triangle({{"mode", 3}});
-  const Scene scene = load();
+  const SceneData scene = load();
   EXPECT_EQ(scene.triangles.size(), 1u);
   EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/meshes/1/primitives/0: made of points")));
   EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/meshes/2/primitives/0: made of lines")));
@@ -262,7 +262,7 @@ TEST_F(GltfTest, CamerasLookAlongMinusZ) {
                                      "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476]})"));
   model.add("nodes", {{"camera", 0}});
   model.add("nodes", {{"camera", 1}});
-  const Scene scene = load();
+  const SceneData scene = load();
   ASSERT_EQ(scene.cameras.size(), 2u);
   const SceneCamera& camera = scene.camera("wide");
   EXPECT_THAT(camera.eye, IsNear(glm::vec3(1, 2, 3), kClose));
@@ -286,7 +286,7 @@ TEST_F(GltfTest, PunctualLights) {
                         {"translation", {0, i, 0}},
                         {"rotation", {-0.7071067811865476, 0, 0, 0.7071067811865476}}});  // -z turns to -y
   }
-  const Scene scene = load();
+  const SceneData scene = load();
   ASSERT_EQ(scene.lights.size(), 3u);
   const ClpvLight& sun = scene.lights[0].data;
   EXPECT_EQ(sun.kind, static_cast<unsigned>(CLPV_LIGHT_DIRECTIONAL));
@@ -309,7 +309,7 @@ TEST_F(GltfTest, PunctualLights) {
 TEST_F(GltfTest, ExtensionsThatAreNotReadGetANote) {
   model.triangle();
   model.document["extensionsUsed"] = {"KHR_materials_unlit", "KHR_mesh_quantization"};
-  const Scene scene = load();
+  const SceneData scene = load();
   EXPECT_THAT(scene.notes, ::testing::Contains("extensions that are not read: KHR_materials_unlit"));
 }
 

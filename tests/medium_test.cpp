@@ -42,7 +42,7 @@ ClpvMedium medium_of(const glm::vec3& scattering, const glm::vec3& absorption, f
   return medium;
 }
 
-TracedImage traced(const Scene& scene, const ClpvView& view, int bounces, std::uint32_t samples) {
+TracedImage traced(const SceneData& scene, const ClpvView& view, int bounces, std::uint32_t samples) {
   PathTracerOptions options;
   options.bounces = bounces;
   options.samples = samples;
@@ -99,12 +99,12 @@ TEST(Medium, SceneFilesHaveOneInABoxOrInTheirBounds) {
     return load_scene(
         folder.write("scene.json", R"({"model": ")" + model + R"(", "medium": )" + medium + "}"));
   };
-  const Scene boxed = loaded(
+  const SceneData boxed = loaded(
       R"({"scattering": [1, 2, 3], "absorption": [1, 0, 2], "anisotropy": 0.5,
           "box": {"lower": [0, 0, 0], "upper": [1, 2, 3]}})");
   EXPECT_EQ(vector(boxed.medium->extinction), glm::dvec3(2, 2, 5));
   EXPECT_EQ(vector(boxed.medium->upper), glm::dvec3(1, 2, 3));
-  const Scene bounded = loaded(R"({"scattering": [1, 1, 1]})");
+  const SceneData bounded = loaded(R"({"scattering": [1, 1, 1]})");
   EXPECT_EQ(vector(bounded.medium->lower), glm::dvec3(bounded.lower));
   EXPECT_EQ(vector(bounded.medium->upper), glm::dvec3(bounded.upper));
   const std::pair<const char*, const char*> bad[] = {
@@ -122,8 +122,8 @@ TEST(Medium, SceneFilesHaveOneInABoxOrInTheirBounds) {
 }
 
 /// A room of 2 m, faces inwards, whose walls emit and do not reflect.
-Scene room(float emitted) {
-  Scene scene;
+SceneData room(float emitted) {
+  SceneData scene;
   scene.path = "room";
   add_grey(scene, 0);
   for (float& e : scene.materials[0].emissive) e = emitted;
@@ -134,7 +134,7 @@ Scene room(float emitted) {
 const ClpvView kInRoom = view_of({0.1, 0.2, 0.3}, {0.3, 0.1, -1}, {0, 1, 0}, 1, 4, 4);
 
 TEST(Medium, AbsorptionFollowsBeersLaw) {
-  Scene scene = room(3);
+  SceneData scene = room(3);
   const glm::vec3 absorption(0.2, 1, 4);
   scene.medium = medium_of({}, absorption, 0, glm::vec3(-1), {1, 1, 0});
   const ClpvView view = view_of({0, 0, 0.5}, {0, 0, -1}, {0, 1, 0}, 1e-3f, 1, 1);
@@ -144,7 +144,7 @@ TEST(Medium, AbsorptionFollowsBeersLaw) {
 
 // Uniform light stays uniform in a medium that only scatters, for every density and phase function.
 TEST(Medium, WhiteFurnaceIsUniform) {
-  Scene scene = room(1);
+  SceneData scene = room(1);
   for (const float anisotropy : {0.0f, 0.6f, -0.5f}) {
     scene.medium = medium_of({0.3, 1, 3}, {}, anisotropy, {-0.8, -1, -1}, {1, 0.7, 1});
     const TracedImage image = traced(scene, kInRoom, PathTracerOptions::kAllBounces, 16384);
@@ -157,7 +157,7 @@ TEST(Medium, WhiteFurnaceIsUniform) {
 // scatters that light scattered
 // twice does not count:   L = sigma_s p(0) E exp(-sigma_t h) (1 - exp(-sigma_t l)) / sigma_t.
 TEST(Medium, LightScatteredOnceFollowsItsIntegral) {
-  Scene scene = floor_scene(0);
+  SceneData scene = floor_scene(0);
   scene.lights = {sun({0, -1, 0}, 5)};
   const float scattering = 1e-3f, absorption = 0.5f;
   scene.medium = medium_of(glm::vec3(scattering), glm::vec3(absorption), 0.4f, {1, 0.5, -2}, {4, 2, 2});
@@ -172,7 +172,7 @@ TEST(Medium, LightScatteredOnceFollowsItsIntegral) {
 // A point light 0.3 m beside the same ray: L is the integral of sigma_s p I / r^2 exp(-sigma_t (t +
 // r)) over the ray.
 TEST(Medium, LightOfALampScatteredOnceFollowsItsIntegral) {
-  Scene scene = floor_scene(0);
+  SceneData scene = floor_scene(0);
   const glm::vec3 at(2, 1.5f, 0);
   scene.lights = {lamp(at, 5)};
   const float scattering = 1e-3f, absorption = 0.5f;
@@ -287,8 +287,8 @@ TEST(Medium, RepeatedSweepsFillTheFurnace) {
 
 /// A black floor below a sun, half of it in the shadow of a screen at 3 m, in a medium that absorbs
 /// more than it scatters.
-Scene shafts() {
-  Scene scene = floor_scene(0);
+SceneData shafts() {
+  SceneData scene = floor_scene(0);
   add_quad(scene, {-10, 3, -10}, {10, 0, 0}, {0, 0, 20}, 0);
   scene.lower = glm::vec3(-10, 0, -10), scene.upper = glm::vec3(10, 3, 10);
   scene.lights = {sun({0.3f, -1, 0.1f}, 5)};
@@ -302,7 +302,8 @@ Scene shafts() {
 }
 
 /// Difference of a frame from path tracing.
-Comparison frame_error(const Scene& scene, const RenderOptions& options, Show view, const PathTracerOptions& tracing) {
+Comparison frame_error(const SceneData& scene, const RenderOptions& options, Show view,
+                       const PathTracerOptions& tracing) {
   const SceneCamera& camera = scene.cameras.front();
   Frame frame(test_session(), scene, options);
   frame.render(camera);
@@ -324,7 +325,7 @@ TEST(Medium, LightOfASunStopsAtItsShadows) {
 
 // A black floor below a sun: all its indirect light comes from the medium.
 TEST(Medium, ScatteredLightFallsOnSurfaces) {
-  Scene scene = floor_scene(0);
+  SceneData scene = floor_scene(0);
   scene.lower = glm::vec3(-10, 0, -10), scene.upper = glm::vec3(10, 3, 10);
   scene.lights = {sun({0.3f, -1, 0.1f}, 5)};
   SceneCamera camera;
@@ -347,7 +348,7 @@ TEST(Medium, ScatteredLightFallsOnSurfaces) {
 }
 
 TEST(Medium, StepPropagationIsRefused) {
-  const Scene scene = shafts();
+  const SceneData scene = shafts();
   RenderOptions options;
   apply_preset(options, PresetName::paper);
   EXPECT_THAT(error_of(ExitCode::usage, [&] { Frame(test_session(), scene, options); }),

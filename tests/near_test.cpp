@@ -44,7 +44,7 @@ SurfaceImage floor_image(float edge) {
   return image;
 }
 
-unsigned add_emitter(Scene& scene, unsigned flags = 0) {
+unsigned add_emitter(SceneData& scene, unsigned flags = 0) {
   const unsigned material = add_material(scene, glm::vec3(0), flags);
   for (float& channel : scene.materials[material].emissive) channel = kRadiance;
   return material;
@@ -77,7 +77,7 @@ struct EvenLight {
 };
 
 /// Irradiance of the floor [W/m^2] by the CPU reference.
-std::vector<glm::dvec3> near(const Scene& scene, const EvenLight& light, const NearOptions& options,
+std::vector<glm::dvec3> near(const SceneData& scene, const EvenLight& light, const NearOptions& options,
                              const std::vector<reference::MappedLight>& lights = {}, float edge = 1e-3f) {
   const std::unique_ptr<Basis> basis = swept_basis();
   const SurfaceImage image = floor_image(edge);
@@ -89,8 +89,8 @@ std::vector<glm::dvec3> near(const Scene& scene, const EvenLight& light, const N
 }
 
 /// A triangle out of reach.
-Scene far_away() {
-  Scene scene;
+SceneData far_away() {
+  SceneData scene;
   add_triangle(scene, {50, 50, 50}, {51, 50, 50}, {50, 51, 50}, add_material(scene));
   return scene;
 }
@@ -104,7 +104,7 @@ TEST(Near, EvenLightWithoutSurfacesStays) {
 }
 
 TEST(Near, EvenLightWithEmittersAsBrightStays) {
-  Scene scene;
+  SceneData scene;
   const unsigned emitter = add_emitter(scene, CLPV_MATERIAL_DOUBLE_SIDED);
   add_quad(scene, {0.3f, -1, -2}, {0, 3, 0}, {0, 0, 4}, emitter);
   for (const int step : {1, 2, 4, 8}) {
@@ -114,7 +114,7 @@ TEST(Near, EvenLightWithEmittersAsBrightStays) {
 }
 
 TEST(Near, InsideAnEmissiveBoxIsPiL) {
-  Scene scene;
+  SceneData scene;
   const unsigned emitter = add_emitter(scene, CLPV_MATERIAL_DOUBLE_SIDED);
   add_quad(scene, {-0.5f, 0.5f, -0.5f}, {1, 0, 0}, {0, 0, 1}, emitter);
   for (const float x : {-0.5f, 0.5f}) add_quad(scene, {x, -1, -0.5f}, {0, 1.5f, 0}, {0, 0, 1}, emitter);
@@ -132,7 +132,7 @@ double form_factor(double distance, double width, double height) {
 }
 
 TEST(Near, FloorBesideALitWall) {
-  Scene scene;  // the wall's front faces the origin
+  SceneData scene;  // the wall's front faces the origin
   const double albedo = 0.6, distance = 0.3, width = 0.5, height = 0.8;
   add_quad(scene, {0.3f, 0, -0.5f}, {0, 0, 1}, {0, 0.8f, 0}, add_material(scene, glm::vec3(albedo)));
   const ClpvLight sun = directional_light({1, -1, 0}, glm::vec3(5));
@@ -143,20 +143,20 @@ TEST(Near, FloorBesideALitWall) {
 }
 
 TEST(Near, SingleSidedEmittersAreDarkFromBehind) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {0.3f, 0, -0.5f}, {0, 0.8f, 0}, {0, 0, 1}, add_emitter(scene));  // the front faces +x
   EXPECT_NEAR(mean(near(scene, EvenLight(0), options_for(4))), 0, 1e-9);
 }
 
 TEST(Near, BlackWallsTakeTheirShareOfEvenLight) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {0.3f, 0, -0.5f}, {0, 0, 1}, {0, 0.8f, 0}, add_material(scene, glm::vec3(0)));
   const double expected = pi * kRadiance * (1 - 2 * form_factor(0.3, 0.5, 0.8));
   EXPECT_NEAR(mean(near(scene, EvenLight(kRadiance), options_for(64))), expected, 0.02 * expected);
 }
 
 TEST(Near, WhiteWallsUnderEvenLightStayWithMoreBounces) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {0.3f, 0, -0.5f}, {0, 0, 1}, {0, 0.8f, 0}, add_material(scene));
   NearOptions options = options_for(4);
   options.reflects = true;
@@ -197,8 +197,8 @@ TEST(NearDirections, AreCosineDistributedInEachTile) {
   }
 }
 
-Scene lit_corner() {
-  Scene scene;
+SceneData lit_corner() {
+  SceneData scene;
   const unsigned material = add_material(scene, {0.8f, 0.6f, 0.4f});
   add_quad(scene, {-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, material);
   add_quad(scene, {1, 0, -2}, {0, 0, 4}, {0, 3, 0}, material);
@@ -208,14 +208,14 @@ Scene lit_corner() {
   return scene;
 }
 
-std::vector<float> irradiance_of(const Scene& scene, const RenderOptions& options) {
+std::vector<float> irradiance_of(const SceneData& scene, const RenderOptions& options) {
   Frame frame(test_session(), scene, options);
   frame.render(scene.cameras.front());
   return frame.read(Show::irradiance);
 }
 
 TEST(Near, FramesAreEqualToTheBit) {
-  const Scene scene = lit_corner();
+  const SceneData scene = lit_corner();
   RenderOptions options;
   options.width = 50, options.height = 38;  // no multiples of eight or four
   options.cascade_size = 4, options.grid = 12, options.cascades = 2;

@@ -95,17 +95,17 @@ TEST(Options, ABasisReplacesAFileOfCentres) {
 }
 
 TEST(Options, ContradictionsAreRejectedByTheFirstOption) {
-  Scene plain, under_a_sky, in_fog;
+  SceneData plain, under_a_sky, in_fog;
   under_a_sky.sky = std::make_shared<const Sky>(constant_sky(glm::vec3(1)));
   in_fog.medium.emplace();
-  const auto rejected = [](const std::string& option, const Scene& scene, const auto& change) {
+  const auto rejected = [](const std::string& option, const SceneData& scene, const auto& change) {
     RenderOptions options;
     change(options);
     EXPECT_THAT(test::error_of(ExitCode::usage, [&] { validate(options, scene); }),
                 ::testing::StartsWith(option + ": found"));
   };
   const auto steps = [](RenderOptions& o) { o.transport = TransportKind::sampled; };
-  for (const Scene* scene : {&plain, &under_a_sky, &in_fog}) EXPECT_NO_THROW(validate({}, *scene));
+  for (const SceneData* scene : {&plain, &under_a_sky, &in_fog}) EXPECT_NO_THROW(validate({}, *scene));
   rejected("blocking", plain, [](RenderOptions& o) { o.blocking = Blocking::one_sided; });
   rejected("lobe-time", plain, [](RenderOptions& o) { o.lobe_time = LobeTime::kernel; });
   rejected("bounces", plain, [&](RenderOptions& o) { steps(o), o.bounces = Bounces::two; });

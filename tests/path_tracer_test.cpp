@@ -19,8 +19,8 @@ using std::numbers::pi;
 using namespace test;
 
 /// A unit cube seen from inside, faces inwards.
-Scene box(float albedo, float emitted) {
-  Scene scene;
+SceneData box(float albedo, float emitted) {
+  SceneData scene;
   scene.path = "box";
   add_grey(scene, albedo);
   for (float& e : scene.materials[0].emissive) e = emitted;
@@ -46,7 +46,7 @@ double corner_factor(double a, double b) {
 // one bounce.
 TEST(PathTracer, FurnaceHasTheRadianceOfAGeometricSeries) {
   for (const float albedo : {0.0f, 0.5f, 0.8f}) {
-    const Scene scene = box(albedo, 2);
+    const SceneData scene = box(albedo, 2);
     const ClpvView view = view_of({0.4, 0.5, 0.6}, {0.3, 0.1, -1}, {0, 1, 0}, 1, 8, 8);
     PathTracerOptions options;
     options.samples = 4096;
@@ -62,9 +62,9 @@ TEST(PathTracer, FurnaceHasTheRadianceOfAGeometricSeries) {
 }
 
 /// Mean irradiance [W/m^2] of a unit square on the floor, lit by an emissive `lamp`.
-double received(const std::function<void(Scene&, unsigned material)>& add_lamp, float radiance,
+double received(const std::function<void(SceneData&, unsigned material)>& add_lamp, float radiance,
                 unsigned flags, int samples, glm::vec3 eye = {0, 0.5f, 0}, float half = 0.5f) {
-  Scene scene;
+  SceneData scene;
   scene.path = "lamp";
   const unsigned black = add_grey(scene, 0), emissive = add_material(scene, glm::vec3(0), flags);
   for (float& e : scene.materials[emissive].emissive) e = radiance;
@@ -77,10 +77,10 @@ double received(const std::function<void(Scene&, unsigned material)>& add_lamp, 
   return mean(trace_paths(scene, view, options).irradiance);
 }
 
-void add_ceiling(Scene& scene, unsigned material) {
+void add_ceiling(SceneData& scene, unsigned material) {
   add_quad(scene, {-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, material);
 }
-void add_wall(Scene& scene, unsigned material) {
+void add_wall(SceneData& scene, unsigned material) {
   add_quad(scene, {-0.5f, 0, -0.5f}, {0, 1, 0}, {0, 0, 1}, material);
 }
 
@@ -102,7 +102,7 @@ TEST(PathTracer, EmissiveSquaresLightByTheirFormFactors) {
 // Few samples, many runs: no light is counted twice by direct sampling and by hits.
 TEST(PathTracer, EmissionIsCountedOnceByBothSamplers) {
   for (const float height : {0.02f, 0.2f, 3.0f}) {  // light is met, either, looked for
-    const auto add = [&](Scene& scene, unsigned material) {
+    const auto add = [&](SceneData& scene, unsigned material) {
       add_quad(scene, {-0.5f, height, -0.5f}, {1, 0, 0}, {0, 0, 1}, material);
     };
     const double a = 0.5 / double{height};
@@ -112,7 +112,7 @@ TEST(PathTracer, EmissionIsCountedOnceByBothSamplers) {
 }
 
 TEST(PathTracer, EmissiveBacksAreDarkUnlessDoubleSided) {
-  const auto up = [](Scene& scene, unsigned material) {
+  const auto up = [](SceneData& scene, unsigned material) {
     add_quad(scene, {-0.5f, 1, -0.5f}, {0, 0, 1}, {1, 0, 0}, material);
   };
   EXPECT_EQ(received(up, 3, 0, 16), 0);
@@ -125,7 +125,7 @@ TEST(PathTracer, AnEmissiveTextureLightsByItsTexels) {
   double found[2] = {};
   for (const unsigned lit : {0u, 1u}) {
     found[lit] = received(
-        [&](Scene& scene, unsigned material) {
+        [&](SceneData& scene, unsigned material) {
           Texture half{.width = 2, .height = 1, .rgba = {0, 0, 0, 255, 0, 0, 0, 255}, .name = "half"};
           half.wrap_u = half.wrap_v = CLPV_WRAP_CLAMP;
           for (int i = 0; i < 3; ++i) half.rgba[4 * lit + i] = 255;
@@ -141,7 +141,7 @@ TEST(PathTracer, AnEmissiveTextureLightsByItsTexels) {
 }
 
 TEST(PathTracer, PointLightOverAFloorFallsOffAsItShould) {
-  Scene scene = floor_scene(0.5);
+  SceneData scene = floor_scene(0.5);
   scene.lights = {lamp({0.3f, 1.5f, -0.2f}, 7)};
   PathTracerOptions options;
   options.samples = 1;
@@ -161,8 +161,8 @@ TEST(PathTracer, PointLightOverAFloorFallsOffAsItShould) {
 
 /// A floor of albedo 0.6, 3 x 2, under a slanting sun, and 1 above it a small tile facing down, its
 /// shadow elsewhere.
-Scene plates() {
-  Scene scene;
+SceneData plates() {
+  SceneData scene;
   scene.path = "plates";
   add_grey(scene, 0.6f);
   add_grey(scene, 0.3f);
@@ -225,7 +225,7 @@ TEST(PathTracer, StopsAtTheNoiseAskedFor) {
 }
 
 TEST(PathTracer, SameBytesWhateverTheThreads) {
-  Scene scene = box(0.7f, 0);
+  SceneData scene = box(0.7f, 0);
   scene.lights = {lamp({0.5f, 0.9f, 0.5f}, 1)};
   const ClpvView view = view_of({0.4f, 0.5f, 0.9f}, {0, 0, -1}, {0, 1, 0}, 0.9f, 40, 35);
   PathTracerOptions options;
@@ -244,7 +244,7 @@ TEST(PathTracer, SameBytesWhateverTheThreads) {
 }
 
 TEST(PathTracer, BackgroundIsZero) {
-  Scene scene = floor_scene(0.5);
+  SceneData scene = floor_scene(0.5);
   scene.lights = {sun({0, -1, 0}, 1)};
   PathTracerOptions options;
   options.samples = 2;
@@ -258,21 +258,21 @@ TEST(PathTracer, BackgroundIsZero) {
 }
 
 TEST(PathTracer, RejectsWhatItCannotTrace) {
-  Scene sound = floor_scene(0.5);
+  SceneData sound = floor_scene(0.5);
   sound.lights = {sun({0, -1, 0}, 1)};
-  const auto trace = [](const Scene& scene, const PathTracerOptions& options) {
+  const auto trace = [](const SceneData& scene, const PathTracerOptions& options) {
     return [=] { trace_paths(scene, kDown, options); };
   };
   PathTracerOptions still;
   still.noise = 0;
   error_of(ExitCode::usage, trace(sound, still));
-  const std::vector<std::function<void(Scene&)>> faults = {
-      [](Scene& s) { s.lights.clear(); },
-      [](Scene& s) { s.triangles.clear(); },
+  const std::vector<std::function<void(SceneData&)>> faults = {
+      [](SceneData& s) { s.lights.clear(); },
+      [](SceneData& s) { s.triangles.clear(); },
   };
   for (std::size_t i = 0; i < faults.size(); ++i) {
     SCOPED_TRACE(i);
-    Scene bad = sound;
+    SceneData bad = sound;
     faults[i](bad);
     error_of(ExitCode::bad_input, trace(bad, {}));
   }

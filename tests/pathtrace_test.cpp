@@ -92,7 +92,7 @@ class CachedReference : public ::testing::Test {
 
   test::TemporaryFolder temporary_;
   const fs::path folder_ = temporary_ / "references";
-  Scene scene_;
+  SceneData scene_;
   SceneCamera camera_;
   PathTracerOptions options_;
 };

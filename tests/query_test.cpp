@@ -26,8 +26,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-
-RenderOptions small_options(const Scene& scene) {
+RenderOptions small_options(const SceneData& scene) {
   RenderOptions options;
   options.width = 48;
   options.height = 27;
@@ -62,7 +61,7 @@ std::vector<PixelOfFrame> pixels_of(Frame& frame, const SceneCamera& camera) {
 }
 
 TEST(IrradianceAtPoints, EqualsTheCamerasIrradiance) {
-  const Scene scene = load_scene(kCornell);
+  const SceneData scene = load_scene(kCornell);
   const SceneCamera& camera = scene.camera("");
   for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep}) {
     RenderOptions options = small_options(scene);
@@ -98,7 +97,7 @@ glm::dvec3 even(std::uint32_t i) {
 }
 
 TEST(RadianceAtPoints, IsThatOfTheReference) {
-  const Scene scene = load_scene(kCornell);
+  const SceneData scene = load_scene(kCornell);
   for (const Gathering gather : {Gathering::visible, Gathering::all}) {
     RenderOptions options = small_options(scene);
     options.cascades = 2, options.cascade_size = 0.5;  // the box reaches into the coarser one
@@ -145,7 +144,7 @@ TEST(RadianceAtPoints, IsThatOfTheReference) {
 }
 
 TEST(RadianceAtPoints, NeedsPackedVolumesOfASweep) {
-  const Scene scene = load_scene(kCornell);
+  const SceneData scene = load_scene(kCornell);
   const std::vector<glm::vec4> at{{0.2f, 0.2f, 0.2f, 0}}, along{{0, 1, 0, 0}};
   const auto rejected = [&](const RenderOptions& options, bool rendered) {
     Frame frame(test_session(), scene, options);

@@ -30,7 +30,7 @@ ClpvView small_camera(int width = 48, int height = 32) {
   return camera_view(camera_at({0, 0, 0}, {0, 0, -1}), width, height);
 }
 
-SurfaceImage camera_image(const Scene& scene, const ClpvView& view) {
+SurfaceImage camera_image(const SceneData& scene, const ClpvView& view) {
   Session& session = test_session();
   Rasterizer rasterizer(session, upload_scene(session, scene));
   Surface surface = make_surface(session, view, RsmFormat::float32, true);
@@ -38,7 +38,7 @@ SurfaceImage camera_image(const Scene& scene, const ClpvView& view) {
   return read_surface(session, surface);
 }
 
-SurfaceImage rsm_image(const Scene& scene, const ClpvLight& light, const ClpvView& view,
+SurfaceImage rsm_image(const SceneData& scene, const ClpvLight& light, const ClpvView& view,
                        RsmFormat format = RsmFormat::float32) {
   Session& session = test_session();
   Rasterizer rasterizer(session, upload_scene(session, scene));
@@ -47,7 +47,7 @@ SurfaceImage rsm_image(const Scene& scene, const ClpvLight& light, const ClpvVie
   return read_surface(session, surface);
 }
 
-std::vector<float> shadow_depth(const Scene& scene, const ClpvView& view) {
+std::vector<float> shadow_depth(const SceneData& scene, const ClpvView& view) {
   Session& session = test_session();
   Rasterizer rasterizer(session, upload_scene(session, scene));
   const std::size_t count = static_cast<std::size_t>(view.width) * view.height;
@@ -61,8 +61,8 @@ std::size_t covered(const std::vector<float>& depth) {
 }
 
 /// A wall 4 m before the camera, larger than its view.
-Scene wall(float distance = 4) {
-  Scene scene;
+SceneData wall(float distance = 4) {
+  SceneData scene;
   add_quad(scene, {-20, -20, -distance}, {40, 0, 0}, {0, 40, 0}, add_material(scene, {0.25f, 0.5f, 0.75f}));
   return scene;
 }
@@ -76,7 +76,7 @@ TEST(Rasterize, WallFillsEveryPixel) {
 }
 
 TEST(Rasterize, BackFacesAreCulledUnlessDoubleSided) {
-  Scene scene;
+  SceneData scene;
   const unsigned material = add_material(scene);
   add_quad(scene, {20, -20, -4}, {-40, 0, 0}, {0, 40, 0}, material);
   EXPECT_EQ(covered(camera_image(scene, small_camera()).depth), 0u);
@@ -88,7 +88,7 @@ TEST(Rasterize, BackFacesAreCulledUnlessDoubleSided) {
 
 TEST(Rasterize, LightSeesBothSides) {
   for (const float side : {1.0f, -1.0f}) {
-    Scene scene;
+    SceneData scene;
     add_quad(scene, {-10, 0, -10 * side}, {20, 0, 0}, {0, 0, 20 * side}, add_material(scene));
     const ClpvLight light = directional_light({0.2f, -1, 0.1f});
     const ClpvView view =
@@ -100,7 +100,7 @@ TEST(Rasterize, LightSeesBothSides) {
 }
 
 TEST(Rasterize, DepthOfATiltedPlane) {
-  Scene scene;  // z = -5 + x / 2 - y / 4
+  SceneData scene;  // z = -5 + x / 2 - y / 4
   add_quad(scene, {-20, -20, -10}, {40, 0, 20}, {0, 40, -10}, add_material(scene));
   const ClpvView view = small_camera(64, 48);
   const SurfaceImage image = camera_image(scene, view);
@@ -115,9 +115,9 @@ TEST(Rasterize, DepthOfATiltedPlane) {
 }
 
 /// How often each pixel of `view` is covered by the triangles of `scene`, drawn one at a time.
-std::vector<int> coverage(const Scene& scene, const ClpvView& view) {
+std::vector<int> coverage(const SceneData& scene, const ClpvView& view) {
   std::vector<int> count(static_cast<std::size_t>(view.width) * view.height, 0);
-  Scene one = scene;
+  SceneData one = scene;
   for (const Triangle& triangle : scene.triangles) {
     one.triangles = {triangle};
     const std::vector<float> depth = shadow_depth(one, view);
@@ -128,10 +128,10 @@ std::vector<int> coverage(const Scene& scene, const ClpvView& view) {
 
 /// A plane of cells x cells quads with moved corners, two triangles each, that reaches beyond the
 /// view. `step`: corners move in multiples of it, as a part of a quad's edge; 0: anywhere.
-Scene jittered_plane(int cells, float extent, float depth, float step) {
+SceneData jittered_plane(int cells, float extent, float depth, float step) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> uniform(-0.3f, 0.3f);
-  Scene scene;
+  SceneData scene;
   const unsigned material = add_material(scene);
   const float edge = 2 * extent / static_cast<float>(cells);
   const auto jitter = [&] {
@@ -166,7 +166,7 @@ ClpvView orthographic_square(float half, int size, float near_depth = 0.1f, floa
 }
 
 TEST(Rasterize, SharedEdgesLeaveNoHoleAndDrawNothingTwice) {
-  const Scene anywhere = jittered_plane(7, 5, 4, 0);
+  const SceneData anywhere = jittered_plane(7, 5, 4, 0);
   EXPECT_THAT(coverage(anywhere, small_camera(40, 24)), ::testing::Each(1)) << "perspective";
   EXPECT_THAT(coverage(anywhere, orthographic_square(2, 32)), ::testing::Each(1)) << "orthographic";
 }
@@ -174,13 +174,13 @@ TEST(Rasterize, SharedEdgesLeaveNoHoleAndDrawNothingTwice) {
 TEST(Rasterize, EdgesThroughPixelCentresBelongToOneTriangle) {
   // Quads of 4 pixels whose corners move by half pixels: corners and edges meet pixel centres all
   // the time.
-  const Scene scene = jittered_plane(8, 2, 4, 0.125f);
+  const SceneData scene = jittered_plane(8, 2, 4, 0.125f);
   EXPECT_THAT(coverage(scene, orthographic_square(1.5f, 24)), ::testing::Each(1));
 }
 
 TEST(Rasterize, NearPlaneCutsWithoutHoles) {
   // A floor that passes under and behind the eye: everything below the horizon is covered, once.
-  Scene scene;
+  SceneData scene;
   const unsigned material = add_material(scene, glm::vec3(1), CLPV_MATERIAL_DOUBLE_SIDED);
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(-0.2f, 0.2f);
@@ -220,14 +220,14 @@ TEST(Rasterize, NearPlaneCutsWithoutHoles) {
 
 TEST(Rasterize, FarawayCornersAreClippedToTheGuardBand) {
   // 40,000 km to each side: without clipping its corners overflow the screen's integers.
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {-4e7f, -4e7f, -4}, {8e7f, 0, 0}, {0, 8e7f, 0}, add_material(scene));
   for (const float depth : camera_image(scene, small_camera()).depth) EXPECT_NEAR(depth, 4, 1e-4);
   for (const float depth : shadow_depth(scene, orthographic_square(1, 16))) EXPECT_NEAR(depth, 4, 1e-4);
 }
 
 TEST(Rasterize, NearerSurfaceWinsAndTiesGoToTheFirst) {
-  Scene scene;
+  SceneData scene;
   const unsigned red = add_material(scene, {1, 0, 0}), green = add_material(scene, {0, 1, 0});
   add_quad(scene, {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, red);
   add_quad(scene, {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, green);
@@ -237,7 +237,7 @@ TEST(Rasterize, NearerSurfaceWinsAndTiesGoToTheFirst) {
 }
 
 TEST(Rasterize, ATileOfMoreTrianglesThanOneLoopCanDraw) {
-  Scene scene;
+  SceneData scene;
   const unsigned material = add_material(scene);
   const auto wall_at = [&](float depth) {
     add_quad(scene, {-20, -20, -depth}, {40, 0, 0}, {0, 40, 0}, material);
@@ -256,7 +256,7 @@ TEST(Rasterize, OrthographicDepthsBeforeTheNearOneClampToItAndFarOnesDrop) {
 }
 
 TEST(Rasterize, FluxOfAWhitePlaneIsIrradianceTimesArea) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {-10, 0, 10}, {20, 0, 0}, {0, 0, -20}, add_material(scene));
   const ClpvLight light = directional_light({0.3f, -1, 0.2f}, {1, 2, 3});
   const ClpvView view =
@@ -268,7 +268,7 @@ TEST(Rasterize, FluxOfAWhitePlaneIsIrradianceTimesArea) {
 }
 
 TEST(Rasterize, FluxInAWhiteRoomIsThatOfThePointLight) {
-  Scene scene;  // a cube around the light, seen from inside
+  SceneData scene;  // a cube around the light, seen from inside
   test::add_box(scene, glm::vec3(-2), 4, add_material(scene));
   const ClpvLight light = test::point_light({0.3f, 0.2f, -0.4f}, {1, 1, 1});
   double sum = 0;
@@ -282,7 +282,7 @@ TEST(Rasterize, FluxInAWhiteRoomIsThatOfThePointLight) {
 }
 
 TEST(Rasterize, PaperFormatKeepsEightBits) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {-10, 0, 10}, {20, 0, 0}, {0, 0, -20}, add_material(scene, {0.9f, 0.5f, 0.1f}));
   const ClpvLight light = directional_light({0.3f, -1, 0.2f}, glm::vec3(3));
   const ClpvView view =
@@ -300,7 +300,7 @@ TEST(Rasterize, PaperFormatKeepsEightBits) {
 }
 
 TEST(Rasterize, SeveralLaunchesDrawTheSame) {
-  const Scene scene = jittered_plane(20, 5, 4, 0);
+  const SceneData scene = jittered_plane(20, 5, 4, 0);
   const ClpvView view = small_camera(160, 90);
   const SurfaceImage whole = camera_image(scene, view);
   Session& session = test_session();
@@ -315,14 +315,14 @@ TEST(Rasterize, SeveralLaunchesDrawTheSame) {
 }
 
 TEST(Rasterize, InconsistentScenesAreRejected) {
-  const std::vector<std::function<void(Scene&)>> faults = {
-      [](Scene& scene) { scene.triangles[1].vertex[2] = 4; },
-      [](Scene& scene) { scene.triangles[0].material = 1; },
-      [](Scene& scene) { scene.materials[0].texture = 0; },
-      [](Scene& scene) { scene.materials[0].texture = 0, scene.textures.resize(1); },  // no texels
+  const std::vector<std::function<void(SceneData&)>> faults = {
+      [](SceneData& scene) { scene.triangles[1].vertex[2] = 4; },
+      [](SceneData& scene) { scene.triangles[0].material = 1; },
+      [](SceneData& scene) { scene.materials[0].texture = 0; },
+      [](SceneData& scene) { scene.materials[0].texture = 0, scene.textures.resize(1); },  // no texels
   };
   for (const auto& fault : faults) {
-    Scene scene = wall();
+    SceneData scene = wall();
     fault(scene);
     EXPECT_THROW(upload_scene(test_session(), scene), Error);
   }

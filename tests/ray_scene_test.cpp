@@ -26,9 +26,9 @@ Texture checker() {
 }
 
 TEST(RayScene, MaskedHolesAreTransparent) {
-  Scene scene = floor_scene(0.5);
+  SceneData scene = floor_scene(0.5);
   scene.textures = {checker()};
-  Material& masked =
+  ClpvMaterial& masked =
       scene.materials[add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED)];
   masked.texture = 0;
   masked.alpha_cutoff = 0.5f;
@@ -56,7 +56,7 @@ TEST(RayScene, MaskedHolesAreTransparent) {
 }
 
 TEST(RayScene, SingleSidedSurfacesAreSeenFromTheirFrontAndShadeFromBoth) {
-  Scene scene = floor_scene(0.5);
+  SceneData scene = floor_scene(0.5);
   scene.lights = {sun({0, -1, 0}, 1)};
   add_grey(scene, 1);
   add_quad(scene, {-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, 1);  // faces down: unseen from above
@@ -71,10 +71,10 @@ TEST(RayScene, SingleSidedSurfacesAreSeenFromTheirFrontAndShadeFromBoth) {
 
 /// Random triangles with bent normals and random textures: plain, with holes, seen from both sides
 /// or one.
-Scene clutter() {
+SceneData clutter() {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> any(-1, 1);
-  Scene scene;
+  SceneData scene;
   scene.path = "clutter";
   Texture texture;
   texture.width = 64, texture.height = 32;
@@ -83,7 +83,7 @@ Scene clutter() {
   scene.textures = {texture};
   for (const unsigned flags :
        {0u, CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED, CLPV_MATERIAL_DOUBLE_SIDED}) {
-    Material& material = scene.materials[add_material(scene, {0.9f, 0.8f, 0.7f}, flags)];
+    ClpvMaterial& material = scene.materials[add_material(scene, {0.9f, 0.8f, 0.7f}, flags)];
     material.texture = 0;
     material.alpha_cutoff = 0.5f;
   }
@@ -106,7 +106,7 @@ Scene clutter() {
 
 // Pixel by pixel, or else every comparison would measure two different pictures.
 TEST(RayScene, SeesWhatTheRasteriserSees) {
-  const Scene scene = clutter();
+  const SceneData scene = clutter();
   const ClpvView view = camera_view(SceneCamera{}, 160, 90);
   PathTracerOptions options;
   options.samples = 1;

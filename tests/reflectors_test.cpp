@@ -37,7 +37,7 @@ struct Areas {
   }
 };
 
-Areas reflected(const Scene& scene) {
+Areas reflected(const SceneData& scene) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   Volume reflectors(test_session(), {kGrid, kCellFaces, 3}, "test: reflectors");
   VoxelField(test_session(), buffers, reflector_masks(buffers, kGrid, {})).update(0, kGridCells, reflectors);
@@ -45,7 +45,7 @@ Areas reflected(const Scene& scene) {
 }
 
 TEST(Reflectors, AWallHasItsAlbedoOnBothSides) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene, {0.8f, 0.5f, 0.25f}));
   const Areas areas = reflected(scene);
   for (int i = 0; i < kGrid * kGrid; ++i) {
@@ -61,7 +61,7 @@ TEST(Reflectors, AWallHasItsAlbedoOnBothSides) {
 }
 
 TEST(Reflectors, AlbedoIsWeightedByCoveredArea) {
-  Scene scene;
+  SceneData scene;
   const unsigned material = add_material(scene, glm::vec3(0.5f));
   add_quad(scene, {2, 1.2f, 1}, {0.5f, 0, 0}, {0, 0, -0.25f}, material);
   EXPECT_NEAR(reflected(scene).sum(2), 0.125f * 0.5f, kColour);
@@ -73,7 +73,7 @@ TEST(Reflectors, AlbedoIsWeightedByCoveredArea) {
 
 // A wall at 45 degrees is split into two areas, which together reflect as much light.
 TEST(Reflectors, ASlantedWallSplitsIntoAreasPerAxis) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {1.5f, 1.0f, 1}, {1, 1, 0}, {0, 0, 1},
            add_material(scene, glm::vec3(0.5f)));  // towards (1, -1, 0)
   const Areas areas = reflected(scene);
@@ -87,7 +87,7 @@ TEST(Reflectors, ASlantedWallSplitsIntoAreasPerAxis) {
 }
 
 TEST(Reflectors, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
-  Scene scene;
+  SceneData scene;
   scene.textures.push_back(
       {.width = 2, .height = 1, .rgba = {255, 255, 255, 255, 0, 0, 0, 0}, .name = "white, and a black hole"});
   const unsigned material = add_material(scene, glm::vec3(0.5f));
@@ -103,7 +103,7 @@ TEST(Reflectors, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
 }
 
 TEST(Reflectors, AdjacentFacesDoNotCountLightTwice) {
-  Scene scene;
+  SceneData scene;
   const unsigned material = add_material(scene);
   add_quad(scene, {-9, 0.6f, -9}, {0, 0, 20}, {20, 0, 0}, material);  // a floor
   const float alone = reflected(scene).at(2, 2, 1, 2);
@@ -116,7 +116,7 @@ TEST(Reflectors, AdjacentFacesDoNotCountLightTwice) {
 }
 
 TEST(Reflectors, AlbedoIsAtMostOne) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene, {3, -1, 0.5f}));
   const Areas areas = reflected(scene);
   EXPECT_EQ(areas.at(0, 2, 1, 1, 0), 1);
@@ -124,7 +124,7 @@ TEST(Reflectors, AlbedoIsAtMostOne) {
 }
 
 TEST(Reflectors, AHugeTriangleReflectsInEveryCell) {
-  Scene scene;
+  SceneData scene;
   add_triangle(scene, {-3e7f, 2, -1e7f}, {0, 2, 5e7f}, {3e7f, 2, -1e7f}, add_material(scene));
   EXPECT_NEAR(reflected(scene).sum(2), kGrid * kGrid, 0.01f);
 }

@@ -57,13 +57,13 @@ struct SceneTest : ::testing::Test {
     folder.write("models/model.gltf", made.document.dump());
   }
 
-  Scene load(const std::string& text, const std::filesystem::path& replacement = {}) {
+  SceneData load(const std::string& text, const std::filesystem::path& replacement = {}) {
     return load_scene(folder.write("test.json", text), replacement);
   }
 };
 
 TEST_F(SceneTest, AllKeysOfASceneFile) {
-  const Scene scene = load(kFull);
+  const SceneData scene = load(kFull);
   EXPECT_EQ(scene.name, "test");
   EXPECT_EQ(scene.exposure, -1.5f);
   EXPECT_EQ(scene.cascades, 2);
@@ -73,7 +73,7 @@ TEST_F(SceneTest, AllKeysOfASceneFile) {
 }
 
 TEST_F(SceneTest, CamerasAreScaledToMetres) {
-  const Scene scene = load(kFull);
+  const SceneData scene = load(kFull);
   ASSERT_EQ(scene.cameras.size(), 2u);
   const SceneCamera& a = scene.cameras[0];
   EXPECT_EQ(a.eye, glm::vec3(1, 2, 3));
@@ -86,7 +86,7 @@ TEST_F(SceneTest, CamerasAreScaledToMetres) {
 }
 
 TEST_F(SceneTest, LightsAreScaledButNotTheirIntensities) {
-  const Scene scene = load(kFull);
+  const SceneData scene = load(kFull);
   ASSERT_EQ(scene.lights.size(), 3u);
   const ClpvLight &sun = scene.lights[0].data, &lamp = scene.lights[1].data, &torch = scene.lights[2].data;
   EXPECT_THAT(sun.direction, ElementsAre(0, -1, 0));
@@ -100,7 +100,7 @@ TEST_F(SceneTest, LightsAreScaledButNotTheirIntensities) {
 }
 
 TEST_F(SceneTest, ACameraMayNameItsLight) {
-  const Scene scene = load(kFull);
+  const SceneData scene = load(kFull);
   const auto only = scene.lights_for(scene.camera("a"));
   ASSERT_EQ(only.size(), 1u);
   EXPECT_EQ(only[0].name, "sun");
@@ -108,7 +108,7 @@ TEST_F(SceneTest, ACameraMayNameItsLight) {
 }
 
 TEST_F(SceneTest, CamerasAreFoundByName) {
-  const Scene scene = load(kFull);
+  const SceneData scene = load(kFull);
   EXPECT_EQ(scene.camera("").name, "a");
   EXPECT_EQ(scene.camera("b").name, "b");
   EXPECT_THAT(error_of(ExitCode::usage, [&] { scene.camera("c"); }),
@@ -116,7 +116,7 @@ TEST_F(SceneTest, CamerasAreFoundByName) {
 }
 
 TEST_F(SceneTest, TheModelsCamerasAndLightsAreTheDefault) {
-  const Scene scene = load(R"({"model": "models/model.gltf", "metres_per_unit": 2})");
+  const SceneData scene = load(R"({"model": "models/model.gltf", "metres_per_unit": 2})");
   ASSERT_EQ(scene.cameras.size(), 1u);
   EXPECT_EQ(scene.cameras[0].name, "own");
   EXPECT_EQ(scene.cameras[0].eye, glm::vec3(0, 0, 16));
@@ -127,7 +127,7 @@ TEST_F(SceneTest, TheModelsCamerasAndLightsAreTheDefault) {
 }
 
 TEST_F(SceneTest, AnEmptyListOfLightsMeansDarkness) {
-  const Scene scene = load(R"({"model": "models/model.gltf", "lights": []})");
+  const SceneData scene = load(R"({"model": "models/model.gltf", "lights": []})");
   EXPECT_THAT(scene.lights, IsEmpty());
   EXPECT_THAT(scene.notes, IsEmpty());
 }
@@ -136,7 +136,7 @@ TEST_F(SceneTest, TheModelCanBeReplaced) {
   GltfBuilder other;
   other.triangle();
   other.triangle();
-  const Scene scene = load(kFull, {other.write(folder, "other.gltf")});
+  const SceneData scene = load(kFull, {other.write(folder, "other.gltf")});
   EXPECT_EQ(scene.triangles.size(), 2u);
   EXPECT_EQ(scene.cameras.size(), 2u);
   EXPECT_EQ(load("{}", {folder / "other.gltf"}).triangles.size(), 2u) << "and need not be given at all";
@@ -145,7 +145,7 @@ TEST_F(SceneTest, TheModelCanBeReplaced) {
 TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
   GltfBuilder bare;
   bare.mesh({{"POSITION", bare.accessor<float>("VEC3", {-3, 0, -1, 5, 0, 2, 0, 4, 1})}});
-  const Scene scene = load_scene(bare.write(folder));
+  const SceneData scene = load_scene(bare.write(folder));
   ASSERT_EQ(scene.cameras.size(), 1u);
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.lights[0].data.kind, static_cast<unsigned>(CLPV_LIGHT_DIRECTIONAL));
@@ -162,12 +162,13 @@ TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
 TEST(SponzaTest, IsWhatItsReadmeSays) {
   const auto model = sponza();
   if (model.empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA names it";
-  const Scene scene = load_scene(scene_file("sponza.json"), model);
+  const SceneData scene = load_scene(scene_file("sponza.json"), model);
   EXPECT_EQ(scene.triangles.size(), 262267u);
   EXPECT_EQ(scene.vertices.size(), 192870u);
   EXPECT_EQ(scene.materials.size(), 25u);
-  const auto masked = std::count_if(scene.materials.begin(), scene.materials.end(),
-                                    [](const Material& m) { return (m.flags & CLPV_MATERIAL_MASKED) != 0; });
+  const auto masked =
+      std::count_if(scene.materials.begin(), scene.materials.end(),
+                    [](const ClpvMaterial& m) { return (m.flags & CLPV_MATERIAL_MASKED) != 0; });
   EXPECT_EQ(masked, 3);
   EXPECT_EQ(scene.textures.size(), 25u);
   // The README's box at the node scale, to the millimetre, made metres.

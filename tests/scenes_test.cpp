@@ -55,7 +55,7 @@ TEST(Scenes, MatchTheirDescriptions) {
       {"empty_room.json", 28, 2, {0.7128f, 0.7088f, 0.6392f}, {"front", "published", "red", "green"}}};
   for (const Card& card : cards) {
     SCOPED_TRACE(card.file);
-    const Scene scene = load_scene(kScenes / card.file);
+    const SceneData scene = load_scene(kScenes / card.file);
     EXPECT_EQ(scene.triangles.size(), card.triangles);
     EXPECT_EQ(scene.lights.size(), card.lights);
     EXPECT_LT(glm::length(scene.upper - scene.lower - card.size), 0.02f);
@@ -64,13 +64,13 @@ TEST(Scenes, MatchTheirDescriptions) {
     EXPECT_EQ(cameras, card.cameras);
     EXPECT_THAT(scene.notes, ::testing::IsEmpty());
   }
-  const Scene lamp = load_scene(kScenes / "cornell_lamp.json");
+  const SceneData lamp = load_scene(kScenes / "cornell_lamp.json");
   EXPECT_NEAR(max_emitted_flux(lamp, emissive_triangles(lamp), 1000), M_PI * 17.2 * 0.130 * 0.105, 1e-4);
 }
 
 TEST(Scenes, TheLivingAtriumIsTheAtriumWithABallAndACurtainThatMove) {
-  const Scene still = load_scene(kScenes / "atrium.json"),
-              living = load_scene(kScenes / "atrium_living.json");
+  const SceneData still = load_scene(kScenes / "atrium.json"),
+                  living = load_scene(kScenes / "atrium_living.json");
   ASSERT_EQ(living.moving.size(), 2u);
   EXPECT_EQ(living.triangles.size(), still.triangles.size() + living.moving.back().triangles);
   EXPECT_EQ(living.lower, still.lower);

@@ -114,8 +114,8 @@ TEST(SkyLight, LightComesFromWhereTheSkyIsBright) {
 }
 
 /// A black floor under `sky`; the camera sees a patch around the origin from 0.3 m.
-Scene under(const Sky& sky, float half = 10) {
-  Scene scene;
+SceneData under(const Sky& sky, float half = 10) {
+  SceneData scene;
   scene.path = "under the sky";
   add_grey(scene, 0);
   add_quad(scene, {-half, 0, -half}, {0, 0, 2 * half}, {2 * half, 0, 0}, 0);
@@ -128,7 +128,7 @@ Scene under(const Sky& sky, float half = 10) {
   return scene;
 }
 
-void add_black_wall(Scene& scene, float x, float height) {  // faces -x
+void add_black_wall(SceneData& scene, float x, float height) {  // faces -x
   add_quad(scene, {x, 0, -10}, {0, 0, 20}, {0, height, 0}, 0);
 }
 
@@ -139,27 +139,27 @@ RenderOptions small_frame() {
   return options;
 }
 
-double lit(const Scene& scene, const RenderOptions& options = small_frame()) {
+double lit(const SceneData& scene, const RenderOptions& options = small_frame()) {
   Frame frame(test_session(), scene, options);
   frame.render(scene.cameras[0]);
   return mean(frame.read(Show::irradiance), 0);
 }
 
-double traced(const Scene& scene, int bounces = 1, std::uint32_t samples = 1024) {
+double traced(const SceneData& scene, int bounces = 1, std::uint32_t samples = 1024) {
   PathTracerOptions options;
   options.samples = samples, options.bounces = bounces;
   return mean(reference::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options).irradiance);
 }
 
 TEST(SkyFrame, AnOpenPlaneGetsPiTimesTheRadiance) {
-  const Scene scene = under(constant_sky({2, 1, 1}));
+  const SceneData scene = under(constant_sky({2, 1, 1}));
   EXPECT_NEAR(traced(scene), 2 * pi, 1e-3);
   EXPECT_NEAR(lit(scene), 2 * pi, 0.03 * 2 * pi);
 }
 
 TEST(SkyFrame, ABrightHalfOfTheSkyLightsHalfAsMuch) {
   const Sky east = map_of(2, 1, [](int x, int) { return x == 1 ? 1.0f : 0.0f; });
-  const Scene scene = under(east);
+  const SceneData scene = under(east);
   EXPECT_NEAR(traced(scene), pi / 2, 2e-3);
   EXPECT_NEAR(lit(scene), pi / 2, 0.03 * pi);
   const Sky below = map_of(1, 2, [](int, int y) { return y == 1 ? 1.0f : 0.0f; });
@@ -170,7 +170,7 @@ TEST(SkyFrame, ABrightHalfOfTheSkyLightsHalfAsMuch) {
 // A long wall of height h at a distance d leaves (1 + cos(atan(h / d))) / 2 of an even sky.
 TEST(SkyFrame, AWallBlocksItsShareOfTheSky) {
   for (const float distance : {0.5f, 1.5f}) {  // the wall transmits about 1/3 along diagonal links
-    Scene scene = under(constant_sky(glm::vec3(1)));
+    SceneData scene = under(constant_sky(glm::vec3(1)));
     add_black_wall(scene, distance, 1.5f);
     const double wanted = pi / 2 * (1 + std::cos(std::atan(1.5 / double{distance})));
     EXPECT_NEAR(traced(scene), wanted, 0.01 * pi) << distance;
@@ -209,7 +209,7 @@ TEST(PathTracer, TheSkyIsSampledByItsRadiance) {
 // Light from the floor to a wall and from the wall to the floor: the same paths for as many
 // bounces.
 TEST(SkyFrame, TheSkyCountsAsTheFirstBounce) {
-  Scene scene = under(constant_sky(glm::vec3(1)));
+  SceneData scene = under(constant_sky(glm::vec3(1)));
   for (int i = 0; i < 3; ++i) scene.materials[0].base_colour[i] = 0.8f;
   add_black_wall(scene, 1, 1.5f);
   RenderOptions options = small_frame();
@@ -223,7 +223,7 @@ TEST(SkyFrame, TheSkyCountsAsTheFirstBounce) {
 
 TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
   const Sky sky = map_of(16, 8, [](int x, int y) { return static_cast<float>(x + y); });
-  Scene scene = under(sky);
+  SceneData scene = under(sky);
   scene.cameras[0].forward = {0, 0, -1}, scene.cameras[0].up = {0, 1, 0}, scene.cameras[0].vertical_fov = 1;
   Frame frame(test_session(), scene, small_frame());
   frame.render(scene.cameras[0]);
@@ -261,7 +261,7 @@ class SkyFile : public ::testing::Test {
     return error_of(ExitCode::bad_input, [&] { load_scene(folder_ / "scene.json"); });
   }
   TemporaryFolder folder_;
-  Scene scene_;
+  SceneData scene_;
 };
 
 TEST_F(SkyFile, IsAConstantOrAMap) {

@@ -44,7 +44,7 @@ TEST(Soak, MemoryStaysFlatOverFramesOfChangingOptions) {
   const std::vector<RenderOptions> all = {
       small(TransportKind::sweep, Layout::soa, 8), small(TransportKind::sampled, Layout::soa, 12),
       small(TransportKind::sampled, Layout::aos, 8), small(TransportKind::sweep, Layout::soa, 16)};
-  const Scene scene = load_scene(test::kTiny);
+  const SceneData scene = load_scene(test::kTiny);
   Session session(choose_device());
   const auto render = [&](int i) {
     Frame frame(session, scene, all[static_cast<std::size_t>(i) % all.size()]);

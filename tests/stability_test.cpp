@@ -138,7 +138,7 @@ class SteadyFrame : public ::testing::Test {
   static double change_at_rest(Near near) {
     RenderOptions options = small_options();
     options.near = near;
-    const Scene scene = load_scene(test::scene_file("cornell.json"));
+    const SceneData scene = load_scene(test::scene_file("cornell.json"));
     const SceneCamera camera = scene.camera("");
     Frame frame(test_session(), scene, options);
     Stability stability(test_session(), frame, 0);
@@ -149,7 +149,7 @@ class SteadyFrame : public ::testing::Test {
     return stability.steps().front().change.mean.value();
   }
 
-  Scene scene_ = load_scene(test::scene_file("cornell.json"));
+  SceneData scene_ = load_scene(test::scene_file("cornell.json"));
   SceneCamera camera_ = scene_.camera("");
   Frame frame_{test_session(), scene_, small_options()};
   SurfaceImage before_;

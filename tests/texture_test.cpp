@@ -60,7 +60,7 @@ TEST(MipChain, EverySrgbByteComesBack) {
 
 /// An orthographic camera looking down -z at the square (0..1)^2 at z = -1, whose uv runs from
 /// `from` to `to`.
-SurfaceImage image_of(Scene scene, int size, const glm::vec2& from, const glm::vec2& to) {
+SurfaceImage image_of(SceneData scene, int size, const glm::vec2& from, const glm::vec2& to) {
   add_quad(scene, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, 0);
   for (Vertex& v : scene.vertices) {
     for (int i = 0; i < 2; ++i) v.uv[i] = from[i] + v.uv[i] * (to[i] - from[i]);
@@ -77,8 +77,8 @@ SurfaceImage image_of(Scene scene, int size, const glm::vec2& from, const glm::v
 }
 
 /// A scene with a textured white material and no triangles yet.
-Scene textured(Texture used, unsigned flags = 0) {
-  Scene scene;
+SceneData textured(Texture used, unsigned flags = 0) {
+  SceneData scene;
   add_material(scene, glm::vec3(1), flags);
   scene.materials[0].texture = 0;
   scene.materials[0].alpha_cutoff = 0.5f;
@@ -151,7 +151,7 @@ TEST(Texture, SmallTexelsAreAveragedByMipLevels) {
 }
 
 TEST(Texture, HolesShowTheSurfaceBehind) {
-  Scene scene = textured(texture(2, 1, {255, 0, 0, 255, 255, 0, 0, 0}), CLPV_MATERIAL_MASKED);
+  SceneData scene = textured(texture(2, 1, {255, 0, 0, 255, 255, 0, 0, 0}), CLPV_MATERIAL_MASKED);
   scene.textures[0].wrap_u = CLPV_WRAP_CLAMP;
   const unsigned green = add_material(scene, {0, 1, 0});
   add_quad(scene, {0, 0, -2}, {1, 0, 0}, {0, 1, 0}, green);
@@ -163,7 +163,7 @@ TEST(Texture, HolesShowTheSurfaceBehind) {
 }
 
 TEST(Texture, EmissionIsSeen) {
-  Scene scene = textured(texture(1, 1, {255, 255, 255, 255}));
+  SceneData scene = textured(texture(1, 1, {255, 255, 255, 255}));
   scene.materials[0].emissive[0] = 3;
   scene.materials[0].emissive[1] = 2;
   for (const glm::vec4& emitted : image_of(scene, 4, {0, 0}, {1, 1}).emissive)

@@ -52,8 +52,8 @@ struct TreeWalk {
   }
 };
 
-Scene many_triangles(bool moving) {
-  Scene scene;
+SceneData many_triangles(bool moving) {
+  SceneData scene;
   const unsigned plain = add_material(scene),
                  masked = add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED);
   for (int i = 0; i < 3000; ++i) {
@@ -85,7 +85,7 @@ TEST(TriangleTree, HoldsEachPointOfEachTriangle) {
   const TreeLimits usual, areas{.parts = 0}, morton{.parts = 0, .areas = 0};
   for (const auto& [moving, limits] :
        {std::pair(false, usual), std::pair(true, usual), std::pair(false, areas), std::pair(true, morton)}) {
-    const Scene scene = many_triangles(moving);
+    const SceneData scene = many_triangles(moving);
     const TriangleTree tree(scene, limits);
     TreeWalk walk{tree, {}};
     walk.node(0, 1);
@@ -114,7 +114,7 @@ bool equal_bytes(const std::vector<TreeRow>& a, const std::vector<TreeRow>& b) {
 }
 
 TEST(TriangleTree, MovesToWhatItWouldBeFromScratch) {
-  Scene scene = many_triangles(true);
+  SceneData scene = many_triangles(true);
   TriangleTree tree(scene);
   for (unsigned v = 3000; v < 4500; ++v) scene.vertices[v].position[1] += 0.01f * static_cast<float>(v % 300);
   tree.move(scene);
@@ -124,7 +124,7 @@ TEST(TriangleTree, MovesToWhatItWouldBeFromScratch) {
 }
 
 TEST(TriangleTree, OfNothingIsEmpty) {
-  const TriangleTree tree{Scene{}};
+  const TriangleTree tree{SceneData{}};
   EXPECT_EQ(tree.nodes().size(), std::size_t{CLPV_TREE_NODE_ROWS});
   EXPECT_TRUE(tree.leaves().empty());
 }

@@ -249,7 +249,7 @@ TEST_F(CacheTest, ADamagedCellIsMeasuredAgain) {
 
 TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
   set_log_level(true, 0);
-  const Scene scene = load_scene(kTiny);
+  const SceneData scene = load_scene(kTiny);
   const auto traced = [&] {
     return reference::cached_ground_truth(cache.path(), scene, scene.cameras[0], 8, 6, {.samples = 1});
   };

@@ -20,7 +20,7 @@ constexpr int kGrid = 4;
 const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 3.5
 
 /// Bytes of all points, by the kernel.
-std::vector<std::uint8_t> occluded(const Scene& scene, const ClpvGrid& grid = kCells) {
+std::vector<std::uint8_t> occluded(const SceneData& scene, const ClpvGrid& grid = kCells) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   VoxelField visibility(test_session(), buffers, visibility_masks(static_cast<int>(grid.n), 1));
   visibility.update(0, grid);
@@ -44,7 +44,7 @@ bool between_centres(std::size_t at) {
 constexpr unsigned kCornersWithX = 0b10101010;
 
 TEST(Visibility, AWallHidesExactlyTheCellsBehindIt) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {2.0f, -9, -9}, {0, 20, 0}, {0, 0, 20},
            add_material(scene));  // between centres at 1.5 and 2.5
   const std::vector<std::uint8_t> found = occluded(scene);
@@ -57,13 +57,13 @@ TEST(Visibility, AWallHidesExactlyTheCellsBehindIt) {
 }
 
 TEST(Visibility, AWallThroughCentresHidesNothing) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {1.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
   for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
 }
 
 TEST(Visibility, ASmallTriangleHidesOnlyWhatLiesBehindIt) {
-  Scene scene;
+  SceneData scene;
   // On the segment from the centre (0.5, 0.5, 0.5) to the first point, 1/8 of a cell further along
   // each axis.
   add_quad(scene, {0.55f, 0.55f, 0.56f}, {0.02f, 0, 0}, {0, 0.02f, 0}, add_material(scene));
@@ -74,26 +74,26 @@ TEST(Visibility, ASmallTriangleHidesOnlyWhatLiesBehindIt) {
 }
 
 TEST(Visibility, TrianglesOfOneSurfaceLeaveNoGap) {
-  Scene scene;
+  SceneData scene;
   const unsigned material = add_material(scene);
   for (int i = 0; i < 40; ++i) {
     for (int j = 0; j < 40; ++j)
       add_quad(scene, {2.0f, 0.1f * i, 0.1f * j}, {0, 0.1f, 0}, {0, 0, 0.1f}, material);
   }
-  Scene whole;
+  SceneData whole;
   add_quad(whole, {2.0f, 0, 0}, {0, 4, 0}, {0, 0, 4}, add_material(whole));
   EXPECT_EQ(occluded(scene), occluded(whole));
 }
 
 TEST(Visibility, MaskedMaterialsHideNothing) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {2, -9, -9}, {0, 20, 0}, {0, 0, 20},
            add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED));
   for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
 }
 
 TEST(Visibility, NothingIsHiddenInAGridOfOneCell) {
-  Scene scene;
+  SceneData scene;
   add_quad(scene, {0.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
   for (const std::uint8_t bits : occluded(scene, {{0, 0, 0}, 1, 1, {}})) ASSERT_EQ(bits, 0);
 }

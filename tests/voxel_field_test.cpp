@@ -32,8 +32,8 @@ ClpvGrid grid_at(const glm::ivec3& first) {
 }
 
 /// Triangles of all sizes in and around a space of 20 cells; the last 40 move.
-Scene soup() {
-  Scene scene;
+SceneData soup() {
+  SceneData scene;
   const unsigned materials[] = {add_material(scene, {0.8f, 0.5f, 0.3f}),
                                 add_material(scene, {0.2f, 0.7f, 0.9f})};
   std::mt19937 random(7);
@@ -50,7 +50,7 @@ Scene soup() {
   return scene;
 }
 
-void shift(Scene& scene, const MeshRange& part, const glm::vec3& by) {
+void shift(SceneData& scene, const MeshRange& part, const glm::vec3& by) {
   for (unsigned v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
     for (int a = 0; a < 3; ++a) scene.vertices[v].position[a] += by[a];
   }
@@ -88,12 +88,12 @@ class Stages {
   Volume reflected_{test_session(), {kGrid, kCellFaces, 3}, "test: reflectors"};
 };
 
-Left from_nothing(const Scene& scene, const ClpvGrid& grid) {
+Left from_nothing(const SceneData& scene, const ClpvGrid& grid) {
   return Stages(upload_scene(test_session(), scene)).bring(grid);
 }
 
 TEST(VoxelField, MoveWithACascade) {
-  const Scene scene = soup();
+  const SceneData scene = soup();
   Stages kept(upload_scene(test_session(), scene));
   // By one cell, by several along two and three axes, back, by more than the grid, past a base
   // (every 32 cells), by none.
@@ -107,7 +107,7 @@ TEST(VoxelField, MoveWithACascade) {
 }
 
 TEST(VoxelField, DoNotDependOnTheOrderOfTriangles) {
-  Scene scene = soup();
+  SceneData scene = soup();
   scene.moving.clear();
   const Left before = from_nothing(scene, grid_at({-4, -4, -4}));
   std::ranges::reverse(scene.triangles);
@@ -115,7 +115,7 @@ TEST(VoxelField, DoNotDependOnTheOrderOfTriangles) {
 }
 
 TEST(VoxelField, DegenerateTrianglesSetNoBits) {
-  Scene scene;
+  SceneData scene;
   const auto expect_none = [&] {
     const Left left = from_nothing(scene, grid_at({0, 0, 0}));
     EXPECT_EQ(std::ranges::count(left.occluded, 0), std::ssize(left.occluded));
@@ -131,7 +131,7 @@ TEST(VoxelField, DegenerateTrianglesSetNoBits) {
 }
 
 TEST(VoxelField, FollowMovingObjects) {
-  Scene scene = soup();
+  SceneData scene = soup();
   SceneBuffers buffers = upload_scene(test_session(), scene);
   Stages kept(buffers);
   glm::ivec3 place(-4, -4, -4);

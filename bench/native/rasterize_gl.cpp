@@ -185,7 +185,7 @@ GLuint make_framebuffer(Pass pass, const ClpvView& view) {
 
 struct GlRasterizer::Impl {
   struct Batch {  ///< consecutive triangles of one material
-    Material material;
+    ClpvMaterial material;
     GLuint texture;
     GLsizei count;
     std::size_t first;  ///< position in the index buffer
@@ -199,7 +199,7 @@ struct GlRasterizer::Impl {
   GLuint program = 0;
   std::vector<Batch> batches;
 
-  Impl(const Scene& scene, Pass drawn_pass, std::vector<ClpvView> drawn_views, const ClpvLight& lit_by)
+  Impl(const SceneData& scene, Pass drawn_pass, std::vector<ClpvView> drawn_views, const ClpvLight& lit_by)
       : pass(drawn_pass), views(std::move(drawn_views)), light(lit_by) {
     open();
     upload(scene);
@@ -230,7 +230,7 @@ struct GlRasterizer::Impl {
     make_current();
   }
 
-  void upload(const Scene& scene) {
+  void upload(const SceneData& scene) {
     std::array<GLuint, 2> buffers{};
     glGenBuffers(2, buffers.data());
     glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
@@ -253,7 +253,7 @@ struct GlRasterizer::Impl {
                  indices.data(), GL_STATIC_DRAW);
   }
 
-  void make_batches(const Scene& scene, std::vector<GLuint>& indices) {
+  void make_batches(const SceneData& scene, std::vector<GLuint>& indices) {
     std::vector<GLuint> textures;
     for (const Texture& texture : scene.textures) textures.push_back(make_texture(texture));
     Texture white;
@@ -266,7 +266,7 @@ struct GlRasterizer::Impl {
       corners.insert(corners.end(), triangle.vertex, triangle.vertex + 3);
     }
     for (const auto& [number, corners] : material_corners) {
-      const Material& material = scene.materials[number];
+      const ClpvMaterial& material = scene.materials[number];
       const std::size_t texture =
           material.texture == CLPV_NO_TEXTURE ? textures.size() - 1 : std::size_t{material.texture};
       batches.push_back({material, textures[texture], static_cast<GLsizei>(corners.size()), indices.size()});
@@ -338,7 +338,7 @@ std::string gl_missing() {
              : "";
 }
 
-GlRasterizer::GlRasterizer(const Scene& scene, Pass pass, std::vector<ClpvView> views,
+GlRasterizer::GlRasterizer(const SceneData& scene, Pass pass, std::vector<ClpvView> views,
                            const ClpvLight& light) {
   if (const std::string missing = gl_missing(); !missing.empty())
     throw Error(ExitCode::device, "{}", missing);
@@ -370,7 +370,7 @@ std::string gl_missing() {
   return "built without EGL and OpenGL ES (CLPV_BENCH_GL; Debian: libegl-dev libgles-dev libgl1-mesa-dri)";
 }
 
-GlRasterizer::GlRasterizer(const Scene&, Pass, std::vector<ClpvView>, const ClpvLight&) {
+GlRasterizer::GlRasterizer(const SceneData&, Pass, std::vector<ClpvView>, const ClpvLight&) {
   throw Error(ExitCode::device, "{}", gl_missing());
 }
 GlRasterizer::~GlRasterizer() = default;

@@ -21,7 +21,7 @@ class GlRasterizer {
   /// `pass`: rasterize_camera (depth, normal, albedo), rasterize_shadow (depth) or rasterize_rsm (depth, normal, flux).
   /// Depth is a float, the others four floats. All `views` have one size. Throws Error(device) if gl_missing() is not
   /// empty, Error(run_time) if the driver fails.
-  GlRasterizer(const Scene& scene, Pass pass, std::vector<ClpvView> views, const ClpvLight& light);
+  GlRasterizer(const SceneData& scene, Pass pass, std::vector<ClpvView> views, const ClpvLight& light);
   ~GlRasterizer();
 
   /// Draws all views and waits for the result.

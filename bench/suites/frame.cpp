@@ -49,7 +49,7 @@ SceneCamera path_camera(SceneCamera camera, int frame, double sway) {
 
 /// Frames rendered along a camera path, and their stage times.
 struct FrameSequence {
-  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const SceneData> scene;
   SceneCamera start;
   Recompute recompute;
   Frame frame;
@@ -57,7 +57,7 @@ struct FrameSequence {
   bool warm = false;
   FrameTimes times;
 
-  FrameSequence(Session& session, std::shared_ptr<const Scene> rendered, const std::string& camera,
+  FrameSequence(Session& session, std::shared_ptr<const SceneData> rendered, const std::string& camera,
                 const RenderOptions& options, Recompute recomputed)
       : scene(std::move(rendered)),
         start(scene->camera(camera)),

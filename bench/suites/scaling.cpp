@@ -65,7 +65,7 @@ std::vector<Case> steps(const std::shared_ptr<Bench>& bench, const SuiteOptions&
 }
 
 /// A case of rasterising, without basis and volumes.
-Case raster_case(Session& session, std::shared_ptr<const Scene> scene, Pass pass,
+Case raster_case(Session& session, std::shared_ptr<const SceneData> scene, Pass pass,
                  const RenderOptions& settings, const std::string& axis, int value) {
   Case result;
   Row& row = result.row;
@@ -97,7 +97,7 @@ std::vector<Case> triangles(Session& session, const SuiteOptions& options) {
   RenderOptions settings = options.settings;
   settings.cascades = 1;
   for (const int count : {1000, 4000, 16000, 64000, 256000}) {
-    const auto hall = std::make_shared<const Scene>(make_hall(count));
+    const auto hall = std::make_shared<const SceneData>(make_hall(count));
     for (const Pass pass : {Pass::rasterize_rsm, Pass::rasterize_camera}) {
       cases.push_back(
           raster_case(session, hall, pass, settings, "triangles", static_cast<int>(hall->triangles.size())));

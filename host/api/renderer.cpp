@@ -69,17 +69,17 @@ std::vector<std::array<float, 3>> without_alpha(const std::vector<glm::vec4>& va
 
 struct Renderer::State {
   std::mutex mutex;  ///< held by each call
-  SceneFile file;
+  Scene file;
   std::shared_lock<std::shared_mutex> scene_stays;  ///< while the frame is made
   PosedScene posed;
   RenderOptions options;
   Session session;
   std::optional<Frame> frame;
-  unsigned media;                               ///< of the frame (SceneFile::Contents)
+  unsigned media;                               ///< of the frame (Scene::Contents)
   std::map<std::string, std::string> metadata;  ///< of the last frame's images; empty before it
   double frame_ms = 0;
 
-  State(const SceneFile& scene_file, const Options& given, const std::string& device)
+  State(const Scene& scene_file, const Options& given, const std::string& device)
       : file(scene_file),
         scene_stays(file.contents().mutex),
         posed(file),
@@ -102,7 +102,7 @@ struct Renderer::State {
   }
 };
 
-Renderer::Renderer(const SceneFile& scene, const Options& options, const std::string& device)
+Renderer::Renderer(const Scene& scene, const Options& options, const std::string& device)
     : state_(std::make_unique<State>(scene, options, device)) {}
 
 Renderer::~Renderer() {
@@ -209,7 +209,7 @@ Stats Renderer::stats() const {
   return stats;
 }
 
-Image pathtrace(const SceneFile& scene, View view, const CameraChoice& camera, const TraceOptions& options) {
+Image pathtrace(const Scene& scene, View view, const CameraChoice& camera, const TraceOptions& options) {
   check_view(view);
   require_traceable(view);
   constexpr int kMaxSide = 16384;

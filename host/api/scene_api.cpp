@@ -31,24 +31,24 @@ std::vector<To> converted(const char* list, const std::vector<From>& given, std:
 
 }  // namespace
 
-SceneFile::SceneFile(const std::filesystem::path& path, const std::filesystem::path& model)
+Scene::Scene(const std::filesystem::path& path, const std::filesystem::path& model)
     : contents_(std::make_shared<Contents>(path, model)) {}
 
-std::vector<Camera> SceneFile::cameras() const {
+std::vector<Camera> Scene::cameras() const {
   const std::shared_lock lock(contents_->mutex);
   std::vector<Camera> all;
   for (const SceneCamera& camera : contents_->moving.scene().cameras) all.push_back(camera_of(camera));
   return all;
 }
 
-std::vector<Light> SceneFile::lights() const {
+std::vector<Light> Scene::lights() const {
   const std::shared_lock lock(contents_->mutex);
   std::vector<Light> all;
   for (const SceneLight& light : contents_->moving.scene().lights) all.push_back(light_of(light));
   return all;
 }
 
-void SceneFile::set_cameras(const std::vector<Camera>& cameras) {
+void Scene::set_cameras(const std::vector<Camera>& cameras) {
   if (cameras.empty()) throw Error(ExitCode::usage, "cameras: found none, allowed: at least one");
   std::vector<SceneCamera> made = converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
   const std::lock_guard lock(contents_->mutex);
@@ -56,20 +56,20 @@ void SceneFile::set_cameras(const std::vector<Camera>& cameras) {
   contents_->moving.set_cameras(std::move(made));
 }
 
-void SceneFile::set_lights(const std::vector<Light>& lights) {
+void Scene::set_lights(const std::vector<Light>& lights) {
   std::vector<SceneLight> made = converted<SceneLight>("lights", lights, bounds::kLights, scene_light);
   const std::lock_guard lock(contents_->mutex);
   contents_->lights = made;
   contents_->moving.set_lights(std::move(made));
 }
 
-std::optional<Medium> SceneFile::medium() const {
+std::optional<Medium> Scene::medium() const {
   const std::shared_lock lock(contents_->mutex);
   const std::optional<ClpvMedium>& medium = contents_->moving.scene().medium;
   return medium ? std::optional(medium_of(*medium)) : std::nullopt;
 }
 
-void SceneFile::set_medium(const std::optional<Medium>& medium) {
+void Scene::set_medium(const std::optional<Medium>& medium) {
   std::optional<ClpvMedium> made;
   if (medium) made = scene_medium(*medium, rejected_in("medium"));
   const std::lock_guard lock(contents_->mutex);
@@ -77,26 +77,26 @@ void SceneFile::set_medium(const std::optional<Medium>& medium) {
   ++contents_->media;
 }
 
-bool SceneFile::moves() const {
+bool Scene::moves() const {
   const std::shared_lock lock(contents_->mutex);
   return contents_->moving.moves();
 }
 
-std::vector<std::string> SceneFile::notes() const {
+std::vector<std::string> Scene::notes() const {
   const std::shared_lock lock(contents_->mutex);
   return contents_->moving.scene().notes;
 }
 
-std::array<Vec3, 2> SceneFile::bounds() const {
+std::array<Vec3, 2> Scene::bounds() const {
   const glm::vec3 &lower = contents_->moving.scene().lower, &upper = contents_->moving.scene().upper;
   return {{{lower.x, lower.y, lower.z}, {upper.x, upper.y, upper.z}}};
 }
 
-double SceneFile::exposure() const {
+double Scene::exposure() const {
   return contents_->moving.scene().exposure;
 }
 
-PosedScene::PosedScene(const SceneFile& file)
+PosedScene::PosedScene(const Scene& file)
     : file_(file), posed_(file.moves() ? std::optional(file.contents().moving) : std::nullopt) {}
 
 bool PosedScene::pose(double seconds) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Data of a SceneFile, shared by its copies and their renderers.
+// Data of a Scene, shared by its copies and their renderers.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace clpv {
 
-struct SceneFile::Contents {
+struct Scene::Contents {
   mutable std::shared_mutex mutex;  ///< shared by frames in progress; exclusive for changes
   MovingScene moving;               ///< at 0 s
   /// Arguments of the last set_cameras() and set_lights().
@@ -27,9 +27,9 @@ struct SceneFile::Contents {
 /// Contents::mutex while it is used.
 class PosedScene {
  public:
-  explicit PosedScene(const SceneFile& file);
+  explicit PosedScene(const Scene& file);
 
-  const Scene& scene() const { return posed_ ? posed_->scene() : file_.contents().moving.scene(); }
+  const SceneData& scene() const { return posed_ ? posed_->scene() : file_.contents().moving.scene(); }
 
   /// Poses the scene and applies changes of the file's cameras, lights and medium. Returns true if the scene may have moved.
   /// Throws Error(usage) for a time out of range.
@@ -39,7 +39,7 @@ class PosedScene {
   SceneCamera camera(const CameraChoice& choice) const;
 
  private:
-  SceneFile file_;
+  Scene file_;
   std::optional<MovingScene> posed_;
 };
 

@@ -6,7 +6,7 @@
 
 namespace clpv::baselines {
 
-View::Shared::Shared(const Scene& of, const SceneCamera& camera, int bounces, int use_threads)
+View::Shared::Shared(const SceneData& of, const SceneCamera& camera, int bounces, int use_threads)
     : scene(of),
       rays(of),
       emitters(of, rays.materials()),
@@ -17,7 +17,7 @@ View::Shared::Shared(const Scene& of, const SceneCamera& camera, int bounces, in
   options.bounces = bounces;
 }
 
-View::View(const Scene& scene, const SceneCamera& camera, int width, int height, int bounces, int threads)
+View::View(const SceneData& scene, const SceneCamera& camera, int width, int height, int bounces, int threads)
     : shared_(std::make_shared<Shared>(scene, camera, bounces, threads)),
       width_(static_cast<unsigned>(width)),
       height_(static_cast<unsigned>(height)),

@@ -56,13 +56,13 @@ inline constexpr std::size_t kPosition = 0, kNormal = 3, kDensity = 6, kSurfaceP
 class View {
  public:
   /// `bounces` as in PathTracerOptions. Throws as RayScene.
-  View(const Scene& scene, const SceneCamera& camera, int width, int height, int bounces, int threads);
+  View(const SceneData& scene, const SceneCamera& camera, int width, int height, int bounces, int threads);
 
   /// View of one in `stride` x `stride` pixels, the middle ones.
   View thinned(unsigned stride) const;
   unsigned stride() const { return stride_; }  ///< 1: of all pixels
 
-  const Scene& scene() const { return shared_->scene; }
+  const SceneData& scene() const { return shared_->scene; }
   const reference::RayScene& rays() const { return shared_->rays; }
   const reference::Emitters& emitters() const { return shared_->emitters; }
   const reference::SkySampler& sky() const { return shared_->sky; }
@@ -107,7 +107,7 @@ class View {
 
  private:
   struct Shared {  ///< by all views of a scene from a camera
-    const Scene& scene;
+    const SceneData& scene;
     reference::RayScene rays;
     reference::Emitters emitters;
     reference::SkySampler sky;
@@ -117,7 +117,7 @@ class View {
     glm::vec3 eye;
     reference::TracedImage image;  ///< G-buffer of all pixels
 
-    Shared(const Scene& of, const SceneCamera& camera, int bounces, int use_threads);
+    Shared(const SceneData& of, const SceneCamera& camera, int bounces, int use_threads);
   };
   View(const View& full, unsigned stride);
 

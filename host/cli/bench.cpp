@@ -102,7 +102,7 @@ void load_suite_scene(Options& options, const bench::Suite& suite) {
   const std::string file = options.scene.empty() ? suite.default_scene : options.scene;
   MovingScene loaded(file, options.model);
   options.changes.apply(loaded);
-  const auto scene = std::make_shared<const Scene>(std::move(loaded).take());
+  const auto scene = std::make_shared<const SceneData>(std::move(loaded).take());
   options.bench.suite.scene = scene;
   if (scene->cascades) options.bench.suite.settings.cascades = *scene->cascades;
   if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;

@@ -88,7 +88,7 @@ void run(const Options& options, Shared& shared) {
   MovingScene moving = options.open(outputs);
   for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
   moving.pose(options.time);
-  const Scene& scene = moving.scene();
+  const SceneData& scene = moving.scene();
   const SceneCamera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
   std::optional<Tev> tev;

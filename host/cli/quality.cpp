@@ -70,7 +70,7 @@ std::vector<Variant> variants_of(const Options& options) {
 }
 
 /// Frames use the number of bounces of the ground truth, unless --vary sets it.
-RenderOptions with(const Options& options, const Variant& variant, const Scene& scene) {
+RenderOptions with(const Options& options, const Variant& variant, const SceneData& scene) {
   OptionValues given = options.given;
   given["bounces"] = options.tracing.bounces;
   for (const auto& [name, value] : variant) given[name] = value;
@@ -209,7 +209,7 @@ void run(const Options& options, Shared& shared) {
   std::vector<QualityCell> cells = measure_all(ranks, session, groups, store, options);
   if (!ranks.is_root()) return;
   if (!options.baselines.names.empty()) {
-    const auto frame = [&](const Scene& scene) { return with(options, {}, scene); };
+    const auto frame = [&](const SceneData& scene) { return with(options, {}, scene); };
     std::ranges::move(measure_baselines(options.baselines, session, subjects, frame, tracing.bounces,
                                         options.view, options.frames),
                       std::back_inserter(cells));

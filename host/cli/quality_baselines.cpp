@@ -25,7 +25,7 @@ void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
 
 std::vector<QualityCell> measure_baselines(const QualityBaselines& baselines, Session& session,
                                            const std::vector<Subject>& subjects,
-                                           const std::function<RenderOptions(const Scene&)>& options_of,
+                                           const std::function<RenderOptions(const SceneData&)>& options_of,
                                            int bounces, Show show, int frames) {
   std::size_t views = 0;
   for (const Subject& subject : subjects) views += subject.cameras.size();

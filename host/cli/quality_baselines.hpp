@@ -27,7 +27,7 @@ void add_baseline_options(CLI::App& command, QualityBaselines& baselines);
 /// they get. A baseline that does not have a scene's light is a rejected cell.
 std::vector<QualityCell> measure_baselines(const QualityBaselines& baselines, Session& session,
                                            const std::vector<Subject>& subjects,
-                                           const std::function<RenderOptions(const Scene&)>& options_of,
+                                           const std::function<RenderOptions(const SceneData&)>& options_of,
                                            int bounces, Show show, int frames);
 
 }  // namespace clpv

@@ -28,7 +28,7 @@ void add_subject_options(CLI::App& command, QualitySubjects& subjects);
 
 /// A scene, the selected cameras, and the ground truth of each view.
 struct Subject {
-  Scene scene;
+  SceneData scene;
   std::vector<SceneCamera> cameras;
   std::vector<reference::GroundTruth> truths;  ///< one per camera, after tracing
 };

@@ -102,7 +102,7 @@ void run(const Options& options, const Shared& shared) {
   Progress progress("render", 4);
   const RenderRequest& request = options.request;
   MovingScene moving = request.open(outputs);
-  const Scene& scene = moving.scene();
+  const SceneData& scene = moving.scene();
   moving.pose(options.time);
   const RenderOptions resolved = resolve_request(request, scene);
   const SceneCamera& camera = scene.camera(request.camera);

@@ -63,7 +63,7 @@ void add_shown_options(CLI::App& command, RenderRequest& request) {
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
 }
 
-RenderOptions resolve_request(const RenderRequest& request, const Scene& scene) {
+RenderOptions resolve_request(const RenderRequest& request, const SceneData& scene) {
   const RenderOptions options = resolve_options(request.frame, scene);
   try {
     reject_without_effect(request.frame, options);
@@ -88,13 +88,13 @@ Compilation compilation_of(const RenderRequest& request, const std::string& devi
   return {std::move(arguments), std::nullopt};
 }
 
-std::vector<NamedFile> files_of(const Scene& scene) {
+std::vector<NamedFile> files_of(const SceneData& scene) {
   std::vector<NamedFile> all;
   for (const std::filesystem::path& file : scene.files) all.push_back({"scene " + scene.name, file});
   return all;
 }
 
-void log_scene(const Scene& scene, const SceneCamera& camera, const RenderOptions& options) {
+void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOptions& options) {
   for (const std::string& note : scene.notes) spdlog::info("{}", note);
   const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
   if (options.cascade_size != RenderOptions{}.cascade_size && is_bare_model(scene)) {
@@ -110,7 +110,7 @@ void log_scene(const Scene& scene, const SceneCamera& camera, const RenderOption
   }
 }
 
-nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const Scene& shown,
+nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const SceneData& shown,
                         const SceneCamera& camera, double seconds) {
   nlohmann::json all = to_json(options);
   all.update({{"scene", request.scene},

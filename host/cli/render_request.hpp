@@ -40,7 +40,7 @@ struct RenderRequest : SceneRequest {
   OptionValues frame;
 
   std::vector<NamedFile> files() const;
-  float exposure_of(const Scene& shown) const { return exposure.value_or(shown.exposure); }
+  float exposure_of(const SceneData& shown) const { return exposure.value_or(shown.exposure); }
 };
 
 /// Adds the options for scene, camera and frames.
@@ -51,19 +51,19 @@ void add_shown_options(CLI::App& command, RenderRequest& request);
 
 /// Returns the frame options of the request for `scene`, as resolve_options. Throws Error(usage) if a given option would have
 /// no effect with the others; it names both.
-RenderOptions resolve_request(const RenderRequest& request, const Scene& scene);
+RenderOptions resolve_request(const RenderRequest& request, const SceneData& scene);
 
 /// Returns who compiles the kernels of these frames: helper processes, unless a launcher started several ranks.
 Compilation compilation_of(const RenderRequest& request, const std::string& device);
 
 /// Returns the files that the scene was read from.
-std::vector<NamedFile> files_of(const Scene& scene);
+std::vector<NamedFile> files_of(const SceneData& scene);
 
 /// Logs the scene's notes, the automatic choice of cascades and its consequences.
-void log_scene(const Scene& scene, const SceneCamera& camera, const RenderOptions& options);
+void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOptions& options);
 
 /// Returns all inputs of an image of `shown` at a time [s], by name.
-nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const Scene& shown,
+nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const SceneData& shown,
                         const SceneCamera& camera, double seconds);
 
 }  // namespace clpv

@@ -68,20 +68,22 @@ void run(const Options& options, Shared& shared) {
   MovingScene moving = request.open(outputs);
   const RenderOptions resolved = resolve_request(request, moving.scene());
   const Device device = ranks.device(shared.device);
-  const auto camera = [&](const Scene& scene) -> const SceneCamera& { return scene.camera(request.camera); };
+  const auto camera = [&](const SceneData& scene) -> const SceneCamera& {
+    return scene.camera(request.camera);
+  };
   log_scene(moving.scene(), camera(moving.scene()), resolved);
   if (!moving.moves()) spdlog::warn("{}: nothing moves: all frames are equal", request.scene);
   std::optional<Tev> tev;
   if (!options.tev.empty() && ranks.is_root()) tev.emplace(options.tev);
 
   SequenceSubject subject{request.camera, request.exposure_of(moving.scene()), request.tonemap, {}, {}, {}};
-  subject.describe = [&](const Scene& posed, double seconds) {
+  subject.describe = [&](const SceneData& posed, double seconds) {
     return describe(request, resolved, posed, camera(posed), seconds);
   };
   subject.first_frame = [&](Session& session, Frame& frame) {
     warn_of_unreached(session, frame, camera(moving.scene()).name);
   };
-  subject.shown = [&](const Scene& posed, const Image& image) {
+  subject.shown = [&](const SceneData& posed, const Image& image) {
     if (tev) tev->show(tev_name(posed, camera(posed), options.view), image);
   };
   Sequence sequence(options, subject, moving, resolved, device, compilation_of(request, shared.device), ranks);

@@ -168,7 +168,7 @@ void Tev::show(const std::string& name, const Image& image) {
   }
 }
 
-std::string tev_name(const Scene& scene, const SceneCamera& camera, Show view) {
+std::string tev_name(const SceneData& scene, const SceneCamera& camera, Show view) {
   return fmt::format("{} {} {}", scene.name, camera.name, name_of(view));
 }
 

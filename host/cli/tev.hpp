@@ -46,7 +46,7 @@ class Tev {
 inline constexpr const char* kTevAddress = "127.0.0.1:14158";
 
 /// Name of an image in tev: scene, camera and view.
-std::string tev_name(const Scene& scene, const SceneCamera& camera, Show view);
+std::string tev_name(const SceneData& scene, const SceneCamera& camera, Show view);
 
 /// Adds --tev [HOST[:PORT]]; `address` is empty without it.
 void add_tev(CLI::App& command, std::string& address);

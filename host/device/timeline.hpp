@@ -11,7 +11,7 @@
 
 namespace clpv {
 
-/// Stage that a launch belongs to. `cascade` counts from 0 (finest); `light` indexes Scene::lights.
+/// Stage that a launch belongs to. `cascade` counts from 0 (finest); `light` indexes SceneData::lights.
 struct StageMark {
   Pass pass;
   std::optional<int> cascade = std::nullopt;

@@ -22,7 +22,7 @@ struct Contradiction {
   std::string allowed;  ///< values of `option`, and how to allow `value`
 };
 
-std::vector<Contradiction> contradictions_of(const RenderOptions& o, const Scene& scene) {
+std::vector<Contradiction> contradictions_of(const RenderOptions& o, const SceneData& scene) {
   const bool sweeps = o.transport == TransportKind::sweep;
   const std::string transport = fmt::format("transport '{}'", name_of(o.transport));
   return {
@@ -87,7 +87,7 @@ std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& o
 
 }  // namespace
 
-void validate(const RenderOptions& options, const Scene& scene) {
+void validate(const RenderOptions& options, const SceneData& scene) {
   for (const Contradiction& c : contradictions_of(options, scene)) {
     if (!c.found) continue;
     throw Error(ExitCode::usage, "{}: found '{}'{} with {}, allowed: {}", c.option, c.value,

@@ -23,8 +23,8 @@ double brightest(const glm::dvec3& colour) {
 }
 
 /// Approximate mean radiance of a triangle's front, in the brightest channel [W/m^2/sr].
-double mean_radiance(const Scene& scene, const Materials& materials, std::uint32_t triangle) {
-  const Material& material = scene.materials[scene.triangles[triangle].material];
+double mean_radiance(const SceneData& scene, const Materials& materials, std::uint32_t triangle) {
+  const ClpvMaterial& material = scene.materials[scene.triangles[triangle].material];
   const double white = brightest({material.emissive[0], material.emissive[1], material.emissive[2]});
   if (material.emissive_texture == CLPV_NO_TEXTURE) return white;
   const auto [a, b, c] = corners_of(scene, scene.triangles[triangle]);
@@ -42,7 +42,8 @@ double mean_radiance(const Scene& scene, const Materials& materials, std::uint32
 
 }  // namespace
 
-Emitters::Emitters(const Scene& scene, const Materials& materials) : scene_(scene), materials_(materials) {
+Emitters::Emitters(const SceneData& scene, const Materials& materials)
+    : scene_(scene), materials_(materials) {
   double total = 0;
   std::vector<double> areas;
   for (const std::uint32_t triangle : emissive_triangles(scene)) {
@@ -78,7 +79,7 @@ glm::dvec3 Emitters::front_normal(std::uint32_t triangle) const {
 }
 
 glm::dvec3 Emitters::radiance(const SurfacePoint& point, const glm::dvec3& towards) const {
-  const Material& material = scene_.materials[scene_.triangles[point.triangle].material];
+  const ClpvMaterial& material = scene_.materials[scene_.triangles[point.triangle].material];
   if (!emits(material) || (!double_sided(material) && glm::dot(front_normal(point.triangle), towards) <= 0))
     return glm::dvec3(0);
   return glm::dvec3(materials_.emissive(point));

@@ -23,7 +23,7 @@ struct EmitterSample {
 /// and its points have constant density over area. Borrows the scene and the materials.
 class Emitters {
  public:
-  Emitters(const Scene& scene, const Materials& materials);
+  Emitters(const SceneData& scene, const Materials& materials);
 
   /// Returns true if no triangle emits.
   bool empty() const { return triangles_.empty(); }
@@ -41,7 +41,7 @@ class Emitters {
   glm::dvec3 radiance(const SurfacePoint& point, const glm::dvec3& towards) const;
 
  private:
-  const Scene& scene_;
+  const SceneData& scene_;
   const Materials& materials_;
   std::vector<std::uint32_t> triangles_;
   std::vector<double> cdf_;        ///< cumulative probability of triangles_

@@ -63,7 +63,7 @@ constexpr std::chrono::seconds kObserveEvery{1};
 /// Traces one image, tile by tile.
 class ImageTracer {
  public:
-  ImageTracer(const Scene& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
+  ImageTracer(const SceneData& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
               const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks)
       : rays_(scene),
         emitters_(scene, rays_.materials()),
@@ -270,7 +270,7 @@ class ImageTracer {
   double progress_start_ = 0, progress_end_ = 0;
 };
 
-void check(const Scene& scene, const std::vector<SceneLight>& lights, const PathTracerOptions& options) {
+void check(const SceneData& scene, const std::vector<SceneLight>& lights, const PathTracerOptions& options) {
   if (options.bounces < 0)
     throw Error(ExitCode::usage, "bounces: found {}; allowed: 1 or more, or all", options.bounces);
   if (options.samples > kMaxSamples)
@@ -294,7 +294,7 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 
 }  // namespace
 
-TracedImage trace_paths(const Scene& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
+TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks) {
   check(scene, lights, options);
   ImageTracer tracer(scene, lights, view, options, progress, ranks);

@@ -63,10 +63,10 @@ struct TracedImage {
 /// Receives the estimated progress in [0, 1]. Called on rank 0, by one thread at a time.
 using TraceProgress = std::function<void(double)>;
 
-/// Traces `scene` lit by `lights`, which replace Scene::lights. All `ranks` call it; they share tiles and halves of
+/// Traces `scene` lit by `lights`, which replace SceneData::lights. All `ranks` call it; they share tiles and halves of
 /// paths, and each returns the whole image. Its bytes do not depend on the number of threads and ranks.
 /// Throws Error(bad_input) for a scene without surface or without light, Error(usage) for options out of range.
-TracedImage trace_paths(const Scene& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
+TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
                         const PathTracerOptions& options, const TraceProgress& progress = {},
                         Ranks& ranks = single_rank());
 

@@ -80,7 +80,7 @@ void check(RTCDevice device) {
 }  // namespace
 
 struct RayScene::Impl {
-  const Scene* scene = nullptr;
+  const SceneData* scene = nullptr;
   std::optional<Materials> materials;
   std::array<std::vector<std::uint32_t>, 2> triangles;  // indices in scene->triangles, by geometry
   float extent = 0;                                     // largest coordinate [m]
@@ -159,7 +159,7 @@ Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& h
   return {step(px + 1.0, py), step(px, py + 1.0)};
 }
 
-RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(const SceneData& scene) : impl_(std::make_unique<Impl>()) {
   if (scene.triangles.empty()) {
     throw Error(ExitCode::bad_input, "{}: no surface", scene.path);
   }
@@ -202,7 +202,7 @@ std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3&
   rtc_intersect(impl_->rtc.get(), context.base, faces == Faces::culled ? filter_back_faces : nullptr, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
-  const Scene& scene = *impl_->scene;
+  const SceneData& scene = *impl_->scene;
   Hit hit;
   hit.point = {impl_->triangle(query.hit), {query.hit.u, query.hit.v}};
   const Triangle& triangle = scene.triangles[hit.point.triangle];

@@ -35,7 +35,7 @@ enum class Faces {
 class RayScene {
  public:
   /// Throws Error(bad_input) for a scene without triangles, Error(run_time) if Embree fails (out of memory).
-  explicit RayScene(const Scene& scene);
+  explicit RayScene(const SceneData& scene);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;

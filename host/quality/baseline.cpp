@@ -120,7 +120,7 @@ BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera
   return budget;
 }
 
-void require_baseline(Baseline baseline, const Scene& scene, int bounces, Show show) {
+void require_baseline(Baseline baseline, const SceneData& scene, int bounces, Show show) {
   const std::string_view name = name_of(baseline);
   if (scene.medium)
     throw Error(ExitCode::usage, "baseline {}: found a scene with a medium; allowed: without", name);

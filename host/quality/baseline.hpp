@@ -45,7 +45,7 @@ struct BaselineBudget {
 BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera& camera, int frames);
 
 /// Throws Error(usage) with the reason if the method does not have the scene's light, that many bounces, or the view.
-void require_baseline(Baseline baseline, const Scene& scene, int bounces, Show show);
+void require_baseline(Baseline baseline, const SceneData& scene, int bounces, Show show);
 
 /// Errors and times of a baseline, and its image of the view.
 struct MeasuredBaseline {

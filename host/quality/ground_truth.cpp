@@ -24,7 +24,7 @@ namespace {
 // Increment when the tracer's results change; this invalidates cached references.
 constexpr int kTracerRevision = 1;
 
-std::string key(const Scene& scene, const SceneCamera& camera, const ClpvView& view,
+std::string key(const SceneData& scene, const SceneCamera& camera, const ClpvView& view,
                 const PathTracerOptions& options) {
   Fingerprint print;
   print.add(version()).add(kTracerRevision).add(scene_fingerprint(scene));
@@ -55,7 +55,7 @@ Image all_views(const TracedImage& traced) {
   return image;
 }
 
-void describe(Image& image, const Scene& scene, const SceneCamera& camera, const TracedImage& traced,
+void describe(Image& image, const SceneData& scene, const SceneCamera& camera, const TracedImage& traced,
               const PathTracerOptions& options) {
   image.metadata["command"] = "pathtrace";
   image.metadata["version"] = version();
@@ -87,7 +87,7 @@ std::string fingerprint_of(const Image& image) {
 }
 
 /// Returns the ground truth in an entry's bytes. Throws if they are damaged.
-GroundTruth decode(const std::filesystem::path& file, const std::string& bytes, const Scene& scene) {
+GroundTruth decode(const std::filesystem::path& file, const std::string& bytes, const SceneData& scene) {
   GroundTruth truth;
   truth.image = decode_image(file, bytes);
   truth.file = file;
@@ -103,7 +103,7 @@ GroundTruth decode(const std::filesystem::path& file, const std::string& bytes, 
 
 }  // namespace
 
-std::string scene_fingerprint(const Scene& scene) {
+std::string scene_fingerprint(const SceneData& scene) {
   Fingerprint print;
   print.add(scene.vertices).add(scene.triangles).add(scene.materials);
   for (const Texture& texture : scene.textures) {
@@ -119,7 +119,8 @@ namespace {
 constexpr std::uintmax_t kMaxBytes = ImageLimits().file_bytes;
 
 /// Returns the cached ground truth if its entry is sound.
-std::optional<GroundTruth> read_cached(const CacheFolder& cache, const std::string& name, const Scene& scene) {
+std::optional<GroundTruth> read_cached(const CacheFolder& cache, const std::string& name,
+                                       const SceneData& scene) {
   const auto bytes = cache.read(name, kMaxBytes);
   if (!bytes) return std::nullopt;
   try {
@@ -138,7 +139,7 @@ bool can_be_cached(const std::string& problem) {
 
 }  // namespace
 
-GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene,
+GroundTruth cached_ground_truth(const std::filesystem::path& folder, const SceneData& scene,
                                 const SceneCamera& camera, int width, int height,
                                 const PathTracerOptions& options, const TraceProgress& progress,
                                 Ranks& ranks) {

@@ -25,12 +25,12 @@ struct GroundTruth {
 /// A damaged file is traced again, with a warning; one that CacheFolder does not trust is ignored.
 /// Collective over all `ranks`; each rank receives the result. Rank 0 reads and writes the cache.
 /// A folder that cannot be written is a warning before tracing, and a failure to write one after it. Throws like trace_paths.
-GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene& scene,
+GroundTruth cached_ground_truth(const std::filesystem::path& folder, const SceneData& scene,
                                 const SceneCamera& camera, int width, int height,
                                 const PathTracerOptions& options, const TraceProgress& progress = {},
                                 Ranks& ranks = single_rank());
 
 /// Hash of all scene content that affects light: geometry, materials, textures.
-std::string scene_fingerprint(const Scene& scene);
+std::string scene_fingerprint(const SceneData& scene);
 
 }  // namespace clpv::reference

@@ -65,8 +65,8 @@ class Patches {
 
 }  // namespace
 
-std::vector<WeightedDirection> normal_weights(Session& session, const Scene& scene, const SceneCamera& camera,
-                                              const RenderOptions& options) {
+std::vector<WeightedDirection> normal_weights(Session& session, const SceneData& scene,
+                                              const SceneCamera& camera, const RenderOptions& options) {
   const SceneBuffers buffers = upload_scene(session, scene);
   Rasterizer rasterizer(session, buffers);
   Patches patches;

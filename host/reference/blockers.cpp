@@ -43,7 +43,7 @@ class SampleMasks {
 /// Samples triangles along the three axes and sets the bits that they cover.
 class BlockerRaster {
  public:
-  BlockerRaster(const Scene& scene, const ClpvGrid& grid)
+  BlockerRaster(const SceneData& scene, const ClpvGrid& grid)
       : lower(static_cast<int>(grid.n) + 1), upper(lower), scene_(scene), materials_(scene), grid_(grid) {}
 
   SampleMasks lower, upper;  ///< without and with uncertain samples
@@ -80,14 +80,14 @@ class BlockerRaster {
     if (certain && first == last) lower.set(projected, u, v, first);
   }
 
-  const Scene& scene_;
+  const SceneData& scene_;
   Materials materials_;
   const ClpvGrid& grid_;
 };
 
 }  // namespace
 
-BlockerBounds voxelize_blockers(const Scene& scene, const ClpvGrid& grid) {
+BlockerBounds voxelize_blockers(const SceneData& scene, const ClpvGrid& grid) {
   BlockerRaster raster(scene, grid);
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) raster.add(t);
   return {raster.lower.shares(), raster.upper.shares()};

@@ -19,6 +19,6 @@ struct BlockerBounds {
 };
 
 /// Returns the bounds for n + 1 corners of the cells along each axis.
-BlockerBounds voxelize_blockers(const Scene& scene, const ClpvGrid& grid);
+BlockerBounds voxelize_blockers(const SceneData& scene, const ClpvGrid& grid);
 
 }  // namespace clpv::reference

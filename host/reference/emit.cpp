@@ -37,7 +37,7 @@ struct SubTriangle {
 /// Emission of one triangle.
 class EmissiveTriangle {
  public:
-  EmissiveTriangle(const Scene& scene, const Materials& materials, std::uint32_t triangle)
+  EmissiveTriangle(const SceneData& scene, const Materials& materials, std::uint32_t triangle)
       : materials_(materials), index_(triangle) {
     const std::array<glm::dvec3, 3> corners = corners_of(scene, scene.triangles[triangle]);
     first_ = corners[0], to_second_ = corners[1] - first_, to_third_ = corners[2] - first_;
@@ -78,7 +78,7 @@ class EmissiveTriangle {
 
 }  // namespace
 
-std::vector<EmittedPoint> emit(const Scene& scene, const EmissionPlan& plan) {
+std::vector<EmittedPoint> emit(const SceneData& scene, const EmissionPlan& plan) {
   const Materials materials(scene);
   std::vector<EmittedPoint> points;
   for (const ClpvEmitter& emitter : plan.parts) {

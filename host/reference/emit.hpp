@@ -20,6 +20,6 @@ struct EmittedPoint {
 };
 
 /// Returns the points of `plan` in order.
-std::vector<EmittedPoint> emit(const Scene& scene, const EmissionPlan& plan);
+std::vector<EmittedPoint> emit(const SceneData& scene, const EmissionPlan& plan);
 
 }  // namespace clpv::reference

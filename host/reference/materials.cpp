@@ -13,7 +13,7 @@ namespace clpv::reference {
 namespace {
 
 /// Base colour and alpha before any texture.
-glm::vec4 untextured(const Scene& scene, const SurfacePoint& point) {
+glm::vec4 untextured(const SceneData& scene, const SurfacePoint& point) {
   const Triangle& triangle = scene.triangles[point.triangle];
   const auto& factor = scene.materials[triangle.material].base_colour;
   return glm::vec4(factor[0], factor[1], factor[2], factor[3]) *
@@ -53,18 +53,18 @@ double mip_level(double square) {
 
 }  // namespace
 
-Materials::Materials(const Scene& scene) : scene_(&scene) {
+Materials::Materials(const SceneData& scene) : scene_(&scene) {
   const std::vector<bool> holes = textures_with_holes(scene);
   for (std::size_t i = 0; i < holes.size(); ++i) textures_.push_back(mip_chain(scene.textures[i], holes[i]));
 }
 
 glm::vec3 Materials::albedo(const SurfacePoint& point, const Footprint& footprint) const {
-  const Material& material = scene_->materials[scene_->triangles[point.triangle].material];
+  const ClpvMaterial& material = scene_->materials[scene_->triangles[point.triangle].material];
   return glm::vec3(untextured(*scene_, point)) * textured(material.texture, point, footprint);
 }
 
 glm::vec3 Materials::emissive(const SurfacePoint& point, const Footprint& footprint) const {
-  const Material& material = scene_->materials[scene_->triangles[point.triangle].material];
+  const ClpvMaterial& material = scene_->materials[scene_->triangles[point.triangle].material];
   const glm::vec3 radiance{material.emissive[0], material.emissive[1], material.emissive[2]};
   if (radiance == glm::vec3(0)) return radiance;  // most materials: needs no texture
   return radiance * textured(material.emissive_texture, point, footprint);
@@ -72,7 +72,7 @@ glm::vec3 Materials::emissive(const SurfacePoint& point, const Footprint& footpr
 
 float Materials::alpha(const SurfacePoint& point) const {
   const Triangle& triangle = scene_->triangles[point.triangle];
-  const Material& material = scene_->materials[triangle.material];
+  const ClpvMaterial& material = scene_->materials[triangle.material];
   const float alpha = untextured(*scene_, point).a;
   if (material.texture == CLPV_NO_TEXTURE) return alpha;
   const glm::vec2 uv = interpolate(*scene_, triangle, point.weights, coordinates);
@@ -80,7 +80,7 @@ float Materials::alpha(const SurfacePoint& point) const {
 }
 
 double Materials::solidity(const SurfacePoint& point) const {
-  const Material& material = scene_->materials[scene_->triangles[point.triangle].material];
+  const ClpvMaterial& material = scene_->materials[scene_->triangles[point.triangle].material];
   if ((material.flags & CLPV_MATERIAL_MASKED) == 0) return 1;
   return double{alpha(point)} - double{material.alpha_cutoff};
 }

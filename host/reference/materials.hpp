@@ -12,7 +12,7 @@ namespace clpv::reference {
 
 /// A point on a triangle.
 struct SurfacePoint {
-  std::uint32_t triangle = 0;  ///< index in Scene::triangles
+  std::uint32_t triangle = 0;  ///< index in SceneData::triangles
   glm::vec2 weights{0};        ///< barycentric coordinates of the second and third vertex
 };
 
@@ -26,7 +26,7 @@ struct Footprint {
 /// Materials of a scene, which must outlive this object.
 class Materials {
  public:
-  explicit Materials(const Scene& scene);
+  explicit Materials(const SceneData& scene);
 
   /// Diffuse albedo: base colour x texture x vertex colour, linear.
   glm::vec3 albedo(const SurfacePoint& point, const Footprint& footprint = {}) const;
@@ -43,7 +43,7 @@ class Materials {
   glm::vec3 textured(std::uint32_t texture, const SurfacePoint& point, const Footprint& footprint) const;
   glm::dvec2 texture_step(const Triangle& triangle, const glm::dvec3& step) const;
 
-  const Scene* scene_;
+  const SceneData* scene_;
   std::vector<std::vector<Texture>> textures_;  // mip levels of each texture
 };
 

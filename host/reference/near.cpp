@@ -290,8 +290,8 @@ struct NearPixels {
 
 }  // namespace
 
-std::optional<NearHit> nearest_triangle(const Scene& scene, const Materials& materials, const NearRay& ray,
-                                        bool& uncertain) {
+std::optional<NearHit> nearest_triangle(const SceneData& scene, const Materials& materials,
+                                        const NearRay& ray, bool& uncertain) {
   std::optional<NearHit> nearest;
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     const auto [a, b, c] = corners_of(scene, scene.triangles[i]);

@@ -31,11 +31,11 @@ struct NearHit {
 
 /// Returns the nearest triangle along a ray, on either side, but not in holes of masked materials. Sets `uncertain` if
 /// rounding may decide it.
-std::optional<NearHit> nearest_triangle(const Scene& scene, const Materials& materials, const NearRay& ray,
-                                        bool& uncertain);
+std::optional<NearHit> nearest_triangle(const SceneData& scene, const Materials& materials,
+                                        const NearRay& ray, bool& uncertain);
 
 struct NearScene {
-  const Scene& scene;
+  const SceneData& scene;
   const Materials& materials;
   const std::vector<MappedLight>& lights;
   const std::vector<Cascade>& cascades;  ///< finest first

@@ -28,7 +28,7 @@ glm::dvec3 along(const ClpvView& view, unsigned px, unsigned py) {
 /// A triangle of the scene with its plane and its polygon on the screen.
 class Candidate {
  public:
-  Candidate(const Scene& scene, const ClpvView& view, std::uint32_t index)
+  Candidate(const SceneData& scene, const ClpvView& view, std::uint32_t index)
       : index_(index), corners_(corners_of(scene, scene.triangles[index])), polygon_(view, corners_) {
     normal_ = glm::cross(corners_[1] - corners_[0], corners_[2] - corners_[0]);
   }
@@ -77,7 +77,7 @@ struct Hit {
 /// All candidates of a view.
 class ViewedScene {
  public:
-  ViewedScene(const Scene& scene, const ClpvView& view, bool cull_back_faces)
+  ViewedScene(const SceneData& scene, const ClpvView& view, bool cull_back_faces)
       : view_(view), materials_(scene) {
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
       Candidate candidate(scene, view, i);
@@ -131,7 +131,7 @@ class ViewedScene {
 };
 
 /// Interpolated unit normal on the visible side of the triangle.
-glm::dvec3 visible_normal(const Scene& scene, const Candidate& candidate, const SurfacePoint& point,
+glm::dvec3 visible_normal(const SceneData& scene, const Candidate& candidate, const SurfacePoint& point,
                           const glm::dvec3& ray) {
   const glm::dvec3 front = glm::dot(candidate.normal(), ray) > 0 ? -candidate.normal() : candidate.normal();
   glm::dvec3 blended(interpolate(scene, scene.triangles[point.triangle], point.weights, normal));
@@ -152,7 +152,7 @@ Footprint pixel_footprint(const ClpvView& view, const Candidate& candidate, cons
 
 /// Renders a view; colour(albedo, px, py, depth) returns the image's colour.
 template <typename Colour>
-RasterizedImage rasterize(const Scene& scene, const ClpvView& view, bool camera, Colour colour) {
+RasterizedImage rasterize(const SceneData& scene, const ClpvView& view, bool camera, Colour colour) {
   const ViewedScene viewed(scene, view, camera);
   const std::size_t count = static_cast<std::size_t>(view.width) * view.height;
   RasterizedImage out;
@@ -184,12 +184,12 @@ RasterizedImage rasterize(const Scene& scene, const ClpvView& view, bool camera,
 
 }  // namespace
 
-RasterizedImage rasterize_camera(const Scene& scene, const ClpvView& view) {
+RasterizedImage rasterize_camera(const SceneData& scene, const ClpvView& view) {
   return rasterize(scene, view, true,
                    [](const glm::dvec3& albedo, unsigned, unsigned, double) { return glm::vec3(albedo); });
 }
 
-RasterizedImage rasterize_rsm(const Scene& scene, const ClpvLight& light, const ClpvView& view) {
+RasterizedImage rasterize_rsm(const SceneData& scene, const ClpvLight& light, const ClpvView& view) {
   return rasterize(scene, view, false, [&](const glm::dvec3& albedo, unsigned px, unsigned py, double depth) {
     const glm::dvec3 irradiance = light_at(light, surface_position(view, px, py, depth)).irradiance;
     return glm::vec3(albedo * irradiance * footprint(view, px, py, depth));

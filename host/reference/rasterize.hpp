@@ -19,8 +19,8 @@ struct RasterizedImage {
 
 /// Returns the G-buffer of a view by the rules of pipeline/raster/rasterize.hpp: corners snapped to 1/256 pixel, top-left rule,
 /// perspective-correct attributes, nearest surface. The first triangle of equal depth wins.
-RasterizedImage rasterize_camera(const Scene& scene, const ClpvView& view);
+RasterizedImage rasterize_camera(const SceneData& scene, const ClpvView& view);
 /// Returns the RSM of a view. `colour` is the flux [W] of each texel's virtual point light; format float32.
-RasterizedImage rasterize_rsm(const Scene& scene, const ClpvLight& light, const ClpvView& view);
+RasterizedImage rasterize_rsm(const SceneData& scene, const ClpvLight& light, const ClpvView& view);
 
 }  // namespace clpv::reference

@@ -37,7 +37,7 @@ struct Row {
 /// Accumulates triangles on the faces of all cells.
 class CellFaces {
  public:
-  CellFaces(const Scene& scene, const ClpvGrid& grid)
+  CellFaces(const SceneData& scene, const ClpvGrid& grid)
       : scene_(scene),
         materials_(scene),
         grid_(grid),
@@ -150,7 +150,7 @@ class CellFaces {
     return count * double{grid_.cell} * by;
   }
 
-  const Scene& scene_;
+  const SceneData& scene_;
   Materials materials_;
   const ClpvGrid& grid_;
   int n_;
@@ -159,7 +159,7 @@ class CellFaces {
 
 }  // namespace
 
-ReflectingAreas voxelize_reflectors(const Scene& scene, const ClpvGrid& grid) {
+ReflectingAreas voxelize_reflectors(const SceneData& scene, const ClpvGrid& grid) {
   CellFaces faces(scene, grid);
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) faces.add(t);
   return faces.areas();

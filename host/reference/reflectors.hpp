@@ -18,6 +18,6 @@ struct ReflectingAreas {
 };
 
 /// Returns R_a for the grid's cells.
-ReflectingAreas voxelize_reflectors(const Scene& scene, const ClpvGrid& grid);
+ReflectingAreas voxelize_reflectors(const SceneData& scene, const ClpvGrid& grid);
 
 }  // namespace clpv::reference

@@ -30,7 +30,7 @@ inline glm::vec4 colour(const Vertex& v) {
 
 /// Interpolates get(vertex); `weights` are barycentric coordinates of the second and third vertex.
 template <typename Get>
-auto interpolate(const Scene& scene, const Triangle& triangle, const glm::vec2& weights, Get get) {
+auto interpolate(const SceneData& scene, const Triangle& triangle, const glm::vec2& weights, Get get) {
   return (1 - weights.x - weights.y) * get(scene.vertices[triangle.vertex[0]]) +
          weights.x * get(scene.vertices[triangle.vertex[1]]) +
          weights.y * get(scene.vertices[triangle.vertex[2]]);

@@ -56,7 +56,7 @@ void add(Occlusion& occluded, int n, const Corners& t, const glm::ivec3& cube) {
 
 }  // namespace
 
-Occlusion occlude(const Scene& scene, const ClpvGrid& grid) {
+Occlusion occlude(const SceneData& scene, const ClpvGrid& grid) {
   const int n = grid.n;
   const auto bytes = static_cast<std::size_t>(n) * n * n * kCubePoints * kCubePoints * kCubePoints;
   Occlusion occluded{std::vector<std::uint8_t>(bytes), std::vector<std::uint8_t>(bytes)};

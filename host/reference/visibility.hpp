@@ -19,6 +19,6 @@ struct Occlusion {
 };
 
 /// Returns the bounds for all cubes of the grid: [cube z][y][x][point], 64 points per cube.
-Occlusion occlude(const Scene& scene, const ClpvGrid& grid);
+Occlusion occlude(const SceneData& scene, const ClpvGrid& grid);
 
 }  // namespace clpv::reference

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMaxDoublings = 24;  // of the points' distance; each part then has one point
 
-double brightest(const Material& material) {
+double brightest(const ClpvMaterial& material) {
   return std::max({material.emissive[0], material.emissive[1], material.emissive[2], 0.0f});
 }
 
@@ -24,7 +24,7 @@ class Planner {
   Planner(const std::vector<ClpvGrid>& grids, double spacing, std::uint32_t max_parts)
       : grids_(grids), spacing_(spacing), max_parts_(max_parts) {}
 
-  void add(const Scene& scene, std::uint32_t triangle) {
+  void add(const SceneData& scene, std::uint32_t triangle) {
     triangle_ = triangle;
     sides_ = double_sided(scene.materials[scene.triangles[triangle].material]) ? 2 : 1;
     corners_ = corners_of(scene, scene.triangles[triangle]);
@@ -96,7 +96,7 @@ class Planner {
 
 }  // namespace
 
-std::array<glm::dvec3, 3> corners_of(const Scene& scene, const Triangle& triangle) {
+std::array<glm::dvec3, 3> corners_of(const SceneData& scene, const Triangle& triangle) {
   std::array<glm::dvec3, 3> corners;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto& p = scene.vertices[triangle.vertex[i]].position;
@@ -105,15 +105,15 @@ std::array<glm::dvec3, 3> corners_of(const Scene& scene, const Triangle& triangl
   return corners;
 }
 
-bool double_sided(const Material& material) {
+bool double_sided(const ClpvMaterial& material) {
   return (material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0;
 }
 
-bool emits(const Material& material) {
+bool emits(const ClpvMaterial& material) {
   return brightest(material) > 0;
 }
 
-std::vector<std::uint32_t> emissive_triangles(const Scene& scene) {
+std::vector<std::uint32_t> emissive_triangles(const SceneData& scene) {
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     if (emits(scene.materials[scene.triangles[i].material])) triangles.push_back(i);
@@ -121,16 +121,16 @@ std::vector<std::uint32_t> emissive_triangles(const Scene& scene) {
   return triangles;
 }
 
-bool emits(const Scene& scene) {
+bool emits(const SceneData& scene) {
   return std::ranges::any_of(
       scene.triangles, [&](const Triangle& triangle) { return emits(scene.materials[triangle.material]); });
 }
 
-double max_emitted_flux(const Scene& scene, const std::vector<std::uint32_t>& triangles, double cell) {
+double max_emitted_flux(const SceneData& scene, const std::vector<std::uint32_t>& triangles, double cell) {
   double total = 0, brightest_cell = 0;
   for (const std::uint32_t i : triangles) {
     const Triangle& triangle = scene.triangles[i];
-    const Material& material = scene.materials[triangle.material];
+    const ClpvMaterial& material = scene.materials[triangle.material];
     const double exitance = std::numbers::pi * brightest(material) * (double_sided(material) ? 2 : 1);
     const auto [a, b, c] = corners_of(scene, triangle);
     total += exitance * glm::length(glm::cross(b - a, c - a)) / 2;
@@ -139,7 +139,7 @@ double max_emitted_flux(const Scene& scene, const std::vector<std::uint32_t>& tr
   return std::min(total, brightest_cell);
 }
 
-EmissionPlan plan_emission(const Scene& scene, const std::vector<std::uint32_t>& triangles,
+EmissionPlan plan_emission(const SceneData& scene, const std::vector<std::uint32_t>& triangles,
                            const std::vector<ClpvGrid>& grids, std::uint32_t max_count) {
   for (int coarsened = 0;; ++coarsened) {
     Planner planner(grids, std::ldexp(1.0 / kEmittedPointsPerCell, coarsened), max_count);

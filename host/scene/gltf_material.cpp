@@ -67,7 +67,8 @@ std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& se
   return index;
 }
 
-void read_alpha(const tinygltf::Material& source, const std::string& place, Material& made, Notes& notes) {
+void read_alpha(const tinygltf::Material& source, const std::string& place, ClpvMaterial& made,
+                Notes& notes) {
   if (source.alphaMode == "MASK") {
     made.flags |= CLPV_MATERIAL_MASKED;
     made.alpha_cutoff = static_cast<float>(source.alphaCutoff);
@@ -79,8 +80,8 @@ void read_alpha(const tinygltf::Material& source, const std::string& place, Mate
   if (source.doubleSided) made.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
 }
 
-Material blank_material() {
-  Material made{};
+ClpvMaterial blank_material() {
+  ClpvMaterial made{};
   std::fill(std::begin(made.base_colour), std::end(made.base_colour), 1.0f);
   made.texture = made.emissive_texture = CLPV_NO_TEXTURE;
   return made;
@@ -89,7 +90,7 @@ Material blank_material() {
 void read_material(const GltfDocument& document, std::size_t index, MaterialSet& set, Notes& notes) {
   const tinygltf::Material& source = document.model.materials[index];
   const std::string place = fmt::format("/materials/{}", index);
-  Material made = blank_material();
+  ClpvMaterial made = blank_material();
   const auto& pbr = source.pbrMetallicRoughness;
   std::copy_n(pbr.baseColorFactor.begin(), 4, made.base_colour);
   double strength = 1;

@@ -29,7 +29,7 @@ std::vector<double> stored_weights(const GltfDocument& document, const TreeNode&
 
 class Appender {
  public:
-  Appender(const GltfDocument& document, Scene& scene, Motion& motion, Notes& notes)
+  Appender(const GltfDocument& document, SceneData& scene, Motion& motion, Notes& notes)
       : document_(document), scene_(scene), motion_(motion), notes_(notes), skins_(document, motion.tree) {}
 
   /// Appends an instance of the primitive for each node. Checks the bounds before it allocates.
@@ -94,7 +94,7 @@ class Appender {
   }
 
   const GltfDocument& document_;
-  Scene& scene_;
+  SceneData& scene_;
   Motion& motion_;
   Notes& notes_;
   SkinReader skins_;
@@ -112,8 +112,8 @@ void check_targets(const GltfDocument& document, int mesh, std::size_t index) {
 
 }  // namespace
 
-void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials, Scene& scene,
-                   Motion& motion, Notes& notes) {
+void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials,
+                   SceneData& scene, Motion& motion, Notes& notes) {
   const std::vector<TreeNode>& nodes = motion.tree.nodes;
   std::map<int, std::vector<std::size_t>> mesh_nodes;  // nodes by mesh: each primitive is read once
   for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -31,7 +31,7 @@ struct TextureRequest {
 };
 
 struct MaterialSet {
-  std::vector<Material> materials;       ///< those of the document in order, then glTF's default material
+  std::vector<ClpvMaterial> materials;   ///< those of the document in order, then glTF's default material
   std::vector<UvMapping> mappings;       ///< one per material
   std::vector<TextureRequest> textures;  ///< indexed by Material::texture
 };
@@ -74,14 +74,14 @@ class SkinReader {
 /// Positions are in metres, normals unit, texture coordinates mapped by materials. Mirrored nodes keep their fronts outside.
 /// Moving instances are also added to `motion.meshes`; points and lines get a note. Throws Error(bad_input) for invalid
 /// attributes and for more geometry than the bounds allow.
-void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials, Scene& scene,
-                   Motion& motion, Notes& notes);
+void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials,
+                   SceneData& scene, Motion& motion, Notes& notes);
 
 /// Appends the cameras and lights of the nodes of `motion.tree`, posed by `posed`, with unique names. `metres_per_unit` scales
 /// near planes and ranges; scales of nodes do not. Cameras and lights at moving nodes are also added to `motion`. Throws
 /// Error(bad_input).
-void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit, Scene& scene,
-                  Motion& motion, Notes& notes);
+void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit,
+                  SceneData& scene, Motion& motion, Notes& notes);
 
 /// Geometry that the scene may still add.
 struct GeometryBudget {

@@ -257,7 +257,7 @@ LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_
   }
   made.material = static_cast<std::uint32_t>(
       source.material < 0 ? static_cast<int>(materials.materials.size()) - 1 : source.material);
-  const Material& material = materials.materials[made.material];
+  const ClpvMaterial& material = materials.materials[made.material];
   const bool textured = material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
   const PrimitiveReader reader(document, source, made.place, materials.mappings[made.material]);
   const Attributes attributes = reader.attributes(textured, notes);

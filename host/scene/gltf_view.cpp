@@ -12,7 +12,7 @@ namespace {
 
 class ViewReader {
  public:
-  ViewReader(const GltfDocument& document, double metres_per_unit, Scene& scene, Notes& notes)
+  ViewReader(const GltfDocument& document, double metres_per_unit, SceneData& scene, Notes& notes)
       : document_(document), metres_per_unit_(metres_per_unit), scene_(scene), notes_(notes) {}
 
   /// Appends the camera of a node. Returns false for an orthographic one.
@@ -75,15 +75,15 @@ class ViewReader {
 
   const GltfDocument& document_;
   double metres_per_unit_;
-  Scene& scene_;
+  SceneData& scene_;
   Notes& notes_;
   std::set<std::string> camera_names_, light_names_;
 };
 
 }  // namespace
 
-void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit, Scene& scene,
-                  Motion& motion, Notes& notes) {
+void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit,
+                  SceneData& scene, Motion& motion, Notes& notes) {
   ViewReader reader(document, metres_per_unit, scene, notes);
   for (std::size_t i = 0; i < motion.tree.nodes.size(); ++i) {
     const TreeNode& node = motion.tree.nodes[i];

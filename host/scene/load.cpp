@@ -21,12 +21,12 @@ namespace {
 
 /// Loads a .gltf or .glb at 0 s: geometry, materials, textures, cameras and lights, in metres and without defaults. Stores
 /// animated meshes, cameras and lights in `motion`.
-Scene load_gltf(const std::filesystem::path& path, double metres_per_unit, Motion& motion, Notes& notes) {
+SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, Motion& motion, Notes& notes) {
   const GltfDocument document = read_gltf_document(path);
   std::vector<std::string> ignored = document.model.extensionsUsed;
   std::erase_if(ignored, reads_extension);
   if (!ignored.empty()) notes.add(fmt::format("extensions that are not read: {}", fmt::join(ignored, ", ")));
-  Scene scene;
+  SceneData scene;
   scene.files = document.files();
   motion.tree = read_nodes(document, read_animations(document, notes),
                            glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
@@ -52,7 +52,7 @@ std::string extension_of(const std::filesystem::path& path) {
   return extension;
 }
 
-void find_bounds(Scene& scene) {
+void find_bounds(SceneData& scene) {
   if (scene.vertices.empty()) return;
   scene.lower = glm::vec3(std::numeric_limits<float>::max());
   scene.upper = -scene.lower;
@@ -63,7 +63,7 @@ void find_bounds(Scene& scene) {
   }
 }
 
-void check_camera_lights(const Scene& scene) {
+void check_camera_lights(const SceneData& scene) {
   std::vector<std::string> names;
   for (const SceneLight& light : scene.lights) names.push_back("'" + light.name + "'");
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
@@ -92,7 +92,7 @@ constexpr glm::vec3 kSunDirection{-0.35f, -0.85f, -0.4f};
 constexpr glm::vec3 kFramingDirection{-0.5f, -0.35f, -1.0f};  // viewing direction
 constexpr float kFramingFov = static_cast<float>(std::numbers::pi) / 4;
 
-SceneCamera framing_camera(const Scene& scene) {
+SceneCamera framing_camera(const SceneData& scene) {
   SceneCamera camera;
   camera.name = "framing";
   camera.forward = glm::normalize(kFramingDirection);
@@ -233,11 +233,11 @@ void MovingScene::pose(double seconds) {
   forget_missing_lights();
 }
 
-Scene load_scene(const std::filesystem::path& path, const std::filesystem::path& model) {
+SceneData load_scene(const std::filesystem::path& path, const std::filesystem::path& model) {
   return MovingScene(path, model).take();
 }
 
-bool is_bare_model(const Scene& scene) {
+bool is_bare_model(const SceneData& scene) {
   const std::string extension = extension_of(scene.path);
   return extension == ".gltf" || extension == ".glb";
 }

@@ -14,7 +14,7 @@ namespace clpv {
 /// Loads a scene file (.json: see docs/scenes.md) or a model (.gltf, .glb) at 0 s. A `model` that is not empty replaces the
 /// file's. Input is untrusted: sizes are checked before allocation, and nothing outside the model's folder is read.
 /// Throws Error(bad_input) that names file, place (JSON pointer), value found and value allowed.
-Scene load_scene(const std::filesystem::path& path, const std::filesystem::path& model = {});
+SceneData load_scene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
 /// A scene that may be animated, loaded once and posed at any time. A default camera frames the scene at 0 s.
 class MovingScene {
@@ -23,7 +23,7 @@ class MovingScene {
   explicit MovingScene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
   /// The scene at the time of the last pose(); it depends on that time only. The reference is valid as long as this object.
-  const Scene& scene() const { return scene_; }
+  const SceneData& scene() const { return scene_; }
 
   /// Returns true if anything is animated.
   bool moves() const { return !motion_.empty() || description_.moves(); }
@@ -40,7 +40,7 @@ class MovingScene {
   /// the present time.
   void set_medium(std::optional<ClpvMedium> medium);
 
-  Scene take() && { return std::move(scene_); }
+  SceneData take() && { return std::move(scene_); }
 
  private:
   void load_scene_file(const std::filesystem::path& path, const std::filesystem::path& model, Notes& notes);
@@ -50,12 +50,12 @@ class MovingScene {
 
   Motion motion_;
   SceneDescription description_;  ///< empty without a scene file
-  Scene scene_;
+  SceneData scene_;
 };
 
 inline constexpr double kSunIlluminance = 10;  ///< of the sun that a model without lights gets [lx]
 
 /// Returns true if the scene is a model without a scene file, and thus without settings of cascades.
-bool is_bare_model(const Scene& scene);
+bool is_bare_model(const SceneData& scene);
 
 }  // namespace clpv

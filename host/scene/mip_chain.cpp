@@ -112,9 +112,9 @@ std::vector<Texture> mip_chain(const Texture& texture, bool weigh_by_alpha) {
   return levels;
 }
 
-std::vector<bool> textures_with_holes(const Scene& scene) {
+std::vector<bool> textures_with_holes(const SceneData& scene) {
   std::vector<bool> holes(scene.textures.size(), false);
-  for (const Material& m : scene.materials) {
+  for (const ClpvMaterial& m : scene.materials) {
     if ((m.flags & CLPV_MATERIAL_MASKED) != 0 && m.texture != CLPV_NO_TEXTURE) holes[m.texture] = true;
   }
   return holes;

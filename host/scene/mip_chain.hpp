@@ -14,7 +14,7 @@ namespace clpv {
 std::vector<Texture> mip_chain(const Texture& texture, bool weigh_by_alpha);
 
 /// One value per texture of the scene: true for those with holes, which a masked material uses.
-std::vector<bool> textures_with_holes(const Scene& scene);
+std::vector<bool> textures_with_holes(const SceneData& scene);
 
 /// Linear value in [0, 1] of an sRGB-encoded byte, and the nearest byte of a linear value (IEC 61966-2-1).
 double linear_from_srgb(unsigned byte);

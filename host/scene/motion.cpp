@@ -106,7 +106,7 @@ Vertex placed(const LocalVertex& local, const glm::dmat4& to_world, const glm::d
 }
 
 void place_vertices(const Instance& instance, const std::vector<LocalVertex>& vertices,
-                    const Placement& placement, const NodeTree& tree, Scene& scene) {
+                    const Placement& placement, const NodeTree& tree, SceneData& scene) {
   glm::dmat4 to_world = placement.to_world;
   glm::dmat3 to_normal = normal_matrix(glm::dmat3(to_world));
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -118,7 +118,7 @@ void place_vertices(const Instance& instance, const std::vector<LocalVertex>& ve
   }
 }
 
-void place_triangles(const Instance& instance, bool mirrored, Scene& scene) {
+void place_triangles(const Instance& instance, bool mirrored, SceneData& scene) {
   const std::uint32_t base = instance.first_vertex;
   Triangle* triangle = scene.triangles.data() + instance.first_triangle;
   for (const glm::uvec3& t : instance.primitive->triangles) {
@@ -175,7 +175,7 @@ bool moves(const Instance& instance, const NodeTree& tree) {
                      [&](std::size_t joint) { return tree.nodes[joint].moves; });
 }
 
-void place(const Instance& instance, PosedTree& posed, Scene& scene) {
+void place(const Instance& instance, PosedTree& posed, SceneData& scene) {
   const Placement placement = placement_of(instance, posed);
   const LocalPrimitive& primitive = *instance.primitive;
   if (primitive.targets.empty()) {
@@ -205,7 +205,7 @@ void place_light(ClpvLight& light, const glm::dmat4& to_world, const std::string
     store(light.direction, axis(transform, {0, 0, -1}, "/extensions/KHR_lights_punctual"));
 }
 
-void Motion::pose(Scene& scene, double seconds) const {
+void Motion::pose(SceneData& scene, double seconds) const {
   if (empty()) return;
   PosedTree posed(tree, seconds);
   for (const Instance& instance : meshes) place(instance, posed, scene);

@@ -59,7 +59,7 @@ bool moves(const Instance& instance, const NodeTree& tree);
 
 /// Writes the vertices [m] and triangles of an instance into the scene, transformed by morph targets, then skin or node.
 /// Mirrored instances keep their fronts outside. Throws Error(bad_input) for coordinates beyond the bounds.
-void place(const Instance& instance, PosedTree& posed, Scene& scene);
+void place(const Instance& instance, PosedTree& posed, SceneData& scene);
 
 /// Sets eye, forward (the node's -z) and up. Messages contain `file` and the node's index. Throws Error(bad_input) for
 /// coordinates beyond the bounds and for transforms that map the direction to 0.
@@ -83,7 +83,7 @@ struct Motion {
   bool empty() const { return meshes.empty() && cameras.empty() && lights.empty(); }
 
   /// Poses the scene at a time [s], independently of its pose before. Throws Error(bad_input) if values leave their bounds.
-  void pose(Scene& scene, double seconds) const;
+  void pose(SceneData& scene, double seconds) const;
 };
 
 }  // namespace clpv

@@ -11,7 +11,7 @@
 
 namespace clpv {
 
-double Scene::reach() const {
+double SceneData::reach() const {
   if (start_reach) return *start_reach;
   double reach = 0;
   for (const SceneCamera& camera : cameras) {
@@ -21,7 +21,7 @@ double Scene::reach() const {
   return reach;
 }
 
-const SceneCamera& Scene::camera(const std::string& name) const {
+const SceneCamera& SceneData::camera(const std::string& name) const {
   std::vector<std::string> names;
   for (const SceneCamera& candidate : cameras) {
     if (name.empty() || candidate.name == name) return candidate;
@@ -30,7 +30,7 @@ const SceneCamera& Scene::camera(const std::string& name) const {
   throw Error(ExitCode::usage, "{}: no camera named '{}'; allowed: {}", path, name, fmt::join(names, ", "));
 }
 
-std::vector<SceneLight> Scene::lights_for(const SceneCamera& camera) const {
+std::vector<SceneLight> SceneData::lights_for(const SceneCamera& camera) const {
   std::vector<SceneLight> shining;
   for (const SceneLight& light : lights) {
     if (!camera.light.empty() && light.name != camera.light) continue;
@@ -40,12 +40,12 @@ std::vector<SceneLight> Scene::lights_for(const SceneCamera& camera) const {
   return shining;
 }
 
-void add_range(Fingerprint& print, const Scene& scene, const MeshRange& range) {
+void add_range(Fingerprint& print, const SceneData& scene, const MeshRange& range) {
   print.add(std::as_bytes(std::span(scene.vertices).subspan(range.first_vertex, range.vertices)));
   print.add(std::as_bytes(std::span(scene.triangles).subspan(range.first_triangle, range.triangles)));
 }
 
-void add_moving(Fingerprint& print, const Scene& scene) {
+void add_moving(Fingerprint& print, const SceneData& scene) {
   for (const MeshRange& range : scene.moving) add_range(print, scene, range);
 }
 

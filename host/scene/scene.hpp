@@ -20,7 +20,6 @@ struct Sky;
 
 using Vertex = ClpvVertex;
 using Triangle = ClpvTriangle;
-using Material = ClpvMaterial;
 
 static_assert(sizeof(ClpvVertex) == CLPV_SIZEOF_VERTEX && sizeof(ClpvTriangle) == CLPV_SIZEOF_TRIANGLE &&
               sizeof(ClpvMaterial) == CLPV_SIZEOF_MATERIAL && sizeof(ClpvTexture) == CLPV_SIZEOF_TEXTURE &&
@@ -64,13 +63,13 @@ struct MeshRange {
   std::uint32_t first_vertex, vertices, first_triangle, triangles;
 };
 
-struct Scene {
+struct SceneData {
   std::string name;  ///< the file's stem
   std::string path;  ///< the scene's file
   std::vector<std::filesystem::path> files;  ///< other files that it was read from: model, buffers, images
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
-  std::vector<Material> materials;  ///< at least one if there are triangles
+  std::vector<ClpvMaterial> materials;  ///< at least one if there are triangles
   std::vector<Texture> textures;
   std::vector<MeshRange> moving;     ///< animated vertices and triangles
   std::vector<SceneCamera> cameras;  ///< at least one after loading
@@ -95,8 +94,8 @@ struct Scene {
 };
 
 /// Adds the animated vertices and triangles to a hash.
-void add_moving(Fingerprint& print, const Scene& scene);
+void add_moving(Fingerprint& print, const SceneData& scene);
 /// Adds the vertices and triangles of a range to a hash.
-void add_range(Fingerprint& print, const Scene& scene, const MeshRange& range);
+void add_range(Fingerprint& print, const SceneData& scene, const MeshRange& range);
 
 }  // namespace clpv

@@ -133,7 +133,7 @@ nlohmann::json Sequence::described(double seconds) const {
 /// Returns the cache key over all inputs of a frame's pixels: program, device, options, scene content and its current
 /// pose.
 std::string Sequence::key(const nlohmann::json& described) const {
-  const Scene& posed = moving_.scene();
+  const SceneData& posed = moving_.scene();
   Fingerprint print;
   print.add(still_).add(described.dump());
   print.add(std::vector{camera_view(camera(), resolved_.width, resolved_.height)});

@@ -45,9 +45,11 @@ struct SequenceSubject {
   std::string camera;
   float exposure;
   ToneMap tonemap;
-  std::function<nlohmann::json(const Scene& posed, double seconds)> describe;  ///< inputs of a frame, by name
+  std::function<nlohmann::json(const SceneData& posed, double seconds)>
+      describe;                                                                ///< inputs of a frame, by name
   std::function<void(Session&, Frame&)> first_frame;                           ///< called after the first frame
-  std::function<void(const Scene& posed, const Image&)> shown;  ///< called with the linear image of each new frame
+  std::function<void(const SceneData& posed, const Image&)>
+      shown;  ///< called with the linear image of each new frame
 };
 
 /// Renders the frames; scene, device and device resources persist between frames. The ranks share them out.
@@ -70,7 +72,8 @@ class Sequence {
   struct Renderer {
     Session session;
     Frame frame;
-    Renderer(const Device& device, const Scene& scene, const RenderOptions& options, Compilation compilation)
+    Renderer(const Device& device, const SceneData& scene, const RenderOptions& options,
+             Compilation compilation)
         : session(device, ProgramCache::of_user(), std::move(compilation)), frame(session, scene, options) {}
   };
   using Clock = std::chrono::steady_clock;

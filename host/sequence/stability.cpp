@@ -88,7 +88,7 @@ LightChange change_of_light(const std::vector<bool>& counted, const std::vector<
 
 namespace {
 
-std::uint64_t content_of(const Scene& scene, const SceneCamera& camera) {
+std::uint64_t content_of(const SceneData& scene, const SceneCamera& camera) {
   Fingerprint print;
   add_moving(print, scene);
   for (const SceneLight& light : scene.lights_for(camera)) print.add(std::vector{light.data});
@@ -106,7 +106,7 @@ std::vector<int> moved(const std::vector<ClpvGrid>& before, const std::vector<Cl
 
 }  // namespace
 
-void Stability::add(int number, double seconds, const Scene& scene, const SceneCamera& camera) {
+void Stability::add(int number, double seconds, const SceneData& scene, const SceneCamera& camera) {
   Seen now{read_surface(session_, frame_.seen()), frame_.read(Show::irradiance), frame_.light().grids,
            content_of(scene, camera)};
   if (before_) {
@@ -137,7 +137,7 @@ std::vector<float> Stability::light_before(const Seen& now) {
 }
 
 /// Compares two path-traced images of the previous frame's surfaces under the current light.
-std::optional<double> Stability::noise(const Scene& scene, const SceneCamera& camera,
+std::optional<double> Stability::noise(const SceneData& scene, const SceneCamera& camera,
                                        const std::vector<bool>& counted) const {
   if (traced_ == 0) return {};
   const auto traced = [&](std::uint64_t seed) {

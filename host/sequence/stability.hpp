@@ -56,7 +56,7 @@ class Stability {
       : session_(session), frame_(frame), traced_(traced) {}
 
   /// Adds the last rendered frame, with the current state of `scene`.
-  void add(int number, double seconds, const Scene& scene, const SceneCamera& camera);
+  void add(int number, double seconds, const SceneData& scene, const SceneCamera& camera);
   const std::vector<StabilityStep>& steps() const { return steps_; }
 
  private:
@@ -67,7 +67,7 @@ class Stability {
     std::uint64_t content;  ///< hash of lights and triangles
   };
   std::vector<float> light_before(const Seen& now);
-  std::optional<double> noise(const Scene& scene, const SceneCamera& camera,
+  std::optional<double> noise(const SceneData& scene, const SceneCamera& camera,
                               const std::vector<bool>& counted) const;
 
   Session& session_;

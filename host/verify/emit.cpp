@@ -19,13 +19,13 @@ constexpr unsigned kGrid = 4;
 constexpr float kScale = 0.25f;
 
 /// Emission of the triangles: a texture, the same texture masked, and a double-sided colour.
-Scene emissive_soup() {
-  Scene scene = triangle_soup();
-  for (Material& material : scene.materials) {
+SceneData emissive_soup() {
+  SceneData scene = triangle_soup();
+  for (ClpvMaterial& material : scene.materials) {
     material.emissive[0] = 3, material.emissive[1] = 2, material.emissive[2] = 0.5f;
     material.emissive_texture = 0;
   }
-  Material plain = scene.materials[0];
+  ClpvMaterial plain = scene.materials[0];
   plain.texture = plain.emissive_texture = CLPV_NO_TEXTURE;
   plain.flags = CLPV_MATERIAL_DOUBLE_SIDED;
   scene.materials.push_back(plain);
@@ -33,7 +33,7 @@ Scene emissive_soup() {
   return scene;
 }
 
-Deviation compare_scene(Session& session, const Scene& scene) {
+Deviation compare_scene(Session& session, const SceneData& scene) {
   const std::vector<ClpvGrid> grids = {{{-1, 2, 2.5f}, 0.5f, kGrid, {}}, {{-2, 1, 1.5f}, 1, kGrid, {}}};
   const EmissionPlan plan = plan_emission(scene, emissive_triangles(scene), grids);
   const SceneBuffers buffers = upload_scene(session, scene);
@@ -62,9 +62,9 @@ Deviation compare_scene(Session& session, const Scene& scene) {
   return result;
 }
 
-Scene plain_soup() {
-  Scene scene = emissive_soup();
-  for (Material& material : scene.materials) {
+SceneData plain_soup() {
+  SceneData scene = emissive_soup();
+  for (ClpvMaterial& material : scene.materials) {
     material.flags = 0;
     material.texture = material.emissive_texture = CLPV_NO_TEXTURE;
   }

@@ -19,12 +19,12 @@ constexpr unsigned kWidth = 45, kHeight = 31;  // no multiples of a work-group
 constexpr float kFarthest = 12;                // [m]
 constexpr double kHeightError = 1e-6;          // height of a rotated centre in float32; measured 3e-7
 
-void add_materials(Scene& scene, std::mt19937& random) {
+void add_materials(SceneData& scene, std::mt19937& random) {
   Texture texture{.width = 5, .height = 4, .wrap_u = CLPV_WRAP_MIRROR, .rgba = {}, .name = "holes"};
   for (int i = 0; i < 5 * 4 * 4; ++i) texture.rgba.push_back(static_cast<std::uint8_t>(random() % 256));
   scene.textures.push_back(texture);
   for (const unsigned flags : {0u, CLPV_MATERIAL_MASKED}) {
-    Material material{{0.9f, 0.6f, 0.3f, 0.9f}, {}, 0.4f, 0, CLPV_NO_TEXTURE, flags, 0};
+    ClpvMaterial material{{0.9f, 0.6f, 0.3f, 0.9f}, {}, 0.4f, 0, CLPV_NO_TEXTURE, flags, 0};
     scene.materials.push_back(material);
   }
 }
@@ -95,11 +95,11 @@ void append_pixel(std::vector<double>& values, const glm::dvec3& colour, double 
   values.insert(values.end(), {colour.x, colour.y, colour.z, alpha});
 }
 
-Scene triangle_soup() {
+SceneData triangle_soup() {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(-1, 1);
   const auto direction = [&] { return glm::vec3(uniform(random), uniform(random), uniform(random)); };
-  Scene scene;
+  SceneData scene;
   add_materials(scene, random);
   const glm::vec3 middle(-0.25f, 2.75f, 3.25f);
   for (int i = 0; i < 150; ++i) {

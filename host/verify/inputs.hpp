@@ -43,7 +43,7 @@ bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm:
 
 /// Returns triangles in and around a grid of nine cells of 0.5 m from (-2.5, 0.5, 1). Sizes range from specks to far
 /// larger than the grid. One has no area, some are axis-aligned, and 1 of 3 has holes.
-Scene triangle_soup();
+SceneData triangle_soup();
 
 /// Returns light in 1 of 3 cells, of either sign, as from bases with negative lobes.
 std::shared_ptr<reference::Volume> random_light(const Basis& basis, int n, std::mt19937& random);

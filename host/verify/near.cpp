@@ -69,7 +69,7 @@ Deviation compare_near(Session& session, const NearCase& variant) {
   std::mt19937 random(23);
   const std::unique_ptr<Basis> basis = swept_basis();
   const SurfaceImage image = near_surfaces(random);
-  Scene scene = triangle_soup();
+  SceneData scene = triangle_soup();
   scene.materials[0].emissive[0] = 2, scene.materials[0].emissive[1] = 1;
   const reference::Materials materials(scene);
   const std::vector<reference::MappedLight> lights = near_lights(random);

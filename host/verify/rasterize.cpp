@@ -26,8 +26,8 @@ class SceneMaker {
   explicit SceneMaker(unsigned seed) : random_(seed) {}
 
   /// Triangles of all materials, from specks to some that extend past the eye.
-  Scene soup() {
-    Scene scene = with_materials();
+  SceneData soup() {
+    SceneData scene = with_materials();
     for (int i = 0; i < 120; ++i) {
       const glm::vec3 middle = 4.0f * direction() + glm::vec3(0, 0, -4);
       const float size = std::exp(4 * uniform() - 2);  // 0.02 to 7 m
@@ -37,8 +37,8 @@ class SceneMaker {
   }
 
   /// A curved sheet of triangles with shared vertices, and below it a floor that contains the eye.
-  Scene sheet() {
-    Scene scene = with_materials();
+  SceneData sheet() {
+    SceneData scene = with_materials();
     constexpr unsigned kCells = 8;
     for (unsigned j = 0; j <= kCells; ++j) {
       for (unsigned i = 0; i <= kCells; ++i) {
@@ -59,8 +59,8 @@ class SceneMaker {
 
   /// Vertices on pixel centres and borders of an orthographic view of 1/8 m per pixel, surfaces at equal depth, and
   /// triangles without area.
-  Scene lattice() {
-    Scene scene = with_materials();
+  SceneData lattice() {
+    SceneData scene = with_materials();
     for (int i = 0; i < 60; ++i) {
       const auto at = [&] { return glm::vec3(step(), step(), -2 - static_cast<float>(i % 3)); };
       add(scene, {at(), at(), at()});
@@ -75,7 +75,7 @@ class SceneMaker {
   glm::vec3 direction() { return {uniform(), uniform(), uniform()}; }
   float step() { return std::round(32 * uniform()) / 16; }
 
-  unsigned vertex(Scene& scene, const glm::vec3& p, const glm::vec3& normal) {
+  unsigned vertex(SceneData& scene, const glm::vec3& p, const glm::vec3& normal) {
     const glm::vec3 n = glm::normalize(normal + 0.3f * direction());
     Vertex v{{p.x, p.y, p.z}, {n.x, n.y, n.z}, {3 * uniform(), 3 * uniform()}, {}};
     for (int c = 0; c < 4; ++c) v.colour[c] = 0.9f + 0.1f * uniform();
@@ -83,7 +83,7 @@ class SceneMaker {
     return scene.vertices.size() - 1;
   }
 
-  void add(Scene& scene, const std::array<glm::vec3, 3>& p) {
+  void add(SceneData& scene, const std::array<glm::vec3, 3>& p) {
     const glm::vec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
     const glm::vec3 normal = glm::length(across) > 0 ? glm::normalize(across) : glm::vec3(0, 0, 1);
     Triangle triangle{};
@@ -93,8 +93,8 @@ class SceneMaker {
   }
 
   /// Plain, textured, double-sided, masked and emissive materials; textures of odd sizes and every wrap mode.
-  Scene with_materials() {
-    Scene scene;
+  SceneData with_materials() {
+    SceneData scene;
     for (std::uint32_t i = 0; i < 3; ++i) {
       Texture texture{.width = 5 + 4 * i,
                       .height = 8 - 2 * i,
@@ -109,8 +109,8 @@ class SceneMaker {
       scene.textures.push_back(texture);
     }
     for (unsigned i = 0; i < 6; ++i) {
-      Material m{{0.9f, 0.6f, 0.3f, 1}, {0, 0, 0}, 0.5f, i % 4 == 0 ? CLPV_NO_TEXTURE : i % 3,
-                 CLPV_NO_TEXTURE,       0,         0};
+      ClpvMaterial m{{0.9f, 0.6f, 0.3f, 1}, {0, 0, 0}, 0.5f, i % 4 == 0 ? CLPV_NO_TEXTURE : i % 3,
+                     CLPV_NO_TEXTURE,       0,         0};
       if (i % 2 == 1) m.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
       if (i == 2 || i == 3) m.flags |= CLPV_MATERIAL_MASKED;
       if (i == 5) m.emissive[1] = 2, m.emissive_texture = 1;
@@ -168,7 +168,7 @@ void append(CheckResults& results, const SurfaceImage& device, const reference::
                                            std::ranges::count(expected.uncertain, true))}));
 }
 
-CheckResults compare_camera(Session& session, const Scene& scene, const std::string& name) {
+CheckResults compare_camera(Session& session, const SceneData& scene, const std::string& name) {
   SceneCamera camera;
   camera.near_depth = 0.3f;
   const ClpvView view = camera_view(camera, kWidth, kHeight);
@@ -180,8 +180,8 @@ CheckResults compare_camera(Session& session, const Scene& scene, const std::str
   return results;
 }
 
-CheckResults compare_light(Session& session, const Scene& scene, const ClpvLight& light, const ClpvView& view,
-                           const std::string& name) {
+CheckResults compare_light(Session& session, const SceneData& scene, const ClpvLight& light,
+                           const ClpvView& view, const std::string& name) {
   Rasterizer rasterizer(session, upload_scene(session, scene));
   Surface surface = make_surface(session, view, RsmFormat::float32, false);
   rasterizer.rasterize_rsm(light, surface);
@@ -232,12 +232,12 @@ ClpvLight spot() {
 Cases rasterize_cases(const CheckScope&) {
   Cases cases;
   SceneMaker maker(3);
-  const Scene soup = maker.soup(), sheet = maker.sheet(), lattice = maker.lattice();
-  const auto add_camera = [&](const std::string& name, const Scene& scene) {
+  const SceneData soup = maker.soup(), sheet = maker.sheet(), lattice = maker.lattice();
+  const auto add_camera = [&](const std::string& name, const SceneData& scene) {
     cases.push_back({Stage::rasterize, "camera/" + name,
                      [=](Session& session) { return compare_camera(session, scene, name); }});
   };
-  const auto add_light = [&](const std::string& name, const Scene& scene, const ClpvLight& light,
+  const auto add_light = [&](const std::string& name, const SceneData& scene, const ClpvLight& light,
                              const ClpvView& view) {
     cases.push_back({Stage::rasterize, "light/" + name,
                      [=](Session& session) { return compare_light(session, scene, light, view, name); }});

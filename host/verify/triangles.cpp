@@ -43,7 +43,7 @@ Cases cases_of_formats(Stage stage, const CheckScope& scope,
 }
 
 Deviation compare_blockers(Session& session, const VolumeFormat& format) {
-  const Scene scene = triangle_soup();
+  const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
   Volume geometry(session, {kGrid + 1, 3, 1}, "check: blockers", format);
   VoxelField(session, buffers, blocker_masks(buffers, kGrid, 1, format)).update(0, kCells, geometry);
@@ -61,7 +61,7 @@ Deviation compare_blockers(Session& session, const VolumeFormat& format) {
 }
 
 Deviation compare_reflectors(Session& session, const VolumeFormat& format) {
-  const Scene scene = triangle_soup();
+  const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
   Volume reflectors(session, {kGrid, kCellFaces, 3}, "check: reflectors", format);
   VoxelField(session, buffers, reflector_masks(buffers, kGrid, format)).update(0, kCells, reflectors);
@@ -81,7 +81,7 @@ Deviation compare_reflectors(Session& session, const VolumeFormat& format) {
 
 Deviation compare_visibility(Session& session) {
   constexpr std::size_t kCascade = 1;  // not the first
-  const Scene scene = triangle_soup();
+  const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
   const reference::Occlusion expected = reference::occlude(scene, kCells);
   VoxelField visibility(session, buffers, visibility_masks(kGrid, kCascade + 1));

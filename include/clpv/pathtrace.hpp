@@ -25,6 +25,7 @@ struct TraceOptions {
 /// Traces the image that Renderer::render() of the same view and camera estimates: diffuse surfaces, hard shadows, one ray per
 /// pixel through its centre, R, G, B, A. Metadata has `spp_traced`, `noise_reached` and the camera. Throws Error: usage (camera,
 /// options out of range), bad_input (a scene without surface or light). Thread-safe.
-Image pathtrace(const SceneFile& scene, View view, const CameraChoice& camera = {}, const TraceOptions& options = {});
+Image pathtrace(const Scene& scene, View view, const CameraChoice& camera = {},
+                const TraceOptions& options = {});
 
 }  // namespace clpv

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Renders scenes with cascaded light propagation volumes:
 //
-//   const clpv::SceneFile scene("cornell.json");
+//   const clpv::Scene scene("cornell.json");
 //   clpv::Renderer renderer(scene, clpv::Options().set("basis", "srbf8v2"));
 //   const clpv::Image image = renderer.render();
 //   clpv::save_image("cornell.png", image);
@@ -61,7 +61,7 @@ class Renderer {
   /// `device`: an index, "PLATFORM:DEVICE", or a part of the name; empty: CLPV_DEVICE, else the first device that clpv can
   /// use. Loads compiled programs from the user's cache. Throws Error: usage (options), device (no device matches),
   /// run_time (out of memory; the message says what would fit).
-  explicit Renderer(const SceneFile& scene, const Options& options = {}, const std::string& device = {});
+  explicit Renderer(const Scene& scene, const Options& options = {}, const std::string& device = {});
   ~Renderer();  ///< stores compiled programs in the user's cache
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

@@ -52,12 +52,12 @@ struct Medium {
 
 /// Scene loaded from a scene file (.json) or a glTF model (.gltf, .glb). Copies share the data and its changes. Thread-safe:
 /// a change waits for frames in progress, and shows in the next frame of all renderers of the scene.
-class SceneFile {
+class Scene {
  public:
   /// `model` replaces the model of the scene file; empty: no replacement. Files are untrusted: sizes are checked before
   /// allocation, and only files in the folders of model and scene file are read. Throws Error(bad_input) with file, place, value found and value
   /// allowed.
-  explicit SceneFile(const std::filesystem::path& path, const std::filesystem::path& model = {});
+  explicit Scene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
   /// Cameras (at least one) and lights, at 0 s if they are animated.
   std::vector<Camera> cameras() const;
@@ -85,5 +85,7 @@ class SceneFile {
  private:
   std::shared_ptr<Contents> contents_;
 };
+
+using SceneFile = Scene;  ///< its name until version 0.3
 
 }  // namespace clpv

@@ -155,6 +155,6 @@ class type_caster<clpv::Medium> : public clpv::python::InitialisedCaster<clpv::M
 template <>
 class type_caster<clpv::Renderer> : public clpv::python::InitialisedCaster<clpv::Renderer> {};
 template <>
-class type_caster<clpv::SceneFile> : public clpv::python::InitialisedCaster<clpv::SceneFile> {};
+class type_caster<clpv::Scene> : public clpv::python::InitialisedCaster<clpv::Scene> {};
 
 }  // namespace pybind11::detail

@@ -131,7 +131,7 @@ void add_renderer(py::module_& module) {
       "Results that do not change are cached from frame to frame. Calls from several threads run one after "
       "the other.\n"
       "Raises UsageError, DeviceError, ResourceError.");
-  type.def(py::init([](const SceneFile& scene, const std::string& device, const py::kwargs& given) {
+  type.def(py::init([](const Scene& scene, const std::string& device, const py::kwargs& given) {
              const Options options = options_of(given);
              note_device_use();
              return interruptible([&] { return Renderer(scene, options, device); });
@@ -185,9 +185,9 @@ void add_renderer(py::module_& module) {
       "'peak_device_bytes'.");
   module.def(
       "pathtrace",
-      [](const SceneFile& scene, const std::string& view, const std::optional<CameraChoice>& camera,
-         int width, int height, int bounces, std::uint32_t samples, double noise, std::uint64_t seed,
-         int threads, double time) {
+      [](const Scene& scene, const std::string& view, const std::optional<CameraChoice>& camera, int width,
+         int height, int bounces, std::uint32_t samples, double noise, std::uint64_t seed, int threads,
+         double time) {
         const View what = named<View>("view", view);
         note_device_use();
         TraceOptions options{width, height, bounces, samples, noise, seed, threads, time, {}};

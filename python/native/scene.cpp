@@ -126,48 +126,47 @@ void add_scene(py::module_& module) {
   add_camera(module);
   add_light(module);
   add_medium(module);
-  py::class_<SceneFile> type(module, "Scene",
-                             "Scene(path, model=None): a scene file (.json) or a glTF model (.gltf, .glb); "
-                             "`model` replaces that of the file.\n\n"
-                             "Renderers keep its data alive. Thread-safe. Raises InputError with file, "
-                             "place, value found and value allowed.");
+  py::class_<Scene> type(module, "Scene",
+                         "Scene(path, model=None): a scene file (.json) or a glTF model (.gltf, .glb); "
+                         "`model` replaces that of the file.\n\n"
+                         "Renderers keep its data alive. Thread-safe. Raises InputError with file, "
+                         "place, value found and value allowed.");
   type.def(py::init([](const std::filesystem::path& path, const std::optional<std::filesystem::path>& model) {
-             return interruptible([&] { return SceneFile(path, model.value_or("")); });
+             return interruptible([&] { return Scene(path, model.value_or("")); });
            }),
            py::arg("path"), py::arg("model") = py::none());
   type.def_property(
-      "cameras", [](const SceneFile& scene) { return py::tuple(py::cast(scene.cameras())); },
-      [](SceneFile& scene, const std::vector<Camera>& cameras) {
+      "cameras", [](const Scene& scene) { return py::tuple(py::cast(scene.cameras())); },
+      [](Scene& scene, const std::vector<Camera>& cameras) {
         without_gil([&] { scene.set_cameras(cameras); });
       },
       "Tuple of all Cameras, at 0 s if animated. Assign a sequence to replace them.");
   type.def_property(
-      "lights", [](const SceneFile& scene) { return py::tuple(py::cast(scene.lights())); },
-      [](SceneFile& scene, const std::vector<Light>& lights) {
-        without_gil([&] { scene.set_lights(lights); });
-      },
+      "lights", [](const Scene& scene) { return py::tuple(py::cast(scene.lights())); },
+      [](Scene& scene, const std::vector<Light>& lights) { without_gil([&] { scene.set_lights(lights); }); },
       "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame of every "
       "renderer\n"
       "of this scene recomputes what depends on them.");
   type.def_property(
-      "medium", &SceneFile::medium,
-      [](SceneFile& scene, const std::optional<Medium>& medium) {
+      "medium", &Scene::medium,
+      [](Scene& scene, const std::optional<Medium>& medium) {
         without_gil([&] { scene.set_medium(medium); });
       },
-      "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates its "
+      "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates "
+      "its "
       "memory again.");
-  type.def_property_readonly("moves", &SceneFile::moves, "True if anything is animated.");
+  type.def_property_readonly("moves", &Scene::moves, "True if anything is animated.");
   type.def_property_readonly(
-      "notes", [](const SceneFile& scene) { return py::tuple(py::cast(scene.notes())); },
+      "notes", [](const Scene& scene) { return py::tuple(py::cast(scene.notes())); },
       "One sentence for each thing skipped or added by the loader.");
   type.def_property_readonly(
       "bounds",
-      [](const SceneFile& scene) {
+      [](const Scene& scene) {
         const auto bounds = scene.bounds();
         return py::make_tuple(tuple_of(bounds[0]), tuple_of(bounds[1]));
       },
       "Lower and upper corner of the bounding box [m], at 0 s.");
-  type.def_property_readonly("exposure", &SceneFile::exposure, "Exposure of a display [EV].");
+  type.def_property_readonly("exposure", &Scene::exposure, "Exposure of a display [EV].");
 }
 
 }  // namespace clpv::python

@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       given[option.name] = value;
   }
   fuzz::read_or_reject({ExitCode::usage}, [&] {
-    const RenderOptions options = resolve_options(given, Scene{});
+    const RenderOptions options = resolve_options(given, SceneData{});
     const auto basis = make_basis(options);
     make_transport(options, *basis);
   });

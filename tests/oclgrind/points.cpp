@@ -14,7 +14,7 @@ int main(int, char** arguments) {
                                                                       {"directions", "24"},
                                                                       {"coarser-directions", "24"}})
     options.set(name, value);
-  clpv::Renderer renderer(clpv::SceneFile(arguments[1]), options);
+  clpv::Renderer renderer(clpv::Scene(arguments[1]), options);
   renderer.render();
   std::vector<std::array<float, 3>> points, directions;
   for (int i = 0; i < 11; ++i) {

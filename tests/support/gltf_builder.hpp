@@ -131,18 +131,18 @@ inline std::string rejection(const std::filesystem::path& path) {
   return error_of(ExitCode::bad_input, [&] { load_scene(path); });
 }
 
-inline glm::vec3 position(const Scene& scene, std::size_t triangle, int corner) {
+inline glm::vec3 position(const SceneData& scene, std::size_t triangle, int corner) {
   const float* p = scene.vertices[scene.triangles[triangle].vertex[corner]].position;
   return {p[0], p[1], p[2]};
 }
 
-inline glm::vec3 normal(const Scene& scene, std::size_t triangle, int corner) {
+inline glm::vec3 normal(const SceneData& scene, std::size_t triangle, int corner) {
   const float* n = scene.vertices[scene.triangles[triangle].vertex[corner]].normal;
   return {n[0], n[1], n[2]};
 }
 
 /// Unit, to the side from which the corners are counter-clockwise.
-inline glm::vec3 face_normal(const Scene& scene, std::size_t triangle) {
+inline glm::vec3 face_normal(const SceneData& scene, std::size_t triangle) {
   const glm::vec3 a = position(scene, triangle, 0);
   return glm::normalize(glm::cross(position(scene, triangle, 1) - a, position(scene, triangle, 2) - a));
 }
@@ -155,11 +155,11 @@ inline constexpr float kClose = 1e-6f;
 
 inline const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 
-inline std::vector<glm::vec3> corners(const Scene& scene, std::size_t triangle) {
+inline std::vector<glm::vec3> corners(const SceneData& scene, std::size_t triangle) {
   return {position(scene, triangle, 0), position(scene, triangle, 1), position(scene, triangle, 2)};
 }
 
-inline glm::vec2 uv(const Scene& scene, std::size_t vertex) {
+inline glm::vec2 uv(const SceneData& scene, std::size_t vertex) {
   return {scene.vertices[vertex].uv[0], scene.vertices[vertex].uv[1]};
 }
 
@@ -168,7 +168,7 @@ struct GltfTest : ::testing::Test {
   TemporaryFolder folder;
   GltfBuilder model;
 
-  Scene load() { return load_scene(model.write(folder)); }
+  SceneData load() { return load_scene(model.write(folder)); }
 
   /// A material with that texture image; returns the material.
   json& textured(std::string_view image_base64, const std::string& name = "image.png") {

@@ -9,8 +9,8 @@
 
 namespace clpv::test {
 
-inline unsigned add_material(Scene& scene, const glm::vec3& albedo = glm::vec3(1), unsigned flags = 0) {
-  Material material{};
+inline unsigned add_material(SceneData& scene, const glm::vec3& albedo = glm::vec3(1), unsigned flags = 0) {
+  ClpvMaterial material{};
   for (int i = 0; i < 3; ++i) material.base_colour[i] = albedo[i];
   material.base_colour[3] = 1;
   material.texture = material.emissive_texture = CLPV_NO_TEXTURE;
@@ -19,14 +19,14 @@ inline unsigned add_material(Scene& scene, const glm::vec3& albedo = glm::vec3(1
   return static_cast<unsigned>(scene.materials.size() - 1);
 }
 
-inline unsigned add_vertex(Scene& scene, const glm::vec3& p, const glm::vec3& normal,
+inline unsigned add_vertex(SceneData& scene, const glm::vec3& p, const glm::vec3& normal,
                            const glm::vec2& uv = glm::vec2(0)) {
   scene.vertices.push_back({{p.x, p.y, p.z}, {normal.x, normal.y, normal.z}, {uv.x, uv.y}, {1, 1, 1, 1}});
   return static_cast<unsigned>(scene.vertices.size() - 1);
 }
 
 /// Counter-clockwise a, b, c as its front is seen; its own three vertices with the face's normal.
-inline void add_triangle(Scene& scene, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
+inline void add_triangle(SceneData& scene, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
                          unsigned material) {
   const glm::vec3 across = glm::cross(b - a, c - a);
   const glm::vec3 normal = glm::length(across) > 0 ? glm::normalize(across) : glm::vec3(0, 1, 0);
@@ -38,7 +38,7 @@ inline void add_triangle(Scene& scene, const glm::vec3& a, const glm::vec3& b, c
 
 /// The parallelogram corner, corner + u, corner + u + v, corner + v, its front towards u x v; uv
 /// from (0, 0) to (1, 1).
-inline void add_quad(Scene& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v,
+inline void add_quad(SceneData& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v,
                      unsigned material) {
   const glm::vec3 normal = glm::normalize(glm::cross(u, v));
   const unsigned first = add_vertex(scene, corner, normal, {0, 0});
@@ -50,7 +50,7 @@ inline void add_quad(Scene& scene, const glm::vec3& corner, const glm::vec3& u, 
 }
 
 /// A cube from `low` on, its faces inwards.
-inline void add_box(Scene& scene, const glm::vec3& low, float edge, unsigned material) {
+inline void add_box(SceneData& scene, const glm::vec3& low, float edge, unsigned material) {
   for (int axis = 0; axis < 3; ++axis) {
     glm::vec3 across(0), u(0), v(0);
     across[axis] = u[(axis + 1) % 3] = v[(axis + 2) % 3] = edge;

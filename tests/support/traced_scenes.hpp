@@ -29,12 +29,13 @@ inline ClpvView view_of(glm::vec3 eye, glm::vec3 forward, glm::vec3 up, float ha
 }
 
 /// By the scene's own lights.
-inline TracedImage trace_paths(const Scene& scene, const ClpvView& view, const PathTracerOptions& options) {
+inline TracedImage trace_paths(const SceneData& scene, const ClpvView& view,
+                               const PathTracerOptions& options) {
   return reference::trace_paths(scene, scene.lights, view, options);
 }
 
 /// A material of one albedo.
-inline unsigned add_grey(Scene& scene, float albedo) {
+inline unsigned add_grey(SceneData& scene, float albedo) {
   return add_material(scene, glm::vec3(albedo));
 }
 
@@ -48,8 +49,8 @@ inline SceneLight lamp(const glm::vec3& position, float intensity) {
 }
 
 /// A horizontal square of edge 20 m round the origin, facing up.
-inline Scene floor_scene(float albedo) {
-  Scene scene;
+inline SceneData floor_scene(float albedo) {
+  SceneData scene;
   scene.path = "floor";
   add_grey(scene, albedo);
   add_quad(scene, {-10, 0, -10}, {0, 0, 20}, {20, 0, 0}, 0);

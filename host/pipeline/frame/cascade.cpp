@@ -61,12 +61,12 @@ std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size
   return grids;
 }
 
-double fitting_cascade_size(const Scene& scene, int count, double size) {
+double fitting_cascade_size(const SceneData& scene, int count, double size) {
   const double just = std::ldexp(2 * scene.reach() * kRoom, 1 - count);
   return just > 0 && (size < just || size > kFarTooLarge * just) ? just : size;
 }
 
-bool cascades_meet(const Scene& scene, const glm::vec3& eye, int count, double size, int cells) {
+bool cascades_meet(const SceneData& scene, const glm::vec3& eye, int count, double size, int cells) {
   const ClpvGrid grid = cascade_grids(eye, count, size, cells).back();
   const glm::vec3 lower(grid.origin[0], grid.origin[1], grid.origin[2]);
   const glm::vec3 upper = lower + grid.cell * static_cast<float>(cells);

@@ -21,12 +21,12 @@ std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size
 /// Returns the edge of the finest cascade for `scene` [m]. It is `size` if the coarsest of `count` cascades then
 /// encloses the scene's bounding box from each camera (at 0 s), and is not far too large. Otherwise it is the smallest
 /// edge with which the coarsest cascade encloses the box.
-double fitting_cascade_size(const Scene& scene, int count, double size);
+double fitting_cascade_size(const SceneData& scene, int count, double size);
 
 /// Returns true if light at `position` [m] may come from the cascade, the coarsest one of a frame.
 bool reaches(const ClpvGrid& grid, const glm::dvec3& position);
 
 /// Returns true if triangles may lie in the coarsest cascade around `eye`. If false, there is no indirect light.
-bool cascades_meet(const Scene& scene, const glm::vec3& eye, int count, double size, int cells);
+bool cascades_meet(const SceneData& scene, const glm::vec3& eye, int count, double size, int cells);
 
 }  // namespace clpv

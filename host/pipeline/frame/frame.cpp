@@ -41,14 +41,14 @@ std::vector<glm::vec4> first_points(const std::vector<float>& image, std::size_t
 constexpr double kClosedUnderASky = 0.75;
 
 /// Returns `options` after checking that they, the scene and the device allow a frame.
-const RenderOptions& checked(const Session& session, const Scene& scene, const RenderOptions& options,
+const RenderOptions& checked(const Session& session, const SceneData& scene, const RenderOptions& options,
                              const Basis& basis) {
   validate(options, scene);
   require_supported(session.device(), options.format(), light_shape(options, basis));
   return options;
 }
 
-Transport transport_for(const RenderOptions& options, const Basis& basis, const Scene& scene) {
+Transport transport_for(const RenderOptions& options, const Basis& basis, const SceneData& scene) {
   Transport transport = make_transport(options, basis);
   if (scene.sky && options.transport == TransportKind::sweep)
     close_diagonals(std::get<std::vector<SweepLink>>(transport.scheme), kClosedUnderASky);
@@ -57,7 +57,7 @@ Transport transport_for(const RenderOptions& options, const Basis& basis, const 
 
 }  // namespace
 
-Frame::Frame(Session& session, const Scene& scene, const RenderOptions& options)
+Frame::Frame(Session& session, const SceneData& scene, const RenderOptions& options)
     : session_(session),
       scene_(scene),
       basis_(make_basis(options)),

@@ -29,7 +29,7 @@ class Frame {
  public:
   /// Throws Error(usage) for contradictory options (validate), Error(device) for volumes too large for the device, and
   /// Error(run_time) if device memory does not suffice.
-  Frame(Session& session, const Scene& scene, const RenderOptions& options);
+  Frame(Session& session, const SceneData& scene, const RenderOptions& options);
   Frame(const Frame&) = delete;  // stages hold references to other members
   Frame& operator=(const Frame&) = delete;
 
@@ -79,7 +79,7 @@ class Frame {
   void show(Show view);
 
   Session& session_;
-  const Scene& scene_;
+  const SceneData& scene_;
   std::unique_ptr<Basis> basis_, swept_;  ///< swept_: null without a sweep
   RenderOptions options_;
   Transport transport_;

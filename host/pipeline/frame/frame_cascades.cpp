@@ -13,7 +13,7 @@
 
 namespace clpv {
 
-FrameCascades::FrameCascades(Session& session, const Scene& scene, const SceneBuffers& buffers,
+FrameCascades::FrameCascades(Session& session, const SceneData& scene, const SceneBuffers& buffers,
                              const RenderOptions& options, const Basis& basis, const Basis* swept,
                              const Transport& transport, FrameLights& lights) try
     : session_(session),

@@ -38,7 +38,7 @@ using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 class FrameCascades {
  public:
   /// All arguments must outlive this object. `swept`: basis of swept light; null without a sweep.
-  FrameCascades(Session& session, const Scene& scene, const SceneBuffers& buffers,
+  FrameCascades(Session& session, const SceneData& scene, const SceneBuffers& buffers,
                 const RenderOptions& options, const Basis& basis, const Basis* swept,
                 const Transport& transport, FrameLights& lights);
 
@@ -76,7 +76,7 @@ class FrameCascades {
   void inject_geometry(int cascade, Volume& geometry);
 
   Session& session_;
-  const Scene& scene_;
+  const SceneData& scene_;
   const SceneBuffers& buffers_;
   const RenderOptions& options_;
   FrameLights& lights_;

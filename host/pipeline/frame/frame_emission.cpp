@@ -11,7 +11,7 @@ namespace clpv {
 namespace {
 
 /// Returns true if a triangle belongs to a moving part.
-bool moves(const Scene& scene, std::uint32_t triangle) {
+bool moves(const SceneData& scene, std::uint32_t triangle) {
   return std::ranges::any_of(scene.moving, [&](const MeshRange& part) {
     return triangle >= part.first_triangle && triangle - part.first_triangle < part.triangles;
   });
@@ -19,7 +19,7 @@ bool moves(const Scene& scene, std::uint32_t triangle) {
 
 }  // namespace
 
-FrameEmission::FrameEmission(Session& session, const Scene& scene, const SceneBuffers& buffers)
+FrameEmission::FrameEmission(Session& session, const SceneData& scene, const SceneBuffers& buffers)
     : session_(session),
       scene_(scene),
       buffers_(buffers),

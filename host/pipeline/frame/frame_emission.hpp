@@ -13,7 +13,7 @@ namespace clpv {
 class FrameEmission {
  public:
   /// All arguments must outlive this object. `scene` has emissive triangles; `buffers` hold it at its current time.
-  FrameEmission(Session& session, const Scene& scene, const SceneBuffers& buffers);
+  FrameEmission(Session& session, const SceneData& scene, const SceneBuffers& buffers);
 
   /// Returns max_emitted_flux() of the scene at its current time [W].
   double max_flux(double cell);
@@ -33,7 +33,7 @@ class FrameEmission {
   unsigned instant() const { return moving_ ? buffers_.clusters->instant() : 0; }
 
   Session& session_;
-  const Scene& scene_;
+  const SceneData& scene_;
   const SceneBuffers& buffers_;
   std::vector<std::uint32_t> triangles_;  ///< emissive triangles
   bool moving_ = false;                   ///< true if some of them move

@@ -23,7 +23,7 @@ double max_flux(const ClpvLight& light, double cell) {
 
 }  // namespace
 
-FrameLights::FrameLights(Session& session, const Scene& scene, const SceneBuffers& buffers,
+FrameLights::FrameLights(Session& session, const SceneData& scene, const SceneBuffers& buffers,
                          Rasterizer& rasterizer, const RenderOptions& options)
     : session_(session),
       scene_(scene),

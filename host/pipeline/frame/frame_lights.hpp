@@ -26,7 +26,7 @@ namespace clpv {
 class FrameLights {
  public:
   /// All arguments must outlive this object. `buffers` hold `scene` at its current time.
-  FrameLights(Session& session, const Scene& scene, const SceneBuffers& buffers, Rasterizer& rasterizer,
+  FrameLights(Session& session, const SceneData& scene, const SceneBuffers& buffers, Rasterizer& rasterizer,
               const RenderOptions& options);
 
   /// Prepares the lights of `camera` at the scene's current time, for cascades at `grids`.
@@ -65,7 +65,7 @@ class FrameLights {
   };
   struct Lit {  ///< a light and its maps
     ClpvLight light;
-    int index;                   ///< index in Scene::lights
+    int index;                   ///< index in SceneData::lights
     std::vector<Rsms> rsms;      ///< one per cascade, or one shared in turn
     std::vector<Wanted> wanted;  ///< one per cascade
     ShadowedLight shadow;
@@ -79,7 +79,7 @@ class FrameLights {
   void rasterize(const Lit& lit, const std::vector<ClpvView>& views, std::vector<Surface>& surfaces);
 
   Session& session_;
-  const Scene& scene_;
+  const SceneData& scene_;
   const SceneBuffers& buffers_;
   Rasterizer& rasterizer_;
   const RenderOptions& options_;

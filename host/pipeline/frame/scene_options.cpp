@@ -8,7 +8,7 @@
 
 namespace clpv {
 
-RenderOptions resolve_options(const OptionValues& given, const Scene& scene) {
+RenderOptions resolve_options(const OptionValues& given, const SceneData& scene) {
   RenderOptions options;
   if (const auto preset = given.find("preset"); preset != given.end())
     set_option(options, "preset", preset->second);

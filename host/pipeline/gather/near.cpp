@@ -62,19 +62,22 @@ std::vector<cl_float8> direction_rows(int rays) {
 
 }  // namespace
 
-NearField::NearField(Session& session, const Basis& basis, const Scene& scene, const SceneBuffers& buffers,
-                     const NearOptions& options)
+NearField::NearField(Session& session, const Basis& basis, const SceneData& scene,
+                     const SceneBuffers& buffers, const NearOptions& options)
     : session_(session),
       scene_(scene),
       buffers_(buffers),
       options_(options),
       building_(std::async(std::launch::async, [&scene] { return TriangleTree(scene); })),
-      points_kernel_(session, with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather),
-                     "near_points"),
+      points_kernel_(
+          session,
+          with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather),
+          "near_points"),
       trace_(session, near_source("gather/near_trace.cl", buffers, options), "near_trace"),
       light_(session, near_source("gather/near_light.cl", buffers, options), "near_light"),
       emit_(session, near_source("gather/near_light.cl", buffers, options), "near_emit"),
-      near_(session, with_radiance(near_source("gather/near.cl", buffers, options), basis, options.gather), "near"),
+      near_(session, with_radiance(near_source("gather/near.cl", buffers, options), basis, options.gather),
+            "near"),
       blur_(session, near_source("gather/near_filter.cl", buffers, options), "near_blur"),
       widen_(session, near_source("gather/near_filter.cl", buffers, options), "near_widen"),
       add_(session, near_source("gather/near_filter.cl", buffers, options), "near_add") {

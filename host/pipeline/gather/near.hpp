@@ -23,7 +23,7 @@ class NearField {
  public:
   /// `basis`: of the gathered light. `scene` must outlive this object; it and `buffers` must be at
   /// the same time. Starts a thread that builds the tree of triangles.
-  NearField(Session& session, const Basis& basis, const Scene& scene, const SceneBuffers& buffers,
+  NearField(Session& session, const Basis& basis, const SceneData& scene, const SceneBuffers& buffers,
             const NearOptions& options);
 
   /// Waits for the tree and uploads it, once. Call before the scene changes; trace() calls it. Throws Error(run_time) if
@@ -48,7 +48,7 @@ class NearField {
   Kernel& set_hits(Kernel& kernel, const ClpvView& view, bool fresh);
 
   Session& session_;
-  const Scene& scene_;
+  const SceneData& scene_;
   const SceneBuffers& buffers_;
   NearOptions options_;
   std::future<TriangleTree> building_;

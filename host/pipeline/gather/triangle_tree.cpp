@@ -63,12 +63,12 @@ void check_embree(RTCDevice device, bool built) {
   throw Error(ExitCode::run_time, "tree of triangles: Embree: error {}", static_cast<int>(error));
 }
 
-glm::vec3 corner_of(const Scene& scene, std::uint32_t triangle, int i) {
+glm::vec3 corner_of(const SceneData& scene, std::uint32_t triangle, int i) {
   const float* p = scene.vertices[scene.triangles[triangle].vertex[i]].position;
   return {p[0], p[1], p[2]};
 }
 
-Bounds bounds_of_triangle(const Scene& scene, std::uint32_t triangle) {
+Bounds bounds_of_triangle(const SceneData& scene, std::uint32_t triangle) {
   const glm::vec3 a = corner_of(scene, triangle, 0), b = corner_of(scene, triangle, 1),
                   c = corner_of(scene, triangle, 2);
   return {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
@@ -92,7 +92,7 @@ RTCBuildQuality quality_for(std::size_t triangles, bool moves, const TreeLimits&
   return triangles <= limits.areas ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW;
 }
 
-BuiltNode* build(const Scene& scene, const std::vector<std::uint32_t>& triangles, bool moves,
+BuiltNode* build(const SceneData& scene, const std::vector<std::uint32_t>& triangles, bool moves,
                  const TreeLimits& limits, Pool& pool) {
   const std::unique_ptr<std::remove_pointer_t<RTCDevice>, void (*)(RTCDevice)> device(
       rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
@@ -153,7 +153,8 @@ void set_child(std::vector<TreeRow>& nodes, std::size_t node, int lane, int chil
   nodes[node * CLPV_TREE_NODE_ROWS + CLPV_TREE_CHILDREN][lane] = std::bit_cast<float>(child);
 }
 
-void append_leaf(const Scene& scene, std::span<const std::uint32_t> triangles, std::vector<TreeRow>& leaves) {
+void append_leaf(const SceneData& scene, std::span<const std::uint32_t> triangles,
+                 std::vector<TreeRow>& leaves) {
   const std::size_t first = leaves.size();
   leaves.resize(first + CLPV_TREE_LEAF_ROWS, TreeRow{});
   TreeRow* rows = &leaves[first];
@@ -174,7 +175,7 @@ void append_leaf(const Scene& scene, std::span<const std::uint32_t> triangles, s
 
 /// Writes a tree of Embree's in rows.
 struct Flattener {
-  const Scene& scene;
+  const SceneData& scene;
   std::vector<TreeRow>&nodes, &leaves;
 
   /// Returns the number of the child, and sorts triangles of leaves, whose order the builder does not define.
@@ -198,7 +199,7 @@ struct Flattener {
 
 }  // namespace
 
-TriangleTree::TriangleTree(const Scene& scene, const TreeLimits& limits) : limits_(limits) {
+TriangleTree::TriangleTree(const SceneData& scene, const TreeLimits& limits) : limits_(limits) {
   std::vector<bool> moves(scene.triangles.size(), false);
   for (const MeshRange& part : scene.moving) {
     std::fill_n(moves.begin() + part.first_triangle, part.triangles, true);
@@ -212,14 +213,14 @@ TriangleTree::TriangleTree(const Scene& scene, const TreeLimits& limits) : limit
   move(scene);
 }
 
-void TriangleTree::move(const Scene& scene) {
+void TriangleTree::move(const SceneData& scene) {
   nodes_.resize(fixed_nodes_);
   leaves_.resize(fixed_leaves_);
   add(scene, moving_, kMoving);
 }
 
 /// Adds a tree of triangles as child `lane` of the root.
-void TriangleTree::add(const Scene& scene, const std::vector<std::uint32_t>& triangles, int lane) {
+void TriangleTree::add(const SceneData& scene, const std::vector<std::uint32_t>& triangles, int lane) {
   if (triangles.empty()) return;
   Pool pool;
   BuiltNode* root = build(scene, triangles, lane == kMoving, limits_, pool);

@@ -26,10 +26,10 @@ struct TreeLimits {
 class TriangleTree {
  public:
   /// Throws Error(run_time) if Embree fails.
-  explicit TriangleTree(const Scene& scene, const TreeLimits& limits = {});
+  explicit TriangleTree(const SceneData& scene, const TreeLimits& limits = {});
 
-  /// Rebuilds the tree of the moving triangles (Scene::moving). The scene has the same triangles as before.
-  void move(const Scene& scene);
+  /// Rebuilds the tree of the moving triangles (SceneData::moving). The scene has the same triangles as before.
+  void move(const SceneData& scene);
 
   const std::vector<TreeRow>& nodes() const {
     return nodes_;
@@ -37,7 +37,7 @@ class TriangleTree {
   const std::vector<TreeRow>& leaves() const { return leaves_; }  ///< CLPV_TREE_LEAF_ROWS each
 
  private:
-  void add(const Scene& scene, const std::vector<std::uint32_t>& triangles, int lane);
+  void add(const SceneData& scene, const std::vector<std::uint32_t>& triangles, int lane);
 
   TreeLimits limits_;
   std::vector<std::uint32_t> moving_;  ///< triangles

@@ -17,7 +17,7 @@ void require(bool holds, const std::string& message) {
 }
 
 /// Kernels do not check indices, so this rejects invalid ones of any scene.
-void check_indices(const Scene& scene) {
+void check_indices(const SceneData& scene) {
   require(scene.triangles.size() <= CLPV_TRIANGLE_INDEX && scene.vertices.size() <= CLPV_TRIANGLE_INDEX,
           fmt::format("{}: {} triangles and {} vertices; allowed: below 2^30 each", scene.path,
                       scene.triangles.size(), scene.vertices.size()));
@@ -37,7 +37,7 @@ void check_indices(const Scene& scene) {
   }
 }
 
-void check_texture(const Scene& scene, const Texture& texture) {
+void check_texture(const SceneData& scene, const Texture& texture) {
   constexpr std::uint32_t kLargest = 1u << (CLPV_TEXTURE_LEVELS - 1);
   require(
       texture.width >= 1 && texture.height >= 1 && texture.width <= kLargest && texture.height <= kLargest,
@@ -71,11 +71,11 @@ void append(TextureTable& table, const std::vector<Texture>& chain) {
   }
 }
 
-bool is_masked(const Material& material) {
+bool is_masked(const ClpvMaterial& material) {
   return (material.flags & CLPV_MATERIAL_MASKED) != 0;
 }
 
-TextureTable make_table(const Scene& scene) {
+TextureTable make_table(const SceneData& scene) {
   const std::vector<bool> holes = textures_with_holes(scene);
   TextureTable table;
   for (std::size_t i = 0; i < holes.size(); ++i) {
@@ -95,17 +95,17 @@ bool is_coloured(const std::vector<Vertex>& vertices) {
   });
 }
 
-bool is_textured(const Material& material) {
+bool is_textured(const ClpvMaterial& material) {
   return material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
 }
 
-bool is_emissive(const Material& material) {
+bool is_emissive(const ClpvMaterial& material) {
   return std::any_of(material.emissive, material.emissive + 3, [](float e) { return e != 0; });
 }
 
 /// Assigns the white texture to materials without one, so that kernels need no test.
-std::vector<Material> with_textures(std::vector<Material> materials, unsigned white) {
-  for (Material& material : materials) {
+std::vector<ClpvMaterial> with_textures(std::vector<ClpvMaterial> materials, unsigned white) {
+  for (ClpvMaterial& material : materials) {
     if (material.texture == CLPV_NO_TEXTURE) material.texture = white;
     if (material.emissive_texture == CLPV_NO_TEXTURE) material.emissive_texture = white;
   }
@@ -125,7 +125,7 @@ Bounds bounds_of_all(const std::vector<Vertex>& vertices) {
 
 }  // namespace
 
-SceneBuffers upload_scene(Session& session, const Scene& scene) {
+SceneBuffers upload_scene(Session& session, const SceneData& scene) {
   check_indices(scene);
   const TextureTable table = make_table(scene);
   SceneBuffers buffers;
@@ -146,7 +146,7 @@ SceneBuffers upload_scene(Session& session, const Scene& scene) {
   return buffers;
 }
 
-void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers) {
+void upload_moving(Session& session, const SceneData& scene, SceneBuffers& buffers) {
   const std::vector<MeshRange> changed = buffers.clusters->move(scene);
   if (changed.empty()) return;
   for (const MeshRange& part : changed) {

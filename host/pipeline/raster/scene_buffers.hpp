@@ -30,10 +30,10 @@ struct SceneBuffers {
 /// Copies a scene to the device. Mip levels are box-filtered in linear light. For masked materials they weight colour
 /// by alpha, so that transparent texels do not tint opaque ones. Throws Error(bad_input) for an invalid index or
 /// texture size, Error(run_time) if memory does not suffice.
-SceneBuffers upload_scene(Session& session, const Scene& scene);
+SceneBuffers upload_scene(Session& session, const SceneData& scene);
 
 /// Updates the moving parts and bounds of `buffers` to the scene's current time. `buffers` must hold the same scene.
 /// TriangleClusters::instant() is the version of their contents.
-void upload_moving(Session& session, const Scene& scene, SceneBuffers& buffers);
+void upload_moving(Session& session, const SceneData& scene, SceneBuffers& buffers);
 
 }  // namespace clpv

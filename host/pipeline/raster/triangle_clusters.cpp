@@ -14,13 +14,13 @@ Bounds about(const Bounds& a, const Bounds& b) {
   return {glm::min(a.lower, b.lower), glm::max(a.upper, b.upper)};
 }
 
-std::uint64_t print_of(const Scene& scene, const MeshRange& part) {
+std::uint64_t print_of(const SceneData& scene, const MeshRange& part) {
   Fingerprint print;
   add_range(print, scene, part);
   return print.value();
 }
 
-Bounds part_bounds(const Scene& scene, const MeshRange& part) {
+Bounds part_bounds(const SceneData& scene, const MeshRange& part) {
   return bounds_of(scene.vertices, std::span(scene.triangles).subspan(part.first_triangle, part.triangles));
 }
 
@@ -40,7 +40,7 @@ Bounds bounds_of(const std::vector<Vertex>& vertices, std::span<const Triangle> 
   return {lower, upper};
 }
 
-TriangleClusters::TriangleClusters(const Scene& scene)
+TriangleClusters::TriangleClusters(const SceneData& scene)
     : triangles_(static_cast<unsigned>(scene.triangles.size())) {
   bounds_.resize((scene.triangles.size() + CLPV_CLUSTER - 1) / CLPV_CLUSTER);
   bound_runs(scene, 0, scene.triangles.size());
@@ -49,7 +49,7 @@ TriangleClusters::TriangleClusters(const Scene& scene)
 }
 
 /// Updates the bounds of the clusters that contain a range of triangles.
-void TriangleClusters::bound_runs(const Scene& scene, std::size_t first, std::size_t count) {
+void TriangleClusters::bound_runs(const SceneData& scene, std::size_t first, std::size_t count) {
   if (count == 0) return;
   const std::size_t last_run = (first + count - 1) / CLPV_CLUSTER;
   for (std::size_t run = first / CLPV_CLUSTER; run <= last_run; ++run) {
@@ -59,7 +59,7 @@ void TriangleClusters::bound_runs(const Scene& scene, std::size_t first, std::si
   }
 }
 
-std::vector<MeshRange> TriangleClusters::move(const Scene& scene) {
+std::vector<MeshRange> TriangleClusters::move(const SceneData& scene) {
   std::vector<MeshRange> changed;
   std::vector<Bounds> moved;
   for (std::size_t i = 0; i < moving_.size(); ++i) {

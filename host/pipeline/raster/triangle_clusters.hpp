@@ -17,10 +17,10 @@ Bounds bounds_of(const std::vector<Vertex>& vertices, std::span<const Triangle> 
 class TriangleClusters {
  public:
   TriangleClusters() = default;
-  explicit TriangleClusters(const Scene& scene);
+  explicit TriangleClusters(const SceneData& scene);
 
   /// Call when the time of the scene changes. Returns the moving parts that changed.
-  std::vector<MeshRange> move(const Scene& scene);
+  std::vector<MeshRange> move(const SceneData& scene);
 
   const std::vector<Bounds>& bounds() const { return bounds_; }
   unsigned triangles() const { return triangles_; }
@@ -46,10 +46,10 @@ class TriangleClusters {
     Bounds bounds;
     std::uint64_t print;
   };
-  void bound_runs(const Scene& scene, std::size_t first, std::size_t count);
+  void bound_runs(const SceneData& scene, std::size_t first, std::size_t count);
 
   std::vector<Bounds> bounds_;
-  std::vector<Moving> moving_;  ///< one per entry of Scene::moving
+  std::vector<Moving> moving_;  ///< one per entry of SceneData::moving
   std::vector<Bounds> moved_;
   unsigned triangles_ = 0, instant_ = 0;
 };
