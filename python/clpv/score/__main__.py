@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""python3 -m clpv.score DIR: errors of a folder of images of indirect light against the truths of a suite."""
+import argparse
+import json
+import pathlib
+import sys
+
+from clpv.score import suite
+from clpv.score.exr import BadImage
+
+BAD_INPUT = 3
+COLUMNS = [("NRMSE [%]", "nrmse", 100, 1), ("at best gain", "nrmse_best_gain", 100, 1), ("energy", "energy_ratio", 1, 3),
+           ("FLIP", "flip", 1, 3), ("bias [%]", "bias", 100, 1), ("noise [%]", "noise", 100, 1), ("change [%]", "change", 100, 1)]
+
+
+def table(score):
+    """Lines of text: a view each, then the mean."""
+    columns = [column for column in COLUMNS if any(column[1] in row for row in score["views"])]
+    lines = [["view", *(title for title, *_ in columns)]]
+    for row in [*score["views"], {"view": "mean", **score["mean"]}]:
+        lines.append([row["view"], *("-" if row.get(key) is None else f"{factor * row[key]:.{digits}f}"
+                                     for _, key, factor, digits in columns)])
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    return "\n".join("  ".join(cell.ljust(width) if i == 0 else cell.rjust(width)
+                               for i, (cell, width) in enumerate(zip(line, widths))) for line in lines)
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(prog="python3 -m clpv.score", description=__doc__)
+    parser.add_argument("folder", metavar="DIR", type=pathlib.Path,
+                        help="images VIEW.exr, or frames VIEW.NUMBER.exr of the same still view: linear radiance")
+    parser.add_argument("--suite", metavar="FOLDER", type=pathlib.Path, default=pathlib.Path("."),
+                        help="folder with suite.json (default: the current one)")
+    parser.add_argument("--method", metavar="NAME", help="name of the method in the JSON (default: that of DIR)")
+    parser.add_argument("--only", metavar="PATTERN", action="append", help="views, such as 'cornell-*'; repeatable (default: all)")
+    parser.add_argument("-o", "--output", metavar="FILE.json", type=pathlib.Path, help="writes the score; -: to stdout, in place of the table")
+    given = parser.parse_args(arguments)
+    try:
+        score = suite.score(given.folder, given.suite, given.method, given.only or ["*"])
+    except BadImage as error:
+        print(f"clpv.score: {error}", file=sys.stderr)
+        return BAD_INPUT
+    for row in score["views"]:
+        for suspicion in row["suspected"]:
+            print(f"clpv.score: {row['view']} {suspicion}", file=sys.stderr)
+    text = json.dumps(score, indent=1) + "\n"
+    if given.output == pathlib.Path("-"):
+        print(text, end="")
+        return 0
+    if given.output:
+        given.output.write_text(text)
+    print(table(score))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
