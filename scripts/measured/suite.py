@@ -33,9 +33,9 @@ UNITS = {"indirect": "radiance after one bounce: albedo / pi x indirect irradian
          "albedo": "0 to 1, linear", "illuminance": "1 lux is 1 W/m^2", "length": "metres",
          "exposure": "[EV]: FLIP compares radiance x 2^exposure after the tone curve ACES"}
 CONVENTIONS = {"colour": "linear, Rec. 709 primaries", "rows": "the first is the uppermost", "axes": "right-handed, y upwards",
-               "pixels": "one ray through the centre, no antialiasing; textures with bilinear filter, finest level",
-               "surfaces": "diffuse, also where the model has metal; light reaches both sides of a surface, shaded with the normal "
-               "turned to the viewer", "lights": "of no size; of a camera only those in its `lights`",
+               "pixels": "one ray through the centre, no antialiasing; textures with mipmaps by the pixel's footprint",
+               "surfaces": "diffuse, also where the model has metal; they block and reflect light on both sides; cameras see "
+               "no back face of a single-sided material", "lights": "of no size; of a camera only those in its `lights`",
                "alpha": "1 where there is a surface, else all channels are 0", "bounces": 1}
 
 
