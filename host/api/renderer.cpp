@@ -65,6 +65,43 @@ std::vector<std::array<float, 3>> without_alpha(const std::vector<glm::vec4>& va
   return colours;
 }
 
+constexpr int kMaxSide = 16384;
+
+void check_sides(const char* what, int width, int height) {
+  if (width >= 1 && width <= kMaxSide && height >= 1 && height <= kMaxSide) return;
+  throw Error(ExitCode::usage, "{}: found {} x {}, allowed: 1..{}", what, width, height, kMaxSide);
+}
+
+void check(const GBuffer& surfaces) {
+  check_sides("light: width and height", surfaces.width, surfaces.height);
+  const std::size_t pixels = std::size_t(surfaces.width) * std::size_t(surfaces.height);
+  const auto require = [&](const char* what, std::size_t found, const char* more) {
+    if (found == pixels) return;
+    throw Error(ExitCode::usage, "light: found {} {} for {} x {} pixels, allowed: one for each{}", found, what,
+                surfaces.width, surfaces.height, more);
+  };
+  require("normals", surfaces.normals.size(), "");
+  if (surfaces.positions.empty()) {
+    require("depths", surfaces.depths.size(), ", or positions");
+  } else {
+    require("positions", surfaces.positions.size(), "");
+    if (!surfaces.depths.empty())
+      throw Error(ExitCode::usage, "light: found positions and depths, allowed: one of both");
+  }
+}
+
+/// A camera of which only the eye counts.
+SceneCamera camera_at(const Vec3& eye) {
+  return scene_camera(Camera{.eye = eye, .target = {eye[0], eye[1], eye[2] - 1}}, rejected_in("light"));
+}
+
+std::vector<glm::vec4> four_wide(Vectors vectors) {
+  std::vector<glm::vec4> wide;
+  wide.reserve(vectors.size());
+  for (const std::array<float, 3>& v : vectors) wide.emplace_back(v[0], v[1], v[2], 0);
+  return wide;
+}
+
 }  // namespace
 
 struct Renderer::State {
@@ -77,6 +114,7 @@ struct Renderer::State {
   std::optional<Frame> frame;
   unsigned media;                               ///< of the frame (Scene::Contents)
   std::map<std::string, std::string> metadata;  ///< of the last frame's images; empty before it
+  bool lit = false;                             ///< the cascades have the light of the last render() or light()
   double frame_ms = 0;
 
   State(const Scene& scene_file, const Options& given, const std::string& device)
@@ -90,9 +128,42 @@ struct Renderer::State {
     scene_stays.unlock();
   }
 
-  void require_frame(const char* what) const {
-    if (metadata.empty())
-      throw Error(ExitCode::usage, "{}: no frame was rendered; allowed: after a render", what);
+  void require(bool made, const char* what) const {
+    if (!made) throw Error(ExitCode::usage, "{}: no frame was rendered; allowed: after a render", what);
+  }
+  void require_image(const char* what) const { require(!metadata.empty(), what); }
+  void require_light(const char* what) const { require(lit, what); }
+
+  /// Brings the scene and the frame to the time `seconds`.
+  void pose(double seconds) {
+    lit = false;
+    const bool moved = posed.pose(seconds);
+    if (media != file.contents().media) {
+      metadata.clear();
+      frame.emplace(session, posed.scene(), options);
+      media = file.contents().media;
+    } else if (moved) {
+      frame->scene_moved();
+    }
+  }
+
+  std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const SceneCamera& camera) {
+    GivenPixels pixels{static_cast<unsigned>(surfaces.width), static_cast<unsigned>(surfaces.height),
+                       !surfaces.positions.empty(), {}, {}};
+    const Buffer normals = session.upload(four_wide(surfaces.normals), "normals of a G-buffer");
+    Buffer places;
+    if (pixels.points) {
+      places = session.upload(four_wide(surfaces.positions), "positions of a G-buffer");
+    } else {
+      places = session.buffer(surfaces.depths.size_bytes(), "depths of a G-buffer");
+      session.write(places, surfaces.depths, 0);
+    }
+    pixels.places = places.handle();
+    pixels.normals = normals.handle();
+    const Buffer& irradiance = frame->light(camera, pixels);
+    const auto values = session.read<glm::vec4>(irradiance, surfaces.normals.size());
+    lit = true;
+    return without_alpha(values);
   }
 
   Image image(View view) {
@@ -124,15 +195,10 @@ Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
   const std::shared_lock scene_stays(state.file.contents().mutex);
   const Clock::time_point started = Clock::now();
   state.metadata.clear();
-  const bool moved = state.posed.pose(seconds);
-  if (state.media != state.file.contents().media) {
-    state.frame.emplace(state.session, state.posed.scene(), state.options);
-    state.media = state.file.contents().media;
-  } else if (moved) {
-    state.frame->scene_moved();
-  }
+  state.pose(seconds);
   const SceneCamera chosen = state.posed.camera(camera);
   state.frame->render(chosen);
+  state.lit = true;
   for (const OptionDescription& option : list_options(state.options))
     state.metadata[option.name] = option.value;
   state.metadata["centres"] = std::filesystem::path(state.options.centres).filename().string();
@@ -146,8 +212,29 @@ Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
 Image Renderer::show(View view) {
   check_view(view);
   const std::lock_guard lock(state_->mutex);
-  state_->require_frame("show");
+  state_->require_image("show");
+  if (view == View::cells) state_->require_light("show");
   return state_->image(view);
+}
+
+std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const CameraChoice& camera,
+                                                  double seconds) {
+  check(surfaces);
+  const std::lock_guard lock(state_->mutex);
+  const std::shared_lock scene_stays(state_->file.contents().mutex);
+  state_->pose(seconds);
+  return state_->light(surfaces, state_->posed.camera(camera));
+}
+
+std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const Vec3& eye, double seconds) {
+  check(surfaces);
+  if (surfaces.positions.empty())
+    throw Error(ExitCode::usage, "light: found depths and an eye, allowed: positions, or depths and a camera");
+  const SceneCamera camera = camera_at(eye);
+  const std::lock_guard lock(state_->mutex);
+  const std::shared_lock scene_stays(state_->file.contents().mutex);
+  state_->pose(seconds);
+  return state_->light(surfaces, camera);
 }
 
 std::array<double, 3> Renderer::irradiance(const Vec3& position, const Vec3& normal) {
@@ -161,7 +248,7 @@ std::vector<std::array<float, 3>> Renderer::irradiance(std::span<const std::arra
                                                        std::span<const std::array<float, 3>> normals) {
   Points points = checked_points("irradiance", "normal", positions, normals);
   const std::lock_guard lock(state_->mutex);
-  state_->require_frame("irradiance");
+  state_->require_light("irradiance");
   return without_alpha(state_->frame->irradiance_at(std::move(points.positions), std::move(points.vectors)));
 }
 
@@ -169,13 +256,13 @@ std::vector<std::array<float, 3>> Renderer::radiance(std::span<const std::array<
                                                      std::span<const std::array<float, 3>> directions) {
   Points points = checked_points("radiance", "direction", positions, directions);
   const std::lock_guard lock(state_->mutex);
-  state_->require_frame("radiance");
+  state_->require_light("radiance");
   return without_alpha(state_->frame->radiance_at(std::move(points.positions), std::move(points.vectors)));
 }
 
 std::vector<LightVolume> Renderer::volumes() {
   const std::lock_guard lock(state_->mutex);
-  state_->require_frame("volumes");
+  state_->require_light("volumes");
   const GatheredLight light = state_->frame->light();
   std::vector<LightVolume> all;
   for (std::size_t c = 0; c < light.grids.size(); ++c) {
@@ -212,11 +299,7 @@ Stats Renderer::stats() const {
 Image pathtrace(const Scene& scene, View view, const CameraChoice& camera, const TraceOptions& options) {
   check_view(view);
   require_traceable(view);
-  constexpr int kMaxSide = 16384;
-  if (options.width < 1 || options.width > kMaxSide || options.height < 1 || options.height > kMaxSide) {
-    throw Error(ExitCode::usage, "width and height: found {} x {}, allowed: 1..{}", options.width,
-                options.height, kMaxSide);
-  }
+  check_sides("width and height", options.width, options.height);
   const std::shared_lock scene_stays(scene.contents().mutex);
   PosedScene posed(scene);
   posed.pose(options.seconds);

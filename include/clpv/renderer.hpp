@@ -53,6 +53,16 @@ struct LightVolume {
   std::vector<float> values;  ///< [channel][i][z][y][x]: red, green, blue; N coefficients; cells
 };
 
+/// Surfaces that the caller's pixels show: a G-buffer, one value per pixel, row 0 first. It has positions, from any kind of camera,
+/// or depths of a Camera. A pixel has no surface, and no light, if its normal is 0, its depth is not positive, or a number of it is
+/// not finite.
+struct GBuffer {
+  int width = 0, height = 0;                             ///< 1 to 16384
+  std::span<const std::array<float, 3>> normals;         ///< of any length, on the side that is seen
+  std::span<const std::array<float, 3>> positions = {};  ///< [m]
+  std::span<const float> depths = {};                    ///< [m] along the camera's viewing direction, row 0 at the top
+};
+
 /// Renders frames of one scene with one set of options. Owns an OpenCL context, compiled programs and all memory of a frame,
 /// and shares the scene. Results that do not change are cached from frame to frame. Thread-safe: calls from several threads run one
 /// after the other; for parallel frames use one Renderer per thread.
@@ -76,8 +86,17 @@ class Renderer {
   /// Another view of the last frame, without rendering it again. Throws Error(usage) before the first frame.
   Image show(View view);
 
+  /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on each pixel of `surfaces` at time `seconds` [s], with
+  /// the near field, as View::irradiance has it: a frame for a G-buffer of another renderer. Makes no image; show() keeps the last
+  /// frame's. Cascades surround the camera's eye; depths are those of its view of width x height square pixels. The near
+  /// field interpolates between a pixel and its neighbours in the image that lie on its surface (docs/api.md).
+  /// Throws Error: usage (sizes, camera, seconds; option blockers seen), run_time (memory).
+  std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const CameraChoice& camera, double seconds = 0);
+  /// The same for positions, with cascades about `eye` [m] and all lights of the scene.
+  std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const Vec3& eye, double seconds = 0);
+
   /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on a surface at `position` [m] with `normal` (of any
-  /// length), visible or not. Uses the volumes of the last frame, without option near; 0 outside of its cascades. Computed on
+  /// length), visible or not. Uses the volumes of the last frame or light(), without option near; 0 outside of its cascades. Computed on
   /// the device. Throws Error(usage) before the first frame, and for a position that is not finite or a normal of length 0.
   std::array<double, 3> irradiance(const Vec3& position, const Vec3& normal);
 
@@ -93,7 +112,7 @@ class Renderer {
   std::vector<std::array<float, 3>> radiance(std::span<const std::array<float, 3>> positions,
                                              std::span<const std::array<float, 3>> directions);
 
-  /// Reads back the light of the last frame, finest cascade first. Throws Error(usage) before the first frame.
+  /// Reads back the light of the last frame or light(), finest cascade first. Throws Error(usage) before the first frame.
   std::vector<LightVolume> volumes();
 
   /// Returns the cost of the last frame; all 0 before the first.

@@ -6,7 +6,7 @@
 // docs/method.md, 'Gathering'. g depends on basis and transport (has_faces, host/basis/transport.hpp); cascades.h has the
 // weights of cascades.
 //
-// In:   depths [m], normals   the camera's surface (surface.h); with CLPV_POINTS positions [m] instead of depths
+// In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
 //       grids       ClpvGrid of each of `cascades` cascades, finest first
 //       unit        [W/sr] of a stored 1
 //       CLPV_GATHERED_VOLUMES   accumulated volumes: packed records and occlusion bits (CLPV_PACKED 1), or images
@@ -23,18 +23,6 @@
 // CLPV_AND_TABLE), g(n). If g comes from a look-up table, it is the last argument.
 #include "gather/cascades.h"
 #include "raster/surface_row.h"
-
-#ifndef CLPV_POINTS
-#define CLPV_POINTS 0  // 1: points without a view
-#endif
-
-#if CLPV_POINTS
-typedef float4 Place;
-#define CLPV_LOAD_SURFACES load_points
-#else
-typedef float Place;
-#define CLPV_LOAD_SURFACES load_surfaces
-#endif
 
 // E s^2 of one volume at point i.
 CLPV_INLINE float4 volume_irradiance(CLPV_GATHERED volume, const SamplePoints* points, const int i,

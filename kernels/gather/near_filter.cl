@@ -15,7 +15,8 @@
 // near_add
 //   Interpolates D and E bilinearly between pixels of both layers on the same surface. Without one it takes the mean of
 //   those in the four by four blocks around, on the same surface or else on any.
-//   In:      depths [m], normals   the camera's surface; points, widened
+//   In:      places, normals       the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
+//            points, widened
 //   In, out: irradiance    E [W/m^2] per pixel of the camera; E + D, or where D < 0: E darkened(1 + mean D / mean E)
 // A work-item processes eight pixels of a row.
 #include "gather/near_surface.h"
@@ -145,12 +146,12 @@ CLPV_INLINE void interpolate_light(const ClpvView view, const PixelRow p, const 
 }
 #endif
 
-__kernel void near_add(const ClpvView view, __global const float* depths, __global const float4* normals,
+__kernel void near_add(const ClpvView view, __global const Place* places, __global const float4* normals,
                        __global const float* points, __global const float* widened, __global float4* irradiance) {
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   Surfaces s;
-  load_surfaces(view, p, depths, normals, &s);
+  CLPV_LOAD_SURFACES(view, p, places, normals, &s);
   const NearRow r = find_near_row(view, (int)p.px / W, (int)p.py / CLPV_NEAR_STEP);
   WeightedSum mean = CLPV_NO_SUM;
 #if CLPV_NEAR_STEP == 1

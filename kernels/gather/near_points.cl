@@ -6,7 +6,8 @@
 // near_others
 //   Second layer: of each block the first pixel whose surface no near pixel of the four by four blocks around it has.
 //
-// In:   depths [m], normals   the camera's surface (surface.h); grids: ClpvGrid of each cascade
+// In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
+//       grids             ClpvGrid of each cascade
 // Out:  points                planes of shared/near.h, with their border
 // A work-item processes eight near pixels of a row.
 #include "gather/near_surface.h"
@@ -32,17 +33,24 @@ typedef struct {
 } CameraPixels;
 
 // Loads the pixels (x, y), of those in the mask `inside`.
-CLPV_INLINE void load_camera_pixels(const ClpvView view, __global const float* depths, __global const float4* normals,
+CLPV_INLINE void load_camera_pixels(const ClpvView view, __global const Place* places, __global const float4* normals,
                                     const intW x, const int y, const intW inside, CameraPixels* c) {
   const uintW pixel = inside ? as_uintW(y * (int)view.width + x) : (uintW)(0u);
+  Rows rows;
+#if CLPV_POINTS
+  gather_rows(places, pixel, &rows);
+  const realW depth = CLPV_COLUMN(rows, w);
+  const Vec position = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
+#else
   PixelRow p;
   p.x = to_realW(x);
   p.y = (realW)((float)y);
-  Rows rows;
+  const realW depth = (realW)CLPV_GATHER(places, pixel);
+  const Vec position = row_positions(view, p, depth);
+#endif
   gather_rows(normals, pixel, &rows);
-  const realW depth = (realW)CLPV_GATHER(depths, pixel);
   c->seen = inside & (depth > ZERO);
-  c->position = vec_masked(c->seen, row_positions(view, p, depth));
+  c->position = vec_masked(c->seen, position);
   c->normal = vec_masked(c->seen, vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z)));
 }
 
@@ -53,7 +61,7 @@ CLPV_INLINE void store_points(const NearRow r, const Vec position, const Vec nor
   store_lanes(reach, points + CLPV_NEAR_REACH * r.plane + r.at);
 }
 
-__kernel void near_points(const ClpvView view, __global const float* depths, __global const float4* normals,
+__kernel void near_points(const ClpvView view, __global const Place* places, __global const float4* normals,
                           __global const ClpvGrid* grids, const uint cascades, __global float* points) {
   const NearRow r = find_near_row(view, (int)get_global_id(0) - CLPV_NEAR_COLUMNS / W,
                                   (int)get_global_id(1) - CLPV_NEAR_ROWS);
@@ -61,7 +69,7 @@ __kernel void near_points(const ClpvView view, __global const float* depths, __g
   const intW x = r.x + lane_numbers();
   const intW inside = (x >= 0) & (x < (int)r.width) & (r.y >= 0 && r.y < (int)near_pixels(view.height) ? -1 : 0);
   CameraPixels c;
-  load_camera_pixels(view, depths, normals, x * CLPV_NEAR_STEP, r.y * CLPV_NEAR_STEP, inside, &c);
+  load_camera_pixels(view, places, normals, x * CLPV_NEAR_STEP, r.y * CLPV_NEAR_STEP, inside, &c);
   store_points(r, c.position, c.normal, find_reach(grids, cascades, c.position, c.seen), points);
 }
 
@@ -79,7 +87,7 @@ CLPV_INLINE intW on_no_surface(__global const float* points, const NearRow r, co
   return wanted;
 }
 
-__kernel void near_others(const ClpvView view, __global const float* depths, __global const float4* normals,
+__kernel void near_others(const ClpvView view, __global const Place* places, __global const float4* normals,
                           __global const ClpvGrid* grids, const uint cascades, __global float* points) {
   const NearRow first = find_near_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(first) || first.y >= (int)near_pixels(view.height)) return;
@@ -89,7 +97,7 @@ __kernel void near_others(const ClpvView view, __global const float* depths, __g
   for (int dy = 0; dy < CLPV_NEAR_STEP && first.y * CLPV_NEAR_STEP + dy < (int)view.height; ++dy) {
     for (int dx = 0; dx < CLPV_NEAR_STEP; ++dx) {
       CameraPixels c;
-      load_camera_pixels(view, depths, normals, x + dx, first.y * CLPV_NEAR_STEP + dy, x + dx < (int)view.width, &c);
+      load_camera_pixels(view, places, normals, x + dx, first.y * CLPV_NEAR_STEP + dy, x + dx < (int)view.width, &c);
       intW wanted = on_no_surface(points, first, 0, 1, c, c.seen & ~found);
       if (lane_bits(wanted) == 0u) continue;
       wanted = on_no_surface(points, first, -1, 2, c, wanted);

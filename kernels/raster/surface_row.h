@@ -56,7 +56,7 @@ static inline void load_surfaces(const ClpvView view, const PixelRow p, __global
   s->position = row_positions(view, p, s->depth);
 }
 
-// Loads eight points without a view; depth 1.
+// Loads eight points without a view: positions [m], w the depth, 1, or 0 without a surface.
 static inline void load_points(const ClpvView view, const PixelRow p, __global const float4* at,
                                __global const float4* normals, Surfaces* s) {
   s->first = p.py * view.width + p.px;
@@ -64,10 +64,22 @@ static inline void load_points(const ClpvView view, const PixelRow p, __global c
   Rows rows;
   gather_rows(at, pixel, &rows);
   s->position = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
+  s->depth = CLPV_COLUMN(rows, w);
   gather_rows(normals, pixel, &rows);
   s->normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
-  s->depth = ONE;
 }
+
+// Place of a surface: its depth in the view, or with CLPV_POINTS 1 a point without a view.
+#ifndef CLPV_POINTS
+#define CLPV_POINTS 0
+#endif
+#if CLPV_POINTS
+typedef float4 Place;
+#define CLPV_LOAD_SURFACES load_points
+#else
+typedef float Place;
+#define CLPV_LOAD_SURFACES load_surfaces
+#endif
 
 #if CLPV_SURFACE_PAPER
 typedef uchar Channel;  // of a stored texel

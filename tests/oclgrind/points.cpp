@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Runs gather.cl and radiance.cl at points: points SCENE. Their number fills no row.
+// Runs gather.cl and radiance.cl at points, whose number fills no row, and light() on a G-buffer of positions and of depths, some of
+// them no surface: points SCENE.
+#include <cmath>
+
 #include "clpv/renderer.hpp"
 
 int main(int, char** arguments) {
@@ -23,4 +26,11 @@ int main(int, char** arguments) {
   }
   renderer.irradiance(points, directions);
   renderer.radiance(points, directions);
+
+  points.resize(12 * 9, {0.1f, 0.2f, 0.3f}), directions.resize(12 * 9, {0, 2, 0});
+  directions[3] = {0, 0, 0}, points[4][0] = NAN;
+  std::vector<float> depths(12 * 9, 1.5f);
+  depths[5] = -INFINITY;
+  renderer.light({.width = 12, .height = 9, .normals = directions, .positions = points}, clpv::Vec3{0, 1, 1});
+  renderer.light({.width = 12, .height = 9, .normals = directions, .depths = depths}, "");
 }

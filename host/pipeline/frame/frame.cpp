@@ -24,6 +24,7 @@ SurfaceImage image_of_points(std::vector<glm::vec4> positions, std::vector<glm::
   points.view.width = static_cast<unsigned>(std::min(count, kPointsPerRow));
   points.view.height = static_cast<unsigned>((count + kPointsPerRow - 1) / kPointsPerRow);
   const std::size_t pixels = std::size_t{points.view.width} * points.view.height;
+  for (glm::vec4& position : positions) position.w = 1;
   positions.resize(pixels, positions.back());
   vectors.resize(pixels, vectors.back());
   points.position = std::move(positions);
@@ -95,6 +96,17 @@ void Frame::invalidate() {
   buffers_.clusters->invalidate();
 }
 
+std::vector<ClpvGrid> Frame::grids_about(const glm::vec3& eye) const {
+  return cascade_grids(eye, options_.cascades, options_.cascade_size, options_.grid);
+}
+
+void Frame::gather(const Surface& surface, CacheKey rays, Buffer& irradiance) {
+  timed(Pass::gather, [&] { gatherer_.gather(surface, light(), irradiance); });
+  if (!near_) return;
+  near_hits_.update(rays, [&] { timed(Pass::near_trace, [&] { near_->trace(surface, gatherer_); }); });
+  timed(Pass::near, [&] { near_->add(surface, gatherer_, lights_.shadowed(), irradiance); });
+}
+
 void Frame::rasterize_camera(const SceneCamera& camera) {
   const ClpvView view = camera_view(camera, options_.width, options_.height);
   if (!camera_surface_) camera_surface_ = make_surface(session_, view, RsmFormat::float32, buffers_.emissive);
@@ -113,30 +125,41 @@ CacheKey Frame::seen_by_rays(const std::vector<ClpvGrid>& grids) const {
 
 void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
   session_.timeline().clear();  // otherwise the events of all frames would accumulate
-  const auto timed = [this](Pass pass, const auto& stage) {
-    const StageScope scope(session_, {pass});
-    stage();
-  };
-  const std::vector<ClpvGrid> grids =
-      cascade_grids(camera.eye, options_.cascades, options_.cascade_size, options_.grid);
+  const std::vector<ClpvGrid> grids = grids_about(camera.eye);
   lights_.prepare(camera, grids);
   timed(Pass::rasterize_camera, [&] { rasterize_camera(camera); });
   lights_.rasterize_shadows();
-  const std::vector<ShadowedLight> shadowed = lights_.shadowed();
-  cascades_.prepare(grids, *camera_surface_);
+  cascades_.prepare(grids, &*camera_surface_);
   for (int cascade = options_.cascades; cascade-- > 0;) cascades_.update(cascade, observer);
-  timed(Pass::gather, [&] { gatherer_.gather(*camera_surface_, light(), irradiance_); });
-  if (near_) {
-    near_hits_.update(seen_by_rays(grids), [&] {
-      timed(Pass::near_trace, [&] { near_->trace(*camera_surface_, gatherer_); });
-    });
-    timed(Pass::near, [&] { near_->add(*camera_surface_, gatherer_, shadowed, irradiance_); });
-  }
+  const std::vector<ShadowedLight> shadowed = lights_.shadowed();
+  gather(*camera_surface_, seen_by_rays(grids), irradiance_);
   if (medium_) timed(Pass::medium, [&] { medium_->scatter(*camera_surface_, gatherer_, shadowed); });
   timed(Pass::shade, [&] {
     shader_.light(*camera_surface_, shadowed);
     show(Show::full);
   });
+}
+
+const Buffer& Frame::light(const SceneCamera& camera, const GivenPixels& pixels) {
+  if (blocked_by_view(options_)) {
+    throw Error(ExitCode::usage, "light: found blockers '{}', which a frame's G-buffer makes, allowed: scene",
+                name_of(options_.blockers));
+  }
+  session_.timeline().clear();
+  const std::vector<ClpvGrid> grids = grids_about(camera.eye);
+  lights_.prepare(camera, grids);
+  lights_.rasterize_shadows();
+  cascades_.prepare(grids, nullptr);
+  for (int cascade = options_.cascades; cascade-- > 0;) cascades_.update(cascade, {});
+  if (!given_) given_.emplace(session_);
+  const Surface& surface =
+      given_->take(camera_view(camera, static_cast<int>(pixels.width), static_cast<int>(pixels.height)), pixels);
+  session_.reserve(given_irradiance_, std::size_t{pixels.width} * pixels.height * sizeof(cl_float4),
+                   "irradiance on a given surface");
+  near_hits_.invalidate();  // their content is unknown
+  gather(surface, 0, given_irradiance_);
+  near_hits_.invalidate();
+  return given_irradiance_;
 }
 
 void Frame::show(Show view) {

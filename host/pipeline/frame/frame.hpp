@@ -17,6 +17,7 @@
 #include "pipeline/gather/gather.hpp"
 #include "pipeline/gather/medium.hpp"
 #include "pipeline/gather/near.hpp"
+#include "pipeline/raster/given_surface.hpp"
 #include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/shade.hpp"
@@ -41,12 +42,17 @@ class Frame {
   /// `observer` receives the volumes of each cascade. It waits for the device, so omit it in timed frames.
   void render(const SceneCamera& camera, const CascadeObserver& observer = {});
 
+  /// Enqueues the irradiance of indirect light, with the near field, on surfaces that a caller gives, from cascades about the
+  /// camera's eye. As render(), but makes no image. Returns float4 per pixel [W/m^2], 0 without a surface; valid until the next
+  /// call. Throws Error(usage) for blockers that the frame's G-buffer makes.
+  const Buffer& light(const SceneCamera& camera, const GivenPixels& pixels);
+
   /// For benchmarks. After invalidate_light() the next frame recomputes all lighting, including shadow maps and what rays
   /// of the near field hit. After invalidate() it recomputes everything, including blockers and visibility.
   void invalidate_light();
   void invalidate();
 
-  /// Light of the last render; empty before the first one.
+  /// Light of the last render() or light(camera, pixels); empty before the first one.
   GatheredLight light() const { return cascades_.light(); }
 
   /// G-buffer of the last render's camera. Undefined before the first render.
@@ -72,6 +78,14 @@ class Frame {
   const Basis& gathered() const { return swept_ ? *swept_ : *basis_; }
 
  private:
+  template <typename Stage>
+  void timed(Pass pass, const Stage& stage) {
+    const StageScope scope(session_, {pass});
+    stage();
+  }
+  std::vector<ClpvGrid> grids_about(const glm::vec3& eye) const;
+  /// Gathers the light of the cascades on a surface. `rays`: key of what the near field's rays depend on.
+  void gather(const Surface& surface, CacheKey rays, Buffer& irradiance);
   void rasterize_camera(const SceneCamera& camera);
   void require_light(const char* what) const;
   /// Key of what the near field's rays depend on.
@@ -93,6 +107,8 @@ class Frame {
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;
   std::optional<Kernel> radiance_;  ///< of radiance_at(), built when it is first called
+  std::optional<GivenSurface> given_;  ///< of light(), built when it is first called
+  Buffer given_irradiance_;
   Cached near_hits_;                ///< of near_
   Buffer irradiance_;               ///< float4 per pixel, like image_
   Buffer image_;

@@ -68,9 +68,9 @@ const Volume* FrameCascades::geometry(int cascade) {
   return geometry_.empty() ? nullptr : of_cascade(geometry_, cascade).volume.get();
 }
 
-void FrameCascades::prepare(const std::vector<ClpvGrid>& grids, const Surface& camera) {
+void FrameCascades::prepare(const std::vector<ClpvGrid>& grids, const Surface* camera) {
   grids_ = grids;
-  camera_ = &camera;
+  camera_ = camera;
   for (int cascade = options_.cascades; cascade-- > 0;) keys_[cascade] = keys_of(cascade);
 }
 

@@ -42,8 +42,8 @@ class FrameCascades {
                 const RenderOptions& options, const Basis& basis, const Basis* swept,
                 const Transport& transport, FrameLights& lights);
 
-  /// Sets the cascade grids and the camera's G-buffer. Call for each frame, after preparing its lights.
-  void prepare(const std::vector<ClpvGrid>& grids, const Surface& camera);
+  /// Sets the cascade grids and the camera's G-buffer, which blocked_by_view() needs; else it may be null. Call for each frame, after preparing its lights.
+  void prepare(const std::vector<ClpvGrid>& grids, const Surface* camera);
 
   /// Updates the light of a cascade. Call for the coarsest cascade first.
   void update(int cascade, const CascadeObserver& observer);

@@ -117,10 +117,8 @@ void Gatherer::gather(const Surface& camera, const GatheredLight& light, Buffer&
   cascades_ = light.grids.size();
   scale_ = light.scale;
   occluded_ = light.occluded;
-  const bool points = camera.position.exists();
-  Kernel& kernel = gather_kernel(cascades_, points);
-  kernel.set(camera.view, points ? camera.position : camera.depth, camera.normal, grids_, cascades_,
-             1 / scale_, irradiance);
+  Kernel& kernel = gather_kernel(cascades_, camera.points());
+  kernel.set(camera.view, camera.places(), camera.normal, grids_, cascades_, 1 / scale_, irradiance);
   if (packs()) {
     pack(light);
     kernel.add(packed_);

@@ -69,10 +69,6 @@ NearField::NearField(Session& session, const Basis& basis, const SceneData& scen
       buffers_(buffers),
       options_(options),
       building_(std::async(std::launch::async, [&scene] { return TriangleTree(scene); })),
-      points_kernel_(
-          session,
-          with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather),
-          "near_points"),
       trace_(session, near_source("gather/near_trace.cl", buffers, options), "near_trace"),
       light_(session, near_source("gather/near_light.cl", buffers, options), "near_light"),
       emit_(session, near_source("gather/near_light.cl", buffers, options), "near_emit"),
@@ -80,12 +76,9 @@ NearField::NearField(Session& session, const Basis& basis, const SceneData& scen
             "near"),
       blur_(session, near_source("gather/near_filter.cl", buffers, options), "near_blur"),
       widen_(session, near_source("gather/near_filter.cl", buffers, options), "near_widen"),
-      add_(session, near_source("gather/near_filter.cl", buffers, options), "near_add") {
-  if (layers(options.step) > 1) {
-    others_.emplace(
-        session, with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather),
-        "near_others");
-  }
+      points_source_(with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather)),
+      filter_source_(near_source("gather/near_filter.cl", buffers, options)) {
+  pixel_kernels(false);
   if (options.reflects) {
     reflect_.emplace(
         session,
@@ -93,6 +86,18 @@ NearField::NearField(Session& session, const Basis& basis, const SceneData& scen
         "near_reflect");
   }
   directions_ = session.upload(direction_rows(options.rays), "directions of the near field");
+}
+
+NearField::PixelKernels& NearField::pixel_kernels(bool points) {
+  if (const auto found = pixel_kernels_.find(points); found != pixel_kernels_.end()) return found->second;
+  ProgramSource of_points = points_source_, of_filter = filter_source_;
+  if (points) {
+    of_points.literals.flag("CLPV_POINTS", true);
+    of_filter.literals.flag("CLPV_POINTS", true);
+  }
+  PixelKernels made{{session_, of_points, "near_points"}, std::nullopt, {session_, of_filter, "near_add"}};
+  if (layers(options_.step) > 1) made.others.emplace(session_, of_points, "near_others");
+  return pixel_kernels_.emplace(points, std::move(made)).first->second;
 }
 
 void NearField::finish() {
@@ -116,9 +121,9 @@ void NearField::upload_tree() {
 void NearField::reserve(const ClpvView& view) {
   const std::size_t width = near_pixels(view.width, options_.step),
                     height = near_rows(view.height, options_.step);
-  const std::size_t plane = CLPV_NEAR_PLANE_OF(width, height), numbers = plane * sizeof(cl_float);
-  if (plane == plane_) return;
-  plane_ = plane;
+  const std::size_t numbers = CLPV_NEAR_PLANE_OF(width, height) * sizeof(cl_float);
+  if (width == width_ && height == height_) return;
+  width_ = height_ = 0;  // until memory suffices
   session_.reserve(points_, CLPV_NEAR_PLANES * numbers, "points of the near field");
   session_.reserve(distances_, options_.rays * numbers, "distances of the near field");
   const std::size_t tiles = tiles_along(width) * tiles_down(height);
@@ -131,6 +136,7 @@ void NearField::reserve(const ClpvView& view) {
   session_.fill_zero(radiances_, 3 * options_.rays * numbers);  // read, but not used, where there is no hit
   session_.fill_zero(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers);  // borders stay 0
   session_.fill_zero(blurred_, CLPV_NEAR_LIGHT_PLANES * numbers);
+  width_ = width, height_ = height;
 }
 
 Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
@@ -166,10 +172,11 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
   const unsigned width = near_pixels(view.width, options_.step),
                  height = near_rows(view.height, options_.step);
   const cl::NDRange with_border(tiles_along(width) + 2 * CLPV_NEAR_COLUMNS / 8, height + 2 * CLPV_NEAR_ROWS);
-  points_kernel_.set(view, camera.depth, camera.normal, gatherer.grids(), gatherer.cascades(), points_)
+  PixelKernels& pixels = pixel_kernels(camera.points());
+  pixels.first.set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
       .launch(with_border, kTileRow);
-  if (others_) {
-    others_->set(view, camera.depth, camera.normal, gatherer.grids(), gatherer.cascades(), points_)
+  if (pixels.others) {
+    pixels.others->set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
         .launch(cl::NDRange(tiles_along(width), near_pixels(view.height, options_.step)), kTileRow);
   }
   // A work-item alone in its group: the lists of several would not fit into the first-level cache.
@@ -190,7 +197,8 @@ void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::
   near_.launch(rows, kTileRow);
   blur_.set(view, points_, near_light_, blurred_).launch(rows, kTileRow);
   widen_.set(view, points_, blurred_, near_light_).launch(rows, kTileRow);
-  add_.set(view, camera.depth, camera.normal, points_, near_light_, irradiance)
+  pixel_kernels(camera.points())
+      .add.set(view, camera.places(), camera.normal, points_, near_light_, irradiance)
       .launch(rows_of_tiles(view), kTileRow);
 }
 

@@ -4,6 +4,7 @@
 
 #include <CL/opencl.hpp>
 #include <future>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -33,7 +34,7 @@ class NearField {
   /// Call after positions of the scene changed.
   void move();
 
-  /// Traces the rays of what `camera` sees, in the grids that `gatherer` gathered from last. Hits stay valid while
+  /// Traces the rays of what `camera` sees (points without a view are allowed), in the grids that `gatherer` gathered from last. Hits stay valid while
   /// camera, triangles and grids are the same.
   void trace(const Surface& camera, const Gatherer& gatherer);
 
@@ -46,6 +47,12 @@ class NearField {
   void reserve(const ClpvView& view);
   void light_hits(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights);
   Kernel& set_hits(Kernel& kernel, const ClpvView& view, bool fresh);
+  struct PixelKernels {  ///< those that read the camera's surface
+    Kernel first;
+    std::optional<Kernel> others;  ///< with step > 1
+    Kernel add;
+  };
+  PixelKernels& pixel_kernels(bool points);
 
   Session& session_;
   const SceneData& scene_;
@@ -53,12 +60,13 @@ class NearField {
   NearOptions options_;
   std::future<TriangleTree> building_;
   std::optional<TriangleTree> tree_;  ///< none until finish()
-  Kernel points_kernel_, trace_, light_, emit_, near_, blur_, widen_, add_;
-  std::optional<Kernel> others_;   ///< with step > 1
-  std::optional<Kernel> reflect_;  ///< with more than one bounce
+  Kernel trace_, light_, emit_, near_, blur_, widen_;
+  ProgramSource points_source_, filter_source_;
+  std::map<bool, PixelKernels> pixel_kernels_;  ///< by Surface::points()
+  std::optional<Kernel> reflect_;               ///< with more than one bounce
   Buffer nodes_, leaves_, directions_;
   Buffer points_, distances_, counts_, hits_, radiances_, near_light_, blurred_;
-  std::size_t plane_ = 0;  ///< numbers of a plane of the buffers
+  std::size_t width_ = 0, height_ = 0;  ///< near pixels that the buffers have, of both layers
 };
 
 }  // namespace clpv

@@ -24,8 +24,13 @@ struct Surface {
   Buffer normal;           ///< unit length, world space, towards the viewer; 0 without a surface
   Buffer colour;           ///< camera: albedo; light: flux of the virtual point light [W]
   Buffer emissive;         ///< camera only: float4, emitted radiance [W/m^2/sr]
-  /// Points without a view (Emitter): float4 [m], instead of depth. Only the size of `view` is used.
+  /// Points without a view: float4 [m], instead of depth. Only the size of `view` is used. For gathering and the near field,
+  /// w is 1, or 0 without a surface.
   Buffer position;
+
+  /// What kernels read with CLPV_POINTS 1 (positions) or 0 (depths).
+  bool points() const { return position.exists(); }
+  const Buffer& places() const { return points() ? position : depth; }
 };
 
 /// Allocates a surface of the view's size for a rasteriser; contents are undefined. `with_emissive`: allocates
