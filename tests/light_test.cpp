@@ -18,7 +18,8 @@ using ::testing::HasSubstr;
 using Vectors = std::vector<std::array<float, 3>>;
 using test::kCornell;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                kInfinity = std::numeric_limits<float>::infinity();
 
 Options small(int width = 48, int height = 27) {
   return Options()
@@ -29,7 +30,7 @@ Options small(int width = 48, int height = 27) {
       .set("rsm-size", "64");
 }
 
-Camera camera_of(const SceneFile& scene) {
+Camera camera_of(const Scene& scene) {
   return scene.cameras().front();
 }
 
@@ -93,7 +94,7 @@ double greatest(const Vectors& a) {
 }
 
 TEST(Light, OfAFramesDepthsIsItsIrradianceToTheByte) {
-  const SceneFile scene(kCornell);
+  const Scene scene(kCornell);
   for (const char* size : {"full", "half"}) {
     Renderer renderer(scene, small().set("near-size", size)), other(scene, small().set("near-size", size));
     const Camera camera = camera_of(scene);
@@ -107,14 +108,15 @@ TEST(Light, OfAFramesDepthsIsItsIrradianceToTheByte) {
 }
 
 TEST(Light, OfPositionsIsThatOfDepths) {
-  const SceneFile scene(kCornell);
+  const Scene scene(kCornell);
   for (const char* size : {"full", "quarter"}) {
     Renderer renderer(scene, small().set("near-size", size));
     const Camera camera = camera_of(scene);
     const Seen seen(renderer, camera);
     const Vectors positions = seen.positions(camera);
     const GBuffer points{seen.width, seen.height, seen.normals, positions};
-    EXPECT_LT(greatest(renderer.light(points, camera.eye), seen.irradiance), 1e-3 * greatest(seen.irradiance)) << size;
+    EXPECT_LT(greatest(renderer.light(points, camera.eye), seen.irradiance), 1e-3 * greatest(seen.irradiance))
+        << size;
   }
 }
 
@@ -127,7 +129,8 @@ struct Panorama {
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         const double polar = M_PI * (y + 0.5) / kHeight, azimuth = 2 * M_PI * (x + 0.5) / kWidth;
-        const double ray[] = {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)};
+        const double ray[] = {std::sin(polar) * std::cos(azimuth), std::cos(polar),
+                              std::sin(polar) * std::sin(azimuth)};
         double nearest = kInfinity;
         int axis = 0;
         for (int i = 0; i < 3; ++i) {
@@ -144,7 +147,7 @@ struct Panorama {
 };
 
 TEST(Light, OfAPanoramaWithoutTheNearFieldIsTheIrradianceOfItsPoints) {
-  const SceneFile scene(kCornell);
+  const Scene scene(kCornell);
   Renderer renderer(scene, small().set("near", "off"));
   const Vec3 eye{0.278, 0.273, 0.2};
   const Panorama seen(eye, scene.bounds());
@@ -156,7 +159,7 @@ TEST(Light, OfAPanoramaWithoutTheNearFieldIsTheIrradianceOfItsPoints) {
 }
 
 TEST(Light, PixelsWithoutASurfaceAreDarkAndChangeNoOther) {
-  const SceneFile scene(kCornell);
+  const Scene scene(kCornell);
   Renderer renderer(scene, small().set("near", "off"));
   const Camera camera = camera_of(scene);
   Seen seen(renderer, camera);
@@ -175,13 +178,15 @@ TEST(Light, PixelsWithoutASurfaceAreDarkAndChangeNoOther) {
   EXPECT_EQ(renderer.light(seen.buffer(), camera), expected);
   const Vectors of_points = renderer.light({seen.width, seen.height, seen.normals, positions}, camera.eye);
   EXPECT_LT(greatest(of_points, expected), 1e-4 * greatest(expected));
-  for (const int dark : {100, 101, 102, 200, 201, 202, 203}) EXPECT_EQ(of_points[dark], (std::array<float, 3>{}));
+  for (const int dark : {100, 101, 102, 200, 201, 202, 203})
+    EXPECT_EQ(of_points[dark], (std::array<float, 3>{}));
   seen.normals[0] = {1e-30f * seen.normals[0][0], 1e-30f * seen.normals[0][1], 1e-30f * seen.normals[0][2]};
-  EXPECT_NEAR(renderer.light(seen.buffer(), camera)[0][1], expected[0][1], 1e-4 * expected[0][1]) << "of any length";
+  EXPECT_NEAR(renderer.light(seen.buffer(), camera)[0][1], expected[0][1], 1e-4 * expected[0][1])
+      << "of any length";
 }
 
 TEST(Light, FramesAndOtherSizesBetweenDoNotChangeIt) {
-  const SceneFile scene(kCornell);
+  const Scene scene(kCornell);
   Renderer renderer(scene, small().set("near-size", "half"));
   const Camera camera = camera_of(scene);
   const Seen seen(renderer, camera);
@@ -191,7 +196,8 @@ TEST(Light, FramesAndOtherSizesBetweenDoNotChangeIt) {
   // As many near pixels in other rows: the empty borders lie elsewhere.
   const GBuffer upright{Panorama::kHeight, Panorama::kWidth, around.normals, around.positions};
   const Vectors turned = renderer.light(upright, eye);
-  EXPECT_EQ(renderer.show(View::irradiance).pixels, renderer.render(View::irradiance, camera).pixels) << "still shown";
+  EXPECT_EQ(renderer.show(View::irradiance).pixels, renderer.render(View::irradiance, camera).pixels)
+      << "still shown";
   EXPECT_EQ(renderer.light(seen.buffer(), camera), seen.irradiance);
   EXPECT_EQ(renderer.light(upright, eye), turned);
   EXPECT_EQ(renderer.light(around.buffer(), eye), first);
@@ -199,7 +205,7 @@ TEST(Light, FramesAndOtherSizesBetweenDoNotChangeIt) {
 
 TEST(Light, OfAnAnimatedSceneIsThatOfItsTime) {
   const test::TemporaryFolder folder;
-  const SceneFile scene(test::write_moving_scene(folder));
+  const Scene scene(test::write_moving_scene(folder));
   Renderer renderer(scene, small()), other(scene, small());
   const Camera camera = camera_of(scene);
   const Seen later(renderer, camera, 0.6);
@@ -208,7 +214,7 @@ TEST(Light, OfAnAnimatedSceneIsThatOfItsTime) {
 }
 
 TEST(Light, RejectsBadSizesAndCameras) {
-  const SceneFile scene(kCornell);
+  const Scene scene(kCornell);
   Renderer renderer(scene, small());
   const Vectors four(4, {0, 1, 0}), three(3, {0, 1, 0});
   const std::vector<float> depths(4, 1.0f);
@@ -225,8 +231,16 @@ TEST(Light, RejectsBadSizesAndCameras) {
   rejected("eye: found", {2, 2, four, four}, {0, NAN, 0});
   EXPECT_THROW(renderer.light({2, 2, four, {}, depths}, "nowhere"), Error);
   EXPECT_THROW(renderer.volumes(), Error) << "no light yet";
-  Renderer by_view(scene, small().set("transport", "exact").set("blockers", "seen").set("blocking", "one-sided").set("near", "off"));
-  EXPECT_THAT(test::error_of(ExitCode::usage, [&] { by_view.light({2, 2, four, four}, Vec3{}); }), HasSubstr("blockers 'seen'"));
+  Renderer by_view(scene, small()
+                              .set("transport", "exact")
+                              .set("blockers", "seen")
+                              .set("blocking", "one-sided")
+                              .set("near", "off"));
+  EXPECT_THAT(test::error_of(ExitCode::usage,
+                             [&] {
+                               by_view.light({2, 2, four, four}, Vec3{});
+                             }),
+              HasSubstr("blockers 'seen'"));
 }
 
 }  // namespace

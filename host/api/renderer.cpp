@@ -77,8 +77,8 @@ void check(const GBuffer& surfaces) {
   const std::size_t pixels = std::size_t(surfaces.width) * std::size_t(surfaces.height);
   const auto require = [&](const char* what, std::size_t found, const char* more) {
     if (found == pixels) return;
-    throw Error(ExitCode::usage, "light: found {} {} for {} x {} pixels, allowed: one for each{}", found, what,
-                surfaces.width, surfaces.height, more);
+    throw Error(ExitCode::usage, "light: found {} {} for {} x {} pixels, allowed: one for each{}", found,
+                what, surfaces.width, surfaces.height, more);
   };
   require("normals", surfaces.normals.size(), "");
   if (surfaces.positions.empty()) {
@@ -114,7 +114,7 @@ struct Renderer::State {
   std::optional<Frame> frame;
   unsigned media;                               ///< of the frame (Scene::Contents)
   std::map<std::string, std::string> metadata;  ///< of the last frame's images; empty before it
-  bool lit = false;                             ///< the cascades have the light of the last render() or light()
+  bool lit = false;  ///< the cascades have the light of the last render() or light()
   double frame_ms = 0;
 
   State(const Scene& scene_file, const Options& given, const std::string& device)
@@ -148,8 +148,11 @@ struct Renderer::State {
   }
 
   std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const SceneCamera& camera) {
-    GivenPixels pixels{static_cast<unsigned>(surfaces.width), static_cast<unsigned>(surfaces.height),
-                       !surfaces.positions.empty(), {}, {}};
+    GivenPixels pixels{static_cast<unsigned>(surfaces.width),
+                       static_cast<unsigned>(surfaces.height),
+                       !surfaces.positions.empty(),
+                       {},
+                       {}};
     const Buffer normals = session.upload(four_wide(surfaces.normals), "normals of a G-buffer");
     Buffer places;
     if (pixels.points) {
@@ -229,7 +232,8 @@ std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const
 std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const Vec3& eye, double seconds) {
   check(surfaces);
   if (surfaces.positions.empty())
-    throw Error(ExitCode::usage, "light: found depths and an eye, allowed: positions, or depths and a camera");
+    throw Error(ExitCode::usage,
+                "light: found depths and an eye, allowed: positions, or depths and a camera");
   const SceneCamera camera = camera_at(eye);
   const std::lock_guard lock(state_->mutex);
   const std::shared_lock scene_stays(state_->file.contents().mutex);

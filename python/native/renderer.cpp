@@ -57,6 +57,18 @@ py::dict dict_of(const Stats& stats) {
 using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(std::span<const std::array<float, 3>>,
                                                                  std::span<const std::array<float, 3>>);
 
+std::span<const std::array<float, 3>> as_span(const FloatArray& array) {
+  return {reinterpret_cast<const std::array<float, 3>*>(array.data()),
+          static_cast<std::size_t>(array.size()) / 3};
+}
+
+py::array_t<float> array_of_vectors(const std::vector<std::array<float, 3>>& values,
+                                    const std::vector<py::ssize_t>& shape) {
+  py::array_t<float> result(shape);
+  if (!values.empty()) std::memcpy(result.mutable_data(), values.data(), values.size() * sizeof(values[0]));
+  return result;
+}
+
 /// Calls `function` for points and a vector of each; `what` names the vectors.
 py::array_t<float> at_points(Renderer& renderer, OfPoints function, const py::object& points,
                              const py::object& given, const char* what) {
@@ -66,14 +78,47 @@ py::array_t<float> at_points(Renderer& renderer, OfPoints function, const py::ob
     throw py::value_error(std::string(what) + ": found shape " + std::string(py::str(along.attr("shape"))) +
                           ", allowed: that of points, " + std::string(py::str(positions.attr("shape"))));
   }
-  const auto as_span = [](const FloatArray& array) {
-    return std::span(reinterpret_cast<const std::array<float, 3>*>(array.data()),
-                     static_cast<std::size_t>(array.size()) / 3);
-  };
   const auto found = interruptible([&] { return (renderer.*function)(as_span(positions), as_span(along)); });
-  py::array_t<float> result(shape);
-  if (!found.empty()) std::memcpy(result.mutable_data(), found.data(), found.size() * sizeof(found[0]));
-  return result;
+  return array_of_vectors(found, shape);
+}
+
+/// Light of a G-buffer of NumPy arrays.
+py::array_t<float> light(Renderer& renderer, const py::object& normals, const py::object& positions,
+                         const py::object& depths, const std::optional<Vec3>& eye,
+                         const std::optional<CameraChoice>& camera, double time) {
+  const FloatArray n = vectors<FloatArray>(normals, "normals");
+  const auto require_image = [&](const py::array& array, py::ssize_t axes, const char* what) {
+    if (array.ndim() == axes && array.shape(0) == n.shape(0) && array.shape(1) == n.shape(1)) return;
+    throw py::value_error(fmt::format("{}: found shape {}, allowed: ({}, {}{})", what,
+                                      std::string(py::str(array.attr("shape"))), n.shape(0), n.shape(1),
+                                      axes == 3 ? ", 3" : ""));
+  };
+  if (n.ndim() != 3) {
+    throw py::value_error("normals: found shape " + std::string(py::str(n.attr("shape"))) +
+                          ", allowed: (height, width, 3)");
+  }
+  if (positions.is_none() == depths.is_none())
+    throw py::value_error(std::string("light: found ") + (depths.is_none() ? "neither" : "both") +
+                          ", allowed: positions or depths");
+  if (eye && camera) throw py::value_error("light: found eye and camera, allowed: one of both");
+  const int limit = std::numeric_limits<int>::max();
+  GBuffer surfaces{.width = static_cast<int>(std::min<py::ssize_t>(n.shape(1), limit)),
+                   .height = static_cast<int>(std::min<py::ssize_t>(n.shape(0), limit)),
+                   .normals = as_span(n)};
+  FloatArray p, d;
+  if (!positions.is_none()) {
+    p = vectors<FloatArray>(positions, "positions");
+    require_image(p, 3, "positions");
+    surfaces.positions = as_span(p);
+  } else {
+    d = real_array<FloatArray>(depths, "depths");
+    require_image(d, 2, "depths");
+    surfaces.depths = std::span(d.data(), static_cast<std::size_t>(d.size()));
+  }
+  const auto found = interruptible([&] {
+    return eye ? renderer.light(surfaces, *eye, time) : renderer.light(surfaces, camera_choice(camera), time);
+  });
+  return array_of_vectors(found, shape_with_last(n, 3));
 }
 
 std::vector<PythonVolume> volumes(Renderer& renderer) {
@@ -156,6 +201,15 @@ void add_renderer(py::module_& module) {
         return interruptible([&] { return renderer.show(what); });
       },
       py::arg("view"), "show(view) -> Image: another view of the last frame, without rendering it again.");
+  type.def("light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
+           py::arg("depths") = py::none(), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
+           py::arg("time") = 0.0,
+           "light(normals, *, positions=None, depths=None, eye=None, camera=None, time=0.0) -> float32 array (height, width, "
+           "3).\n\n"
+           "Irradiance of indirect light [W/m^2] on the pixels of a G-buffer, with the near field, as view 'irradiance' has "
+           "it: normals\n(height, width, 3) of any length; positions [m] of their shape, or depths (height, width) [m] of "
+           "`camera`, a Camera or a\nname (None: the scene's first). Cascades surround `eye`, or the camera's. Pixels "
+           "with a normal of 0, a depth that is not\npositive or a number that is not finite have no surface, and no light.");
   type.def("irradiance",
            [](Renderer& renderer, const py::object& points, const py::object& normals) {
              return at_points(renderer, &Renderer::irradiance, points, normals, "normals");

@@ -152,8 +152,8 @@ const Buffer& Frame::light(const SceneCamera& camera, const GivenPixels& pixels)
   cascades_.prepare(grids, nullptr);
   for (int cascade = options_.cascades; cascade-- > 0;) cascades_.update(cascade, {});
   if (!given_) given_.emplace(session_);
-  const Surface& surface =
-      given_->take(camera_view(camera, static_cast<int>(pixels.width), static_cast<int>(pixels.height)), pixels);
+  const Surface& surface = given_->take(
+      camera_view(camera, static_cast<int>(pixels.width), static_cast<int>(pixels.height)), pixels);
   session_.reserve(given_irradiance_, std::size_t{pixels.width} * pixels.height * sizeof(cl_float4),
                    "irradiance on a given surface");
   near_hits_.invalidate();  // their content is unknown

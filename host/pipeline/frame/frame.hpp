@@ -106,11 +106,11 @@ class Frame {
   FrameLights lights_;
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;
-  std::optional<Kernel> radiance_;  ///< of radiance_at(), built when it is first called
+  std::optional<Kernel> radiance_;     ///< of radiance_at(), built when it is first called
   std::optional<GivenSurface> given_;  ///< of light(), built when it is first called
   Buffer given_irradiance_;
-  Cached near_hits_;                ///< of near_
-  Buffer irradiance_;               ///< float4 per pixel, like image_
+  Cached near_hits_;   ///< of near_
+  Buffer irradiance_;  ///< float4 per pixel, like image_
   Buffer image_;
   Show shown_ = Show::full;
 };

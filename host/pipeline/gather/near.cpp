@@ -76,14 +76,15 @@ NearField::NearField(Session& session, const Basis& basis, const SceneData& scen
             "near"),
       blur_(session, near_source("gather/near_filter.cl", buffers, options), "near_blur"),
       widen_(session, near_source("gather/near_filter.cl", buffers, options), "near_widen"),
-      points_source_(with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather)),
+      points_source_(
+          with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather)),
       filter_source_(near_source("gather/near_filter.cl", buffers, options)) {
   pixel_kernels(false);
   if (options.reflects) {
-    reflect_.emplace(
-        session,
-        reflecting(with_radiance(near_source("gather/near_light.cl", buffers, options), basis, options.gather)),
-        "near_reflect");
+    reflect_.emplace(session,
+                     reflecting(with_radiance(near_source("gather/near_light.cl", buffers, options), basis,
+                                              options.gather)),
+                     "near_reflect");
   }
   directions_ = session.upload(direction_rows(options.rays), "directions of the near field");
 }

@@ -13,10 +13,10 @@
 #include "device/session.hpp"
 #include "options/stage_options.hpp"
 #include "pipeline/gather/gather.hpp"
+#include "pipeline/gather/triangle_tree.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/raster/surface.hpp"
-#include "pipeline/gather/triangle_tree.hpp"
 
 namespace clpv {
 

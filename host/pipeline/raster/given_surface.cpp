@@ -20,7 +20,8 @@ const Surface& GivenSurface::take(const ClpvView& view, const GivenPixels& pixel
   if (!kernel) kernel = made_kernel(session_, pixels.points);
   surface_.view = view;
   surface_.depth = surface_.position = {};
-  session_.reserve(places_, count * (pixels.points ? sizeof(cl_float4) : sizeof(cl_float)), "places of a given surface");
+  session_.reserve(places_, count * (pixels.points ? sizeof(cl_float4) : sizeof(cl_float)),
+                   "places of a given surface");
   session_.reserve(surface_.normal, count * sizeof(cl_float4), "normals of a given surface");
   (pixels.points ? surface_.position : surface_.depth) = places_;
   kernel->set(static_cast<cl_uint>(count), pixels.places, pixels.normals, places_, surface_.normal)

@@ -14,7 +14,8 @@ namespace clpv {
 /// Pixels of a caller on the device, row 0 first.
 struct GivenPixels {
   unsigned width = 0, height = 0;
-  bool points = false;  ///< places are float4 positions [m], w unused; else float depths [m] along the view's forward axis
+  bool points =
+      false;  ///< places are float4 positions [m], w unused; else float depths [m] along the view's forward axis
   cl::Buffer places;
   cl::Buffer normals;  ///< float4, of any length, w unused
 };

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: MIT
+"""Light on the pixels of arrays: a frame's own G-buffer, a panorama, bad input."""
+import numpy as np
+import pytest
+
+import clpv
+from conftest import FRONT, SMALL
+
+
+@pytest.fixture(scope="module")
+def seen(renderer):
+    light = renderer.render("irradiance", FRONT).array[..., :3]
+    return light, renderer.show("normal").array[..., :3], renderer.show("depth").array[..., 0]
+
+
+def test_a_frames_own_depths_give_its_irradiance(renderer, seen):
+    light, normals, depths = seen
+    found = renderer.light(normals, depths=depths, camera=FRONT)
+    assert found.shape == (27, 48, 3) and found.dtype == np.float32
+    assert found.tobytes() == np.ascontiguousarray(light).tobytes() and found.max() > 0
+
+
+def test_positions_about_an_eye(scene):
+    without = clpv.Renderer(scene, near="off", **SMALL)
+    lower, upper = np.array(scene.bounds)
+    x, z = np.meshgrid(np.linspace(lower[0], upper[0], 21), np.linspace(lower[2], upper[2], 13))
+    floor = np.stack([x, np.full_like(x, lower[1]), z], axis=-1)
+    up = np.broadcast_to([0, 2, 0], floor.shape)
+    light = without.light(up, positions=floor, eye=FRONT.eye)
+    assert np.array_equal(light, without.irradiance(floor, up)) and light.max() > 0
+    hole = floor.copy()
+    hole[3, 4] = np.nan
+    assert (without.light(up, positions=hole, eye=FRONT.eye)[3, 4] == 0).all()
+
+
+def test_bad_arrays_are_named(renderer, seen):
+    _, normals, depths = seen
+    with pytest.raises(ValueError, match=r"depths: found shape \(48, 27\), allowed: \(27, 48\)"):
+        renderer.light(normals, depths=depths.T, camera=FRONT)
+    with pytest.raises(ValueError, match="normals: found shape"):
+        renderer.light(normals[0], depths=depths[0], camera=FRONT)
+    with pytest.raises(ValueError, match="positions: found shape"):
+        renderer.light(normals, positions=normals[:, :9], eye=FRONT.eye)
+    with pytest.raises(ValueError, match="found neither, allowed: positions or depths"):
+        renderer.light(normals, camera=FRONT)
+    with pytest.raises(ValueError, match="found eye and camera"):
+        renderer.light(normals, positions=normals, camera=FRONT, eye=FRONT.eye)
+    with pytest.raises(TypeError, match="depths: found an array of <U1"):
+        renderer.light(normals, depths=np.full(depths.shape, "x"))
+    with pytest.raises(clpv.UsageError, match="found depths and an eye"):
+        renderer.light(normals, depths=depths, eye=FRONT.eye)
