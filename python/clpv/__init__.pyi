@@ -266,6 +266,14 @@ class Renderer:
         """
     def show(self, view: _View) -> Image:
         """show(view) -> Image: another view of the last frame, without rendering it again."""
+    def light(self, normals: ArrayLike, *, positions: ArrayLike | None = None, depths: ArrayLike | None = None, eye: _Vector | None = None, camera: str | Camera | None = None, time: float = 0.0) -> NDArray[np.float32]:
+        """light(normals, *, positions=None, depths=None, eye=None, camera=None, time=0.0) -> float32 array (height, width, 3).
+
+        Irradiance of indirect light [W/m^2] on the pixels of a G-buffer, with the near field, as view 'irradiance' has it: normals
+        (height, width, 3) of any length; positions [m] of their shape, or depths (height, width) [m] of `camera`, a Camera or a
+        name (None: the scene's first). Cascades surround `eye`, or the camera's. Pixels with a normal of 0, a depth that is not
+        positive or a number that is not finite have no surface, and no light.
+        """
     def irradiance(self, points: ArrayLike, normals: ArrayLike) -> NDArray[np.float32]:
         """irradiance(points, normals) -> float32 array of their shape: indirect light [W/m^2], red, green, blue.
 

@@ -129,13 +129,13 @@ void NearField::reserve(const ClpvView& view) {
   session_.reserve(distances_, options_.rays * numbers, "distances of the near field");
   const std::size_t tiles = tiles_along(width) * tiles_down(height);
   session_.reserve(counts_, tiles * sizeof(cl_uint), "hits of the near field");
-  const std::size_t hits =
-      tiles * 8 * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
+  const std::size_t hits = tiles * 8 * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
   session_.reserve(hits_, hits, "hits of the near field");
   session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
   session_.reserve(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers, "near field");
   session_.reserve(blurred_, CLPV_NEAR_LIGHT_PLANES * numbers, "blurred near field");
-  session_.fill_zero(hits_, hits);  // read, but not used, behind the last hit of a tile, as radiances without a hit
+  session_.fill_zero(hits_,
+                     hits);  // read, but not used, behind the last hit of a tile, as radiances without a hit
   session_.fill_zero(radiances_, 3 * options_.rays * numbers);
   session_.fill_zero(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers);  // borders stay 0
   session_.fill_zero(blurred_, CLPV_NEAR_LIGHT_PLANES * numbers);
