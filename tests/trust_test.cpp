@@ -273,7 +273,7 @@ TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
 
 /// `clpv quality` of one cell.
 std::string quality(const fs::path& cache) {
-  return " quality " + kTiny + kSmall + "--spp 1 --frames 1 --format csv --cache " + cache.string();
+  return " quality " + kTiny + kSmall + "--spp 1 --frames 1 --format json --cache " + cache.string();
 }
 
 TEST_F(CacheTest, AFifoInPlaceOfACellOrTruthDoesNotEndQuality) {
@@ -300,7 +300,7 @@ TEST_F(CacheTest, AFullDiskDoesNotEndQuality) {
                                             " none " + disk + " && " CLPV_PROGRAM + quality(folder.path()) +
                                             " --vary gather-offset=0,1,2,3,4'");
     EXPECT_EQ(outcome.exit_code, 0) << size << outcome.err;
-    EXPECT_EQ(std::ranges::count(outcome.out, '\n'), 6) << size << outcome.out;
+    EXPECT_EQ(nlohmann::json::parse(outcome.out).at("cells").size(), 5u) << size << outcome.out;
     EXPECT_THAT(outcome.err, HasSubstr("not cached")) << size;
   }
 }
