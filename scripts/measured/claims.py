@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Measures the paper's claims: the numbers of docs/bases.md and docs/paper/figures.md.
 
-    scripts/claims [lobes] [tables] [light] [views] [texels] [shadows] [columns] [cost] [--model PATH/Sponza.gltf] [--out DIR]
+    scripts/claims [lobes] [lambdas] [tables] [light] [views] [texels] [shadows] [columns] [cost] [--model PATH/Sponza.gltf] [--out DIR]
 
 lobes    errors of clamped cosines in the paper's sets, in other sets that fit its description, and in searched centres
+lambdas  verdicts on lobes along +z, and on the difference of both bases' light at `curtains`, by lambda
 tables   errors and energies of rotated lobes, by the number of table entries
 light    difference of sh2 and srbf8v2 with `--preset paper`, and the error of both against path tracing, by steps,
          size of the smallest cascade and texels of the RSM; camera `curtains`
@@ -63,6 +64,9 @@ GUESSES = {
 
 NAMED = ("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24", "bins96")
 ALONG_Z, OBLIQUE = (0, 0, 1), (-2, 1, -3)
+OF_THE_PAPER = ("srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
+LAMBDAS = 0.1, 0.25, 0.4, 0.55, 0.6
+SIMILAR = 0.1  # of the error of sh2
 TABLE_SIZES = 256, 257, 512, 1024, 0  # 0: H is computed
 
 
@@ -98,6 +102,34 @@ def lobes(_):
         bound = f"{row['bound']:8.4f}" if row["bound"] is not None else f"{'-':>8}"
         print(f"{f'{count}, over {over}, lambdas {lambdas}':34} {row['condition']:9.4g} {row['error']:8.4f} {bound}")
     return {"sets": rows, "searched": searched}
+
+
+def along_z(name, value):
+    """Relative L2 error of a set's lobe along +z; None where A is too close to singular."""
+    try:
+        return clpv.Basis(name, bandwidth=value).lobe(ALONG_Z)["relative_l2"]
+    except clpv.UsageError:
+        return None
+
+
+def lambdas(arguments):
+    """Rules on lobes along +z by lambda, which the paper gives for one figure only: a set is worse than sh2 if its error is
+    larger, and very similar if the errors differ by a tenth of sh2's at most. Light: --preset paper, 12.5 m, 8 steps."""
+    views_of = Views(arguments)
+    of_sh2 = clpv.Basis("sh2").lobe(ALONG_Z)["relative_l2"]
+    settings = {"preset": "paper", "cascade_size": 12.5, "iterations": 8, "lobe_time": "host"}
+    image_of_sh2 = views_of.image("curtains", basis="sh2", **settings)
+    rows = []
+    for value in LAMBDAS:
+        errors = {name: along_z(name, value) for name in OF_THE_PAPER}
+        image = views_of.image("curtains", basis="srbf8v2", lambda_=value, **settings)
+        rows.append({"lambda": value, "sh2": of_sh2, **errors,
+                     "worse": all(errors[name] > of_sh2 for name in ("srbf4", "srbf8v1", "srbf8v3")),
+                     "similar": abs(errors["srbf8v2"] - of_sh2) <= SIMILAR * of_sh2,
+                     "difference": clpv.compare(image, image_of_sh2).nrmse,
+                     "error": clpv.compare(image, views_of.truth("curtains")).nrmse})
+        print(rows[-1])
+    return rows
 
 
 def tables(_):
@@ -286,8 +318,8 @@ def cost(arguments):
     return text.splitlines()
 
 
-CLAIMS = {"lobes": lobes, "tables": tables, "light": light, "views": views, "texels": texels, "shadows": shadows,
-          "columns": columns, "cost": cost}
+CLAIMS = {"lobes": lobes, "lambdas": lambdas, "tables": tables, "light": light, "views": views, "texels": texels,
+          "shadows": shadows, "columns": columns, "cost": cost}
 
 
 def main():

@@ -409,6 +409,15 @@ def basis_guesses():
 
 
 @table
+def basis_lambdas():
+    """Lobes along +z and light at `curtains`, by lambda."""
+    names = ("sh2", "srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
+    return [["lambda", *names, "4, 8v1, 8v3 worse than SH", "8v2 very similar to SH", "light: 8v2 and SH differ by", "*E* of 8v2"]] + [
+        [f"{row['lambda']}", *(f"{row[name]:.3f}" if row[name] else "-" for name in names), *("yes" if row[rule] else "no" for rule in ("worse", "similar")),
+         *(f"{row[key]:.3f}" for key in ("difference", "error"))] for row in load("claims")["lambdas"]]
+
+
+@table
 def basis_search():
     lines = [["N", "lambda 0.25", "best lambda", "bound", "over axes, best lambda"]]
     rows = load("claims")["lobes"]["searched"]
