@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m clpv.score DIR: errors of a folder of images of indirect light against the truths of a suite."""
+"""python3 -m clpv.score DIR...: errors of folders of images of indirect light against the truths of a suite."""
 import argparse
 import json
 import pathlib
 import sys
 
-from clpv.score import suite
+from clpv.score import page, suite
 from clpv.score.exr import BadImage
 
 BAD_INPUT = 3
@@ -27,29 +27,35 @@ def table(score):
 
 def main(arguments):
     parser = argparse.ArgumentParser(prog="python3 -m clpv.score", description=__doc__)
-    parser.add_argument("folder", metavar="DIR", type=pathlib.Path,
+    parser.add_argument("folders", metavar="DIR", type=pathlib.Path, nargs="+",
                         help="images VIEW.exr, or frames VIEW.NUMBER.exr of the same still view: linear radiance")
     parser.add_argument("--suite", metavar="FOLDER", type=pathlib.Path, default=pathlib.Path("."),
                         help="folder with suite.json (default: the current one)")
     parser.add_argument("--method", metavar="NAME", help="name of the method in the JSON (default: that of DIR)")
     parser.add_argument("--only", metavar="PATTERN", action="append", help="views, such as 'cornell-*'; repeatable (default: all)")
-    parser.add_argument("-o", "--output", metavar="FILE.json", type=pathlib.Path, help="writes the score; -: to stdout, in place of the table")
+    parser.add_argument("-o", "--output", metavar="FILE.json", type=pathlib.Path, help="writes the score")
+    parser.add_argument("--page", metavar="FILE.html", type=pathlib.Path, help="writes a page: images of all DIR beside the truths")
     given = parser.parse_args(arguments)
+    if len(given.folders) > 1 and (given.method or given.output):
+        parser.error("--method and --output: found several DIR; allowed: one")
+    only = given.only or ["*"]
     try:
-        score = suite.score(given.folder, given.suite, given.method, given.only or ["*"])
+        scores = [suite.score(folder, given.suite, given.method, only) for folder in given.folders]
+        titles = [score["method"] for score in scores]
+        if given.page and len(set(titles)) < len(titles):
+            parser.error("--page: found folders of the same name; allowed: different names")
+        if given.page:
+            page.write(given.page, given.suite, dict(zip(titles, given.folders)), only)
     except BadImage as error:
         print(f"clpv.score: {error}", file=sys.stderr)
         return BAD_INPUT
-    for row in score["views"]:
-        for suspicion in row["suspected"]:
-            print(f"clpv.score: {row['view']} {suspicion}", file=sys.stderr)
-    text = json.dumps(score, indent=1) + "\n"
-    if given.output == pathlib.Path("-"):
-        print(text, end="")
-        return 0
+    for score in scores:
+        for row in score["views"]:
+            for suspicion in row["suspected"]:
+                print(f"clpv.score: {score['method']}: {row['view']} {suspicion}", file=sys.stderr)
+        print(*([score["method"]] if len(scores) > 1 else []), table(score), sep="\n")
     if given.output:
-        given.output.write_text(text)
-    print(table(score))
+        given.output.write_text(json.dumps(scores[0], indent=1) + "\n")
     return 0
 
 

@@ -34,7 +34,7 @@ def errors(frames, truth, valid, exposure):
     total = target.sum()
     result = {"nrmse": root_of_ratio(((lit - target) ** 2).sum() / len(lit), power), "best_gain": gain,
               "nrmse_best_gain": nrmse_best_gain, "energy_ratio": lit.sum() / len(lit) / total if total else None,
-              "flip": numpy.mean([visible(frame, truth, valid, exposure) for frame in frames])}
+              "flip": numpy.mean([flip_map(frame, truth, valid, exposure)[valid].mean() for frame in frames])}
     if len(lit) > 1:
         variance = lit.var(axis=0, ddof=1).sum()
         off = ((lit.mean(axis=0) - target) ** 2).sum()
@@ -43,10 +43,10 @@ def errors(frames, truth, valid, exposure):
     return result
 
 
-def visible(image, truth, valid, exposure):
-    """Mean FLIP over valid pixels; others are black."""
+def flip_map(image, truth, valid, exposure):
+    """FLIP of each pixel; invalid ones are black in both."""
     shown = [flip.displayed(numpy.where(valid[..., None], values, 0).astype(float), exposure) for values in (image, truth)]
-    return flip.flip(*shown)[valid].mean() if valid.any() else None
+    return flip.flip(*shown)
 
 
 def correlation(a, b):
