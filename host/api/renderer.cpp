@@ -112,7 +112,7 @@ struct Renderer::State {
   RenderOptions options;
   Session session;
   std::optional<Frame> frame;
-  unsigned media;                               ///< of the frame (Scene::Contents)
+  unsigned rebuilds;                            ///< of the frame (Scene::Contents)
   std::map<std::string, std::string> metadata;  ///< of the last frame's images; empty before it
   bool lit = false;  ///< the cascades have the light of the last render() or light()
   double frame_ms = 0;
@@ -123,7 +123,7 @@ struct Renderer::State {
         posed(file),
         options(resolve_options(given.given(), posed.scene())),
         session(choose_device(device), ProgramCache::of_user()),
-        media(file.contents().media) {
+        rebuilds(file.contents().rebuilds) {
     frame.emplace(session, posed.scene(), options);
     scene_stays.unlock();
   }
@@ -138,10 +138,10 @@ struct Renderer::State {
   void pose(double seconds) {
     lit = false;
     const bool moved = posed.pose(seconds);
-    if (media != file.contents().media) {
+    if (rebuilds != file.contents().rebuilds) {
       metadata.clear();
       frame.emplace(session, posed.scene(), options);
-      media = file.contents().media;
+      rebuilds = file.contents().rebuilds;
     } else if (moved) {
       frame->scene_moved();
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include "api/scene_contents.hpp"
 #include "scene/bounds.hpp"
@@ -30,6 +31,8 @@ std::vector<To> converted(const char* list, const std::vector<From>& given, std:
 }
 
 }  // namespace
+
+Scene::Scene() : contents_(std::make_shared<Contents>()) {}
 
 Scene::Scene(const std::filesystem::path& path, const std::filesystem::path& model)
     : contents_(std::make_shared<Contents>(path, model)) {}
@@ -74,7 +77,38 @@ void Scene::set_medium(const std::optional<Medium>& medium) {
   if (medium) made = scene_medium(*medium, rejected_in("medium"));
   const std::lock_guard lock(contents_->mutex);
   contents_->moving.set_medium(made);
-  ++contents_->media;
+  ++contents_->rebuilds;
+}
+
+int Scene::add_mesh(const Mesh& mesh, const Transform& transform) {
+  const std::lock_guard lock(contents_->mutex);
+  const int number = contents_->moving.add_mesh(mesh, transform);
+  contents_->changed(true);
+  return number;
+}
+
+int Scene::add_instance(int mesh, const Transform& transform) {
+  const std::lock_guard lock(contents_->mutex);
+  const int number = contents_->moving.add_instance(mesh, transform);
+  contents_->changed(true);
+  return number;
+}
+
+void Scene::remove_mesh(int mesh) {
+  const std::lock_guard lock(contents_->mutex);
+  contents_->moving.remove_mesh(mesh);
+  contents_->changed(true);
+}
+
+void Scene::set_positions(int mesh, std::span<const std::array<float, 3>> positions,
+                          std::span<const std::array<float, 3>> normals) {
+  const std::lock_guard lock(contents_->mutex);
+  contents_->changed(contents_->moving.set_positions(mesh, positions, normals));
+}
+
+void Scene::set_transform(int mesh, const Transform& transform) {
+  const std::lock_guard lock(contents_->mutex);
+  contents_->changed(contents_->moving.set_transform(mesh, transform));
 }
 
 bool Scene::moves() const {
@@ -88,6 +122,7 @@ std::vector<std::string> Scene::notes() const {
 }
 
 std::array<Vec3, 2> Scene::bounds() const {
+  const std::shared_lock lock(contents_->mutex);
   const glm::vec3 &lower = contents_->moving.scene().lower, &upper = contents_->moving.scene().upper;
   return {{{lower.x, lower.y, lower.z}, {upper.x, upper.y, upper.z}}};
 }
@@ -97,14 +132,19 @@ double Scene::exposure() const {
 }
 
 PosedScene::PosedScene(const Scene& file)
-    : file_(file), posed_(file.moves() ? std::optional(file.contents().moving) : std::nullopt) {}
+    : file_(file),
+      posed_(file.moves() ? std::optional(file.contents().moving) : std::nullopt),
+      geometries_(file.contents().geometries) {}
 
 bool PosedScene::pose(double seconds) {
   if (!(std::abs(seconds) <= bounds::kSeconds)) {  // rejects NaN too
     throw Error(ExitCode::usage, "seconds: found {}, allowed: {}..{}", seconds, -bounds::kSeconds,
                 bounds::kSeconds);
   }
-  if (!posed_) return false;
+  const Scene::Contents& shared = file_.contents();
+  const bool changed = std::exchange(geometries_, shared.geometries) != shared.geometries;
+  if (!posed_) return changed;
+  if (changed) posed_ = shared.moving;
   if (const auto& cameras = file_.contents().cameras) posed_->set_cameras(*cameras);
   if (const auto& lights = file_.contents().lights) posed_->set_lights(*lights);
   posed_->set_medium(file_.contents().moving.scene().medium);

@@ -18,8 +18,16 @@ struct Scene::Contents {
   /// Arguments of the last set_cameras() and set_lights().
   std::optional<std::vector<SceneCamera>> cameras;
   std::optional<std::vector<SceneLight>> lights;
-  unsigned media = 0;  ///< calls of set_medium()
+  unsigned rebuilds = 0;    ///< changes after which frames allocate their memory again
+  unsigned geometries = 0;  ///< changes of meshes
 
+  /// Counts a change of meshes.
+  void changed(bool rebuilds_frames) {
+    ++geometries;
+    if (rebuilds_frames) ++rebuilds;
+  }
+
+  Contents() = default;
   Contents(const std::filesystem::path& path, const std::filesystem::path& model) : moving(path, model) {}
 };
 
@@ -31,7 +39,7 @@ class PosedScene {
 
   const SceneData& scene() const { return posed_ ? posed_->scene() : file_.contents().moving.scene(); }
 
-  /// Poses the scene and applies changes of the file's cameras, lights and medium. Returns true if the scene may have moved.
+  /// Poses the scene and applies changes of the shared one. Returns true if the scene may have moved.
   /// Throws Error(usage) for a time out of range.
   bool pose(double seconds);
 
@@ -41,6 +49,7 @@ class PosedScene {
  private:
   Scene file_;
   std::optional<MovingScene> posed_;
+  unsigned geometries_;  ///< of the last pose
 };
 
 }  // namespace clpv

@@ -23,6 +23,9 @@ inline constexpr std::size_t kTextures = 4096;
 inline constexpr int kSkyWidth = 8192, kSkyHeight = 4096, kSkyChannels = 16;
 inline constexpr double kSkyRadiance = 1e10;
 
+// Radiance of emissive materials [W/m^2/sr].
+inline constexpr double kEmission = 1e9;
+
 // Coefficients of a medium [1/m], and its anisotropy.
 inline constexpr double kExtinction = 1e6;
 inline constexpr double kAnisotropy = 0.9;

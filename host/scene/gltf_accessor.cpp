@@ -153,13 +153,9 @@ double GltfAccessor::number(std::size_t element, int component) const {
   return from == nullptr ? 0.0 : load_number(from, accessor_->componentType, accessor_->normalized);
 }
 
-double GltfAccessor::finite(std::size_t element, int component) const {
-  const double value = number(element, component);
-  if (!std::isfinite(value)) {
-    reject(document_->file, place_,
-           fmt::format("{} in component {} of element {}", value, component, element), "finite numbers");
-  }
-  return value;
+void GltfAccessor::reject_element(std::size_t element, const std::string& found,
+                                  const std::string& allowed) const {
+  reject(document_->file, place_, fmt::format("{} of element {}", found, element), allowed);
 }
 
 std::uint32_t GltfAccessor::index(std::size_t element, int component) const {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "scene/gltf_document.hpp"
+#include "scene/primitive.hpp"
 
 namespace clpv {
 
@@ -36,7 +37,7 @@ inline constexpr ComponentTypes kIndices{
              (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT && !normalized);
     }};
 
-class GltfAccessor {
+class GltfAccessor : public NumberArray {
  public:
   /// Borrows the document. Throws Error(bad_input) if the accessor exceeds its views.
   GltfAccessor(const GltfDocument& document, int index);
@@ -46,15 +47,14 @@ class GltfAccessor {
   GltfAccessor(const GltfDocument& document, int index, std::string place, std::initializer_list<int> types,
                const ComponentTypes& numbers, std::optional<std::size_t> count = std::nullopt);
 
-  std::size_t count() const { return accessor_->count; }
-  int components() const { return components_; }
+  std::size_t count() const override { return accessor_->count; }
+  int components() const override { return components_; }
 
-  /// One component of an element, which must be in range. Normalised integers become [0, 1] or [-1, 1].
-  double number(std::size_t element, int component) const;
-  /// As number(). Throws Error(bad_input) for infinity and NaN.
-  double finite(std::size_t element, int component) const;
-  /// One component of an element as an unsigned integer.
-  std::uint32_t index(std::size_t element, int component = 0) const;
+  /// Normalised integers become [0, 1] or [-1, 1].
+  double number(std::size_t element, int component) const override;
+  std::uint32_t index(std::size_t element, int component = 0) const override;
+  [[noreturn]] void reject_element(std::size_t element, const std::string& found,
+                                   const std::string& allowed) const override;
 
  private:
   std::span<const std::uint8_t> elements(int view, std::size_t offset, std::size_t count, std::size_t stride,

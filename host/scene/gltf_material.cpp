@@ -80,13 +80,6 @@ void read_alpha(const tinygltf::Material& source, const std::string& place, Clpv
   if (source.doubleSided) made.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
 }
 
-ClpvMaterial blank_material() {
-  ClpvMaterial made{};
-  std::fill(std::begin(made.base_colour), std::end(made.base_colour), 1.0f);
-  made.texture = made.emissive_texture = CLPV_NO_TEXTURE;
-  return made;
-}
-
 void read_material(const GltfDocument& document, std::size_t index, MaterialSet& set, Notes& notes) {
   const tinygltf::Material& source = document.model.materials[index];
   const std::string place = fmt::format("/materials/{}", index);

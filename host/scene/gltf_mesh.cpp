@@ -35,36 +35,19 @@ class Appender {
   /// Appends an instance of the primitive for each node. Checks the bounds before it allocates.
   void append(const std::shared_ptr<const LocalPrimitive>& primitive, const std::vector<std::size_t>& nodes,
               PosedTree& posed) {
-    reserve(*primitive, nodes.size());
+    reserve(scene_, *primitive, nodes.size(), document_.file);
     for (const std::size_t node : nodes) {
       Instance made = instance(primitive, node);
-      scene_.vertices.resize(scene_.vertices.size() + primitive->vertices.size());
-      scene_.triangles.resize(scene_.triangles.size() + primitive->triangles.size());
-      place(made, posed, scene_);
+      clpv::append(made, posed, scene_);
       if (moves(made, motion_.tree)) motion_.meshes.push_back(std::move(made));
     }
   }
 
  private:
-  void reserve(const LocalPrimitive& primitive, std::size_t count) {
-    const std::uint64_t vertices = scene_.vertices.size() + count * primitive.vertices.size();
-    const std::uint64_t triangles = scene_.triangles.size() + count * primitive.triangles.size();
-    if (vertices > bounds::kVertices || triangles > bounds::kTriangles) {
-      reject(document_.file, primitive.place,
-             fmt::format("{} vertices and {} triangles so far, with this primitive at {} nodes", vertices,
-                         triangles, count),
-             fmt::format("at most {} and {} in all", bounds::kVertices, bounds::kTriangles));
-    }
-    grow(scene_.vertices, vertices);
-    grow(scene_.triangles, triangles);
-  }
-
   Instance instance(const std::shared_ptr<const LocalPrimitive>& primitive, std::size_t node) {
     Instance made;
     made.primitive = primitive;
     made.node = node;
-    made.first_vertex = static_cast<std::uint32_t>(scene_.vertices.size());
-    made.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
     const TreeNode& at = motion_.tree.nodes[node];
     if (!primitive->targets.empty()) made.weights = stored_weights(document_, at, primitive->targets.size());
     if (const int skin = entry(document_.model.nodes, at.index).skin; skin >= 0) {
@@ -85,12 +68,6 @@ class Appender {
                fmt::format("0 to {}, the joints of /skins/{}", joints - 1, skin));
       }
     }
-  }
-
-  /// Reserves with geometric growth: an exact reserve for each primitive would copy all vertices each time.
-  template <typename T>
-  static void grow(std::vector<T>& values, std::uint64_t size) {
-    if (size > values.capacity()) values.reserve(std::max<std::size_t>(size, 2 * values.capacity()));
   }
 
   const GltfDocument& document_;

@@ -12,6 +12,7 @@
 #include "scene/gltf_document.hpp"
 #include "scene/motion.hpp"
 #include "scene/notes.hpp"
+#include "scene/primitive.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -83,19 +84,11 @@ void append_meshes(const GltfDocument& document, PosedTree& posed, const Materia
 void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit,
                   SceneData& scene, Motion& motion, Notes& notes);
 
-/// Geometry that the scene may still add.
-struct GeometryBudget {
-  std::uint64_t vertices, triangles;
-  std::uint64_t morph_numbers;  ///< numbers in morph targets
-};
-
 /// Reads primitive `index` of mesh `mesh` with joints, weights and morph targets; subtracts from `budget.morph_numbers`.
 /// Points and lines give no triangles and a note. `slots` is scratch memory, kNoSlot between calls, as primitives often share
 /// one large accessor. Throws Error(bad_input).
 LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_t index,
                               const MaterialSet& materials, GeometryBudget& budget,
                               std::vector<std::uint32_t>& slots, Notes& notes);
-
-inline constexpr std::uint32_t kNoSlot = 0xffffffff;
 
 }  // namespace clpv

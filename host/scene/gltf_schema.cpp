@@ -147,7 +147,7 @@ Rules material_rules() {
                  flag("/materials/*/doubleSided"),
                  object("/materials/*/extensions"),
                  object(strength),
-                 number(strength + "/emissiveStrength", 0, 1e9),
+                 number(strength + "/emissiveStrength", 0, bounds::kEmission),
                  index("/textures/*/source", "/images"),
                  index("/textures/*/sampler", "/samplers"),
                  choice("/samplers/*/wrapS", {10497, 33071, 33648}),

@@ -53,6 +53,7 @@ std::string extension_of(const std::filesystem::path& path) {
 }
 
 void find_bounds(SceneData& scene) {
+  scene.lower = scene.upper = glm::vec3(0);
   if (scene.vertices.empty()) return;
   scene.lower = glm::vec3(std::numeric_limits<float>::max());
   scene.upper = -scene.lower;
@@ -118,7 +119,9 @@ SceneLight added_sun() {
   return sun;
 }
 
-const std::string kAddedCamera = "no camera: added one that frames the model",
+const std::string kInMemory = "(in memory)";  // name and path of a scene without a file
+const std::string kNoTriangles = "the model has no triangles",
+                  kAddedCamera = "no camera: added one that frames the model",
                   kAddedSun = fmt::format("no light: added a sun of {} lux", kSunIlluminance);
 
 }  // namespace
@@ -126,7 +129,7 @@ const std::string kAddedCamera = "no camera: added one that frames the model",
 /// Adds a default camera and light, with a note each, to a scene whose bounding box is set. `has_lights`: an empty list of
 /// lights is intended, and gets no default.
 void MovingScene::add_defaults(bool has_lights) {
-  if (scene_.triangles.empty()) scene_.notes.push_back("the model has no triangles");
+  if (scene_.triangles.empty()) scene_.notes.push_back(kNoTriangles);
   if (scene_.cameras.empty()) {
     scene_.cameras.push_back(framing_camera(scene_));
     scene_.notes.push_back(kAddedCamera);
@@ -201,6 +204,11 @@ void MovingScene::set_medium(std::optional<ClpvMedium> medium) {
   scene_.medium = medium;
 }
 
+MovingScene::MovingScene() {
+  scene_.name = scene_.path = kInMemory;
+  add_defaults(false);
+}
+
 MovingScene::MovingScene(const std::filesystem::path& path, const std::filesystem::path& replacement) {
   Notes notes;
   const std::string extension = extension_of(path);
@@ -225,6 +233,49 @@ MovingScene::MovingScene(const std::filesystem::path& path, const std::filesyste
   scene_.name = path.stem().string();
 }
 
+/// Updates what depends on the meshes.
+void MovingScene::meshes_changed() {
+  find_bounds(scene_);
+  std::erase(scene_.notes, kNoTriangles);
+  if (scene_.triangles.empty()) scene_.notes.push_back(kNoTriangles);
+  if (std::ranges::find(scene_.notes, kAddedCamera) != scene_.notes.end())
+    scene_.cameras = {framing_camera(scene_)};
+  if (scene_.start_reach) {
+    scene_.start_reach.reset();
+    scene_.start_reach = scene_.reach();
+  }
+}
+
+int MovingScene::add_mesh(const Mesh& mesh, const Transform& transform) {
+  const int number = added_.add(mesh, transform, scene_);
+  meshes_changed();
+  return number;
+}
+
+int MovingScene::add_instance(int mesh, const Transform& transform) {
+  const int number = added_.add_instance(mesh, transform, scene_);
+  meshes_changed();
+  return number;
+}
+
+void MovingScene::remove_mesh(int mesh) {
+  added_.remove(mesh, scene_);
+  meshes_changed();
+}
+
+bool MovingScene::set_positions(int mesh, std::span<const std::array<float, 3>> positions,
+                                std::span<const std::array<float, 3>> normals) {
+  const bool first = added_.set_positions(mesh, positions, normals, scene_);
+  meshes_changed();
+  return first;
+}
+
+bool MovingScene::set_transform(int mesh, const Transform& transform) {
+  const bool first = added_.set_transform(mesh, transform, scene_);
+  meshes_changed();
+  return first;
+}
+
 void MovingScene::pose(double seconds) {
   motion_.pose(scene_, seconds);
   if (!motion_.meshes.empty()) find_bounds(scene_);
@@ -239,7 +290,7 @@ SceneData load_scene(const std::filesystem::path& path, const std::filesystem::p
 
 bool is_bare_model(const SceneData& scene) {
   const std::string extension = extension_of(scene.path);
-  return extension == ".gltf" || extension == ".glb";
+  return extension == ".gltf" || extension == ".glb" || scene.path == kInMemory;
 }
 
 }  // namespace clpv

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "scene/added_meshes.hpp"
 #include "scene/motion.hpp"
 #include "scene/notes.hpp"
 #include "scene/scene.hpp"
@@ -19,6 +20,9 @@ SceneData load_scene(const std::filesystem::path& path, const std::filesystem::p
 /// A scene that may be animated, loaded once and posed at any time. A default camera frames the scene at 0 s.
 class MovingScene {
  public:
+  /// A scene without meshes.
+  MovingScene();
+
   /// Loads the scene at 0 s. Throws as load_scene().
   explicit MovingScene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
@@ -40,6 +44,15 @@ class MovingScene {
   /// the present time.
   void set_medium(std::optional<ClpvMedium> medium);
 
+  /// Change meshes in memory, as clpv::Scene does. set_positions() and set_transform() return true if the mesh moves for the first
+  /// time, so that SceneData::moving is longer. Call before pose().
+  int add_mesh(const Mesh& mesh, const Transform& transform);
+  int add_instance(int mesh, const Transform& transform);
+  void remove_mesh(int mesh);
+  bool set_positions(int mesh, std::span<const std::array<float, 3>> positions,
+                     std::span<const std::array<float, 3>> normals);
+  bool set_transform(int mesh, const Transform& transform);
+
   SceneData take() && { return std::move(scene_); }
 
  private:
@@ -47,15 +60,17 @@ class MovingScene {
   void set_views(SceneViews views);
   void add_defaults(bool has_lights);
   void forget_missing_lights();
+  void meshes_changed();
 
   Motion motion_;
+  AddedMeshes added_;
   SceneDescription description_;  ///< empty without a scene file
   SceneData scene_;
 };
 
 inline constexpr double kSunIlluminance = 10;  ///< of the sun that a model without lights gets [lx]
 
-/// Returns true if the scene is a model without a scene file, and thus without settings of cascades.
+/// Returns true if the scene has no scene file, and thus no settings of cascades: a model, or meshes in memory.
 bool is_bare_model(const SceneData& scene);
 
 }  // namespace clpv

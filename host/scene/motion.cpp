@@ -30,7 +30,7 @@ std::vector<LocalVertex> morphed(const LocalPrimitive& primitive, std::span<cons
   std::vector<LocalVertex> vertices = primitive.vertices;
   for (std::size_t t = 0; t < primitive.targets.size(); ++t)
     add_target(primitive.targets[t], weights[t], vertices);
-  if (primitive.flat) {
+  if (primitive.normals == Normals::flat) {
     for (const glm::uvec3& t : primitive.triangles) {
       const glm::dvec3 normal = triangle_normal(vertices, t);
       for (int i = 0; i < 3 && normal != glm::dvec3(0); ++i) vertices[t[i]].normal = normal;
@@ -90,8 +90,8 @@ Vertex placed(const LocalVertex& local, const glm::dmat4& to_world, const glm::d
   for (int i = 0; i < 3; ++i) {
     if (!(std::abs(p[i]) <= bounds::kCoordinate)) {
       reject(tree.file, instance.primitive->place,
-             fmt::format("vertex {} at ({}, {}, {}) m, placed by /nodes/{}", local.source, p.x, p.y, p.z,
-                         tree.nodes[instance.node].index),
+             fmt::format("vertex {} at ({}, {}, {}) m, placed by {}", local.source, p.x, p.y, p.z,
+                         place_of(tree.nodes[instance.node])),
              fmt::format("coordinates within +-{} m", bounds::kCoordinate));
     }
   }
@@ -125,6 +125,12 @@ void place_triangles(const Instance& instance, bool mirrored, SceneData& scene) 
     const std::uint32_t second = base + (mirrored ? t.z : t.y), third = base + (mirrored ? t.y : t.z);
     *triangle++ = {{base + t.x, second, third}, instance.primitive->material};
   }
+}
+
+/// Reserves with geometric growth: an exact reserve for each primitive would copy all vertices each time.
+template <typename T>
+void grow(std::vector<T>& values, std::uint64_t size) {
+  if (size > values.capacity()) values.reserve(std::max<std::size_t>(size, 2 * values.capacity()));
 }
 
 /// A node's transform, and its file and JSON pointer for messages.
@@ -173,6 +179,33 @@ bool moves(const Instance& instance, const NodeTree& tree) {
   const std::vector<std::size_t>& joints = instance.skin->joints;
   return std::any_of(joints.begin(), joints.end(),
                      [&](std::size_t joint) { return tree.nodes[joint].moves; });
+}
+
+MeshRange range_of(const Instance& instance) {
+  return {instance.first_vertex, static_cast<std::uint32_t>(instance.primitive->vertices.size()),
+          instance.first_triangle, static_cast<std::uint32_t>(instance.primitive->triangles.size())};
+}
+
+void reserve(SceneData& scene, const LocalPrimitive& primitive, std::size_t count, const std::string& file) {
+  const std::uint64_t vertices = scene.vertices.size() + count * primitive.vertices.size();
+  const std::uint64_t triangles = scene.triangles.size() + count * primitive.triangles.size();
+  if (vertices > bounds::kVertices || triangles > bounds::kTriangles) {
+    reject(file, primitive.place,
+           fmt::format("{} vertices and {} triangles so far, with this primitive at {} nodes", vertices,
+                       triangles, count),
+           fmt::format("at most {} and {} in all", bounds::kVertices, bounds::kTriangles));
+  }
+  grow(scene.vertices, vertices);
+  grow(scene.triangles, triangles);
+}
+
+void append(Instance& instance, PosedTree& posed, SceneData& scene) {
+  const LocalPrimitive& primitive = *instance.primitive;
+  instance.first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
+  instance.first_triangle = static_cast<std::uint32_t>(scene.triangles.size());
+  scene.vertices.resize(scene.vertices.size() + primitive.vertices.size());
+  scene.triangles.resize(scene.triangles.size() + primitive.triangles.size());
+  place(instance, posed, scene);
 }
 
 void place(const Instance& instance, PosedTree& posed, SceneData& scene) {

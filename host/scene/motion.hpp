@@ -32,12 +32,15 @@ struct MorphTarget {
   std::vector<glm::vec3> positions, normals;
 };
 
+/// Where normals come from: given; of each triangle, whose vertices no other shares; means of triangles, weighted by angle.
+enum class Normals { stored, flat, smooth };
+
 struct LocalPrimitive {
   std::string place;  ///< "/meshes/3/primitives/0"
   std::vector<LocalVertex> vertices;
   std::vector<glm::uvec3> triangles;
   std::uint32_t material = 0;
-  bool flat = false;                  ///< flat normals: triangles share no vertices
+  Normals normals = Normals::stored;
   std::vector<Influence> influences;  ///< one per vertex; empty without joints
   std::vector<MorphTarget> targets;
 };
@@ -54,8 +57,18 @@ struct Instance {
   std::uint32_t first_vertex = 0, first_triangle = 0;  ///< in the scene, whose vectors have their final size
 };
 
+/// Range of the scene's vertices and triangles that an instance fills.
+MeshRange range_of(const Instance& instance);
+
 /// Returns true if the instance is animated.
 bool moves(const Instance& instance, const NodeTree& tree);
+
+/// Reserves memory for more instances of a primitive, with geometric growth. Throws Error(bad_input) with `file` and the primitive's
+/// place for more geometry than the bounds allow.
+void reserve(SceneData& scene, const LocalPrimitive& primitive, std::size_t count, const std::string& file);
+
+/// Appends an instance to the scene, and sets the range that it fills. Throws as place().
+void append(Instance& instance, PosedTree& posed, SceneData& scene);
 
 /// Writes the vertices [m] and triangles of an instance into the scene, transformed by morph targets, then skin or node.
 /// Mirrored instances keep their fronts outside. Throws Error(bad_input) for coordinates beyond the bounds.

@@ -40,6 +40,10 @@ glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double se
 
 }  // namespace
 
+std::string place_of(const TreeNode& node) {
+  return node.index < 0 ? "transform" : fmt::format("/nodes/{}", node.index);
+}
+
 glm::dmat4 Pose::matrix() const {
   glm::dmat4 transform(1.0);
   if (translation) transform = glm::translate(transform, *translation);
@@ -55,7 +59,7 @@ std::vector<glm::dmat4> NodeTree::to_world(double seconds) const {
     const glm::dmat4& parent = node.parent ? made[*node.parent] : root;
     made.push_back(parent * local_transform(*this, node, seconds));
     if (!finite(made.back())) {
-      reject(file, fmt::format("/nodes/{}", node.index), "a transform that overflows", "finite transforms");
+      reject(file, place_of(node), "a transform that overflows", "finite transforms");
     }
   }
   return made;

@@ -30,13 +30,16 @@ struct NodeCurves {
 };
 
 struct TreeNode {
-  int index = 0;                      ///< in the document
+  int index = 0;                      ///< in the document; below 0: of a mesh in memory
   std::optional<std::size_t> parent;  ///< position in NodeTree::nodes; parents come first
   glm::dmat4 rest{1.0};               ///< transform to the parent's space, without curves
   Pose pose;                          ///< values of properties without a curve, for animated nodes
   NodeCurves curves;
   bool moves = false;  ///< true if the node or an ancestor is animated
 };
+
+/// "/nodes/3" for messages; "transform" of a mesh in memory.
+std::string place_of(const TreeNode& node);
 
 struct NodeTree {
   std::string file;  ///< for messages

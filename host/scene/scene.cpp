@@ -11,6 +11,13 @@
 
 namespace clpv {
 
+ClpvMaterial blank_material() {
+  ClpvMaterial made{};
+  std::fill(std::begin(made.base_colour), std::end(made.base_colour), 1.0f);
+  made.texture = made.emissive_texture = CLPV_NO_TEXTURE;
+  return made;
+}
+
 double SceneData::reach() const {
   if (start_reach) return *start_reach;
   double reach = 0;

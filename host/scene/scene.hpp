@@ -38,6 +38,9 @@ inline glm::dvec3 vector(const float v[3]) {
   return {v[0], v[1], v[2]};
 }
 
+/// White, opaque, visible from its front, without texture.
+ClpvMaterial blank_material();
+
 struct SceneCamera {
   std::string name;
   glm::vec3 eye{0};              ///< [m]

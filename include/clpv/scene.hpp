@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A loaded scene, its cameras and its lights.
+// A scene of a file or of meshes in memory, its cameras and its lights.
 #pragma once
 
 #include <array>
@@ -9,6 +9,8 @@
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "clpv/mesh.hpp"
 
 namespace clpv {
 
@@ -50,10 +52,13 @@ struct Medium {
   std::optional<std::array<Vec3, 2>> box{};  ///< lower and upper corner [m]; none: the scene's bounding box
 };
 
-/// Scene loaded from a scene file (.json) or a glTF model (.gltf, .glb). Copies share the data and its changes. Thread-safe:
+/// Scene of a scene file (.json), a glTF model (.gltf, .glb), or of meshes in memory. Copies share the data and its changes. Thread-safe:
 /// a change waits for frames in progress, and shows in the next frame of all renderers of the scene.
 class Scene {
  public:
+  /// A scene without meshes. Without set_cameras() and set_lights() it has a camera that frames its meshes, and a sun, as a model has.
+  Scene();
+
   /// `model` replaces the model of the scene file; empty: no replacement. Files are untrusted: sizes are checked before
   /// allocation, and only files in the folders of model and scene file are read. Throws Error(bad_input) with file, place, value found and value
   /// allowed.
@@ -73,6 +78,21 @@ class Scene {
   /// Error(usage): see Medium.
   std::optional<Medium> medium() const;
   void set_medium(const std::optional<Medium>& medium);
+
+  /// Adds a mesh at a place in the world, and returns a number for it that is not used again. Throws Error(bad_input) that names array,
+  /// index, value found and value allowed, for indices out of range, numbers that are not finite or out of bounds, arrays of vertices
+  /// that differ in length, and more than 2^24 vertices or triangles in the scene; Error(usage) for numbers of no mesh.
+  int add_mesh(const Mesh& mesh, const Transform& transform = kIdentity);
+  /// Adds the same mesh at another place; its vertices are shared.
+  int add_instance(int mesh, const Transform& transform);
+  void remove_mesh(int mesh);
+
+  /// Moves the vertices of a mesh, at all of its places, or one of its places. Normals that the mesh was given stay without `normals`. The
+  /// next frame of each renderer recomputes what animation recomputes; at the first move of a mesh, and after an addition or
+  /// removal, also its memory and what it caches. Throw as add_mesh().
+  void set_positions(int mesh, std::span<const std::array<float, 3>> positions,
+                     std::span<const std::array<float, 3>> normals = {});
+  void set_transform(int mesh, const Transform& transform);
 
   bool moves() const;                        ///< returns true if anything in it is animated
   std::vector<std::string> notes() const;    ///< one sentence for each thing skipped or added by the loader and not replaced

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Meshes and materials in memory, for Scene::add_mesh().
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "clpv/image.hpp"
+
+namespace clpv {
+
+/// Diffuse surface, as glTF describes it.
+struct Material {
+  /// Rows of RGBA with 8 bits each, sRGB-encoded colour and linear alpha; the first row has v = 0. Repeats.
+  struct Texture {
+    std::uint32_t width = 0, height = 0;  ///< 1 to 16384
+    std::vector<std::uint8_t> rgba;       ///< 4 * width * height
+
+    /// Encodes an image with channels R, G, B and optionally A, clamped to 0..1. Throws Error(bad_input) for other channels and for
+    /// numbers that are not finite.
+    static Texture of(const Image& image);
+    bool operator==(const Texture&) const = default;
+  };
+
+  std::array<double, 4> base_colour{1, 1, 1,
+                                    1};  ///< linear albedo and alpha, 0..1; times texture and vertex colour
+  std::array<double, 3> emission{};      ///< radiance of the front [W/m^2/sr], 0..1e9
+  std::optional<Texture> texture{};
+  std::optional<double> alpha_cutoff{};  ///< 0..1: where alpha is less, there is a hole; none: no holes
+  bool double_sided = false;             ///< visible, and emissive, from both sides
+  bool operator==(const Material&) const = default;
+};
+
+/// Affine transform: rows of a 4 x 4 matrix, whose last one is 0, 0, 0, 1. Multiplies columns (x, y, z, 1).
+using Transform = std::array<std::array<double, 4>, 4>;
+inline constexpr Transform kIdentity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+
+/// Triangles in memory, which add_mesh() copies.
+struct Mesh {
+  std::span<const std::array<float, 3>> positions;  ///< of vertices [m], y up
+  std::span<const std::array<std::uint32_t, 3>>
+      triangles;                                    ///< vertices, counter-clockwise seen from the front
+  std::span<const std::array<float, 3>> normals{};  ///< of vertices, of any length
+  std::span<const std::array<float, 2>> uvs{};      ///< texture coordinates of vertices
+  std::span<const std::array<float, 4>> colours{};  ///< linear, of vertices; times the material's
+  bool smooth =
+      false;  ///< without normals: means of the triangles' normals, weighted by angle; else flat, as in glTF
+  Material material{};
+};
+
+}  // namespace clpv
