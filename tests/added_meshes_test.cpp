@@ -74,9 +74,9 @@ TEST(AddedMeshes, AMovedMeshIsThatOfASceneBuiltAnew) {
   for (const float z : {-1.5f, -1.0f, -2.0f}) {
     room.scene.set_positions(room.wall, wall_at(z));
     EXPECT_EQ(renderer.render().pixels, Room(wall_at(z)).image()) << z;
-    if (z == -1.0f) EXPECT_NE(renderer.render().pixels, start);
   }
   EXPECT_EQ(renderer.render().pixels, start);
+  EXPECT_NE(Room(wall_at(-1)).image(), start);
   room.scene.set_transform(room.wall, moved_by(0.5, 0, 0.25));
   EXPECT_EQ(renderer.render().pixels, Room(wall_at(-2), moved_by(0.5, 0, 0.25)).image());
 }

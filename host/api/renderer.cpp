@@ -284,6 +284,12 @@ std::vector<LightVolume> Renderer::volumes() {
   return all;
 }
 
+std::string Renderer::description() const {
+  const RenderOptions& options = state_->options;  // which never change
+  return fmt::format("{} x {}, basis {}, transport {}, on {}", options.width, options.height, options.basis,
+                     name_of(options.transport), state_->session.device().name);
+}
+
 Stats Renderer::stats() const {
   const std::lock_guard lock(state_->mutex);
   Stats stats;

@@ -115,6 +115,9 @@ class Renderer {
   /// Reads back the light of the last frame or light(), finest cascade first. Throws Error(usage) before the first frame.
   std::vector<LightVolume> volumes();
 
+  /// Size, basis, transport and device in one line.
+  std::string description() const;
+
   /// Returns the cost of the last frame; all 0 before the first.
   Stats stats() const;
 

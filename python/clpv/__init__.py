@@ -9,7 +9,8 @@
 
 Lengths are metres, y is up. Illuminance in lux counts 1:1 as W/m^2, luminous intensity in candela as W/sr.
 
-    Scene, Camera, Light, Medium         a scene file or glTF model, and what can be changed in it
+    Scene, Camera, Light, Medium         a scene file, glTF model or meshes, and what can be changed in it
+    Material                             surface of a mesh
     Renderer, options(), devices()       frames on an OpenCL device: render, irradiance, volumes, stats
     Image, read_image, compare           images as arrays, files, errors
     pathtrace                            ground truth on the CPU
@@ -22,7 +23,7 @@ Lengths are metres, y is up. Illuminance in lux counts 1:1 as W/m^2, luminous in
 """
 import importlib
 
-__all__ = ["Basis", "Camera", "Comparison", "DeviceError", "Error", "Image", "InputError", "Light", "Medium", "Renderer",
+__all__ = ["Basis", "Camera", "Comparison", "DeviceError", "Error", "Image", "InputError", "Light", "Material", "Medium", "Renderer",
            "ResourceError", "Scene", "UsageError", "ValidationError", "Volume", "bases", "compare", "devices", "options",
            "pathtrace", "read_image"]
 

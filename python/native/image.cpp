@@ -2,6 +2,8 @@
 // Image, its files, and comparison.
 #include "clpv/image.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "clpv/compare.hpp"
@@ -43,6 +45,13 @@ Image image_from(const py::object& given, std::optional<std::vector<std::string>
   image.encoding = encoding == "srgb" ? Encoding::srgb : Encoding::linear;
   image.pixels.assign(array.data(), array.data() + array.size());
   return image;
+}
+
+/// Returns true for channels R, G, B and at most A.
+bool shows_colour(const Image& image) {
+  const std::size_t others = image.channel("A") ? 1 : 0;
+  return image.channel("R") && image.channel("G") && image.channel("B") &&
+         image.channels.size() == 3 + others;
 }
 
 std::vector<py::ssize_t> shape_of(const Image& image) {
@@ -145,6 +154,19 @@ void add_image(py::module_& module) {
       },
       py::arg("exposure") = 0.0f,
       "uint8 array (height, width, channels), tone-mapped and sRGB-encoded as save() does for .png.");
+  type.def(
+      "_repr_png_",
+      [](const Image& image) -> py::object {
+        if (!shows_colour(image)) return py::none();
+        const auto bytes =
+            png_bytes(image.encoding == Encoding::srgb ? image : display_image(image, 0, ToneMap::aces));
+        return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      },
+      "_repr_png_() -> bytes: how notebooks show it, as save() does; None without R, G, B.");
+  type.def("__repr__", [](const Image& image) {
+    return fmt::format("Image({} x {}, {}, {})", image.width, image.height, fmt::join(image.channels, " "),
+                       image.encoding == Encoding::srgb ? "srgb" : "linear");
+  });
   module.def(
       "read_image",
       [](const std::filesystem::path& path) { return interruptible([&] { return read_image(path); }); },

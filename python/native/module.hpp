@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <future>
+#include <optional>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -24,6 +25,8 @@ namespace py = pybind11;
 
 void add_errors(py::module_& module);
 void add_scene(py::module_& module);
+void add_material(py::module_& module);
+void add_meshes(py::class_<Scene>& type);
 void add_image(py::module_& module);
 void add_renderer(py::module_& module);
 void add_basis(py::module_& module);
@@ -69,6 +72,9 @@ inline py::array_t<float> array_of(std::vector<float> values, const std::vector<
   return py::array_t<float>(shape, data, owner);
 }
 
+/// Red, green, blue; or one number for all of them.
+Vec3 colour_of(const py::object& given);
+
 inline py::tuple tuple_of(const Vec3& v) {
   return py::make_tuple(v[0], v[1], v[2]);
 }
@@ -98,25 +104,42 @@ auto without_gil(const Action& action) {
 }
 
 /// Runs `work` on another thread without the GIL, so that Python can handle signals meanwhile. After Ctrl-C the work ends at its
-/// next step, and the signal's exception is raised.
-template <typename Work>
-auto interruptible(const Work& work) {
+/// next step, and the signal's exception is raised. `poll` runs with the GIL, on the caller's thread, now and then and at the end; an
+/// exception of it ends the work too.
+template <typename Work, typename Poll>
+auto interruptible(const Work& work, const Poll& poll) {
   const RunningCall call;
   py::gil_scoped_release released;
   auto result = std::async(std::launch::async, work);
   while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
     py::gil_scoped_acquire acquired;
-    if (PyErr_CheckSignals() == 0) continue;
-    py::error_already_set raised;
+    std::optional<py::error_already_set> raised;
+    if (PyErr_CheckSignals() != 0) {
+      raised.emplace();
+    } else {
+      try {
+        poll();
+      } catch (const py::error_already_set& error) {
+        raised = error;
+      }
+    }
+    if (!raised) continue;
     {
       py::gil_scoped_release waiting;
       set_interrupted(true);
       result.wait();
       set_interrupted(false);
     }
-    throw raised;
+    throw *raised;
   }
+  py::gil_scoped_acquire acquired;
+  poll();
   return result.get();
+}
+
+template <typename Work>
+auto interruptible(const Work& work) {
+  return interruptible(work, [] {});
 }
 
 /// Converts arguments of type T. Unlike pybind11's, rejects objects made by __new__ without __init__, which hold no T.
@@ -150,6 +173,8 @@ template <>
 class type_caster<clpv::Image> : public clpv::python::InitialisedCaster<clpv::Image> {};
 template <>
 class type_caster<clpv::Light> : public clpv::python::InitialisedCaster<clpv::Light> {};
+template <>
+class type_caster<clpv::Material> : public clpv::python::InitialisedCaster<clpv::Material> {};
 template <>
 class type_caster<clpv::Medium> : public clpv::python::InitialisedCaster<clpv::Medium> {};
 template <>

@@ -2,6 +2,8 @@
 // Renderer, Volume and pathtrace.
 #include "clpv/renderer.hpp"
 
+#include <atomic>
+
 #include "clpv/pathtrace.hpp"
 #include "module.hpp"
 #include "options/show.hpp"
@@ -229,6 +231,7 @@ void add_renderer(py::module_& module) {
            "points [m] and directions in which the light travels (of any length): arrays (..., 3). As irradiance(), of the "
            "last\nframe's volumes, on the device; negative where nine harmonics undershoot. Raises UsageError without "
            "transport 'sweep',\nand for layout 'image' with gather 'all'.");
+  type.def("__repr__", [](const Renderer& renderer) { return "Renderer(" + renderer.description() + ")"; });
   type.def("volumes", &volumes, "volumes() -> list of Volume of the last frame, finest cascade first.");
   type.def_property_readonly(
       "stats",
@@ -241,19 +244,30 @@ void add_renderer(py::module_& module) {
       "pathtrace",
       [](const Scene& scene, const std::string& view, const std::optional<CameraChoice>& camera, int width,
          int height, int bounces, std::uint32_t samples, double noise, std::uint64_t seed, int threads,
-         double time) {
+         double time, const py::object& progress) {
         const View what = named<View>("view", view);
         note_device_use();
+        std::atomic<double> reached{0};
+        double told = 0;
         TraceOptions options{width, height, bounces, samples, noise, seed, threads, time, {}};
-        return interruptible([&] { return pathtrace(scene, what, camera_choice(camera), options); });
+        options.progress = [&](double now) { reached = now; };
+        const auto tell = [&] {
+          if (progress.is_none() || reached == told) return;
+          told = reached;
+          progress(told);
+        };
+        return interruptible([&] { return pathtrace(scene, what, camera_choice(camera), options); }, tell);
       },
       py::arg("scene"), py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("width") = 960,
       py::arg("height") = 540, py::arg("bounces") = 1, py::arg("samples") = 0, py::arg("noise") = 0.02,
-      py::arg("seed") = 1, py::arg("threads") = 0, py::arg("time") = 0.0,
+      py::arg("seed") = 1, py::arg("threads") = 0, py::arg("time") = 0.0, py::arg("progress") = py::none(),
       "pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.\n\n"
       "bounces: reflections between light and visible surface, 0 for all; samples: paths per pixel, 0 for as "
       "many as\n"
-      "`noise` (relative standard error of the indirect light) needs; threads: 0 for one per processor.");
+      "`noise` (relative standard error of the indirect light) needs; threads: 0 for one per processor.\n"
+      "progress: a function that gets the estimated progress, 0 to 1, in this thread, up to 50 times a "
+      "second; what it raises "
+      "ends\nthe work.");
 }
 
 }  // namespace clpv::python

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Camera, Light and Scene.
+#include <shared_mutex>
+
+#include "api/scene_contents.hpp"
 #include "module.hpp"
 #include "scene/light_kind.hpp"
 
@@ -35,14 +38,6 @@ void add_value_methods(py::class_<T>& type, const std::vector<const char*>& memb
         return py::type::of(self)(**all);
       },
       "replace(**changes): a copy with other values of some arguments.");
-}
-
-/// Red, green, blue; or one number for all of them.
-Vec3 colour_of(const py::object& given) {
-  if (!py::isinstance<py::float_>(given) && !py::isinstance<py::int_>(given)) return given.cast<Vec3>();
-  Vec3 grey{};
-  grey.fill(given.cast<double>());
-  return grey;
 }
 
 void add_camera(py::module_& module) {
@@ -122,19 +117,40 @@ void add_medium(py::module_& module) {
 
 }  // namespace
 
+Vec3 colour_of(const py::object& given) {
+  if (!py::isinstance<py::float_>(given) && !py::isinstance<py::int_>(given)) return given.cast<Vec3>();
+  Vec3 grey{};
+  grey.fill(given.cast<double>());
+  return grey;
+}
+
 void add_scene(py::module_& module) {
   add_camera(module);
   add_light(module);
   add_medium(module);
+  add_material(module);
   py::class_<Scene> type(module, "Scene",
                          "Scene(path, model=None): a scene file (.json) or a glTF model (.gltf, .glb); "
                          "`model` replaces that of the file.\n\n"
                          "Renderers keep its data alive. Thread-safe. Raises InputError with file, "
                          "place, value found and value allowed.");
-  type.def(py::init([](const std::filesystem::path& path, const std::optional<std::filesystem::path>& model) {
-             return interruptible([&] { return Scene(path, model.value_or("")); });
+  using Path = std::optional<std::filesystem::path>;
+  type.def(py::init([](const Path& path, const Path& model) {
+             if (!path && model)
+               throw Error(ExitCode::usage, "model: found one, allowed: none without a path");
+             if (!path) return Scene();
+             return interruptible([&] { return Scene(*path, model.value_or("")); });
            }),
-           py::arg("path"), py::arg("model") = py::none());
+           py::arg("path") = py::none(), py::arg("model") = py::none());
+  add_meshes(type);
+  type.def("__repr__", [](const Scene& scene) {
+    return without_gil([&] {
+      const std::shared_lock lock(scene.contents().mutex);
+      const SceneData& data = scene.contents().moving.scene();
+      return fmt::format("Scene('{}', {} triangles, {} cameras, {} lights)", data.path, data.triangles.size(),
+                         data.cameras.size(), data.lights.size());
+    });
+  });
   type.def_property(
       "cameras", [](const Scene& scene) { return py::tuple(py::cast(scene.cameras())); },
       [](Scene& scene, const std::vector<Camera>& cameras) {

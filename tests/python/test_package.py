@@ -95,3 +95,40 @@ def test_version_is_the_programs():
     said = subprocess.run([BUILD / "clpv", "--version"], capture_output=True, text=True, check=True).stdout
     assert re.search(re.escape(clpv.__version__), said)
     assert os.path.realpath(clpv.__file__).startswith(str(ROOT)), "the module under test is the tree's"
+
+
+def test_path_tracing_tells_its_progress():
+    scene, told = clpv.Scene(CORNELL), []
+    clpv.pathtrace(scene, width=96, height=54, samples=64, progress=told.append)
+    assert told and told == sorted(told) and told[-1] == 1
+
+    def stop(_):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        clpv.pathtrace(scene, samples=1 << 20, progress=stop)
+    assert clpv.pathtrace(scene, width=8, height=8, samples=1).width == 8
+
+
+def test_exit_waits_for_a_callback_of_a_daemon_thread():
+    ended = run("import clpv, threading, time\nscene = clpv.Scene('scenes/cornell.json')\ntold = threading.Event()\n"
+                "def tell(_):\n  told.set()\n  time.sleep(0.3)\n"
+                "def work():\n  clpv.pathtrace(scene, samples=1 << 20, progress=tell)\n"
+                "threading.Thread(target=work, daemon=True).start()\ntold.wait(60)\nprint('end')", timeout=60)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "end\n", "")
+
+
+def test_objects_print_what_they_are():
+    scene = clpv.Scene(CORNELL)
+    image = clpv.Image([[[0.5, 0.25, 1.0]]])
+    assert repr(image) == "Image(1 x 1, R G B, linear)"
+    assert repr(scene).startswith(f"Scene('{CORNELL}', ") and "4 cameras" in repr(scene)
+    assert repr(clpv.Scene()) == "Scene('(in memory)', 0 triangles, 1 cameras, 1 lights)"
+
+
+def test_notebooks_show_images(tmp_path):
+    image = clpv.Image([[[0.5, 0.25, 1.0]]])
+    (tmp_path / "shown.png").write_bytes(image._repr_png_())
+    image.save(tmp_path / "saved.png")
+    assert (clpv.read_image(tmp_path / "shown.png").array == clpv.read_image(tmp_path / "saved.png").array).all()
+    assert clpv.Image([[[1.0]]])._repr_png_() is None

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: MIT
+// Material, and the methods of Scene for meshes from memory.
+#include <cstring>
+
+#include "module.hpp"
+#include "scene/bounds.hpp"
+#include "support/error.hpp"
+
+namespace clpv::python {
+namespace {
+
+/// Numbers of a mesh, of which the caller may do anything after the call: always a copy, or one that NumPy keeps unchanged
+/// while the GIL is held.
+template <typename T, std::size_t n>
+using Rows = std::vector<std::array<T, n>>;
+
+/// Rejects an array of another kind of numbers ("fiu") or shape, before a conversion allocates memory.
+py::array checked(const char* function, const char* name, const py::object& given, std::string_view kinds,
+                  std::initializer_list<py::ssize_t> columns) {
+  const auto array = real_array<py::array>(given, name);
+  if (kinds.find(array.dtype().kind()) == std::string_view::npos) {
+    throw py::type_error(fmt::format("{}: {}: found an array of {}, allowed: {}", function, name,
+                                     std::string(py::str(array.dtype())),
+                                     kinds == "iu" ? "integers" : "floats"));
+  }
+  std::string allowed;
+  for (const py::ssize_t column : columns) {
+    if (array.ndim() == 2 && array.shape(1) == column) allowed = "it";
+  }
+  if (allowed.empty()) {
+    for (const py::ssize_t column : columns)
+      allowed += fmt::format("{}(n, {})", allowed.empty() ? "" : " or ", column);
+    reject(function, name, "shape " + std::string(py::str(array.attr("shape"))), allowed);
+  }
+  const auto most = static_cast<py::ssize_t>(bounds::kTriangles);
+  static_assert(bounds::kTriangles == bounds::kVertices);
+  if (array.shape(0) > most)
+    reject(function, name, fmt::format("{} rows", array.shape(0)), fmt::format("at most {}", most));
+  return array;
+}
+
+/// Rows of n floats; missing columns are 1.
+template <std::size_t n>
+Rows<float, n> floats(const char* function, const char* name, const py::object& given,
+                      std::initializer_list<py::ssize_t> columns = {n}, std::string_view kinds = "fiu") {
+  if (given.is_none()) return {};
+  const FloatArray array = FloatArray::ensure(checked(function, name, given, kinds, columns));
+  if (!array) throw py::error_already_set();
+  Rows<float, n> rows(static_cast<std::size_t>(array.shape(0)));
+  const auto width = static_cast<std::size_t>(array.shape(1));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].fill(1);
+    std::copy_n(array.data() + i * width, width, rows[i].begin());
+  }
+  return rows;
+}
+
+Rows<std::uint32_t, 3> indices(const char* function, const py::object& given) {
+  const auto array = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(
+      checked(function, "triangles", given, "iu", {3}));
+  if (!array) throw py::error_already_set();
+  Rows<std::uint32_t, 3> rows(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t i = 0; i < 3 * rows.size(); ++i) {
+    const std::int64_t index = array.data()[i];
+    if (index < 0 || index >= static_cast<std::int64_t>(bounds::kVertices)) {
+      reject(function, fmt::format("triangles[{}]", i / 3), fmt::format("index {}", index),
+             "the index of a vertex, from 0");
+    }
+    rows[i / 3][i % 3] = static_cast<std::uint32_t>(index);
+  }
+  return rows;
+}
+
+Transform transform_of(const char* function, const py::object& given) {
+  if (given.is_none()) return kIdentity;
+  const DoubleArray array = real_array<DoubleArray>(given, "transform");
+  if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4)
+    reject(function, "transform", "shape " + std::string(py::str(array.attr("shape"))), "(4, 4)");
+  Transform made;
+  std::memcpy(&made, array.data(), sizeof made);
+  return made;
+}
+
+/// uint8: sRGB-encoded; floats: linear.
+std::optional<Material::Texture> texture_of(const py::object& given) {
+  if (given.is_none()) return std::nullopt;
+  const auto array = real_array<py::array>(given, "texture");
+  const bool bytes = array.dtype().equal(py::dtype::of<std::uint8_t>());
+  if (!bytes && array.dtype().kind() != 'f') {
+    throw py::type_error("texture: found an array of " + std::string(py::str(array.dtype())) +
+                         ", allowed: uint8 or floats");
+  }
+  const py::ssize_t side = bounds::kImageSide;
+  if (array.ndim() != 3 || array.shape(2) != 4 || array.shape(0) < 1 || array.shape(1) < 1 ||
+      array.shape(0) > side || array.shape(1) > side) {
+    reject("Material", "texture", "shape " + std::string(py::str(array.attr("shape"))),
+           fmt::format("(height, width, 4), 1 to {} pixels per side", side));
+  }
+  if (bytes) {
+    const auto values = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
+    return Material::Texture{static_cast<std::uint32_t>(array.shape(1)),
+                             static_cast<std::uint32_t>(array.shape(0)),
+                             {values.data(), values.data() + values.size()}};
+  }
+  const FloatArray values = FloatArray::ensure(array);
+  Image image;
+  image.width = static_cast<int>(array.shape(1));
+  image.height = static_cast<int>(array.shape(0));
+  image.channels = {"R", "G", "B", "A"};
+  image.pixels.assign(values.data(), values.data() + values.size());
+  return Material::Texture::of(image);
+}
+
+/// One number, or red, green, blue and optionally alpha.
+std::array<double, 4> base_colour_of(const py::object& given) {
+  if (py::isinstance<py::float_>(given) || py::isinstance<py::int_>(given)) {
+    const auto grey = given.cast<double>();
+    return {grey, grey, grey, 1};
+  }
+  const auto values = given.cast<std::vector<double>>();
+  if (values.size() != 3 && values.size() != 4)
+    reject("Material", "base_colour", fmt::format("{} numbers", values.size()), "1, 3 or 4");
+  return {values[0], values[1], values[2], values.size() == 4 ? values[3] : 1};
+}
+
+/// Arrays of a mesh, and the mesh that borrows them.
+struct GivenMesh {
+  Rows<float, 3> positions, normals;
+  Rows<std::uint32_t, 3> triangles;
+  Rows<float, 2> uvs;
+  Rows<float, 4> colours;
+  Mesh mesh;
+};
+
+std::unique_ptr<GivenMesh> given_mesh(const py::object& positions, const py::object& triangles,
+                                      const py::object& normals, const py::object& uvs,
+                                      const py::object& colours, bool smooth,
+                                      const std::optional<Material>& material) {
+  constexpr const char* kFunction = "add_mesh";
+  auto given = std::make_unique<GivenMesh>();
+  given->positions = floats<3>(kFunction, "positions", positions);
+  given->triangles = indices(kFunction, triangles);
+  given->normals = floats<3>(kFunction, "normals", normals);
+  given->uvs = floats<2>(kFunction, "uvs", uvs);
+  given->colours = floats<4>(kFunction, "colours", colours, {3, 4}, "f");
+  given->mesh = {given->positions,
+                 given->triangles,
+                 given->normals,
+                 given->uvs,
+                 given->colours,
+                 smooth,
+                 material.value_or(Material())};
+  return given;
+}
+
+int add_mesh(Scene& scene, const py::object& positions, const py::object& triangles,
+             const py::object& normals, const py::object& uvs, const py::object& colours, bool smooth,
+             const std::optional<Material>& material, const py::object& transform) {
+  const auto given = given_mesh(positions, triangles, normals, uvs, colours, smooth, material);
+  const Transform at = transform_of("add_mesh", transform);
+  return without_gil([&] { return scene.add_mesh(given->mesh, at); });
+}
+
+}  // namespace
+
+void add_material(py::module_& module) {
+  py::class_<Material> type(module, "Material",
+                            "Diffuse surface of a mesh. Immutable. Values are checked where it is used.\n\n"
+                            "base_colour: linear red, green, blue and optionally alpha, or one number, 0 to "
+                            "1; emission: radiance of the front\n"
+                            "[W/m^2/sr], three numbers or one; texture: array (height, width, 4), uint8 with "
+                            "sRGB-encoded colour, or floats, linear;\n"
+                            "alpha_cutoff: alpha below which there are holes; double_sided: visible, and "
+                            "emissive, from both sides.");
+  type.def(py::init([](const py::object& base_colour, const py::object& emission, const py::object& texture,
+                       std::optional<double> alpha_cutoff, bool double_sided) {
+             return Material{base_colour_of(base_colour), colour_of(emission), texture_of(texture),
+                             alpha_cutoff, double_sided};
+           }),
+           py::kw_only(), py::arg("base_colour") = 1.0, py::arg("emission") = 0.0,
+           py::arg("texture") = py::none(), py::arg("alpha_cutoff") = py::none(),
+           py::arg("double_sided") = false);
+  type.def_property_readonly("base_colour", [](const Material& m) {
+    return py::make_tuple(m.base_colour[0], m.base_colour[1], m.base_colour[2], m.base_colour[3]);
+  });
+  type.def_property_readonly("emission", [](const Material& m) { return tuple_of(m.emission); });
+  type.def_property_readonly(
+      "texture",
+      [](const Material& m) -> py::object {
+        if (!m.texture) return py::none();
+        py::array_t<std::uint8_t> made(
+            {py::ssize_t(m.texture->height), py::ssize_t(m.texture->width), py::ssize_t(4)});
+        std::memcpy(made.mutable_data(), m.texture->rgba.data(), m.texture->rgba.size());
+        return made;
+      },
+      "A copy as uint8 array (height, width, 4), or None.");
+  type.def_readonly("alpha_cutoff", &Material::alpha_cutoff);
+  type.def_readonly("double_sided", &Material::double_sided);
+  type.def(
+      "__eq__", [](const Material& a, const Material& b) { return a == b; }, py::is_operator());
+  type.def("__repr__", [](const Material& m) {
+    const auto& c = m.base_colour;
+    return fmt::format(
+        "Material(base_colour=({}, {}, {}, {}), emission=({}, {}, {}), texture={}, alpha_cutoff={}, "
+        "double_sided={})",
+        c[0], c[1], c[2], c[3], m.emission[0], m.emission[1], m.emission[2],
+        m.texture ? fmt::format("{} x {}", m.texture->width, m.texture->height) : "None",
+        m.alpha_cutoff ? fmt::format("{}", *m.alpha_cutoff) : "None", m.double_sided ? "True" : "False");
+  });
+}
+
+void add_meshes(py::class_<Scene>& type) {
+  const auto arguments = [](const auto& define, const auto& function, const char* doc) {
+    define(function, py::arg("positions"), py::arg("triangles"), py::kw_only(),
+           py::arg("normals") = py::none(), py::arg("uvs") = py::none(), py::arg("colours") = py::none(),
+           py::arg("smooth") = false, py::arg("material") = py::none(), py::arg("transform") = py::none(),
+           doc);
+  };
+  arguments(
+      [&](const auto&... all) { type.def("add_mesh", all...); }, &add_mesh,
+      "add_mesh(positions, triangles, *, ...) -> int: a number for the mesh, which is not used again.\n\n"
+      "positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise seen from the front; "
+      "normals (n, "
+      "3), of any\nlength; uvs: texture coordinates (n, 2), v = 0 in the first row; colours: linear floats "
+      "(n, 3) or (n, "
+      "4), 0 to 1. Without\nnormals: flat ones, as in glTF, or, if smooth, means of the triangles' normals, "
+      "weighted by "
+      "angle. material: None for white;\ntransform: array (4, 4) to the world, which multiplies columns (x, "
+      "y, z, 1). "
+      "The arrays are copied. Raises InputError with\narray, index, value found and value allowed.");
+  arguments([&](const auto&... all) { type.def_static("from_arrays", all...); },
+            [](const py::object& positions, const py::object& triangles, const py::object& normals,
+               const py::object& uvs, const py::object& colours, bool smooth,
+               const std::optional<Material>& material, const py::object& transform) {
+              Scene scene;
+              add_mesh(scene, positions, triangles, normals, uvs, colours, smooth, material, transform);
+              return scene;
+            },
+            "from_arrays(positions, triangles, *, ...) -> Scene of one mesh, number 0, as add_mesh() "
+            "describes it.");
+  type.def_static(
+      "from_trimesh",
+      [](const py::object& given) {
+        return py::module_::import("clpv.meshes").attr("scene_of_trimesh")(given);
+      },
+      py::arg("given"),
+      "from_trimesh(given) -> Scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, instances, "
+      "colours and "
+      "base-colour\ntextures.");
+  type.def(
+      "add_instance",
+      [](Scene& scene, int mesh, const py::object& transform) {
+        const Transform at = transform_of("add_instance", transform);
+        return without_gil([&] { return scene.add_instance(mesh, at); });
+      },
+      py::arg("mesh"), py::arg("transform"),
+      "add_instance(mesh, transform) -> int: the same mesh at another place; its vertices are shared.");
+  type.def(
+      "remove_mesh", [](Scene& scene, int mesh) { without_gil([&] { scene.remove_mesh(mesh); }); },
+      py::arg("mesh"), "remove_mesh(mesh): removes a mesh from one of its places.");
+  type.def(
+      "set_positions",
+      [](Scene& scene, int mesh, const py::object& positions, const py::object& normals) {
+        const auto moved = floats<3>("set_positions", "positions", positions);
+        const auto turned = floats<3>("set_positions", "normals", normals);
+        without_gil([&] { scene.set_positions(mesh, moved, turned); });
+      },
+      py::arg("mesh"), py::arg("positions"), py::arg("normals") = py::none(),
+      "set_positions(mesh, positions, normals=None): moves its vertices, at all of its places. Normals that "
+      "were given "
+      "stay without\n`normals`. The next frame of each renderer recomputes what animation recomputes; at the "
+      "first move of a "
+      "mesh, and after an\naddition or removal, also its memory and what it caches.");
+  type.def(
+      "set_transform",
+      [](Scene& scene, int mesh, const py::object& transform) {
+        const Transform at = transform_of("set_transform", transform);
+        without_gil([&] { scene.set_transform(mesh, at); });
+      },
+      py::arg("mesh"), py::arg("transform"),
+      "set_transform(mesh, transform): moves one place of a mesh. As set_positions().");
+}
+
+}  // namespace clpv::python

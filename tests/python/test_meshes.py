@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""Scenes from arrays: a file's bytes, moving meshes, rejected arrays; trimesh where it is installed."""
+import gc
+import json
+import re
+import struct
+import subprocess
+import sys
+import threading
+
+import numpy
+import pytest
+
+import clpv
+from conftest import ROOT, SMALL
+
+TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+SQUARE = numpy.array([[0, 1, 2], [0, 2, 3]])
+WALL = numpy.array([[-2, 0, -2], [2, 0, -2], [2, 3, -2], [-2, 3, -2]], dtype=float)
+
+
+def node_matrix(node):
+    if "matrix" in node:
+        return numpy.array(node["matrix"]).reshape(4, 4).T
+    x, y, z, w = node.get("rotation", (0, 0, 0, 1))
+    made = numpy.eye(4)
+    made[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+    made[:3, :3] = made[:3, :3] * node.get("scale", (1, 1, 1))
+    made[:3, 3] = node.get("translation", (0, 0, 0))
+    return made
+
+
+def scene_of_glb(path, scale, texture_of):
+    """Hands the arrays of a .glb to clpv, mesh by mesh in the file's order."""
+    data = path.read_bytes()
+    length = struct.unpack("<I", data[12:16])[0]
+    document, binary = json.loads(data[20:20 + length]), data[28 + length:]
+
+    def array(index):
+        accessor = document["accessors"][index]
+        view = document["bufferViews"][accessor["bufferView"]]
+        columns = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[accessor["type"]]
+        start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+        return numpy.frombuffer(binary, TYPES[accessor["componentType"]], columns * accessor["count"],
+                                start).reshape(-1, columns)
+
+    def material(index):
+        pbr = document["materials"][index]["pbrMetallicRoughness"]
+        texture = pbr.get("baseColorTexture")
+        if texture is not None:
+            view = document["bufferViews"][document["images"][document["textures"][texture["index"]]["source"]]["bufferView"]]
+            texture = texture_of(binary[view.get("byteOffset", 0):][:view["byteLength"]])
+        return clpv.Material(base_colour=pbr["baseColorFactor"], texture=texture)
+
+    materials = [material(i) for i in range(len(document["materials"]))]
+    places = {}
+    to_metres = numpy.diag([scale, scale, scale, 1.0])
+
+    def visit(index, above):
+        node = document["nodes"][index]
+        here = above @ node_matrix(node)
+        if "mesh" in node:
+            places.setdefault(node["mesh"], []).append(here)
+        for child in node.get("children", []):
+            visit(child, here)
+
+    for root in document["scenes"][0]["nodes"]:
+        visit(root, to_metres)
+    scene = clpv.Scene()
+    for mesh in sorted(places):
+        for part in document["meshes"][mesh]["primitives"]:
+            attributes = part["attributes"]
+            number = scene.add_mesh(array(attributes["POSITION"]), array(part["indices"]).reshape(-1, 3),
+                                    normals=array(attributes["NORMAL"]), uvs=array(attributes["TEXCOORD_0"]),
+                                    material=materials[part["material"]], transform=places[mesh][0])
+            for place in places[mesh][1:]:
+                scene.add_instance(number, place)
+    return scene
+
+
+@pytest.mark.parametrize("name", ["cornell", "atrium"])
+def test_arrays_of_a_file_give_its_bytes(name, tmp_path):
+    def texture_of(png):
+        (tmp_path / "texture.png").write_bytes(png)
+        image = clpv.read_image(tmp_path / "texture.png")
+        bytes_ = numpy.round(image.array * 255).astype(numpy.uint8)
+        return bytes_ if bytes_.shape[2] == 4 else numpy.dstack([bytes_, numpy.full(bytes_.shape[:2], 255, numpy.uint8)])
+
+    description = json.loads((ROOT / f"scenes/{name}.json").read_text(encoding="utf-8"))
+    of_file = clpv.Scene(ROOT / f"scenes/{name}.json")
+    of_arrays = scene_of_glb(ROOT / f"scenes/{name}.glb", description.get("metres_per_unit", 1.0), texture_of)
+    numpy.testing.assert_array_equal(of_arrays.bounds, of_file.bounds)
+    # cameras and lights of a file lose some bits on their way through Python: both scenes get the same ones
+    of_arrays.cameras, of_arrays.lights = of_file.cameras, of_file.lights
+    of_file.cameras, of_file.lights = of_file.cameras, of_file.lights
+    options = SMALL | {"cascade_size": 8 if name == "atrium" else 0.7, "cascades": 2}
+    numpy.testing.assert_array_equal(clpv.Renderer(of_arrays, **options).render().array,
+                                     clpv.Renderer(of_file, **options).render().array)
+
+
+@pytest.mark.parametrize("change, error, words", [
+    ({"positions": WALL[:, :2]}, clpv.InputError, "positions: found shape (4, 2); allowed: (n, 3)"),
+    ({"positions": WALL[0]}, clpv.InputError, "positions: found shape (3,)"),
+    ({"positions": WALL * numpy.nan}, clpv.InputError, "positions[0]: found nan in component 0"),
+    ({"positions": WALL.astype(complex)}, TypeError, "positions: found an array of complex128"),
+    ({"positions": [[0, 0, 0], "x"]}, (TypeError, ValueError), ""),
+    ({"triangles": SQUARE.astype(float)}, TypeError, "triangles: found an array of float64, allowed: integers"),
+    ({"triangles": SQUARE - 1}, clpv.InputError, "triangles[0]: found index -1"),
+    ({"triangles": SQUARE + 2 ** 32}, clpv.InputError, "triangles[0]: found index 4294967296"),
+    ({"triangles": SQUARE + 1}, clpv.InputError, "triangles[1]: found index 4; allowed: 0 to 3"),
+    ({"triangles": numpy.broadcast_to(numpy.uint8(0), (2 ** 31, 3))}, clpv.InputError, "triangles: found 2147483648 rows"),
+    ({"colours": numpy.zeros((4, 3), numpy.uint8)}, TypeError, "colours: found an array of uint8, allowed: floats"),
+    ({"normals": WALL[:3]}, clpv.InputError, "normals: found 3 elements; allowed: 4"),
+    ({"transform": numpy.eye(3)}, clpv.InputError, "transform: found shape (3, 3); allowed: (4, 4)"),
+])
+def test_bad_arrays_are_rejected_by_name(change, error, words):
+    with pytest.raises(error, match=re.escape(words)):
+        clpv.Scene.from_arrays(**({"positions": WALL, "triangles": SQUARE} | change))
+
+
+def test_bad_materials_are_rejected_by_name():
+    for texture, words in [(numpy.zeros((2, 2, 3), numpy.uint8), "found shape (2, 2, 3)"), (numpy.full((1, 2, 4), numpy.nan), "[0, 0]: found nan")]:
+        with pytest.raises(clpv.InputError, match=re.escape(words)):
+            clpv.Material(texture=texture)
+    with pytest.raises(clpv.InputError, match="alpha_cutoff: found 2"):
+        clpv.Scene.from_arrays(WALL, SQUARE, material=clpv.Material(alpha_cutoff=2))
+
+
+def test_any_order_and_type_of_arrays_is_the_same_mesh():
+    def image(positions, triangles):
+        return clpv.Renderer(clpv.Scene.from_arrays(positions, triangles), cascade_size=4, **SMALL).render().array
+
+    plain = image(WALL, SQUARE)
+    assert plain[..., 3].max() == 1
+    numpy.testing.assert_array_equal(image(numpy.asfortranarray(WALL), SQUARE.astype(numpy.uint8)), plain)
+    numpy.testing.assert_array_equal(image(WALL.tolist(), numpy.repeat(SQUARE, 2, axis=0)[::2]), plain)
+
+
+def test_float_textures_are_encoded():
+    texture = numpy.ones((1, 1, 4)) * (0.5, 0, 1, 0.5)
+    assert clpv.Material(texture=texture).texture.tolist() == [[[188, 0, 255, 128]]]
+
+
+def test_meshes_change_while_frames_render():
+    scene = clpv.Scene.from_arrays(WALL, SQUARE)
+    renderer = clpv.Renderer(scene, cascade_size=4, **SMALL)
+    positions = WALL.copy()
+
+    def change():
+        for step in range(20):
+            positions[:, 2] = -2 + 0.01 * step
+            scene.set_positions(0, positions)
+            positions[:] = numpy.nan  # the scene has its own copy
+        scene.remove_mesh(scene.add_mesh(WALL, SQUARE))
+
+    thread = threading.Thread(target=change)
+    thread.start()
+    while thread.is_alive():
+        assert numpy.isfinite(renderer.render().array).all()
+    gc.collect()
+    anew = clpv.Scene.from_arrays(WALL + (0, 0, 0.19), SQUARE)
+    anew.cameras = scene.cameras
+    numpy.testing.assert_array_equal(renderer.render().array, clpv.Renderer(anew, cascade_size=4, **SMALL).render().array)
+
+
+def test_scene_of_trimesh():
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
+    box = trimesh.creation.box((1, 1, 1))
+    given = trimesh.Scene()
+    given.add_geometry(box, geom_name="box")
+    given.graph.update("second", matrix=trimesh.transformations.translation_matrix((3, 0, 0)), geometry="box")
+    scene = clpv.Scene.from_trimesh(given)
+    assert scene.bounds == ((-0.5, -0.5, -0.5), (3.5, 0.5, 0.5))
+    assert "24 triangles" in repr(scene)
+    assert "12 triangles" in repr(clpv.Scene.from_trimesh(box))
+    with pytest.raises(TypeError, match="from_trimesh: found int"):
+        clpv.Scene.from_trimesh(3)
+
+
+def test_the_example_of_arrays_runs(tmp_path):
+    script = (ROOT / "examples/arrays.py").read_text(encoding="utf-8")
+    small = script.replace("width=480, height=270", "width=32, height=18").replace("grid=32", "grid=16")
+    assert small != script
+    ended = subprocess.run([sys.executable, "-c", small], capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert ended.returncode == 0, ended.stderr
+    means = [float(line.split()[-2]) for line in ended.stdout.splitlines() if "W/m^2" in line]
+    assert len(means) == 5 and len(set(means)) == 5, "the wall's place changes the light"
