@@ -11,8 +11,9 @@
 
 namespace clpv {
 
-/// The meshes from memory of one scene, behind those of its file. Arguments and errors are those of clpv::Scene; after an error,
-/// nothing has changed. Copies share vertices until one of them changes.
+/// The meshes from memory of one scene, behind those of its file. Arguments and errors are those of
+/// clpv::Scene; after an error, nothing has changed. Copies share vertices until one of them
+/// changes.
 class AddedMeshes {
  public:
   int add(const Mesh& mesh, const Transform& transform, SceneData& scene);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Makes primitives of arrays: accessors of a file, or a caller's memory. All checks of geometry are here.
+// Makes primitives of arrays: accessors of a file, or a caller's memory. All checks of geometry are
+// here.
 #pragma once
 
 #include <cstdint>
@@ -52,17 +53,19 @@ struct GeometryBudget {
   std::uint64_t morph_numbers;  ///< numbers in morph targets
 };
 
-/// Makes a primitive, without joints and morph targets. `file` and `place` are for messages. `slots` is scratch memory,
-/// kNoSlot between calls, as primitives often share one large array. Throws Error(bad_input) for numbers that are not
-/// finite, indices out of range, and more geometry than `budget`.
+/// Makes a primitive, without joints and morph targets. `file` and `place` are for messages.
+/// `slots` is scratch memory, kNoSlot between calls, as primitives often share one large array.
+/// Throws Error(bad_input) for numbers that are not finite, indices out of range, and more geometry
+/// than `budget`.
 LocalPrimitive make_primitive(const PrimitiveArrays& arrays, const std::string& file, std::string place,
                               std::uint32_t material, const GeometryBudget& budget,
                               std::vector<std::uint32_t>& slots);
 
 inline constexpr std::uint32_t kNoSlot = 0xffffffff;
 
-/// Moves a primitive's vertices, indexed by LocalVertex::source. Stored normals stay unless `normals` replaces them;
-/// others are computed again. Throws Error(bad_input) for numbers that are not finite.
+/// Moves a primitive's vertices, indexed by LocalVertex::source. Stored normals stay unless
+/// `normals` replaces them; others are computed again. Throws Error(bad_input) for numbers that are
+/// not finite.
 void move_vertices(LocalPrimitive& primitive, const NumberArray& positions, const NumberArray* normals);
 
 }  // namespace clpv

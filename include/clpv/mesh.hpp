@@ -14,13 +14,14 @@ namespace clpv {
 
 /// Diffuse surface, as glTF describes it.
 struct Material {
-  /// Rows of RGBA with 8 bits each, sRGB-encoded colour and linear alpha; the first row has v = 0. Repeats.
+  /// Rows of RGBA with 8 bits each, sRGB-encoded colour and linear alpha; the first row has v = 0.
+  /// Repeats.
   struct Texture {
     std::uint32_t width = 0, height = 0;  ///< 1 to 16384
     std::vector<std::uint8_t> rgba;       ///< 4 * width * height
 
-    /// Encodes an image with channels R, G, B and optionally A, clamped to 0..1. Throws Error(bad_input) for other channels and for
-    /// numbers that are not finite.
+    /// Encodes an image with channels R, G, B and optionally A, clamped to 0..1. Throws
+    /// Error(bad_input) for other channels and for numbers that are not finite.
     static Texture of(const Image& image);
     bool operator==(const Texture&) const = default;
   };
@@ -34,7 +35,8 @@ struct Material {
   bool operator==(const Material&) const = default;
 };
 
-/// Affine transform: rows of a 4 x 4 matrix, whose last one is 0, 0, 0, 1. Multiplies columns (x, y, z, 1).
+/// Affine transform: rows of a 4 x 4 matrix, whose last one is 0, 0, 0, 1. Multiplies columns (x,
+/// y, z, 1).
 using Transform = std::array<std::array<double, 4>, 4>;
 inline constexpr Transform kIdentity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
 

@@ -56,7 +56,8 @@ struct Medium {
 /// a change waits for frames in progress, and shows in the next frame of all renderers of the scene.
 class Scene {
  public:
-  /// A scene without meshes. Without set_cameras() and set_lights() it has a camera that frames its meshes, and a sun, as a model has.
+  /// A scene without meshes. Without set_cameras() and set_lights() it has a camera that frames its
+  /// meshes, and a sun, as a model has.
   Scene();
 
   /// `model` replaces the model of the scene file; empty: no replacement. Files are untrusted: sizes are checked before
@@ -79,17 +80,20 @@ class Scene {
   std::optional<Medium> medium() const;
   void set_medium(const std::optional<Medium>& medium);
 
-  /// Adds a mesh at a place in the world, and returns a number for it that is not used again. Throws Error(bad_input) that names array,
-  /// index, value found and value allowed, for indices out of range, numbers that are not finite or out of bounds, arrays of vertices
-  /// that differ in length, and more than 2^24 vertices or triangles in the scene; Error(usage) for numbers of no mesh.
+  /// Adds a mesh at a place in the world, and returns a number for it that is not used again.
+  /// Throws Error(bad_input) that names array, index, value found and value allowed, for indices
+  /// out of range, numbers that are not finite or out of bounds, arrays of vertices that differ in
+  /// length, and more than 2^24 vertices or triangles in the scene; Error(usage) for numbers of no
+  /// mesh.
   int add_mesh(const Mesh& mesh, const Transform& transform = kIdentity);
   /// Adds the same mesh at another place; its vertices are shared.
   int add_instance(int mesh, const Transform& transform);
   void remove_mesh(int mesh);
 
-  /// Moves the vertices of a mesh, at all of its places, or one of its places. Normals that the mesh was given stay without `normals`. The
-  /// next frame of each renderer recomputes what animation recomputes; at the first move of a mesh, and after an addition or
-  /// removal, also its memory and what it caches. Throw as add_mesh().
+  /// Moves the vertices of a mesh, at all of its places, or one of its places. Normals that the
+  /// mesh was given stay without `normals`. The next frame of each renderer recomputes what
+  /// animation recomputes; at the first move of a mesh, and after an addition or removal, also its
+  /// memory and what it caches. Throw as add_mesh().
   void set_positions(int mesh, std::span<const std::array<float, 3>> positions,
                      std::span<const std::array<float, 3>> normals = {});
   void set_transform(int mesh, const Transform& transform);

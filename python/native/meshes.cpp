@@ -241,7 +241,7 @@ void add_meshes(py::class_<Scene>& type) {
   type.def_static(
       "from_trimesh",
       [](const py::object& given) {
-        return py::module_::import("clpv.meshes").attr("scene_of_trimesh")(given);
+        return py::module_::import("clpv._trimesh").attr("scene_of_trimesh")(given);
       },
       py::arg("given"),
       "from_trimesh(given) -> Scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, instances, "
