@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Written by scripts/stubs.
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -187,6 +187,7 @@ class Image:
         """
     def display(self, exposure: float = 0.0) -> NDArray[np.uint8]:
         """uint8 array (height, width, channels), tone-mapped and sRGB-encoded as save() does for .png."""
+    def _repr_png_(self) -> bytes | None: ...
 
 class Light:
     """Light without extent. Immutable; replace() makes another. Values are checked where it is used.
@@ -223,6 +224,31 @@ class Light:
         ...
     def replace(self, **changes: Any) -> Light:
         """replace(**changes): a copy with other values of some arguments."""
+
+class Material:
+    """Diffuse surface of a mesh. Immutable. Values are checked where it is used.
+
+    base_colour: linear red, green, blue and optionally alpha, or one number, 0 to 1; emission: radiance of the front
+    [W/m^2/sr], three numbers or one; texture: array (height, width, 4), uint8 with sRGB-encoded colour, or floats, linear;
+    alpha_cutoff: alpha below which there are holes; double_sided: visible, and emissive, from both sides.
+    """
+    def __init__(self, *, base_colour: float | _Vector = 1.0, emission: float | _Vector = 0.0, texture: ArrayLike | None = None, alpha_cutoff: float | None = None, double_sided: bool = False) -> None:
+        ...
+    @property
+    def base_colour(self) -> tuple[float, float, float, float]:
+        ...
+    @property
+    def emission(self) -> tuple[float, float, float]:
+        ...
+    @property
+    def texture(self) -> NDArray[np.uint8] | None:
+        """A copy as uint8 array (height, width, 4), or None."""
+    @property
+    def alpha_cutoff(self) -> float | None:
+        ...
+    @property
+    def double_sided(self) -> bool:
+        ...
 
 class Medium:
     """Homogeneous fog or dust in a box. Immutable; replace() makes another. Values are checked where it is used.
@@ -300,8 +326,36 @@ class Scene:
 
     Renderers keep its data alive. Thread-safe. Raises InputError with file, place, value found and value allowed.
     """
-    def __init__(self, path: _Path, model: _Path | None = None) -> None:
+    def __init__(self, path: _Path | None = None, model: _Path | None = None) -> None:
         ...
+    def add_mesh(self, positions: ArrayLike, triangles: ArrayLike, *, normals: ArrayLike | None = None, uvs: ArrayLike | None = None, colours: ArrayLike | None = None, smooth: bool = False, material: Material | None = None, transform: ArrayLike | None = None) -> int:
+        """add_mesh(positions, triangles, *, ...) -> int: a number for the mesh, which is not used again.
+
+        positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise seen from the front; normals (n, 3), of any
+        length; uvs: texture coordinates (n, 2), v = 0 in the first row; colours: linear floats (n, 3) or (n, 4), 0 to 1. Without
+        normals: flat ones, as in glTF, or, if smooth, means of the triangles' normals, weighted by angle. material: None for white;
+        transform: array (4, 4) to the world, which multiplies columns (x, y, z, 1). The arrays are copied. Raises InputError with
+        array, index, value found and value allowed.
+        """
+    @staticmethod
+    def from_arrays(positions: ArrayLike, triangles: ArrayLike, *, normals: ArrayLike | None = None, uvs: ArrayLike | None = None, colours: ArrayLike | None = None, smooth: bool = False, material: Material | None = None, transform: ArrayLike | None = None) -> "Scene":
+        """from_arrays(positions, triangles, *, ...) -> Scene of one mesh, number 0, as add_mesh() describes it."""
+    @staticmethod
+    def from_trimesh(given: Any) -> "Scene":
+        """from_trimesh(given) -> Scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, instances, colours and base-colour
+        textures.
+        """
+    def add_instance(self, mesh: int, transform: ArrayLike) -> int:
+        """add_instance(mesh, transform) -> int: the same mesh at another place; its vertices are shared."""
+    def remove_mesh(self, mesh: int) -> None:
+        """remove_mesh(mesh): removes a mesh from one of its places."""
+    def set_positions(self, mesh: int, positions: ArrayLike, normals: ArrayLike | None = None) -> None:
+        """set_positions(mesh, positions, normals=None): moves its vertices, at all of its places. Normals that were given stay without
+        `normals`. The next frame of each renderer recomputes what animation recomputes; at the first move of a mesh, and after an
+        addition or removal, also its memory and what it caches.
+        """
+    def set_transform(self, mesh: int, transform: ArrayLike) -> None:
+        """set_transform(mesh, transform): moves one place of a mesh. As set_positions()."""
     @property
     def cameras(self) -> Sequence[Camera]:
         """Tuple of all Cameras, at 0 s if animated. Assign a sequence to replace them."""
@@ -365,11 +419,13 @@ def devices() -> list[dict[str, Any]]:
 def options() -> list[dict[str, str]]:
     """options() -> list of dict: name, help, allowed values and default of each option of Renderer."""
 
-def pathtrace(scene: Scene, view: _View = 'full', camera: str | Camera | None = None, width: int = 960, height: int = 540, bounces: int = 1, samples: int = 0, noise: float = 0.02, seed: int = 1, threads: int = 0, time: float = 0.0) -> Image:
+def pathtrace(scene: Scene, view: _View = 'full', camera: str | Camera | None = None, width: int = 960, height: int = 540, bounces: int = 1, samples: int = 0, noise: float = 0.02, seed: int = 1, threads: int = 0, time: float = 0.0, progress: Callable[[float], object] | None = None) -> Image:
     """pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.
 
     bounces: reflections between light and visible surface, 0 for all; samples: paths per pixel, 0 for as many as
     `noise` (relative standard error of the indirect light) needs; threads: 0 for one per processor.
+    progress: a function that gets the estimated progress, 0 to 1, in this thread, up to 50 times a second; what it raises ends
+    the work.
     """
 
 def read_image(path: _Path) -> Image:
