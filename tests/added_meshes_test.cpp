@@ -90,9 +90,9 @@ TEST(AddedMeshes, OnlyTheFirstMoveRebuildsAFrame) {
   room.scene.set_transform(room.wall, moved_by(0.1, 0, 0));
   renderer.render();
   EXPECT_EQ(renderer.stats().build_ms, built) << "no program was built or loaded again";
-  const double moved = renderer.stats().stages.at("inject");
+  const double moved = renderer.stats().stages.at("propagate");
   renderer.render();
-  EXPECT_EQ(renderer.stats().stages.at("inject"), 0) << "nothing has moved";
+  EXPECT_EQ(renderer.stats().stages.at("propagate"), 0) << "nothing has moved";
   EXPECT_GT(moved, 0);
 }
 

@@ -47,12 +47,14 @@ def scene_of_glb(path, scale, texture_of):
                                 start).reshape(-1, columns)
 
     def material(index):
-        pbr = document["materials"][index]["pbrMetallicRoughness"]
+        given = document["materials"][index]
+        pbr = given["pbrMetallicRoughness"]
         texture = pbr.get("baseColorTexture")
         if texture is not None:
             view = document["bufferViews"][document["images"][document["textures"][texture["index"]]["source"]]["bufferView"]]
             texture = texture_of(binary[view.get("byteOffset", 0):][:view["byteLength"]])
-        return clpv.Material(base_colour=pbr["baseColorFactor"], texture=texture)
+        return clpv.Material(base_colour=pbr["baseColorFactor"], texture=texture,
+                             double_sided=given.get("doubleSided", False), emission=given.get("emissiveFactor", 0.0))
 
     materials = [material(i) for i in range(len(document["materials"]))]
     places = {}
@@ -150,7 +152,7 @@ def test_meshes_change_while_frames_render():
 
     def change():
         for step in range(20):
-            positions[:, 2] = -2 + 0.01 * step
+            positions[:] = WALL + (0, 0, 0.01 * step)
             scene.set_positions(0, positions)
             positions[:] = numpy.nan  # the scene has its own copy
         scene.remove_mesh(scene.add_mesh(WALL, SQUARE))
