@@ -106,14 +106,14 @@ def test_path_tracing_tells_its_progress():
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        clpv.pathtrace(scene, samples=1 << 20, progress=stop)
+        clpv.pathtrace(scene, width=96, height=54, samples=1 << 14, progress=stop)
     assert clpv.pathtrace(scene, width=8, height=8, samples=1).width == 8
 
 
 def test_exit_waits_for_a_callback_of_a_daemon_thread():
     ended = run("import clpv, threading, time\nscene = clpv.Scene('scenes/cornell.json')\ntold = threading.Event()\n"
                 "def tell(_):\n  told.set()\n  time.sleep(0.3)\n"
-                "def work():\n  clpv.pathtrace(scene, samples=1 << 20, progress=tell)\n"
+                "def work():\n  clpv.pathtrace(scene, width=96, height=54, samples=1 << 14, progress=tell)\n"
                 "threading.Thread(target=work, daemon=True).start()\ntold.wait(60)\nprint('end')", timeout=60)
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, "end\n", "")
 
