@@ -67,8 +67,8 @@ struct MeshRange {
 };
 
 struct SceneData {
-  std::string name;  ///< the file's stem
-  std::string path;  ///< the scene's file
+  std::string name;                          ///< the file's stem
+  std::string path;                          ///< the scene's file
   std::vector<std::filesystem::path> files;  ///< other files that it was read from: model, buffers, images
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
