@@ -16,6 +16,13 @@
 // Large functions need the attribute: PoCL leaves them out of line.
 #define CLPV_INLINE static inline __attribute__((always_inline))
 
+// Rare code, which would take registers from all other if it were inlined. GPUs keep the stack of calls in scratch memory.
+#if W == 1
+#define CLPV_RARE CLPV_INLINE
+#else
+#define CLPV_RARE __attribute__((noinline))
+#endif
+
 // Vectors of W numbers, conversions between them, and load and store of W numbers that follow one another. A comparison
 // of vectors is a mask: an intW, -1 where it holds and 0 elsewhere. With one lane it is 1 or 0: write `mask == 0` in place
 // of ~mask, and all_bits(mask) where its bits are numbers.

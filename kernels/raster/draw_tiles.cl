@@ -101,9 +101,8 @@ CLPV_INLINE void edges_at(__global const ClpvRasterTriangle* r, const int px, co
   edges->e2 = at.z - dy.z * lane, edges->step2 = dx.z;
 }
 
-// Mask of the W pixels from (px, py) on that a giant triangle covers. Not inlined: giants are few, and their code
-// would take registers from all others.
-__attribute__((noinline)) intW covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
+// Mask of the W pixels from (px, py) on that a giant triangle covers. Giants are few.
+CLPV_RARE intW covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
   const longW lane = to_longW(lane_numbers());
   const Edge e0 = edge_at(r, 0, px, py), e1 = edge_at(r, 1, px, py), e2 = edge_at(r, 2, px, py);
   const longW v0 = e0.value + lane * e0.step_x, v1 = e1.value + lane * e1.step_x, v2 = e2.value + lane * e2.step_x;
@@ -118,9 +117,9 @@ typedef struct {
   float far_key;
 } Tile;
 
-// Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: null for an opaque material.
+// Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: of a masked material; unused for others.
 CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r, const uint kind,
-                      const Mask* mask, __global const uint* texels) {
+                      const bool masked, const Mask* mask, __global const uint* texels) {
   const realW column = to_realW(lane_numbers());
   const uint triangle = kind & CLPV_TRIANGLE_INDEX;
   const int first_x = (int)(r->first & 0xffffu), first_y = (int)(r->first >> 16);
@@ -141,7 +140,7 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
     const realW old = tile.keys[at];
     const uintW old_seen = tile.seen[at];
     closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
-    if (mask) {
+    if (masked) {
       if (no_lane(closer)) continue;
       const realW depth = hit_depth(view, key);
       closer &= solid(view, mask, (float)tile.x, (float)(tile.y + row), depth, texels);
@@ -151,13 +150,11 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
   }
 }
 
-// Not inlined, like covered_by_giant().
-__attribute__((noinline)) void draw_masked(const ClpvView view, const Tile tile,
-                                           __global const ClpvRasterTriangle* r, const uint kind,
-                                           const Scene scene) {
+CLPV_RARE void draw_masked(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r, const uint kind,
+                           const Scene scene) {
   Mask mask;
   load_mask(view, kind & CLPV_TRIANGLE_INDEX, scene, &mask);
-  draw(view, tile, r, kind, &mask, scene.texels);
+  draw(view, tile, r, kind, true, &mask, scene.texels);
 }
 
 // Largest key of the pixels.
@@ -204,7 +201,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
       if (kind & CLPV_TRIANGLE_MASKED) {
         draw_masked(view, tile, r, kind, scene);
       } else {
-        draw(view, tile, r, kind, 0, texels);
+        draw(view, tile, r, kind, false, 0, texels);
       }
       farthest = farthest_of(tile.keys);
     }

@@ -118,7 +118,7 @@ CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2,
 CLPV_INLINE int16 find_occluded(const OcclusionTests* tests, const int first, uint candidates, const float z) {
   int16 occluded = (int16)(0);
   while (candidates != 0) {
-    const int corner = 31 - (int)clz(candidates), lane = corner - first;
+    const int corner = 31 - (int)clz(candidates), lane = W == 1 ? 0 : corner - first;
     candidates ^= 1u << corner;
     const int16 crossed = CLPV_PASSES(0) & CLPV_PASSES(1) & CLPV_PASSES(2) & CLPV_PASSES(3);
     occluded |= crossed & (1 << corner);
@@ -133,6 +133,7 @@ static inline void set_word(__global volatile uint* word, const uint bits) {
 // Tests a triangle in one cube. `points`: the cube's 64 bytes.
 static inline void occlude_cube(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
                                 __global volatile uint* points) {
+#pragma unroll 1
   for (int first = 0; first < CLPV_CENTRES; first += W) {
     OcclusionTests tests;
     uint candidates[CLPV_LAYERS];
