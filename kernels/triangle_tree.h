@@ -171,7 +171,8 @@ CLPV_INLINE void test_triangles(__global const realW* leaf, const uint i, CLPV_S
 
 #if W > 1
 
-// Where a work-item's rays begin. Up to eight subtrees that hold all triangles in a box: a node (shared/tree.h) that rays of one region share.
+// Where a work-item's rays begin. Up to eight subtrees that hold all triangles in a box: a node
+// (shared/tree.h) that rays of one region share.
 typedef struct {
   realW rows[CLPV_TREE_CHILDREN + 1];
 } Entry;
@@ -269,12 +270,14 @@ CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Ray
   while (visited < node_count || leaf_count > 0) {
     while (visited < node_count && leaf_count <= CLPV_LIST) {
       const uint next = nodes[node_count > CLPV_LIST ? --node_count : visited++], i = next % W;
-      __global const realW* node = tree.nodes + (size_t)(next >> CLPV_RAY_BITS) * (CLPV_TREE_NODE_ROWS * CLPV_TREE_VECTORS);
+      __global const realW* node =
+          tree.nodes + (size_t)(next >> CLPV_RAY_BITS) * (CLPV_TREE_NODE_ROWS * CLPV_TREE_VECTORS);
       const uint bits = boxes_hit(node, rays, i);
       CLPV_ADD_CHILDREN(__global, node, bits, i)
     }
     for (uint j = 0; j < leaf_count; ++j) {
-      __global const realW* leaf = tree.leaves + (size_t)(leaves[j] >> CLPV_RAY_BITS) * (CLPV_TREE_LEAF_ROWS * CLPV_TREE_VECTORS);
+      __global const realW* leaf =
+          tree.leaves + (size_t)(leaves[j] >> CLPV_RAY_BITS) * (CLPV_TREE_LEAF_ROWS * CLPV_TREE_VECTORS);
       for (uint at = 0; at < CLPV_TREE_VECTORS; ++at)
         test_triangles(leaf + at, leaves[j] % W, CLPV_PASS_SCENE, rays, &masked, &masked_count);
     }

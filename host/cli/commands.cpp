@@ -181,8 +181,10 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
       "OpenCL device: index, PLATFORM:DEVICE or part of a name (default: CLPV_DEVICE, else the first "
       "supported)");
   app.add_option_function<std::string>(
-         "--lanes", [](const std::string& lanes) { ::setenv("CLPV_LANES", lanes.c_str(), 1); },  // helpers inherit it
-         "pixels, cells or rays that a work-item processes (default: CLPV_LANES, else auto: 8 on CPUs, 1 elsewhere)")
+         "--lanes",
+         [](const std::string& lanes) { ::setenv("CLPV_LANES", lanes.c_str(), 1); },  // helpers inherit it
+         "pixels, cells or rays that a work-item processes (default: CLPV_LANES, else auto: 8 on CPUs, 1 "
+         "elsewhere)")
       ->type_name("auto|1|8")
       ->check(CLI::IsMember({"auto", "1", "8"}))
       ->group(std::string(kMoreOptions) + "device");

@@ -19,7 +19,8 @@ struct Device {
   int device_index = 0;    ///< within its platform
   std::string platform, platform_version, name, driver, version, type;
   unsigned compute_units = 0;
-  int lanes = 8;  ///< pixels, cells or rays that a work-item processes: CLPV_LANES (1 or 8), else 8 on CPUs and 1 elsewhere
+  /// Pixels, cells or rays that a work-item processes: CLPV_LANES (1 or 8), else 8 on CPUs, 1 elsewhere.
+  int lanes = 8;
   std::uint64_t max_alloc_bytes = 0;
   std::uint64_t memory_bytes = 0;
   bool images = false;

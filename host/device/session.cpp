@@ -93,7 +93,8 @@ std::shared_ptr<Program> Session::describe(const ProgramSource& source) {
   std::string text = program_text(specialised);
   std::string key = ProgramCache::key(device_, source.options, text);
   std::shared_ptr<Program>& program = programs_[key];
-  if (!program) program = std::make_shared<Program>(Program{std::move(specialised), std::move(text), std::move(key), {}});
+  if (!program)
+    program = std::make_shared<Program>(Program{std::move(specialised), std::move(text), std::move(key), {}});
   return program;
 }
 

@@ -105,7 +105,8 @@ CLPV_INLINE void load_near_points(__global const float* points, const NearRow r,
 CLPV_INLINE Vec find_near_directions(__global const realW* directions, const NearRow r, const NearPoints* p, const uint k) {
   const uint row = ((uint)r.y % CLPV_NEAR_TILE * CLPV_NEAR_RAYS + k) * 3 * CLPV_DIRECTION_VECTORS;
   __global const realW* about_z = directions + row + (uint)r.x % CLPV_DIRECTIONS / W;
-  return vec_blend(vec(about_z[0], about_z[CLPV_DIRECTION_VECTORS], about_z[2 * CLPV_DIRECTION_VECTORS]), p->tangent, p->bitangent, p->normal);
+  const Vec w = vec(about_z[0], about_z[CLPV_DIRECTION_VECTORS], about_z[2 * CLPV_DIRECTION_VECTORS]);
+  return vec_blend(w, p->tangent, p->bitangent, p->normal);
 }
 
 #endif

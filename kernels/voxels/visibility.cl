@@ -74,8 +74,8 @@ typedef struct {
   float z[CLPV_TESTS][W], offset[CLPV_TESTS][W];
 } OcclusionTests;
 
-// Sets up the tests of a triangle for W centres, and for each layer the candidates: bits of the centres that it may occlude from any
-// point there.
+// Sets up the tests of a triangle for W centres, and for each layer the candidates: bits of the centres
+// that it may occlude from any point there.
 CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
                               const int first, OcclusionTests* tests, uint candidates[CLPV_LAYERS]) {
   const realW x = v0.x - CLPV_CENTRE_X, y = v0.y - CLPV_CENTRE_Y, z = v0.z - CLPV_CENTRE_Z;

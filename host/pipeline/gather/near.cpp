@@ -127,7 +127,8 @@ void NearField::reserve(const ClpvView& view) {
   width_ = height_ = 0;  // until memory suffices
   session_.reserve(points_, CLPV_NEAR_PLANES * numbers, "points of the near field");
   session_.reserve(distances_, options_.rays * numbers, "distances of the near field");
-  const std::size_t tiles = items_along(session_, width) * tiles_down(height), lanes = session_.device().lanes;
+  const std::size_t tiles = items_along(session_, width) * tiles_down(height),
+                    lanes = session_.device().lanes;
   session_.reserve(counts_, tiles * sizeof(cl_uint), "hits of the near field");
   const std::size_t hits = tiles * lanes * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
   session_.reserve(hits_, hits, "hits of the near field");
@@ -174,13 +175,15 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
   reserve(view);
   const unsigned width = near_pixels(view.width, options_.step),
                  height = near_rows(view.height, options_.step);
-  const cl::NDRange with_border(items_along(session_, CLPV_NEAR_PITCH_OF(width)), height + 2 * CLPV_NEAR_ROWS);
+  const cl::NDRange with_border(items_along(session_, CLPV_NEAR_PITCH_OF(width)),
+                                height + 2 * CLPV_NEAR_ROWS);
   PixelKernels& pixels = pixel_kernels(camera.points());
   pixels.first.set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
       .launch(with_border, pixel_group(session_));
   if (pixels.others) {
     pixels.others->set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
-        .launch(cl::NDRange(items_along(session_, width), near_pixels(view.height, options_.step)), pixel_group(session_));
+        .launch(cl::NDRange(items_along(session_, width), near_pixels(view.height, options_.step)),
+                pixel_group(session_));
   }
   // With eight lanes, a work-item alone in its group: the lists of several would not fit into the first-level cache.
   const cl::NDRange group = session_.device().lanes == 8 ? cl::NDRange(1, 1) : pixel_group(session_);

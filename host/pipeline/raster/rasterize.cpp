@@ -167,7 +167,8 @@ void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
   draw_tiles_
       .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, scene_.vertices, scene_.triangles,
            scene_.materials, scene_.textures, scene_.texels, keys_, seen_)
-      .launch(cl::NDRange(tiles_along(view.width) * (CLPV_TILE / session_.device().lanes), tiles_along(view.height)),
+      .launch(cl::NDRange(tiles_along(view.width) * (CLPV_TILE / session_.device().lanes),
+                          tiles_along(view.height)),
               pixel_group(session_));
 }
 

@@ -159,7 +159,8 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int 
     made.border.emplace(session_, border, "sweep_border");
   } else if (options_.sky != nullptr) {
     made.sky = session_.upload(swept_sky(*options_.sky, parts), "boundary light of the sky");
-    made.sky_border.emplace(session_, border_program("sweep/sweep_sky.cl", options_, parts, session_.device().lanes),
+    made.sky_border.emplace(session_,
+                            border_program("sweep/sweep_sky.cl", options_, parts, session_.device().lanes),
                             "sweep_sky");
   }
   return made;
