@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Explicit vectors of W lanes: pixels of a row, cells of a row, rays. First text of every program with generated text.
+// Vectors of W lanes: pixels of a row, cells of a row, triangles, rays. First text of every program with generated text.
 //
 // W 8 is for CPUs. PoCL vectorises work-items by itself only in short kernels of straight-line code on named scalars,
 // without arrays, branches and float3 in memory (coefficients.h, surface.h, volume/whole_groups.h). Longer kernels use
-// vectors, and no function that PoCL does not inline, such as any(), floor() or log2().
+// vectors, and no function that PoCL does not inline, such as any(), floor() or log2(). W 1 is for GPUs, which run
+// work-items themselves in lanes.
 #ifndef CLPV_LANES_H
 #define CLPV_LANES_H
 
@@ -15,55 +16,78 @@
 // Large functions need the attribute: PoCL leaves them out of line.
 #define CLPV_INLINE static inline __attribute__((always_inline))
 
+// Rare code, which would take registers from all other if it were inlined. GPUs keep the stack of calls in scratch memory.
+#if W == 1
+#define CLPV_RARE CLPV_INLINE
+#else
+#define CLPV_RARE __attribute__((noinline))
+#endif
+
 // Vectors of W numbers, conversions between them, and load and store of W numbers that follow one another. A comparison
-// of vectors is a mask: an intW, -1 where it holds and 0 elsewhere. With one lane it is 1 or 0: use `mask == 0`, not
-// ~mask.
+// of vectors is a mask: an intW, -1 where it holds and 0 elsewhere. With one lane it is 1 or 0: write `mask == 0` in place
+// of ~mask, and all_bits(mask) where its bits are numbers.
 #if W == 8
 typedef float8 realW;
 typedef int8 intW;
 typedef uint8 uintW;
 typedef long8 longW;
+typedef uchar8 bytesW;
 #define to_realW convert_float8
 #define to_intW convert_int8
 #define to_uintW convert_uint8
 #define to_longW convert_long8
+#define to_bytesW convert_uchar8
+#define to_intW_rte convert_int8_rte
+#define to_uintW_rte convert_uint8_rte
 #define as_realW as_float8
 #define as_intW as_int8
 #define as_uintW as_uint8
 #define load_lanes(from) vload8(0, from)
 #define store_lanes(value, to) vstore8(value, 0, to)
 #define lane_numbers() ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
-// Gathers one element per lane, at the indices `at`.
-#define CLPV_GATHER(from, at)                                                                            \
-  ((from)[(at).s0], (from)[(at).s1], (from)[(at).s2], (from)[(at).s3], (from)[(at).s4], (from)[(at).s5], \
-   (from)[(at).s6], (from)[(at).s7])
+#define all_bits(mask) (mask)
+#define first_lane(value) ((value).s0)
+// Gathers one element per lane, at the indices `at`; `member`: empty, or a member of the elements (.flags).
+#define CLPV_GATHER_MEMBER(from, at, member)                                                          \
+  ((from)[(at).s0] member, (from)[(at).s1] member, (from)[(at).s2] member, (from)[(at).s3] member,    \
+   (from)[(at).s4] member, (from)[(at).s5] member, (from)[(at).s6] member, (from)[(at).s7] member)
 #elif W == 1
 typedef float realW;
 typedef int intW;
 typedef uint uintW;
+typedef long longW;
+typedef uchar bytesW;
 #define to_realW convert_float
 #define to_intW convert_int
 #define to_uintW convert_uint
+#define to_longW convert_long
+#define to_bytesW convert_uchar
+#define to_intW_rte convert_int_rte
+#define to_uintW_rte convert_uint_rte
+#define as_realW as_float
 #define as_intW as_int
 #define as_uintW as_uint
 #define load_lanes(from) (*(from))
 #define store_lanes(value, to) (*(to) = (value))
 #define lane_numbers() 0
-#define CLPV_GATHER(from, at) ((from)[at])
+#define all_bits(mask) ((mask) ? -1 : 0)
+#define first_lane(value) (value)
+#define CLPV_GATHER_MEMBER(from, at, member) ((from)[at] member)
 #endif
+#define CLPV_GATHER(from, at) CLPV_GATHER_MEMBER(from, at, )
 
 #define ZERO ((realW)(0.0f))
 #define ONE ((realW)(1.0f))
 
+// Gathers a float4 per lane, then reads it by columns: one load per lane instead of four. Functions that read buffers
+// return structs through pointers: Oclgrind does not know the annotations that compilers give to functions that return
+// one.
 #if W == 8
 
-// Gathers a float4 per lane, then reads it by columns: one load per lane instead of four.
 typedef struct {
   float4 r0, r1, r2, r3, r4, r5, r6, r7;
 } Rows;
 
-// Functions that read buffers return structs through pointers: Oclgrind does not know the annotations that compilers
-// give to functions that return one.
 static inline void gather_rows(__global const float4* from, const uintW at, Rows* rows) {
   rows->r0 = from[at.s0];
   rows->r1 = from[at.s1];
@@ -113,8 +137,37 @@ static inline int max_lane_int(const intW v) {
 
 #elif W == 1
 
-static inline bool no_lane(const intW mask) { return mask == 0; }
-static inline float sum_lanes(const realW v) { return v; }
+typedef struct {
+  float4 r0;
+} Rows;
+
+static inline void gather_rows(__global const float4* from, const uintW at, Rows* rows) {
+  rows->r0 = from[at];
+}
+
+#define CLPV_COLUMN(rows, c) ((rows).r0.c)
+
+static inline bool no_lane(const intW mask) {
+  return mask == 0;
+}
+static inline uint lane_bits(const intW mask) {
+  return mask ? 1u : 0u;
+}
+static inline float sum_lanes(const realW v) {
+  return v;
+}
+static inline uint sum_lanes_uint(const uintW v) {
+  return v;
+}
+static inline float min_lane(const realW v) {
+  return v;
+}
+static inline int min_lane_int(const intW v) {
+  return v;
+}
+static inline int max_lane_int(const intW v) {
+  return v;
+}
 
 #endif
 #endif

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Nearest triangle along a ray: a tree of bounding boxes with eight children per node (shared/tree.h).
 //
-// A ray tests the eight boxes of a node, or the eight triangles of a leaf, in lanes. Triangles: Moeller and Trumbore
+// A ray tests the eight boxes of a node, or the eight triangles of a leaf, W at a time. Triangles: Moeller and Trumbore
 // 1997, 'Fast, minimum storage ray-triangle intersection'. Both sides are hit; holes of masked materials are not.
 //
-// Eight rays share lists of nodes and leaves to visit. Processors test the entries of a list at the same time, while a
-// depth-first traversal waits for each node before it knows the next.
+// W rays share lists of nodes and leaves to visit. Processors test the entries of a list at the same time, while a
+// depth-first traversal waits for each node before it knows the next. One ray visits nodes depth first: its list is a
+// stack.
 #ifndef CLPV_TRIANGLE_TREE_H
 #define CLPV_TRIANGLE_TREE_H
 
@@ -16,7 +17,9 @@ typedef struct {
   __global const realW *nodes, *leaves;
 } Tree;
 
-// Eight rays and their nearest hits.
+#define CLPV_TREE_VECTORS (CLPV_TREE_WIDTH / W)  // of W numbers in a row of a node or a leaf
+
+// W rays and their nearest hits.
 typedef struct {
   float from[3][W], along[3][W], inverse[3][W];  // [m]; unit; 1 / along
   uint near_row[3][W];  // row of a node that holds the nearer planes
@@ -46,12 +49,13 @@ CLPV_INLINE void set_rays(const Vec from, const Vec along, const realW reach, Ra
   store_lanes((uintW)(0u), rays->triangle);
 }
 
-// Shortens the parts of ray i within eight boxes to those between their planes across axis a.
+// Shortens the parts of ray i within W boxes to those between their planes across axis a.
 #define CLPV_MEET_SLABS(a)                                                                                       \
   {                                                                                                              \
     const uint near_row = rays->near_row[a][i], far_row = CLPV_TREE_LOWER + CLPV_TREE_UPPER + 2 * a - near_row;  \
     const realW from = (realW)(rays->from[a][i]), inverse = (realW)(rays->inverse[a][i]);                     \
-    const realW entered = (node[near_row] - from) * inverse, left = (node[far_row] - from) * inverse;           \
+    const realW entered = (node[near_row * CLPV_TREE_VECTORS + at] - from) * inverse,                            \
+                left = (node[far_row * CLPV_TREE_VECTORS + at] - from) * inverse;                                \
     enter = entered > enter ? entered : enter;                                                                   \
     leave = left < leave ? left : leave;                                                                         \
   }
@@ -59,19 +63,25 @@ CLPV_INLINE void set_rays(const Vec from, const Vec along, const realW reach, Ra
 // Bit mask of the children whose boxes ray i meets before its hit.
 #define CLPV_BOXES_HIT(name, memory)                                                                                  \
   CLPV_INLINE uint name(memory const realW* node, const Rays* rays, const uint i) {                                  \
-    realW enter = ZERO, leave = (realW)(rays->distance[i]);                                               \
-    CLPV_MEET_SLABS(0) CLPV_MEET_SLABS(1) CLPV_MEET_SLABS(2)                                                          \
-    return lane_bits(enter <= leave * CLPV_BOX_MARGIN);                                                               \
+    uint bits = 0;                                                                                                    \
+    for (uint at = 0; at < CLPV_TREE_VECTORS; ++at) {                                                                 \
+      realW enter = ZERO, leave = (realW)(rays->distance[i]);                                                         \
+      CLPV_MEET_SLABS(0) CLPV_MEET_SLABS(1) CLPV_MEET_SLABS(2)                                                        \
+      bits |= lane_bits(enter <= leave * CLPV_BOX_MARGIN) << (at * W);                                                \
+    }                                                                                                                 \
+    return bits;                                                                                                      \
   }
 CLPV_BOXES_HIT(boxes_hit, __global)
+#if W > 1
 CLPV_BOXES_HIT(entry_hit, )
+#endif
 
 static inline uint lowest_bit(const uint bits) {
   return 31u - clz(bits & (0u - bits));
 }
 
 // Mask of the lanes where a masked material has a hole at weights (u, v).
-__attribute__((noinline)) intW find_holes(const uintW triangle, const realW u, const realW v, CLPV_SCENE) {
+CLPV_RARE intW find_holes(const uintW triangle, const realW u, const realW v, CLPV_SCENE) {
   Rows indices, a, b, c, base, factors, maps;
   gather_rows(triangles, triangle, &indices);
   const uintW ia = as_uintW(CLPV_COLUMN(indices, x)), ib = as_uintW(CLPV_COLUMN(indices, y)),
@@ -94,7 +104,7 @@ __attribute__((noinline)) intW find_holes(const uintW triangle, const realW u, c
   return alpha < CLPV_COLUMN(factors, w);
 }
 
-// Hits on masked materials, which count unless there is a hole. Eight are looked up together.
+// Hits on masked materials, which count unless there is a hole. W are looked up together.
 typedef struct {
   float distance[W], u[W], v[W];
   uint triangle[W], ray[W];
@@ -119,22 +129,23 @@ CLPV_INLINE void take_masked(const MaskedHits* masked, const uint count, CLPV_SC
   }
 }
 
-// Takes the nearest triangle of a leaf if it is nearer than the hit of ray i. On a tie, the first
-// triangle wins.
-CLPV_INLINE void test_leaf(__global const realW* leaf, const uint i, CLPV_SCENE, Rays* rays, MaskedHits* masked,
+// Takes the nearest of W triangles of a leaf if it is nearer than the hit of ray i. On a tie, the first
+// triangle wins. `leaf`: row 0 of these triangles.
+#define CLPV_LEAF(row) leaf[(row) * CLPV_TREE_VECTORS]
+CLPV_INLINE void test_triangles(__global const realW* leaf, const uint i, CLPV_SCENE, Rays* rays, MaskedHits* masked,
                            uint* masked_count) {
   const Vec along = vec((realW)(rays->along[0][i]), (realW)(rays->along[1][i]), (realW)(rays->along[2][i]));
-  const Vec edge1 = vec(leaf[CLPV_TREE_EDGE1], leaf[CLPV_TREE_EDGE1 + 1], leaf[CLPV_TREE_EDGE1 + 2]);
-  const Vec edge2 = vec(leaf[CLPV_TREE_EDGE2], leaf[CLPV_TREE_EDGE2 + 1], leaf[CLPV_TREE_EDGE2 + 2]);
-  const Vec from = vec(rays->from[0][i] - leaf[CLPV_TREE_CORNER], rays->from[1][i] - leaf[CLPV_TREE_CORNER + 1],
-                       rays->from[2][i] - leaf[CLPV_TREE_CORNER + 2]);
+  const Vec edge1 = vec(CLPV_LEAF(CLPV_TREE_EDGE1), CLPV_LEAF(CLPV_TREE_EDGE1 + 1), CLPV_LEAF(CLPV_TREE_EDGE1 + 2));
+  const Vec edge2 = vec(CLPV_LEAF(CLPV_TREE_EDGE2), CLPV_LEAF(CLPV_TREE_EDGE2 + 1), CLPV_LEAF(CLPV_TREE_EDGE2 + 2));
+  const Vec from = vec(rays->from[0][i] - CLPV_LEAF(CLPV_TREE_CORNER), rays->from[1][i] - CLPV_LEAF(CLPV_TREE_CORNER + 1),
+                       rays->from[2][i] - CLPV_LEAF(CLPV_TREE_CORNER + 2));
   const Vec across = vec_cross(along, edge2), around = vec_cross(from, edge1);
   const realW scale = ONE / vec_dot(edge1, across);
   const realW u = vec_dot(from, across) * scale, v = vec_dot(along, around) * scale,
                distance = vec_dot(edge2, around) * scale;
   intW met = (u >= ZERO) & (v >= ZERO) & (u + v <= ONE) & (distance > ZERO) & (distance < (realW)(rays->distance[i]));
   if (no_lane(met)) return;
-  const uintW triangle = as_uintW(leaf[CLPV_TREE_TRIANGLES]);
+  const uintW triangle = as_uintW(CLPV_LEAF(CLPV_TREE_TRIANGLES));
   const intW unsure = met & ((triangle & CLPV_TREE_MASKED) != 0u);
   if (!no_lane(unsure)) {
     for (uint bits = lane_bits(unsure); bits != 0; bits &= bits - 1u) {
@@ -147,7 +158,7 @@ CLPV_INLINE void test_leaf(__global const realW* leaf, const uint i, CLPV_SCENE,
       *masked_count = (j + 1) % W;
       if (j + 1 == W) take_masked(masked, W, CLPV_PASS_SCENE, rays);
     }
-    met &= ~unsure;
+    met &= unsure == 0;
     if (no_lane(met)) return;
   }
   const realW reached = met ? distance : (realW)(INFINITY);
@@ -156,8 +167,12 @@ CLPV_INLINE void test_leaf(__global const realW* leaf, const uint i, CLPV_SCENE,
   if (nearest < rays->distance[i])
     take_hit(rays, i, nearest, ((const float*)&u)[lane], ((const float*)&v)[lane], ((const uint*)&triangle)[lane]);
 }
+#undef CLPV_LEAF
 
-// Up to eight subtrees that hold all triangles in a box: a node (shared/tree.h) that rays of one region share.
+#if W > 1
+
+// Where a work-item's rays begin. Up to eight subtrees that hold all triangles in a box: a node
+// (shared/tree.h) that rays of one region share.
 typedef struct {
   realW rows[CLPV_TREE_CHILDREN + 1];
 } Entry;
@@ -212,14 +227,23 @@ CLPV_INLINE void enter_tree(const Tree tree, const Box box, Entry* entry) {
   entry->rows[CLPV_TREE_CHILDREN] = as_realW(load_lanes(children));
 }
 
+#else
+
+// The root, at which every ray begins.
+typedef struct {
+  uint root;
+} Entry;
+
+#endif
+
 // Entries of the lists: number of a node or a leaf, and a ray in the lowest bits.
 #define CLPV_RAY_BITS 3
-#define CLPV_LIST 256  // entries, before the last node or leaf adds its own
+#define CLPV_LIST (W == 1 ? 0 : 256)  // entries, before the last node or leaf adds its own
 
 // Adds the children in the mask `bits` of a node for ray i.
 #define CLPV_ADD_CHILDREN(memory, node, bits, i)                                                        \
   for (uint rest = bits; rest != 0; rest &= rest - 1u) {                                                \
-    const int child = ((memory const int*)((node) + CLPV_TREE_CHILDREN))[lowest_bit(rest)];            \
+    const int child = ((memory const int*)((node) + CLPV_TREE_CHILDREN * CLPV_TREE_VECTORS))[lowest_bit(rest)];            \
     const uint inner = child >= 0;                                                                      \
     nodes[node_count] = (uint)child << CLPV_RAY_BITS | i;                                               \
     leaves[leaf_count] = (uint)~child << CLPV_RAY_BITS | i;                                             \
@@ -235,20 +259,27 @@ CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Ray
   MaskedHits masked;
   store_lanes((uintW)(0u), masked.triangle);
   store_lanes(ZERO, masked.u), store_lanes(ZERO, masked.v);  // of unused lanes, too
+#if W > 1
   for (uint i = 0; i < W; ++i) {
     const uint bits = rays->distance[i] > 0.0f ? entry_hit(entry->rows, rays, i) : 0u;
     CLPV_ADD_CHILDREN(, entry->rows, bits, i)
   }
+#else
+  if (rays->distance[0] > 0.0f) nodes[node_count++] = entry->root;
+#endif
   while (visited < node_count || leaf_count > 0) {
     while (visited < node_count && leaf_count <= CLPV_LIST) {
       const uint next = nodes[node_count > CLPV_LIST ? --node_count : visited++], i = next % W;
-      __global const realW* node = tree.nodes + (size_t)(next >> CLPV_RAY_BITS) * CLPV_TREE_NODE_ROWS;
+      __global const realW* node =
+          tree.nodes + (size_t)(next >> CLPV_RAY_BITS) * (CLPV_TREE_NODE_ROWS * CLPV_TREE_VECTORS);
       const uint bits = boxes_hit(node, rays, i);
       CLPV_ADD_CHILDREN(__global, node, bits, i)
     }
     for (uint j = 0; j < leaf_count; ++j) {
-      __global const realW* leaf = tree.leaves + (size_t)(leaves[j] >> CLPV_RAY_BITS) * CLPV_TREE_LEAF_ROWS;
-      test_leaf(leaf, leaves[j] % W, CLPV_PASS_SCENE, rays, &masked, &masked_count);
+      __global const realW* leaf =
+          tree.leaves + (size_t)(leaves[j] >> CLPV_RAY_BITS) * (CLPV_TREE_LEAF_ROWS * CLPV_TREE_VECTORS);
+      for (uint at = 0; at < CLPV_TREE_VECTORS; ++at)
+        test_triangles(leaf + at, leaves[j] % W, CLPV_PASS_SCENE, rays, &masked, &masked_count);
     }
     leaf_count = 0;
   }

@@ -9,19 +9,33 @@
 namespace clpv::check_test {
 namespace {
 
-class Kernels : public ::testing::TestWithParam<Stage> {};
-
-INSTANTIATE_TEST_SUITE_P(Check, Kernels, ::testing::ValuesIn(values_of<Stage>()),
-                         [](const auto& info) { return std::string(name_of(info.param)); });
-
-TEST_P(Kernels, AgreeWithTheReference) {
-  const verify::CheckResults results = verify::check(GetParam(), test::test_session());
+/// Compares all kernels of a stage.
+void expect_agreement(Stage stage, Session& session) {
+  const verify::CheckResults results = verify::check(stage, session);
   EXPECT_FALSE(results.empty());
   for (const verify::CheckResult& result : results) {
     const verify::Deviation& found = result.deviation;
     EXPECT_TRUE(result.passed()) << result.stage << " " << result.variant << ": " << found.worst << ", allowed "
                                  << found.allowed << "; " << found.place << result.reason;
   }
+}
+
+class Kernels : public ::testing::TestWithParam<Stage> {};
+
+INSTANTIATE_TEST_SUITE_P(Check, Kernels, ::testing::ValuesIn(values_of<Stage>()),
+                         [](const auto& info) { return std::string(name_of(info.param)); });
+
+TEST_P(Kernels, AgreeWithTheReference) {
+  expect_agreement(GetParam(), test::test_session());
+}
+
+// Kernels with the other number of lanes: one on a CPU, as GPUs get them.
+TEST(Check, KernelsAgreeInTheOtherNumberOfLanes) {
+  Device device = test::test_session().device();
+  device.lanes = device.lanes == 8 ? 1 : 8;
+  Session session(device);
+  for (const Stage stage : {Stage::rasterize, Stage::reflectors, Stage::visibility, Stage::near})
+    expect_agreement(stage, session);
 }
 
 }  // namespace

@@ -38,6 +38,15 @@ TEST(CommandLine, ExitCodes) {
             5);
 }
 
+TEST(CommandLine, LanesAreOneOrEight) {
+  const test::Outcome option = clpv("--lanes 2 devices"),
+                      variable = test::run("CLPV_LANES=2 " CLPV_PROGRAM " devices");
+  EXPECT_EQ(option.exit_code, 2);
+  EXPECT_THAT(option.err, AllOf(HasSubstr("--lanes"), HasSubstr("auto,1,8")));
+  EXPECT_EQ(variable.exit_code, 2);
+  EXPECT_THAT(variable.err, HasSubstr("CLPV_LANES: 2; allowed: auto, 1 or 8"));
+}
+
 TEST(CommandLine, HelpOfAllCommandsIsForTheManPage) {
   EXPECT_THAT(clpv("--help-all").out,
               AllOf(HasSubstr("--transport"), HasSubstr("--frames"), HasSubstr("--vary")));

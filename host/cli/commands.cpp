@@ -180,6 +180,14 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   add(app, "--device", "DEVICE", shared.device,
       "OpenCL device: index, PLATFORM:DEVICE or part of a name (default: CLPV_DEVICE, else the first "
       "supported)");
+  app.add_option_function<std::string>(
+         "--lanes",
+         [](const std::string& lanes) { ::setenv("CLPV_LANES", lanes.c_str(), 1); },  // helpers inherit it
+         "pixels, cells or rays that a work-item processes (default: CLPV_LANES, else auto: 8 on CPUs, 1 "
+         "elsewhere)")
+      ->type_name("auto|1|8")
+      ->check(CLI::IsMember({"auto", "1", "8"}))
+      ->group(std::string(kMoreOptions) + "device");
   app.add_flag("-q,--quiet", shared.quiet, "no messages but errors");
   app.add_flag("-v,--verbose", shared.verbosity, "more log messages; -vv: even more");
   app.require_subcommand(1);

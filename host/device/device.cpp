@@ -51,6 +51,17 @@ bool profiling_is_plausible(const cl::Device& handle) {
   }
 }
 
+/// Device::lanes of a device of this type.
+int lanes_of(std::string_view type) {
+  const char* environment = std::getenv("CLPV_LANES");
+  const std::string_view lanes = environment != nullptr ? environment : "auto";
+  if (lanes == "1") return 1;
+  if (lanes == "8") return 8;
+  if (lanes != "auto" && !lanes.empty())
+    throw Error(ExitCode::usage, "CLPV_LANES: {}; allowed: auto, 1 or 8", lanes);
+  return type == "cpu" ? 8 : 1;
+}
+
 /// Queries all properties of a device. Throws cl::Error if the driver fails to answer.
 void describe(Device& device) {
   const cl::Device& handle = device.handle;
@@ -58,6 +69,7 @@ void describe(Device& device) {
   device.driver = trimmed(handle.getInfo<CL_DRIVER_VERSION>());
   device.version = trimmed(handle.getInfo<CL_DEVICE_VERSION>());
   device.type = type_name(handle.getInfo<CL_DEVICE_TYPE>());
+  device.lanes = lanes_of(device.type);
   device.compute_units = handle.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   device.max_alloc_bytes = handle.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   device.memory_bytes = handle.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();

@@ -19,6 +19,8 @@ struct Device {
   int device_index = 0;    ///< within its platform
   std::string platform, platform_version, name, driver, version, type;
   unsigned compute_units = 0;
+  /// Pixels, cells or rays that a work-item processes: CLPV_LANES (1 or 8), else 8 on CPUs, 1 elsewhere.
+  int lanes = 8;
   std::uint64_t max_alloc_bytes = 0;
   std::uint64_t memory_bytes = 0;
   bool images = false;
@@ -36,7 +38,8 @@ struct DeviceList {
   std::vector<std::string> platforms_without_devices;
 };
 
-/// Lists every device of every platform. Without OpenCL the list is empty; that is no error.
+/// Lists every device of every platform. Without OpenCL the list is empty; that is no error. Throws Error(usage) if
+/// CLPV_LANES is neither auto, 1 nor 8.
 DeviceList list_devices();
 
 /// Returns the device that matches `choice`: an index "N", "PLATFORM:DEVICE", or a substring of its name or

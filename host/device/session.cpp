@@ -97,10 +97,13 @@ Session::~Session() {
 }
 
 std::shared_ptr<Program> Session::describe(const ProgramSource& source) {
-  std::string text = program_text(source);
+  ProgramSource specialised = source;
+  if (!source.literals.defined().contains("CLPV_W")) specialised.literals.integer("CLPV_W", device_.lanes);
+  std::string text = program_text(specialised);
   std::string key = ProgramCache::key(device_, source.options, text);
   std::shared_ptr<Program>& program = programs_[key];
-  if (!program) program = std::make_shared<Program>(Program{source, std::move(text), std::move(key), {}});
+  if (!program)
+    program = std::make_shared<Program>(Program{std::move(specialised), std::move(text), std::move(key), {}});
   return program;
 }
 

@@ -71,7 +71,8 @@ class Session {
   cl::CommandQueue& queue() { return queue_; }
   Timeline& timeline() { return timeline_; }
 
-  /// Returns the program of this source. build_described() or the first kernel() of it builds it, once per session.
+  /// Returns the program of this source, with Device::lanes as CLPV_W unless it says another.
+  /// build_described() or the first kernel() of it builds it, once per session.
   std::shared_ptr<Program> describe(const ProgramSource& source);
 
   /// Builds all described programs that have an owner and are not built yet, with helpers if they are many.

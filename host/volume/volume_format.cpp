@@ -100,7 +100,7 @@ int preferred_lanes(const Device& device, const VolumeFormat& format) {
 }
 
 int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
-  return device.type == "cpu" && format.layout != Layout::image ? kMaxLanes : 1;
+  return format.layout == Layout::image ? 1 : device.lanes;
 }
 
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {

@@ -11,12 +11,12 @@
 //       unit        [W/sr] of a stored 1
 //       CLPV_GATHERED_VOLUMES   accumulated volumes: packed records and occlusion bits (CLPV_PACKED 1), or images
 // Out:  irradiance  E [W/m^2] per pixel
-// A work-item processes eight pixels of a row: coordinates in lanes, then pixel by pixel, since each reads its own
+// A work-item processes W pixels of a row: coordinates in lanes, then pixel by pixel, since each reads its own
 // cells.
 //
 // gather_packed.h and gather_image.h define
 //   CLPV_GATHERED, Sampled                        type of a cascade's volume; coefficients at a point
-//   SamplePoints, find_sample_points(at, &points) eight points [cells] from the first centre, clamped to the grid
+//   SamplePoints, find_sample_points(at, &points) W points [cells] from the first centre, clamped to the grid
 //   float sample_cells(volume, points, i, &s)      trilinear at point i, to be multiplied by the result
 //   float4 weigh(weights, sampled)           weights . coefficients for each channel, and 0
 // From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET, and Coefficients gather_weights(float3 n
@@ -32,7 +32,7 @@ CLPV_INLINE float4 volume_irradiance(CLPV_GATHERED volume, const SamplePoints* p
   return scale * max(weigh(weights, sampled), 0.0f);
 }
 
-// Eight pixels: surfaces, and the irradiance summed so far.
+// W pixels: surfaces, and the irradiance summed so far.
 typedef struct {
   Surfaces surfaces;
   realW remaining;  // weight that finer cascades leave

@@ -33,7 +33,7 @@ typedef struct {
 #endif
 } PackedCascade;
 
-// Eight points: number of the lowest of the eight cells about each, and its position between their centres in [0, 1];
+// W points: number of the lowest of the eight cells about each, and its position between their centres in [0, 1];
 // with CLPV_VISIBLE the same for the sample points of visibility.cl.
 typedef struct {
   int number[W];
@@ -96,7 +96,8 @@ CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoin
                                    float8* weights) {
   const float8 from = corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
   const float8 visible = *weights * visible_shares(cascade.occluded + points->visibility_point[i], from);
-  const float total = sum_lanes(visible);
+  const float4 four = visible.lo + visible.hi;
+  const float total = four.x + four.y + four.z + four.w;
   if (!(total > CLPV_MIN_VISIBLE)) return 1.0f;
   *weights = visible;
   return 1.0f / total;

@@ -23,7 +23,7 @@
 //   In:      depths, medium, ends, blurred
 //            alone   1: the scattered light; 0: T L_surface + scattered light
 //   In, out: image                 RGBA; alpha stays
-// A work-item processes eight pixels of a row.
+// A work-item processes W pixels of a row.
 //
 // From the host: CLPV_NEAR_STEP 2, CLPV_NEAR_LAYERS 1, CLPV_LIGHT_STEPS, CLPV_VOLUME_STEPS.
 #include "gather/near_layout.h"
@@ -35,7 +35,7 @@
 #define CLPV_UNLIKE 1e-3f     // fallback weight if no neighbour has similar depth
 #define CLPV_THIN 1e-3f       // optical depth below which points are spread evenly
 
-// Parts of the rays of eight pixels in the medium.
+// Parts of the rays of W pixels in the medium.
 typedef struct {
   Vec origin, direction;  // unit
   realW start, end;      // [m]
@@ -71,10 +71,10 @@ CLPV_INLINE void find_plane_rays(const ClpvView view, const NearRow r, __global 
 
 // Place in (0, 1) of each pixel's point within its interval: the ordered dither of a 4 x 4 tile (Bayer 1973).
 CLPV_INLINE realW place_in_interval(const NearRow r) {
-  const float4 rows[CLPV_NEAR_TILE] = {(float4)(0, 8, 2, 10), (float4)(12, 4, 14, 6), (float4)(3, 11, 1, 9),
-                                       (float4)(15, 7, 13, 5)};
-  const float4 row = rows[r.y % CLPV_NEAR_TILE];
-  return ((realW)(row.x, row.y, row.z, row.w, row.x, row.y, row.z, row.w) + 0.5f) * (1.0f / 16.0f);
+  const uint y = (uint)r.y;
+  const uintW x = as_uintW(r.x + lane_numbers()), across = (x ^ y) & 1u, beyond = ((x ^ y) >> 1) & 1u;
+  const uintW place = 8u * across + 4u * (y & 1u) + 2u * beyond + ((y >> 1) & 1u);
+  return (to_realW(as_intW(place)) + 0.5f) * (1.0f / 16.0f);
 }
 
 // A point of each ray.
@@ -194,7 +194,15 @@ __kernel void medium_blur(const ClpvView view, __global const float* ends, __glo
   store_near_vectors(vec_times(sum, weights > ZERO ? 1.0f / weights : ZERO), blurred, r.plane, r.at);
 }
 
+// Spreads pixels over W pixels of the camera: on each the near pixel at its left, or with `right` the nearest one at its
+// right. They are loaded from CLPV_WIDEN_FROM on.
+#if W == 8
 #define CLPV_WIDEN(v) (right ? (v).s01122334 : (v).s00112233)
+#define CLPV_WIDEN_FROM(px, right) ((px) / 2)
+#elif W == 1
+#define CLPV_WIDEN(v) (v)
+#define CLPV_WIDEN_FROM(px, right) (((px) + ((right) ? 1u : 0u)) / 2)
+#endif
 
 __kernel void medium_add(const ClpvView view, __global const float* depths, const ClpvMedium medium,
                          __global const float* ends, __global const float* blurred, const uint alone,
@@ -210,7 +218,7 @@ __kernel void medium_add(const ClpvView view, __global const float* depths, cons
   realW weights = ZERO;
   for (uint corner = 0; corner < 4; ++corner) {
     const bool right = corner % 2 == 1;
-    const uint at = r.at - p.px / 2 + (corner / 2) * (p.py % 2) * r.pitch;
+    const uint at = r.at - p.px + CLPV_WIDEN_FROM(p.px, right) + (corner / 2) * (p.py % 2) * r.pitch;
     const realW end = load_lanes(ends + at), red = load_lanes(blurred + at), green = load_lanes(blurred + r.plane + at),
                  blue = load_lanes(blurred + 2 * r.plane + at);
     const Vec light = vec(CLPV_WIDEN(red), CLPV_WIDEN(green), CLPV_WIDEN(blue));

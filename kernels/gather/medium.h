@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Paths through a medium (shared/light.h), eight at a time.
+// Paths through a medium (shared/light.h), W at a time.
 #ifndef CLPV_MEDIUM_H
 #define CLPV_MEDIUM_H
 

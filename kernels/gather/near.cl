@@ -13,7 +13,7 @@
 //       radiances             L_hit [W/m^2/sr] per ray: three planes for each k
 //       CLPV_RADIANCE         volumes
 // Out:  light                 D and E (shared/near.h)
-// A work-item processes eight pixels of a row.
+// A work-item processes W pixels of a row.
 #include "gather/near_layout.h"
 #include "gather/radiance.h"
 #include "raster/surface_row.h"
@@ -59,7 +59,7 @@ __kernel void near(const ClpvView view, __global const float* points, __global c
   for (uint k = 0; k < CLPV_NEAR_RAYS; ++k) {
     const Vec w = find_near_directions(directions, r, &p, k);
     const intW hit = load_lanes(distances + k * r.plane + r.at) < (realW)(INFINITY);
-    const intW missed = lit & ~hit & (trust > ZERO);
+    const intW missed = lit & (hit == 0) & (trust > ZERO);
     sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), ZERO, p.normal, missed, &there);
     const VecLanes back = unpack(lit, vec_times(w, (realW)(-1.0f)));
     float shares[W];

@@ -18,7 +18,7 @@
 //   In:      places, normals       the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
 //            points, widened
 //   In, out: irradiance    E [W/m^2] per pixel of the camera; E + D, or where D < 0: E darkened(1 + mean D / mean E)
-// A work-item processes eight pixels of a row.
+// A work-item processes W pixels of a row.
 #include "gather/near_surface.h"
 #include "raster/surface_row.h"
 
@@ -106,9 +106,10 @@ CLPV_INLINE realW clamp_positive(const realW v) {
 }
 
 #if CLPV_NEAR_LAYERS > 1
-// Adds near pixels on the surfaces of eight pixels of the camera, or on any: those from `at` on, spread over them.
-CLPV_INLINE void add_spread(__global const float* points, __global const float* widened, const uint plane, const uint at,
+// Adds near pixels on the surfaces of W pixels of the camera, or on any: those from `first` on, spread over them.
+CLPV_INLINE void add_spread(__global const float* points, __global const float* widened, const uint plane, const uint first,
                             const bool right, const Surfaces s, const bool any, const realW weight, WeightedSum* sum) {
+  const uint at = CLPV_SPREAD_FROM(first, right);
   if (lane_bits(load_lanes(points + CLPV_NEAR_REACH * plane + at) > ZERO) == 0u) return;
   NearSurfaces n;
   load_near_surfaces(points, plane, at, &n);
@@ -118,11 +119,11 @@ CLPV_INLINE void add_spread(__global const float* points, __global const float* 
                (any ? n.reach > ZERO : same_surface(n, s.position, s.normal)) ? weight : ZERO, sum);
 }
 
-// Means at eight pixels of the camera.
+// Means at W pixels of the camera.
 CLPV_INLINE void interpolate_light(const ClpvView view, const PixelRow p, const Surfaces s, const NearRow r,
                               __global const float* points, __global const float* widened, WeightedSum* sum) {
   const uint first = r.at - p.px + p.px / CLPV_NEAR_STEP, second = near_second(view) * r.pitch;
-  const realW across = to_realW(lane_numbers() % CLPV_NEAR_STEP) * (1.0f / CLPV_NEAR_STEP);
+  const realW across = to_realW(((int)p.px + lane_numbers()) % CLPV_NEAR_STEP) * (1.0f / CLPV_NEAR_STEP);
   const float down = (float)(p.py % CLPV_NEAR_STEP) * (1.0f / CLPV_NEAR_STEP);
   for (uint layer = 0; layer < 2; ++layer) {
     for (uint corner = 0; corner < 4; ++corner) {

@@ -14,7 +14,7 @@
 #include "shared/view.h"
 #include "vec.h"
 
-// Eight pixels of a row.
+// W pixels of a row.
 typedef struct {
   uint width, height, pitch, plane;  // of both layers: pixels, and numbers of a row and of a plane
   int x, y;                          // first pixel; may be in the border
@@ -37,7 +37,7 @@ static inline uint near_plane(const ClpvView view) {
   return CLPV_NEAR_PLANE_OF(near_pixels(view.width), near_rows(view));
 }
 
-// The pixels from (8 column, row) on.
+// The pixels from (W column, row) on.
 static inline NearRow find_near_row(const ClpvView view, const int column, const int row) {
   NearRow r;
   r.width = near_pixels(view.width);
@@ -77,7 +77,7 @@ CLPV_INLINE void store_near_vectors(const Vec v, __global float* planes, const u
   store_lanes(v.z, planes + 2 * plane + at);
 }
 
-// Points of eight pixels.
+// Points of W pixels.
 typedef struct {
   Vec position, normal, tangent, bitangent;
   realW reach;
@@ -96,11 +96,17 @@ CLPV_INLINE void load_near_points(__global const float* points, const NearRow r,
   p->bitangent = vec(b, sign + n.y * n.y * a, -n.y);
 }
 
-// Unit directions of ray k of eight pixels. `directions`: about +z, by row of the tile, ray and axis; the four pixels of
+// Numbers of a row of `directions`, and vectors.
+#define CLPV_DIRECTIONS 8
+#define CLPV_DIRECTION_VECTORS (CLPV_DIRECTIONS / W)
+
+// Unit directions of ray k of W pixels. `directions`: about +z, by row of the tile, ray and axis; the four pixels of
 // a tile's row twice.
 CLPV_INLINE Vec find_near_directions(__global const realW* directions, const NearRow r, const NearPoints* p, const uint k) {
-  __global const realW* about_z = directions + ((uint)r.y % CLPV_NEAR_TILE * CLPV_NEAR_RAYS + k) * 3;
-  return vec_blend(vec(about_z[0], about_z[1], about_z[2]), p->tangent, p->bitangent, p->normal);
+  const uint row = ((uint)r.y % CLPV_NEAR_TILE * CLPV_NEAR_RAYS + k) * 3 * CLPV_DIRECTION_VECTORS;
+  __global const realW* about_z = directions + row + (uint)r.x % CLPV_DIRECTIONS / W;
+  const Vec w = vec(about_z[0], about_z[CLPV_DIRECTION_VECTORS], about_z[2 * CLPV_DIRECTION_VECTORS]);
+  return vec_blend(w, p->tangent, p->bitangent, p->normal);
 }
 
 #endif

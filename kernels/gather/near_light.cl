@@ -13,7 +13,7 @@
 //   near_light:   light, views, count, which, map   a light and one of its shadow maps (shadow.h)
 //   near_reflect: CLPV_RADIANCE                     volumes (radiance.h)
 // In, out: radiances           three planes for each k, of the rays that hit
-// A work-item processes eight hits of a tile. From the host: CLPV_TEXTURED, CLPV_COLOURED, CLPV_EMISSIVE,
+// A work-item processes W hits of a tile. From the host: CLPV_TEXTURED, CLPV_COLOURED, CLPV_EMISSIVE,
 // CLPV_NEAR_CONE, and with CLPV_NEAR_REFLECT 1 what radiance.h needs.
 #include "gather/near_layout.h"
 #include "raster/scene_triangles.h"
@@ -69,7 +69,7 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   s->albedo = vec_product(s->albedo, vec_blend(w, a.colour, b.colour, c.colour));
 #endif
 #if CLPV_EMISSIVE
-  const intW emits = ~back | ((material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);
+  const intW emits = (back == 0) | ((material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);
   s->emitted = vec_masked(emits, material.emissive);
 #else
   s->emitted = vec(ZERO, ZERO, ZERO);

@@ -9,12 +9,12 @@
 // In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
 //       grids             ClpvGrid of each cascade
 // Out:  points                planes of shared/near.h, with their border
-// A work-item processes eight near pixels of a row.
+// A work-item processes W near pixels of a row.
 #include "gather/near_surface.h"
 #include "gather/radiance.h"
 #include "raster/surface_row.h"
 
-// Cell of the cascades at eight positions [m], blended like their light; 0 outside the mask `wanted`.
+// Cell of the cascades at W positions [m], blended like their light; 0 outside the mask `wanted`.
 CLPV_INLINE realW find_reach(__global const ClpvGrid* grids, const uint cascades, const Vec position, const intW wanted) {
   realW reach = ZERO, remaining = wanted ? ONE : ZERO;
   for (uint c = 0; c < cascades; ++c) {
@@ -26,7 +26,7 @@ CLPV_INLINE realW find_reach(__global const ClpvGrid* grids, const uint cascades
   return reach;
 }
 
-// Surfaces of eight pixels of the camera.
+// Surfaces of W pixels of the camera.
 typedef struct {
   intW seen;
   Vec position, normal;
@@ -81,7 +81,7 @@ CLPV_INLINE intW on_no_surface(__global const float* points, const NearRow r, co
     for (int dx = from; dx <= to; ++dx) {
       NearSurfaces n;
       load_near_surfaces(points, r.plane, (uint)((int)r.at + dy * (int)r.pitch + dx), &n);
-      wanted &= ~same_surface(n, c.position, c.normal);
+      wanted &= same_surface(n, c.position, c.normal) == 0;
     }
   }
   return wanted;
@@ -98,7 +98,7 @@ __kernel void near_others(const ClpvView view, __global const Place* places, __g
     for (int dx = 0; dx < CLPV_NEAR_STEP; ++dx) {
       CameraPixels c;
       load_camera_pixels(view, places, normals, x + dx, first.y * CLPV_NEAR_STEP + dy, x + dx < (int)view.width, &c);
-      intW wanted = on_no_surface(points, first, 0, 1, c, c.seen & ~found);
+      intW wanted = on_no_surface(points, first, 0, 1, c, c.seen & (found == 0));
       if (lane_bits(wanted) == 0u) continue;
       wanted = on_no_surface(points, first, -1, 2, c, wanted);
       if (lane_bits(wanted) == 0u) continue;

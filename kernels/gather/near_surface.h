@@ -8,7 +8,7 @@
 #define CLPV_SAME_NORMAL 0.7f  // minimum cosine between normals
 #define CLPV_SAME_PLANE 0.1f   // maximum distance from the tangent plane [R]
 
-// Surfaces of eight pixels.
+// Surfaces of W pixels.
 typedef struct {
   Vec position, normal;
   realW reach;
@@ -27,9 +27,14 @@ CLPV_INLINE intW same_surface(const NearSurfaces s, const Vec position, const Ve
 }
 
 #if CLPV_NEAR_LAYERS > 1
-// Spreads pixels over eight pixels of the camera from a multiple of eight on: on each the near pixel at its left, or with
-// `right` the next one.
-#if CLPV_NEAR_STEP == 2
+// Spreads pixels over W pixels of the camera from a multiple of W on: on each the near pixel at its left, or with `right`
+// the next one. They are loaded from CLPV_SPREAD_FROM on.
+#define CLPV_SPREAD_FROM(first, right) (first)
+#if W == 1
+#undef CLPV_SPREAD_FROM
+#define CLPV_SPREAD_FROM(first, right) ((right) ? (first) + 1u : (first))
+#define CLPV_SPREAD(v) (v)
+#elif CLPV_NEAR_STEP == 2
 #define CLPV_SPREAD(v) (right ? (v).s11223344 : (v).s00112233)
 #elif CLPV_NEAR_STEP == 4
 #define CLPV_SPREAD(v) (right ? (v).s11112222 : (v).s00001111)

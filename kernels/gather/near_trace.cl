@@ -9,7 +9,9 @@
 #include "gather/near_layout.h"
 #include "triangle_tree.h"
 
-// Widens the bounds along an axis by half balls of radius `reach` about eight points.
+#if W > 1
+
+// Widens the bounds along an axis by half balls of radius `reach` about W points.
 CLPV_INLINE void add_half_balls(const intW lit, const realW at, const realW normal, const realW reach, const int axis,
                                 Box* box) {
   const realW square = 1.0f - normal * normal, sine = sqrt(square > ZERO ? square : ZERO);
@@ -37,6 +39,21 @@ CLPV_INLINE void box_of_tile(const ClpvView view, __global const float* points, 
   }
 }
 
+// Finds where the tile's rays begin.
+CLPV_INLINE void find_entry(const ClpvView view, __global const float* points, const Tree tree, Entry* entry) {
+  Box box;
+  box_of_tile(view, points, &box);
+  enter_tree(tree, box, entry);
+}
+
+#else
+
+CLPV_INLINE void find_entry(const ClpvView view, __global const float* points, const Tree tree, Entry* entry) {
+  entry->root = 0;
+}
+
+#endif
+
 // Appends the hits of rays k of a row.
 CLPV_INLINE void add_hits(const NearRow r, const uint k, const realW reach, const Rays* rays, __global float* list,
                           uint* count) {
@@ -60,10 +77,8 @@ __kernel void near_trace(const ClpvView view, __global const float* points, __gl
   const uint tile = find_near_tile(view);
   if (tile == CLPV_NO_TILE) return;
   const Tree tree = {nodes, leaves};
-  Box box;
-  box_of_tile(view, points, &box);
   Entry entry;
-  enter_tree(tree, box, &entry);
+  find_entry(view, points, tree, &entry);
   __global float* list = hits + (size_t)tile * CLPV_TILE_HITS * CLPV_HIT_ROWS;
   uint count = 0;
   for (int y = 0; y < CLPV_NEAR_TILE; ++y) {

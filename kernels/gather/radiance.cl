@@ -6,7 +6,7 @@
 //       directions           unit vectors along which light travels
 //       CLPV_RADIANCE        grids and packed volumes
 // Out:  radiances            L [W/m^2/sr] for each channel, and 0; may be negative
-// A work-item processes eight points of a row.
+// A work-item processes W points of a row.
 #include "gather/radiance.h"
 #include "raster/surface_row.h"
 

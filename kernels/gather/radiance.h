@@ -20,7 +20,7 @@
 #define CLPV_PASS_RADIANCE grids, cascades, unit, packed
 #endif
 
-// C at eight points.
+// C at W points.
 typedef struct {
   Sampled at[W];
 } RadianceField;

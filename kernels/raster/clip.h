@@ -13,7 +13,9 @@
 #define CLPV_CLIP_CORNERS 12  // each plane adds one to the three; rounding may add a few more
 
 // Point of the first lane.
-static inline float4 polygon_corner(const ViewPoint p) { return (float4)(p.x.s0, p.y.s0, p.w.s0, p.z.s0); }
+static inline float4 polygon_corner(const ViewPoint p) {
+  return (float4)(first_lane(p.x), first_lane(p.y), first_lane(p.w), first_lane(p.z));
+}
 
 // Signed distance of a point from a clipping plane; negative outside.
 static inline float clip_distance(const ClpvView view, const float4 p, const int plane) {

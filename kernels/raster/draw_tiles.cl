@@ -12,9 +12,9 @@
 //          binned        entries: index in `list`, smallest key
 //          fresh         1: tiles start empty; 0: they continue from `keys` and `seen`
 //          vertices, triangles, materials, textures, texels   the scene, for masked materials
-// In, out: keys, seen    key, and number in the scene, of the nearest triangle: a float8 and a uint8 per row of a tile,
+// In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers per row of a tile,
 //                        CLPV_TILE rows per tile, tiles row by row; INFINITY and UINT_MAX for empty pixels
-// A work-item draws a tile.
+// A work-item draws W columns of a tile: with W 8 all of it.
 #include "raster/edges.h"
 #include "lanes.h"
 #include "prefetch.h"
@@ -80,13 +80,13 @@ CLPV_INLINE intW solid(const ClpvView view, const Mask* mask, const float px, co
 // Edge functions of a triangle in a tile, divided by 256: a centre is inside where none is negative. The sign is exact,
 // since steps are multiples of 256. Values far from 0 keep their sign throughout the tile and are clamped to 32 bits.
 typedef struct {
-  intW e0, e1, e2;          // at eight pixels of a row
+  intW e0, e1, e2;          // at W pixels of a row
   int step0, step1, step2;  // change to the row below
 } Edges;
 
 #define CLPV_FAR_OUT 0x40000000L  // more than 2 x 7 steps of a triangle that is not CLPV_TRIANGLE_GIANT
 
-// Edge functions at the row of eight pixels from (px, py) on.
+// Edge functions at the row of W pixels from (px, py) on.
 CLPV_INLINE void edges_at(__global const ClpvRasterTriangle* r, const int px, const int py, Edges* edges) {
   const intW lane = lane_numbers();
   const int4 x = vload4(0, r->x), y = vload4(0, r->y);
@@ -101,16 +101,15 @@ CLPV_INLINE void edges_at(__global const ClpvRasterTriangle* r, const int px, co
   edges->e2 = at.z - dy.z * lane, edges->step2 = dx.z;
 }
 
-// Mask of the eight pixels from (px, py) on that a giant triangle covers. Not inlined: giants are few, and their code
-// would take registers from all others.
-__attribute__((noinline)) intW covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
+// Mask of the W pixels from (px, py) on that a giant triangle covers. Giants are few.
+CLPV_RARE intW covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
   const longW lane = to_longW(lane_numbers());
   const Edge e0 = edge_at(r, 0, px, py), e1 = edge_at(r, 1, px, py), e2 = edge_at(r, 2, px, py);
   const longW v0 = e0.value + lane * e0.step_x, v1 = e1.value + lane * e1.step_x, v2 = e2.value + lane * e2.step_x;
   return to_intW((v0 | v1 | v2) >= 0L);
 }
 
-// A tile of the view and its buffers.
+// Columns of a tile of the view, and their buffers: rows lie CLPV_TILE_VECTORS apart.
 typedef struct {
   __global realW* keys;
   __global uintW* seen;
@@ -118,9 +117,9 @@ typedef struct {
   float far_key;
 } Tile;
 
-// Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: null for an opaque material.
+// Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: of a masked material; unused for others.
 CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r, const uint kind,
-                      const Mask* mask, __global const uint* texels) {
+                      const bool masked, const Mask* mask, __global const uint* texels) {
   const realW column = to_realW(lane_numbers());
   const uint triangle = kind & CLPV_TRIANGLE_INDEX;
   const int first_x = (int)(r->first & 0xffffu), first_y = (int)(r->first >> 16);
@@ -137,32 +136,34 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
     realW key = key_left + key_y * (float)(tile.y + row - first_y);
     key = key > nearest ? key : nearest;
     key = key < farthest ? key : farthest;
-    const realW old = tile.keys[row];
-    const uintW old_seen = tile.seen[row];
+    const int at = row * CLPV_TILE_VECTORS;
+    const realW old = tile.keys[at];
+    const uintW old_seen = tile.seen[at];
     closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
-    if (mask) {
+    if (masked) {
       if (no_lane(closer)) continue;
       const realW depth = hit_depth(view, key);
       closer &= solid(view, mask, (float)tile.x, (float)(tile.y + row), depth, texels);
     }
-    tile.keys[row] = select(old, key, closer);
-    tile.seen[row] = select(old_seen, (uintW)(triangle), closer);
+    tile.keys[at] = select(old, key, closer);
+    tile.seen[at] = select(old_seen, (uintW)(triangle), closer);
   }
 }
 
-// Not inlined, like covered_by_giant().
-__attribute__((noinline)) void draw_masked(const ClpvView view, const Tile tile,
-                                           __global const ClpvRasterTriangle* r, const uint kind,
-                                           const Scene scene) {
+CLPV_RARE void draw_masked(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r, const uint kind,
+                           const Scene scene) {
   Mask mask;
   load_mask(view, kind & CLPV_TRIANGLE_INDEX, scene, &mask);
-  draw(view, tile, r, kind, &mask, scene.texels);
+  draw(view, tile, r, kind, true, &mask, scene.texels);
 }
 
-// Largest key of a tile's pixels.
+// Largest key of the pixels.
 static inline float farthest_of(__global const realW* keys) {
   realW largest = keys[0];
-  for (int row = 1; row < CLPV_TILE; ++row) largest = keys[row] > largest ? keys[row] : largest;
+  for (int row = 1; row < CLPV_TILE; ++row) {
+    const realW key = keys[row * CLPV_TILE_VECTORS];
+    largest = key > largest ? key : largest;
+  }
   return -min_lane(-largest);
 }
 
@@ -174,16 +175,18 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
                          __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                          __global const ClpvMaterial* materials, __global const float4* textures,
                          __global const uint* texels, __global realW* keys, __global uintW* seen) {
-  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, x = get_global_id(0), y = get_global_id(1);
+  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, x = get_global_id(0) / CLPV_TILE_VECTORS,
+             y = get_global_id(1), vector = get_global_id(0) % CLPV_TILE_VECTORS;
   if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
   const uint at = y * tiles_x + x;
   const Scene scene = {vertices, triangles, materials, textures, texels};
-  const Tile tile = {keys + at * CLPV_TILE, seen + at * CLPV_TILE, (int)x * CLPV_TILE, (int)y * CLPV_TILE,
+  const uint row = tile_row(at, 0, vector);
+  const Tile tile = {keys + row, seen + row, (int)(x * CLPV_TILE + vector * W), (int)y * CLPV_TILE,
                      CLPV_PARALLEL(view) ? view.far_depth : -1.0f / view.far_depth};
   if (fresh) {
     for (int row = 0; row < CLPV_TILE; ++row) {
-      tile.keys[row] = (realW)(INFINITY);
-      tile.seen[row] = (uintW)(UINT_MAX);
+      tile.keys[row * CLPV_TILE_VECTORS] = (realW)(INFINITY);
+      tile.seen[row * CLPV_TILE_VECTORS] = (uintW)(UINT_MAX);
     }
   }
   const uint end = starts[(at + 1) * CLPV_SLICES];
@@ -198,7 +201,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
       if (kind & CLPV_TRIANGLE_MASKED) {
         draw_masked(view, tile, r, kind, scene);
       } else {
-        draw(view, tile, r, kind, 0, texels);
+        draw(view, tile, r, kind, false, 0, texels);
       }
       farthest = farthest_of(tile.keys);
     }

@@ -7,7 +7,7 @@
 #include "lanes.h"
 #include "shared/raster.h"
 
-// Eight ClpvRasterTriangles, word by word.
+// W ClpvRasterTriangles, word by word.
 typedef struct {
   int word[CLPV_RASTER_WORDS][W];
 } RasterWords;

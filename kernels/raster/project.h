@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Projects points of the scene to the screen, eight at a time (lanes.h).
+// Projects points of the scene to the screen, W at a time (lanes.h).
 //
 // Two triangles that share a corner must project it to the same place, to the bit, in any lane: FP_CONTRACT is off.
 #ifndef CLPV_PROJECT_H
@@ -37,21 +37,22 @@ static inline float2 guard_band(const ClpvView view) {
 static inline intW where_is(const ClpvView view, const ViewPoint p) {
   const float2 guard = guard_band(view);
   const realW width = view.half_width * p.w, height = view.half_height * p.w;
-  intW where = ((p.x < -width) & CLPV_LEFT) | ((p.x > width) & CLPV_RIGHT) | ((p.y > height) & CLPV_ABOVE) |
-               ((p.y < -height) & CLPV_BELOW) | ((p.z > view.far_depth) & CLPV_BEYOND);
-  if (!CLPV_PARALLEL(view)) where |= (p.z < view.near_depth) & CLPV_BEHIND;
+  intW where = (all_bits(p.x < -width) & CLPV_LEFT) | (all_bits(p.x > width) & CLPV_RIGHT) |
+               (all_bits(p.y > height) & CLPV_ABOVE) | (all_bits(p.y < -height) & CLPV_BELOW) |
+               (all_bits(p.z > view.far_depth) & CLPV_BEYOND);
+  if (!CLPV_PARALLEL(view)) where |= all_bits(p.z < view.near_depth) & CLPV_BEHIND;
   const intW in_guard = (fabs(p.x) <= guard.x * p.w) & (fabs(p.y) <= guard.y * p.w);
-  return where | (~in_guard & CLPV_OUT_OF_GUARD);
+  return where | (all_bits(in_guard == 0) & CLPV_OUT_OF_GUARD);
 }
 
-// One corner of eight triangles on the screen.
+// One corner of W triangles on the screen.
 typedef struct {
   intW x, y;   // [1/CLPV_SUBPIXELS pixel] from the left and top border
   realW key;  // linear in pixels, smaller is nearer: orthographic depth, perspective -1 / depth
 } ScreenCorner;
 
 static inline intW subpixel(const realW screen, const float half_extent, const float pixels) {
-  return convert_int8_rte((screen / half_extent + 1.0f) * (0.5f * CLPV_SUBPIXELS) * pixels);
+  return to_intW_rte((screen / half_extent + 1.0f) * (0.5f * CLPV_SUBPIXELS) * pixels);
 }
 
 static inline ScreenCorner project(const ClpvView view, const ViewPoint p) {

@@ -17,12 +17,12 @@
 // In, out: counts    CLPV_LISTED and so on. They count beyond the capacities most_listed and most_entered as well: the
 //                    host then enlarges the lists and starts again.
 //          slice_counts   number of entries of each slice of each tile
-// A work-item of set_up takes eight triangles, one per lane.
+// A work-item of set_up takes W triangles.
 #include "raster/clip.h"
 #include "raster/enter_tiles.h"
 #include "shared/region.h"
 
-// Eight triangles of the scene, projected to the screen.
+// W triangles of the scene, projected to the screen.
 typedef struct {
   ScreenCorner a, b, c;
   Face face;
@@ -61,7 +61,8 @@ static inline Box box_of(const ClpvView view, const ScreenTriangles t) {
 static inline intW winding(const ScreenTriangles t) {
   const longW area = to_longW(t.b.x - t.a.x) * to_longW(t.c.y - t.a.y) -
                      to_longW(t.c.x - t.a.x) * to_longW(t.b.y - t.a.y);
-  return (to_intW(area > 0L) & 1) | to_intW(area < 0L);
+  const intW clockwise = to_intW(area > 0L), other = to_intW(area < 0L);
+  return clockwise ? (intW)(1) : (other ? (intW)(-1) : (intW)(0));
 }
 
 // Edge function at the upper left pixel of a box of at most 2 x 2 pixels, and its change across the box. 0 in lanes
@@ -74,7 +75,7 @@ static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, con
   const intW dx = (q.x - p.x) & tiny, dy = (q.y - p.y) & tiny;
   const intW to_x = (box.left * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.x) & tiny;
   const intW to_y = (box.top * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.y) & tiny;
-  const intW top_left = (dy < 0) | ((dy == 0) & (dx > 0));
+  const intW top_left = all_bits((dy < 0) | ((dy == 0) & (dx > 0)));
   TinyEdge edge;
   edge.value = dx * to_y - dy * to_x - 1 - top_left;
   edge.step_x = -dy * ((box.right - box.left) * CLPV_SUBPIXELS & tiny);
@@ -85,7 +86,7 @@ static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, con
 // Mask of the triangles with a box of at most 2 x 2 pixels that cover none of its centres. Exact; about 33 % of them
 // miss.
 static inline intW misses(const ScreenTriangles t, const Box box) {
-  const intW tiny = box.small & (box.right - box.left <= 1) & (box.bottom - box.top <= 1);
+  const intW tiny = all_bits(box.small & (box.right - box.left <= 1) & (box.bottom - box.top <= 1));
   const TinyEdge e0 = tiny_edge(t.a, t.b, box, tiny), e1 = tiny_edge(t.b, t.c, box, tiny),
                  e2 = tiny_edge(t.c, t.a, box, tiny);
   const intW right0 = e0.value + e0.step_x, right1 = e1.value + e1.step_x, right2 = e2.value + e2.step_x;
@@ -99,8 +100,8 @@ static inline intW misses(const ScreenTriangles t, const Box box) {
 CLPV_INLINE void write_words(const ClpvView view, const ScreenTriangles t, const Box box, RasterWords* words) {
   const realW nearest = fmin(t.a.key, fmin(t.b.key, t.c.key)), farthest = fmax(t.a.key, fmax(t.b.key, t.c.key));
   const Vec plane = find_key_plane(view, t.face, to_realW(box.left), to_realW(box.top));
-  const intW edge_on = ~(isfinite(plane.x) & isfinite(plane.y) & isfinite(plane.z));
-  const uintW kinds = (as_uintW(box.giant) & CLPV_TRIANGLE_GIANT) |
+  const intW edge_on = (isfinite(plane.x) & isfinite(plane.y) & isfinite(plane.z)) == 0;
+  const uintW kinds = (box.giant ? (uintW)(CLPV_TRIANGLE_GIANT) : (uintW)(0u)) |
                       ((t.flags & CLPV_MATERIAL_MASKED) != 0u ? (uintW)(CLPV_TRIANGLE_MASKED) : (uintW)(0u));
   store_lanes(t.a.x, words->word[0]);
   store_lanes(t.b.x, words->word[1]);
@@ -126,14 +127,14 @@ CLPV_INLINE void append(const ClpvView view, ScreenTriangles t, intW mask, const
                         volatile __global uint* slice_counts) {
   const intW wound = winding(t);
   const intW one_sided = (t.flags & CLPV_MATERIAL_DOUBLE_SIDED) == 0u;
-  mask &= (wound < 0) | ((wound > 0) & ((cull ? 0 : -1) | ~one_sided));
+  mask &= (wound < 0) | ((wound > 0) & ((cull ? 0 : -1) | (one_sided == 0)));
   const Box box = box_of(view, t);
   mask &= (box.left <= box.right) & (box.top <= box.bottom);
   if (no_lane(mask)) return;
   const ScreenCorner b = t.b, c = t.c;
   t.b.x = wound < 0 ? c.x : b.x, t.b.y = wound < 0 ? c.y : b.y;
   t.c.x = wound < 0 ? b.x : c.x, t.c.y = wound < 0 ? b.y : c.y;
-  mask &= ~misses(t, box);
+  mask &= misses(t, box) == 0;
   if (no_lane(mask)) return;
   RasterWords words;
   write_words(view, t, box, &words);
@@ -183,16 +184,14 @@ __kernel void set_up(const ClpvView view, __global const uint* clusters, const u
   const intW clipped = visible & (((p_is | q_is | r_is) & CLPV_NEEDS_CLIPPING) != 0);
   if (!no_lane(clipped)) defer(clipped, triangle, counts, to_clip);
   const uintW material = as_uintW(CLPV_COLUMN(rows, w));
-#define CLPV_FLAGS(lane) materials[material.s##lane].flags
-  const uintW flags = (uintW)(CLPV_FLAGS(0), CLPV_FLAGS(1), CLPV_FLAGS(2), CLPV_FLAGS(3), CLPV_FLAGS(4), CLPV_FLAGS(5),
-                              CLPV_FLAGS(6), CLPV_FLAGS(7));
+  const uintW flags = (uintW)CLPV_GATHER_MEMBER(materials, material, .flags);
   const ScreenTriangles t = {project(view, p), project(view, q), project(view, r), make_face(view, a, b, c),
                              triangle,         flags};
   const Capacity capacity = {most_listed, most_entered};
-  append(view, t, visible & ~clipped, cull, counts, capacity, list, entries, slice_counts);
+  append(view, t, visible & (clipped == 0), cull, counts, capacity, list, entries, slice_counts);
 }
 
-// Corners of a clipped triangle, padded so that eight lanes can be loaded from any of them.
+// Corners of a clipped triangle, padded so that W lanes can be loaded from any of them.
 typedef struct {
   int x[CLPV_CLIP_CORNERS + W], y[CLPV_CLIP_CORNERS + W];
   float key[CLPV_CLIP_CORNERS + W];
@@ -203,9 +202,9 @@ static inline void project_polygon(const ClpvView view, const float4* polygon, c
     const float4 at = polygon[k < corners ? k : 0];
     const ViewPoint point = {(realW)(at.x), (realW)(at.y), (realW)(at.w), (realW)(at.z)};
     const ScreenCorner corner = project(view, point);
-    outline->x[k] = corner.x.s0;
-    outline->y[k] = corner.y.s0;
-    outline->key[k] = corner.key.s0;
+    outline->x[k] = first_lane(corner.x);
+    outline->y[k] = first_lane(corner.y);
+    outline->key[k] = first_lane(corner.key);
   }
 }
 

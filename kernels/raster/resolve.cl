@@ -7,12 +7,12 @@
 //
 // Reflective shadow maps: Dachsbacher and Stamminger 2005.
 //
-// In:   keys, seen    depth key and triangle of each pixel, eight per row of a tile (draw_tiles.cl)
+// In:   keys, seen    depth key and triangle of each pixel (draw_tiles.cl)
 //       vertices, triangles, materials, textures, texels   the scene, in rows of float4 (shared/mesh.h)
 //       colour_scale  Surface::colour_scale: flux [W] of a stored 1
 // Out:  depths        [m] along the view's forward axis, 0 for empty pixels
 //       normals       unit, towards the viewer; colours: albedo; emissives: radiance [W/m^2/sr]; fluxes: P [W]
-// A work-item evaluates a row of a tile, eight pixels. It selects instead of branching: empty pixels evaluate triangle
+// A work-item evaluates W pixels of a row. It selects instead of branching: empty pixels evaluate triangle
 // 0, and materials without a texture have a white one. From the host: CLPV_ORTHOGRAPHIC, CLPV_SURFACE_PAPER,
 // CLPV_TEXTURED (the scene has textures), CLPV_COLOURED (vertex colours other than 1), CLPV_EMISSIVE (emissive
 // materials), CLPV_FROM_LIGHT (1: resolve_rsm, 0: resolve_camera).
@@ -84,7 +84,7 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const r
 #endif
 }
 
-// Evaluates the surfaces of eight pixels and stores their depths. `hit`: mask of the pixels that are not empty.
+// Evaluates the surfaces of W pixels and stores their depths. `hit`: mask of the pixels that are not empty.
 CLPV_INLINE void resolve(const ClpvView view, const PixelRow p, __global const realW* keys, __global const uintW* seen,
                          CLPV_SCENE, __global float* depths, intW* hit, PixelSurface* surface) {
   const realW key = keys[p.row];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Attributes of eight triangles of the scene in lanes: corners, materials and textures (shared/mesh.h).
+// Attributes of W triangles of the scene: corners, materials and textures (shared/mesh.h).
 //
 // From the host: CLPV_COLOURED (vertex colours other than 1) and CLPV_EMISSIVE (emissive materials).
 #ifndef CLPV_SCENE_TRIANGLES_H

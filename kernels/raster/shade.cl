@@ -9,7 +9,7 @@
 //            which, map            the view whose receivers to light, and its shadow map: depths [m]
 //            fresh                 1: overwrite `direct`; 0: add to it
 //   In, out: direct                E_direct [W/m^2] per pixel
-//   A work-item lights eight pixels of a row.
+//   A work-item lights W pixels of a row.
 // shade
 //   In:      show                  CLPV_SHOW_* (shared/shade.h)
 //            depths, normals, albedos, emissive (may be null), direct, indirect   per pixel

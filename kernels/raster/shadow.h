@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Irradiance of a light with shadow maps on eight surfaces, for shade.cl and near_light.cl, and whether it reaches
+// Irradiance of a light with shadow maps on W surfaces, for shade.cl and near_light.cl, and whether it reaches
 // points in the air, for media.
 //
 // The shadow filter has 4 x 4 taps: a box of three texels at any sub-texel position, hence the weight clamp(2 -
@@ -15,7 +15,7 @@
 #include "shared/view.h"
 #include "vec.h"
 
-// Eight receivers in a shadow map, with their lifted tangent planes. At the texel (dx, dy) from the receiver a plane
+// W receivers in a shadow map, with their lifted tangent planes. At the texel (dx, dy) from the receiver a plane
 // has depth d with d (a + per_depth g) = b - (1 - per_depth) g,  g = dx slope_x + dy slope_y.
 typedef struct {
   realW x, y;  // pixel coordinates
@@ -49,7 +49,7 @@ CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec
   r->depth = r->b / r->a;
 }
 
-// First texel of the filter of each of eight receivers along an axis, and its distance [texels] from the filter's
+// First texel of the filter of each of W receivers along an axis, and its distance [texels] from the filter's
 // centre.
 typedef struct {
   intW first;
@@ -104,7 +104,7 @@ CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, co
   return dot(blocked, one);
 }
 
-// Visible share of the light at eight receivers in [0, 1]; 1 outside the map and outside the mask `lit`.
+// Visible share of the light at W receivers in [0, 1]; 1 outside the map and outside the mask `lit`.
 CLPV_INLINE realW find_visibility(const ClpvView view, __global const float* map, const Receivers r, const intW lit) {
   const Taps tx = find_taps(r.x, (int)view.width), ty = find_taps(r.y, (int)view.height);
   int wanted[W], first[W];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Surfaces of eight pixels of a row at a time: position, footprint, load and store (surface.h has the formulas).
+// Surfaces of W pixels of a row at a time: position, footprint, load and store (surface.h has the formulas).
 #ifndef CLPV_SURFACE_ROW_H
 #define CLPV_SURFACE_ROW_H
 
@@ -37,14 +37,14 @@ static inline realW row_footprints(const ClpvView view, const PixelRow p, const 
   return depth * depth * pixel * rsqrt(1.0f + s.x * s.x + s.y * s.y);
 }
 
-// Surfaces of eight pixels.
+// Surfaces of W pixels.
 typedef struct {
   uint first;  // index of the first pixel in the view
   realW depth;
   Vec position, normal;
 } Surfaces;
 
-// Loads the surfaces of eight pixels. Lanes outside the view repeat the last pixel.
+// Loads the surfaces of W pixels. Lanes outside the view repeat the last pixel.
 static inline void load_surfaces(const ClpvView view, const PixelRow p, __global const float* depths,
                                  __global const float4* normals, Surfaces* s) {
   s->first = p.py * view.width + p.px;
@@ -56,7 +56,7 @@ static inline void load_surfaces(const ClpvView view, const PixelRow p, __global
   s->position = row_positions(view, p, s->depth);
 }
 
-// Loads eight points without a view: positions [m], w the depth, 1, or 0 without a surface.
+// Loads W points without a view: positions [m], w the depth, 1, or 0 without a surface.
 static inline void load_points(const ClpvView view, const PixelRow p, __global const float4* at,
                                __global const float4* normals, Surfaces* s) {
   s->first = p.py * view.width + p.px;
@@ -83,16 +83,18 @@ typedef float Place;
 
 #if CLPV_SURFACE_PAPER
 typedef uchar Channel;  // of a stored texel
-typedef uchar8 channelW;
-// Same as convert_uchar8_sat(value + 0.5f), which PoCL does not inline (lanes.h).
-static inline uchar8 to_bytes(const realW value) {
+typedef bytesW channelW;
+// Same as a saturating conversion of value + 0.5f, which PoCL does not inline (lanes.h).
+static inline bytesW to_bytes(const realW value) {
   const realW all = (realW)(255.0f);
-  return convert_uchar8(to_intW((value > ZERO ? (value < all ? value : all) : ZERO) + 0.5f));
+  return to_bytesW(to_intW((value > ZERO ? (value < all ? value : all) : ZERO) + 0.5f));
 }
 #else
 typedef float Channel;
 typedef realW channelW;
 #endif
+
+#if W == 8
 
 // Interleaved lanes, and interleaved pairs of lanes, of two vectors; compilers turn these into shuffles.
 #define CLPV_INTERLEAVE(a, b, i, j, k, l) ((channelW)(a.s##i, b.s##i, a.s##j, b.s##j, a.s##k, b.s##k, a.s##l, b.s##l))
@@ -115,10 +117,19 @@ CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW
   for (uint i = 0; i < count; ++i) vstore4(i % 2 == 0 ? twos[i / 2].lo : twos[i / 2].hi, i, numbers);
 }
 
+#elif W == 1
+
+CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW y, const channelW z, const channelW w,
+                              __global SurfaceTexel* to) {
+  if (count == W) *to = (SurfaceTexel)(x, y, z, w);
+}
+
+#endif
+
 CLPV_INLINE void store_normals(const PixelRow p, const Vec n, __global SurfaceTexel* to) {
 #if CLPV_SURFACE_PAPER
   store_texels(p.count, to_bytes(n.x * 127.5f + 127.5f), to_bytes(n.y * 127.5f + 127.5f),
-               to_bytes(n.z * 127.5f + 127.5f), (uchar8)(255), to);
+               to_bytes(n.z * 127.5f + 127.5f), (bytesW)(255), to);
 #else
   store_texels(p.count, n.x, n.y, n.z, ZERO, to);
 #endif
@@ -128,7 +139,7 @@ CLPV_INLINE void store_normals(const PixelRow p, const Vec n, __global SurfaceTe
 CLPV_INLINE void store_colours(const PixelRow p, const Vec c, const float scale, __global SurfaceTexel* to) {
 #if CLPV_SURFACE_PAPER
   const float byte = 255.0f / scale;
-  store_texels(p.count, to_bytes(c.x * byte), to_bytes(c.y * byte), to_bytes(c.z * byte), (uchar8)(255), to);
+  store_texels(p.count, to_bytes(c.x * byte), to_bytes(c.y * byte), to_bytes(c.z * byte), (bytesW)(255), to);
 #else
   store_texels(p.count, c.x, c.y, c.z, ONE, to);
 #endif

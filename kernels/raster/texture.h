@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Filtered look-ups in the scene's textures (shared/mesh.h), eight at a time: bilinear and trilinear, with sRGB decoded
+// Filtered look-ups in the scene's textures (shared/mesh.h), W at a time: bilinear and trilinear, with sRGB decoded
 // before filtering.
 #ifndef CLPV_TEXTURE_H
 #define CLPV_TEXTURE_H
@@ -62,8 +62,8 @@ static inline TexelPair find_texel_pair(const realW u, const uintW size, const u
   const intW repeat = wrap == (uintW)(CLPV_WRAP_REPEAT);
   TexelPair pair;
   pair.weight = at - to_realW(i);
-  pair.first = as_uintW(i >= 0 ? i : repeat & last);
-  pair.second = as_uintW(next <= last ? next : ~repeat & last);
+  pair.first = as_uintW(i >= 0 ? i : (repeat ? last : (intW)(0)));
+  pair.second = as_uintW(next <= last ? next : (repeat ? (intW)(0) : last));
   return pair;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Row of eight pixels that a work-item processes, and conversion of depth keys.
+// Row of W pixels that a work-item processes, and conversion of depth keys.
 #ifndef CLPV_TILE_ROW_H
 #define CLPV_TILE_ROW_H
 
@@ -8,21 +8,27 @@
 #include "raster/surface.h"
 #include "vec.h"
 
-// Eight pixels of a row of a view.
+// W pixels of a row of a view, within one tile.
 typedef struct {
   uint px, py;  // first pixel
   uint count;   // number of pixels inside the view
-  uint row;     // index in the buffers of draw_tiles.cl
+  uint row;     // index in the buffers of draw_tiles.cl, in vectors
   realW x, y;  // px + lane, py
 } PixelRow;
 
+// Vectors of W pixels in a row of a tile, and index of one in the buffers of draw_tiles.cl.
+#define CLPV_TILE_VECTORS (CLPV_TILE / W)
+static inline uint tile_row(const uint tile, const uint row, const uint vector) {
+  return (tile * CLPV_TILE + row) * CLPV_TILE_VECTORS + vector;
+}
+
 static inline PixelRow find_pixel_row(const ClpvView view) {
   PixelRow p;
-  const uint tile = get_global_id(0), tiles = (view.width + CLPV_TILE - 1) / CLPV_TILE;
-  p.px = tile * CLPV_TILE;
+  const uint column = get_global_id(0), tiles = (view.width + CLPV_TILE - 1) / CLPV_TILE;
+  p.px = column * W;
   p.py = get_global_id(1);
-  p.count = tile < tiles && p.py < view.height ? min(view.width - p.px, (uint)W) : 0;
-  p.row = (p.py / CLPV_TILE * tiles + tile) * CLPV_TILE + p.py % CLPV_TILE;
+  p.count = p.px < view.width && p.py < view.height ? min(view.width - p.px, (uint)W) : 0;
+  p.row = tile_row(p.py / CLPV_TILE * tiles + column / CLPV_TILE_VECTORS, p.py % CLPV_TILE, column % CLPV_TILE_VECTORS);
   p.x = (float)p.px + to_realW(lane_numbers());
   p.y = (realW)((float)p.py);
   return p;

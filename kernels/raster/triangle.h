@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Intersection of a pixel's ray with a triangle of the scene: depth key and barycentric weights.
 //
-// One triangle, or eight in lanes (vec.h). Coordinates are relative to the eye and built from edges, so that small
+// W triangles, or one W times (vec.h). Coordinates are relative to the eye and built from edges, so that small
 // triangles far from the origin keep their precision.
 #ifndef CLPV_TRIANGLE_H
 #define CLPV_TRIANGLE_H

@@ -5,7 +5,7 @@
 #define CLPV_SHARED_RASTER_H
 
 #define CLPV_SUBPIXELS 256  // vertices snap to 1/256 pixel
-#define CLPV_TILE 8         // pixels along each edge of a tile; a work-item draws a tile, and a row of it is a float8
+#define CLPV_TILE 8         // pixels along each edge of a tile; with eight lanes a work-item draws a tile (draw_tiles.cl)
 
 // Guard band [pixels]: triangles that reach farther are clipped. Coordinates in 1/CLPV_SUBPIXELS pixel then stay below
 // 2^29, and products of two differences fit 64 bits.

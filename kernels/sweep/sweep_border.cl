@@ -10,7 +10,7 @@
 //       dx, dy, dz    offset of the grid's origin from the coarser one's, in finer cells (coarse_to_fine.h)
 // Out:  plane_buffer  D [W/sr] in the plane upstream of the grid, from number `upstream` on
 //       border        D [W/sr] in the rows and columns upstream of each plane
-// A work-item computes eight cells of a row of one face, from the cell before the grid on.
+// A work-item computes W cells of a row of one face, from the cell before the grid on.
 #include "sweep/coarse_to_fine.h"
 #include "shared/sweep.h"
 #include "sweep/sweep_layout.h"
@@ -19,7 +19,7 @@
 __kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
                            CLPV_BUFFER_IN halo_light, const ClpvSweepHalo halo, const int dx, const int dy,
                            const int dz, __global float* plane_buffer, const int upstream, CLPV_BUFFER_OUT border) {
-  const int column = 8 * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1, face = (int)get_global_id(2) % 3;
+  const int column = W * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1, face = (int)get_global_id(2) % 3;
   const int ordinate = (int)get_global_id(2) / 3, b = ordinate / (3 * CLPV_PARTS);
   if (column > CLPV_GRID || row > CLPV_GRID) return;
   const ClpvSweepBin bin = bins[b];
@@ -38,13 +38,19 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const
       halo_light + halo_index(halo, coarser, face, 0, CLPV_LOWER(r) - CLPV_HALO_FIRST(halo, row_axis),
                               CLPV_LOWER(c) - CLPV_HALO_FIRST(halo, column_axis));
   const float tl = CLPV_UPPER_WEIGHT(layer), tr = CLPV_UPPER_WEIGHT(r);
-  const realW lower = (1.0f - tr) * CLPV_READ_ROW(light, 0) + tr * CLPV_READ_ROW(light, pitch);
-  const realW upper = (1.0f - tr) * CLPV_READ_ROW(light, next) + tr * CLPV_READ_ROW(light, next + pitch);
-  const realW v = direction->from_coarser * ((1.0f - tl) * lower + tl * upper);
+#define CLPV_BILINEAR(at)                                                                                          \
+  ((1.0f - tl) * ((1.0f - tr) * CLPV_SWEEP_LOAD(light, at) + tr * CLPV_SWEEP_LOAD(light, (at) + pitch)) +          \
+   tl * ((1.0f - tr) * CLPV_SWEEP_LOAD(light, (at) + next) + tr * CLPV_SWEEP_LOAD(light, (at) + next + pitch)))
+  const realW v = direction->from_coarser * CLPV_BILINEAR(0);
+#if W == 8
   const realW in = c & 1 ? CLPV_ODD(v) : CLPV_EVEN(v);
+#else
+  const float tc = CLPV_UPPER_WEIGHT(c);
+  const realW in = (1.0f - tc) * v + tc * direction->from_coarser * CLPV_BILINEAR(1);
+#endif
   if (plane_face) {
     store_lanes(in, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + plane_index(row, column));
   } else {
-    CLPV_WRITE_ROW(border, border_index(ordinate, face, row, column), in);
+    CLPV_SWEEP_STORE(border, border_index(ordinate, face, row, column), in);
   }
 }

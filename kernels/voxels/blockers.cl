@@ -30,8 +30,8 @@ static inline uint blocker_word(const ClpvRegion* region, const uint axis, const
   return (uint)((z * n + y) * n + x) * CLPV_BLOCKER_WORDS + axis * 2u;
 }
 
-// Sets the bits of eight samples of row v in column i, one word for each corner that they lie at.
-CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks, const uint axis, const int i,
+// Sets the bits of W samples from (u, v) on along a row, one word for each corner that they lie at.
+CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks, const uint axis, const int u,
                          const int v, const intW covered, const realW w) {
   const int2 cells = cells_along(region, axis);
   const intW cell = to_intW(w + 1.0f) - 1;  // floor(w); a negative number for w below 0
@@ -41,8 +41,8 @@ CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks
   for (int k = first; k <= last; ++k) {
     const uint bits = lane_bits(covered & (cell == k));
     if (bits == 0) continue;
-    const uint word = blocker_word(region, axis, (int3)(i, v / CLPV_VOXEL_SAMPLES, k));
-    if (word != CLPV_NO_WORD) atomic_or(masks + word + row / 4, bits << (8 * (row % 4)));
+    const uint word = blocker_word(region, axis, (int3)(u / CLPV_VOXEL_SAMPLES, v / CLPV_VOXEL_SAMPLES, k));
+    if (word != CLPV_NO_WORD) atomic_or(masks + word + row / 4, bits << (8 * (row % 4) + u % CLPV_VOXEL_SAMPLES));
   }
 }
 
@@ -74,14 +74,14 @@ __kernel void voxelize_blockers(const ClpvRegion region, __global const uint* cl
     ProjectedTriangle t;
     if (columns.x > columns.y || rows.x > rows.y || !project_triangle(&corners, axis, &t)) continue;
     for (int v = rows.x; v <= rows.y; ++v) {
-      for (int i = columns.x / CLPV_VOXEL_SAMPLES; i <= columns.y / CLPV_VOXEL_SAMPLES; ++i) {
-        const float u = (float)(i * CLPV_VOXEL_SAMPLES);
+      for (int i = columns.x / W; i <= columns.y / W; ++i) {
+        const float u = (float)(i * W);
         intW covered = voxel_covered(&t, u, (float)v);
         if (lane_bits(covered) == 0) continue;
 #if CLPV_MASKED
         if (masked) covered &= voxel_solid(&t, corner, material, textures, texels, u, (float)v);
 #endif
-        set_row(&region, mine, axis, i, v, covered, voxel_depth(&t, u, (float)v));
+        set_row(&region, mine, axis, i * W, v, covered, voxel_depth(&t, u, (float)v));
       }
     }
   }

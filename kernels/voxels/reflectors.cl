@@ -32,8 +32,9 @@ typedef struct {
 } TriangleSurface;
 
 // Samples of one cell's face that a triangle covers, row by row, with the cell number along the axis at each.
+#define CLPV_ROW_VECTORS (CLPV_VOXEL_SAMPLES / W)
 typedef struct {
-  intW covered[CLPV_VOXEL_SAMPLES], cell[CLPV_VOXEL_SAMPLES];
+  intW covered[CLPV_VOXEL_SAMPLES][CLPV_ROW_VECTORS], cell[CLPV_VOXEL_SAMPLES][CLPV_ROW_VECTORS];
   int first, last;  // smallest and largest cell number
 } FaceSamples;
 
@@ -42,9 +43,9 @@ typedef struct {
 CLPV_INLINE void find_face_samples(const ProjectedTriangle* t, const TriangleSurface* surface, const int i, const int j,
                                    const int2 rows, const int2 cells, FaceSamples* samples) {
   intW lowest = (intW)(cells.y + 1), highest = (intW)(-1);
-  for (int row = 0; row < CLPV_VOXEL_SAMPLES; ++row) {
-    const int v = CLPV_VOXEL_SAMPLES * j + row;
-    const float u = (float)(CLPV_VOXEL_SAMPLES * i);
+  for (int n = 0; n < CLPV_VOXEL_SAMPLES * CLPV_ROW_VECTORS; ++n) {
+    const int row = n / CLPV_ROW_VECTORS, vector = n % CLPV_ROW_VECTORS, v = CLPV_VOXEL_SAMPLES * j + row;
+    const float u = (float)(CLPV_VOXEL_SAMPLES * i + vector * W);
     intW covered = 0;
     if (v >= rows.x && v <= rows.y) covered = voxel_covered(t, u, (float)v);
 #if CLPV_MASKED
@@ -53,8 +54,8 @@ CLPV_INLINE void find_face_samples(const ProjectedTriangle* t, const TriangleSur
                              (float)v);
 #endif
     const intW cell = to_intW(voxel_depth(t, u, (float)v) + 1.0f) - 1;
-    samples->covered[row] = covered;
-    samples->cell[row] = cell;
+    samples->covered[row][vector] = covered;
+    samples->cell[row][vector] = cell;
     lowest = min(lowest, covered ? cell : (intW)(cells.y + 1));
     highest = max(highest, covered ? cell : (intW)(-1));
   }
@@ -62,7 +63,7 @@ CLPV_INLINE void find_face_samples(const ProjectedTriangle* t, const TriangleSur
   samples->last = min(max_lane_int(highest), cells.y);
 }
 
-// Albedo of the triangle at eight points (u, v), each the centre of a row of `across` samples.
+// Albedo of the triangle at W points (u, v), each the centre of a row of `across` samples.
 CLPV_INLINE void find_albedo(const ProjectedTriangle* t, const TriangleSurface* surface, const realW u, const realW v,
                              const realW across, Vec* albedo) {
   __global const ClpvVertex* const* corner = surface->corner;
@@ -91,7 +92,7 @@ CLPV_INLINE void find_albedo(const ProjectedTriangle* t, const TriangleSurface* 
 // Sum over lanes of count times share, in fixed point; shares are clamped to [0, 1].
 static inline uint fixed_sum(const realW count, const realW share) {
   const realW positive = share > ZERO ? share : ZERO;
-  const uintW each = convert_uint8_rte(CLPV_ALBEDO_UNIT * count * (positive < ONE ? positive : ONE));
+  const uintW each = to_uintW_rte(CLPV_ALBEDO_UNIT * count * (positive < ONE ? positive : ONE));
   return sum_lanes_uint(each);
 }
 
@@ -101,9 +102,12 @@ CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* sur
   float count[CLPV_VOXEL_SAMPLES], middle[CLPV_VOXEL_SAMPLES];
   uint words[2] = {0, 0}, total = 0;
   for (int row = 0; row < CLPV_VOXEL_SAMPLES; ++row) {
-    const intW here = samples->covered[row] & (samples->cell[row] == cell.z);
-    const uint bits = lane_bits(here);
-    const uint columns = sum_lanes_uint(as_uintW(here & lane_numbers()));
+    uint bits = 0, columns = 0;
+    for (int vector = 0; vector < CLPV_ROW_VECTORS; ++vector) {
+      const intW here = samples->covered[row][vector] & (samples->cell[row][vector] == cell.z);
+      bits |= lane_bits(here) << (vector * W);
+      columns += sum_lanes_uint(as_uintW(all_bits(here) & (vector * W + lane_numbers())));
+    }
     const uint of_row = popcount(bits);
     words[row / 4] |= bits << (8 * (row % 4));
     total += of_row;
@@ -111,16 +115,23 @@ CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* sur
     middle[row] = of_row > 0 ? (float)columns / (float)of_row : 0.0f;
   }
   if (total == 0) return;
-  const realW counts = load_lanes(count);
-  Vec albedo;
-  find_albedo(t, surface, (float)(CLPV_VOXEL_SAMPLES * cell.x) + 0.5f + load_lanes(middle),
-              (float)(CLPV_VOXEL_SAMPLES * cell.y) + 0.5f + to_realW(lane_numbers()), counts > ONE ? counts : ONE, &albedo);
+  uint red = 0, green = 0, blue = 0;
+  for (int row = 0; row < CLPV_VOXEL_SAMPLES; row += W) {
+    const realW counts = load_lanes(count + row);
+    Vec albedo;
+    find_albedo(t, surface, (float)(CLPV_VOXEL_SAMPLES * cell.x) + 0.5f + load_lanes(middle + row),
+                (float)(CLPV_VOXEL_SAMPLES * cell.y + row) + 0.5f + to_realW(lane_numbers()),
+                counts > ONE ? counts : ONE, &albedo);
+    red += fixed_sum(weight * counts, albedo.x);
+    green += fixed_sum(weight * counts, albedo.y);
+    blue += fixed_sum(weight * counts, albedo.z);
+  }
   if (words[0] != 0) atomic_or(face, words[0]);
   if (words[1] != 0) atomic_or(face + 1, words[1]);
   atomic_add(face + CLPV_FACE_SAMPLES, total);
-  atomic_add(face + CLPV_FACE_ALBEDO, fixed_sum(weight * counts, albedo.x));
-  atomic_add(face + CLPV_FACE_ALBEDO + 1, fixed_sum(weight * counts, albedo.y));
-  atomic_add(face + CLPV_FACE_ALBEDO + 2, fixed_sum(weight * counts, albedo.z));
+  atomic_add(face + CLPV_FACE_ALBEDO, red);
+  atomic_add(face + CLPV_FACE_ALBEDO + 1, green);
+  atomic_add(face + CLPV_FACE_ALBEDO + 2, blue);
 }
 
 // Index of the words of a face; CLPV_NO_WORD for a cell outside the region. `cell`: along u, v and the axis, from the

@@ -35,10 +35,11 @@
   ((float16)(0.125f, 0.125f, 0.125f, 0.125f, 0.375f, 0.375f, 0.375f, 0.375f, 0.625f, 0.625f, 0.625f, 0.625f,     \
              0.875f, 0.875f, 0.875f, 0.875f))
 
-// The eight centres, one per lane.
-#define CLPV_CENTRE_X ((realW)(0, 1, 0, 1, 0, 1, 0, 1))
-#define CLPV_CENTRE_Y ((realW)(0, 0, 1, 1, 0, 0, 1, 1))
-#define CLPV_CENTRE_Z ((realW)(0, 0, 0, 0, 1, 1, 1, 1))
+// W of the eight centres, from number `first` on, one per lane.
+#define CLPV_CENTRES 8
+#define CLPV_CENTRE_X to_realW((first + lane_numbers()) & 1)
+#define CLPV_CENTRE_Y to_realW(((first + lane_numbers()) >> 1) & 1)
+#define CLPV_CENTRE_Z to_realW((first + lane_numbers()) >> 2)
 
 // A linear function gradient . x + offset of points x, one per centre.
 typedef struct {
@@ -56,7 +57,7 @@ static inline realW layer_maximum(const Linear f) {
 
 // sign det(a - c, b - c, x - c) + tolerance, for each centre c. The gradient is (a - c) x (b - c) = a x b - c x (b -
 // a).
-CLPV_INLINE Linear edge_determinant(const float3 a, const float3 b, const realW sign) {
+CLPV_INLINE Linear edge_determinant(const float3 a, const float3 b, const int first, const realW sign) {
   const float3 moment = cross(a, b), edge = b - a;
   const realW x = CLPV_CENTRE_X, y = CLPV_CENTRE_Y, z = CLPV_CENTRE_Z;
   const Linear f = {vec(sign * (moment.x - (y * edge.z - z * edge.y)), sign * (moment.y - (z * edge.x - x * edge.z)),
@@ -73,18 +74,18 @@ typedef struct {
   float z[CLPV_TESTS][W], offset[CLPV_TESTS][W];
 } OcclusionTests;
 
-// Sets up the tests of a triangle, and for each layer the candidates: bits of the centres that it may occlude from any
-// point there.
+// Sets up the tests of a triangle for W centres, and for each layer the candidates: bits of the centres
+// that it may occlude from any point there.
 CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
-                              OcclusionTests* tests, uint candidates[CLPV_LAYERS]) {
+                              const int first, OcclusionTests* tests, uint candidates[CLPV_LAYERS]) {
   const realW x = v0.x - CLPV_CENTRE_X, y = v0.y - CLPV_CENTRE_Y, z = v0.z - CLPV_CENTRE_Z;
   const realW distance = normal.x * x + normal.y * y + normal.z * z;
   const realW sign = distance < ZERO ? -ONE : ONE;
   const Linear plane = {vec(sign * normal.x, sign * normal.y, sign * normal.z),
                         -sign * (normal.x * CLPV_CENTRE_X + normal.y * CLPV_CENTRE_Y + normal.z * CLPV_CENTRE_Z) -
                             fabs(distance)};
-  const Linear f[CLPV_TESTS] = {plane, edge_determinant(v0, v1, sign), edge_determinant(v1, v2, sign),
-                                edge_determinant(v2, v0, sign)};
+  const Linear f[CLPV_TESTS] = {plane, edge_determinant(v0, v1, first, sign),
+                                edge_determinant(v1, v2, first, sign), edge_determinant(v2, v0, first, sign)};
   // Segments to upper centres lie above the layer, those to lower centres below it.
   const float lowest = fmin(v0.z, fmin(v1.z, v2.z)) - CLPV_EDGE_TOLERANCE;
   const float highest = fmax(v0.z, fmax(v1.z, v2.z)) + CLPV_EDGE_TOLERANCE;
@@ -95,7 +96,7 @@ CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2,
     const intW may = (distance != ZERO) & (at * f[0].gradient.z + maximum0 >= ZERO) &
                      (at * f[1].gradient.z + maximum1 >= ZERO) & (at * f[2].gradient.z + maximum2 >= ZERO) &
                      (at * f[3].gradient.z + maximum3 >= ZERO);
-    candidates[layer] = lane_bits(may) & ((at <= highest ? 0xf0u : 0u) | (at >= lowest ? 0x0fu : 0u));
+    candidates[layer] = lane_bits(may) << first & ((at <= highest ? 0xf0u : 0u) | (at >= lowest ? 0x0fu : 0u));
   }
 #pragma unroll
   for (int test = 0; test < CLPV_TESTS; ++test) {
@@ -106,18 +107,18 @@ CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2,
   }
 }
 
-// Mask of the points of the layer at z where a test of centre `corner` is not negative.
+// Mask of the points of the layer at z where the test of a lane is not negative.
 #define CLPV_PASSES(test)                                                                                         \
-  (tests->x[test][corner] * CLPV_POINTS_X +                                                                       \
-       (tests->y[test][corner] * CLPV_POINTS_Y +                                                                  \
-        (float16)(tests->z[test][corner] * z + tests->offset[test][corner])) >=                                   \
+  (tests->x[test][lane] * CLPV_POINTS_X +                                                                       \
+       (tests->y[test][lane] * CLPV_POINTS_Y +                                                                  \
+        (float16)(tests->z[test][lane] * z + tests->offset[test][lane])) >=                                   \
    0.0f)
 
 // Bits of the candidates that the triangle occludes, for each point of the layer at z.
-CLPV_INLINE int16 find_occluded(const OcclusionTests* tests, uint candidates, const float z) {
+CLPV_INLINE int16 find_occluded(const OcclusionTests* tests, const int first, uint candidates, const float z) {
   int16 occluded = (int16)(0);
   while (candidates != 0) {
-    const int corner = 31 - (int)clz(candidates);
+    const int corner = 31 - (int)clz(candidates), lane = W == 1 ? 0 : corner - first;
     candidates ^= 1u << corner;
     const int16 crossed = CLPV_PASSES(0) & CLPV_PASSES(1) & CLPV_PASSES(2) & CLPV_PASSES(3);
     occluded |= crossed & (1 << corner);
@@ -132,17 +133,20 @@ static inline void set_word(__global volatile uint* word, const uint bits) {
 // Tests a triangle in one cube. `points`: the cube's 64 bytes.
 static inline void occlude_cube(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
                                 __global volatile uint* points) {
-  OcclusionTests tests;
-  uint candidates[CLPV_LAYERS];
-  set_up_tests(v0, v1, v2, normal, &tests, candidates);
-  for (int layer = 0; layer < CLPV_LAYERS; ++layer) {
-    if (candidates[layer] == 0) continue;
-    const int16 occluded = find_occluded(&tests, candidates[layer], CLPV_FIRST_POINT + 0.25f * (float)layer);
-    const uint4 bits = as_uint4(convert_uchar16(occluded));
-    set_word(points + 4 * layer, bits.x);
-    set_word(points + 4 * layer + 1, bits.y);
-    set_word(points + 4 * layer + 2, bits.z);
-    set_word(points + 4 * layer + 3, bits.w);
+#pragma unroll 1
+  for (int first = 0; first < CLPV_CENTRES; first += W) {
+    OcclusionTests tests;
+    uint candidates[CLPV_LAYERS];
+    set_up_tests(v0, v1, v2, normal, first, &tests, candidates);
+    for (int layer = 0; layer < CLPV_LAYERS; ++layer) {
+      if (candidates[layer] == 0) continue;
+      const int16 occluded = find_occluded(&tests, first, candidates[layer], CLPV_FIRST_POINT + 0.25f * (float)layer);
+      const uint4 bits = as_uint4(convert_uchar16(occluded));
+      set_word(points + 4 * layer, bits.x);
+      set_word(points + 4 * layer + 1, bits.y);
+      set_word(points + 4 * layer + 2, bits.z);
+      set_word(points + 4 * layer + 3, bits.w);
+    }
   }
 }
 

@@ -95,7 +95,7 @@ static inline int2 cells_along(const ClpvRegion* region, const uint axis) {
 }
 
 
-// Mask of the eight samples from (u, v) on along a row that the triangle covers.
+// Mask of the W samples from (u, v) on along a row that the triangle covers.
 CLPV_INLINE intW voxel_covered(const ProjectedTriangle* t, const float u, const float v) {
   const realW at = u + 0.5f + to_realW(lane_numbers());
   const float row = v + 0.5f;

@@ -221,7 +221,7 @@ std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
   }
   radiance_->set(points.view, places, vectors, radiances);
   gatherer_.add_radiance(*radiance_);
-  radiance_->launch(rows_of_tiles(points.view), kTileRow);
+  radiance_->launch(items_of(session_, points.view), pixel_group(session_));
   return first_points(session_.read<float>(radiances, numbers), count);
 }
 

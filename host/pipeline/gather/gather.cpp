@@ -127,7 +127,7 @@ void Gatherer::gather(const Surface& camera, const GatheredLight& light, Buffer&
     for (const Volume* volume : light.accumulated) kernel.add(volume->memory());
   }
   table_.add_to(kernel);
-  kernel.launch(rows_of_tiles(camera.view), kTileRow);
+  kernel.launch(items_of(session_, camera.view), pixel_group(session_));
 }
 
 void Gatherer::add_radiance(Kernel& kernel) const {

@@ -52,20 +52,20 @@ void MediumLight::scatter(const Surface& camera, const Gatherer& gatherer,
                           const std::vector<ShadowedLight>& lights) {
   const ClpvView& view = camera.view;
   reserve(view);
-  const cl::NDRange rows(tiles_along(medium_pixels(view.width)), medium_pixels(view.height));
+  const cl::NDRange rows(items_along(session_, medium_pixels(view.width)), medium_pixels(view.height));
   volumes_.set(view, camera.depth, medium_, ends_, scattered_);
   gatherer.add_radiance(volumes_);
-  volumes_.launch(rows, kTileRow);
+  volumes_.launch(rows, pixel_group(session_));
   for_each_shadow_map(lights, [&](const ShadowedLight& shadowed, cl_uint which) {
     light_.set(view, camera.depth);
-    add_shadow_map(light_, shadowed, which).add(scattered_).launch(rows, kTileRow);
+    add_shadow_map(light_, shadowed, which).add(scattered_).launch(rows, pixel_group(session_));
   });
-  blur_.set(view, ends_, scattered_, blurred_).launch(rows, kTileRow);
+  blur_.set(view, ends_, scattered_, blurred_).launch(rows, pixel_group(session_));
 }
 
 void MediumLight::add(const Surface& camera, bool alone, Buffer& image) {
   add_.set(camera.view, camera.depth, medium_, ends_, blurred_, cl_uint{alone}, image)
-      .launch(rows_of_tiles(camera.view), kTileRow);
+      .launch(items_of(session_, camera.view), pixel_group(session_));
 }
 
 }  // namespace clpv

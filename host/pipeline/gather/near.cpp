@@ -127,9 +127,10 @@ void NearField::reserve(const ClpvView& view) {
   width_ = height_ = 0;  // until memory suffices
   session_.reserve(points_, CLPV_NEAR_PLANES * numbers, "points of the near field");
   session_.reserve(distances_, options_.rays * numbers, "distances of the near field");
-  const std::size_t tiles = tiles_along(width) * tiles_down(height);
+  const std::size_t tiles = items_along(session_, width) * tiles_down(height),
+                    lanes = session_.device().lanes;
   session_.reserve(counts_, tiles * sizeof(cl_uint), "hits of the near field");
-  const std::size_t hits = tiles * 8 * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
+  const std::size_t hits = tiles * lanes * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
   session_.reserve(hits_, hits, "hits of the near field");
   session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
   session_.reserve(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers, "near field");
@@ -150,9 +151,9 @@ Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
 void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
                            const std::vector<ShadowedLight>& lights) {
   const ClpvView& view = camera.view;
-  const cl::NDRange rays(tiles_along(near_pixels(view.width, options_.step)),
+  const cl::NDRange rays(items_along(session_, near_pixels(view.width, options_.step)),
                          tiles_down(near_rows(view.height, options_.step)), CLPV_NEAR_TILE * options_.rays);
-  const cl::NDRange group(8, 1, 1);
+  const cl::NDRange group(8, session_.device().lanes == 8 ? 1 : 8, 1);
   bool fresh = true;
   if (buffers_.emissive || lights.empty()) {
     set_hits(emit_, view, fresh).launch(rays, group);
@@ -174,35 +175,38 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
   reserve(view);
   const unsigned width = near_pixels(view.width, options_.step),
                  height = near_rows(view.height, options_.step);
-  const cl::NDRange with_border(tiles_along(width) + 2 * CLPV_NEAR_COLUMNS / 8, height + 2 * CLPV_NEAR_ROWS);
+  const cl::NDRange with_border(items_along(session_, CLPV_NEAR_PITCH_OF(width)),
+                                height + 2 * CLPV_NEAR_ROWS);
   PixelKernels& pixels = pixel_kernels(camera.points());
   pixels.first.set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
-      .launch(with_border, kTileRow);
+      .launch(with_border, pixel_group(session_));
   if (pixels.others) {
     pixels.others->set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
-        .launch(cl::NDRange(tiles_along(width), near_pixels(view.height, options_.step)), kTileRow);
+        .launch(cl::NDRange(items_along(session_, width), near_pixels(view.height, options_.step)),
+                pixel_group(session_));
   }
-  // A work-item alone in its group: the lists of several would not fit into the first-level cache.
+  // With eight lanes, a work-item alone in its group: the lists of several would not fit into the first-level cache.
+  const cl::NDRange group = session_.device().lanes == 8 ? cl::NDRange(1, 1) : pixel_group(session_);
   trace_
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
            buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
-      .launch(cl::NDRange(tiles_along(width), tiles_down(height)), cl::NDRange(1, 1));
+      .launch(cl::NDRange(items_along(session_, width), tiles_down(height)), group);
 }
 
 void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
                     Buffer& irradiance) {
   const ClpvView& view = camera.view;
   light_hits(camera, gatherer, lights);
-  const cl::NDRange rows(tiles_along(near_pixels(view.width, options_.step)),
+  const cl::NDRange rows(items_along(session_, near_pixels(view.width, options_.step)),
                          near_rows(view.height, options_.step));
   near_.set(view, points_, directions_, distances_, radiances_, near_light_);
   gatherer.add_radiance(near_);
-  near_.launch(rows, kTileRow);
-  blur_.set(view, points_, near_light_, blurred_).launch(rows, kTileRow);
-  widen_.set(view, points_, blurred_, near_light_).launch(rows, kTileRow);
+  near_.launch(rows, pixel_group(session_));
+  blur_.set(view, points_, near_light_, blurred_).launch(rows, pixel_group(session_));
+  widen_.set(view, points_, blurred_, near_light_).launch(rows, pixel_group(session_));
   pixel_kernels(camera.points())
       .add.set(view, camera.places(), camera.normal, points_, near_light_, irradiance)
-      .launch(rows_of_tiles(view), kTileRow);
+      .launch(items_of(session_, view), pixel_group(session_));
 }
 
 }  // namespace clpv

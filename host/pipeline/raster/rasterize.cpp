@@ -14,7 +14,6 @@ namespace {
 static_assert(sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
 
 constexpr std::size_t kRasterGroup = 64;
-constexpr std::size_t kItemsARun = CLPV_CLUSTER / 8;  // a work-item sets up eight triangles
 constexpr std::size_t kClippers = 1024;  // work-items that share the triangles to be clipped, usually none
 constexpr std::size_t kSpare = 4;        // lists grow by an extra 1/4, since cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
@@ -123,7 +122,7 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
       .set(drawing.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices,
            scene_.triangles, scene_.materials, counts_, list_room(), listed_, entry_room(), entries_,
            slice_counts_, to_clip_)
-      .launch(count * kItemsARun, kRasterGroup);
+      .launch(count * (std::size_t{CLPV_CLUSTER} / session_.device().lanes), kRasterGroup);
   set_up_clipped_
       .set(drawing.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
            listed_, entry_room(), entries_, slice_counts_, to_clip_)
@@ -168,7 +167,9 @@ void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
   draw_tiles_
       .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, scene_.vertices, scene_.triangles,
            scene_.materials, scene_.textures, scene_.texels, keys_, seen_)
-      .launch(cl::NDRange(tiles_along(view.width), tiles_along(view.height)), kTileRow);
+      .launch(cl::NDRange(tiles_along(view.width) * (CLPV_TILE / session_.device().lanes),
+                          tiles_along(view.height)),
+              pixel_group(session_));
 }
 
 void Rasterizer::clear(Surface& surface) {
@@ -195,7 +196,7 @@ void Rasterizer::rasterize_camera(Surface& surface) {
   kernel.set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
              scene_.texels, surface.depth, surface.normal, surface.colour);
   if (emissive) kernel.add(surface.emissive);
-  kernel.launch(rows_of_tiles(view), kTileRow);
+  kernel.launch(items_of(session_, view), pixel_group(session_));
 }
 
 void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
@@ -209,12 +210,12 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
            .emissive = false})
       .set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
            scene_.texels, surface.depth, surface.normal, surface.colour, surface.colour_scale)
-      .launch(rows_of_tiles(view), kTileRow);
+      .launch(items_of(session_, view), pixel_group(session_));
 }
 
 void Rasterizer::rasterize_shadow(const ClpvView& view, Buffer& depth) {
   find_visible({view, false});
-  resolve_depth_.set(view, keys_, depth).launch(rows_of_tiles(view), kTileRow);
+  resolve_depth_.set(view, keys_, depth).launch(items_of(session_, view), pixel_group(session_));
 }
 
 }  // namespace clpv

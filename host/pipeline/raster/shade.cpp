@@ -52,7 +52,9 @@ void Shader::light(const Surface& camera, const std::vector<ShadowedLight>& ligh
   cl_uint fresh = 1;
   for_each_shadow_map(lights, [&](const ShadowedLight& shadowed, cl_uint which) {
     light_.set(camera.view, camera.depth, camera.normal);
-    add_shadow_map(light_, shadowed, which).add(fresh, direct_).launch(rows_of_tiles(camera.view), kTileRow);
+    add_shadow_map(light_, shadowed, which)
+        .add(fresh, direct_)
+        .launch(items_of(session_, camera.view), pixel_group(session_));
     fresh = 0;
   });
 }

@@ -47,10 +47,16 @@ Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat fo
 inline unsigned tiles_along(unsigned pixels) {
   return (pixels + CLPV_TILE - 1) / CLPV_TILE;
 }
-inline cl::NDRange rows_of_tiles(const ClpvView& view) {
-  return {tiles_along(view.width), view.height};
+/// Number of work-items for a row of pixels.
+inline unsigned items_along(const Session& session, unsigned pixels) {
+  return (pixels + session.device().lanes - 1) / session.device().lanes;
 }
-/// Rows differ in work; small work-groups balance it between cores.
-inline const cl::NDRange kTileRow(8, 1);
+inline cl::NDRange items_of(const Session& session, const ClpvView& view) {
+  return {items_along(session, view.width), view.height};
+}
+/// Work-group of these work-items. Rows differ in work: with eight lanes, small groups balance it between cores.
+inline cl::NDRange pixel_group(const Session& session) {
+  return {8, session.device().lanes == 8 ? 1u : 8u};
+}
 
 }  // namespace clpv

@@ -51,10 +51,10 @@ bool within(const ClpvSweepHalo& halo, int grid) {
 }
 
 /// Kernels that set the boundary condition of a cascade whose bins have parts^2 parts.
-ProgramSource border_program(const char* file, const SweepOptions& options, int parts) {
+ProgramSource border_program(const char* file, const SweepOptions& options, int parts, int lanes) {
   ProgramSource source{file, {}, {}};
   source.literals.integer("CLPV_GRID", options.grid).integer("CLPV_PARTS", parts * parts);
-  add_format_literals(source.literals, options.format, 8);
+  add_format_literals(source.literals, options.format, lanes);
   return source;
 }
 
@@ -135,7 +135,7 @@ ProgramSource Sweeper::sweep_program(int coefficients, int emitting, int parts) 
 
 bool Sweeper::whole_bins() const {
   return options_.form == SweepForm::bins ||
-         (options_.form == SweepForm::suited && session_.device().type == "cpu");
+         (options_.form == SweepForm::suited && session_.device().lanes == 8);
 }
 
 Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int coarser,
@@ -154,12 +154,14 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int 
                   {},
                   {}};
   if (coarser > 0) {
-    ProgramSource border = border_program("sweep/sweep_border.cl", options_, parts);
+    ProgramSource border = border_program("sweep/sweep_border.cl", options_, parts, session_.device().lanes);
     border.literals.integer("CLPV_COARSER_PARTS", coarser * coarser);
     made.border.emplace(session_, border, "sweep_border");
   } else if (options_.sky != nullptr) {
     made.sky = session_.upload(swept_sky(*options_.sky, parts), "boundary light of the sky");
-    made.sky_border.emplace(session_, border_program("sweep/sweep_sky.cl", options_, parts), "sweep_sky");
+    made.sky_border.emplace(session_,
+                            border_program("sweep/sweep_sky.cl", options_, parts, session_.device().lanes),
+                            "sweep_sky");
   }
   return made;
 }
@@ -269,8 +271,8 @@ bool Sweeper::light_border(bool all_directions, const SweepInput& input) {
     const float cell = input.grids[c].cell;
     kernel.set(directions.sky, input.sky_scale * (cell * cell), plane_buffer_, upstream, border_);
   }
-  const std::size_t rows = options_.grid + 2;
-  kernel.launch({(rows + 7) / 8, rows, 9 * directions_of(directions.parts)},
+  const std::size_t rows = options_.grid + 2, lanes = session_.device().lanes;
+  kernel.launch({(rows + lanes - 1) / lanes, rows, 9 * directions_of(directions.parts)},
                 {1, std::min(rows, kRowGroup), 1});
   return true;
 }
