@@ -33,7 +33,6 @@ nlohmann::json problem_json(const Problem& problem) {
   return {{"basis", o.basis},
           {"layout", name_of(o.layout)},
           {"storage", name_of(o.storage)},
-          {"state", name_of(o.state)},
           {"lobe", lobes_of(o)},
           {"transport", name_of(o.transport)},
           {"occlusion", o.blocked()},

@@ -154,7 +154,6 @@ TEST(Presets, PaperIsThePublishedScheme) {
                                                               {"evaluate", "image"},
                                                               {"table-size", 256},
                                                               {"transport", "sampled"},
-                                                              {"state", "coefficients"},
                                                               {"layout", "image"},
                                                               {"storage", "half"},
                                                               {"rsm-format", "paper"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Suite `bases`: the cost of every basis, with both states and both lobes.
+// Suite `bases`: the cost of every basis, with both lobes.
 #include "basis/basis.hpp"
 #include "bench/suites.hpp"
 #include "support/named_enum.hpp"
@@ -14,12 +14,9 @@ std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptio
   cases.push_back(stage_case(*bench, "bases", kInject, usual));
   Problem problem = usual;
   for (const LobeKind lobe : values_of<LobeKind>()) {
-    for (const State state : values_of<State>()) {
-      for (const bool occlusion : {false, true}) {
-        problem.options.lobe = lobe, problem.options.state = state,
-        problem.options.blockers = blockers_if(occlusion);
-        cases.push_back(stage_case(*bench, "bases", kPropagate, problem));
-      }
+    for (const bool occlusion : {false, true}) {
+      problem.options.lobe = lobe, problem.options.blockers = blockers_if(occlusion);
+      cases.push_back(stage_case(*bench, "bases", kPropagate, problem));
     }
   }
   // The sweep's blockers are areas and do not depend on the basis: no case with occlusion.
@@ -32,7 +29,7 @@ std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptio
 
 Suite bases_suite() {
   return {"bases",
-          "every basis with both states and lobes: injection, propagation, sweep, gathering",
+          "every basis with both lobes: injection, propagation, sweep, gathering",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
             return groups_by_basis(

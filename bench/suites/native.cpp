@@ -56,11 +56,7 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
   for (const bool occlusion : {false, true}) {
     Problem problem = basis_problem(options, kBasis);
     problem.options.blockers = blockers_if(occlusion);
-    for (const State state : values_of<State>()) {
-      problem.options.state = state;
-      cases.push_back(stage_case(bench, "native", kPropagate, problem));
-    }
-    problem.options.state = State::coefficients;
+    cases.push_back(stage_case(bench, "native", kPropagate, problem));
     cases.push_back(
         {make_row("native", kNative, problem), [&bench, problem] { return native_job(bench, problem); }});
   }

@@ -33,7 +33,7 @@ class Basis {
   /// Computes alpha_i(d) = Int b_i(w) max(0, w . d) dw of a unit d. alpha: N values (docs/bases.md, 'The clamped cosine').
   virtual void cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const = 0;
 
-  /// Returns OpenCL C for the struct `Coefficients` of N floats c0 .. c{N-1}, which defines:
+  /// Returns OpenCL C for the struct `Coefficients` with an array c of N floats, which defines:
   ///   static Coefficients basis_functions(float x, float y, float z)             b_i(w), w unit
   ///   static Coefficients cosine_integrals(float x, float y, float z)  alpha_i(d), d unit
   virtual std::string kernel_source() const = 0;

@@ -147,15 +147,16 @@ void DirectionBins::cosine_integrals(const glm::dvec3& d, std::span<double> alph
 std::string DirectionBins::kernel_basis() const {
   static const char* const kNames[] = {"x", "y", "z"};
   std::string text =
-      "static inline float clpv_step(const float s) { return fma(0.5f, sign(s), 0.5f); }\n"
-      "static inline Coefficients basis_functions(const float x, const float y, const float z) {\n  Coefficients "
+      "static inline float unit_step(const float s) { return fma(0.5f, sign(s), 0.5f); }\n"
+      "static inline Coefficients basis_functions(const float x, const float y, const float z) {\n  "
+      "Coefficients "
       "r;\n";
   std::string sum;
   for (int face = 0; face < 6; ++face) {
     const FaceAxes axes = axes_of(face);
     const std::string n = fmt::format("n{}", face);
     text += fmt::format("  const float {} = {}{};\n", n, axes.sign < 0 ? "-" : "", kNames[axes.n]);
-    text += fmt::format("  const float f{0} = clpv_step({1} - fabs({2})) * clpv_step({1} - fabs({3}));\n",
+    text += fmt::format("  const float f{0} = unit_step({1} - fabs({2})) * unit_step({1} - fabs({3}));\n",
                         face, n, kNames[axes.u], kNames[axes.v]);
     sum += fmt::format("{}f{}", face == 0 ? "" : " + ", face);
   }
@@ -164,7 +165,7 @@ std::string DirectionBins::kernel_basis() const {
     const FaceAxes axes = axes_of(face);
     for (const auto& [letter, axis] : {std::pair{'u', axes.u}, {'v', axes.v}}) {
       for (int i = 0; i + 1 < side_; ++i) {
-        text += fmt::format("  const float {}{}_{} = clpv_step(fma({}, n{}, {}));\n", letter, face, i,
+        text += fmt::format("  const float {}{}_{} = unit_step(fma({}, n{}, {}));\n", letter, face, i,
                             float_literal(-lines_[i]), face, kNames[axis]);
       }
     }
@@ -173,7 +174,7 @@ std::string DirectionBins::kernel_basis() const {
       return i + 1 == side_ ? above : fmt::format("({} - {}{}_{})", above, letter, face, i);
     };
     for (int i = 0; i < side_ * side_; ++i) {
-      text += fmt::format("  r.c{} = f{} * whole * {} * {};\n", face * side_ * side_ + i, face,
+      text += fmt::format("  r.c[{}] = f{} * whole * {} * {};\n", face * side_ * side_ + i, face,
                           share('u', i % side_), share('v', i / side_));
     }
   }
@@ -217,7 +218,7 @@ std::string DirectionBins::kernel_cosine() const {
       "  const float scale = {} / (half_all.x + half_all.y + half_all.z + half_all.w);\n  Coefficients r;\n",
       float_literal(std::numbers::pi));
   for (int i = 0; i < size_; ++i)
-    text += fmt::format("  r.c{} = part{}.s{} * scale;\n", i, i / kLanes, i % kLanes);
+    text += fmt::format("  r.c[{}] = part{}.s{} * scale;\n", i, i / kLanes, i % kLanes);
   return text + "  return r;\n}\n";
 }
 

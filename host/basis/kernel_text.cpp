@@ -92,8 +92,8 @@ std::string rotated_integrals_source(const Basis& basis, int table_size) {
           basis.centres()[i], {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
       const std::size_t table = products.index[i * basis.size() + j];
       const std::string weight = float_literal(up_lobe[j]), value = entry(t, table, table_size, {});
-      text += j == 0 ? fmt::format("  r.c{} = {} * {};\n", i, weight, value)
-                     : fmt::format("  r.c{0} = fma({1}, {2}, r.c{0});\n", i, weight, value);
+      text += j == 0 ? fmt::format("  r.c[{}] = {} * {};\n", i, weight, value)
+                     : fmt::format("  r.c[{0}] = fma({1}, {2}, r.c[{0}]);\n", i, weight, value);
     }
   }
   return text + "  return r;\n}\n";
@@ -104,7 +104,7 @@ std::string table_basis_source(const Basis& basis, int table_size, const TableNa
   std::string text = opening("table_basis", name);
   for (int i = 0; i < basis.size(); ++i) {
     const std::string t = dot_product(basis.centres()[i], {"x", "y", "z"});
-    text += fmt::format("  r.c{} = {};\n", i, entry(t, lambdas.index[i], table_size, name));
+    text += fmt::format("  r.c[{}] = {};\n", i, entry(t, lambdas.index[i], table_size, name));
   }
   return text + "  return r;\n}\n";
 }

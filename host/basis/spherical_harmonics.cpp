@@ -109,7 +109,7 @@ std::string SphericalHarmonics::kernel_function(const std::string& name, bool co
           m == 1 ? (f.order < 0 ? "y" : "x") : fmt::format("{}{}", f.order < 0 ? "im" : "re", m);
       value = factor_xy + " * " + value;
     }
-    text += fmt::format("  r.c{} = {};\n", i, value);
+    text += fmt::format("  r.c[{}] = {};\n", i, value);
   }
   return text + "  return r;\n}\n";
 }

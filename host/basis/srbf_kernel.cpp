@@ -46,7 +46,7 @@ std::string evaluate_function(const Basis& basis, const std::vector<Pair>& pairs
   const auto value = [&](int i, int of, double sign) {
     const double lambda = basis.lambdas()[i];
     return fmt::format(
-        "  const float d{0} = rsqrt(fma({1}, t{2}, {3}));\n  r.c{0} = {4} * d{0} * d{0} * d{0};\n", i,
+        "  const float d{0} = rsqrt(fma({1}, t{2}, {3}));\n  r.c[{0}] = {4} * d{0} * d{0} * d{0};\n", i,
         float_literal(-2 * sign * lambda), of, float_literal(1 + lambda * lambda),
         float_literal(1 - lambda * lambda));
   };
@@ -112,9 +112,9 @@ std::string cosine_function(const Basis& basis, const std::vector<Pair>& pairs,
     const int i = pair.centre;
     const double lambda = basis.lambdas()[i], slope = cosines.at(lambda).slope();
     text += height_statement(basis, i) + even_part(chebyshev[lambda], i);
-    text += fmt::format("  r.c{0} = fma({1}, t{0}, even{0});\n", i, float_literal(slope));
+    text += fmt::format("  r.c[{0}] = fma({1}, t{0}, even{0});\n", i, float_literal(slope));
     if (pair.opposite >= 0) {
-      text += fmt::format("  r.c{0} = fma({2}, t{1}, even{1});\n", pair.opposite, i, float_literal(-slope));
+      text += fmt::format("  r.c[{0}] = fma({2}, t{1}, even{1});\n", pair.opposite, i, float_literal(-slope));
     }
   }
   return text + "  return r;\n}\n";

@@ -84,7 +84,7 @@ std::string group_of(const std::string& name) {
       {"basis and tables", {"centres", "lambda", "lobe", "lobe-time", "evaluate", "table-size"}},
       {"shadow maps", {"rsm-format", "shadow-size"}},
       {"blockers", {"blocking", "blocker-stride"}},
-      {"propagation", {"iterations", "directions", "coarser-directions", "state", "layout", "storage"}},
+      {"propagation", {"iterations", "directions", "coarser-directions", "layout", "storage"}},
       {"gathering", {"gather", "gather-offset", "near-size", "near-rays"}},
   };
   for (const auto& [stage, names] : kStages) {

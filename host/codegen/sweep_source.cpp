@@ -4,76 +4,79 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "basis/bounce.hpp"
-#include "codegen/linear_code.hpp"
 #include "codegen/transmittance_source.hpp"
 
 namespace clpv {
 namespace {
 
-constexpr const char* kAxisNames = "XYZ";
+constexpr int kMirrored = 8;  // bins about an axis
+constexpr int kFolds = 3;     // log2 kMirrored
 
-std::string link_macros() {
-  const LinkVolumes links = link_volumes();
-  std::string text = fmt::format("#define CLPV_X_LINKS {}\n", links.across[0].size());
-  int volume = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    text += fmt::format("#define CLPV_EACH_{}_LINK(DO)", kAxisNames[axis]);
-    for (const int link : links.across[axis]) text += fmt::format(" DO({}, {})", volume++, link);
-    text += "\n";
+Matrix transposed(const Matrix& matrix) {
+  Matrix result(matrix.columns(), matrix.rows());
+  for (int r = 0; r < matrix.rows(); ++r) {
+    for (int c = 0; c < matrix.columns(); ++c) result(c, r) = matrix(r, c);
   }
-  return text;
+  return result;
+}
+
+/// The matrix by folded bins: `matrix` times bins is the result times fold_bins() of them (kernels/sweep/mirrored_bins.h).
+Matrix folded(const Matrix& matrix) {
+  Matrix result(matrix.rows(), matrix.columns());
+  for (int r = 0; r < matrix.rows(); ++r) {
+    for (int b = 0; b < kSweepBins; ++b) {
+      for (int j = 0; j < kMirrored; ++j) {
+        const int odd = std::popcount(static_cast<unsigned>(b % kMirrored & j)) % 2;
+        result(r, b) += (odd == 1 ? -1 : 1) * matrix(r, b - b % kMirrored + j) / kMirrored;
+      }
+    }
+  }
+  return result;
+}
+
+/// The rows of the first bin of each axis.
+Matrix axis_rows(const Matrix& matrix) {
+  Matrix result(kSweepBins / kMirrored, matrix.columns());
+  for (int axis = 0; axis < result.rows(); ++axis)
+    std::ranges::copy(matrix.row(kMirrored * axis), result.row(axis).begin());
+  return result;
 }
 
 }  // namespace
 
-std::string sweep_bin_macros() {
-  const std::vector<SweepBin> bins = sweep_bins(1);
-  std::string text =
-      fmt::format("#define CLPV_X_BINS {}\n",
-                  std::count_if(bins.begin(), bins.end(), [](const SweepBin& bin) { return bin.axis == 0; }));
-  for (int axis = 0; axis < 3; ++axis) {
-    text += fmt::format("#define CLPV_EACH_{}_BIN(DO)", kAxisNames[axis]);
-    for (std::size_t b = 0; b < bins.size(); ++b) {
-      if (bins[b].axis == axis) text += fmt::format(" DO({})", b);
-    }
-    text += "\n";
-  }
-  return text;
-}
-
 std::string sweep_links_text(const Basis& basis, const Transport& transport) {
-  return transmittance_source(basis, transport).text + link_macros();
+  const LinkVolumes volumes = link_volumes();
+  std::vector<int> links;
+  for (const std::vector<int>& across : volumes.across)
+    links.insert(links.end(), across.begin(), across.end());
+  return transmittance_source(basis, transport).text +
+         fmt::format("#define CLPV_AXIS_LINKS {}\n", volumes.across[0].size()) +
+         index_macro("CLPV_VOLUME_LINKS", links);
 }
 
-CountedText sweep_collect_text() {
-  const Matrix projection = swept_projection();
-  LinearCode code;
-  const std::string function = code.function("Coefficients", "project_bins", "Bins", projection,
-                                             mirrors_of(*make_basis("bins24")).list());
-  return {coefficient_macros(projection.rows()) + sweep_bin_macros() +
-              cell_macros("Bins", "BIN", kSweepBins) + function,
-          code.operations()};
+std::string sweep_collect_text() {
+  const Matrix projection = folded(swept_projection());
+  return coefficient_text(projection.rows()) + matrix_macro("CLPV_PROJECTION", transposed(projection));
+}
+
+OperationCount sweep_collect_operations() {
+  return {.additions = kSweepBins * kFolds, .fused = products(folded(swept_projection()))};
 }
 
 std::string incident_flux_text() {
-  return cell_macros("FaceFluxes", "FACE_FLUX", kCellFaces) +
-         LinearCode().function("FaceFluxes", "incident_flux", "Bins", incident_flux());
+  return matrix_macro("CLPV_INCIDENT", incident_flux());
 }
 
 std::string bounce_source_text(const Basis& basis) {
-  return coefficient_macros(basis.size()) + sweep_bin_macros() + cell_macros("Bins", "BIN", kSweepBins) +
-         incident_flux_text() +
-         LinearCode().function("Coefficients", "reflected_intensity", "FaceFluxes",
-                               reflected_intensity(basis));
+  return coefficient_text(basis.size()) + incident_flux_text() +
+         matrix_macro("CLPV_LOBES", transposed(reflected_intensity(basis)));
 }
 
 std::string scatter_source_text(double anisotropy) {
-  return coefficient_macros(swept_basis()->size()) + sweep_bin_macros() +
-         cell_macros("Bins", "BIN", kSweepBins) +
-         LinearCode().function("Bins", "scatter_bins", "Bins", scattering_matrix(anisotropy),
-                               mirrors_of(*make_basis("bins24")).list());
+  return matrix_macro("CLPV_SCATTERING", axis_rows(folded(scattering_matrix(anisotropy))));
 }
 
 }  // namespace clpv

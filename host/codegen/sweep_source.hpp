@@ -1,36 +1,29 @@
 // SPDX-License-Identifier: MIT
-// Generates the linear maps of the sweep's kernels as text (kernels/sweep_*.cl, kernels/sweep/bounce.cl).
+// Constants of the sweep's kernels as text (kernels/sweep/).
 #pragma once
 
 #include <string>
 
 #include "basis/basis.hpp"
 #include "basis/sweep.hpp"
-#include "codegen/linear_code.hpp"
+#include "codegen/constants.hpp"
 
 namespace clpv {
 
-/// CLPV_X_BINS, the number of bins across x, and macros CLPV_EACH_X_BIN(DO), _Y_ and _Z_, which write DO(bin) for the
-/// bins that are swept across an axis; bins across x come first.
-std::string sweep_bin_macros();
-
-/// Generated text with the arithmetic operations it executes per cell and channel.
-struct CountedText {
-  std::string text;
-  OperationCount operations;
-};
-/// For sweep_links.cl: the text of transmittance_source, and macros of the links used across each axis.
+/// For sweep_links.cl: the text of transmittance_source, CLPV_AXIS_LINKS and CLPV_VOLUME_LINKS.
 std::string sweep_links_text(const Basis& basis, const Transport& transport);
-/// For sweep_collect.cl: coefficient_macros of swept_basis(), struct Bins, and Coefficients project_bins(Bins).
-CountedText sweep_collect_text();
 
-/// For sweep_collect.cl with CLPV_WITH_INCIDENT: struct FaceFluxes, and FaceFluxes incident_flux(Bins).
+/// For sweep_collect.cl: Coefficients of swept_basis(), and CLPV_PROJECTION, 24 x 9: swept_projection() by folded bins.
+std::string sweep_collect_text();
+/// Operations per cell and channel.
+OperationCount sweep_collect_operations();
+
+/// For face_fluxes.h: CLPV_INCIDENT, 6 x 24.
 std::string incident_flux_text();
-/// For bounce.cl: coefficient_macros of `basis`, struct Bins, incident_flux_text(), and
-/// Coefficients reflected_intensity(FaceFluxes).
+/// For bounce.cl: Coefficients of `basis`, incident_flux_text(), and CLPV_LOBES, 6 x N.
 std::string bounce_source_text(const Basis& basis);
 
-/// For sweep_medium.cl: struct Bins, and Bins scatter_bins(Bins), the product with scattering_matrix(anisotropy).
+/// For sweep_medium.cl: CLPV_SCATTERING, 3 x 24: scattering_matrix(anisotropy) by folded bins, first bin of each axis.
 std::string scatter_source_text(double anisotropy);
 
 }  // namespace clpv

@@ -31,13 +31,6 @@ struct VolumeFormat {
   bool operator==(const VolumeFormat&) const = default;
 };
 
-/// State of a cell between propagation steps. `coefficients`: the N coefficients of the basis. `fluxes`: the flux received
-/// through the six faces; the N coefficients are restored after the last step (docs/method.md, 'Propagation').
-enum class State { coefficients, fluxes };
-
-template <>
-inline constexpr auto kNames<State> = name_list("coefficients", "fluxes");
-
 /// Where the lobes of propagation are computed.
 enum class LobeTime {
   host,    ///< on the host: constants in the kernel text

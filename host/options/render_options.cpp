@@ -48,7 +48,7 @@ const PresetOptions& options_of(PresetName preset) {
   // The published scheme: that of Kaplanyan and Dachsbacher with the paper's basis and sizes.
   static const PresetOptions paper{
       {"basis", "srbf8v2"},    {"lambda", "0.25"},       {"lobe", "rotate"},        {"lobe-time", "kernel"},
-      {"evaluate", "image"},   {"table-size", "256"},    {"transport", "sampled"},  {"state", "coefficients"},
+      {"evaluate", "image"},   {"table-size", "256"},    {"transport", "sampled"},
       {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"}, {"blocker-stride", "1"},
       {"gather", "all"},       {"gather-offset", "0.5"}, {"layout", "image"},       {"storage", "half"},
       {"grid", "32"},          {"cascades", "3"},        {"cascade-size", "12.5"},  {"rsm-size", "256"},
@@ -102,8 +102,6 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("coarser-directions", o.coarser_directions, "number of sweep directions in all other cascades",
         Named{});
   visit("bounces", o.bounces, "number of diffuse bounces; more than 1 needs --transport sweep", Named{});
-  visit("state", o.state, "cell state between steps: the coefficients of the basis, or six face fluxes",
-        Named{});
   visit("layout", o.layout,
         "memory layout of volumes: 3-D images, or buffers ordered by cell, by coefficient or by block",
         Named{});

@@ -34,7 +34,6 @@ struct RenderOptions {
   Directions directions = Directions::of96;
   Directions coarser_directions = Directions::of96;
   Bounces bounces = Bounces::one;
-  State state = State::coefficients;
   Layout layout = Layout::soa;
   Storage storage = Storage::float16;
   int iterations = 8;

@@ -16,7 +16,6 @@ InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes)
 
 PropagateOptions propagate_options(const RenderOptions& options) {
   return {.grid = options.grid,
-          .state = options.state,
           .lobe_time = options.lobe_time,
           .table = options.table(),
           .format = options.format()};

@@ -34,7 +34,6 @@ struct StencilOptions {
 
 struct PropagateOptions {
   int grid = 32;  ///< cells along each axis
-  State state = State::coefficients;
   LobeTime lobe_time = LobeTime::host;
   TableStorage table = TableStorage::buffer;  ///< of lobes rotated in the kernel
   VolumeFormat format = {};                   ///< of all volumes

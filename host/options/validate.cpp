@@ -31,7 +31,6 @@ std::vector<Contradiction> contradictions_of(const RenderOptions& o, const Scene
       {!sweeps && o.bounces != Bounces::one, "bounces", name_of(o.bounces), transport,
        "1 (or transport 'sweep')"},
       {!sweeps && o.near == Near::traced, "near", name_of(o.near), transport, "off (or transport 'sweep')"},
-      {sweeps && o.state != State::coefficients, "state", name_of(o.state), transport, "coefficients"},
       {sweeps && o.lobe_time != LobeTime::host, "lobe-time", name_of(o.lobe_time),
        transport + ", which has no lobes", "host"},
       // Steps take no light at the border of the cascades, and attenuate none.

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "codegen/transmittance_source.hpp"
+#include "codegen/transport_source.hpp"
 #include "pipeline/steps/propagate.hpp"
 #include "reference/propagate.hpp"
 #include "support/named_enum.hpp"
@@ -55,61 +55,34 @@ struct Access {
 
 /// Adds the cost of one step. Bytes count each value once; reads count every access. `separate_sum`: the step reads the
 /// sum so far besides its source.
-void add_step(Cost& cost, const PropagateOptions& options, const TransportSource& source, bool separate_sum,
-              double blocker_bytes, double blocker_reads) {
-  const double cells = std::pow(options.grid, 3);
-  const Access access{options.format};
-  const int carried = source.target_count;
-  const double sum_in = separate_sum ? access.bytes(carried) : 0.0;
-  cost.bytes +=
-      cells *
-      (kChannels * (access.bytes(source.source_count) + sum_in + 2 * access.bytes(carried)) + blocker_bytes);
-  cost.flops += cells * kChannels * (source.arrive.flops() + carried);
-  cost.reads_per_cell =
-      kChannels * (source.neighbours * access.count(source.source_count) + access.count(carried)) +
-      blocker_reads;
-  cost.writes_per_cell = kChannels * 2 * access.count(carried);
+void add_step(Cost& cost, const PropagateWork& p, bool blocked, bool separate_sum) {
+  const double cells = std::pow(p.problem.options.grid, 3);
+  const Access access{p.problem.options.format};
+  const int n = p.problem.basis->size();
+  const LinkTransmittance* transmitter = p.propagator.transmitter();
+  const int links = blocked && transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
+  cost.bytes += cells * (kChannels * (3 + (separate_sum ? 1 : 0)) * access.bytes(n) + access.bytes(links));
+  cost.flops += cells * kChannels * (step_operations(p.problem.transport, blocked).flops() + n);
+  cost.reads_per_cell = kChannels * 7 * access.count(n) + access.count(links);
+  cost.writes_per_cell = kChannels * 2 * access.count(n);
 }
 
-/// Cost of the generated kernels, after a first run has built them. Reads and writes per cell are those of a later step.
-Cost cost_of(PropagateWork& p) {
+/// Cost of the kernels, after a first run has built them. Reads and writes per cell are those of a later step.
+Cost cost_of(const PropagateWork& p) {
   const PropagateOptions& o = p.problem.options;
-  const Basis& basis = *p.problem.basis;
-  const int n = basis.size();
-  const bool fluxes = o.state == State::fluxes;
-  const int carried = fluxes ? 6 : n;
+  const int n = p.problem.basis->size();
   const double cells = std::pow(o.grid, 3), corners = std::pow((o.grid + 1.0) / o.grid, 3);
   const Access access{o.format};
-  // Transmittance is computed once for all steps, a number per link, or in each step from the eight corners.
-  const LinkTransmittance* transmitter = p.propagator.transmitter();
-  const int links = transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
-  const double blocker_bytes = transmitter != nullptr ? access.bytes(links) : corners * access.bytes(n);
-  const double blocker_reads = transmitter != nullptr ? access.count(links) : 8 * access.count(n);
-  const OperationCount evaluation =
-      p.geometry ? transmittance_source(basis, p.problem.transport).operations : OperationCount{};
   Cost cost;
-  for (int step = 1; step <= p.problem.steps; ++step) {
-    const bool blocked = p.geometry && p.propagator.reads_transmittance(step);
-    if (step == 1 && fluxes) {
-      add_step(cost, o,
-               transport_source(basis, p.problem.transport, {State::coefficients, State::fluxes, false}), true,
-               0, 0);
-      continue;
-    }
-    add_step(cost, o, p.propagator.step_source(blocked), step > 1, blocked ? blocker_bytes : 0,
-             blocked ? blocker_reads : 0);
-    if (blocked && transmitter == nullptr) cost.flops += cells * evaluation.flops();
-  }
-  if (transmitter != nullptr) {
-    cost.bytes += cells * (corners * access.bytes(n) + access.bytes(links));
-    cost.flops += cells * evaluation.flops();
-  }
-  if (fluxes) {  // conversion of six fluxes to coefficients: a product with the lobes, and a sum
-    cost.bytes += cells * kChannels * (2 * access.bytes(n) + access.bytes(carried));
-    cost.flops += cells * kChannels * (2.0 * carried * n + n);
+  for (int step = 1; step <= p.problem.steps; ++step) add_step(cost, p, p.geometry.has_value(), step > 1);
+  double links = 0;
+  if (const LinkTransmittance* transmitter = p.propagator.transmitter()) {
+    links = access.bytes(transmitter->transmittance().shape().coefficients);
+    cost.bytes += cells * (corners * access.bytes(n) + links);
+    cost.flops += cells * transmitter->operations().flops();
   }
   if (o.lobe_time == LobeTime::kernel) cost.flops = 0;  // lobes rotated at run time are not counted
-  cost.working_set = cells * (3 * kChannels * access.bytes(carried) + (p.geometry ? blocker_bytes : 0));
+  cost.working_set = cells * (3 * kChannels * access.bytes(n) + links);
   return cost;
 }
 
@@ -122,7 +95,7 @@ struct PropagateCase {
   bool blockers = true;
 
   std::string name(const std::string& basis) const {
-    return fmt::format("{}/{}/{}/{}{}{}", basis, name_of(kind), name_of(options.state),
+    return fmt::format("{}/{}/{}{}{}", basis, name_of(kind),
                        !blockers                     ? "free"
                        : blocking == Blocking::areas ? "areas"
                                                      : "blockers",
@@ -141,35 +114,27 @@ using Add = std::function<void(const std::string&, const PropagateCase&)>;
 struct ConstantsCase {
   std::string_view basis;
   TransportKind kind;
-  State state;
   bool blockers = true;
 };
 
-/// Each path of the generated code once. The first step never blocks, so a run with blockers tests both of its kernels.
-/// Fluxes differ: their first step is a separate kernel.
+/// Few and many coefficients, matrices with and without zeros. A run with blockers also tests a step that is not blocked.
 constexpr ConstantsCase kConstants[] = {
-    {"sh2", TransportKind::sampled, State::coefficients},
-    {"sh2", TransportKind::exact, State::fluxes},
-    {"sh2", TransportKind::exact, State::fluxes, false},
-    {"srbf4", TransportKind::sampled, State::coefficients},  // few mirrors
-    {"srbf4", TransportKind::exact, State::fluxes},
-    {"srbf8v2", TransportKind::sampled, State::coefficients},  // pairs of opposite centres
-    {"bins24", TransportKind::sampled, State::fluxes},
+    {"sh2", TransportKind::sampled},    {"sh2", TransportKind::exact, false},
+    {"srbf4", TransportKind::exact},    {"srbf8v2", TransportKind::sampled},
+    {"bins24", TransportKind::sampled},
 };
 
 void add_constants(const std::string& basis, const LobeOptions& lobes, bool thorough, const Add& add_case) {
-  const auto add = [&](TransportKind kind, State state, bool blockers) {
-    add_case(basis,
-             {.kind = kind, .lobes = lobes, .options = {.grid = kGrid, .state = state}, .blockers = blockers});
+  const auto add = [&](TransportKind kind, bool blockers) {
+    add_case(basis, {.kind = kind, .lobes = lobes, .options = {.grid = kGrid}, .blockers = blockers});
   };
   for (const ConstantsCase& c : kConstants) {
-    if (!thorough && c.basis == basis) add(c.kind, c.state, c.blockers);
+    if (!thorough && c.basis == basis) add(c.kind, c.blockers);
   }
   if (!thorough) return;
   for (const TransportKind kind : stepped_transports()) {
-    add(kind, State::coefficients, true);
-    add(kind, State::fluxes, true);
-    add(kind, State::fluxes, false);
+    add(kind, true);
+    add(kind, false);
   }
 }
 

@@ -121,7 +121,7 @@ Cost cost_of(const SweepWork& p) {
       cells * (light + (2 * bins + links) * number) + dark * number + swept * n * n * sizeof(float) * planes;
   const double flops_per_direction = kChannels * (4 + 1) * 2 + (q.options.blocking ? 4 : 0);
   cost.flops =
-      cells * (kChannels * sweep_collect_text().operations.flops() + directions * flops_per_direction);
+      cells * (kChannels * sweep_collect_operations().flops() + directions * flops_per_direction);
   cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + bins;
   cost.writes_per_cell = kChannels * accesses_per_cell(format, harmonics) + bins;
   cost.working_set =

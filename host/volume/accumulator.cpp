@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "volume/accumulator.hpp"
 
-#include "codegen/linear_code.hpp"
+#include "codegen/constants.hpp"
 
 namespace clpv {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kLocalX = 64;  // texels of a row; on a CPU, images are no faster with 3-D work-groups
 
 ProgramSource source_of(const VolumeShape& shape, Storage storage) {
-  ProgramSource source{"volume/convert.cl", {}, coefficient_macros(shape.coefficients)};
+  ProgramSource source{"volume/convert.cl", {}, coefficient_text(shape.coefficients)};
   source.literals.integer("CLPV_GRID", shape.n);
   add_format_literals(source.literals, {Layout::image, storage});
   return source;

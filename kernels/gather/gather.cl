@@ -19,10 +19,21 @@
 //   SamplePoints, find_sample_points(at, &points) W points [cells] from the first centre, clamped to the grid
 //   float sample_cells(volume, points, i, &s)      trilinear at point i, to be multiplied by the result
 //   float4 weigh(weights, sampled)           weights . coefficients for each channel, and 0
-// From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET, and Coefficients gather_weights(float3 n
-// CLPV_AND_TABLE), g(n). If g comes from a look-up table, it is the last argument.
+// From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET, CLPV_FACE_TRANSPORT (0: swept light), and
+// CLPV_FROM_TABLE 1: functions come from a look-up table, the last argument.
 #include "gather/cascades.h"
 #include "raster/surface_row.h"
+
+// g(n): 4 b(-n), or alpha(-n) for swept light.
+CLPV_INLINE Coefficients gather_weights(const float x, const float y, const float z CLPV_AND_TABLE) {
+#if !CLPV_FACE_TRANSPORT
+  return cosine_integrals(-x, -y, -z);
+#elif CLPV_FROM_TABLE
+  return scale_coefficients(4.0f, table_basis(-x, -y, -z CLPV_PASS_TABLE));
+#else
+  return scale_coefficients(4.0f, basis_functions(-x, -y, -z));
+#endif
+}
 
 // E s^2 of one volume at point i.
 CLPV_INLINE float4 volume_irradiance(CLPV_GATHERED volume, const SamplePoints* points, const int i,
@@ -67,7 +78,7 @@ __kernel void gather(const ClpvView view, __global const Place* places, __global
   g.remaining = g.surfaces.depth > ZERO ? ONE : ZERO;
   const VecLanes normal = unpack((intW)(-1), g.surfaces.normal);
   for (int i = 0; i < W; ++i) {
-    g.weights[i] = gather_weights((float3)(normal.x[i], normal.y[i], normal.z[i]) CLPV_PASS_TABLE);
+    g.weights[i] = gather_weights(normal.x[i], normal.y[i], normal.z[i] CLPV_PASS_TABLE);
     g.sums[i] = 0.0f;
   }
 #define CLPV_ADD_CASCADE(c, volume) add_cascade(&g, grids + c, volume)

@@ -7,8 +7,7 @@
 // A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b 0)(r g b 0). The eight cells about a point
 // are read as whole vectors.
 //
-// From the host: CLPV_EACH_PAIR(DO), which writes DO(j, even, odd) for each pair j; even(c), odd(c) are its members of
-// Coefficients c.
+// From the host: CLPV_PAIRS.
 #ifndef CLPV_GATHER_PACKED_H
 #define CLPV_GATHER_PACKED_H
 
@@ -20,9 +19,7 @@
 
 // Coefficients of a record, or interpolated at a point.
 typedef struct {
-#define CLPV_DO(j, even, odd) float8 p##j;
-  CLPV_EACH_PAIR(CLPV_DO)
-#undef CLPV_DO
+  float8 pair[CLPV_PAIRS];
 } Sampled;
 
 // Records of a cascade, and its occlusion bits (visibility.cl).
@@ -111,12 +108,11 @@ CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* 
 #if CLPV_VISIBLE
   scale = apply_visibility(cascade, points, i, &w);
 #endif
-#define CLPV_DO(j, even, odd)                                                                          \
-  r->p##j = w.s0 * v[j] + w.s1 * v[j + CLPV_DX] + w.s2 * v[j + CLPV_DY] + w.s3 * v[j + CLPV_DX + CLPV_DY] + \
-           w.s4 * v[j + CLPV_DZ] + w.s5 * v[j + CLPV_DX + CLPV_DZ] + w.s6 * v[j + CLPV_DY + CLPV_DZ] +     \
-           w.s7 * v[j + CLPV_DX + CLPV_DY + CLPV_DZ];
-  CLPV_EACH_PAIR(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int j = 0; j < CLPV_PAIRS; ++j)
+    r->pair[j] = w.s0 * v[j] + w.s1 * v[j + CLPV_DX] + w.s2 * v[j + CLPV_DY] + w.s3 * v[j + CLPV_DX + CLPV_DY] +
+                 w.s4 * v[j + CLPV_DZ] + w.s5 * v[j + CLPV_DX + CLPV_DZ] + w.s6 * v[j + CLPV_DY + CLPV_DZ] +
+                 w.s7 * v[j + CLPV_DX + CLPV_DY + CLPV_DZ];
   return scale;
 }
 
@@ -126,9 +122,11 @@ CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* 
 
 CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
   float8 sum = 0.0f;
-#define CLPV_DO(j, even, odd) sum = fma(CLPV_PAIR(even(weights), odd(weights)), sampled.p##j, sum);
-  CLPV_EACH_PAIR(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int j = 0; j < CLPV_PAIRS; ++j) {
+    const float odd = 2 * j + 1 < CLPV_N ? weights.c[2 * j + 1] : 0.0f;
+    sum = fma(CLPV_PAIR(weights.c[2 * j], odd), sampled.pair[j], sum);
+  }
   return sum.lo + sum.hi;
 }
 

@@ -157,8 +157,8 @@ __kernel void medium_volumes(const ClpvView view, __global const float* depths, 
     float red[W], green[W], blue[W];
     for (int i = 0; i < W; ++i) {
       Coefficients y = basis_functions(-w.x[i], -w.y[i], -w.z[i]);
-      y.c1 *= g, y.c2 *= g, y.c3 *= g;
-      y.c4 *= gg, y.c5 *= gg, y.c6 *= gg, y.c7 *= gg, y.c8 *= gg;
+#pragma unroll
+      for (int j = 1; j < CLPV_N; ++j) y.c[j] *= j < 4 ? g : gg;
       const float4 arriving = max(weigh(y, field.at[i]), 0.0f);
       red[i] = arriving.x, green[i] = arriving.y, blue[i] = arriving.z;
     }

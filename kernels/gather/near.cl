@@ -67,9 +67,8 @@ __kernel void near(const ClpvView view, __global const float* points, __global c
     for (int i = 0; i < W; ++i) {
       if (!(shares[i] > 0.0f)) continue;
       Sampled change = there.at[i];
-#define CLPV_DO(j, even, odd) change.p##j -= here.at[i].p##j;
-      CLPV_EACH_PAIR(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+      for (int j = 0; j < CLPV_PAIRS; ++j) change.pair[j] -= here.at[i].pair[j];
       volumes[i] += shares[i] * radiance_along(&change, back.x[i], back.y[i], back.z[i]);
     }
     const Vec met = load_near_vectors(radiances + 3 * k * r.plane, r.plane, r.at);

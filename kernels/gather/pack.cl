@@ -3,12 +3,15 @@
 //
 // In:   volume  light volume [W/sr], any layout
 // Out:  packed  a record of CLPV_PAIRS float8 per cell, from record `first` on
-// From the host (host/codegen/gather_source.cpp): CLPV_EACH_PAIR(DO), which writes DO(j, even, odd) for each pair of
-// coefficients; even(c), odd(c) are its members of Coefficients c in lane `lane`. A work-item packs W cells of
-// a row.
+// From the host: CLPV_PAIRS. A work-item packs W cells of a row.
 #include "volume/coefficients.h"
 #include "volume/light.h"
 #include "volume/whole_groups.h"
+
+// Coefficient i of a lane; 0 after the last one.
+CLPV_INLINE float number_at(const Coefficients* cell, const int i, const int lane) {
+  return i < CLPV_N ? ((const float*)&cell->c[min(i, CLPV_N - 1)])[lane] : 0.0f;
+}
 
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void pack(
     CLPV_VOLUME_IN volume, __global float8* packed, const uint first) {
@@ -20,9 +23,11 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void pack(
   const int cells = min(W, CLPV_GRID - x);
   for (int lane = 0; lane < W; ++lane, record += CLPV_PAIRS) {
     if (lane >= cells) break;
-#define CLPV_DO(j, even, odd) \
-  record[j] = (float8)(even(r), even(g), even(b), 0.0f, odd(r), odd(g), odd(b), 0.0f);
-    CLPV_EACH_PAIR(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+    for (int j = 0; j < CLPV_PAIRS; ++j) {
+      const int even = 2 * j, odd = even + 1;
+      record[j] = (float8)(number_at(&r, even, lane), number_at(&g, even, lane), number_at(&b, even, lane), 0.0f,
+                           number_at(&r, odd, lane), number_at(&g, odd, lane), number_at(&b, odd, lane), 0.0f);
+    }
   }
 }

@@ -33,9 +33,8 @@ CLPV_INLINE void add_field(const PackedCascade cascade, const SamplePoints* poin
     if (!(weights[i] > 0.0f)) continue;
     Sampled sampled;
     const float scale = weights[i] * sample_cells(cascade, points, i, &sampled);
-#define CLPV_DO(j, even, odd) field->at[i].p##j += scale * sampled.p##j;
-    CLPV_EACH_PAIR(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+    for (int j = 0; j < CLPV_PAIRS; ++j) field->at[i].pair[j] += scale * sampled.pair[j];
   }
 }
 
@@ -45,9 +44,8 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
                                  const intW wanted, RadianceField* field) {
   realW remaining = wanted ? (realW)(unit) : ZERO;
   for (int i = 0; i < W; ++i) {
-#define CLPV_DO(j, even, odd) field->at[i].p##j = 0.0f;
-    CLPV_EACH_PAIR(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+    for (int j = 0; j < CLPV_PAIRS; ++j) field->at[i].pair[j] = 0.0f;
   }
   for (uint c = 0; c < cascades; ++c) {
     const ClpvGrid grid = grids[c];

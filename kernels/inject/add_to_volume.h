@@ -9,36 +9,27 @@
 
 #if CLPV_GEOMETRY
 #include "volume/geometry.h"
-#define CLPV_EACH_CHANNEL(DO) DO(0)
 #define CLPV_CHANNELS 1
 #else
 #include "volume/light.h"
-#define CLPV_EACH_CHANNEL(DO) DO(0) DO(1) DO(2)
 #define CLPV_CHANNELS 3
 #endif
 
 // Sums of weighted integrals alpha over the texels of a cell, for each channel.
 typedef struct {
-#define CLPV_DO(channel) Coefficients k##channel;
-  CLPV_EACH_CHANNEL(CLPV_DO)
-#undef CLPV_DO
+  Coefficients channel[CLPV_CHANNELS];
 } Sums;
 
 static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums sums) {
   const int3 cell = cell_of(CLPV_KEYS(CLPV_GRID), key);
-#define CLPV_DO(channel) const Coefficients projected##channel = project_sum(sums.k##channel);
-  CLPV_EACH_CHANNEL(CLPV_DO)
-#undef CLPV_DO
 #if CLPV_GEOMETRY
   geometry_store(volume, 0, cell.x, cell.y, cell.z,
-                 merge_blockers(projected0, geometry_load(volume, 0, cell.x, cell.y, cell.z)));
+                 merge_blockers(project_blockers(sums.channel[0]), geometry_load(volume, 0, cell.x, cell.y, cell.z)));
 #else
-#define CLPV_DO(channel)                                                                     \
-  light_store(volume, channel, cell.x, cell.y, cell.z,                                       \
-              add_scaled(light_load(volume, channel, cell.x, cell.y, cell.z), M_1_PI_F, \
-                              projected##channel));
-  CLPV_EACH_CHANNEL(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int c = 0; c < CLPV_CHANNELS; ++c)
+    light_store(volume, c, cell.x, cell.y, cell.z,
+                add_scaled(light_load(volume, c, cell.x, cell.y, cell.z), M_1_PI_F, project_sum(sums.channel[c])));
 #endif
 }
 

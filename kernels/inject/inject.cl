@@ -26,6 +26,11 @@
 // (CLPV_AND_TABLE).
 #include "inject/cell_keys.h"
 #include "volume/coefficients.h"
+#if CLPV_GEOMETRY
+#include "inject/blocking.h"
+#else
+#include "inject/lobe.h"
+#endif
 #include "inject/add_to_volume.h"
 #include "shared/thinned.h"
 #include "raster/surface.h"
@@ -46,21 +51,9 @@
 
 static inline Sums no_sums(void) {
   Sums sums;
-#define CLPV_DO(i) sums.k0.c##i = 0.0f;
-  CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
-#if !CLPV_GEOMETRY
-  sums.k1 = sums.k0;
-  sums.k2 = sums.k0;
-#endif
+#pragma unroll
+  for (int c = 0; c < CLPV_CHANNELS; ++c) sums.channel[c] = zero_coefficients();
   return sums;
-}
-
-static inline Coefficients add_lobe(Coefficients sum, const float weight, const Coefficients lobe) {
-#define CLPV_DO(i) sum.c##i = fma(weight, lobe.c##i, sum.c##i);
-  CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
-  return sum;
 }
 
 #if CLPV_GEOMETRY
@@ -73,7 +66,7 @@ static inline uint taken_index(const uint width, const uint i, const uint stride
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
   const float3 n = load_normal(normals, taken_index(width, texel, stride));
-  sums.k0 = add_lobe(sums.k0, shares[texel], surfel_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
+  sums.channel[0] = add_scaled(sums.channel[0], shares[texel], surfel_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
   return sums;
 }
 
@@ -86,9 +79,9 @@ static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_T
 #if CLPV_UNIT_FLUX
   flux *= M_PI_F / lobe_flux(lobe);
 #endif
-  sums.k0 = add_lobe(sums.k0, flux.x, lobe);
-  sums.k1 = add_lobe(sums.k1, flux.y, lobe);
-  sums.k2 = add_lobe(sums.k2, flux.z, lobe);
+  sums.channel[0] = add_scaled(sums.channel[0], flux.x, lobe);
+  sums.channel[1] = add_scaled(sums.channel[1], flux.y, lobe);
+  sums.channel[2] = add_scaled(sums.channel[2], flux.z, lobe);
   return sums;
 }
 
@@ -96,26 +89,20 @@ static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_T
 
 static inline void store_sums(__global float* partials, const uint slot, const Sums sums) {
   __global float* to = partials + slot * (CLPV_CHANNELS * CLPV_N);
-#define CLPV_DO(i) to[i] = sums.k0.c##i;
-  CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
-#if !CLPV_GEOMETRY
-#define CLPV_DO(i) to[CLPV_N + i] = sums.k1.c##i, to[2 * CLPV_N + i] = sums.k2.c##i;
-  CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
-#endif
+#pragma unroll
+  for (int c = 0; c < CLPV_CHANNELS; ++c) {
+#pragma unroll
+    for (int i = 0; i < CLPV_N; ++i) to[c * CLPV_N + i] = sums.channel[c].c[i];
+  }
 }
 
 static inline Sums add_stored(Sums sums, __global const float* partials, const uint slot) {
   __global const float* from = partials + slot * (CLPV_CHANNELS * CLPV_N);
-#define CLPV_DO(i) sums.k0.c##i += from[i];
-  CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
-#if !CLPV_GEOMETRY
-#define CLPV_DO(i) sums.k1.c##i += from[CLPV_N + i], sums.k2.c##i += from[2 * CLPV_N + i];
-  CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
-#endif
+#pragma unroll
+  for (int c = 0; c < CLPV_CHANNELS; ++c) {
+#pragma unroll
+    for (int i = 0; i < CLPV_N; ++i) sums.channel[c].c[i] += from[c * CLPV_N + i];
+  }
   return sums;
 }
 

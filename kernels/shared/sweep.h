@@ -5,6 +5,7 @@
 #define CLPV_SHARED_SWEEP_H
 
 #define CLPV_SWEEP_BINS 24
+#define CLPV_AXIS_BINS 8  // bins swept across x, which come first; as many across y, then z
 
 // A bin of directions. Light travels from plane to plane, within a plane from row to row, and within a row from column
 // to column.

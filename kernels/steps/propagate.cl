@@ -3,76 +3,100 @@
 //
 //   F = max(0, Omega_f I(w_f)) T_f,   c += (F / pi) c(n_f)      for the five visible faces f of each neighbour
 //
-// Kaplanyan and Dachsbacher 2010, 'Cascaded light propagation volumes'; docs/method.md, 'Propagation'. The transport
-// itself (CLPV_ARRIVE, expand_fluxes) is straight-line code with literal constants, from
-// host/codegen/transport_source.cpp.
+// Kaplanyan and Dachsbacher 2010, 'Cascaded light propagation volumes'; docs/method.md, 'Propagation'.
 //
-// In:   source         light of the previous step (the injected field at first): coefficients [W/sr] per channel, or
-//                      with --state fluxes the flux [W] through the cell's six faces
+// In:   source         light of the previous step (the injected field at first) [W/sr]
 //       sum_so_far     sum of the previous steps, which may be the same memory as `sum`
 //       transmittance  with CLPV_BLOCKING: T of each link into a cell (transmittance.cl)
-//       least          with CLPV_FIRST_TOO: lower bound of T; 1 in the first step, which is not blocked, else 0
-// Out:  target         light of this step
+//       least          with CLPV_BLOCKING: lower bound of T: 1 in the first step, which is not blocked, else 0
+// Out:  target         light of this step [W/sr]
 //       sum            sum_so_far + target
 // A work-item computes W cells of a row, in one channel or in all three (CLPV_CHANNELS), which then share T.
+//
+// From the host (host/codegen/transport_source.cpp), for face 5 k + f of the neighbour that light reaches along axis k,
+// axes in the order +x, -x, +y, -y, +z, -z:
+//   CLPV_FACE_FLUX     half of Omega_f b_i(w_f) for each function of the basis
+//   CLPV_FACE_NORMAL   axis of the face's outward normal
+//   CLPV_LOBES         c(n) / pi for a normal along each axis
 #include "volume/coefficients.h"
 #include "volume/whole_groups.h"
-
-#define CLPV_VOLUME source
-#define CLPV_VOLUME_N CLPV_GRID
-#define CLPV_VOLUME_CELL Source
-#define CLPV_VOLUME_EACH CLPV_EACH_SOURCE
-#define CLPV_VOLUME_COUNT CLPV_SOURCE_N
-#include "volume/instance.h"
-
-#define CLPV_VOLUME target
-#define CLPV_VOLUME_N CLPV_GRID
-#define CLPV_VOLUME_CELL Target
-#define CLPV_VOLUME_EACH CLPV_EACH_TARGET
-#define CLPV_VOLUME_COUNT CLPV_TARGET_N
-#include "volume/instance.h"
-
 #include "volume/light.h"
-
 #if CLPV_BLOCKING
 #include "volume/transmittance.h"
 #endif
 
-CLPV_INLINE Target target_sum(const Target a, const Target b) {
-  Target r;
-#define CLPV_DO(i) r.c##i = a.c##i + b.c##i;
-  CLPV_EACH_TARGET(CLPV_DO)
-#undef CLPV_DO
-  return r;
+#define CLPV_AXES 6
+#define CLPV_SEEN_FACES 5  // of a neighbour
+
+__constant const float face_flux[CLPV_AXES * CLPV_SEEN_FACES][CLPV_N] = CLPV_FACE_FLUX;
+__constant const int face_normal[CLPV_AXES * CLPV_SEEN_FACES] = CLPV_FACE_NORMAL;
+__constant const float lobes[CLPV_AXES][CLPV_N] = CLPV_LOBES;
+
+// Loads the cell that light reaches cell (x, y, z) from along axis k.
+CLPV_INLINE Coefficients load_upstream(CLPV_VOLUME_IN source, const int channel, const int k, const int x, const int y,
+                                       const int z) {
+  const int back = k % 2 == 0 ? -1 : 1;
+  return light_load(source, channel, x + (k / 2 == 0 ? back : 0), y + (k / 2 == 1 ? back : 0),
+                    z + (k / 2 == 2 ? back : 0));
 }
 
-// Loads a neighbour of cell (x, y, z) in `channel`, for the generated code.
-#define CLPV_LOAD_NEIGHBOUR(i, dx, dy, dz) \
-  const Source a##i = source_load(source, channel, x + (dx), y + (dy), z + (dz));
+// Flux [W] of a cell's light through a face of a neighbour. max(0, 2 h) is h + |h|: comparisons would trigger LLVM's SLP
+// vectoriser, which prevents vectorisation of work-items on CPUs.
+CLPV_INLINE realW flux_through(const Coefficients from, const int face) {
+  const realW half_flux = add_product(0.0f, face_flux[face], from);
+  return half_flux + fabs(half_flux);
+}
 
 #ifndef CLPV_LOBES_AT_RUN_TIME
 #define CLPV_LOBES_AT_RUN_TIME 0
 #endif
 #if CLPV_LOBES_AT_RUN_TIME
 #include "steps/run_time_lobes.h"
+#else
+
+// Light that cell (x, y, z) gains from its six neighbours. `t`: transmittance of the link to each face.
+CLPV_INLINE Coefficients gain_light(CLPV_VOLUME_IN source, const int channel, const int x, const int y, const int z
+#if CLPV_BLOCKING
+                                    , const Links t
+#endif
+) {
+  realW arriving[CLPV_AXES];  // flux [W] through the faces with a normal along each axis
+#pragma unroll
+  for (int n = 0; n < CLPV_AXES; ++n) arriving[n] = 0.0f;
+#pragma unroll
+  for (int k = 0; k < CLPV_AXES; ++k) {
+    const Coefficients from = load_upstream(source, channel, k, x, y, z);
+#pragma unroll
+    for (int f = 0; f < CLPV_SEEN_FACES; ++f) {
+      const int face = CLPV_SEEN_FACES * k + f;
+#if CLPV_BLOCKING
+      arriving[face_normal[face]] += flux_through(from, face) * t.c[face];
+#else
+      arriving[face_normal[face]] += flux_through(from, face);
+#endif
+    }
+  }
+  Coefficients gained = zero_coefficients();
+#pragma unroll
+  for (int n = 0; n < CLPV_AXES; ++n) {
+#pragma unroll
+    for (int i = 0; i < CLPV_N; ++i)
+      if (lobes[n][i] != 0.0f) gained.c[i] = fma((realW)(lobes[n][i]), arriving[n], gained.c[i]);
+  }
+  return gained;
+}
 #endif
 
-#define CLPV_STEP_CHANNEL(CHANNEL)                                                                           \
-  {                                                                                                          \
-    const int channel = CHANNEL;                                                                             \
-    CLPV_EACH_NEIGHBOUR(CLPV_LOAD_NEIGHBOUR)                                                                 \
-    CLPV_ARRIVE                                                                                              \
-    target_store(target, channel, x, y, z, gained);                                                          \
-    target_store(sum, channel, x, y, z, target_sum(target_load(sum_so_far, channel, x, y, z), gained)); \
-  }
+CLPV_INLINE void store_step(const Coefficients gained, CLPV_VOLUME_OUT target, CLPV_VOLUME_IN sum_so_far,
+                            CLPV_VOLUME_OUT sum, const int channel, const int x, const int y, const int z) {
+  light_store(target, channel, x, y, z, gained);
+  light_store(sum, channel, x, y, z, add_coefficients(light_load(sum_so_far, channel, x, y, z), gained));
+}
 
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagate_step(
     CLPV_VOLUME_IN source, CLPV_VOLUME_OUT target, CLPV_VOLUME_IN sum_so_far, CLPV_VOLUME_OUT sum
 #if CLPV_BLOCKING
-    , CLPV_VOLUME_IN transmittance
-#if CLPV_FIRST_TOO
-    , const float least
-#endif
+    , CLPV_VOLUME_IN transmittance, const float least
 #endif
 #if CLPV_LOBES_AT_RUN_TIME
     , __global const float4* normals, __global const float4* links CLPV_AND_TABLE CLPV_AND_FUNCTIONS
@@ -82,30 +106,22 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagat
   CLPV_RETURN_OUTSIDE(x, y);
 #if CLPV_BLOCKING
   Links t = transmittance_load(transmittance, 0, x, y, z);
-#if CLPV_FIRST_TOO
-#define CLPV_DO(i) t.c##i = max(t.c##i, (realW)(least));
-  CLPV_EACH_LINK(CLPV_DO)
-#undef CLPV_DO
-#endif
+#pragma unroll
+  for (int face = 0; face < CLPV_AXES * CLPV_SEEN_FACES; ++face) t.c[face] = max(t.c[face], (realW)(least));
+#define CLPV_PASS_LINKS , t
+#else
+#define CLPV_PASS_LINKS
 #endif
 #if CLPV_LOBES_AT_RUN_TIME
-  CLPV_STEP_WITH_LOBES
+  Coefficients gained[3];
+  gain_with_lobes(source, x, y, z, normals, links, gained CLPV_PASS_LINKS CLPV_PASS_TABLE CLPV_PASS_FUNCTIONS);
+  for (int channel = 0; channel < 3; ++channel) store_step(gained[channel], target, sum_so_far, sum, channel, x, y, z);
 #elif CLPV_CHANNELS == 3
-  CLPV_STEP_CHANNEL(0)
-  CLPV_STEP_CHANNEL(1)
-  CLPV_STEP_CHANNEL(2)
+#pragma unroll
+  for (int channel = 0; channel < 3; ++channel)
+    store_step(gain_light(source, channel, x, y, z CLPV_PASS_LINKS), target, sum_so_far, sum, channel, x, y, z);
 #else
-  CLPV_STEP_CHANNEL((int)get_global_id(2) / CLPV_GRID)
+  const int channel = (int)get_global_id(2) / CLPV_GRID;
+  store_step(gain_light(source, channel, x, y, z CLPV_PASS_LINKS), target, sum_so_far, sum, channel, x, y, z);
 #endif
-}
-
-// Ends a propagation of fluxes: accumulated = base + expand(sum). base: injected field [W/sr]; sum: fluxes of all steps
-// [W].
-__kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagate_expand(
-    CLPV_VOLUME_IN base, CLPV_VOLUME_IN sum, CLPV_VOLUME_OUT accumulated) {
-  const int x = W * (int)get_global_id(0), y = (int)get_global_id(1);
-  const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
-  CLPV_RETURN_OUTSIDE(x, y);
-  const Coefficients gained = expand_fluxes(target_load(sum, channel, x, y, z));
-  light_store(accumulated, channel, x, y, z, add_coefficients(light_load(base, channel, x, y, z), gained));
 }

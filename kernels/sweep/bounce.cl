@@ -21,110 +21,125 @@
 //                         (sweep_collect.cl)
 //       injected          I: light volume [W/sr]
 // Out:  bounced           B: light volume [W/sr]
-// From the host (host/codegen/sweep_source.cpp): Coefficients of the basis; struct Bins; CLPV_EACH_X_BIN, _Y_, _Z_;
-// struct FaceFluxes; FaceFluxes incident_flux(Bins) [W]; Coefficients reflected_intensity(FaceFluxes) [W/sr].
+// From the host (host/codegen/sweep_source.cpp): Coefficients of the basis, CLPV_LOBES, the lobe of 1 W about each face's
+// normal, and the text for face_fluxes.h.
 // A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"
 #include "sweep/coarse_to_fine.h"
-#include "shared/reflectors.h"
-#include "shared/sweep.h"
-#include "sweep/sweep_tiles.h"
+#include "sweep/face_fluxes.h"
 #include "volume/light.h"
 
 #define CLPV_VOLUME faces
 #define CLPV_VOLUME_N CLPV_GRID
 #define CLPV_VOLUME_CELL FaceFluxes
-#define CLPV_VOLUME_EACH CLPV_EACH_FACE_FLUX
 #define CLPV_VOLUME_COUNT CLPV_CELL_FACES
 #include "volume/instance.h"
+
+__constant const float lobes[CLPV_CELL_FACES][CLPV_N] = CLPV_LOBES;
 
 // Flux [W] that leaves each face of a cell: incident flux times reflectance.
 CLPV_INLINE FaceFluxes reflect_flux(const FaceFluxes incident, const FaceFluxes reflectance) {
   FaceFluxes flux;
-#define CLPV_DO(i) flux.c##i = incident.c##i * reflectance.c##i;
-  CLPV_EACH_FACE_FLUX(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) flux.c[a] = incident.c[a] * reflectance.c[a];
   return flux;
 }
 
 CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
   FaceFluxes sum;
-#define CLPV_DO(i) sum.c##i = a.c##i + b.c##i;
-  CLPV_EACH_FACE_FLUX(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int i = 0; i < CLPV_CELL_FACES; ++i) sum.c[i] = a.c[i] + b.c[i];
   return sum;
 }
 
 // R (1 + E)
 CLPV_INLINE FaceFluxes sum_series(const FaceFluxes returned, const FaceFluxes reflectance) {
   FaceFluxes series;
-#define CLPV_DO(i) series.c##i = reflectance.c##i * (1.0f + returned.c##i);
-  CLPV_EACH_FACE_FLUX(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) series.c[a] = reflectance.c[a] * (1.0f + returned.c[a]);
   return series;
 }
 
-// Declares the tile's first cell (x, y, z), its channel, and the index `first` of the channel's volumes.
-#define CLPV_THIS_TILE                                                                          \
-  const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);     \
-  const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID; \
-  if (x >= CLPV_GRID || y >= CLPV_GRID) return;                                                 \
-  const int first = channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
+// Intensity [W/sr] of light that leaves each face as a lobe.
+CLPV_INLINE Coefficients reflected_intensity(const FaceFluxes flux) {
+  Coefficients c = zero_coefficients();
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) {
+#pragma unroll
+    for (int i = 0; i < CLPV_N; ++i)
+      if (lobes[a][i] != 0.0f) c.c[i] = fma((realW)(lobes[a][i]), flux.c[a], c.c[i]);
+  }
+  return c;
+}
 
-// Incident flux on the cells in row r of tiles of `volumes`.
-#define CLPV_INCIDENT_FLUX(volumes, tiles) incident_flux(load_bins(volumes, tiles, r, x, y + r, z))
+// Tile of a work-item: its first cell, its channel, and the index `first` of the channel's bins.
+typedef struct {
+  int x, y, z, channel, first;
+  int rows;  // inside the grid; 0: the tile is outside
+} Tile;
+
+CLPV_INLINE Tile find_tile(void) {
+  Tile t;
+  t.x = W * (int)get_global_id(0), t.y = W * (int)get_global_id(1);
+  t.z = (int)get_global_id(2) % CLPV_GRID, t.channel = (int)get_global_id(2) / CLPV_GRID;
+  t.first = t.channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
+  t.rows = t.x < CLPV_GRID ? clamp(CLPV_GRID - t.y, 0, W) : 0;
+  return t;
+}
+
+// Incident flux on the cells in row r of a tile of swept light.
+CLPV_INLINE FaceFluxes load_incident_flux(CLPV_BUFFER_IN swept, const SweepTile* x_bins, const Tile t, const int r) {
+  return incident_flux(load_bins(swept + t.first, x_bins, r, t.x, t.y + r, t.z));
+}
 
 __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_IN injected,
                                const float injected_share, CLPV_VOLUME_OUT bounced) {
-  CLPV_THIS_TILE
-  SweepTile tiles[CLPV_X_BINS];
-  load_x_bins(swept + first, x, y, z, tiles);
-  for (int r = 0; r < W; ++r) {
-    if (y + r >= CLPV_GRID) break;
+  const Tile t = find_tile();
+  if (t.rows == 0) return;
+  SweepTile bins[CLPV_AXIS_BINS];
+  load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
+  for (int r = 0; r < t.rows; ++r) {
     const Coefficients reflected = reflected_intensity(reflect_flux(
-        CLPV_INCIDENT_FLUX(swept + first, tiles), faces_load(reflectors, channel, x, y + r, z)));
-    light_store(bounced, channel, x, y + r, z,
-                add_scaled(reflected, injected_share, light_load(injected, channel, x, y + r, z)));
+        load_incident_flux(swept, bins, t, r), faces_load(reflectors, t.channel, t.x, t.y + r, t.z)));
+    light_store(bounced, t.channel, t.x, t.y + r, t.z,
+                add_scaled(reflected, injected_share, light_load(injected, t.channel, t.x, t.y + r, t.z)));
   }
 }
 
 __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_swept, CLPV_VOLUME_IN reflectors,
                             CLPV_VOLUME_IN series, CLPV_VOLUME_IN injected, CLPV_VOLUME_OUT bounced) {
-  CLPV_THIS_TILE
-  SweepTile tiles[CLPV_X_BINS], second[CLPV_X_BINS];
-  load_x_bins(first_swept + first, x, y, z, tiles);
-  load_x_bins(second_swept + first, x, y, z, second);
-  for (int r = 0; r < W; ++r) {
-    if (y + r >= CLPV_GRID) break;
+  const Tile t = find_tile();
+  if (t.rows == 0) return;
+  SweepTile first[CLPV_AXIS_BINS], second[CLPV_AXIS_BINS];
+  load_x_bins(first_swept + t.first, t.x, t.y, t.z, first);
+  load_x_bins(second_swept + t.first, t.x, t.y, t.z, second);
+  for (int r = 0; r < t.rows; ++r) {
     const FaceFluxes flux =
-        add_fluxes(reflect_flux(CLPV_INCIDENT_FLUX(first_swept + first, tiles),
-                                faces_load(reflectors, channel, x, y + r, z)),
-                        reflect_flux(CLPV_INCIDENT_FLUX(second_swept + first, second),
-                                     faces_load(series, channel, x, y + r, z)));
-    light_store(bounced, channel, x, y + r, z,
-                add_coefficients(light_load(injected, channel, x, y + r, z), reflected_intensity(flux)));
+        add_fluxes(reflect_flux(load_incident_flux(first_swept, first, t, r),
+                                faces_load(reflectors, t.channel, t.x, t.y + r, t.z)),
+                   reflect_flux(load_incident_flux(second_swept, second, t, r),
+                                faces_load(series, t.channel, t.x, t.y + r, t.z)));
+    light_store(bounced, t.channel, t.x, t.y + r, t.z,
+                add_coefficients(light_load(injected, t.channel, t.x, t.y + r, t.z), reflected_intensity(flux)));
   }
 }
 
 __kernel void inject_unit(CLPV_VOLUME_IN series, CLPV_VOLUME_OUT bounced) {
-  CLPV_THIS_TILE
-  (void)first;
-  for (int r = 0; r < W; ++r) {
-    if (y + r >= CLPV_GRID) break;
-    light_store(bounced, channel, x, y + r, z,
-                reflected_intensity(faces_load(series, channel, x, y + r, z)));
-  }
+  const Tile t = find_tile();
+  for (int r = 0; r < t.rows; ++r)
+    light_store(bounced, t.channel, t.x, t.y + r, t.z,
+                reflected_intensity(faces_load(series, t.channel, t.x, t.y + r, t.z)));
 }
 
 __kernel void extend_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_OUT series) {
-  CLPV_THIS_TILE
-  SweepTile tiles[CLPV_X_BINS];
-  load_x_bins(swept + first, x, y, z, tiles);
-  for (int r = 0; r < W; ++r) {
-    if (y + r >= CLPV_GRID) break;
-    const FaceFluxes returned = CLPV_INCIDENT_FLUX(swept + first, tiles);
-    faces_store(series, channel, x, y + r, z, sum_series(returned, faces_load(reflectors, channel, x, y + r, z)));
-  }
+  const Tile t = find_tile();
+  if (t.rows == 0) return;
+  SweepTile bins[CLPV_AXIS_BINS];
+  load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
+  for (int r = 0; r < t.rows; ++r)
+    faces_store(series, t.channel, t.x, t.y + r, t.z,
+                sum_series(load_incident_flux(swept, bins, t, r),
+                           faces_load(reflectors, t.channel, t.x, t.y + r, t.z)));
 }
 
 // Incident flux on one face of a row of finer cells from (x, y, z) on, from the coarser cells' faces: trilinear, and a
@@ -147,23 +162,20 @@ CLPV_INLINE realW interpolate_flux(CLPV_BUFFER_IN incident, const int x, const i
 
 CLPV_INLINE FaceFluxes interpolate_faces(CLPV_BUFFER_IN incident, const int x, const int y, const int z) {
   FaceFluxes flux;
-#define CLPV_DO(i) flux.c##i = interpolate_flux(incident + i * CLPV_BORDERED_VOLUME, x, y, z);
-  CLPV_EACH_FACE_FLUX(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) flux.c[a] = interpolate_flux(incident + a * CLPV_BORDERED_VOLUME, x, y, z);
   return flux;
 }
 
 // dx, dy, dz: offset of the grid's origin from the coarser one's, in finer cells (coarse_to_fine.h).
 __kernel void inject_interpolated(CLPV_BUFFER_IN incident, const int dx, const int dy, const int dz,
                                   CLPV_VOLUME_IN reflectors, CLPV_VOLUME_IN injected, CLPV_VOLUME_OUT bounced) {
-  CLPV_THIS_TILE
-  (void)first;
-  CLPV_BUFFER_IN fluxes = incident + channel * CLPV_CELL_FACES * CLPV_BORDERED_VOLUME;
-  for (int r = 0; r < W; ++r) {
-    if (y + r >= CLPV_GRID) break;
-    const FaceFluxes flux = reflect_flux(interpolate_faces(fluxes, x + dx, y + r + dy, z + dz),
-                                         faces_load(reflectors, channel, x, y + r, z));
-    light_store(bounced, channel, x, y + r, z,
-                add_coefficients(light_load(injected, channel, x, y + r, z), reflected_intensity(flux)));
+  const Tile t = find_tile();
+  CLPV_BUFFER_IN fluxes = incident + t.channel * CLPV_CELL_FACES * CLPV_BORDERED_VOLUME;
+  for (int r = 0; r < t.rows; ++r) {
+    const FaceFluxes flux = reflect_flux(interpolate_faces(fluxes, t.x + dx, t.y + r + dy, t.z + dz),
+                                         faces_load(reflectors, t.channel, t.x, t.y + r, t.z));
+    light_store(bounced, t.channel, t.x, t.y + r, t.z,
+                add_coefficients(light_load(injected, t.channel, t.x, t.y + r, t.z), reflected_intensity(flux)));
   }
 }

@@ -8,17 +8,35 @@
 // Out:  accumulated  nine coefficients per cell and channel [W/sr], any layout
 //       incident     with CLPV_WITH_INCIDENT: flux [W] on the six faces of each cell, a bordered volume for each
 //                    channel and face; bounces of the next finer cascade read it (bounce.cl)
-// From the host (host/codegen/sweep_source.cpp): struct Bins, CLPV_EACH_X_BIN, _Y_, _Z_ (sweep_source.cl), Coefficients
-// project_bins(Bins), and with CLPV_WITH_INCIDENT struct FaceFluxes and FaceFluxes incident_flux(Bins). A
-// work-item computes a tile of W x W cells of a slice and channel.
+// From the host (host/codegen/sweep_source.cpp): CLPV_PROJECTION, P by folded bins (mirrored_bins.h), and with CLPV_WITH_INCIDENT the text for
+// face_fluxes.h. A work-item computes a tile of W x W cells of a slice and channel.
 #ifndef CLPV_WITH_INCIDENT
 #define CLPV_WITH_INCIDENT 0
 #endif
 #include "volume/coefficients.h"
 #include "shared/reflectors.h"
 #include "shared/sweep.h"
+#include "sweep/mirrored_bins.h"
 #include "sweep/sweep_tiles.h"
 #include "volume/light.h"
+#if CLPV_WITH_INCIDENT
+#include "sweep/face_fluxes.h"
+#endif
+
+__constant const float projection[CLPV_SWEEP_BINS][CLPV_N] = CLPV_PROJECTION;
+
+// P L
+CLPV_INLINE Coefficients project_bins(const Bins bins) {
+  const Bins folded = fold_bins(bins);
+  Coefficients c = zero_coefficients();
+#pragma unroll
+  for (int b = 0; b < CLPV_SWEEP_BINS; ++b) {
+#pragma unroll
+    for (int i = 0; i < CLPV_N; ++i)
+      if (projection[b][i] != 0.0f) c.c[i] = fma((realW)(projection[b][i]), folded.c[b], c.c[i]);
+  }
+  return c;
+}
 
 __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated
 #if CLPV_WITH_INCIDENT
@@ -29,7 +47,7 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   CLPV_BUFFER_IN volumes = sums + channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
-  SweepTile tiles[CLPV_X_BINS];
+  SweepTile tiles[CLPV_AXIS_BINS];
   load_x_bins(volumes, x, y, z, tiles);
   for (int r = 0; r < W; ++r) {
     if (y + r >= CLPV_GRID) break;
@@ -39,9 +57,9 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated
     const FaceFluxes flux = incident_flux(bins);
     const int bordered = bordered_index(z, y + r, x);
     CLPV_BUFFER_OUT faces = incident + channel * CLPV_CELL_FACES * CLPV_BORDERED_VOLUME;
-#define CLPV_DO(i) CLPV_SWEEP_STORE(faces + i * CLPV_BORDERED_VOLUME, bordered, CLPV_WITHIN(x, flux.c##i));
-    CLPV_EACH_FACE_FLUX(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+    for (int i = 0; i < CLPV_CELL_FACES; ++i)
+      CLPV_SWEEP_STORE(faces + i * CLPV_BORDERED_VOLUME, bordered, CLPV_WITHIN(x, flux.c[i]));
 #endif
   }
 }

@@ -5,43 +5,34 @@
 //
 // In:   blockers       geometry volume, samples at the cells' corners
 // Out:  transmittance  T in [0, 1], a volume for each axis and link that directions across it use (sweep_layout.h)
-// From the host (host/codegen/transmittance_source.cpp, sweep_source.cpp): CLPV_TRANSMITTANCE and struct Links, as in
-// transmittance.cl, and CLPV_EACH_X_LINK(DO), _Y_, _Z_, which write DO(volume, link), links across x first.
+// From the host (host/codegen/transmittance_source.cpp, sweep_source.cpp): the text for link_transmittance.h, and
+// CLPV_VOLUME_LINKS, the link of each volume: CLPV_AXIS_LINKS across x, then as many across y and z.
 // A work-item computes a tile of W x W cells of a slice.
 #include "volume/coefficients.h"
+#include "steps/link_transmittance.h"
 #include "sweep/sweep_tiles.h"
-#include "volume/geometry.h"
 
-#define CLPV_LOAD_CORNER(i) \
-  const Coefficients g##i = geometry_load(blockers, 0, x + (i & 1), y + r + ((i >> 1) & 1), z + (i >> 2));
+__constant const int volume_links[3 * CLPV_AXIS_LINKS] = CLPV_VOLUME_LINKS;
 
 __kernel void sweep_links(CLPV_VOLUME_IN blockers, CLPV_BUFFER_OUT transmittance) {
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
   const int z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
-  SweepTile tiles[CLPV_X_LINKS];
-  for (int r = 0; r < W; ++r) {
-    if (y + r < CLPV_GRID) {
-      CLPV_LOAD_CORNER(0) CLPV_LOAD_CORNER(1) CLPV_LOAD_CORNER(2) CLPV_LOAD_CORNER(3)
-      CLPV_LOAD_CORNER(4) CLPV_LOAD_CORNER(5) CLPV_LOAD_CORNER(6) CLPV_LOAD_CORNER(7)
-      CLPV_TRANSMITTANCE
-      const int across_z = sweep_index(z, y + r, x), across_y = sweep_index(y + r, z, x);
-#define CLPV_DO(volume, link) \
-  CLPV_SWEEP_STORE(transmittance + volume * CLPV_SWEEP_VOLUME, across_z, CLPV_WITHIN(x, links.c##link));
-      CLPV_EACH_Z_LINK(CLPV_DO)
-#undef CLPV_DO
-#define CLPV_DO(volume, link) \
-  CLPV_SWEEP_STORE(transmittance + volume * CLPV_SWEEP_VOLUME, across_y, CLPV_WITHIN(x, links.c##link));
-      CLPV_EACH_Y_LINK(CLPV_DO)
-#undef CLPV_DO
-#define CLPV_DO(volume, link) tiles[volume].row[r] = links.c##link;
-      CLPV_EACH_X_LINK(CLPV_DO)
-    } else {
-#undef CLPV_DO
-#define CLPV_DO(volume, link) tiles[volume].row[r] = 0.0f;
-      CLPV_EACH_X_LINK(CLPV_DO)
-#undef CLPV_DO
+  SweepTile tiles[CLPV_AXIS_LINKS];
+  for (int v = 0; v < CLPV_AXIS_LINKS; ++v) {
+    for (int r = 0; r < W; ++r) tiles[v].row[r] = 0.0f;
+  }
+  for (int r = 0; r < W && y + r < CLPV_GRID; ++r) {
+    const Links links = find_transmittance(blockers, x, y + r, z);
+#pragma unroll
+    for (int v = 0; v < CLPV_AXIS_LINKS; ++v) {
+      const int across_y = v + CLPV_AXIS_LINKS, across_z = v + 2 * CLPV_AXIS_LINKS;
+      tiles[v].row[r] = links.c[volume_links[v]];
+      CLPV_SWEEP_STORE(transmittance + across_y * CLPV_SWEEP_VOLUME, sweep_index(y + r, z, x),
+                       CLPV_WITHIN(x, links.c[volume_links[across_y]]));
+      CLPV_SWEEP_STORE(transmittance + across_z * CLPV_SWEEP_VOLUME, sweep_index(z, y + r, x),
+                       CLPV_WITHIN(x, links.c[volume_links[across_z]]));
     }
   }
-  for (int v = 0; v < CLPV_X_LINKS; ++v) store_x_tile(transmittance + v * CLPV_SWEEP_VOLUME, tiles[v], x, y, z);
+  for (int v = 0; v < CLPV_AXIS_LINKS; ++v) store_x_tile(transmittance + v * CLPV_SWEEP_VOLUME, tiles[v], x, y, z);
 }

@@ -16,13 +16,13 @@
 //   In:      lit           J s^2 of the lights
 //            swept         L s^2 [W/sr], as written by a sweep
 //   Out:     sources
-// From the host (host/codegen/sweep_source.cpp): struct Bins, CLPV_EACH_X_BIN, _Y_, _Z_, and Bins scatter_bins(Bins), the
-// product with M. A work-item computes a tile of W x W cells of a slice; in scatter_swept of a channel.
-#include "volume/coefficients.h"
+// From the host (host/codegen/sweep_source.cpp): CLPV_SCATTERING, M by folded bins (mirrored_bins.h). A work-item computes
+// a tile of W x W cells of a slice; in scatter_swept of a channel.
 #include "lanes.h"
 #include "gather/medium.h"
 #include "raster/shadow.h"
 #include "shared/grid.h"
+#include "sweep/mirrored_bins.h"
 #include "sweep/sweep_tiles.h"
 
 // The light of a tile's row: irradiance in each channel, and the direction in which it travels.
@@ -103,14 +103,14 @@ CLPV_INLINE void add_to_row(CLPV_BUFFER_OUT volume, const int at, const realW ad
 // Adds the tile from cell (x, y, z) on, whose rows lie along x, to a bin's volume.
 CLPV_INLINE void add_tile(CLPV_BUFFER_OUT volume, const int bin, const SweepTile tile, const int x, const int y,
                           const int z) {
-  if (bin < CLPV_X_BINS) {
+  if (bin < CLPV_AXIS_BINS) {
     const SweepTile columns = transpose_tile(tile);
     for (int r = 0; r < W && x + r < CLPV_GRID; ++r)
       add_to_row(volume, sweep_index(x + r, z, y), columns.row[r]);
     return;
   }
   for (int r = 0; r < W && y + r < CLPV_GRID; ++r)
-    add_to_row(volume, bin < 2 * CLPV_X_BINS ? sweep_index(y + r, z, x) : sweep_index(z, y + r, x), tile.row[r]);
+    add_to_row(volume, bin_index(bin, x, y + r, z), tile.row[r]);
 }
 
 __kernel void scatter_lights(const ClpvGrid grid, const ClpvLight light, __global const ClpvView* views,
@@ -140,6 +140,32 @@ __kernel void scatter_lights(const ClpvGrid grid, const ClpvLight light, __globa
   }
 }
 
+__constant const float scattering[3][CLPV_SWEEP_BINS] = CLPV_SCATTERING;
+
+// M L. Light that mirrors of x, y and z leave as it is or negate (`odd`) scatters into light of the same kind.
+CLPV_INLINE Bins scatter_bins(const Bins swept) {
+  const Bins folded = fold_bins(swept);
+  Bins scattered;
+#pragma unroll
+  for (int b = 0; b < CLPV_SWEEP_BINS; ++b) scattered.c[b] = 0.0f;
+#pragma unroll
+  for (int odd = 0; odd < 8; ++odd) {
+#pragma unroll
+    for (int axis = 0; axis < 3; ++axis) {
+      realW sum = 0.0f;
+#pragma unroll
+      for (int from = 0; from < 3; ++from) {
+        const int b = CLPV_AXIS_BINS * from + folded_number(from, odd);
+        sum = fma((realW)(scattering[axis][b]), folded.c[b], sum);
+      }
+#pragma unroll
+      for (int j = 0; j < CLPV_AXIS_BINS; ++j)
+        scattered.c[CLPV_AXIS_BINS * axis + j] += folded_sign(j, folded_number(axis, odd)) * sum;
+    }
+  }
+  return scattered;
+}
+
 __kernel void scatter_swept(const ClpvMedium medium, CLPV_BUFFER_IN lit, CLPV_BUFFER_IN swept,
                             CLPV_BUFFER_OUT sources) {
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
@@ -147,24 +173,21 @@ __kernel void scatter_swept(const ClpvMedium medium, CLPV_BUFFER_IN lit, CLPV_BU
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   const int first = channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
   const float albedo = medium_albedo(medium, channel);
-  SweepTile tiles[CLPV_X_BINS], before[CLPV_X_BINS];
+  SweepTile tiles[CLPV_AXIS_BINS], before[CLPV_AXIS_BINS];
   load_x_bins(swept + first, x, y, z, tiles);
   load_x_bins(lit + first, x, y, z, before);
   for (int r = 0; r < W && y + r < CLPV_GRID; ++r) {
     const Bins added = scatter_bins(load_bins(swept + first, tiles, r, x, y + r, z));
     const Bins base = load_bins(lit + first, before, r, x, y + r, z);
-#define CLPV_DO(b) tiles[b].row[r] = fma((realW)(albedo), added.c##b, base.c##b);
-    CLPV_EACH_X_BIN(CLPV_DO)
-#undef CLPV_DO
-#define CLPV_STORE(b, at) \
-  CLPV_SWEEP_STORE(sources + first + b * CLPV_SWEEP_VOLUME, at, fma((realW)(albedo), added.c##b, base.c##b));
-#define CLPV_DO(b) CLPV_STORE(b, sweep_index(y + r, z, x))
-    CLPV_EACH_Y_BIN(CLPV_DO)
-#undef CLPV_DO
-#define CLPV_DO(b) CLPV_STORE(b, sweep_index(z, y + r, x))
-    CLPV_EACH_Z_BIN(CLPV_DO)
-#undef CLPV_DO
-#undef CLPV_STORE
+#pragma unroll
+    for (int b = 0; b < CLPV_SWEEP_BINS; ++b) {
+      const realW sum = fma((realW)(albedo), added.c[b], base.c[b]);
+      if (b < CLPV_AXIS_BINS) {
+        tiles[b].row[r] = sum;
+      } else {
+        CLPV_SWEEP_STORE(sources + first + b * CLPV_SWEEP_VOLUME, bin_index(b, x, y + r, z), sum);
+      }
+    }
   }
-  for (int b = 0; b < CLPV_X_BINS; ++b) store_x_tile(sources + first + b * CLPV_SWEEP_VOLUME, tiles[b], x, y, z);
+  for (int b = 0; b < CLPV_AXIS_BINS; ++b) store_x_tile(sources + first + b * CLPV_SWEEP_VOLUME, tiles[b], x, y, z);
 }

@@ -19,9 +19,8 @@ CLPV_INLINE realW sum_light(CLPV_VOLUME_IN injected, const int x, const int y, c
   realW sum = 0.0f;
   for (int channel = 0; channel < 3; ++channel) {
     const Coefficients c = light_load(injected, channel, x, y, z);
-#define CLPV_DO(i) sum += fabs(c.c##i);
-    CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+    for (int i = 0; i < CLPV_N; ++i) sum += fabs(c.c[i]);
   }
   return CLPV_WITHIN(x, sum);
 }
@@ -36,14 +35,12 @@ CLPV_INLINE void copy_tile(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, con
     Coefficients c = zero_coefficients();
     if (y + r < CLPV_GRID) {
       c = light_load(injected, channel, x, y + r, z);
-#define CLPV_DO(i) \
-  CLPV_SWEEP_STORE(across_z + i * CLPV_SWEEP_VOLUME, sweep_index(z, y + r, x), CLPV_WITHIN(x, c.c##i));
-      CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+      for (int i = 0; i < CLPV_N; ++i)
+        CLPV_SWEEP_STORE(across_z + i * CLPV_SWEEP_VOLUME, sweep_index(z, y + r, x), CLPV_WITHIN(x, c.c[i]));
     }
-#define CLPV_DO(i) tiles[i].row[r] = c.c##i;
-    CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+    for (int i = 0; i < CLPV_N; ++i) tiles[i].row[r] = c.c[i];
   }
   for (int i = 0; i < CLPV_N; ++i) store_x_tile(across_x + i * CLPV_SWEEP_VOLUME, tiles[i], x, y, z);
 }

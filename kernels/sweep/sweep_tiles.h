@@ -27,11 +27,15 @@ CLPV_INLINE SweepTile transpose_tile(const SweepTile a) { return a; }
 #define CLPV_WITHIN(x, value) (value)
 #endif
 
-#ifdef CLPV_X_BINS
+// Numbers of W cells in each bin. The first CLPV_AXIS_BINS bins are swept across x, then follow those across y and z.
+typedef struct {
+  realW c[CLPV_SWEEP_BINS];
+} Bins;
+
 // Loads the tile from cell (x, y, z) on of every bin across x, transposed: rows lie along x. `volumes`: one for each
 // bin.
 CLPV_INLINE void load_x_bins(CLPV_BUFFER_IN volumes, const int x, const int y, const int z, SweepTile* tiles) {
-  for (int b = 0; b < CLPV_X_BINS; ++b) {
+  for (int b = 0; b < CLPV_AXIS_BINS; ++b) {
     SweepTile columns;
     for (int r = 0; r < W; ++r) {
       columns.row[r] = 0.0f;
@@ -42,23 +46,22 @@ CLPV_INLINE void load_x_bins(CLPV_BUFFER_IN volumes, const int x, const int y, c
   }
 }
 
+// Index of cell (x, y, z) in a volume of bin b across y or z.
+CLPV_INLINE int bin_index(const int b, const int x, const int y, const int z) {
+  return b < 2 * CLPV_AXIS_BINS ? sweep_index(y, z, x) : sweep_index(z, y, x);
+}
+
 // All bins of the cells from (x, y, z) on, which are row r of `tiles`.
 CLPV_INLINE Bins load_bins(CLPV_BUFFER_IN volumes, const SweepTile* tiles, const int r, const int x, const int y,
                            const int z) {
-  const int across_z = sweep_index(z, y, x), across_y = sweep_index(y, z, x);
   Bins bins;
-#define CLPV_DO(b) bins.c##b = tiles[b].row[r];
-  CLPV_EACH_X_BIN(CLPV_DO)
-#undef CLPV_DO
-#define CLPV_DO(b) bins.c##b = CLPV_SWEEP_LOAD(volumes + b * CLPV_SWEEP_VOLUME, across_y);
-  CLPV_EACH_Y_BIN(CLPV_DO)
-#undef CLPV_DO
-#define CLPV_DO(b) bins.c##b = CLPV_SWEEP_LOAD(volumes + b * CLPV_SWEEP_VOLUME, across_z);
-  CLPV_EACH_Z_BIN(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int b = 0; b < CLPV_AXIS_BINS; ++b) bins.c[b] = tiles[b].row[r];
+#pragma unroll
+  for (int b = CLPV_AXIS_BINS; b < CLPV_SWEEP_BINS; ++b)
+    bins.c[b] = CLPV_SWEEP_LOAD(volumes + b * CLPV_SWEEP_VOLUME, bin_index(b, x, y, z));
   return bins;
 }
-#endif
 
 // Stores the tile from cell (x, y, z) on, whose rows lie along x, into a volume across x: transposed.
 CLPV_INLINE void store_x_tile(CLPV_BUFFER_OUT volume, const SweepTile tile, const int x, const int y,

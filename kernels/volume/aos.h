@@ -16,16 +16,15 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
   ((float8)((from)[i], (from)[CLPV_LANE + i], (from)[2 * CLPV_LANE + i], (from)[3 * CLPV_LANE + i], \
             (from)[4 * CLPV_LANE + i], (from)[5 * CLPV_LANE + i], (from)[6 * CLPV_LANE + i],        \
             (from)[7 * CLPV_LANE + i]))
-#define CLPV_LOAD_ROW(i) rows[i] = CLPV_READ_ROW(volume, at + 8 * i);
-#define CLPV_BEFORE_LOAD           \
+#define CLPV_BEFORE_LOAD          \
   float8 rows[CLPV_VOLUME_COUNT]; \
-  CLPV_VOLUME_EACH(CLPV_LOAD_ROW)
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) rows[i] = CLPV_READ_ROW(volume, at + 8 * i);
 #define CLPV_LOAD_LANES(i) CLPV_TRANSPOSED((const float*)rows, i)
 
-#define CLPV_STORE_ROW(i) CLPV_WRITE_ROW(volume, at + 8 * i, rows[i]);
 #define CLPV_STORE_LANES(i)                                                              \
   for (int lane = 0; lane < 8; ++lane) {                                                 \
-    ((float*)rows)[lane * CLPV_LANE + i] = ((const float*)&cell.c##i)[lane];             \
+    ((float*)rows)[lane * CLPV_LANE + i] = ((const float*)&cell.c[i])[lane];             \
   }
 #define CLPV_BEFORE_STORE float8 rows[CLPV_VOLUME_COUNT];
-#define CLPV_AFTER_STORE CLPV_VOLUME_EACH(CLPV_STORE_ROW)
+#define CLPV_AFTER_STORE \
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) CLPV_WRITE_ROW(volume, at + 8 * i, rows[i]);

@@ -14,12 +14,12 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume
   CLPV_VOLUME_CELL cell;
 #if W == 8
   CLPV_BEFORE_LOAD
-#define CLPV_DO(i) cell.c##i = CLPV_LOAD_LANES(i);
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = CLPV_LOAD_LANES(i);
 #else
-#define CLPV_DO(i) cell.c##i = CLPV_READ(volume, at + i * CLPV_NEXT);
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = CLPV_READ(volume, at + i * CLPV_NEXT);
 #endif
-  CLPV_VOLUME_EACH(CLPV_DO)
-#undef CLPV_DO
   return cell;
 }
 
@@ -30,30 +30,28 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const in
 #if CLPV_VOLUME_N % 8  // PoCL compiles even a dead branch, to a thousand instructions
   if (x + 8 > CLPV_VOLUME_N) {  // end of the row: lanes beyond belong to the next one
     for (int lane = 0; lane < CLPV_VOLUME_N - x; ++lane) {
-#define CLPV_DO(i) CLPV_WRITE(volume, at + lane * CLPV_LANE + i * CLPV_NEXT, ((const float*)&cell.c##i)[lane]);
-      CLPV_VOLUME_EACH(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+      for (int i = 0; i < CLPV_VOLUME_COUNT; ++i)
+        CLPV_WRITE(volume, at + lane * CLPV_LANE + i * CLPV_NEXT, ((const float*)&cell.c[i])[lane]);
     }
     return;
   }
 #endif
   CLPV_BEFORE_STORE
-  CLPV_VOLUME_EACH(CLPV_STORE_LANES)
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) CLPV_STORE_LANES(i)
   CLPV_AFTER_STORE
 #else
-#define CLPV_DO(i) CLPV_WRITE(volume, at + i * CLPV_NEXT, cell.c##i);
-  CLPV_VOLUME_EACH(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) CLPV_WRITE(volume, at + i * CLPV_NEXT, cell.c[i]);
 #endif
 }
 
 #undef CLPV_AFTER_STORE
 #undef CLPV_STORE_LANES
-#undef CLPV_STORE_ROW
 #undef CLPV_BEFORE_STORE
 #undef CLPV_LOAD_LANES
 #undef CLPV_BEFORE_LOAD
-#undef CLPV_LOAD_ROW
 #undef CLPV_TRANSPOSED
 #undef CLPV_LANE
 #undef CLPV_NEXT

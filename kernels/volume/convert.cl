@@ -13,7 +13,6 @@
 #define CLPV_VOLUME planes
 #define CLPV_VOLUME_N CLPV_GRID
 #define CLPV_VOLUME_CELL Coefficients
-#define CLPV_VOLUME_EACH CLPV_EACH_COEFFICIENT
 #define CLPV_VOLUME_COUNT CLPV_N
 #include "volume/soa.h"
 #include "volume/buffer.h"

@@ -25,9 +25,8 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_IMAGE_IN volume,
     texels[four] = read_imagef(volume, nearest_sampler, (int4)(x, y + channel * CLPV_STEP, z + four * CLPV_STEP, 0));
   }
   CLPV_VOLUME_CELL cell;
-#define CLPV_DO(i) cell.c##i = ((const float*)texels)[i];
-  CLPV_VOLUME_EACH(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = ((const float*)texels)[i];
   return cell;
 }
 
@@ -35,9 +34,8 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_IMAGE_OUT volume, const int
                                                 const int z, const CLPV_VOLUME_CELL cell) {
   float4 texels[CLPV_FOURS];
   texels[CLPV_FOURS - 1] = 0.0f;
-#define CLPV_DO(i) ((float*)texels)[i] = cell.c##i;
-  CLPV_VOLUME_EACH(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) ((float*)texels)[i] = cell.c[i];
   for (int four = 0; four < CLPV_FOURS; ++four) {
     write_imagef(volume, (int4)(x, y + channel * CLPV_STEP, z + four * CLPV_STEP, 0), texels[four]);
   }
@@ -71,9 +69,8 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(CLPV_IMAGE_IN volum
   }
 #endif
   CLPV_VOLUME_CELL cell;
-#define CLPV_DO(i) cell.c##i = ((const float*)texels)[i];
-  CLPV_VOLUME_EACH(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = ((const float*)texels)[i];
   return cell;
 }
 #endif

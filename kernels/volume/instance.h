@@ -7,9 +7,8 @@
 // Parameters: define before each inclusion, which undefines them
 //   CLPV_VOLUME         prefix of the functions below (light, geometry, ...)
 //   CLPV_VOLUME_N       samples along each axis, a literal
-//   CLPV_VOLUME_CELL    struct of the CLPV_REALs c0, c1, ... of a sample and channel
-//   CLPV_VOLUME_EACH    CLPV_VOLUME_EACH(DO) writes DO(0) DO(1) ... for each coefficient
-//   CLPV_VOLUME_COUNT   number of coefficients
+//   CLPV_VOLUME_CELL    struct with an array c of the numbers of a sample and channel
+//   CLPV_VOLUME_COUNT   number of them
 // It defines
 //   CLPV_VOLUME_IN, CLPV_VOLUME_OUT                    types of kernel parameters that read, write
 //   CELL NAME_load(in, channel, x, y, z)               x, y, z in -1..n; the border is 0
@@ -55,5 +54,4 @@
 #undef CLPV_VOLUME
 #undef CLPV_VOLUME_N
 #undef CLPV_VOLUME_CELL
-#undef CLPV_VOLUME_EACH
 #undef CLPV_VOLUME_COUNT

@@ -5,6 +5,5 @@
 #define CLPV_VOLUME light
 #define CLPV_VOLUME_N CLPV_GRID
 #define CLPV_VOLUME_CELL Coefficients
-#define CLPV_VOLUME_EACH CLPV_EACH_COEFFICIENT
 #define CLPV_VOLUME_COUNT CLPV_N
 #include "volume/instance.h"

@@ -13,5 +13,5 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
 #define CLPV_BEFORE_LOAD
 #define CLPV_LOAD_LANES(i) CLPV_READ_ROW(volume, at + i * CLPV_NEXT)
 #define CLPV_BEFORE_STORE
-#define CLPV_STORE_LANES(i) CLPV_WRITE_ROW(volume, at + i * CLPV_NEXT, cell.c##i);
+#define CLPV_STORE_LANES(i) CLPV_WRITE_ROW(volume, at + i * CLPV_NEXT, cell.c[i]);
 #define CLPV_AFTER_STORE

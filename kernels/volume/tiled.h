@@ -32,5 +32,5 @@ CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int
 #define CLPV_BEFORE_LOAD
 #define CLPV_LOAD_LANES(i) CLPV_PASTE(CLPV_VOLUME, row)(volume, at + i * CLPV_NEXT, x)
 #define CLPV_BEFORE_STORE
-#define CLPV_STORE_LANES(i) CLPV_WRITE_ROW(volume, at + i * CLPV_NEXT, cell.c##i);
+#define CLPV_STORE_LANES(i) CLPV_WRITE_ROW(volume, at + i * CLPV_NEXT, cell.c[i]);
 #define CLPV_AFTER_STORE

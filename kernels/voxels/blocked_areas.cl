@@ -18,9 +18,8 @@ __kernel void blocked_areas(__global const uint* masks, const uint cascade, CLPV
   __global const uint* corner =
       masks + (size_t)cascade * CLPV_BLOCKER_MASKS + ((z * n + y) * n + x) * CLPV_BLOCKER_WORDS;
   Coefficients area;
-#define CLPV_DO(a) \
-  area.c##a = (float)(popcount(corner[2 * (a)]) + popcount(corner[2 * (a) + 1])) * (1.0f / 64.0f);
-  CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int a = 0; a < CLPV_N; ++a)
+    area.c[a] = (float)(popcount(corner[2 * a]) + popcount(corner[2 * a + 1])) * (1.0f / 64.0f);
   geometry_store(blockers, 0, x, y, z, area);
 }

@@ -30,17 +30,15 @@ __kernel void face_albedo(__global const uint* faces, CLPV_VOLUME_OUT reflectors
                       (1.0f - CLPV_EDGE_LOSS * face_coverage(up + CLPV_FACE_WORDS));
   }
   Coefficients red, green, blue;
-#define CLPV_DO(i)                                                                                               \
-  {                                                                                                              \
-    __global const uint* face = cell + (i)*CLPV_FACE_WORDS;                                                      \
-    const float coverage = face_coverage(face) * remaining[((i) / 2 + 1) % 3] * remaining[((i) / 2 + 2) % 3];    \
-    const float per_sample = 1.0f / (CLPV_ALBEDO_UNIT * (float)max(face[CLPV_FACE_SAMPLES], 1u));                \
-    red.c##i = coverage * fmin(per_sample * (float)face[CLPV_FACE_ALBEDO], 1.0f);                                \
-    green.c##i = coverage * fmin(per_sample * (float)face[CLPV_FACE_ALBEDO + 1], 1.0f);                          \
-    blue.c##i = coverage * fmin(per_sample * (float)face[CLPV_FACE_ALBEDO + 2], 1.0f);                           \
+#pragma unroll
+  for (int i = 0; i < CLPV_CELL_FACES; ++i) {
+    __global const uint* face = cell + i * CLPV_FACE_WORDS;
+    const float coverage = face_coverage(face) * remaining[(i / 2 + 1) % 3] * remaining[(i / 2 + 2) % 3];
+    const float per_sample = 1.0f / (CLPV_ALBEDO_UNIT * (float)max(face[CLPV_FACE_SAMPLES], 1u));
+    red.c[i] = coverage * fmin(per_sample * (float)face[CLPV_FACE_ALBEDO], 1.0f);
+    green.c[i] = coverage * fmin(per_sample * (float)face[CLPV_FACE_ALBEDO + 1], 1.0f);
+    blue.c[i] = coverage * fmin(per_sample * (float)face[CLPV_FACE_ALBEDO + 2], 1.0f);
   }
-  CLPV_EACH_COEFFICIENT(CLPV_DO)
-#undef CLPV_DO
   light_store(reflectors, 0, x, y, z, red);
   light_store(reflectors, 1, x, y, z, green);
   light_store(reflectors, 2, x, y, z, blue);

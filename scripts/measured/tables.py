@@ -18,7 +18,6 @@ from . import ROOT, RESULTS, rows as known
 from .rows import PAPER, SHARED
 
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
-STATES = ("coefficients", "fluxes")
 TABLES = {}  # by name: function that returns lines of cells, the head first
 LOADED = set()  # files that tables of the current page use
 
@@ -142,11 +141,11 @@ def layouts():
 
 @table
 def bases():
-    lines = [["basis", "N"] + [f"{state}{blockers}" for state in STATES for blockers in ("", ", blockers")]]
+    lines = [["basis", "N", "without blockers", "with blockers"]]
     rows = [row for row in bench("bases") if row["stage"] == "propagate" and row["lobe"] == "exact"]
     for basis, size in dict.fromkeys((row["basis"], row["n"]) for row in rows):
-        lines.append([basis, str(size)] + [time(found(rows, basis=basis, state=state, occlusion=occlusion))
-                                           for state in STATES for occlusion in (False, True)])
+        lines.append([basis, str(size)] + [time(found(rows, basis=basis, occlusion=occlusion))
+                                           for occlusion in (False, True)])
     return lines
 
 
@@ -238,7 +237,7 @@ def baseline():
     lines = [["sh2", "OpenCL, minimum [ms]", "GFLOP/s", "of the ceiling", "C++, minimum [ms]", "GFLOP/s", "of the ceiling",
               "OpenCL / C++"]]
     for occlusion, name in ((False, "without blockers"), (True, "with blockers")):
-        rows = [found(bench("native"), stage=stage, state="coefficients", occlusion=occlusion)
+        rows = [found(bench("native"), stage=stage, occlusion=occlusion)
                 for stage in ("propagate", "native")]
         cells = [cell for row in rows for cell in (number(row["min"]), f"{row['gflops'] * row['median'] / row['min']:.0f}",
                                                    f"{100 * row['ceiling_share'] * row['median'] / row['min']:.0f} %")]

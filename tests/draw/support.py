@@ -11,7 +11,7 @@ sys.path.insert(0, str(ROOT / "python"))
 def row(suite, stage, **fields):
     """A row of `clpv bench`; its name says nothing."""
     return {"name": "a name", "suite": suite, "stage": stage, "status": "ok", "reason": None, "basis": "sh2", "n": 4,
-            "layout": "soa", "storage": "float", "state": "coefficients", "lobe": "exact", "occlusion": False,
+            "layout": "soa", "storage": "float", "lobe": "exact", "occlusion": False,
             "cascade": None, "filtered": True, "axis": None, "value": None, "preset": None, "recompute": None,
             "median": 4.25, "min": 4.0, "p95": 5.0, "flops": 1e9, "bytes": 1e8, "gflops": 20.0, **fields}
 

@@ -51,7 +51,7 @@ class Charts(unittest.TestCase):
         self.assertIsNone(bench.roofline([failed], {"gflops": 100.0, "bandwidths": []}))
 
     def test_files_are_those_the_rows_allow_and_the_same_twice(self):
-        rows = [row("bases", "propagate"), row("bases", "propagate", state="fluxes", occlusion=True)]
+        rows = [row("bases", "propagate"), row("bases", "propagate", occlusion=True)]
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             source, one, two = folder, folder / "one", folder / "two"

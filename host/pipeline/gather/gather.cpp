@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/gather/gather.hpp"
 
+#include "codegen/constants.hpp"
 #include "codegen/gather_source.hpp"
 #include "pipeline/raster/surface.hpp"
 #include "support/error.hpp"
@@ -62,7 +63,7 @@ Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport
                                   .format = options.format,
                                   .lanes = preferred_row_lanes(session.device(), options.format)}) {
   if (!packs()) return;
-  ProgramSource pack{"gather/pack.cl", stencil_.literals(), pack_source(basis)};
+  ProgramSource pack{"gather/pack.cl", stencil_.literals(), coefficient_text(basis.size())};
   pack.literals.integer("CLPV_PAIRS", pairs_);
   pack_.emplace(session, pack, "pack");
   gather_kernel(0, false);

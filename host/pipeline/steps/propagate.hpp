@@ -9,7 +9,6 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
-#include "codegen/transport_source.hpp"
 #include "device/session.hpp"
 #include "options/stage_options.hpp"
 #include "pipeline/steps/run_time_lobes.hpp"
@@ -34,32 +33,22 @@ class Propagator {
   Propagator(Session& session, const Basis& basis, const Transport& transport,
              const PropagateOptions& options);
 
-  /// Called after each step with its number, from 1, and the propagated light: N coefficients per cell, or six fluxes.
+  /// Called after each step with its number, from 1, and the propagated light.
   using Observer = std::function<void(int step, const Volume& travelling)>;
 
   /// The first step does not block light, since light starts on the surfaces that it was injected at.
   void propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step = {});
 
-  /// Kernel of the later steps.
-  const TransportSource& step_source(bool blocking) { return form(false, blocking).source; }
-  /// Returns true if a step reads the transmittance of links. The first step may read it without using it.
-  bool reads_transmittance(int step) { return step > 1 || (transmitter_ && form(false, true).first_too); }
   /// Transmittance; null until something has blocked.
   const LinkTransmittance* transmitter() const { return transmitter_.get(); }
 
  private:
   struct Form {
-    TransportSource source;
-    bool blocking;
-    int channels;    ///< channels per work-item of `step`
-    bool first_too;  ///< `step` also runs the first step, with blocking off
-    Kernel step, expand;
+    int channels;  ///< channels per work-item
+    Kernel step;
   };
-  Form make_form(bool first, bool blocking);
-  Form& form(bool first, bool blocking);
+  Form& form(bool blocking);
   void transmit(const Volume& geometry);
-  void run_step(Form& form, bool first, const Volume& source, const Volume& target, const Volume& sum_so_far,
-                const Volume& sum);
 
   Session& session_;
   const Basis& basis_;
@@ -67,11 +56,9 @@ class Propagator {
   PropagateOptions options_;
   Stencil stencil_;
   std::optional<RunTimeLobes> lobes_;      ///< none: lobes are constants
-  std::optional<Form> forms_[2][2];        ///< [first step][blocking]
+  std::optional<Form> forms_[2];           ///< [blocking]
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
   std::unique_ptr<LinkTransmittance> transmitter_;
-  std::unique_ptr<Volume>
-      sum_;  ///< sum of the six fluxes, source of the light; none if coefficients propagate
   Accumulator accumulator_;
 };
 

@@ -32,29 +32,24 @@ std::string functions_source(const Basis& basis, const LobeOptions& lobes) {
       "  Coefficients b = {};\n",
       looked_up ? "table_basis(link.x, link.y, link.z CLPV_PASS_FUNCTIONS)"
                 : "basis_functions(link.x, link.y, link.z)");
-  for (int i = 0; i < basis.size(); ++i) text += fmt::format("  b.c{} *= link.w;\n", i);
+  for (int i = 0; i < basis.size(); ++i) text += fmt::format("  b.c[{}] *= link.w;\n", i);
   return text + "  return b;\n}\n";
 }
 
 }  // namespace
 
-RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport& transport, State state,
+RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport& transport,
                            TableStorage storage)
     : table_(session, basis, transport.lobes, storage, TableUse::lobes),
       functions_(session, basis, transport.lobes, storage, TableUse::functions),
       text_(lobe_source(basis, transport.lobes) + functions_source(basis, transport.lobes)),
       unit_flux_(transport.unit_flux_lobes),
       evaluates_(transport.kind == TransportKind::sampled) {
-  if (state == State::fluxes) {
-    throw Error(ExitCode::usage,
-                "lobe-time kernel: with state fluxes no step makes lobes; allowed: host, or coefficients");
-  }
   std::vector<cl_float4> normals, links;
   for (const Face& face : faces_of(transport)) {
     normals.push_back(packed(glm::dvec3(face.normal), 0));
     links.push_back(packed(face.direction, face.solid_angle));
   }
-  faces_ = normals.size();
   normals_ = session.upload(normals, "normals of faces");
   links_ = session.upload(links, "links through faces");
 }
@@ -62,7 +57,6 @@ RunTimeLobes::RunTimeLobes(Session& session, const Basis& basis, const Transport
 void RunTimeLobes::add_literals(Literals& literals) const {
   literals.flag("CLPV_LOBES_AT_RUN_TIME", true)
       .flag("CLPV_EVALUATE_AT_RUN_TIME", evaluates_)
-      .integer("CLPV_FACES", faces_)
       .flag("CLPV_UNIT_FLUX", unit_flux_);
 }
 

@@ -8,7 +8,6 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
-#include "codegen/transport_source.hpp"
 #include "device/session.hpp"
 #include "pipeline/inject/lookup_table.hpp"
 
@@ -17,26 +16,22 @@ namespace clpv {
 /// Arguments and literals for kernels/steps/run_time_lobes.h.
 class RunTimeLobes {
  public:
-  /// Throws Error(usage) for a transport without lobes, or one that propagates fluxes. Otherwise throws as LookupTable
-  /// does.
-  RunTimeLobes(Session& session, const Basis& basis, const Transport& transport, State state,
-               TableStorage storage);
+  /// Throws Error(usage) for a transport without lobes. Otherwise throws as LookupTable does.
+  RunTimeLobes(Session& session, const Basis& basis, const Transport& transport, TableStorage storage);
 
   /// Source text before and after that of the transport.
   std::string macros() const { return table_.macros() + functions_.macros(kFunctionsTable); }
   const std::string& text() const { return text_; }
   void add_literals(Literals& literals) const;
-  /// Returns true if the kernel also evaluates basis functions, to sample light at face centres. Integrals over
-  /// faces remain constants.
-  bool evaluates() const { return evaluates_; }
   /// Sets the last arguments of a step.
   void add_to(Kernel& step) const;
 
  private:
   LookupTable table_, functions_;
   std::string text_;
-  std::size_t faces_ = 0;
-  bool unit_flux_, evaluates_;
+  bool unit_flux_;
+  bool
+      evaluates_;  ///< the kernel also evaluates basis functions, at face centres; integrals over faces are constants
   Buffer normals_;
   Buffer links_;  ///< direction of the link through each face, and the face's solid angle
 };

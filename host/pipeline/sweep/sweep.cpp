@@ -8,7 +8,7 @@
 #include "basis/bounce.hpp"
 #include "basis/sky_light.hpp"
 #include "basis/sweep.hpp"
-#include "codegen/linear_code.hpp"
+#include "codegen/constants.hpp"
 #include "codegen/sweep_source.hpp"
 #include "pipeline/sweep/sweep_tables.hpp"
 
@@ -65,9 +65,9 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
     : session_(session),
       options_(options),
       volumes_(session, options.grid, options.format),
-      source_(session, volumes_.program("sweep/sweep_source.cl", coefficient_macros(basis.size())),
+      source_(session, volumes_.program("sweep/sweep_source.cl", coefficient_text(basis.size())),
               "sweep_source"),
-      collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_text().text),
+      collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_text()),
                "sweep_collect") {
   const std::size_t plane = plane_numbers(options.grid) * sizeof(float);
   const std::size_t ordinates =
@@ -95,7 +95,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   if (!series) return;
   last_swept_ = volumes_.make(3 * kSweepBins, "light of the first bounce");
   ProgramSource collecting =
-      volumes_.program("sweep/sweep_collect.cl", sweep_collect_text().text + incident_flux_text());
+      volumes_.program("sweep/sweep_collect.cl", sweep_collect_text() + incident_flux_text());
   collecting.literals.flag("CLPV_WITH_INCIDENT", true);
   collect_with_incident_.emplace(session, collecting, "sweep_collect");
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/voxels/blockers.hpp"
 
-#include "codegen/linear_code.hpp"
+#include "codegen/constants.hpp"
 #include "kernels/shared/blockers.h"
 
 namespace clpv {
@@ -12,7 +12,7 @@ VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades, const
                  .max_triangles = 1u << 20,
                  .program = {"voxels/blockers.cl", {}, {}},
                  .kernel = "voxelize_blockers",
-                 .volume_program = {"voxels/blocked_areas.cl", {}, coefficient_macros(3)},
+                 .volume_program = {"voxels/blocked_areas.cl", {}, coefficient_text(3)},
                  .volume_kernel = "blocked_areas"};
   kind.program.literals.integer("CLPV_GRID", grid).flag("CLPV_MASKED", scene.masked);
   kind.volume_program.literals.integer("CLPV_GRID", grid);

@@ -2,7 +2,7 @@
 #include "pipeline/voxels/reflectors.hpp"
 
 #include "basis/bounce.hpp"
-#include "codegen/linear_code.hpp"
+#include "codegen/constants.hpp"
 #include "kernels/shared/reflectors.h"
 
 namespace clpv {
@@ -16,7 +16,7 @@ VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeForma
                  .program = {"voxels/reflectors.cl", {}, {}},
                  .kernel = "voxelize_reflectors",
                  .indexed = false,
-                 .volume_program = {"voxels/face_albedo.cl", {}, coefficient_macros(kCellFaces)},
+                 .volume_program = {"voxels/face_albedo.cl", {}, coefficient_text(kCellFaces)},
                  .volume_kernel = "face_albedo"};
   kind.program.literals.integer("CLPV_GRID", grid)
       .flag("CLPV_MASKED", scene.masked)

@@ -117,17 +117,17 @@ def bases(rows):
     sizes = {r["basis"]: r["n"] for r in sorted(rows, key=lambda r: r["n"])}
     if not sizes:
         return None
-    kinds = [("coefficients", False), ("fluxes", False), ("coefficients", True), ("fluxes", True)]
+    kinds = [False, True]
     figure, axis = pyplot.subplots(figsize=(9, 3.6))
     width = 0.8 / len(kinds)
-    for k, (state, occlusion) in enumerate(kinds):
-        found = {r["basis"]: r for r in rows if r["state"] == state and r["occlusion"] == occlusion}
-        at = [i + (k - 1.5) * width for i, name in enumerate(sizes) if name in found]
+    for k, occlusion in enumerate(kinds):
+        found = {r["basis"]: r for r in rows if r["occlusion"] == occlusion}
+        at = [i + (k - 0.5) * width for i, name in enumerate(sizes) if name in found]
         members = [found[name] for name in sizes if name in found]
         axis.bar(at, [r["median"] for r in members], width, yerr=error_bars(members), color=style.colour(k),
-                 error_kw={"lw": 0.7, "ecolor": style.INK}, label=state + (", occlusion" if occlusion else ""))
+                 error_kw={"lw": 0.7, "ecolor": style.INK}, label="occlusion" if occlusion else "no occlusion")
     axis.set_xticks(range(len(sizes)), [f"{name}\nN={n}" for name, n in sizes.items()])
-    axis.set(ylabel="ms", title="Propagation by basis and state")
+    axis.set(ylabel="ms", title="Propagation by basis")
     style.logarithmic(axis.yaxis)
     axis.legend(fontsize=7, ncol=2)
     return figure

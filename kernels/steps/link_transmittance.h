@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Transmittance of the links into a cell from the blockers at its corners.
+//
+//   T = 1 - clamp(B, 0, 1),   B the blocking potential along the link, a mean over the corners of the face, edge or
+//                             corner that it passes
+//
+// docs/method.md, 'Blockers'. From the host (host/codegen/transmittance_source.cpp): CLPV_LINKS, struct Links, and for
+// each link CLPV_LINK_SIDES, the side of the cell that it passes (-1, 0 or 1 along each axis), and CLPV_LINK_BLOCKED,
+// half the weights of the blockers' numbers, divided by the number of corners.
+#ifndef CLPV_LINK_TRANSMITTANCE_H
+#define CLPV_LINK_TRANSMITTANCE_H
+
+#include "volume/geometry.h"
+
+__constant const int link_sides[3 * CLPV_LINKS] = CLPV_LINK_SIDES;
+__constant const float link_blocked[CLPV_LINKS][CLPV_N] = CLPV_LINK_BLOCKED;
+
+// The lower or the upper one of two corners along an axis, or the sum of both.
+CLPV_INLINE realW pick_side(const int side, const realW lower, const realW upper) {
+  return side < 0 ? lower : (side > 0 ? upper : lower + upper);
+}
+
+// Sum of number i of the blockers over the corners that a link passes. Corner bits: 1 x, 2 y, 4 z.
+CLPV_INLINE realW sum_corners(const Coefficients* corners, const int link, const int i) {
+  realW edges[4];
+#pragma unroll
+  for (int e = 0; e < 4; ++e) edges[e] = pick_side(link_sides[3 * link], corners[2 * e].c[i], corners[2 * e + 1].c[i]);
+  return pick_side(link_sides[3 * link + 2], pick_side(link_sides[3 * link + 1], edges[0], edges[1]),
+                   pick_side(link_sides[3 * link + 1], edges[2], edges[3]));
+}
+
+// 1 - clamp(2 h, 0, 1) is 1/2 + |1/2 - h| - |h|: comparisons would trigger LLVM's SLP vectoriser, which prevents
+// vectorisation of work-items on CPUs.
+CLPV_INLINE Links find_transmittance(CLPV_VOLUME_IN blockers, const int x, const int y, const int z) {
+  Coefficients corners[8];
+#pragma unroll
+  for (int c = 0; c < 8; ++c) corners[c] = geometry_load(blockers, 0, x + (c & 1), y + (c >> 1 & 1), z + (c >> 2));
+  Links links;
+#pragma unroll
+  for (int link = 0; link < CLPV_LINKS; ++link) {
+    realW half_blocked = 0.0f;
+#pragma unroll
+    for (int i = 0; i < CLPV_N; ++i)
+      if (link_blocked[link][i] != 0.0f)
+        half_blocked = fma((realW)(link_blocked[link][i]), sum_corners(corners, link, i), half_blocked);
+    links.c[link] = 0.5f + (fabs(0.5f - half_blocked) - fabs(half_blocked));
+  }
+  return links;
+}
+
+#endif

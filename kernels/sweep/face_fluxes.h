@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Fluxes [W] on the six faces of W cells, in the order of shared/reflectors.h.
+//
+//   D_a = sum_b Omega_b max(0, -w_b.a) L_b s^2      (docs/method.md, 'More bounces')
+//
+// From the host (host/codegen/sweep_source.cpp): CLPV_INCIDENT, Omega_b max(0, -w_b.a) for each face and bin.
+#ifndef CLPV_FACE_FLUXES_H
+#define CLPV_FACE_FLUXES_H
+
+#include "shared/reflectors.h"
+#include "sweep/sweep_tiles.h"
+
+typedef struct {
+  realW c[CLPV_CELL_FACES];
+} FaceFluxes;
+
+__constant const float incident_weights[CLPV_CELL_FACES][CLPV_SWEEP_BINS] = CLPV_INCIDENT;
+
+CLPV_INLINE FaceFluxes incident_flux(const Bins bins) {
+  FaceFluxes flux;
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) {
+    flux.c[a] = 0.0f;
+#pragma unroll
+    for (int b = 0; b < CLPV_SWEEP_BINS; ++b)
+      if (incident_weights[a][b] != 0.0f) flux.c[a] = fma((realW)(incident_weights[a][b]), bins.c[b], flux.c[a]);
+  }
+  return flux;
+}
+
+#endif
