@@ -2,18 +2,13 @@
 // Implements clpv/renderer.hpp and clpv/pathtrace.hpp.
 #include "clpv/renderer.hpp"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <cmath>
-#include <mutex>
-#include <shared_mutex>
 
-#include "api/scene_contents.hpp"
+#include "api/renderer_state.hpp"
 #include "clpv/pathtrace.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/frame/frame_times.hpp"
-#include "pipeline/frame/scene_options.hpp"
 #include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
@@ -22,12 +17,6 @@ namespace clpv {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-void check_view(View view) {
-  if (!name_of(view).empty()) return;
-  throw Error(ExitCode::usage, "view: found {}, allowed: 0..{}", static_cast<int>(view),
-              static_cast<int>(View::cells));
-}
 
 using Vectors = std::span<const std::array<float, 3>>;
 
@@ -65,13 +54,6 @@ std::vector<std::array<float, 3>> without_alpha(const std::vector<glm::vec4>& va
   return colours;
 }
 
-constexpr int kMaxSide = 16384;
-
-void check_sides(const char* what, int width, int height) {
-  if (width >= 1 && width <= kMaxSide && height >= 1 && height <= kMaxSide) return;
-  throw Error(ExitCode::usage, "{}: found {} x {}, allowed: 1..{}", what, width, height, kMaxSide);
-}
-
 void check(const GBuffer& surfaces) {
   check_sides("light: width and height", surfaces.width, surfaces.height);
   const std::size_t pixels = std::size_t(surfaces.width) * std::size_t(surfaces.height);
@@ -90,11 +72,6 @@ void check(const GBuffer& surfaces) {
   }
 }
 
-/// A camera of which only the eye counts.
-SceneCamera camera_at(const Vec3& eye) {
-  return scene_camera(Camera{.eye = eye, .target = {eye[0], eye[1], eye[2] - 1}}, rejected_in("light"));
-}
-
 std::vector<glm::vec4> four_wide(Vectors vectors) {
   std::vector<glm::vec4> wide;
   wide.reserve(vectors.size());
@@ -102,82 +79,46 @@ std::vector<glm::vec4> four_wide(Vectors vectors) {
   return wide;
 }
 
+GivenPixels uploaded(Session& session, const GBuffer& surfaces) {
+  GivenPixels pixels{.width = static_cast<unsigned>(surfaces.width),
+                     .height = static_cast<unsigned>(surfaces.height),
+                     .points = !surfaces.positions.empty(),
+                     .places = {},
+                     .normals = session.upload(four_wide(surfaces.normals), "normals of a G-buffer")};
+  if (pixels.points) {
+    pixels.places = session.upload(four_wide(surfaces.positions), "positions of a G-buffer");
+  } else {
+    pixels.places = session.buffer(surfaces.depths.size_bytes(), "depths of a G-buffer");
+    session.write(pixels.places, surfaces.depths, 0);
+  }
+  return pixels;
+}
+
 }  // namespace
 
-struct Renderer::State {
-  std::mutex mutex;  ///< held by each call
-  Scene file;
-  std::shared_lock<std::shared_mutex> scene_stays;  ///< while the frame is made
-  PosedScene posed;
-  RenderOptions options;
-  Session session;
-  std::optional<Frame> frame;
-  unsigned rebuilds;                            ///< of the frame (Scene::Contents)
-  std::map<std::string, std::string> metadata;  ///< of the last frame's images; empty before it
-  bool lit = false;  ///< the cascades have the light of the last render() or light()
-  double frame_ms = 0;
+void check_view(View view) {
+  if (!name_of(view).empty()) return;
+  throw Error(ExitCode::usage, "view: found {}, allowed: 0..{}", static_cast<int>(view),
+              static_cast<int>(View::cells));
+}
 
-  State(const Scene& scene_file, const Options& given, const std::string& device)
-      : file(scene_file),
-        scene_stays(file.contents().mutex),
-        posed(file),
-        options(resolve_options(given.given(), posed.scene())),
-        session(choose_device(device), ProgramCache::of_user()),
-        rebuilds(file.contents().rebuilds) {
-    frame.emplace(session, posed.scene(), options);
-    scene_stays.unlock();
-  }
+void check_sides(const char* what, int width, int height) {
+  constexpr int kMaxSide = 16384;
+  if (width >= 1 && width <= kMaxSide && height >= 1 && height <= kMaxSide) return;
+  throw Error(ExitCode::usage, "{}: found {} x {}, allowed: 1..{}", what, width, height, kMaxSide);
+}
 
-  void require(bool made, const char* what) const {
-    if (!made) throw Error(ExitCode::usage, "{}: no frame was rendered; allowed: after a render", what);
-  }
-  void require_image(const char* what) const { require(!metadata.empty(), what); }
-  void require_light(const char* what) const { require(lit, what); }
+SceneCamera camera_at(const Vec3& eye) {
+  return scene_camera(Camera{.eye = eye, .target = {eye[0], eye[1], eye[2] - 1}}, rejected_in("light"));
+}
 
-  /// Brings the scene and the frame to the time `seconds`.
-  void pose(double seconds) {
-    lit = false;
-    const bool moved = posed.pose(seconds);
-    if (rebuilds != file.contents().rebuilds) {
-      metadata.clear();
-      frame.emplace(session, posed.scene(), options);
-      rebuilds = file.contents().rebuilds;
-    } else if (moved) {
-      frame->scene_moved();
-    }
-  }
-
-  std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const SceneCamera& camera) {
-    GivenPixels pixels{static_cast<unsigned>(surfaces.width),
-                       static_cast<unsigned>(surfaces.height),
-                       !surfaces.positions.empty(),
-                       {},
-                       {}};
-    const Buffer normals = session.upload(four_wide(surfaces.normals), "normals of a G-buffer");
-    Buffer places;
-    if (pixels.points) {
-      places = session.upload(four_wide(surfaces.positions), "positions of a G-buffer");
-    } else {
-      places = session.buffer(surfaces.depths.size_bytes(), "depths of a G-buffer");
-      session.write(places, surfaces.depths, 0);
-    }
-    pixels.places = places.handle();
-    pixels.normals = normals.handle();
-    const Buffer& irradiance = frame->light(camera, pixels);
-    const auto values = session.read<glm::vec4>(irradiance, surfaces.normals.size());
-    lit = true;
-    return without_alpha(values);
-  }
-
-  Image image(View view) {
-    Image made = view_image(*frame, view);
-    made.metadata = metadata;
-    return made;
-  }
-};
+std::vector<std::array<float, 3>> Renderer::State::light(const SceneCamera& camera, const GBuffer& surfaces) {
+  const Buffer& irradiance = light(camera, uploaded(session, surfaces));
+  return without_alpha(session.read<glm::vec4>(irradiance, surfaces.normals.size()));
+}
 
 Renderer::Renderer(const Scene& scene, const Options& options, const std::string& device)
-    : state_(std::make_unique<State>(scene, options, device)) {}
+    : state_(std::make_unique<State>(scene, options, choose_device(device))) {}
 
 Renderer::~Renderer() {
   if (!state_) return;
@@ -197,16 +138,7 @@ Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
   const std::lock_guard lock(state.mutex);
   const std::shared_lock scene_stays(state.file.contents().mutex);
   const Clock::time_point started = Clock::now();
-  state.metadata.clear();
-  state.pose(seconds);
-  const SceneCamera chosen = state.posed.camera(camera);
-  state.frame->render(chosen);
-  state.lit = true;
-  for (const OptionDescription& option : list_options(state.options))
-    state.metadata[option.name] = option.value;
-  state.metadata["centres"] = std::filesystem::path(state.options.centres).filename().string();
-  state.metadata["camera"] = chosen.name;
-  state.metadata["time"] = fmt::format("{}", seconds);
+  state.render(camera, seconds);
   Image image = state.image(view);
   state.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - started).count();
   return image;
@@ -226,7 +158,7 @@ std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const
   const std::lock_guard lock(state_->mutex);
   const std::shared_lock scene_stays(state_->file.contents().mutex);
   state_->pose(seconds);
-  return state_->light(surfaces, state_->posed.camera(camera));
+  return state_->light(state_->posed.camera(camera), surfaces);
 }
 
 std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const Vec3& eye, double seconds) {
@@ -238,7 +170,7 @@ std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const
   const std::lock_guard lock(state_->mutex);
   const std::shared_lock scene_stays(state_->file.contents().mutex);
   state_->pose(seconds);
-  return state_->light(surfaces, camera);
+  return state_->light(camera, surfaces);
 }
 
 std::array<double, 3> Renderer::irradiance(const Vec3& position, const Vec3& normal) {

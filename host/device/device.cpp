@@ -215,6 +215,19 @@ Device choose_device(const std::vector<Device>& devices, std::string_view choice
   return matching[0];
 }
 
+Device device_of(const cl::Device& handle) {
+  for (Device& listed : list_devices().devices) {
+    if (listed.handle() == handle()) return std::move(listed);
+  }
+  Device device;
+  device.handle = handle;
+  const cl::Platform platform(handle.getInfo<CL_DEVICE_PLATFORM>());
+  device.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+  device.platform_version = trimmed(platform.getInfo<CL_PLATFORM_VERSION>());
+  describe(device);
+  return device;
+}
+
 Device sub_device(const Device& device, unsigned units, unsigned index) {
   Device result = device;
   if (units == device.compute_units) return result;

@@ -51,6 +51,9 @@ Device choose_device(const std::vector<Device>& devices, std::string_view choice
 /// device and all with its name and platform. Throws Error(device) if there is none.
 std::vector<Device> choose_devices(std::string_view choice = {});
 
+/// Describes a device that a caller has: as list_devices() does, or a sub-device as its parent's platform has it.
+Device device_of(const cl::Device& handle);
+
 /// Returns the keys "platform", "name" and "driver".
 nlohmann::json to_json(const Device& device);
 

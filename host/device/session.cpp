@@ -22,8 +22,9 @@ ProgramSource words_program() {
   return {.file = "buffer_ops.cl", .literals = {}, .generated = {}};
 }
 constexpr std::size_t kWordsGroup = 64;
-constexpr double kNoticeMs = 1000;  // longer waits are explained in the log
-constexpr int kStoreShare = 10;     // store_programs() takes at most 1/10 of the process's run time
+constexpr double kNoticeMs = 1000;              // longer waits are explained in the log
+constexpr std::size_t kCopiedBytes = 64 << 10;  // larger writes wait for the queue rather than copy
+constexpr int kStoreShare = 10;  // store_programs() takes at most 1/10 of the process's run time
 const auto kProcessStart = std::chrono::steady_clock::now();
 
 cl_uint words_of(std::size_t bytes) {
@@ -75,6 +76,14 @@ Session::Session(Device device, std::optional<ProgramCache> cache, Compilation c
       timeline_(device_.profiling_valid),
       cache_(std::move(cache)),
       compilation_(std::move(compilation)),
+      marks_(device_) {}
+
+Session::Session(GivenQueue given, std::optional<ProgramCache> cache)
+    : device_(std::move(given.device)),
+      context_(std::move(given.context)),
+      queue_(std::move(given.queue)),
+      timeline_(device_.profiling_valid, false),
+      cache_(std::move(cache)),
       marks_(device_) {}
 
 // After an error, commands may be unfinished. Without this wait PoCL's threads continue to run and compile them while the
@@ -278,6 +287,21 @@ const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, 
                                     values.size(), table.values.handle());
   }
   return table.image;
+}
+
+void Session::write_bytes(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t at) {
+  if (bytes.empty()) return;
+  if (bytes.size() > kCopiedBytes) {
+    queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, at, bytes.size(), bytes.data());
+    return;
+  }
+  std::erase_if(writes_, [](const Write& write) {
+    return write.done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE;
+  });
+  Write write{{bytes.begin(), bytes.end()}, {}};
+  queue_.enqueueWriteBuffer(buffer.handle(), CL_FALSE, at, bytes.size(), write.bytes.data(), nullptr,
+                            &write.done);
+  writes_.push_back(std::move(write));
 }
 
 void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local) {

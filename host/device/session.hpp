@@ -14,6 +14,7 @@
 
 #include "device/device.hpp"
 #include "device/driver_cache.hpp"
+#include "device/given_queue.hpp"
 #include "device/memory.hpp"
 #include "device/program.hpp"
 #include "device/program_cache.hpp"
@@ -58,6 +59,8 @@ class Session {
   /// compiled.
   explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt,
                    Compilation compilation = {});
+  /// In a caller's context and queue. Stages have times only if the queue has profiling.
+  explicit Session(GivenQueue given, std::optional<ProgramCache> cache = std::nullopt);
   /// Waits for all enqueued commands.
   ~Session();
   Session(const Session&) = delete;
@@ -97,6 +100,10 @@ class Session {
   /// Allocates a buffer of max(bytes, 4) bytes with undefined contents. `what` names it in errors.
   /// Throws Error(run_time), before allocating, if the device's memory does not suffice; it states the limit.
   Buffer buffer(std::size_t bytes, const std::string& what);
+  /// A caller's buffer, whose memory does not count as the session's. Throws as given_buffer().
+  Buffer given(cl_mem memory, std::size_t bytes, const char* what) const {
+    return {given_buffer(context_, memory, bytes, what), std::make_shared<MemoryShare>(use_, 0)};
+  }
   /// Replaces `buffer` by a new one with undefined contents if it has fewer than `bytes` bytes.
   void reserve(Buffer& buffer, std::size_t bytes, const std::string& what);
   /// Allocates an image of `extent` texels and `bytes` bytes with undefined contents. Throws like buffer().
@@ -111,17 +118,15 @@ class Session {
   /// Copies the first `bytes` bytes of `from` to byte `to_byte` of `to`; both are multiples of 4.
   void copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte = 0);
 
+  /// Writes values, which may change after the call. Waits for the queue only if they are more than 64 KiB.
   template <typename T>
   void write(const Buffer& buffer, const std::vector<T>& values) {
-    if (!values.empty())
-      queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, 0, values.size() * sizeof(T), values.data());
+    write(buffer, std::span(values), 0);
   }
   /// Overwrites elements from `first` on.
   template <typename T>
   void write(const Buffer& buffer, std::span<const T> values, std::size_t first) {
-    if (!values.empty())
-      queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, first * sizeof(T), values.size_bytes(),
-                                values.data());
+    write_bytes(buffer, std::as_bytes(values), first * sizeof(T));
   }
   template <typename T>
   Buffer upload(const std::vector<T>& values, const std::string& what) {
@@ -156,6 +161,7 @@ class Session {
   bool load(Program& program);
   void compile_with_helpers();
 
+  void write_bytes(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t at);
   void require_room(std::size_t bytes, const std::string& what) const;
 
   bool oclgrind() const { return device_.platform == "Oclgrind"; }
@@ -165,7 +171,12 @@ class Session {
   CompiledMarks marks_;
   bool helped_ = false;                                       ///< helpers compiled
   std::map<std::string, std::shared_ptr<Program>> programs_;  ///< by ProgramCache::key
-  std::vector<Buffer> retained_;                              ///< for Oclgrind, see buffer()
+  struct Write {                                              ///< bytes on their way to the device
+    std::vector<std::byte> bytes;
+    cl::Event done;
+  };
+  std::vector<Write> writes_;
+  std::vector<Buffer> retained_;  ///< for Oclgrind, see buffer()
   struct TableImage {
     Buffer values;
     cl::Image1DBuffer image;

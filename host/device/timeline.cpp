@@ -14,7 +14,7 @@ void Timeline::begin(StageMark mark) {
 
 void Timeline::end(cl::CommandQueue& queue) {
   if (current_ < 0) return;
-  if (!events_valid_) {
+  if (!events_valid_ && waits_) {
     queue.finish();
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - started_;
     entries_[current_].wall_ms += elapsed.count();

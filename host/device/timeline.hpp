@@ -29,11 +29,12 @@ struct StageTime {
 /// Collects the events of launches, by stage.
 class Timeline {
  public:
-  /// `events_valid`: true if profiling events report plausible times (Device::profiling_valid).
-  explicit Timeline(bool events_valid) : events_valid_(events_valid) {}
+  /// `events_valid`: true if profiling events report plausible times (Device::profiling_valid). `waits`: without them, end() waits
+  /// for the queue to measure wall time; else times are 0.
+  explicit Timeline(bool events_valid, bool waits = true) : events_valid_(events_valid), waits_(waits) {}
 
   void begin(StageMark mark);         ///< starts a stage; times of repeated stages add up
-  void end(cl::CommandQueue& queue);  ///< without valid events, waits for the queue to measure wall time
+  void end(cl::CommandQueue& queue);
   void add(const cl::Event& event);   ///< adds an event to the current stage
   std::vector<StageTime> times()
       const;  ///< waits for the events; one entry per stage, in order of first begin
@@ -45,7 +46,7 @@ class Timeline {
     std::vector<cl::Event> events;
     double wall_ms = 0;
   };
-  bool events_valid_;
+  bool events_valid_, waits_;
   int current_ = -1;
   std::vector<Entry> entries_;
   std::chrono::steady_clock::time_point started_;

@@ -23,6 +23,14 @@
 
 namespace clpv {
 
+namespace opencl {  // clpv/opencl.hpp
+struct Queue;
+struct Frame;
+struct Volumes;
+struct GBuffer;
+class Event;
+}  // namespace opencl
+
 /// Quantity that an image shows: radiance [W/m^2/sr] (full = direct + indirect), irradiance of indirect light [W/m^2], albedo, unit
 /// normal, or depth [m]. Lux and candela of a scene count 1:1 as W/m^2 and W/sr. medium: radiance that the scene's medium
 /// scatters towards the camera, which full includes. cells: irradiance, with the cells of the finest cascade as small spheres that
@@ -72,7 +80,10 @@ class Renderer {
   /// use. Loads compiled programs from the user's cache. Throws Error: usage (options), device (no device matches),
   /// run_time (out of memory; the message says what would fit).
   explicit Renderer(const Scene& scene, const Options& options = {}, const std::string& device = {});
-  ~Renderer();  ///< stores compiled programs in the user's cache
+  /// The same in a context and queue of the caller. Throws Error: usage (no or another context, an out-of-order queue, several
+  /// devices without a queue), device (a device that lacks a capability).
+  Renderer(const Scene& scene, const Options& options, const opencl::Queue& queue);
+  ~Renderer();  ///< waits for its commands; stores compiled programs in the user's cache
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
@@ -114,6 +125,21 @@ class Renderer {
 
   /// Reads back the light of the last frame or light(), finest cascade first. Throws Error(usage) before the first frame.
   std::vector<LightVolume> volumes();
+
+  /// Like render(), but enqueues the frame and returns its device memory without waiting for all of it (docs/api.md says for what it
+  /// waits). Throws Error(usage) also for View::cells.
+  opencl::Frame enqueue(View view = View::full, const CameraChoice& camera = {}, double seconds = 0);
+  /// Like light(), from and to device memory. Throws Error(usage) also for an object that is no buffer of the renderer's context or
+  /// is too small.
+  opencl::Event enqueue_light(const opencl::GBuffer& surfaces, const CameraChoice& camera, double seconds = 0);
+  opencl::Event enqueue_light(const opencl::GBuffer& surfaces, const Vec3& eye, double seconds = 0);
+
+  /// Light of the last frame or light() for a caller's kernel. Throws Error(usage) as radiance().
+  opencl::Volumes device_volumes();
+  /// OpenCL C 1.2 for the start of a caller's program: clpv_irradiance(CLPV_PASS_RADIANCE, position, normal) and
+  /// clpv_radiance(CLPV_PASS_RADIANCE, position, direction), for kernels with the parameters CLPV_RADIANCE
+  /// (kernels/gather/lookup.h). One text for all frames of a renderer. Throws Error(usage) for options as radiance().
+  std::string lookup_source() const;
 
   /// Size, basis, transport and device in one line.
   std::string description() const;

@@ -11,7 +11,8 @@ Lengths are metres, y is up. Illuminance in lux counts 1:1 as W/m^2, luminous in
 
     Scene, Camera, Light, Medium         a scene file, glTF model or meshes, and what can be changed in it
     Material                             surface of a mesh
-    Renderer, options(), devices()       frames on an OpenCL device: render, irradiance, volumes, stats
+    Renderer, options(), devices()       frames on an OpenCL device: render, light, irradiance, volumes, stats
+    DeviceFrame, DeviceVolumes           results as OpenCL memory, for pyopencl; DeviceEvent: when they are complete
     Image, read_image, compare           images as arrays, files, errors
     pathtrace                            ground truth on the CPU
     Basis, bases()                       functions on the sphere
@@ -23,7 +24,8 @@ Lengths are metres, y is up. Illuminance in lux counts 1:1 as W/m^2, luminous in
 """
 import importlib
 
-__all__ = ["Basis", "Camera", "Comparison", "DeviceError", "Error", "Image", "InputError", "Light", "Material", "Medium", "Renderer",
+__all__ = ["Basis", "Camera", "Comparison", "DeviceError", "DeviceEvent", "DeviceFrame", "DeviceVolumes", "Error", "Image",
+           "InputError", "Light", "Material", "Medium", "Renderer",
            "ResourceError", "Scene", "UsageError", "ValidationError", "Volume", "bases", "compare", "devices", "options",
            "pathtrace", "read_image"]
 

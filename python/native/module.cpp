@@ -172,6 +172,7 @@ PYBIND11_MODULE(_native, module) {
   add_scene(module);
   add_image(module);
   add_renderer(module);
+  add_opencl(module);
   add_basis(module);
   reject_pickling(module);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_running_calls));

@@ -29,6 +29,7 @@ void add_material(py::module_& module);
 void add_meshes(py::class_<Scene>& type);
 void add_image(py::module_& module);
 void add_renderer(py::module_& module);
+void add_opencl(py::module_& module);  ///< after add_renderer()
 void add_basis(py::module_& module);
 
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;

@@ -5,7 +5,9 @@
 #include <atomic>
 
 #include "clpv/pathtrace.hpp"
+#include "clpv/opencl.hpp"
 #include "module.hpp"
+#include "opencl_handle.hpp"
 #include "options/show.hpp"
 
 namespace clpv::python {
@@ -171,19 +173,29 @@ void add_renderer(py::module_& module) {
   add_volume(module);
   py::class_<Renderer, std::unique_ptr<Renderer, ReleaseUnlessForked>> type(
       module, "Renderer",
-      "Renderer(scene, device='', **options): renders frames of one scene on one OpenCL device.\n\n"
+      "Renderer(scene, device='', *, context=None, queue=None, **options): renders frames of one scene on one OpenCL "
+      "device.\n\n"
       "device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the first usable "
       "one.\n"
+      "context, queue: of pyopencl, or their int_ptr; the renderer works there. The queue is in-order.\n"
       "options: those of `clpv render` with _ for - (and lambda_); options() lists them. bool is on or off.\n"
       "Results that do not change are cached from frame to frame. Calls from several threads run one after "
       "the other.\n"
       "Raises UsageError, DeviceError, ResourceError.");
-  type.def(py::init([](const Scene& scene, const std::string& device, const py::kwargs& given) {
+  type.def(py::init([](const Scene& scene, const std::string& device, const py::object& context,
+                       const py::object& queue, const py::kwargs& given) {
              const Options options = options_of(given);
+             const opencl::Queue where{handle_of<cl_context>(context, "context"),
+                                       handle_of<cl_command_queue>(queue, "queue")};
+             const bool own = context.is_none() && queue.is_none();
+             if (!own && !device.empty())
+               throw py::value_error("found a device and a context or queue, allowed: one of both");
              note_device_use();
-             return interruptible([&] { return Renderer(scene, options, device); });
+             return interruptible(
+                 [&] { return own ? Renderer(scene, options, device) : Renderer(scene, options, where); });
            }),
-           py::arg("scene"), py::arg("device") = "");
+           py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
+           py::arg("queue") = py::none());
   type.def(
       "render",
       [](Renderer& renderer, const std::string& view, const std::optional<CameraChoice>& camera,

@@ -33,6 +33,7 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCM
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/render_cornell ${SOURCE}/scenes/cornell.json ${WORK}/cornell.png)
 run(${WORK}/build/walk ${SOURCE}/scenes/cornell.json ${WORK}/walk.png)
+run(${WORK}/build/raycast ${SOURCE}/scenes/cornell.json ${WORK}/raycast.exr)
 run(${WORK}/prefix/bin/clpv devices)
 # The same program with pkg-config, if installed.
 find_program(PKG_CONFIG pkg-config)

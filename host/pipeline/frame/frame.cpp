@@ -119,6 +119,24 @@ void Frame::require_light(const char* what) const {
     throw Error(ExitCode::usage, "{}: no frame was rendered; allowed: after a render", what);
 }
 
+void Frame::require_lookups(const char* what) const {
+  if (!swept_) {
+    throw Error(ExitCode::usage, "{}: found transport '{}', allowed: sweep", what,
+                name_of(options_.transport));
+  }
+  if (!gatherer_.packs()) {
+    throw Error(ExitCode::usage,
+                "{}: found layout 'image' with gather 'all', allowed: gather 'visible', or another layout",
+                what);
+  }
+}
+
+std::string Frame::lookup_source() const {
+  require_lookups("lookup source");
+  return program_text(with_radiance({"gather/lookup.h", {}, {}}, *swept_, gather_options(options_))) +
+         "#line 1 \"kernel\"\n";
+}
+
 CacheKey Frame::seen_by_rays(const std::vector<ClpvGrid>& grids) const {
   return Fingerprint().add(camera_surface_->view).add(grids).add(buffers_.clusters->instant()).value();
 }
@@ -188,15 +206,7 @@ std::vector<glm::vec4> Frame::irradiance_at(std::vector<glm::vec4> positions,
 std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
                                           std::vector<glm::vec4> directions) {
   require_light("radiance");
-  if (!swept_) {
-    throw Error(ExitCode::usage, "radiance: found transport '{}', allowed: sweep",
-                name_of(options_.transport));
-  }
-  if (!gatherer_.packs()) {
-    throw Error(
-        ExitCode::usage,
-        "radiance: found layout 'image' with gather 'all', allowed: gather 'visible', or another layout");
-  }
+  require_lookups("radiance");
   const std::size_t count = positions.size();
   if (count == 0) return {};
   const SurfaceImage points = image_of_points(std::move(positions), std::move(directions));
@@ -226,6 +236,13 @@ std::vector<SurfaceImage> Frame::read_rsms(int cascade) {
   return images;
 }
 
+const Buffer& Frame::image(Show view) {
+  if (view == Show::medium && !medium_)
+    throw Error(ExitCode::usage, "view: found 'medium' of a scene without a medium; allowed: the others");
+  if (view != shown_) show(view);
+  return image_;
+}
+
 std::vector<float> Frame::read(Show view) {
   if (view == Show::cells) {
     std::vector<float> image = read(Show::irradiance);
@@ -238,10 +255,8 @@ std::vector<float> Frame::read(Show view) {
         seen, session_.read<float>(camera_surface_->depth, std::size_t{seen.width} * seen.height), image);
     return image;
   }
-  if (view == Show::medium && !medium_)
-    throw Error(ExitCode::usage, "view: found 'medium' of a scene without a medium; allowed: the others");
-  if (view != shown_) show(view);
-  std::vector<float> image = session_.read<float>(image_, std::size_t(options_.width) * options_.height * 4);
+  std::vector<float> image =
+      session_.read<float>(this->image(view), std::size_t(options_.width) * options_.height * 4);
   if (scene_.sky && shows_sky(view)) {
     paint_sky(*scene_.sky, view == Show::full ? scene_.medium : std::nullopt, camera_surface_->view, image);
   } else if (medium_ && shows_medium(view)) {

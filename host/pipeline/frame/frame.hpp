@@ -66,11 +66,22 @@ class Frame {
   /// Error(usage) before the first render, without a sweep, and if gathering reads images.
   std::vector<glm::vec4> radiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> directions);
 
+  /// The text for lookups by a caller's kernel (kernels/gather/lookup.h). Throws Error(usage) for options as radiance_at().
+  std::string lookup_source() const;
+  /// Throws Error(usage) for such options; `what` opens the message.
+  void require_lookups(const char* what) const;
+  /// Has the packed volumes of the last render() or light(), if lookup_source() does not throw.
+  const Gatherer& gatherer() const { return gatherer_; }
+
   /// RSMs of a cascade of the last render, flux in W.
   std::vector<SurfaceImage> read_rsms(int cascade);
 
   /// One view of the last render as RGBA float, top row first.
   std::vector<float> read(Show view);
+
+  /// One view of the last render on the device, float4 per pixel, without what read() paints: sky and cells.
+  const Buffer& image(Show view);
+  const Buffer& irradiance() const { return irradiance_; }
 
   const RenderOptions& options() const { return options_; }
   const Basis& basis() const { return *basis_; }  ///< basis of injected light

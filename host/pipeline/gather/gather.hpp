@@ -53,6 +53,10 @@ class Gatherer {
   const Buffer& grids() const { return grids_; }
   cl_uint cascades() const { return cascades_; }
 
+  const Buffer& packed() const { return packed_; }
+  const Buffer& occluded() const { return occluded_; }  ///< empty for Gathering::all
+  float unit() const { return 1 / scale_; }             ///< [W/sr] of a stored 1
+
   /// Returns true if volumes are packed. Images are sampled directly, unless gathering selects single cells or another stage
   /// needs packed volumes.
   bool packs() const { return options_.format.layout != Layout::image || sees() || options_.packed; }

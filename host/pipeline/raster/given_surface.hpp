@@ -16,8 +16,8 @@ struct GivenPixels {
   unsigned width = 0, height = 0;
   bool points =
       false;  ///< places are float4 positions [m], w unused; else float depths [m] along the view's forward axis
-  cl::Buffer places;
-  cl::Buffer normals;  ///< float4, of any length, w unused
+  Buffer places;
+  Buffer normals;  ///< float4, of any length, w unused
 };
 
 class GivenSurface {

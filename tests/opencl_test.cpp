@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+// Renderers in a caller's context and queue, and their results as device memory (clpv/opencl.hpp).
+#include "clpv/opencl.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <CL/opencl.hpp>
+#include <cmath>
+
+#include "device/device.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace clpv::opencl_test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Vectors = std::vector<std::array<float, 3>>;
+using test::kCornell;
+
+Options small() {
+  return Options()
+      .set("basis", "sh2")
+      .set("width", "48")
+      .set("height", "27")
+      .set("grid", "16")
+      .set("rsm-size", "64");
+}
+
+struct Owned {
+  cl::Device device = choose_device().handle;
+  cl::Context context{device};
+  cl::CommandQueue queue{context, device, CL_QUEUE_PROFILING_ENABLE};
+
+  opencl::Queue given() const { return {context(), queue()}; }
+  std::vector<float> read(cl_mem memory, std::size_t numbers) const {
+    std::vector<float> values(numbers);
+    queue.enqueueReadBuffer(cl::Buffer(memory, true), CL_TRUE, 0, numbers * sizeof(float), values.data());
+    return values;
+  }
+  cl::Buffer buffer(const Vectors& vectors) const {
+    std::vector<float> wide;
+    for (const auto& v : vectors) wide.insert(wide.end(), {v[0], v[1], v[2], NAN});
+    return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, wide.size() * sizeof(float), wide.data()};
+  }
+};
+
+Vectors three_of_four(const std::vector<float>& numbers) {
+  Vectors all;
+  for (std::size_t i = 0; i < numbers.size(); i += 4)
+    all.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+  return all;
+}
+
+TEST(OpenCl, FramesInACallersQueueAreThoseOfItsOwn) {
+  const Owned own;
+  const Scene scene(kCornell);
+  Renderer renderer(scene, small(), own.given()), other(scene, small());
+  const Image full = other.render();
+  EXPECT_EQ(renderer.render().pixels, full.pixels);
+  opencl::Frame frame = renderer.enqueue(View::albedo);
+  EXPECT_EQ(frame.width, 48);
+  const std::size_t pixels = 48 * 27;
+  EXPECT_EQ(own.read(frame.image, 4 * pixels), other.show(View::albedo).pixels);
+  cl_int status = CL_QUEUED;
+  clGetEventInfo(frame.done.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
+  EXPECT_EQ(status, CL_COMPLETE) << "after a read in the same queue";
+  EXPECT_EQ(three_of_four(own.read(frame.irradiance, 4 * pixels)),
+            three_of_four(other.show(View::irradiance).pixels));
+  EXPECT_EQ(three_of_four(own.read(frame.normals, 4 * pixels)),
+            three_of_four(other.show(View::normal).pixels));
+  EXPECT_EQ(own.read(frame.depth, pixels)[700], other.show(View::depth).at(700 % 48, 700 / 48, 0));
+  EXPECT_GT(renderer.stats().stages.at("gather"), 0);
+  EXPECT_EQ(renderer.show(View::full).pixels, full.pixels);
+  EXPECT_THROW(renderer.enqueue(View::cells), Error);
+}
+
+TEST(OpenCl, AQueueWithoutProfilingHasNoTimes) {
+  Owned own;
+  own.queue = cl::CommandQueue(own.context, own.device);
+  Renderer renderer(Scene(kCornell), small(), own.given());
+  renderer.render();
+  EXPECT_EQ(renderer.stats().stages.at("gather"), 0);
+}
+
+TEST(OpenCl, LightFromAndToBuffersIsThatOfTheHost) {
+  const Owned own;
+  const Scene scene(kCornell);
+  Renderer renderer(scene, small(), own.given());
+  const Camera camera = scene.cameras().front();
+  const opencl::Frame frame = renderer.enqueue(View::full, camera);
+  const cl::Buffer light(own.context, CL_MEM_WRITE_ONLY, 48 * 27 * 16 + 4);
+  const Vectors expected = three_of_four(own.read(frame.irradiance, 48 * 27 * 4));
+  renderer.enqueue_light({48, 27, frame.normals, nullptr, frame.depth, light()}, camera).wait();
+  EXPECT_EQ(three_of_four(own.read(light(), 48 * 27 * 4)), expected);
+
+  Vectors positions, normals;
+  for (int i = 0; i < 48 * 27; ++i) {
+    positions.push_back({0.01f * static_cast<float>(i % 48), 0.27f, 0.02f * static_cast<float>(i / 48)});
+    normals.push_back({0, i % 2 == 0 ? -1.0f : 3.0f, 0});
+  }
+  const Vec3 eye{0.278, 0.273, 0.2};
+  const cl::Buffer p = own.buffer(positions), n = own.buffer(normals);
+  const opencl::Event done = renderer.enqueue_light({48, 27, n(), p(), nullptr, light()}, eye);
+  EXPECT_EQ(done.wait(), CL_SUCCESS);
+  EXPECT_EQ(three_of_four(own.read(light(), 48 * 27 * 4)),
+            renderer.light({.width = 48, .height = 27, .normals = normals, .positions = positions}, eye));
+}
+
+TEST(OpenCl, ACallersKernelLooksLightUp) {
+  for (const char* gather : {"visible", "all"}) {
+    const Owned own;
+    Renderer renderer(Scene(kCornell), small().set("gather", gather), own.given());
+    EXPECT_THROW(renderer.device_volumes(), Error) << "before the first frame";
+    renderer.render();
+    Vectors points, along;
+    for (int i = 0; i < 50; ++i) {
+      points.push_back({0.01f * static_cast<float>(i), 0.27f, 0.3f});
+      along.push_back({0, i % 2 == 0 ? -1.0f : 1.0f, 0});
+    }
+    cl::Program program(own.context, renderer.lookup_source() + R"(
+      __kernel void look_up(__global const float4* points, __global const float4* along, __global float4* found,
+                            CLPV_RADIANCE) {
+        const uint i = get_global_id(0);
+        found[2 * i] = clpv_irradiance(CLPV_PASS_RADIANCE, points[i].xyz, along[i].xyz);
+        found[2 * i + 1] = clpv_radiance(CLPV_PASS_RADIANCE, points[i].xyz, along[i].xyz);
+      })");
+    program.build("-cl-std=CL1.2");
+    cl::Kernel kernel(program, "look_up");
+    const cl::Buffer p = own.buffer(points), a = own.buffer(along),
+                     found(own.context, CL_MEM_READ_WRITE, 50 * 2 * 16);
+    const opencl::Volumes volumes = renderer.device_volumes();
+    EXPECT_EQ(volumes.occluded == nullptr, std::string(gather) == "all");
+    kernel.setArg(0, p), kernel.setArg(1, a), kernel.setArg(2, found);
+    kernel.setArg(3, sizeof(cl_mem), &volumes.grids);
+    kernel.setArg(4, volumes.cascades), kernel.setArg(5, volumes.unit);
+    kernel.setArg(6, sizeof(cl_mem), &volumes.packed);
+    if (volumes.occluded != nullptr) kernel.setArg(7, sizeof(cl_mem), &volumes.occluded);
+    own.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(50));
+    const Vectors values = three_of_four(own.read(found(), 50 * 2 * 4));
+    const Vectors irradiance = renderer.irradiance(points, along),
+                  radiance = renderer.radiance(points, along);
+    for (std::size_t i = 0; i < 50; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(values[2 * i][c], irradiance[i][c], 1e-5 + 1e-4 * irradiance[i][c]) << gather << i;
+        EXPECT_NEAR(values[2 * i + 1][c], radiance[i][c], 1e-5 + 1e-4 * std::abs(radiance[i][c]))
+            << gather << i;
+      }
+    }
+    EXPECT_GT(irradiance[0][0], 0);
+  }
+  Renderer steps(Scene(kCornell), small().set("transport", "exact").set("near", "off"));
+  EXPECT_THAT(test::error_of(ExitCode::usage, [&] { steps.lookup_source(); }),
+              HasSubstr("transport 'exact'"));
+}
+
+TEST(OpenCl, ReferencesAreReturned) {
+  const Owned own;
+  const auto references = [&] {
+    return std::pair(own.context.getInfo<CL_CONTEXT_REFERENCE_COUNT>(),
+                     own.queue.getInfo<CL_QUEUE_REFERENCE_COUNT>());
+  };
+  const auto before = references();
+  {
+    Renderer renderer(Scene(kCornell), small(), own.given());
+    EXPECT_GT(references(), before);
+    renderer.enqueue();
+  }
+  EXPECT_EQ(references(), before);
+  cl::Buffer kept;
+  std::vector<float> values;
+  {
+    Renderer renderer(Scene(kCornell), small(), own.given());
+    const opencl::Frame frame = renderer.enqueue();
+    kept = cl::Buffer(frame.image, true);
+    values = own.read(frame.image, 4 * 48 * 27);
+  }
+  EXPECT_EQ(own.read(kept(), 4 * 48 * 27), values) << "retained by the caller";
+}
+
+TEST(OpenCl, WrongObjectsAreNamed) {
+  const Owned own, other;
+  const Scene scene(kCornell);
+  const auto rejected = [&](const std::string& part, const opencl::Queue& queue) {
+    EXPECT_THAT(test::error_of(ExitCode::usage, [&] { Renderer(scene, small(), queue); }),
+                AllOf(HasSubstr(part), HasSubstr("allowed")));
+  };
+  rejected("context and queue: found neither", {});
+  rejected("queue: found one of another context", {own.context(), other.queue()});
+  const cl::CommandQueue unordered(own.context, own.device, CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
+  rejected("queue: found an out-of-order one", {nullptr, unordered()});
+  Renderer renderer(scene, small(), {own.context(), nullptr});
+  const cl::Buffer good(own.context, CL_MEM_READ_WRITE, 2 * 2 * 16),
+      short_(own.context, CL_MEM_READ_WRITE, 63), foreign(other.context, CL_MEM_READ_WRITE, 2 * 2 * 16);
+  const auto refused = [&](const std::string& part, const opencl::GBuffer& surfaces) {
+    EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.enqueue_light(surfaces, Vec3{}); }),
+                AllOf(HasSubstr("light: "), HasSubstr(part), HasSubstr("allowed")));
+  };
+  refused("normals: found none", {2, 2, nullptr, good(), nullptr, good()});
+  refused("positions: found 63 bytes, allowed: at least 64", {2, 2, good(), short_(), nullptr, good()});
+  refused("irradiance: found a buffer of another context", {2, 2, good(), good(), nullptr, foreign()});
+  refused("no positions for an eye", {2, 2, good(), nullptr, good(), good()});
+  refused("positions and depths", {2, 2, good(), good(), good(), good()});
+  refused("found 0 x 2", {0, 2, good(), good(), nullptr, good()});
+  if (own.device.getInfo<CL_DEVICE_IMAGE_SUPPORT>() == CL_TRUE) {
+    const cl::Image2D image(own.context, CL_MEM_READ_WRITE, cl::ImageFormat(CL_RGBA, CL_FLOAT), 4, 4);
+    refused("normals: found an image", {2, 2, image(), good(), nullptr, good()});
+  }
+}
+
+TEST(OpenCl, AContextOfTwoDevicesNeedsAQueue) {
+  const Device whole = choose_device();
+  if (whole.compute_units < 2) GTEST_SKIP() << "one compute unit";
+  std::vector<cl::Device> halves;
+  try {
+    halves = {sub_device(whole, 1, 0).handle, sub_device(whole, 1, 1).handle};
+  } catch (const Error&) {
+    GTEST_SKIP() << "no sub-devices";
+  }
+  const cl::Context both(halves);
+  const Scene scene(kCornell);
+  EXPECT_THAT(test::error_of(ExitCode::usage,
+                             [&] {
+                               Renderer(scene, small(), {both(), nullptr});
+                             }),
+              HasSubstr("context: found 2 devices and no queue"));
+  const cl::CommandQueue queue(both, halves[0]);
+  EXPECT_EQ(Renderer(scene, small(), {nullptr, queue()}).render().pixels,
+            Renderer(scene, small()).render().pixels);
+}
+
+}  // namespace
+}  // namespace clpv::opencl_test

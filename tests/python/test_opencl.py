@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""A renderer in pyopencl's context and queue; skipped without pyopencl (Debian: python3-pyopencl)."""
+import pathlib
+import runpy
+
+import numpy as np
+import pytest
+
+import clpv
+from conftest import CORNELL, FRONT, ROOT, SMALL
+
+
+def test_handles_of_another_kind_are_named(scene):
+    with pytest.raises(TypeError, match="queue: found .*str.*, allowed: an OpenCL object of pyopencl, or its int_ptr"):
+        clpv.Renderer(scene, queue="queue", **SMALL)
+    with pytest.raises(ValueError, match="found a device and a context or queue"):
+        clpv.Renderer(scene, "0", queue=1, **SMALL)
+    with pytest.raises(TypeError, match="__init__ was not called"):
+        clpv.DeviceEvent.__new__(clpv.DeviceEvent).wait()
+
+
+def test_frames_and_light_in_pyopencls_queue(scene, renderer):
+    cl = pytest.importorskip("pyopencl")
+    context = cl.create_some_context(interactive=False)
+    queue = cl.CommandQueue(context)
+    made = clpv.Renderer(scene, context=context, queue=queue.int_ptr, **SMALL)
+    frame = made.enqueue("irradiance", FRONT)
+    frame.wait()
+    assert cl.Event.from_int_ptr(frame.int_ptr, retain=True).command_execution_status == 0
+    expected = renderer.render("irradiance", FRONT).array[..., :3]
+
+    def read(number):
+        values = np.empty((frame.height, frame.width, 4), np.float32)
+        cl.enqueue_copy(queue, values, cl.MemoryObject.from_int_ptr(number, retain=True))
+        return values[..., :3]
+
+    assert np.array_equal(read(frame.irradiance), expected)
+    light = cl.Buffer(context, cl.mem_flags.WRITE_ONLY, 16 * 48 * 27)
+    made.enqueue_light(48, 27, normals=frame.normals, depths=frame.depth, irradiance=light, camera=FRONT).wait()
+    assert np.array_equal(read(light.int_ptr), expected)
+    with pytest.raises(clpv.UsageError, match="light: irradiance: found 20736 bytes, allowed: at least"):
+        made.enqueue_light(480, 27, normals=frame.normals, depths=frame.depth, irradiance=light, camera=FRONT)
+
+
+def test_the_example_runs():
+    pytest.importorskip("pyopencl")
+    example = runpy.run_path(str(pathlib.Path(ROOT) / "examples/lookup.py"))
+    example["main"](CORNELL)
