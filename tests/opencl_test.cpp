@@ -221,14 +221,13 @@ TEST(OpenCl, AContextOfTwoDevicesNeedsAQueue) {
   }
   const cl::Context both(halves);
   const Scene scene(kCornell);
-  EXPECT_THAT(test::error_of(ExitCode::usage,
-                             [&] {
-                               Renderer(scene, small(), {both(), nullptr});
-                             }),
-              HasSubstr("context: found 2 devices and no queue"));
   const cl::CommandQueue queue(both, halves[0]);
   EXPECT_EQ(Renderer(scene, small(), {nullptr, queue()}).render().pixels,
             Renderer(scene, small()).render().pixels);
+  if (both.getInfo<CL_CONTEXT_DEVICES>().size() != 2)
+    GTEST_SKIP() << "the driver counts sub-devices as one device";
+  EXPECT_THAT(test::error_of(ExitCode::usage, [&] { Renderer(scene, small(), {both(), nullptr}); }),
+              HasSubstr("context: found 2 devices and no queue"));
 }
 
 }  // namespace

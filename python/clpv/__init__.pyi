@@ -155,6 +155,48 @@ class Comparison:
     def flip(self) -> float | None:
         """Mean FLIP, what an observer sees, 0 to 1 (Andersson et al. 2020)."""
 
+class DeviceEvent:
+    """Completion of commands that were enqueued."""
+    @property
+    def int_ptr(self) -> int:
+        """The cl_event, for pyopencl.Event.from_int_ptr(int_ptr, retain=True). It lives as long as this object."""
+    def wait(self) -> None:
+        """wait(): waits for the commands. Raises ResourceError if they failed."""
+
+class DeviceFrame:
+    """Device memory of a frame: integers for pyopencl.MemoryObject.from_int_ptr(number, retain=True), row 0 at the top.
+
+    The renderer's next call that renders overwrites it.
+    """
+    @property
+    def width(self) -> int:
+        """Pixels of a row."""
+    @property
+    def height(self) -> int:
+        """Rows."""
+    @property
+    def image(self) -> int:
+        """float4 per pixel: R, G, B, A of the view, linear, without a sky."""
+    @property
+    def irradiance(self) -> int:
+        """float4 per pixel: E [W/m^2] of red, green, blue, and 0."""
+    @property
+    def depth(self) -> int:
+        """float per pixel [m]; 0 without a surface."""
+    @property
+    def normals(self) -> int:
+        """float4 per pixel: unit normal, and 0."""
+    @property
+    def int_ptr(self) -> int:
+        """The cl_event of the whole frame."""
+    def wait(self) -> None:
+        """wait(): waits for the frame. Raises ResourceError if it failed."""
+
+class DeviceVolumes:
+    """Light for a kernel: arguments CLPV_RADIANCE of Renderer.lookup_source(), in the order of arguments()."""
+    def arguments(self) -> tuple[Any, ...]:
+        """arguments() -> (grids, cascades, unit, packed[, occluded]): memory as integers, a numpy.uint32 and a numpy.float32."""
+
 class Image:
     """Image(array, channels=None, encoding='linear'): copies an array (height, width, channels) of real numbers.
 
@@ -274,14 +316,15 @@ class Medium:
         """replace(**changes): a copy with other values of some arguments."""
 
 class Renderer:
-    """Renderer(scene, device='', **options): renders frames of one scene on one OpenCL device.
+    """Renderer(scene, device='', *, context=None, queue=None, **options): renders frames of one scene on one OpenCL device.
 
     device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the first usable one.
+    context, queue: of pyopencl, or their int_ptr; the renderer works there. The queue is in-order.
     options: those of `clpv render` with _ for - (and lambda_); options() lists them. bool is on or off.
     Results that do not change are cached from frame to frame. Calls from several threads run one after the other.
     Raises UsageError, DeviceError, ResourceError.
     """
-    def __init__(self, scene: Scene, device: str = '', *, preset: Literal["best", "fast", "fine", "paper"] = ..., basis: Literal["sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24", "bins96"] = ..., centres: str = ..., lambda_: float = ..., lobe: Literal["exact", "rotate"] = ..., lobe_time: Literal["host", "kernel"] = ..., evaluate: Literal["exact", "buffer", "image"] = ..., table_size: int = ..., transport: Literal["sampled", "exact", "sweep"] = ..., directions: Literal[24, 96, 216, 384] = ..., coarser_directions: Literal[24, 96, 216, 384] = ..., bounces: Literal[1, 2, "all"] = ..., state: Literal["coefficients", "fluxes"] = ..., layout: Literal["image", "aos", "soa", "tiled"] = ..., storage: Literal["float", "half"] = ..., iterations: int = ..., grid: int = ..., cascades: int = ..., cascade_size: float = ..., rsm_size: int = ..., rsm_format: Literal["float", "paper"] = ..., shadow_size: int = ..., blockers: Literal["scene", "seen", "none"] = ..., blocking: Literal["areas", "one-sided"] = ..., blocker_stride: int = ..., gather: Literal["all", "visible"] = ..., gather_offset: float = ..., near: Literal["auto", "off", "traced"] = ..., near_size: Literal["auto", "full", "half", "quarter", "eighth"] = ..., near_rays: Literal[2, 4, 8, 16, 64] = ..., width: int = ..., height: int = ...) -> None:
+    def __init__(self, scene: Scene, device: str = '', *, context: Any | None = None, queue: Any | None = None, preset: Literal["best", "fast", "fine", "paper"] = ..., basis: Literal["sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24", "bins96"] = ..., centres: str = ..., lambda_: float = ..., lobe: Literal["exact", "rotate"] = ..., lobe_time: Literal["host", "kernel"] = ..., evaluate: Literal["exact", "buffer", "image"] = ..., table_size: int = ..., transport: Literal["sampled", "exact", "sweep"] = ..., directions: Literal[24, 96, 216, 384] = ..., coarser_directions: Literal[24, 96, 216, 384] = ..., bounces: Literal[1, 2, "all"] = ..., state: Literal["coefficients", "fluxes"] = ..., layout: Literal["image", "aos", "soa", "tiled"] = ..., storage: Literal["float", "half"] = ..., iterations: int = ..., grid: int = ..., cascades: int = ..., cascade_size: float = ..., rsm_size: int = ..., rsm_format: Literal["float", "paper"] = ..., shadow_size: int = ..., blockers: Literal["scene", "seen", "none"] = ..., blocking: Literal["areas", "one-sided"] = ..., blocker_stride: int = ..., gather: Literal["all", "visible"] = ..., gather_offset: float = ..., near: Literal["auto", "off", "traced"] = ..., near_size: Literal["auto", "full", "half", "quarter", "eighth"] = ..., near_rays: Literal[2, 4, 8, 16, 64] = ..., width: int = ..., height: int = ...) -> None:
         ...
     def render(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0) -> Image:
         """render(view='full', camera=None, time=0.0) -> Image (height, width, 4), linear R, G, B, A.
@@ -319,6 +362,23 @@ class Renderer:
     def stats(self) -> dict[str, float]:
         """Dict of the last frame: device time of each stage [ms] ('propagate', 'gather', ...; 0 if cached or not needed),
         'frame': wall time of render() [ms], 'build': compilation so far [ms], 'device_bytes', 'peak_device_bytes'.
+        """
+    def enqueue(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0) -> DeviceFrame:
+        """enqueue(view='full', camera=None, time=0.0) -> DeviceFrame: render() without reading the image back.
+
+        Does not wait for all of the frame (docs/api.md); not for view 'cells'.
+        """
+    def enqueue_light(self, width: str, height: str, *, normals: ArrayLike, positions: ArrayLike | None = None, depths: ArrayLike | None = None, irradiance: Any, eye: _Vector | None = None, camera: str | Camera | None = None, time: float = 0.0) -> DeviceEvent:
+        """enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...) -> DeviceEvent: light() in device memory.
+
+        Buffers of the renderer's context, as pyopencl's or integers: normals and positions float4 per pixel (w unused), or depths
+        float; irradiance receives float4. Raises UsageError for others, and for buffers that are too small.
+        """
+    def device_volumes(self) -> DeviceVolumes:
+        """device_volumes() -> DeviceVolumes of the last frame or light(). Raises UsageError as radiance()."""
+    def lookup_source(self) -> str:
+        """lookup_source() -> str: OpenCL C for the start of a program, clpv_irradiance() and clpv_radiance() at a point for kernels with
+        the parameters CLPV_RADIANCE (docs/api.md).
         """
 
 class Scene:

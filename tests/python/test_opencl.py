@@ -38,7 +38,7 @@ def test_frames_and_light_in_pyopencls_queue(scene, renderer):
     light = cl.Buffer(context, cl.mem_flags.WRITE_ONLY, 16 * 48 * 27)
     made.enqueue_light(48, 27, normals=frame.normals, depths=frame.depth, irradiance=light, camera=FRONT).wait()
     assert np.array_equal(read(light.int_ptr), expected)
-    with pytest.raises(clpv.UsageError, match="light: irradiance: found 20736 bytes, allowed: at least"):
+    with pytest.raises(clpv.UsageError, match="light: normals: found 20736 bytes, allowed: at least"):
         made.enqueue_light(480, 27, normals=frame.normals, depths=frame.depth, irradiance=light, camera=FRONT)
 
 
