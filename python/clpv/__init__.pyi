@@ -368,7 +368,7 @@ class Renderer:
 
         Does not wait for all of the frame (docs/api.md); not for view 'cells'.
         """
-    def enqueue_light(self, width: str, height: str, *, normals: ArrayLike, positions: ArrayLike | None = None, depths: ArrayLike | None = None, irradiance: Any, eye: _Vector | None = None, camera: str | Camera | None = None, time: float = 0.0) -> DeviceEvent:
+    def enqueue_light(self, width: int, height: int, *, normals: ArrayLike, positions: ArrayLike | None = None, depths: ArrayLike | None = None, irradiance: Any, eye: _Vector | None = None, camera: str | Camera | None = None, time: float = 0.0) -> DeviceEvent:
         """enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...) -> DeviceEvent: light() in device memory.
 
         Buffers of the renderer's context, as pyopencl's or integers: normals and positions float4 per pixel (w unused), or depths
