@@ -34,7 +34,8 @@ TEST(Check, KernelsAgreeInTheOtherNumberOfLanes) {
   Device device = test::test_session().device();
   device.lanes = device.lanes == 8 ? 1 : 8;
   Session session(device);
-  for (const Stage stage : {Stage::rasterize, Stage::reflectors, Stage::visibility, Stage::near})
+  for (const Stage stage :
+       {Stage::rasterize, Stage::emit, Stage::reflectors, Stage::visibility, Stage::near, Stage::shade})
     expect_agreement(stage, session);
 }
 

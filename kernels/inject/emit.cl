@@ -72,7 +72,7 @@ CLPV_INLINE void mean_emission(const SubTriangle sub, __global const ClpvVertex*
   const Uv to_second = {(realW)(reach * u1), (realW)(reach * v1)};
   const Uv to_third = {(realW)(reach * u2), (realW)(reach * v2)};
   realW red = 0.0f, green = 0.0f, blue = 0.0f;
-  for (int i = 0; i < CLPV_EMIT_SAMPLES * CLPV_EMIT_SAMPLES; i += 8) {
+  for (int i = 0; i < CLPV_EMIT_SAMPLES * CLPV_EMIT_SAMPLES; i += W) {
     const realW at = (float)i + to_realW(lane_numbers());
     const realW row = to_realW(to_intW(sqrt(at + 0.5f)));
     const realW along = at - row * row;
