@@ -114,6 +114,15 @@ glm::vec3 origin_of(const ClpvGrid& grid) {
   return {grid.origin[0], grid.origin[1], grid.origin[2]};
 }
 
+/// Radiance that arrives from a surface: emitted, and one reflection of the lights.
+glm::vec3 radiance_of(const View& view, reference::PathSampler& sampler, const reference::Hit& hit,
+                      const glm::vec3& direction) {
+  glm::dvec3 sum = sampler.direct({hit}) * std::numbers::inv_pi;
+  if (sum != glm::dvec3(0)) sum *= glm::dvec3(view.rays().materials().albedo(hit.point));
+  if (!view.emitters().empty()) sum += view.emitters().radiance(hit.point, -glm::dvec3(direction));
+  return glm::vec3(sum);
+}
+
 }  // namespace
 
 /// Finds the probe cubes that contain pixels, and numbers their corners. Probes lie at the cells' centres. Keeps results of
@@ -181,8 +190,9 @@ void Probes::trace(unsigned rays) {
                                        std::numeric_limits<float>::infinity(), reference::Faces::all);
             const float length = hit ? std::min(hit->distance, limits_[probe]) : limits_[probe];
             distance[i] = {length, length * length};
-            radiance[i] =
-                hit ? view_.radiance(sampler, *hit, directions[i]) : view_.sky_radiance(directions[i]);
+            radiance[i] = hit                   ? radiance_of(view_, sampler, *hit, directions[i])
+                          : view_.sky().empty() ? glm::vec3(0)
+                                                : glm::vec3(view_.sky().radiance(glm::dvec3(directions[i])));
           }
           blend(&radiance_[probe * kLightTexels * kLightTexels], light_weights, radiance, share);
           blend(&distance_[probe * kDistanceTexels * kDistanceTexels], distance_weights, distance, share);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "baselines/view.hpp"
 
-#include <numbers>
-
 #include "pipeline/raster/view.hpp"
 #include "reference/view.hpp"
 
@@ -70,24 +68,6 @@ View::View(const View& full, unsigned stride)
 
 View View::thinned(unsigned stride) const {
   return {*this, stride};
-}
-
-std::optional<glm::vec3> View::radiance(reference::PathSampler& sampler, const glm::vec3& origin,
-                                        const glm::vec3& direction, float furthest) const {
-  const auto hit = rays().intersect(origin, direction, 0, furthest, reference::Faces::all);
-  return hit ? std::optional(radiance(sampler, *hit, direction)) : std::nullopt;
-}
-
-glm::vec3 View::radiance(reference::PathSampler& sampler, const reference::Hit& hit,
-                         const glm::vec3& direction) const {
-  glm::dvec3 sum = sampler.direct({hit}) * std::numbers::inv_pi;
-  if (sum != glm::dvec3(0)) sum *= glm::dvec3(rays().materials().albedo(hit.point));
-  if (!emitters().empty()) sum += emitters().radiance(hit.point, -glm::dvec3(direction));
-  return glm::vec3(sum);
-}
-
-glm::vec3 View::sky_radiance(const glm::vec3& direction) const {
-  return sky().empty() ? glm::vec3(0) : glm::vec3(sky().radiance(glm::dvec3(direction)));
 }
 
 reference::TracedImage View::with(const Irradiance& irradiance) const {

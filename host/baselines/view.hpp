@@ -76,16 +76,6 @@ class View {
   const std::vector<std::optional<reference::Hit>>& hits() const { return hits_; }
   const Planes& surfaces() const { return surfaces_; }
 
-  /// Radiance that arrives from the nearest surface at origin + t direction, t in (0, furthest): emitted, and one reflection of
-  /// the lights. Empty without a surface.
-  std::optional<glm::vec3> radiance(reference::PathSampler& sampler, const glm::vec3& origin,
-                                    const glm::vec3& direction, float furthest) const;
-  /// The same from a surface that a ray has met.
-  glm::vec3 radiance(reference::PathSampler& sampler, const reference::Hit& hit,
-                     const glm::vec3& direction) const;
-  /// Radiance of the sky; 0 without one.
-  glm::vec3 sky_radiance(const glm::vec3& direction) const;
-
   /// G-buffer of all pixels with this irradiance.
   reference::TracedImage with(const Irradiance& irradiance) const;
 

@@ -17,20 +17,17 @@
 namespace clpv {
 
 enum class Baseline {
-  paths,              ///< path tracing
-  paths_filtered,     ///< the same with a joint bilateral filter
-  vpl,                ///< virtual point lights, the same for all pixels
-  vpl_interleaved,    ///< different ones in each pixel of a 4 x 4 block, with a joint bilateral filter
-  ddgi_first,         ///< irradiance probes, first frame
-  ddgi_converged,     ///< the same after kConvergedFrames frames; the time is that of one
-  radiance_cascades,  ///< radiance cascades
-  radiance_cascades_fine,  ///< the same with a probe in each cell, 192 directions and the bilinear fix; takes its own time
+  paths,            ///< path tracing
+  paths_filtered,   ///< the same with a joint bilateral filter
+  vpl,              ///< virtual point lights, the same for all pixels
+  vpl_interleaved,  ///< different ones in each pixel of a 4 x 4 block, with a joint bilateral filter
+  ddgi_first,       ///< irradiance probes, first frame
+  ddgi_converged,   ///< the same after kConvergedFrames frames; the time is that of one
 };
 
 template <>
 inline constexpr auto kNames<Baseline> = name_list("paths", "paths-filtered", "vpl", "vpl-interleaved",
-                                                   "ddgi-first", "ddgi-converged", "radiance-cascades",
-                                                   "radiance-cascades-fine");
+                                                   "ddgi-first", "ddgi-converged");
 
 inline constexpr unsigned kConvergedFrames = 128;
 
@@ -56,7 +53,7 @@ struct MeasuredBaseline {
   Image image;
 };
 
-/// Chooses the number of samples so that the method takes the budget (radiance_cascades_fine takes its own time), runs it `runs` times, and compares it with the ground
+/// Chooses the number of samples so that the method takes the budget, runs it `runs` times, and compares it with the ground
 /// truth. The cell's settings are samples, threads and budget; its stage `baseline` is the median time. Throws as
 /// require_baseline().
 MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view,

@@ -111,8 +111,7 @@ STANDING = [["sponza", "cornell", "atrium", "--camera=curtains", "--camera=atriu
             ["atrium_living", "--time=4"]]
 STANDING_LARGE = [["sponza", "cornell", "atrium", "--camera=curtains", "--camera=front", "--camera=nave"]]
 STANDING_FRAMES = [["--preset=best", "--vary=near=traced,off"], ["--preset=paper", "--basis=sh2"]]
-METHODS = ("paths", "paths-filtered", "vpl", "vpl-interleaved", "ddgi-first", "ddgi-converged",
-           "radiance-cascades")
+METHODS = "paths", "paths-filtered", "vpl", "vpl-interleaved", "ddgi-first", "ddgi-converged"
 BASELINES = ["--preset=best", f"--baseline={','.join(METHODS)}"]
 SIZES = {"small": ["--noise=0.03"], "large": ["--width=960", "--height=540", "--noise=0.06"]}
 SHARED = "rasterize-camera", "rasterize-shadow", "shade"  # stages whose time baselines do not get
