@@ -122,7 +122,10 @@ class CachedSession : public ProgramCacheTest {
   ~CachedSession() override { unsetenv("CLPV_KERNEL_DIR"); }
 
   static ProgramSource source(int value) {
-    return {.file = "answer.cl", .literals = Literals().integer("CLPV_ANSWER", value), .generated = {}};
+    const int lanes = choose_device().lanes;  // as a session adds them
+    return {.file = "answer.cl",
+            .literals = Literals().integer("CLPV_ANSWER", value).integer("CLPV_W", lanes),
+            .generated = {}};
   }
   std::string key(int value) const {
     return ProgramCache::key(choose_device(), source(value).options, program_text(source(value)));
