@@ -54,8 +54,13 @@ if(HELP2MAN)
     message(FATAL_ERROR "the man page lacks commands or their options")
   endif()
 endif()
-# Installed headers are one folder, and include only each other and the standard library.
+# Installed headers are one folder, and include only each other and the standard library. Below it are the kernels'
+# headers that Renderer::lookup_source() is made of.
 file(GLOB_RECURSE headers RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/*)
+list(FILTER headers EXCLUDE REGEX "^clpv/kernels/.*\\.h$")
+if(NOT EXISTS ${WORK}/prefix/include/clpv/kernels/gather/lookup.h)
+  message(FATAL_ERROR "clpv/kernels/gather/lookup.h: not installed")
+endif()
 foreach(header IN LISTS headers)
   file(STRINGS ${WORK}/prefix/include/${header} private REGEX "#include \"" )
   list(FILTER private EXCLUDE REGEX "\"clpv/")

@@ -100,6 +100,10 @@ def test_objects_without_init_are_rejected(name):
     if name == "Scene":
         with pytest.raises(TypeError, match="Scene: __init__ was not called"):
             clpv.Renderer(hollow)
+    if name == "DeviceVolumes":  # has no attributes
+        with pytest.raises(TypeError, match="DeviceVolumes: __init__ was not called"):
+            hollow.arguments()
+        return
     assert tried > 0
     del hollow
 
