@@ -19,7 +19,7 @@ if(CLPV_BUILD_PROGRAM)
 endif()
 install(TARGETS clpv_library EXPORT clpvTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY include/clpv DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
-# What Renderer::lookup_source() is made of, and structs of buffers that opencl.hpp returns.
+# Headers for Renderer::lookup_source(), and the structs in the buffers that opencl.hpp returns.
 install(DIRECTORY kernels DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clpv FILES_MATCHING PATTERN "*.h")
 install(EXPORT clpvTargets NAMESPACE clpv:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/clpv)
 # A separate folder: find_package searches folders of PATH, and the build folder may be one.

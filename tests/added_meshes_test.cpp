@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes from memory: rooms that change against rooms built anew, shared slots, and rejected arrays.
+// Meshes from memory: rooms that change are compared with rooms that are made as changed; shared slots, rejected arrays.
 #include "host/scene/added_meshes.hpp"
 
 #include <gmock/gmock.h>
@@ -11,6 +11,7 @@
 #include "clpv/renderer.hpp"
 #include "host/scene/bounds.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::added_meshes_test {
 namespace {
@@ -40,13 +41,7 @@ Transform moved_by(double x, double y, double z) {
 const Camera kEye{.eye = {0.3, 1.5, 4}, .target = {0, 1, 0}};
 
 Options small() {
-  return Options()
-      .set("basis", "sh2")
-      .set("width", "48")
-      .set("height", "27")
-      .set("grid", "16")
-      .set("rsm-size", "64")
-      .set("cascade-size", "4");
+  return test::small_options().set("cascade-size", "4");
 }
 
 /// Floor and a red wall, as a scene that is to be compared.

@@ -23,29 +23,21 @@ using ::testing::HasSubstr;
 using test::kCornell;
 using test::mean;
 
-Options small() {
-  return Options()
-      .set("basis", "sh2")
-      .set("width", "48")
-      .set("height", "27")
-      .set("grid", "16")
-      .set("rsm-size", "64");
-}
-
 TEST(Api, RendersCornell) {
-  Renderer made(Scene(kCornell), small());
+  Renderer made(Scene(kCornell), test::small_options());
   Renderer renderer = std::move(made);
   const Image full = renderer.render(), direct = renderer.render(View::direct),
               indirect = renderer.render(View::indirect);
   ASSERT_EQ(full.pixels.size(), 48u * 27 * 4);
   EXPECT_GT(mean(indirect.pixels, 1), 0);
-  EXPECT_NEAR(mean(full.pixels, 1), mean(direct.pixels, 1) + mean(indirect.pixels, 1), 1e-5 * mean(full.pixels, 1));
+  EXPECT_NEAR(mean(full.pixels, 1), mean(direct.pixels, 1) + mean(indirect.pixels, 1),
+              1e-5 * mean(full.pixels, 1));
   EXPECT_EQ(full.metadata.at("basis"), "sh2");
   EXPECT_EQ(full.pixels, renderer.render().pixels) << "frames of one renderer are the same";
 }
 
 TEST(Api, ReturnsLightAtAnyPoint) {
-  Renderer renderer(Scene(kCornell), small());
+  Renderer renderer(Scene(kCornell), test::small_options());
   EXPECT_THROW(renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}), Error) << "before the first frame";
   renderer.render();
   const auto up = renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}),
@@ -62,7 +54,7 @@ TEST(Api, AnimatedScenesRenderAtAnyTime) {
   const Scene scene(test::write_moving_scene(folder));
   EXPECT_TRUE(scene.moves());
   EXPECT_FALSE(Scene(kCornell).moves());
-  Renderer renderer(scene, small()), other(scene, small());
+  Renderer renderer(scene, test::small_options()), other(scene, test::small_options());
   const Image start = renderer.render(), later = renderer.render(View::full, {}, 0.6);
   const auto light = renderer.irradiance({0, 0.5, 0}, {0, -1, 0});
   EXPECT_NE(start.pixels, later.pixels);
@@ -91,7 +83,7 @@ Camera front() {
 
 TEST(Api, AnyCameraRenders) {
   const Scene scene(kCornell);
-  Renderer renderer(scene, small());
+  Renderer renderer(scene, test::small_options());
   EXPECT_THROW(renderer.render(View::full, "nowhere"), Error);
   const Image named = renderer.render(View::full, "front"), given = renderer.render(View::full, front());
   EXPECT_LT(difference(given, named), 1e-4);
@@ -103,7 +95,7 @@ TEST(Api, AnyCameraRenders) {
 }
 
 TEST(Api, BadCamerasAreRejectedWithTheirMember) {
-  Renderer renderer(Scene(kCornell), small());
+  Renderer renderer(Scene(kCornell), test::small_options());
   const auto rejected = [&](const std::string& member, auto change) {
     Camera camera = front();
     change(camera);
@@ -124,7 +116,7 @@ TEST(Api, BadCamerasAreRejectedWithTheirMember) {
 
 TEST(Api, CamerasOfASceneCanBeChanged) {
   Scene scene(kCornell);
-  Renderer renderer(scene, small());
+  Renderer renderer(scene, test::small_options());
   const Image before = renderer.render(View::full, "front");
   std::vector<Camera> cameras = scene.cameras();
   Camera added = front();
@@ -141,7 +133,7 @@ TEST(Api, CamerasOfASceneCanBeChanged) {
 
 TEST(Api, AChangedLightRecomputesOnlyItsLight) {
   Scene scene(kCornell);
-  Renderer renderer(scene, small());
+  Renderer renderer(scene, test::small_options());
   const Image before = renderer.render(View::indirect);
   std::vector<Light> lights = scene.lights();
   ASSERT_FALSE(lights.empty());
@@ -159,7 +151,7 @@ TEST(Api, AChangedLightRecomputesOnlyItsLight) {
   scene.set_lights(lights);
   renderer.render();
   EXPECT_EQ(renderer.stats().stages.at("propagate"), 0) << "the same lights";
-  Renderer fresh(scene, small());
+  Renderer fresh(scene, test::small_options());
   EXPECT_EQ(fresh.render(View::indirect).pixels, brighter.pixels);
   scene.set_lights({});
   EXPECT_EQ(mean(renderer.render().pixels, 1), 0) << "dark";
@@ -200,7 +192,7 @@ TEST(Api, LightsKeepTheirNumbers) {
 
 TEST(Api, AMediumCanBeSetAndRemoved) {
   Scene scene(kCornell);
-  Renderer renderer(scene, small());
+  Renderer renderer(scene, test::small_options());
   const Image clear = renderer.render();
   EXPECT_FALSE(scene.medium());
   const Medium fog{.scattering = {0.5, 0.5, 0.5}, .absorption = {0, 1, 2}, .anisotropy = 0.25};
@@ -225,7 +217,7 @@ TEST(Api, AMediumCanBeSetAndRemoved) {
 
 TEST(Api, ARendererOutlivesItsSceneHandle) {
   auto scene = std::make_unique<Scene>(kCornell);
-  Renderer renderer(*scene, small());
+  Renderer renderer(*scene, test::small_options());
   const Image before = renderer.render();
   scene.reset();
   EXPECT_EQ(renderer.render().pixels, before.pixels);
@@ -233,7 +225,7 @@ TEST(Api, ARendererOutlivesItsSceneHandle) {
 
 TEST(Api, CallsFromSeveralThreadsRunOneAfterTheOther) {
   Scene scene(kCornell);
-  Renderer renderer(scene, small());
+  Renderer renderer(scene, test::small_options());
   const Image expected = renderer.render();
   std::vector<std::future<Image>> images;
   for (int i = 0; i < 4; ++i)
@@ -243,7 +235,7 @@ TEST(Api, CallsFromSeveralThreadsRunOneAfterTheOther) {
 }
 
 TEST(Api, VolumesHoldTheLight) {
-  Renderer renderer(Scene(kCornell), small());
+  Renderer renderer(Scene(kCornell), test::small_options());
   EXPECT_THROW(renderer.volumes(), Error) << "before the first frame";
   renderer.render();
   const auto volumes = renderer.volumes();
@@ -275,7 +267,7 @@ TEST(Api, VolumesHoldTheLight) {
 }
 
 TEST(Api, IrradianceOfManyPointsIsThatOfEach) {
-  Renderer renderer(Scene(kCornell), small());
+  Renderer renderer(Scene(kCornell), test::small_options());
   renderer.render();
   std::vector<std::array<float, 3>> positions, normals;
   for (int i = 0; i < 1100; ++i) {  // more than a row of the points' image
@@ -298,7 +290,7 @@ TEST(Api, IrradianceOfManyPointsIsThatOfEach) {
 }
 
 TEST(Api, OtherViewsOfTheLastFrame) {
-  Renderer renderer(Scene(kCornell), small());
+  Renderer renderer(Scene(kCornell), test::small_options());
   EXPECT_THROW(renderer.show(View::depth), Error);
   renderer.render(View::full, front());
   const Image depth = renderer.show(View::depth);
@@ -317,7 +309,7 @@ TEST(Api, PathtraceIsComparable) {
   EXPECT_GT(progress, 0);
   EXPECT_EQ(truth.metadata.at("spp_traced"), "16");
   EXPECT_EQ(pathtrace(scene, View::indirect, front(), options).pixels, truth.pixels);
-  Renderer renderer(scene, small());
+  Renderer renderer(scene, test::small_options());
   const Comparison errors = compare(renderer.render(View::indirect, front()), truth);
   EXPECT_GT(errors.nrmse.value(), 0.01);
   EXPECT_LT(errors.nrmse.value(), 1);
@@ -340,7 +332,8 @@ TEST(Api, OptionsAreThoseOfTheProgram) {
 
 TEST(Api, ErrorsHaveTheirExitCode) {
   test::error_of(ExitCode::bad_input, [] { Scene("/nowhere/scene.json"); });
-  test::error_of(ExitCode::device, [] { Renderer(Scene(kCornell), small(), "no device of this name"); });
+  test::error_of(ExitCode::device,
+                 [] { Renderer(Scene(kCornell), test::small_options(), "no device of this name"); });
 }
 
 TEST(Api, ListsTheDeviceThatTestsRunOn) {

@@ -22,12 +22,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
                 kInfinity = std::numeric_limits<float>::infinity();
 
 Options small(int width = 48, int height = 27) {
-  return Options()
-      .set("basis", "sh2")
-      .set("width", std::to_string(width))
-      .set("height", std::to_string(height))
-      .set("grid", "16")
-      .set("rsm-size", "64");
+  return test::small_options().set("width", std::to_string(width)).set("height", std::to_string(height));
 }
 
 Camera camera_of(const Scene& scene) {
@@ -41,7 +36,7 @@ Vectors colours(const Image& image) {
   return all;
 }
 
-/// What a frame sees: its G-buffer and its irradiance.
+/// G-buffer and irradiance of a frame.
 struct Seen {
   int width, height;
   Vectors normals, irradiance;

@@ -20,15 +20,6 @@ using ::testing::HasSubstr;
 using Vectors = std::vector<std::array<float, 3>>;
 using test::kCornell;
 
-Options small() {
-  return Options()
-      .set("basis", "sh2")
-      .set("width", "48")
-      .set("height", "27")
-      .set("grid", "16")
-      .set("rsm-size", "64");
-}
-
 struct Owned {
   cl::Device device = choose_device().handle;
   cl::Context context{device};
@@ -57,7 +48,7 @@ Vectors three_of_four(const std::vector<float>& numbers) {
 TEST(OpenCl, FramesInACallersQueueAreThoseOfItsOwn) {
   const Owned own;
   const Scene scene(kCornell);
-  Renderer renderer(scene, small(), own.given()), other(scene, small());
+  Renderer renderer(scene, test::small_options(), own.given()), other(scene, test::small_options());
   const Image full = other.render();
   EXPECT_EQ(renderer.render().pixels, full.pixels);
   opencl::Frame frame = renderer.enqueue(View::albedo);
@@ -80,7 +71,7 @@ TEST(OpenCl, FramesInACallersQueueAreThoseOfItsOwn) {
 TEST(OpenCl, AQueueWithoutProfilingHasNoTimes) {
   Owned own;
   own.queue = cl::CommandQueue(own.context, own.device);
-  Renderer renderer(Scene(kCornell), small(), own.given());
+  Renderer renderer(Scene(kCornell), test::small_options(), own.given());
   renderer.render();
   EXPECT_EQ(renderer.stats().stages.at("gather"), 0);
 }
@@ -88,7 +79,7 @@ TEST(OpenCl, AQueueWithoutProfilingHasNoTimes) {
 TEST(OpenCl, LightFromAndToBuffersIsThatOfTheHost) {
   const Owned own;
   const Scene scene(kCornell);
-  Renderer renderer(scene, small(), own.given());
+  Renderer renderer(scene, test::small_options(), own.given());
   const Camera camera = scene.cameras().front();
   const opencl::Frame frame = renderer.enqueue(View::full, camera);
   const cl::Buffer light(own.context, CL_MEM_WRITE_ONLY, 48 * 27 * 16 + 4);
@@ -112,7 +103,7 @@ TEST(OpenCl, LightFromAndToBuffersIsThatOfTheHost) {
 TEST(OpenCl, ACallersKernelLooksLightUp) {
   for (const char* gather : {"visible", "all"}) {
     const Owned own;
-    Renderer renderer(Scene(kCornell), small().set("gather", gather), own.given());
+    Renderer renderer(Scene(kCornell), test::small_options().set("gather", gather), own.given());
     EXPECT_THROW(renderer.device_volumes(), Error) << "before the first frame";
     renderer.render();
     Vectors points, along;
@@ -151,7 +142,7 @@ TEST(OpenCl, ACallersKernelLooksLightUp) {
     }
     EXPECT_GT(irradiance[0][0], 0);
   }
-  Renderer steps(Scene(kCornell), small().set("transport", "exact").set("near", "off"));
+  Renderer steps(Scene(kCornell), test::small_options().set("transport", "exact").set("near", "off"));
   EXPECT_THAT(test::error_of(ExitCode::usage, [&] { steps.lookup_source(); }),
               HasSubstr("transport 'exact'"));
 }
@@ -164,7 +155,7 @@ TEST(OpenCl, ReferencesAreReturned) {
   };
   const auto before = references();
   {
-    Renderer renderer(Scene(kCornell), small(), own.given());
+    Renderer renderer(Scene(kCornell), test::small_options(), own.given());
     EXPECT_GT(references(), before);
     renderer.enqueue();
   }
@@ -172,7 +163,7 @@ TEST(OpenCl, ReferencesAreReturned) {
   cl::Buffer kept;
   std::vector<float> values;
   {
-    Renderer renderer(Scene(kCornell), small(), own.given());
+    Renderer renderer(Scene(kCornell), test::small_options(), own.given());
     const opencl::Frame frame = renderer.enqueue();
     kept = cl::Buffer(frame.image, true);
     values = own.read(frame.image, 4 * 48 * 27);
@@ -184,14 +175,14 @@ TEST(OpenCl, WrongObjectsAreNamed) {
   const Owned own, other;
   const Scene scene(kCornell);
   const auto rejected = [&](const std::string& part, const opencl::Queue& queue) {
-    EXPECT_THAT(test::error_of(ExitCode::usage, [&] { Renderer(scene, small(), queue); }),
+    EXPECT_THAT(test::error_of(ExitCode::usage, [&] { Renderer(scene, test::small_options(), queue); }),
                 AllOf(HasSubstr(part), HasSubstr("allowed")));
   };
   rejected("context and queue: found neither", {});
   rejected("queue: found one of another context", {own.context(), other.queue()});
   const cl::CommandQueue unordered(own.context, own.device, CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
   rejected("queue: found an out-of-order one", {nullptr, unordered()});
-  Renderer renderer(scene, small(), {own.context(), nullptr});
+  Renderer renderer(scene, test::small_options(), {own.context(), nullptr});
   const cl::Buffer good(own.context, CL_MEM_READ_WRITE, 2 * 2 * 16),
       short_(own.context, CL_MEM_READ_WRITE, 63), foreign(other.context, CL_MEM_READ_WRITE, 2 * 2 * 16);
   const auto refused = [&](const std::string& part, const opencl::GBuffer& surfaces) {
@@ -222,11 +213,14 @@ TEST(OpenCl, AContextOfTwoDevicesNeedsAQueue) {
   const cl::Context both(halves);
   const Scene scene(kCornell);
   const cl::CommandQueue queue(both, halves[0]);
-  EXPECT_EQ(Renderer(scene, small(), {nullptr, queue()}).render().pixels,
-            Renderer(scene, small()).render().pixels);
+  EXPECT_EQ(Renderer(scene, test::small_options(), {nullptr, queue()}).render().pixels,
+            Renderer(scene, test::small_options()).render().pixels);
   if (both.getInfo<CL_CONTEXT_DEVICES>().size() != 2)
     GTEST_SKIP() << "the driver counts sub-devices as one device";
-  EXPECT_THAT(test::error_of(ExitCode::usage, [&] { Renderer(scene, small(), {both(), nullptr}); }),
+  EXPECT_THAT(test::error_of(ExitCode::usage,
+                             [&] {
+                               Renderer(scene, test::small_options(), {both(), nullptr});
+                             }),
               HasSubstr("context: found 2 devices and no queue"));
 }
 

@@ -92,7 +92,7 @@ void read_triangles(const PrimitiveArrays& from, std::uint64_t count, std::vecto
   for (const LocalVertex& vertex : to.vertices) slots[vertex.source] = kNoSlot;
 }
 
-/// Gives each triangle three vertices of its own (flat normals: glTF 2.0, section 3.7.2.1).
+/// Copies vertices until no two triangles share one (flat normals: glTF 2.0, section 3.7.2.1).
 void split(LocalPrimitive& primitive) {
   std::vector<LocalVertex> split;
   split.reserve(primitive.triangles.size() * 3);

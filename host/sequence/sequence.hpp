@@ -40,7 +40,7 @@ struct SequenceOptions {
   std::filesystem::path file(int frame) const;
 };
 
-/// What the frames show, and who is told of them.
+/// Content of the frames, and the functions that receive them.
 struct SequenceSubject {
   std::string camera;
   float exposure;

@@ -19,7 +19,10 @@ static_assert(std::size(kStages) == kNames<Stage>.size());
 /// Runs the comparison; an error becomes a result.
 CheckResults results_of(const Case& compared, Session& session) {
   const auto result = [&](Status status, const char* reason) {
-    return CheckResults{{std::string(name_of(compared.stage)), compared.name, {}, status, reason}};
+    CheckResults one(1);
+    one[0].stage = name_of(compared.stage), one[0].variant = compared.name;
+    one[0].status = status, one[0].reason = reason;
+    return one;
   };
   const auto of_error = [&](const Error& error) {
     return result(error.code() == ExitCode::device ? Status::unsupported : Status::failed, error.what());
@@ -43,11 +46,9 @@ CheckResult result_of(std::string_view stage, const std::string& variant, const 
   return {std::string(stage), variant, deviation, deviation.passed() ? Status::ok : Status::wrong};
 }
 
-Case deviation_case(Stage stage, const std::string& name,
-                    const std::function<Deviation(Session&)>& compare) {
-  return {stage, name, [=](Session& session) {
-            return CheckResults{result_of(name_of(stage), name, compare(session))};
-          }};
+Case deviation_case(Stage stage, const std::string& name, const std::function<Deviation(Session&)>& compare) {
+  return {stage, name,
+          [=](Session& session) { return CheckResults{result_of(name_of(stage), name, compare(session))}; }};
 }
 
 Case job_case(Stage stage, const std::string& name, const std::function<Job(Session&)>& make) {
@@ -76,7 +77,9 @@ CheckResults run_case(const Case& compared, Session& session) {
 }
 
 bool passed(const CheckResults& results) {
-  const auto has = [&](Status status) { return std::ranges::count(results, status, &CheckResult::status) > 0; };
+  const auto has = [&](Status status) {
+    return std::ranges::count(results, status, &CheckResult::status) > 0;
+  };
   return has(Status::ok) && !has(Status::wrong) && !has(Status::failed);
 }
 

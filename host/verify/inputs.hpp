@@ -82,7 +82,7 @@ struct CascadesOnDevice {
   std::vector<Volume> stored;
   Buffer occluded;  ///< null if nothing is
   std::vector<reference::Cascade> cascades;
-  /// What Gatherer::gather() takes; must not outlive this.
+  /// The light that Gatherer::gather() takes; must not outlive this.
   GatheredLight gathered() const;
 };
 

@@ -2,12 +2,12 @@
 // Traces the rays of the near field against the scene's triangles.
 //
 // In:   points, directions   near_layout.h
-//       nodes, leaves        tree of the triangles (triangle_tree.h); CLPV_SCENE: the scene, for masked materials
+//       nodes, leaves        tree of the triangles (gather/triangle_tree.h); CLPV_SCENE: the scene, for masked materials
 // Out:  distances            per ray: distance of the hit [m], INFINITY without one; a plane for each k
 //       counts, hits         per tile: number of hits, and their list (near_layout.h)
 // A work-item traces the rays of a tile, which share an entry to the tree.
 #include "gather/near_layout.h"
-#include "triangle_tree.h"
+#include "gather/triangle_tree.h"
 
 #if W > 1
 

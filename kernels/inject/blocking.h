@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What surfels add to a geometry volume, and how blockers of two sources that see the same surfaces are merged
-// (docs/method.md, 'Blockers').
+// Surfels add blocking to a geometry volume; blockers of two sources that see the same surfaces are merged (docs/method.md,
+// 'Blockers').
 //
 //   CLPV_BLOCKS_BY_AREA 1:   |n_x|, |n_y|, |n_z|; the larger of each area
 //                       0:   the lobe about the normal; the lobe of the larger mean

@@ -3,7 +3,7 @@
 // have few products.
 //
 // The eight bins 8a, ..., 8a + 7 lie about axis a, and differ in the signs of their components: bits 0, 1 and 2 of the
-// index stand for axes a + 1, a + 2 and a (modulo 3).
+// index are those of axes a + 1, a + 2 and a (modulo 3).
 #ifndef CLPV_MIRRORED_BINS_H
 #define CLPV_MIRRORED_BINS_H
 

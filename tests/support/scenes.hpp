@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Files of scenes.
+// Files of scenes, and options of small frames.
 #pragma once
 
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+
+#include "clpv/options.hpp"
 
 namespace clpv::test {
 
@@ -23,6 +25,16 @@ inline std::filesystem::path sponza() {
                                    : std::filesystem::path(CLPV_SOURCE_DIR) / "../shared/scenes/sponza";
   if (std::filesystem::is_directory(path)) path /= "Sponza.gltf";
   return std::filesystem::exists(path) ? path : std::filesystem::path();
+}
+
+/// 48x27 pixels, sh2, cascades of 16^3 cells, RSMs of 64^2 texels.
+inline Options small_options() {
+  return Options()
+      .set("basis", "sh2")
+      .set("width", "48")
+      .set("height", "27")
+      .set("grid", "16")
+      .set("rsm-size", "64");
 }
 
 }  // namespace clpv::test

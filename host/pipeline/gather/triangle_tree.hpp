@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tree of bounding boxes over the triangles of a scene, for rays on the device (kernels/triangle_tree.h). Built by
+// Tree of bounding boxes over the triangles of a scene, for rays on the device (kernels/gather/triangle_tree.h). Built by
 // Embree's builder on the host, without OpenCL.
 #pragma once
 

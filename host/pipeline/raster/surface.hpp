@@ -28,7 +28,7 @@ struct Surface {
   /// w is 1, or 0 without a surface.
   Buffer position;
 
-  /// What kernels read with CLPV_POINTS 1 (positions) or 0 (depths).
+  /// Kernels read positions with CLPV_POINTS 1, depths with 0.
   bool points() const { return position.exists(); }
   const Buffer& places() const { return points() ? position : depth; }
 };
