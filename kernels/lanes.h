@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Vectors of W lanes: pixels of a row, cells of a row, triangles, rays. First text of every program with generated text.
 //
-// W 8 is for CPUs. PoCL vectorises work-items by itself only in short kernels of straight-line code on named scalars,
-// without arrays, branches and float3 in memory (coefficients.h, surface.h, volume/whole_groups.h). Longer kernels use
-// vectors, and no function that PoCL does not inline, such as any(), floor() or log2(). W 1 is for GPUs, which run
-// work-items themselves in lanes.
-#ifndef CLPV_LANES_H
-#define CLPV_LANES_H
+// W 8 is for CPUs, and kernels with it use no function that PoCL does not inline, such as any(), floor() or log2(). W 1 is
+// for GPUs, which run work-items themselves in lanes, and for kernels on images. There, PoCL vectorises work-items only in
+// short kernels of straight-line code, without branches (volume/whole_groups.h).
+#pragma once
 
 #ifndef CLPV_W
 #define CLPV_W 8
@@ -27,21 +25,8 @@
 // of vectors is a mask: an intW, -1 where it holds and 0 elsewhere. With one lane it is 1 or 0: write `mask == 0` in place
 // of ~mask, and all_bits(mask) where its bits are numbers.
 #if W == 8
-typedef float8 realW;
-typedef int8 intW;
-typedef uint8 uintW;
-typedef long8 longW;
-typedef uchar8 bytesW;
-#define to_realW convert_float8
-#define to_intW convert_int8
-#define to_uintW convert_uint8
-#define to_longW convert_long8
-#define to_bytesW convert_uchar8
-#define to_intW_rte convert_int8_rte
-#define to_uintW_rte convert_uint8_rte
-#define as_realW as_float8
-#define as_intW as_int8
-#define as_uintW as_uint8
+#define CLPV_VECTOR(name) name##8
+#define CLPV_ROUNDED(name) name##8_rte
 #define load_lanes(from) vload8(0, from)
 #define store_lanes(value, to) vstore8(value, 0, to)
 #define lane_numbers() ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
@@ -52,21 +37,8 @@ typedef uchar8 bytesW;
   ((from)[(at).s0] member, (from)[(at).s1] member, (from)[(at).s2] member, (from)[(at).s3] member,    \
    (from)[(at).s4] member, (from)[(at).s5] member, (from)[(at).s6] member, (from)[(at).s7] member)
 #elif W == 1
-typedef float realW;
-typedef int intW;
-typedef uint uintW;
-typedef long longW;
-typedef uchar bytesW;
-#define to_realW convert_float
-#define to_intW convert_int
-#define to_uintW convert_uint
-#define to_longW convert_long
-#define to_bytesW convert_uchar
-#define to_intW_rte convert_int_rte
-#define to_uintW_rte convert_uint_rte
-#define as_realW as_float
-#define as_intW as_int
-#define as_uintW as_uint
+#define CLPV_VECTOR(name) name
+#define CLPV_ROUNDED(name) name##_rte
 #define load_lanes(from) (*(from))
 #define store_lanes(value, to) (*(to) = (value))
 #define lane_numbers() 0
@@ -74,6 +46,21 @@ typedef uchar bytesW;
 #define first_lane(value) (value)
 #define CLPV_GATHER_MEMBER(from, at, member) ((from)[at] member)
 #endif
+typedef CLPV_VECTOR(float) realW;
+typedef CLPV_VECTOR(int) intW;
+typedef CLPV_VECTOR(uint) uintW;
+typedef CLPV_VECTOR(long) longW;
+typedef CLPV_VECTOR(uchar) bytesW;
+#define to_realW CLPV_VECTOR(convert_float)
+#define to_intW CLPV_VECTOR(convert_int)
+#define to_uintW CLPV_VECTOR(convert_uint)
+#define to_longW CLPV_VECTOR(convert_long)
+#define to_bytesW CLPV_VECTOR(convert_uchar)
+#define to_intW_rte CLPV_ROUNDED(convert_int)
+#define to_uintW_rte CLPV_ROUNDED(convert_uint)
+#define as_realW CLPV_VECTOR(as_float)
+#define as_intW CLPV_VECTOR(as_int)
+#define as_uintW CLPV_VECTOR(as_uint)
 #define CLPV_GATHER(from, at) CLPV_GATHER_MEMBER(from, at, )
 
 #define ZERO ((realW)(0.0f))
@@ -169,5 +156,4 @@ static inline int max_lane_int(const intW v) {
   return v;
 }
 
-#endif
 #endif

@@ -3,8 +3,7 @@
 //
 // OpenCL's prefetch() does nothing on PoCL 3.1. Clang's builtin takes only private pointers, which on a CPU address
 // the same memory as global ones; compilers to SPIR-V reject it.
-#ifndef CLPV_PREFETCH_H
-#define CLPV_PREFETCH_H
+#pragma once
 
 #define CLPV_LINE 64  // [bytes] cache line of most CPUs
 
@@ -15,6 +14,4 @@
 #endif
 #ifndef CLPV_PREFETCH
 #define CLPV_PREFETCH(at)
-#endif
-
 #endif

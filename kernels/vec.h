@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Vectors of three components, W at a time (lanes.h).
-#ifndef CLPV_VEC_H
-#define CLPV_VEC_H
+#pragma once
 
 #include "lanes.h"
 
@@ -53,5 +52,3 @@ static inline Vec vec_blend(const Vec w, const Vec a, const Vec b, const Vec c) 
   return vec(w.x * a.x + w.y * b.x + w.z * c.x, w.x * a.y + w.y * b.y + w.z * c.y,
              w.x * a.z + w.y * b.z + w.z * c.z);
 }
-
-#endif

@@ -15,8 +15,8 @@ void expect_agreement(Stage stage, Session& session) {
   EXPECT_FALSE(results.empty());
   for (const verify::CheckResult& result : results) {
     const verify::Deviation& found = result.deviation;
-    EXPECT_TRUE(result.passed()) << result.stage << " " << result.variant << ": " << found.worst << ", allowed "
-                                 << found.allowed << "; " << found.place << result.reason;
+    EXPECT_TRUE(result.passed()) << result.stage << " " << result.variant << ": " << found.worst
+                                 << ", allowed " << found.allowed << "; " << found.place << result.reason;
   }
 }
 
@@ -34,8 +34,8 @@ TEST(Check, KernelsAgreeInTheOtherNumberOfLanes) {
   Device device = test::test_session().device();
   device.lanes = device.lanes == 8 ? 1 : 8;
   Session session(device);
-  for (const Stage stage :
-       {Stage::rasterize, Stage::emit, Stage::reflectors, Stage::visibility, Stage::near, Stage::shade})
+  for (const Stage stage : {Stage::rasterize, Stage::emit, Stage::reflectors, Stage::visibility,
+                            Stage::propagate, Stage::near, Stage::shade})
     expect_agreement(stage, session);
 }
 

@@ -53,6 +53,17 @@ TEST(KernelFiles, IncludesAreReplacedAndMarked) {
             "a4\n");
 }
 
+TEST(KernelFiles, GuardReplacesPragmaOnce) {
+  KernelFolder folder;
+  folder.write("a.cl", "#include \"v/b.h\"\na2\n");
+  folder.write("v/b.h", "#pragma once\nb2\n");
+  EXPECT_EQ(
+      assemble_kernel_source("a.cl"),
+      "#line 1 \"a.cl\"\n"
+      "#ifndef CLPV_ONCE_v_b_h\n#define CLPV_ONCE_v_b_h\n#line 1 \"v/b.h\"\n\nb2\n#endif\n#line 2 \"a.cl\"\n"
+      "a2\n");
+}
+
 TEST(KernelFiles, FolderOverridesFileByFile) {
   KernelFolder folder;
   folder.write("sizes.cl", "// mine\n#include \"shared/grid.h\"\n");

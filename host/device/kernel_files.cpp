@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "device/kernel_files.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -11,6 +13,7 @@
 namespace clpv {
 namespace {
 
+constexpr std::string_view kOnce = "#pragma once";
 constexpr int kMaxIncludeDepth = 8;  // deeper than any kernel nests; stops a file that includes itself
 
 std::string_view trim(std::string_view text) {
@@ -28,22 +31,33 @@ std::string included_name(std::string_view line) {
   return std::string(line.substr(open + 1, close - open - 1));
 }
 
+/// Macro that guards a file with `#pragma once`: the text of "volume/soa.h" is joined under CLPV_ONCE_volume_soa_h.
+std::string guard_of(std::string name) {
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return "CLPV_ONCE_" + name;
+}
+
 void append_file(std::string& out, const std::string& name, int depth) {
   if (depth > kMaxIncludeDepth) {
     throw Error(ExitCode::run_time, "kernels/{}: includes nest deeper than {}", name, kMaxIncludeDepth);
   }
+  const std::string text = kernel_file(name);
+  const bool once = text.find(kOnce) != std::string::npos;
+  if (once) out += fmt::format("#ifndef {0}\n#define {0}\n", guard_of(name));
   out += fmt::format("#line 1 \"{}\"\n", name);
-  std::istringstream lines(kernel_file(name));
+  std::istringstream lines(text);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
     if (const std::string other = included_name(line); !other.empty()) {
       append_file(out, other, depth + 1);
       out += fmt::format("#line {} \"{}\"\n", number + 1, name);
     } else {
-      out += line;
+      if (line != kOnce) out += line;
       out += '\n';
     }
   }
+  if (once) out += "#endif\n";
 }
 
 }  // namespace

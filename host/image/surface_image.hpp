@@ -9,8 +9,6 @@
 
 namespace clpv {
 
-static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW);
-
 /// Host copy of a Surface (pipeline/raster/surface.hpp), input of the CPU reference. One value per pixel, row 0 first. Depth [m] is
 /// along the view's forward axis, 0 without a surface; normals and colours are as in Surface.
 struct SurfaceImage {

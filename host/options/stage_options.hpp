@@ -24,23 +24,11 @@ struct InjectOptions {
   VolumeFormat format = {};  ///< of light and geometry volumes
 };
 
-/// Launch shape of a kernel over all cells of a grid. A work-item processes `lanes` cells along x. A work-group is a row
-/// along x, as long as the grid and at most 64 work-items.
-struct StencilOptions {
-  int grid = 32;             ///< cells along each axis
-  VolumeFormat format = {};  ///< of all volumes that the kernel accesses
-  int lanes = 0;             ///< 1 or 8; 0: chosen by device and format
-};
-
 struct PropagateOptions {
   int grid = 32;  ///< cells along each axis
   LobeTime lobe_time = LobeTime::host;
   TableStorage table = TableStorage::buffer;  ///< of lobes rotated in the kernel
   VolumeFormat format = {};                   ///< of all volumes
-  int lanes = 0;                              ///< as in StencilOptions
-
-  /// Kernels that compute lobes process one cell per work-item.
-  StencilOptions stencil() const { return {grid, format, lobe_time == LobeTime::kernel ? 1 : lanes}; }
 };
 
 /// Distribution of a sweep's work. The light is equal up to rounding.

@@ -13,8 +13,6 @@
 
 namespace clpv {
 
-static_assert(sizeof(ClpvEmitter) == CLPV_SIZEOF_EMITTER);
-
 /// Returns true for an emissive material. Its front emits, and also its back if it is double sided.
 bool emits(const ClpvMaterial& material);
 

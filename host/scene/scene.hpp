@@ -21,10 +21,6 @@ struct Sky;
 using Vertex = ClpvVertex;
 using Triangle = ClpvTriangle;
 
-static_assert(sizeof(ClpvVertex) == CLPV_SIZEOF_VERTEX && sizeof(ClpvTriangle) == CLPV_SIZEOF_TRIANGLE &&
-              sizeof(ClpvMaterial) == CLPV_SIZEOF_MATERIAL && sizeof(ClpvTexture) == CLPV_SIZEOF_TEXTURE &&
-              sizeof(ClpvMedium) == CLPV_SIZEOF_MEDIUM && sizeof(ClpvLight) == CLPV_SIZEOF_LIGHT);
-
 /// Texture of RGBA with 8 bits per channel, row 0 (v = 0) first: sRGB-encoded colour, linear alpha.
 struct Texture {
   std::uint32_t width = 0, height = 0;

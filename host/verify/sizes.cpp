@@ -21,17 +21,6 @@
 namespace clpv::verify {
 namespace {
 
-static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
-static_assert(sizeof(ClpvMedium) == CLPV_SIZEOF_MEDIUM);
-static_assert(sizeof(ClpvLight) == CLPV_SIZEOF_LIGHT);
-static_assert(sizeof(ClpvVertex) == CLPV_SIZEOF_VERTEX);
-static_assert(sizeof(ClpvTriangle) == CLPV_SIZEOF_TRIANGLE);
-static_assert(sizeof(ClpvMaterial) == CLPV_SIZEOF_MATERIAL);
-static_assert(sizeof(ClpvTexture) == CLPV_SIZEOF_TEXTURE);
-static_assert(sizeof(ClpvEmitter) == CLPV_SIZEOF_EMITTER);
-static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW);
-static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
-
 struct Place {
   const char* name;
   std::uint32_t bytes;

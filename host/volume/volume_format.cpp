@@ -94,12 +94,7 @@ void require_supported(const Device& device, const VolumeFormat& format, const V
   }
 }
 
-int preferred_lanes(const Device& device, const VolumeFormat& format) {
-  const bool vectorised_over_work_items = format == VolumeFormat{};
-  return vectorised_over_work_items ? 1 : preferred_row_lanes(device, format);
-}
-
-int preferred_row_lanes(const Device& device, const VolumeFormat& format) {
+int lanes_of(const Device& device, const VolumeFormat& format) {
   return format.layout == Layout::image ? 1 : device.lanes;
 }
 

@@ -34,12 +34,8 @@ std::optional<std::string> unsupported(const Device& device, const VolumeFormat&
 /// Throws Error(device) "unsupported: ..." if either function returns a reason.
 void require_supported(const Device& device, const VolumeFormat& format, const VolumeShape& shape);
 
-/// Preferred number of cells along x per work-item of a stencil: 1 or 8. It is 8 on CPU devices for buffers other than
-/// soa/float, since only soa/float vectorises over work-items there.
-int preferred_lanes(const Device& device, const VolumeFormat& format);
-
-/// The same for kernels that never vectorise over work-items: 8 for buffers on CPU devices.
-int preferred_row_lanes(const Device& device, const VolumeFormat& format);
+/// Cells along x that a work-item processes: the device's lanes for buffers, 1 for images.
+int lanes_of(const Device& device, const VolumeFormat& format);
 
 /// Adds the literals that kernels/volume/instance.h needs.
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes = 1);

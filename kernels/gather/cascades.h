@@ -6,8 +6,7 @@
 // a cell, and 0 outside all cascades.
 //
 // From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET.
-#ifndef CLPV_CASCADES_H
-#define CLPV_CASCADES_H
+#pragma once
 
 #include "volume/coefficients.h"
 #include "lanes.h"
@@ -46,5 +45,3 @@ CLPV_INLINE void find_cascade_points(const ClpvGrid grid, const Vec position, co
   const Vec lifted = vec_add_scaled(at, offset, lift);
   find_sample_points(vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f), points);
 }
-
-#endif

@@ -3,8 +3,7 @@
 //
 // OpenCL 1.2 has no arrays of images: CLPV_EACH_CASCADE(DO), from the host, writes DO(0) DO(1) ... for each cascade,
 // each with its own parameter and code.
-#ifndef CLPV_GATHER_IMAGE_H
-#define CLPV_GATHER_IMAGE_H
+#pragma once
 
 #include "volume/light.h"
 
@@ -40,5 +39,3 @@ CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
   CLPV_ADD_CASCADE(c, volume##c);
 #define CLPV_GATHERED_VOLUMES CLPV_EACH_CASCADE(CLPV_GATHERED_VOLUME)
 #define CLPV_ADD_CASCADES CLPV_EACH_CASCADE(CLPV_ADD_NUMBERED)
-
-#endif

@@ -8,8 +8,7 @@
 // are read as whole vectors.
 //
 // From the host: CLPV_PAIRS.
-#ifndef CLPV_GATHER_PACKED_H
-#define CLPV_GATHER_PACKED_H
+#pragma once
 
 // Steps from a record to its neighbours; 0 in a grid of one cell.
 #define CLPV_DX (CLPV_GRID > 1 ? CLPV_PAIRS : 0)
@@ -146,5 +145,3 @@ CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
     const PackedCascade cascade = CLPV_PACKED_CASCADE(c);  \
     CLPV_ADD_CASCADE(c, cascade);                          \
   }
-
-#endif

@@ -5,8 +5,7 @@
 //   __kernel void mine(__global float4* out, CLPV_RADIANCE) {
 //     out[0] = clpv_irradiance(CLPV_PASS_RADIANCE, (float3)(0, 1, 0), (float3)(0, 0, 1));
 //   }
-#ifndef CLPV_LOOKUP_H
-#define CLPV_LOOKUP_H
+#pragma once
 
 #include "gather/radiance.h"
 
@@ -29,5 +28,3 @@ CLPV_INLINE float4 clpv_radiance(CLPV_RADIANCE, const float3 position, const flo
   sample_radiance(CLPV_PASS_RADIANCE, vec_at(position), ZERO, vec_at(direction), lane_numbers() == 0, &field);
   return radiance_along(&field.at[0], direction.x, direction.y, direction.z);
 }
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Paths through a medium (shared/light.h), W at a time.
-#ifndef CLPV_MEDIUM_H
-#define CLPV_MEDIUM_H
+#pragma once
 
 #include "lanes.h"
 #include "shared/light.h"
@@ -41,5 +40,3 @@ CLPV_INLINE realW phase_function(const float g, const realW cosine) {
   const realW d = 1.0f + g * g - 2.0f * g * cosine;
   return (1.0f - g * g) / (4.0f * M_PI_F * d * sqrt(d));
 }
-
-#endif

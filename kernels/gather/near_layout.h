@@ -6,8 +6,7 @@
 // there, or is empty (near_points.cl).
 //
 // From the host: CLPV_NEAR_STEP (1, 2, 4 or 8), CLPV_NEAR_LAYERS (1 or 2), CLPV_NEAR_RAYS (rays per pixel).
-#ifndef CLPV_NEAR_LAYOUT_H
-#define CLPV_NEAR_LAYOUT_H
+#pragma once
 
 #include "lanes.h"
 #include "shared/near.h"
@@ -108,5 +107,3 @@ CLPV_INLINE Vec find_near_directions(__global const realW* directions, const Nea
   const Vec w = vec(about_z[0], about_z[CLPV_DIRECTION_VECTORS], about_z[2 * CLPV_DIRECTION_VECTORS]);
   return vec_blend(w, p->tangent, p->bitangent, p->normal);
 }
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Surfaces of the near field's pixels, and which of them are one (near_filter.cl).
-#ifndef CLPV_NEAR_SURFACE_H
-#define CLPV_NEAR_SURFACE_H
+#pragma once
 
 #include "gather/near_layout.h"
 
@@ -49,6 +48,4 @@ CLPV_INLINE void spread_surfaces(NearSurfaces* s, const bool right) {
   s->normal = spread_vectors(s->normal, right);
   s->reach = CLPV_SPREAD(s->reach);
 }
-#endif
-
 #endif

@@ -6,8 +6,7 @@
 //   E(p, n) = max(0, alpha(-n) . C(p))   [W/m^2]
 //
 // L may be negative: it is the projection of the light on nine harmonics. docs/method.md, 'The sweep', 'Gathering'.
-#ifndef CLPV_RADIANCE_H
-#define CLPV_RADIANCE_H
+#pragma once
 
 #include "gather/cascades.h"
 
@@ -69,5 +68,3 @@ CLPV_INLINE float4 radiance_along(const Sampled* field, const float x, const flo
 CLPV_INLINE float4 field_irradiance(const Sampled* field, const float x, const float y, const float z) {
   return max(weigh(cosine_integrals(-x, -y, -z), *field), 0.0f);
 }
-
-#endif

@@ -7,8 +7,7 @@
 // W rays share lists of nodes and leaves to visit. Processors test the entries of a list at the same time, while a
 // depth-first traversal waits for each node before it knows the next. One ray visits nodes depth first: its list is a
 // stack.
-#ifndef CLPV_TRIANGLE_TREE_H
-#define CLPV_TRIANGLE_TREE_H
+#pragma once
 
 #include "raster/scene_triangles.h"
 #include "shared/tree.h"
@@ -285,5 +284,3 @@ CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Ray
   }
   take_masked(&masked, masked_count, CLPV_PASS_SCENE, rays);
 }
-
-#endif

@@ -2,8 +2,7 @@
 // Adds the sum of a cell's texels to a volume: the last step of injection (inject.cl).
 //
 //   deliver(volume, key, sums)   adds (1 / pi) A^-1 sums to a light volume, or merges A^-1 sums into a geometry volume
-#ifndef CLPV_ADD_TO_VOLUME_H
-#define CLPV_ADD_TO_VOLUME_H
+#pragma once
 
 #include "inject/cell_keys.h"
 
@@ -32,5 +31,3 @@ static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums su
                 add_scaled(light_load(volume, c, cell.x, cell.y, cell.z), M_1_PI_F, project_sum(sums.channel[c])));
 #endif
 }
-
-#endif

@@ -6,8 +6,7 @@
 //                       0:   the lobe about the normal; the lobe of the larger mean
 //
 // From the host: with lobes CLPV_INTEGRALS, those of the basis's functions, and what lobe.h needs.
-#ifndef CLPV_BLOCKING_H
-#define CLPV_BLOCKING_H
+#pragma once
 
 #if CLPV_BLOCKS_BY_AREA
 
@@ -43,5 +42,4 @@ CLPV_INLINE Coefficients merge_blockers(const Coefficients a, const Coefficients
   return r;
 }
 
-#endif
 #endif

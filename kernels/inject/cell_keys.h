@@ -3,8 +3,7 @@
 //
 // Cell (x, y, z) of n^3 has the key (z n + y) n + x. Geometry volumes have n + 1 corners along each axis instead of n
 // cells.
-#ifndef CLPV_CELL_KEYS_H
-#define CLPV_CELL_KEYS_H
+#pragma once
 
 #include "shared/sort.h"
 
@@ -27,5 +26,3 @@ static inline uint cell_key(const uint n, const uint x, const uint y, const uint
 static inline int3 cell_of(const uint n, const uint key) {
   return (int3)(key % n, key / n % n, key / (n * n));
 }
-
-#endif

@@ -7,8 +7,7 @@
 //
 // From the host (host/codegen/inject_source.cpp): CLPV_ROTATED, cosine_integrals(x, y, z) or with CLPV_ROTATED
 // rotated_integrals(x, y, z CLPV_PASS_TABLE), CLPV_FLUX_WEIGHTS, CLPV_GRAM_LOWER (L) and CLPV_GRAM_INVERSE_DIAGONAL.
-#ifndef CLPV_LOBE_H
-#define CLPV_LOBE_H
+#pragma once
 
 #include "volume/coefficients.h"
 
@@ -49,5 +48,3 @@ CLPV_INLINE Coefficients project_sum(const Coefficients a) {
   }
   return r;
 }
-
-#endif

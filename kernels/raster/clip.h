@@ -4,8 +4,7 @@
 // A point is (x, y, w, z): along right and up [m], the divisor of its screen position (perspective: the depth;
 // orthographic: 1), and the depth. Two triangles that share an edge must clip it at the same point, to the bit.
 // Intersections are therefore computed from the corner inside to the one outside, and FP_CONTRACT is off (project.h).
-#ifndef CLPV_CLIP_H
-#define CLPV_CLIP_H
+#pragma once
 
 #include "raster/project.h"
 
@@ -57,5 +56,3 @@ static inline int clip_polygon(const ClpvView view, float4* polygon) {
   }
   return count < 3 ? 0 : count;
 }
-
-#endif

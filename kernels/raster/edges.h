@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Exact coverage of pixels by a triangle: edge functions in 64-bit integers, with the top-left rule.
-#ifndef CLPV_EDGES_H
-#define CLPV_EDGES_H
+#pragma once
 
 #include "shared/raster.h"
 
@@ -32,5 +31,3 @@ static inline Edge edge_at(__global const ClpvRasterTriangle* r, const int i, co
 static inline long largest_in_tile(const Edge edge) {
   return edge.value + (CLPV_TILE - 1) * (max(edge.step_x, 0L) + max(edge.step_y, 0L));
 }
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Appends triangles to the list of those to draw, and an entry for every tile that each may cover.
-#ifndef CLPV_ENTER_TILES_H
-#define CLPV_ENTER_TILES_H
+#pragma once
 
 #include "raster/edges.h"
 #include "lanes.h"
@@ -115,5 +114,3 @@ CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const
   }
   for (; at < end; ++at) entries[CLPV_ENTRY_WORDS * at] = CLPV_NO_SLICE;
 }
-
-#endif

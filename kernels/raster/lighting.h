@@ -4,8 +4,7 @@
 //
 //   E = I cone^2 / max(d, d_min)^2      spot and point lights, 0 beyond the range;   E: constant for directional lights
 //   E T                                 with CLPV_MEDIUM: T of the path to the light (medium.h)
-#ifndef CLPV_LIGHTING_H
-#define CLPV_LIGHTING_H
+#pragma once
 
 #include "lanes.h"
 #include "shared/light.h"
@@ -52,5 +51,3 @@ static inline Vec light_irradiance(const ClpvLight light, const Vec position, Ve
   return irradiance;
 #endif
 }
-
-#endif

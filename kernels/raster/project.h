@@ -2,8 +2,7 @@
 // Projects points of the scene to the screen, W at a time (lanes.h).
 //
 // Two triangles that share a corner must project it to the same place, to the bit, in any lane: FP_CONTRACT is off.
-#ifndef CLPV_PROJECT_H
-#define CLPV_PROJECT_H
+#pragma once
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -62,5 +61,3 @@ static inline ScreenCorner project(const ClpvView view, const ViewPoint p) {
   corner.key = CLPV_PARALLEL(view) ? p.z : -1.0f / p.z;
   return corner;
 }
-
-#endif

@@ -2,8 +2,7 @@
 // Attributes of W triangles of the scene: corners, materials and textures (shared/mesh.h).
 //
 // From the host: CLPV_COLOURED (vertex colours other than 1) and CLPV_EMISSIVE (emissive materials).
-#ifndef CLPV_SCENE_TRIANGLES_H
-#define CLPV_SCENE_TRIANGLES_H
+#pragma once
 
 #include "lanes.h"
 #include "raster/texture.h"
@@ -79,5 +78,3 @@ CLPV_INLINE void apply_texture(__global const float4* textures, __global const u
   sample_trilinear(textures, texels, texture, uv, step_x, step_y, &factor);
   *colour = vec_product(*colour, factor);
 }
-
-#endif

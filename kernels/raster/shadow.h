@@ -6,8 +6,7 @@
 // |distance|, 0, 1) per texel and axis. Each texel's depth is compared with the depth of the receiver's tangent plane
 // at that texel. A flat receiver of any slope then does not shadow itself. A lift along the normal (shared/shade.h)
 // covers rounding, interpolated normals and corners; occluders closer than the lift cast no shadow.
-#ifndef CLPV_SHADOW_H
-#define CLPV_SHADOW_H
+#pragma once
 
 #include "lanes.h"
 #include "raster/lighting.h"
@@ -184,5 +183,3 @@ CLPV_INLINE realW light_reaches(const ShadowMap shadow, const Vec position) {
   const realW lit = blocked ? ZERO : ONE;
   return shadow.count > 1 ? (view_covers(shadow.views, shadow.count, shadow.which, offset) ? lit : ZERO) : lit;
 }
-
-#endif

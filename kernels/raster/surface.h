@@ -5,8 +5,7 @@
 //
 // CLPV_SURFACE_PAPER 1: normals and colours are 8-bit normalised integers, the paper's RSM format; 0: float4.
 // Arithmetic is scalar so that work-items vectorise (lanes.h); float3 only returns results.
-#ifndef CLPV_SURFACE_H
-#define CLPV_SURFACE_H
+#pragma once
 
 #include "shared/view.h"
 
@@ -87,5 +86,3 @@ static inline float3 load_colour(__global const SurfaceTexel* colours, const uin
   return (float3)(c[0], c[1], c[2]);
 #endif
 }
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Surfaces of W pixels of a row at a time: position, footprint, load and store (surface.h has the formulas).
-#ifndef CLPV_SURFACE_ROW_H
-#define CLPV_SURFACE_ROW_H
+#pragma once
 
 #include "lanes.h"
 #include "raster/surface.h"
@@ -144,5 +143,3 @@ CLPV_INLINE void store_colours(const PixelRow p, const Vec c, const float scale,
   store_texels(p.count, c.x, c.y, c.z, ONE, to);
 #endif
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Filtered look-ups in the scene's textures (shared/mesh.h), W at a time: bilinear and trilinear, with sRGB decoded
 // before filtering.
-#ifndef CLPV_TEXTURE_H
-#define CLPV_TEXTURE_H
+#pragma once
 
 #include "lanes.h"
 #include "shared/mesh.h"
@@ -176,5 +175,3 @@ CLPV_INLINE void sample_trilinear(__global const float4* table, __global const u
   colour->y = lerp(a.y, b.y, weight);
   colour->z = lerp(a.z, b.z, weight);
 }
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Row of W pixels that a work-item processes, and conversion of depth keys.
-#ifndef CLPV_TILE_ROW_H
-#define CLPV_TILE_ROW_H
+#pragma once
 
 #include "lanes.h"
 #include "shared/raster.h"
@@ -69,5 +68,3 @@ static inline VecLanes unpack(const intW hit, const Vec v) {
   store_lanes(masked.z, lanes.z);
   return lanes;
 }
-
-#endif

@@ -3,8 +3,7 @@
 //
 // W triangles, or one W times (vec.h). Coordinates are relative to the eye and built from edges, so that small
 // triangles far from the origin keep their precision.
-#ifndef CLPV_TRIANGLE_H
-#define CLPV_TRIANGLE_H
+#pragma once
 
 #include "shared/mesh.h"
 #include "raster/surface.h"
@@ -93,5 +92,3 @@ static inline Vec weights_at(const ClpvView view, const Face face, const Weights
   w2 = w2 < ONE - w1 ? w2 : ONE - w1;
   return vec(ONE - w1 - w2, w1, w2);
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Emitters, the parts of emissive triangles that virtual point lights stand on, shared by host and kernels
 // (host/scene/emission.hpp).
-#ifndef CLPV_SHARED_EMIT_H
-#define CLPV_SHARED_EMIT_H
+#pragma once
 
 // A triangle similar to its scene triangle: points with weights (u, v) + size (s, t) of the second and third corner, s,
 // t >= 0 and s + t <= 1. It is cut into rows^2 congruent sub-triangles, with a virtual point light at the centroid of
@@ -17,11 +16,7 @@ typedef struct {
   unsigned int unused;
 } ClpvEmitter;
 
-#define CLPV_SIZEOF_EMITTER 32
-
 // Mean of a texture over a sub-triangle: CLPV_EMIT_SAMPLES^2 samples, at the mip level for CLPV_EMIT_FOOTPRINT times
 // their distance, so that all texels have about the same weight.
 #define CLPV_EMIT_SAMPLES 8
 #define CLPV_EMIT_FOOTPRINT 2.0f
-
-#endif

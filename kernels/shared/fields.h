@@ -3,8 +3,7 @@
 //
 // CLPV_EACH_SHARED(SIZE, OFFSET) writes SIZE(type) and OFFSET(type, field) in a fixed order. Include the headers of the
 // structs before: host and kernels name them by different paths.
-#ifndef CLPV_SHARED_FIELDS_H
-#define CLPV_SHARED_FIELDS_H
+#pragma once
 
 // clang-format off
 #define CLPV_EACH_SHARED(SIZE, OFFSET)                                                             \
@@ -43,5 +42,3 @@
     OFFSET(ClpvRegion, boxes) OFFSET(ClpvRegion, moved) OFFSET(ClpvRegion, all)                    \
     OFFSET(ClpvRegion, box)
 // clang-format on
-
-#endif

@@ -3,8 +3,7 @@
 //
 // Cell (i, j, k) is the cube origin + s [i, i+1] x [j, j+1] x [k, k+1]; light is sampled at its centre. Geometry is
 // sampled at the corners: sample (i, j, k) at origin + s (i, j, k), i in 0..n.
-#ifndef CLPV_SHARED_GRID_H
-#define CLPV_SHARED_GRID_H
+#pragma once
 
 typedef struct {
   float origin[3];  // lowest corner [m], a multiple of cell
@@ -13,10 +12,6 @@ typedef struct {
   float middle[3];  // [m] eye, in cell n / 2 along each axis; gathering blends cascades by the distance from it
 } ClpvGrid;
 
-#define CLPV_SIZEOF_GRID 32
-
 // Cells on each side of `middle` that lie inside a grid of n cells along each axis, for any position of `middle` in its
 // cell.
 #define CLPV_GRID_REACH(n) (((n) - 1) / 2)
-
-#endif

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A light and the medium that it passes, shared by host and kernels. Photometric quantities count 1:1 as radiometric ones.
-#ifndef CLPV_SHARED_LIGHT_H
-#define CLPV_SHARED_LIGHT_H
+#pragma once
 
-#define CLPV_LIGHT_DIRECTIONAL 0
-#define CLPV_LIGHT_SPOT 1
-#define CLPV_LIGHT_POINT 2
+enum {
+  CLPV_LIGHT_DIRECTIONAL,
+  CLPV_LIGHT_SPOT,
+  CLPV_LIGHT_POINT,
+};
 
 // A homogeneous medium, such as fog or dust, in a box.
 //
@@ -20,8 +21,6 @@ typedef struct {
   float unused[3];
 } ClpvMedium;
 
-#define CLPV_SIZEOF_MEDIUM 64
-
 typedef struct {
   float position[3];   // [m]; unused for a directional light
   unsigned int kind;   // CLPV_LIGHT_*
@@ -34,9 +33,5 @@ typedef struct {
   ClpvMedium medium;  // attenuates the light
 } ClpvLight;
 
-#define CLPV_SIZEOF_LIGHT 128
-
 // d_min [m]: a smaller distance from a spot or point light counts as this one, so that irradiance stays finite.
 #define CLPV_LIGHT_LEAST_DISTANCE 1e-3f
-
-#endif

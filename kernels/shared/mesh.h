@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Triangles, materials and textures of the scene, shared by host and kernels. World space, metres.
-#ifndef CLPV_SHARED_MESH_H
-#define CLPV_SHARED_MESH_H
+#pragma once
 
 #define CLPV_NO_TEXTURE 0xffffffffu
 
-#define CLPV_WRAP_REPEAT 0
-#define CLPV_WRAP_CLAMP 1
-#define CLPV_WRAP_MIRROR 2
+enum {
+  CLPV_WRAP_REPEAT,
+  CLPV_WRAP_CLAMP,
+  CLPV_WRAP_MIRROR,
+};
 
 #define CLPV_MATERIAL_MASKED 1u        // texels with alpha below alpha_cutoff are holes
 #define CLPV_MATERIAL_DOUBLE_SIDED 2u  // visible from both sides; the normal is flipped towards the viewer
@@ -19,14 +20,10 @@ typedef struct {
   float colour[4];    // vertex colour, linear; 1 where the model has none
 } ClpvVertex;
 
-#define CLPV_SIZEOF_VERTEX 48
-
 typedef struct {
   unsigned int vertex[3];
   unsigned int material;
 } ClpvTriangle;
-
-#define CLPV_SIZEOF_TRIANGLE 16
 
 typedef struct {
   float base_colour[4];  // linear albedo and alpha; multiplied by texture and vertex colour
@@ -38,8 +35,6 @@ typedef struct {
   unsigned int unused;
 } ClpvMaterial;
 
-#define CLPV_SIZEOF_MATERIAL 48
-
 // Mip levels of every texture in the table; the level of 1 x 1 texels repeats. Level l of texture t is entry
 // t * CLPV_TEXTURE_LEVELS + l. The maximum side is 2^(CLPV_TEXTURE_LEVELS - 1).
 #define CLPV_TEXTURE_LEVELS 16
@@ -50,6 +45,3 @@ typedef struct {
   unsigned int wrap;  // CLPV_WRAP_* of u, plus 16 times that of v
 } ClpvTexture;
 
-#define CLPV_SIZEOF_TEXTURE 16
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Data of the rasteriser's kernels: outcodes of vertices, triangles set up for drawing, entries and counters; shared by
 // host and kernels.
-#ifndef CLPV_SHARED_RASTER_H
-#define CLPV_SHARED_RASTER_H
+#pragma once
 
 #define CLPV_SUBPIXELS 256  // vertices snap to 1/256 pixel
 #define CLPV_TILE 8         // pixels along each edge of a tile; with eight lanes a work-item draws a tile (draw_tiles.cl)
@@ -13,16 +12,17 @@
 
 // Outcodes of a vertex. A triangle whose corners all share one of the first six bits is invisible. A triangle with a
 // corner that has one of the last two bits is clipped.
-#define CLPV_LEFT 1
-#define CLPV_RIGHT 2
-#define CLPV_ABOVE 4
-#define CLPV_BELOW 8
-#define CLPV_BEYOND 16
-#define CLPV_BEHIND 32
-#define CLPV_OUT_OF_GUARD 64
-
-#define CLPV_OUT_OF_SIGHT (CLPV_LEFT | CLPV_RIGHT | CLPV_ABOVE | CLPV_BELOW | CLPV_BEYOND | CLPV_BEHIND)
-#define CLPV_NEEDS_CLIPPING (CLPV_BEHIND | CLPV_OUT_OF_GUARD)
+enum {
+  CLPV_LEFT = 1,
+  CLPV_RIGHT = 2,
+  CLPV_ABOVE = 4,
+  CLPV_BELOW = 8,
+  CLPV_BEYOND = 16,
+  CLPV_BEHIND = 32,
+  CLPV_OUT_OF_GUARD = 64,
+  CLPV_OUT_OF_SIGHT = CLPV_LEFT | CLPV_RIGHT | CLPV_ABOVE | CLPV_BELOW | CLPV_BEYOND | CLPV_BEHIND,
+  CLPV_NEEDS_CLIPPING = CLPV_BEHIND | CLPV_OUT_OF_GUARD,
+};
 
 // Up to this size [pixels] the edge functions of a triangle fit 32 bits inside its box.
 #define CLPV_SMALL_PIXELS 64
@@ -43,15 +43,16 @@ typedef struct {
   unsigned int triangle;     // index and flags as above
 } ClpvRasterTriangle;
 
-#define CLPV_SIZEOF_RASTER_TRIANGLE 64
 #define CLPV_RASTER_WORDS 16
 
 // Counters of a pass: triangles listed, triangles to clip, entries, and overflows of 32 bits in the number of entries.
-#define CLPV_LISTED 0
-#define CLPV_TO_CLIP 1
-#define CLPV_ENTERED 2
-#define CLPV_ENTERED_TOO_MANY 3
-#define CLPV_RASTER_COUNTERS 4
+enum {
+  CLPV_LISTED,
+  CLPV_TO_CLIP,
+  CLPV_ENTERED,
+  CLPV_ENTERED_TOO_MANY,
+  CLPV_RASTER_COUNTERS,
+};
 
 // Depth slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most hidden ones are skipped.
 #define CLPV_SLICES 8
@@ -62,5 +63,3 @@ typedef struct {
 #define CLPV_ENTRY_WORDS 4
 #define CLPV_ENTRY_GROUP 1024u  // entries that a work-group sorts
 #define CLPV_SLICE_CHUNK 256u   // slices that a work-item sums
-
-#endif

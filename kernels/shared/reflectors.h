@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Per-face sums of voxelised albedo: reflectors.cl writes them, face_albedo.cl reads them; shared by host and kernels.
-#ifndef CLPV_SHARED_REFLECTORS_H
-#define CLPV_SHARED_REFLECTORS_H
+#pragma once
 
 // Face directions of a light cell: +x, -x, +y, -y, +z, -z.
 #define CLPV_CELL_FACES 6
 
 // uint32 words of a face: 64 coverage bits (two words), the number of samples, and the sums of red, green and blue
 // albedo.
-#define CLPV_FACE_WORDS 6
-#define CLPV_FACE_SAMPLES 2
-#define CLPV_FACE_ALBEDO 3
+enum {
+  CLPV_FACE_WORDS = 6,
+  CLPV_FACE_SAMPLES = 2,
+  CLPV_FACE_ALBEDO = 3,
+};
 
 // Fixed-point value of albedo 1 in those sums. 2^14 triangles that each cover the whole face fit into 32 bits.
 #define CLPV_ALBEDO_UNIT 4096.0f
-
-#endif

@@ -4,8 +4,7 @@
 //
 // Positions count from `base`, a point near the cascade that stays fixed while the cascade moves. A triangle then has
 // the same coordinates, to the bit, wherever the cascade is, and masks of cells outside the region stay valid.
-#ifndef CLPV_SHARED_REGION_H
-#define CLPV_SHARED_REGION_H
+#pragma once
 
 #define CLPV_REGION_BOXES 8
 
@@ -24,9 +23,5 @@ typedef struct {
   ClpvBox box[CLPV_REGION_BOXES];
 } ClpvRegion;
 
-#define CLPV_SIZEOF_REGION 264
-
 // Triangles of a cluster: neighbours in the scene that are processed or skipped together.
 #define CLPV_CLUSTER 64
-
-#endif

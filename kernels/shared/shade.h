@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Quantities that an image can show, and the shadow filter, shared by host and kernels. Images are RGBA with alpha 1 on
 // surfaces and all 0 elsewhere; the first two show a sky, with alpha 1, and the first a medium.
-#ifndef CLPV_SHARED_SHADE_H
-#define CLPV_SHARED_SHADE_H
+#pragma once
 
-#define CLPV_SHOW_FULL 0        // radiance [W/m^2/sr]: direct and indirect
-#define CLPV_SHOW_DIRECT 1      // radiance: albedo/pi E of the lights, and emission
-#define CLPV_SHOW_INDIRECT 2    // radiance: albedo/pi E of the volumes
-#define CLPV_SHOW_IRRADIANCE 3  // E of the volumes [W/m^2]
-#define CLPV_SHOW_ALBEDO 4
-#define CLPV_SHOW_NORMAL 5  // world space, components in -1..1
-#define CLPV_SHOW_DEPTH 6   // [m] along the camera's forward axis, three times
+enum {
+  CLPV_SHOW_FULL,  // radiance [W/m^2/sr]: direct and indirect
+  CLPV_SHOW_DIRECT,  // radiance: albedo/pi E of the lights, and emission
+  CLPV_SHOW_INDIRECT,  // radiance: albedo/pi E of the volumes
+  CLPV_SHOW_IRRADIANCE,  // E of the volumes [W/m^2]
+  CLPV_SHOW_ALBEDO,
+  CLPV_SHOW_NORMAL,  // world space, components in -1..1
+  CLPV_SHOW_DEPTH,  // [m] along the camera's forward axis, three times
+};
 
 #define CLPV_SHADOW_TAPS 4  // texels along each side of the shadow filter; no map may be smaller
 
@@ -18,5 +19,3 @@
 // the light's angle to the normal.
 #define CLPV_SHADOW_LIFT_FLAT 0.25f
 #define CLPV_SHADOW_LIFT_SLOPED 0.5f
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Constants of the sort by cell (kernels/inject/sort_by_cell.cl), shared by host and kernels.
-#ifndef CLPV_SHARED_SORT_H
-#define CLPV_SHARED_SORT_H
+#pragma once
 
 #define CLPV_NO_CELL 0xffffffffu  // key of a texel without a cell; the sort drops it
 
@@ -9,5 +8,3 @@
 // of a run's word hold its length minus 1, the bits above its first texel.
 #define CLPV_LONGEST_RUN 16u
 #define CLPV_RUN_BITS 4u
-
-#endif

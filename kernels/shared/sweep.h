@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bins, directions and halo of a sweep, and the sizes of its buffers (host/basis/sweep.hpp), shared by host and
 // kernels.
-#ifndef CLPV_SHARED_SWEEP_H
-#define CLPV_SHARED_SWEEP_H
+#pragma once
 
 #define CLPV_SWEEP_BINS 24
 #define CLPV_AXIS_BINS 8  // bins swept across x, which come first; as many across y, then z
@@ -17,8 +16,6 @@ typedef struct {
   int plane, row;  // steps from a source to the next plane's and the next row's
 } ClpvSweepBin;
 
-#define CLPV_SIZEOF_SWEEP_BIN 52
-
 typedef struct {
   float taps[4];       // t of the same four cells; their sum is 1
   float share;         // Omega_d / (|w_m| Omega_b): solid angles of direction and bin, component across planes
@@ -29,16 +26,12 @@ typedef struct {
   int unused;
 } ClpvSweepDirection;
 
-#define CLPV_SIZEOF_SWEEP_DIRECTION 48
-
 // Halo: cells of a coarser cascade that the border of the next finer one interpolates.
 typedef struct {
   int first[3];   // lowest cell of the box that holds them
   int side;       // cells along each edge of the box; 0: no finer cascade
   int layers[6];  // lower one of two layers across x, y, z, each for light towards larger, smaller numbers
 } ClpvSweepHalo;
-
-#define CLPV_SIZEOF_SWEEP_HALO 40
 
 // Sizes in numbers for a grid of n cells along each axis: of a row, a plane and a volume of planes (sweep_layout.h),
 // and of a row (pitch), a plane and a volume with a border of one cell on every side.
@@ -56,5 +49,3 @@ typedef struct {
 #define CLPV_SWEEP_HALO_SIDE_OF(n) (((n) + 1) / 2 + 3)
 #define CLPV_SWEEP_HALO_PITCH_OF(side) (((side) + 7) / 8 * 8 + 8)
 #define CLPV_SWEEP_HALO_FACE_OF(side) (2 * (side)*CLPV_SWEEP_HALO_PITCH_OF(side) + 8)
-
-#endif

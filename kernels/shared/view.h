@@ -6,8 +6,7 @@
 // Depth is the distance along `forward` [m], 0 for pixels without a surface. The surface at depth d is at
 //   perspective:   eye + d (forward + sx right + sy up)      half_width, half_height: tangents
 //   orthographic:  eye + d forward + sx right + sy up        half_width, half_height: [m]
-#ifndef CLPV_SHARED_VIEW_H
-#define CLPV_SHARED_VIEW_H
+#pragma once
 
 typedef struct {
   float eye[3];        // [m]
@@ -24,6 +23,3 @@ typedef struct {
   float unused;
 } ClpvView;
 
-#define CLPV_SIZEOF_VIEW 80
-
-#endif

@@ -7,8 +7,7 @@
 // docs/method.md, 'Blockers'. From the host (host/codegen/transmittance_source.cpp): CLPV_LINKS, struct Links, and for
 // each link CLPV_LINK_SIDES, the side of the cell that it passes (-1, 0 or 1 along each axis), and CLPV_LINK_BLOCKED,
 // half the weights of the blockers' numbers, divided by the number of corners.
-#ifndef CLPV_LINK_TRANSMITTANCE_H
-#define CLPV_LINK_TRANSMITTANCE_H
+#pragma once
 
 #include "volume/geometry.h"
 
@@ -47,5 +46,3 @@ CLPV_INLINE Links find_transmittance(CLPV_VOLUME_IN blockers, const int x, const
   }
   return links;
 }
-
-#endif

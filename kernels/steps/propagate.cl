@@ -11,7 +11,7 @@
 //       least          with CLPV_BLOCKING: lower bound of T: 1 in the first step, which is not blocked, else 0
 // Out:  target         light of this step [W/sr]
 //       sum            sum_so_far + target
-// A work-item computes W cells of a row, in one channel or in all three (CLPV_CHANNELS), which then share T.
+// A work-item computes W cells of a row in one channel, or in all three with CLPV_LOBES_AT_RUN_TIME.
 //
 // From the host (host/codegen/transport_source.cpp), for face 5 k + f of the neighbour that light reaches along axis k,
 // axes in the order +x, -x, +y, -y, +z, -z:
@@ -40,10 +40,29 @@ CLPV_INLINE Coefficients load_upstream(CLPV_VOLUME_IN source, const int channel,
                     z + (k / 2 == 2 ? back : 0));
 }
 
-// Flux [W] of a cell's light through a face of a neighbour. max(0, 2 h) is h + |h|: comparisons would trigger LLVM's SLP
-// vectoriser, which prevents vectorisation of work-items on CPUs.
-CLPV_INLINE realW flux_through(const Coefficients from, const int face) {
-  const realW half_flux = add_product(0.0f, face_flux[face], from);
+typedef struct {
+  realW face[CLPV_SEEN_FACES];
+} SeenFaces;
+
+// Half of Omega_f I(w_f) [W] for the five faces that a cell sees of the neighbour along axis k. One function at a time,
+// so that five sums grow side by side.
+CLPV_INLINE SeenFaces half_fluxes_to(const int k, const Coefficients from) {
+  SeenFaces half_flux;
+#pragma unroll
+  for (int f = 0; f < CLPV_SEEN_FACES; ++f) half_flux.face[f] = 0.0f;
+#pragma unroll
+  for (int i = 0; i < CLPV_N; ++i) {
+#pragma unroll
+    for (int f = 0; f < CLPV_SEEN_FACES; ++f) {
+      const float share = face_flux[CLPV_SEEN_FACES * k + f][i];
+      if (share != 0.0f) half_flux.face[f] = fma((realW)(share), from.c[i], half_flux.face[f]);
+    }
+  }
+  return half_flux;
+}
+
+// max(0, 2 h) without a comparison, which would trigger LLVM's SLP vectoriser and prevent that of work-items.
+CLPV_INLINE realW positive_flux(const realW half_flux) {
   return half_flux + fabs(half_flux);
 }
 
@@ -65,14 +84,14 @@ CLPV_INLINE Coefficients gain_light(CLPV_VOLUME_IN source, const int channel, co
   for (int n = 0; n < CLPV_AXES; ++n) arriving[n] = 0.0f;
 #pragma unroll
   for (int k = 0; k < CLPV_AXES; ++k) {
-    const Coefficients from = load_upstream(source, channel, k, x, y, z);
+    const SeenFaces half_flux = half_fluxes_to(k, load_upstream(source, channel, k, x, y, z));
 #pragma unroll
     for (int f = 0; f < CLPV_SEEN_FACES; ++f) {
       const int face = CLPV_SEEN_FACES * k + f;
 #if CLPV_BLOCKING
-      arriving[face_normal[face]] += flux_through(from, face) * t.c[face];
+      arriving[face_normal[face]] += positive_flux(half_flux.face[f]) * t.c[face];
 #else
-      arriving[face_normal[face]] += flux_through(from, face);
+      arriving[face_normal[face]] += positive_flux(half_flux.face[f]);
 #endif
     }
   }
@@ -116,10 +135,6 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagat
   Coefficients gained[3];
   gain_with_lobes(source, x, y, z, normals, links, gained CLPV_PASS_LINKS CLPV_PASS_TABLE CLPV_PASS_FUNCTIONS);
   for (int channel = 0; channel < 3; ++channel) store_step(gained[channel], target, sum_so_far, sum, channel, x, y, z);
-#elif CLPV_CHANNELS == 3
-#pragma unroll
-  for (int channel = 0; channel < 3; ++channel)
-    store_step(gain_light(source, channel, x, y, z CLPV_PASS_LINKS), target, sum_so_far, sum, channel, x, y, z);
 #else
   const int channel = (int)get_global_id(2) / CLPV_GRID;
   store_step(gain_light(source, channel, x, y, z CLPV_PASS_LINKS), target, sum_so_far, sum, channel, x, y, z);

@@ -7,8 +7,7 @@
 // too, uses basis functions evaluated along the link. Normals and links are read from memory, so that compilers cannot
 // fold them; look-up tables are arguments. From the host: CLPV_UNIT_FLUX, CLPV_EVALUATE_AT_RUN_TIME,
 // functions_of_link(link), the functions times the solid angle, and the text of host/codegen/inject_source.hpp.
-#ifndef CLPV_RUN_TIME_LOBES_H
-#define CLPV_RUN_TIME_LOBES_H
+#pragma once
 
 #include "inject/lobe.h"
 
@@ -23,8 +22,7 @@ CLPV_INLINE Coefficients run_time_lobe(const float4 normal CLPV_AND_TABLE) {
   return project_sum(scale_coefficients(scale, alpha));
 }
 
-// Light that cell (x, y, z) gains from its six neighbours in each channel: first all fluxes, then the lobes of all faces,
-// for which PoCL 3.1 takes 0.7x the time of one loop.
+// Light that cell (x, y, z) gains from its six neighbours in each channel: first all fluxes, then the lobes of all faces.
 CLPV_INLINE void gain_with_lobes(CLPV_VOLUME_IN source, const int x, const int y, const int z,
                                  __global const float4* normals, __global const float4* links, Coefficients* gained
 #if CLPV_BLOCKING
@@ -42,12 +40,16 @@ CLPV_INLINE void gain_with_lobes(CLPV_VOLUME_IN source, const int x, const int y
 #pragma unroll
     for (int k = 0; k < CLPV_AXES; ++k) {
       const Coefficients from = load_upstream(source, channel, k, x, y, z);
+#if !CLPV_EVALUATE_AT_RUN_TIME
+      const SeenFaces half_flux = half_fluxes_to(k, from);
+#endif
 #pragma unroll
-      for (int face = CLPV_SEEN_FACES * k; face < CLPV_SEEN_FACES * (k + 1); ++face) {
+      for (int f = 0; f < CLPV_SEEN_FACES; ++f) {
+        const int face = CLPV_SEEN_FACES * k + f;
 #if CLPV_EVALUATE_AT_RUN_TIME
         fluxes[channel][face] = fmax(dot_coefficients(along[face], from), 0.0f);
 #else
-        fluxes[channel][face] = flux_through(from, face);
+        fluxes[channel][face] = positive_flux(half_flux.face[f]);
 #endif
 #if CLPV_BLOCKING
         fluxes[channel][face] *= t.c[face];
@@ -63,5 +65,3 @@ CLPV_INLINE void gain_with_lobes(CLPV_VOLUME_IN source, const int x, const int y
       gained[channel] = add_scaled(gained[channel], fluxes[channel][face], lobe);
   }
 }
-
-#endif

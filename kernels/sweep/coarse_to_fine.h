@@ -4,8 +4,7 @@
 // Along an axis, u is the number of a finer cell from the coarser grid's origin. Its centre is (u - 1/2) / 2 coarser
 // cells from the first coarser centre, always 1/4 of a cell off one, so that its two neighbours have the weights 3/4
 // and 1/4.
-#ifndef CLPV_COARSE_TO_FINE_H
-#define CLPV_COARSE_TO_FINE_H
+#pragma once
 
 // Lower one of the two coarser cells about finer cell u, and the weight of the upper one.
 #define CLPV_LOWER(u) (((u) - 1) >> 1)
@@ -18,5 +17,3 @@
 #define CLPV_EVEN(v)                                                              \
   (0.75f * (float8)((v).s1, (v).s1, (v).s2, (v).s2, (v).s3, (v).s3, (v).s4, (v).s4) + \
    0.25f * (float8)((v).s0, (v).s2, (v).s1, (v).s3, (v).s2, (v).s4, (v).s3, (v).s5))
-
-#endif

@@ -4,8 +4,7 @@
 //   D_a = sum_b Omega_b max(0, -w_b.a) L_b s^2      (docs/method.md, 'More bounces')
 //
 // From the host (host/codegen/sweep_source.cpp): CLPV_INCIDENT, Omega_b max(0, -w_b.a) for each face and bin.
-#ifndef CLPV_FACE_FLUXES_H
-#define CLPV_FACE_FLUXES_H
+#pragma once
 
 #include "shared/reflectors.h"
 #include "sweep/sweep_tiles.h"
@@ -27,5 +26,3 @@ CLPV_INLINE FaceFluxes incident_flux(const Bins bins) {
   }
   return flux;
 }
-
-#endif

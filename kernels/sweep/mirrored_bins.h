@@ -4,8 +4,7 @@
 //
 // The eight bins 8a, ..., 8a + 7 lie about axis a, and differ in the signs of their components: bits 0, 1 and 2 of the
 // index are those of axes a + 1, a + 2 and a (modulo 3).
-#ifndef CLPV_MIRRORED_BINS_H
-#define CLPV_MIRRORED_BINS_H
+#pragma once
 
 #include "sweep/sweep_tiles.h"
 
@@ -36,5 +35,3 @@ CLPV_INLINE float folded_sign(const int j, const int k) {
   const int both = j & k;
   return (both ^ both >> 1 ^ both >> 2) & 1 ? -1.0f : 1.0f;
 }
-
-#endif

@@ -5,8 +5,7 @@
 // An ordinate is a direction and channel. Each has three upstream faces: the plane before the first one, which goes
 // into the plane buffer, and per plane the row and the column upstream, which go into `border`. `border` stores the
 // rows and columns of a bin's ordinates plane by plane, in the order in which sweep_bin reads them.
-#ifndef CLPV_SWEEP_BORDER_H
-#define CLPV_SWEEP_BORDER_H
+#pragma once
 
 #include "shared/sweep.h"
 #include "sweep/sweep_layout.h"
@@ -14,9 +13,11 @@
 // Number of an ordinate.
 #define CLPV_ORDINATE(bin, channel, part) ((((bin)*3) + (channel)) * CLPV_PARTS + (part))
 
-#define CLPV_BORDER_PLANE 0
-#define CLPV_BORDER_ROW 1
-#define CLPV_BORDER_COLUMN 2
+enum {
+  CLPV_BORDER_PLANE,
+  CLPV_BORDER_ROW,
+  CLPV_BORDER_COLUMN,
+};
 
 // Index in `border` of cell `at` (-1 to CLPV_GRID) of the row or column upstream of a plane. Groups of eight start at
 // cell -1.
@@ -38,5 +39,3 @@ CLPV_INLINE int halo_index(const ClpvSweepHalo halo, const int ordinate, const i
   return (ordinate * 3 + face) * CLPV_SWEEP_HALO_FACE_OF(halo.side) +
          (layer * halo.side + i) * CLPV_SWEEP_HALO_PITCH_OF(halo.side) + j;
 }
-
-#endif

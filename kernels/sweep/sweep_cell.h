@@ -15,8 +15,7 @@
 //
 // f is the part in the medium of a cell, J s^2 [W/sr] the source function of the bin (sweep_medium.cl); f and f J are
 // means of the cell and its neighbour upstream along m.
-#ifndef CLPV_SWEEP_CELL_H
-#define CLPV_SWEEP_CELL_H
+#pragma once
 
 #include "shared/sweep.h"
 #include "sweep/sweep_border.h"
@@ -182,5 +181,3 @@ CLPV_INLINE void copy_border_column(const BinSweep* s, __global float* planes, c
   ((axis) == 0 ? ((sign) > 0 ? (halo).layers[0] : (halo).layers[1])                                         \
                : ((axis) == 1 ? ((sign) > 0 ? (halo).layers[2] : (halo).layers[3])                          \
                               : ((sign) > 0 ? (halo).layers[4] : (halo).layers[5])))
-
-#endif

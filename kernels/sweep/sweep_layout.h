@@ -6,8 +6,7 @@
 // memory from one end to the other. (plane, row, column) is (z, y, x) across z, (y, z, x) across y and (x, z, y) across
 // x. Padding of CLPV_SWEEP_LINE numbers after each plane and volume keeps a cell's numbers of several volumes in
 // different cache sets.
-#ifndef CLPV_SWEEP_LAYOUT_H
-#define CLPV_SWEEP_LAYOUT_H
+#pragma once
 
 #include "lanes.h"
 #include "shared/sweep.h"
@@ -41,5 +40,3 @@ CLPV_INLINE int plane_index(const int row, const int column) {
 CLPV_INLINE int bordered_index(const int plane, const int row, const int column) {
   return (plane + 1) * CLPV_BORDERED_PLANE + plane_index(row, column);
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tiles of W x W cells, which convert between rows along x and volumes across any axis (sweep_layout.h). Volumes across
 // y and z store rows along x; those across x store rows along y, so that tiles of them are transposed.
-#ifndef CLPV_SWEEP_TILES_H
-#define CLPV_SWEEP_TILES_H
+#pragma once
 
 #include "sweep/sweep_layout.h"
 
@@ -72,5 +71,3 @@ CLPV_INLINE void store_x_tile(CLPV_BUFFER_OUT volume, const SweepTile tile, cons
     CLPV_SWEEP_STORE(volume, sweep_index(x + r, z, y), columns.row[r]);
   }
 }
-
-#endif

@@ -3,8 +3,7 @@
 //
 // From the host (coefficient_text), since generated text before this file uses them: CLPV_N, type Coefficient (realW,
 // or float where one cell is read at a time) and struct Coefficients, an array c of them.
-#ifndef CLPV_COEFFICIENTS_H
-#define CLPV_COEFFICIENTS_H
+#pragma once
 
 CLPV_INLINE Coefficients zero_coefficients(void) {
   Coefficients r;
@@ -50,5 +49,3 @@ CLPV_INLINE Coefficient add_product(const Coefficient sum, __constant const floa
     if (constants[i] != 0.0f) r = fma((Coefficient)(constants[i]), a.c[i], r);
   return r;
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Storage of numbers in buffers: float or half. Halves are converted by core OpenCL C 1.2, always eight at a time: PoCL
 // 3.1 has one instruction for eight, and 1,900 for a single one.
-#ifndef CLPV_VOLUME_NUMBERS_H
-#define CLPV_VOLUME_NUMBERS_H
+#pragma once
 
 #include "lanes.h"
 
@@ -44,5 +43,3 @@ CLPV_INLINE void write_halves(__global half* to, const float8 value) {
 
 #define CLPV_BUFFER_IN __global const CLPV_NUMBER*
 #define CLPV_BUFFER_OUT __global CLPV_NUMBER*
-
-#endif

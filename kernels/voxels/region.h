@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tests whether a cell must be voxelised again (shared/region.h), and assigns each re-voxelising
 // work-item its triangle.
-#ifndef CLPV_REGION_H
-#define CLPV_REGION_H
+#pragma once
 
 #include "shared/mesh.h"
 #include "shared/region.h"
@@ -35,5 +34,3 @@ static inline uint triangle_number(__global const uint* clusters, const uint fir
   if (cluster >= cluster_count) return triangle_count;
   return clusters[first_cluster + cluster] * CLPV_CLUSTER + item % CLPV_CLUSTER;
 }
-
-#endif

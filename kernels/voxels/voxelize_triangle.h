@@ -5,8 +5,7 @@
 // Coordinates: u and v along the two axes after the axis of projection, in samples; w along the axis, in cells. All
 // three count from half a cell before the region's base. A sample within CLPV_VOXEL_TOLERANCE outside an edge is
 // covered, so that triangles that share an edge leave no gap despite rounding.
-#ifndef CLPV_VOXELIZE_TRIANGLE_H
-#define CLPV_VOXELIZE_TRIANGLE_H
+#pragma once
 
 #include "lanes.h"
 #include "voxels/region.h"
@@ -94,7 +93,6 @@ static inline int2 cells_along(const ClpvRegion* region, const uint axis) {
          (int2)(of_axis(region->all.low, axis), of_axis(region->all.high, axis));
 }
 
-
 // Mask of the W samples from (u, v) on along a row that the triangle covers.
 CLPV_INLINE intW voxel_covered(const ProjectedTriangle* t, const float u, const float v) {
   const realW at = u + 0.5f + to_realW(lane_numbers());
@@ -147,6 +145,4 @@ CLPV_INLINE intW voxel_solid(const ProjectedTriangle* t, __global const ClpvVert
                        sample_alpha(textures, texels, finest, uv);
   return alpha >= material->alpha_cutoff;
 }
-#endif
-
 #endif

@@ -10,8 +10,6 @@
 
 namespace clpv {
 
-static_assert(sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
-
 /// Returns `count` grids of `cells`^3 cells, finest first, with edges `size`, 2 size, 4 size ... [m]. Each is centred
 /// at `eye` [m] and snapped to whole cells. Camera motion inside a cell moves no grid, so light does not flicker
 /// (Kaplanyan & Dachsbacher 2010, section 5). Throws Error(usage) that names `cascade-size` if float coordinates at `eye` are

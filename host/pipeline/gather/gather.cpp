@@ -59,9 +59,7 @@ Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport
       pairs_(packed_pairs(basis)),
       table_(session, basis, looked_up(transport, options), options.table, TableUse::functions),
       source_(source_of(basis, transport, options, packs(), table_)),
-      stencil_(session.device(), {.grid = options.grid,
-                                  .format = options.format,
-                                  .lanes = preferred_row_lanes(session.device(), options.format)}) {
+      stencil_(options.grid, options.format, lanes_of(session.device(), options.format)) {
   if (!packs()) return;
   ProgramSource pack{"gather/pack.cl", stencil_.literals(), coefficient_text(basis.size())};
   pack.literals.integer("CLPV_PAIRS", pairs_);

@@ -11,8 +11,6 @@
 namespace clpv {
 namespace {
 
-static_assert(sizeof(ClpvRasterTriangle) == CLPV_SIZEOF_RASTER_TRIANGLE);
-
 constexpr std::size_t kRasterGroup = 64;
 constexpr std::size_t kClippers = 1024;  // work-items that share the triangles to be clipped, usually none
 constexpr std::size_t kSpare = 4;        // lists grow by an extra 1/4, since cameras move

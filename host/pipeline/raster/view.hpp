@@ -12,8 +12,6 @@
 
 namespace clpv {
 
-static_assert(sizeof(ClpvView) == CLPV_SIZEOF_VIEW && sizeof(ClpvGrid) == CLPV_SIZEOF_GRID);
-
 /// Largest outer half-angle [rad] of a spot light with a single perspective view. Beyond it the outer texels grow
 /// without limit (tan), and the light uses the six views of a point light.
 inline constexpr double kWidestSpotView = 1.0472;  // 60 degrees

@@ -11,19 +11,6 @@
 #include "support/error.hpp"
 
 namespace clpv {
-namespace {
-
-// Maximum operations per step for which a work-item processes all three channels and so reads transmittance once.
-// Larger kernels compile slowly and spill registers.
-constexpr int kLargestShared = 400;
-
-/// Returns true if channels share a work-item, except for coefficients in float16 planes. With one work-item per
-/// channel, sh2 then takes 0.83x the time and srbf8v2 1x; with float32, sh2 would take 1.15x.
-bool worth_sharing(const PropagateOptions& options) {
-  return options.format.layout != Layout::soa || options.format.storage == Storage::float32;
-}
-
-}  // namespace
 
 Propagator::Propagator(Session& session, const Basis& basis, const Transport& transport,
                        const PropagateOptions& options)
@@ -31,7 +18,8 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
       basis_(basis),
       transport_(transport),
       options_(options),
-      stencil_(session.device(), options.stencil()),
+      stencil_(options.grid, options.format,
+               options.lobe_time == LobeTime::kernel ? 1 : lanes_of(session.device(), options.format)),
       accumulator_(session) {
   if (transport.kind == TransportKind::sweep) {
     std::vector<std::string_view> stepped;
@@ -45,23 +33,21 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
     volume = std::make_unique<Volume>(session, shape, "travelling light", options.format);
 }
 
-Propagator::Form& Propagator::form(bool blocking) {
-  std::optional<Form>& form = forms_[blocking ? 1 : 0];
-  if (form) return *form;
-  const bool large = step_operations(transport_, blocking).flops() > kLargestShared;
-  const int channels = lobes_ || (blocking && !large && worth_sharing(options_)) ? 3 : 1;
+Kernel& Propagator::step(bool blocking) {
+  std::optional<Kernel>& step = steps_[blocking ? 1 : 0];
+  if (step) return *step;
   ProgramSource program{"steps/propagate.cl", stencil_.literals(), transport_source(basis_, transport_)};
   if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
   if (blocking) program.generated += link_text(transmitter_->transmittance().shape().coefficients);
-  program.literals.flag("CLPV_BLOCKING", blocking).integer("CLPV_CHANNELS", channels);
+  program.literals.flag("CLPV_BLOCKING", blocking);
   if (lobes_) lobes_->add_literals(program.literals);
-  form.emplace(Form{channels, Kernel(session_, program, "propagate_step")});
-  return *form;
+  return step.emplace(session_, program, "propagate_step");
 }
 
 void Propagator::transmit(const Volume& geometry) {
   if (!transmitter_)
-    transmitter_ = std::make_unique<LinkTransmittance>(session_, basis_, transport_, options_.stencil());
+    transmitter_ =
+        std::make_unique<LinkTransmittance>(session_, basis_, transport_, options_.grid, options_.format);
   transmitter_->transmit(geometry);
 }
 
@@ -73,12 +59,12 @@ void Propagator::propagate(const PropagateVolumes& volumes, int iterations, cons
   const Volume* source = &volumes.injected;
   for (int step = 1; step <= iterations; ++step) {
     const Volume& target = *travelling_[step % 2];
-    Form& form = this->form(blocks);
+    Kernel& kernel = this->step(blocks);
     const auto run = [&](const Volume& so_far, const Volume& sum) {
-      form.step.set(source->memory(), target.memory(), so_far.memory(), sum.memory());
-      if (blocks) form.step.add(transmitter_->transmittance().memory(), step == 1 ? 1.0f : 0.0f);
-      if (lobes_) lobes_->add_to(form.step);
-      stencil_.launch(form.step, form.channels == 3 ? 1 : 3);
+      kernel.set(source->memory(), target.memory(), so_far.memory(), sum.memory());
+      if (blocks) kernel.add(transmitter_->transmittance().memory(), step == 1 ? 1.0f : 0.0f);
+      if (lobes_) lobes_->add_to(kernel);
+      stencil_.launch(kernel, lobes_ ? 1 : 3);  // run-time lobes serve all channels
     };
     if (step == 1) {
       run(volumes.injected, volumes.accumulated);

@@ -43,11 +43,7 @@ class Propagator {
   const LinkTransmittance* transmitter() const { return transmitter_.get(); }
 
  private:
-  struct Form {
-    int channels;  ///< channels per work-item
-    Kernel step;
-  };
-  Form& form(bool blocking);
+  Kernel& step(bool blocking);
   void transmit(const Volume& geometry);
 
   Session& session_;
@@ -56,7 +52,7 @@ class Propagator {
   PropagateOptions options_;
   Stencil stencil_;
   std::optional<RunTimeLobes> lobes_;      ///< none: lobes are constants
-  std::optional<Form> forms_[2];           ///< [blocking]
+  std::optional<Kernel> steps_[2];         ///< [blocking]
   std::unique_ptr<Volume> travelling_[2];  ///< ping-pong
   std::unique_ptr<LinkTransmittance> transmitter_;
   Accumulator accumulator_;

@@ -10,10 +10,12 @@
 
 namespace clpv {
 
-/// StencilOptions with the device's defaults resolved.
+/// Launch shape of a kernel over all cells of a grid. A work-item processes `lanes` cells along x. A work-group is a row
+/// along x, as long as the grid and at most 64 work-items.
 class Stencil {
  public:
-  Stencil(const Device& device, const StencilOptions& options);
+  /// A grid of `grid` cells along each axis; `format`: of all volumes that the kernel accesses; `lanes`: 1 or 8.
+  Stencil(int grid, const VolumeFormat& format, int lanes);
 
   /// Literals CLPV_GRID, CLPV_W, CLPV_LOCAL_X and those of the format.
   Literals literals() const;
@@ -21,7 +23,11 @@ class Stencil {
   void launch(Kernel& kernel, int channels) const;
 
  private:
-  StencilOptions options_;
+  std::size_t row() const;  ///< work-items
+
+  int grid_;
+  VolumeFormat format_;
+  int lanes_;
   std::size_t group_;  ///< work-items along x
 };
 

@@ -4,15 +4,15 @@
 namespace clpv {
 
 LinkTransmittance::LinkTransmittance(Session& session, const Basis& basis, const Transport& transport,
-                                     const StencilOptions& options)
-    : LinkTransmittance(session, transmittance_source(basis, transport), options) {}
+                                     int grid, const VolumeFormat& format)
+    : LinkTransmittance(session, transmittance_source(basis, transport), grid, format) {}
 
-LinkTransmittance::LinkTransmittance(Session& session, const TransmittanceSource& source,
-                                     const StencilOptions& options)
-    : stencil_(session.device(), options),
+LinkTransmittance::LinkTransmittance(Session& session, const TransmittanceSource& source, int grid,
+                                     const VolumeFormat& format)
+    : stencil_(grid, format, lanes_of(session.device(), format)),
       operations_(source.operations),
       kernel_(session, {"steps/transmittance.cl", stencil_.literals(), source.text}, "transmit"),
-      transmittance_(session, {options.grid, source.links, 1}, "transmittance", options.format) {}
+      transmittance_(session, {grid, source.links, 1}, "transmittance", format) {}
 
 void LinkTransmittance::transmit(const Volume& geometry) {
   kernel_.set(geometry.memory(), transmittance_.memory());

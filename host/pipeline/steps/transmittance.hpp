@@ -15,8 +15,9 @@ namespace clpv {
 /// not depend on the blockers.
 class LinkTransmittance {
  public:
-  LinkTransmittance(Session& session, const Basis& basis, const Transport& transport,
-                    const StencilOptions& options);
+  /// `format`: of geometry and transmittance volumes.
+  LinkTransmittance(Session& session, const Basis& basis, const Transport& transport, int grid,
+                    const VolumeFormat& format);
 
   void transmit(const Volume& geometry);  ///< (grid + 1)^3 corners, one channel
 
@@ -25,7 +26,8 @@ class LinkTransmittance {
   const OperationCount& operations() const { return operations_; }
 
  private:
-  LinkTransmittance(Session& session, const TransmittanceSource& source, const StencilOptions& options);
+  LinkTransmittance(Session& session, const TransmittanceSource& source, int grid,
+                    const VolumeFormat& format);
 
   Stencil stencil_;
   OperationCount operations_;

@@ -23,10 +23,6 @@
 
 namespace clpv {
 
-static_assert(sizeof(ClpvSweepBin) == CLPV_SIZEOF_SWEEP_BIN &&
-              sizeof(ClpvSweepDirection) == CLPV_SIZEOF_SWEEP_DIRECTION &&
-              sizeof(ClpvSweepHalo) == CLPV_SIZEOF_SWEEP_HALO);
-
 /// Light that a sweep of a cascade transports.
 struct SweepInput {
   std::size_t cascade;

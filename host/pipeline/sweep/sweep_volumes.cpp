@@ -19,7 +19,7 @@ Buffer zeroed_buffer(Session& session, std::size_t bytes, const char* what) {
 }
 
 SweepVolumes::SweepVolumes(Session& session, int grid, const VolumeFormat& format)
-    : session_(session), grid_(grid), format_(format), tile_(preferred_row_lanes(session.device(), format)) {}
+    : session_(session), grid_(grid), format_(format), tile_(lanes_of(session.device(), format)) {}
 
 ProgramSource SweepVolumes::program(const char* file, std::string generated) const {
   ProgramSource source{file, {}, std::move(generated)};

@@ -16,8 +16,6 @@
 
 namespace clpv {
 
-static_assert(sizeof(ClpvRegion) == CLPV_SIZEOF_REGION);
-
 /// Shape of a cascade's masks: 32-bit words, a fixed number per cell, cells along x first.
 struct VoxelMaskShape {
   int cells;          ///< along each axis
