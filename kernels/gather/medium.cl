@@ -5,8 +5,8 @@
 //   S = sigma_s sum_lights p(w_light, w) E               medium_light: single scattering, E with shadow maps
 //     + sigma_s max(0, sum_l g^l sum_m C_lm Y_lm(w))     medium_volumes: light of the volumes (radiance.h)
 //
-// w: direction of light that travels towards the camera. t_k have the density of the mean extinction; the 16 pixels of a
-// tile have different ones, and a mean over a tile's size joins them. Every second pixel along both axes has a ray.
+// w: direction of light that travels towards the camera. The 16 pixels of a tile have
+// different t_k (air_rays.h), and a mean over a tile's size joins them. Every second pixel along both axes has a ray.
 // near_layout.h defines the planes.
 //
 // medium_light
@@ -26,34 +26,14 @@
 // A work-item processes W pixels of a row.
 //
 // From the host: CLPV_NEAR_STEP 2, CLPV_NEAR_LAYERS 1, CLPV_LIGHT_STEPS, CLPV_VOLUME_STEPS.
+#include "gather/air_rays.h"
 #include "gather/near_layout.h"
 #include "gather/radiance.h"
 #include "raster/shadow.h"
 #include "raster/surface_row.h"
 
-#define CLPV_SAME_END 0.1f   // relative difference of ends from which pixels do not count
-#define CLPV_UNLIKE 1e-3f     // fallback weight if no neighbour has similar depth
-#define CLPV_THIN 1e-3f       // optical depth below which points are spread evenly
-
-// Parts of the rays of W pixels in the medium.
-typedef struct {
-  Vec origin, direction;  // unit
-  realW start, end;      // [m]
-  intW inside;            // the ray is in the medium
-} AirRays;
-
-CLPV_INLINE void find_air_rays(const ClpvView view, const PixelRow p, const realW depth, const ClpvMedium medium,
-                               AirRays* a) {
-  const Vec eye = vec_of(view.eye), along = vec_minus(row_positions(view, p, ONE), eye);
-  const realW length = sqrt(vec_dot(along, along));
-  a->origin = eye;
-  a->direction = vec_times(along, 1.0f / length);
-  const MediumPart part =
-      find_medium_part(medium, eye, a->direction, depth > ZERO ? depth * length : (realW)(INFINITY));
-  a->inside = part.end > part.start;
-  a->start = a->inside ? part.start : ZERO;
-  a->end = a->inside ? part.end : ZERO;
-}
+#define CLPV_SAME_END 0.1f  // relative difference of ends from which pixels do not count
+#define CLPV_UNLIKE 1e-3f   // fallback weight if no neighbour has similar depth
 
 // Rays of the pixels of a row of planes; none in the border.
 CLPV_INLINE void find_plane_rays(const ClpvView view, const NearRow r, __global const float* depths, const ClpvMedium medium,
@@ -75,37 +55,6 @@ CLPV_INLINE realW place_in_interval(const NearRow r) {
   const uintW x = as_uintW(r.x + lane_numbers()), across = (x ^ y) & 1u, beyond = ((x ^ y) >> 1) & 1u;
   const uintW place = 8u * across + 4u * (y & 1u) + 2u * beyond + ((y >> 1) & 1u);
   return (to_realW(as_intW(place)) + 0.5f) * (1.0f / 16.0f);
-}
-
-// A point of each ray.
-typedef struct {
-  realW at;           // distance from the camera [m]
-  realW path, step;   // t, its way through the medium, and dt exp(-sigma t), sigma the mean extinction [m]
-  float sigma;
-} AirPoint;
-
-// Point k of `steps` of each ray.
-CLPV_INLINE void find_air_point(const AirRays* a, const ClpvMedium medium, const realW place, const int k, const int steps,
-                                AirPoint* p) {
-  const float sigma = (medium.extinction[0] + medium.extinction[1] + medium.extinction[2]) * (1.0f / 3.0f);
-  const realW length = a->end - a->start, x = (place + (float)k) * (1.0f / (float)steps);
-  const realW reached = 1.0f - exp(-sigma * length);
-  const intW thin = sigma * length < (realW)(CLPV_THIN);
-  const realW deep = -log(1.0f - x * reached) * (1.0f / sigma);
-  const realW t = thin ? x * length : (deep < length ? deep : length);
-  const realW spread = thin ? length * exp(-sigma * t) : reached * (1.0f / sigma);
-  p->at = a->start + t;
-  p->path = t;
-  p->step = spread * (1.0f / (float)steps);
-  p->sigma = sigma;
-}
-
-// exp(-sigma_t (t + further)) dt of each channel [m]. `further` [m]: way through the medium from the light to the point.
-CLPV_INLINE Vec air_share(const AirPoint* p, const ClpvMedium medium, const realW further) {
-  const realW way = p->path + (further > ZERO ? further : ZERO), before = p->sigma * p->path;
-  return vec_times(vec(exp(before - medium.extinction[0] * way), exp(before - medium.extinction[1] * way),
-                       exp(before - medium.extinction[2] * way)),
-                   p->step);
 }
 
 __kernel void medium_light(const ClpvView view, __global const float* depths, const ClpvLight light,
