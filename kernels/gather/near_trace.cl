@@ -65,8 +65,10 @@ __kernel void near_trace(const ClpvView view, __global const float* points, __gl
                          __global const realW* nodes, __global const realW* leaves, CLPV_SCENE,
                          __global float* distances, __global uint* counts, __global float* hits) {
 #if W == 1
-  __local Unvisited stacks[CLPV_STACKS];
-  __local Unvisited* stack = stacks + get_local_id(1) * CLPV_STACK_SIDE + get_local_id(0);
+  __local uint stacked_nodes[CLPV_STACKS];
+  __local uchar stacked_children[CLPV_STACKS];
+  const uint item = get_local_id(1) * CLPV_STACK_SIDE + get_local_id(0);
+  const Stack stack = {stacked_nodes + item, stacked_children + item};
 #endif
   const uint tile = find_near_tile(view);
   if (tile == CLPV_NO_TILE) return;
