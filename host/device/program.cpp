@@ -2,12 +2,15 @@
 #include "device/program.hpp"
 
 #include <chrono>
+#include <map>
+#include <mutex>
 #include <regex>
 #include <thread>
 
 #include "device/cl_error.hpp"
 #include "device/driver_cache.hpp"
 #include "device/kernel_files.hpp"
+#include "support/log.hpp"
 
 namespace clpv {
 namespace {
@@ -17,9 +20,16 @@ namespace {
 constexpr int kRetries = 5;
 constexpr std::chrono::milliseconds kRetryWait{20};
 
-/// Returns true if the log blames a line of the text: "inject.cl:12:3: error:". Other errors are the driver's own.
+constexpr std::string_view kStandard = "-cl-std=CL1.2 ";
+constexpr const char* kImageProbe =
+    "__kernel void probe(__read_only image3d_t image, __global float4* texel) {\n"
+    "  texel[0] = read_imagef(image, (int4)(0));\n"
+    "}\n";
+
+/// Returns true if the log blames a line of the text: "inject.cl:12:3: error:", or "error: inject.cl:12:3" of PoCL 6.
+/// Other errors are the driver's own.
 bool blames_text(const std::string& log) {
-  static const std::regex place(":[0-9]+: (fatal )?error:");
+  static const std::regex place(":[0-9]+: (fatal )?error:|error: [^\n]*:[0-9]+:[0-9]+");
   return std::regex_search(log, place);
 }
 
@@ -39,6 +49,31 @@ std::string build_log(const cl::Program& program, const Device& device) {
   }
 }
 
+bool compiles(const cl::Context& context, const Device& device, const char* text, const std::string& options) {
+  try {
+    cl::Program(context, text).build(device.handle, options.c_str());
+    return true;
+  } catch (const cl::Error&) {
+    return false;
+  }
+}
+
+/// Returns true if the driver compiles kernels with images only without -cl-std=CL1.2, as PoCL 7.1 does. Compiles a
+/// probe, once per driver.
+bool lacks_images_in_standard(const cl::Context& context, const Device& device) {
+  static std::mutex mutex;
+  static std::map<std::string, bool> known;
+  const std::scoped_lock lock(mutex);
+  const std::string driver = fmt::format("{} {}", device.platform_version, device.driver);
+  if (const auto found = known.find(driver); found != known.end()) return found->second;
+  const bool lacks = device.images && !compiles(context, device, kImageProbe, std::string(kStandard)) &&
+                     compiles(context, device, kImageProbe, "");
+  if (lacks)
+    spdlog::debug("driver {} has images only without {}: programs that need them are built so", device.driver,
+                  kStandard);
+  return known[driver] = lacks;
+}
+
 }  // namespace
 
 std::string program_text(const ProgramSource& source) {
@@ -55,20 +90,23 @@ std::string program_text(const ProgramSource& source) {
 
 cl::Program build_program(const cl::Context& context, const Device& device, const ProgramSource& source,
                           const std::string& text) {
-  for (int left = kRetries;; --left) {
+  std::string options = source.options;
+  for (int left = kRetries;;) {
     cl::Program program(context, text);
     try {
-      program.build(device.handle, source.options.c_str());
+      program.build(device.handle, options.c_str());
       return program;
     } catch (const cl::Error& error) {
       const std::string log = build_log(program, device);
-      if (left > 0 && !blames_text(log)) {
-        std::this_thread::sleep_for(kRetryWait * (1 << (kRetries - left)));
-        continue;
+      if (!blames_text(log) && left > 0) {
+        std::this_thread::sleep_for(kRetryWait * (1 << (kRetries - left--)));
+      } else if (options.starts_with(kStandard) && lacks_images_in_standard(context, device)) {
+        options.erase(0, kStandard.size());
+      } else {
+        throw Error(ExitCode::run_time, "kernels/{} does not build on {} (driver {}) with '{}': {}\n{}{}",
+                    source.file, device.name, device.driver, options, cl_error_name(error.err()), log,
+                    cache_advice(log));
       }
-      throw Error(ExitCode::run_time, "kernels/{} does not build on {} (driver {}) with '{}': {}\n{}{}",
-                  source.file, device.name, device.driver, source.options, cl_error_name(error.err()), log,
-                  cache_advice(log));
     }
   }
 }

@@ -24,8 +24,9 @@ struct ProgramSource {
 /// Throws Error(run_time) for an unknown file.
 std::string program_text(const ProgramSource& source);
 
-/// Compiles `text` = program_text(source) for the device. Throws Error(run_time) with the options and the
-/// compiler's log, which numbers lines by the #line directives.
+/// Compiles `text` = program_text(source) for the device, without -cl-std=CL1.2 where it fails with it and the driver
+/// has images only so. Throws Error(run_time) with the options and the compiler's log, which numbers lines by the
+/// #line directives.
 cl::Program build_program(const cl::Context& context, const Device& device, const ProgramSource& source,
                           const std::string& text);
 

@@ -286,8 +286,16 @@ const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, 
   if (table.image() == nullptr) {
     table.values = upload(values, what);
     // Every device with images reads CL_R, CL_FLOAT (OpenCL 1.2, section 5.3.2.1).
-    table.image = cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, cl::ImageFormat(CL_R, CL_FLOAT),
-                                    values.size(), table.values.handle());
+    try {
+      table.image = cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, cl::ImageFormat(CL_R, CL_FLOAT),
+                                      values.size(), table.values.handle());
+    } catch (const cl::Error& error) {
+      if (error.err() != CL_INVALID_OPERATION) throw cl_error(error, fmt::format("{} on {}", what, device_.name));
+      throw Error(ExitCode::device,  // PoCL 7.1
+                  "evaluate image: the driver of {} makes no 1-D images of buffers: {} failed with {}; "
+                  "allowed: exact, buffer",
+                  device_.name, error.what(), cl_error_name(error.err()));
+    }
   }
   return table.image;
 }

@@ -39,19 +39,6 @@ CLPV_INLINE void box_of_tile(const ClpvView view, __global const float* points, 
   }
 }
 
-// Finds where the tile's rays begin.
-CLPV_INLINE void find_entry(const ClpvView view, __global const float* points, const Tree tree, Entry* entry) {
-  Box box;
-  box_of_tile(view, points, &box);
-  enter_tree(tree, box, entry);
-}
-
-#else
-
-CLPV_INLINE void find_entry(const ClpvView view, __global const float* points, const Tree tree, Entry* entry) {
-  entry->root = 0;
-}
-
 #endif
 
 // Appends the hits of rays k of a row.
@@ -71,14 +58,27 @@ CLPV_INLINE void add_hits(const NearRow r, const uint k, const realW reach, cons
   }
 }
 
+#if W == 1
+__attribute__((reqd_work_group_size(CLPV_STACK_SIDE, CLPV_STACK_SIDE, 1)))
+#endif
 __kernel void near_trace(const ClpvView view, __global const float* points, __global const realW* directions,
                          __global const realW* nodes, __global const realW* leaves, CLPV_SCENE,
                          __global float* distances, __global uint* counts, __global float* hits) {
+#if W == 1
+  __local uint stacked_nodes[CLPV_STACKS];
+  __local uchar stacked_children[CLPV_STACKS];
+  const uint item = get_local_id(1) * CLPV_STACK_SIDE + get_local_id(0);
+  const Stack stack = {stacked_nodes + item, stacked_children + item};
+#endif
   const uint tile = find_near_tile(view);
   if (tile == CLPV_NO_TILE) return;
   const Tree tree = {nodes, leaves};
+#if W > 1
+  Box box;
+  box_of_tile(view, points, &box);
   Entry entry;
-  find_entry(view, points, tree, &entry);
+  enter_tree(tree, box, &entry);
+#endif
   __global float* list = hits + (size_t)tile * CLPV_TILE_HITS * CLPV_HIT_ROWS;
   uint count = 0;
   for (int y = 0; y < CLPV_NEAR_TILE; ++y) {
@@ -91,7 +91,11 @@ __kernel void near_trace(const ClpvView view, __global const float* points, __gl
     for (uint k = 0; k < CLPV_NEAR_RAYS; ++k) {
       Rays rays;
       set_rays(from, find_near_directions(directions, r, &p, k), p.reach, &rays);
+#if W > 1
       trace_rays(tree, &entry, CLPV_PASS_SCENE, &rays);
+#else
+      trace_ray(tree, stack, CLPV_PASS_SCENE, &rays);
+#endif
       const realW distance = load_lanes(rays.distance);
       store_lanes(distance < p.reach ? distance : (realW)(INFINITY), distances + k * r.plane + r.at);
       add_hits(r, k, p.reach, &rays, list, &count);

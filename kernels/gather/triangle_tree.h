@@ -5,8 +5,7 @@
 // 1997, 'Fast, minimum storage ray-triangle intersection'. Both sides are hit; holes of masked materials are not.
 //
 // W rays share lists of nodes and leaves to visit. Processors test the entries of a list at the same time, while a
-// depth-first traversal waits for each node before it knows the next. One ray visits nodes depth first: its list is a
-// stack.
+// depth-first traversal waits for each node before it knows the next. One ray visits nodes depth first, with a stack.
 #pragma once
 
 #include "raster/scene_triangles.h"
@@ -226,23 +225,14 @@ CLPV_INLINE void enter_tree(const Tree tree, const Box box, Entry* entry) {
   entry->rows[CLPV_TREE_CHILDREN] = as_realW(load_lanes(children));
 }
 
-#else
-
-// The root, at which every ray begins.
-typedef struct {
-  uint root;
-} Entry;
-
-#endif
-
 // Entries of the lists: number of a node or a leaf, and a ray in the lowest bits.
 #define CLPV_RAY_BITS 3
-#define CLPV_LIST (W == 1 ? 0 : 256)  // entries, before the last node or leaf adds its own
+#define CLPV_LIST 256  // entries, before the last node or leaf adds its own
 
 // Adds the children in the mask `bits` of a node for ray i.
 #define CLPV_ADD_CHILDREN(memory, node, bits, i)                                                        \
   for (uint rest = bits; rest != 0; rest &= rest - 1u) {                                                \
-    const int child = ((memory const int*)((node) + CLPV_TREE_CHILDREN * CLPV_TREE_VECTORS))[lowest_bit(rest)];            \
+    const int child = ((memory const int*)((node) + CLPV_TREE_CHILDREN))[lowest_bit(rest)];            \
     const uint inner = child >= 0;                                                                      \
     nodes[node_count] = (uint)child << CLPV_RAY_BITS | i;                                               \
     leaves[leaf_count] = (uint)~child << CLPV_RAY_BITS | i;                                             \
@@ -258,14 +248,10 @@ CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Ray
   MaskedHits masked;
   store_lanes((uintW)(0u), masked.triangle);
   store_lanes(ZERO, masked.u), store_lanes(ZERO, masked.v);  // of unused lanes, too
-#if W > 1
   for (uint i = 0; i < W; ++i) {
     const uint bits = rays->distance[i] > 0.0f ? entry_hit(entry->rows, rays, i) : 0u;
     CLPV_ADD_CHILDREN(, entry->rows, bits, i)
   }
-#else
-  if (rays->distance[0] > 0.0f) nodes[node_count++] = entry->root;
-#endif
   while (visited < node_count || leaf_count > 0) {
     while (visited < node_count && leaf_count <= CLPV_LIST) {
       const uint next = nodes[node_count > CLPV_LIST ? --node_count : visited++], i = next % W;
@@ -284,3 +270,52 @@ CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Ray
   }
   take_masked(&masked, masked_count, CLPV_PASS_SCENE, rays);
 }
+
+#else
+
+// Nodes of whose children a ray has yet to visit those in a bit mask. Work-groups are CLPV_STACK_SIDE^2 work-items. Each has a
+// stack of CLPV_TREE_DEPTH in local memory, since GPUs keep private arrays in scratch memory. Entries of neighbouring work-items
+// are neighbours.
+#define CLPV_STACK_SIDE 8
+#define CLPV_STACK_STEP (CLPV_STACK_SIDE * CLPV_STACK_SIDE)
+#define CLPV_STACKS (CLPV_TREE_DEPTH * CLPV_STACK_STEP)
+typedef struct {
+  __local uint* nodes;
+  __local uchar* children;
+} Stack;
+
+// Finds the nearest triangle of a ray. `stack`: first entries of this work-item.
+CLPV_INLINE void trace_ray(const Tree tree, const Stack stack, CLPV_SCENE, Rays* rays) {
+  uint depth = 0, masked_count = 0, at = 0;  // the root
+  MaskedHits masked;
+  if (!(rays->distance[0] > 0.0f)) return;
+  uint unvisited = boxes_hit(tree.nodes, rays, 0);
+  for (;;) {
+    if (unvisited == 0u) {
+      if (depth == 0) return;
+      --depth;
+      at = stack.nodes[depth * CLPV_STACK_STEP];
+      unvisited = stack.children[depth * CLPV_STACK_STEP];
+    }
+    __global const realW* node = tree.nodes + (size_t)at * (CLPV_TREE_NODE_ROWS * CLPV_TREE_WIDTH);
+    const uint lane = lowest_bit(unvisited);
+    unvisited &= unvisited - 1u;
+    const int child = as_int(node[CLPV_TREE_CHILDREN * CLPV_TREE_WIDTH + lane]);
+    if (child < 0) {
+      __global const realW* leaf = tree.leaves + (size_t)(uint)~child * (CLPV_TREE_LEAF_ROWS * CLPV_TREE_WIDTH);
+      for (uint i = 0; i < CLPV_TREE_WIDTH; ++i)
+        test_triangles(leaf + i, 0, CLPV_PASS_SCENE, rays, &masked, &masked_count);
+      continue;
+    }
+    if (unvisited != 0u) {
+      stack.nodes[depth * CLPV_STACK_STEP] = at;
+      stack.children[depth * CLPV_STACK_STEP] = (uchar)unvisited;
+      ++depth;
+    }
+    at = (uint)child;
+    unvisited = boxes_hit(tree.nodes + (size_t)at * (CLPV_TREE_NODE_ROWS * CLPV_TREE_WIDTH), rays, 0);
+  }
+}
+
+#endif
+

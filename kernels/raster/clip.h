@@ -11,6 +11,18 @@
 #define CLPV_CLIP_PLANES 5
 #define CLPV_CLIP_CORNERS 12  // each plane adds one to the three; rounding may add a few more
 
+// A polygon of CLPV_CLIP_CORNERS corners, of which CLPV_CORNER(k) is the k-th. Corners are indexed at run time: GPUs keep
+// such a private array in scratch memory, so with one lane polygons lie in local memory, corners of a work-group's
+// CLPV_CLIP_GROUP work-items next to each other.
+#define CLPV_CLIP_GROUP 64
+#if W == 1
+#define CLPV_POLYGON __local
+#define CLPV_CORNER(k) ((k) * CLPV_CLIP_GROUP)
+#else
+#define CLPV_POLYGON
+#define CLPV_CORNER(k) (k)
+#endif
+
 // Point of the first lane.
 static inline float4 polygon_corner(const ViewPoint p) {
   return (float4)(first_lane(p.x), first_lane(p.y), first_lane(p.w), first_lane(p.z));
@@ -27,32 +39,31 @@ static inline float clip_distance(const ClpvView view, const float4 p, const int
 }
 
 // Clips the convex polygon `from` to the positive side of a plane. Returns the number of corners.
-static inline int clip_by_plane(const ClpvView view, const float4* from, const int count, const int plane,
-                                float4* to) {
+static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON const float4* from, const int count,
+                                const int plane, CLPV_POLYGON float4* to) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
-    const float4 a = from[i], b = from[i + 1 == count ? 0 : i + 1];
+    const float4 a = from[CLPV_CORNER(i)], b = from[CLPV_CORNER(i + 1 == count ? 0 : i + 1)];
     const float da = clip_distance(view, a, plane), db = clip_distance(view, b, plane);
-    if (da >= 0.0f && kept < CLPV_CLIP_CORNERS) to[kept++] = a;
+    if (da >= 0.0f && kept < CLPV_CLIP_CORNERS) to[CLPV_CORNER(kept++)] = a;
     if ((da >= 0.0f) != (db >= 0.0f) && kept < CLPV_CLIP_CORNERS) {
       const float4 inside = da >= 0.0f ? a : b, outside = da >= 0.0f ? b : a;
       const float di = da >= 0.0f ? da : db, dd = da >= 0.0f ? db : da;
       float4 hit = inside + (outside - inside) * (di / (di - dd));
       if (plane == CLPV_CLIP_PLANES - 1) hit.zw = CLPV_PARALLEL(view) ? hit.zw : (float2)(view.near_depth);
-      to[kept++] = hit;
+      to[CLPV_CORNER(kept++)] = hit;
     }
   }
   return kept;
 }
 
-// Clips the triangle in polygon[0..2]. Returns the number of corners in `polygon`; 0 if nothing is left. The near plane
-// comes first, since the guard planes intersect in the eye.
-static inline int clip_polygon(const ClpvView view, float4* polygon) {
-  float4 other[CLPV_CLIP_CORNERS];
+// Clips the triangle that is the first three corners of `polygon`; `other` is for intermediate polygons. Returns the number
+// of corners in `polygon`; 0 if nothing is left. The near plane comes first, since the guard planes intersect in the eye.
+static inline int clip_polygon(const ClpvView view, CLPV_POLYGON float4* polygon, CLPV_POLYGON float4* other) {
   int count = 3;
   for (int plane = CLPV_CLIP_PLANES - 1; plane >= 0; --plane) {
     count = clip_by_plane(view, polygon, count, plane, other);
-    for (int i = 0; i < count; ++i) polygon[i] = other[i];
+    for (int i = 0; i < count; ++i) polygon[CLPV_CORNER(i)] = other[CLPV_CORNER(i)];
   }
   return count < 3 ? 0 : count;
 }

@@ -191,6 +191,8 @@ __kernel void set_up(const ClpvView view, __global const uint* clusters, const u
   append(view, t, visible & (clipped == 0), cull, counts, capacity, list, entries, slice_counts);
 }
 
+#if W > 1
+
 // Corners of a clipped triangle, padded so that W lanes can be loaded from any of them.
 typedef struct {
   int x[CLPV_CLIP_CORNERS + W], y[CLPV_CLIP_CORNERS + W];
@@ -218,32 +220,55 @@ static inline ScreenCorner load_outline_apex(const Outline* outline) {
   return corner;
 }
 
+#else
+
+CLPV_INLINE ScreenCorner project_corner(const ClpvView view, CLPV_POLYGON const float4* polygon, const int k) {
+  const float4 at = polygon[CLPV_CORNER(k)];
+  const ViewPoint point = {at.x, at.y, at.w, at.z};
+  return project(view, point);
+}
+
+#endif
+
 // Clips the deferred triangles. The clipped polygon becomes a fan about its first corner.
+#if W == 1
+__attribute__((reqd_work_group_size(CLPV_CLIP_GROUP, 1, 1)))
+#endif
 __kernel void set_up_clipped(const ClpvView view, const uint cull, __global const float4* vertices,
                              __global const float4* triangles, __global const ClpvMaterial* materials,
                              volatile __global uint* counts, const uint most_listed, __global ClpvRasterTriangle* list,
                              const uint most_entered, __global uint* entries, volatile __global uint* slice_counts,
                              __global uint* to_clip) {
+#if W == 1
+  __local float4 polygons[2 * CLPV_CLIP_CORNERS * CLPV_CLIP_GROUP];
+  __local float4 *polygon = polygons + get_local_id(0), *other = polygon + CLPV_CORNER(CLPV_CLIP_CORNERS);
+#else
+  float4 polygon[CLPV_CLIP_CORNERS], other[CLPV_CLIP_CORNERS];
+#endif
   const Capacity capacity = {most_listed, most_entered};
   const intW lane = lane_numbers();
   for (uint i = get_global_id(0); i < counts[CLPV_TO_CLIP]; i += get_global_size(0)) {
     const uint triangle = to_clip[i];
     const uint4 t = as_uint4(triangles[triangle]);
-    float4 polygon[CLPV_CLIP_CORNERS];
     Vec a, b, c;
     load_position(vertices, (uintW)(t.x), &a);
     load_position(vertices, (uintW)(t.y), &b);
     load_position(vertices, (uintW)(t.z), &c);
-    polygon[0] = polygon_corner(view_point(view, a));
-    polygon[1] = polygon_corner(view_point(view, b));
-    polygon[2] = polygon_corner(view_point(view, c));
-    const int corners = clip_polygon(view, polygon);
+    polygon[CLPV_CORNER(0)] = polygon_corner(view_point(view, a));
+    polygon[CLPV_CORNER(1)] = polygon_corner(view_point(view, b));
+    polygon[CLPV_CORNER(2)] = polygon_corner(view_point(view, c));
+    const int corners = clip_polygon(view, polygon, other);
     if (corners == 0) continue;
+#if W > 1
     Outline outline;
     project_polygon(view, polygon, corners, &outline);
+#define CLPV_FAN(k) load_outline_apex(&outline), load_outline(&outline, k), load_outline(&outline, k + 1)
+#else
+#define CLPV_FAN(k) project_corner(view, polygon, 0), project_corner(view, polygon, k), project_corner(view, polygon, k + 1)
+#endif
     for (int k = 1; k + 1 < corners; k += W) {
-      const ScreenTriangles fan = {load_outline_apex(&outline), load_outline(&outline, k), load_outline(&outline, k + 1),
-                         make_face(view, a, b, c), (uintW)(triangle), (uintW)(materials[t.w].flags)};
+      const ScreenTriangles fan = {CLPV_FAN(k), make_face(view, a, b, c), (uintW)(triangle),
+                                   (uintW)(materials[t.w].flags)};
       append(view, fan, k + 1 + lane < corners, cull, counts, capacity, list, entries, slice_counts);
     }
   }

@@ -11,13 +11,15 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
   return (((channel * CLPV_ROWS + (z + 1)) * CLPV_ROWS + (y + 1)) * CLPV_PITCH + (x + 1)) * CLPV_VOLUME_COUNT;
 }
 
-// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed.
+// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed. PoCL 7.1 compiles
+// a loop of loads wrongly, and PoCL 3.1 slowly.
 #define CLPV_TRANSPOSED(from, i)                                                                         \
   ((float8)((from)[i], (from)[CLPV_LANE + i], (from)[2 * CLPV_LANE + i], (from)[3 * CLPV_LANE + i], \
             (from)[4 * CLPV_LANE + i], (from)[5 * CLPV_LANE + i], (from)[6 * CLPV_LANE + i],        \
             (from)[7 * CLPV_LANE + i]))
 #define CLPV_BEFORE_LOAD          \
   float8 rows[CLPV_VOLUME_COUNT]; \
+  _Pragma("unroll")               \
   for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) rows[i] = CLPV_READ_ROW(volume, at + 8 * i);
 #define CLPV_LOAD_LANES(i) CLPV_TRANSPOSED((const float*)rows, i)
 
