@@ -10,7 +10,6 @@
 #include "raster/project.h"
 
 #define CLPV_CLIP_PLANES 5
-#define CLPV_CLIP_CORNERS 12  // each plane adds one to the three; rounding may add a few more
 
 // Point of the first lane.
 static inline float4 polygon_corner(const ViewPoint p) {
