@@ -93,7 +93,7 @@ nlohmann::json results_of(const test::Outcome& outcome) {
 }
 
 TEST(Check, HelpersFindWhatOneProcessFinds) {
-  const std::string check = CLPV_PROGRAM " check --format json --stage shade,emit,sizes";
+  const std::string check = CLPV_PROGRAM " check --format json --stage shade,emit,sizes --match ''";
   const test::Outcome helped = test::run(check), alone = test::run("taskset -c 0 " + check);
   ASSERT_EQ(helped.exit_code, 0) << helped.err;
   ASSERT_EQ(alone.exit_code, 0) << alone.err;

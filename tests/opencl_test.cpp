@@ -6,10 +6,18 @@
 #include <gtest/gtest.h>
 
 #include <CL/opencl.hpp>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <thread>
 
 #include "device/device.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace clpv::opencl_test {
@@ -18,6 +26,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Vectors = std::vector<std::array<float, 3>>;
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 using test::kCornell;
 
 struct Owned {
@@ -66,6 +75,67 @@ TEST(OpenCl, FramesInACallersQueueAreThoseOfItsOwn) {
   EXPECT_GT(renderer.stats().stages.at("gather"), 0);
   EXPECT_EQ(renderer.show(View::full).pixels, full.pixels);
   EXPECT_THROW(renderer.enqueue(View::cells), Error);
+}
+
+/// Keeps a queue from going on until it is released.
+class Barrier {
+ public:
+  explicit Barrier(const Owned& own) : event_(own.context) {
+    const std::vector<cl::Event> events = {event_};
+    own.queue.enqueueBarrierWithWaitList(&events);
+    own.queue.flush();
+    // Frees a test that waits for the queue.
+    guard_ = std::thread([this] {
+      std::unique_lock lock(mutex_);
+      changed_.wait_for(lock, std::chrono::seconds(20), [this] { return released_; });
+      late_ = !released_;
+      event_.setStatus(CL_COMPLETE);
+    });
+  }
+  /// Returns true if nothing waited.
+  bool release() {
+    {
+      const std::lock_guard lock(mutex_);
+      released_ = true;
+    }
+    changed_.notify_one();
+    guard_.join();
+    return !late_;
+  }
+
+ private:
+  cl::UserEvent event_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool released_ = false, late_ = false;
+  std::thread guard_;
+};
+
+TEST(OpenCl, FramesAreEnqueuedAheadOfTheQueue) {
+  const Owned own;
+  Scene scene(kCornell);
+  Renderer renderer(scene, test::small_options(), own.given()), other(scene, test::small_options());
+  Camera camera = scene.cameras().front();
+  std::vector<Light> lights = scene.lights();
+  ASSERT_FALSE(lights.empty());
+  const auto move = [&] {
+    camera.eye[2] += 0.1;  // cascades move
+    lights[0].position[0] += 0.01;
+    scene.set_lights(lights);
+  };
+  renderer.enqueue(View::full, camera);  // compiles
+  move();
+  renderer.enqueue(View::full, camera);
+  for (int moved = 0; moved < 3; ++moved) {
+    move();
+    Barrier barrier(own);
+    const opencl::Frame frame = renderer.enqueue(View::full, camera),
+                        next = renderer.enqueue(View::full, camera);
+    const opencl::Frame last = renderer.enqueue(View::full, camera);
+    EXPECT_TRUE(barrier.release()) << "an enqueued frame waited for the queue";
+    EXPECT_EQ(own.read(last.image, 4 * 48 * 27), other.render(View::full, camera).pixels);
+    EXPECT_EQ(renderer.stats().waits, 0u);
+  }
 }
 
 TEST(OpenCl, AQueueWithoutProfilingHasNoTimes) {
@@ -201,27 +271,111 @@ TEST(OpenCl, WrongObjectsAreNamed) {
   }
 }
 
-TEST(OpenCl, AContextOfTwoDevicesNeedsAQueue) {
-  const Device whole = choose_device();
-  if (whole.compute_units < 2) GTEST_SKIP() << "one compute unit";
-  std::vector<cl::Device> halves;
-  try {
-    halves = {sub_device(whole, 1, 0).handle, sub_device(whole, 1, 1).handle};
-  } catch (const Error&) {
-    GTEST_SKIP() << "no sub-devices";
+/// Runs the test that calls it again, in a process with other devices. Returns false in that process.
+bool passes_with(const std::string& variables) {
+  if (std::getenv("CLPV_TEST_AGAIN") != nullptr) return false;
+  const ::testing::TestInfo& test = *::testing::UnitTest::GetInstance()->current_test_info();
+  const test::Outcome outcome =
+      test::run(variables + " CLPV_TEST_AGAIN=1 " + std::filesystem::read_symlink("/proc/self/exe").string() +
+                " --gtest_filter=" + test.test_suite_name() + "." + test.name());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("[  PASSED  ] 1 test")) << outcome.err;
+  return true;
+}
+
+/// Devices of the first platform that has two.
+std::vector<Device> two_devices() {
+  std::map<int, std::vector<Device>> by_platform;
+  for (const Device& device : list_devices().devices) {
+    std::vector<Device>& those = by_platform[device.platform_index];
+    if (device.supported()) those.push_back(device);
+    if (those.size() == 2) return those;
   }
-  const cl::Context both(halves);
+  return {};
+}
+
+TEST(OpenCl, EitherOfTwoDevicesInOneContext) {
+  const std::vector<Device> devices = two_devices();
+  if (devices.empty()) {
+    if (choose_device().platform != "Portable Computing Language")
+      GTEST_SKIP() << "one device, and a driver that cannot make it two";
+    EXPECT_TRUE(passes_with("POCL_DEVICES='pthread basic'"));
+    return;
+  }
+  const cl::Context both({devices[0].handle, devices[1].handle}), one(devices[0].handle);
   const Scene scene(kCornell);
-  const cl::CommandQueue queue(both, halves[0]);
-  EXPECT_EQ(Renderer(scene, test::small_options(), {nullptr, queue()}).render().pixels,
-            Renderer(scene, test::small_options()).render().pixels);
-  if (both.getInfo<CL_CONTEXT_DEVICES>().size() != 2)
-    GTEST_SKIP() << "the driver counts sub-devices as one device";
+  const std::vector<float> expected = Renderer(scene, test::small_options()).render().pixels;
   EXPECT_THAT(test::error_of(ExitCode::usage,
                              [&] {
                                Renderer(scene, test::small_options(), {both(), nullptr});
                              }),
-              HasSubstr("context: found 2 devices and no queue"));
+              HasSubstr("context: found 2 devices and no queue, allowed: one device, or a queue for one of"));
+  std::vector<cl::CommandQueue> queues;
+  std::vector<Renderer> renderers;
+  for (const Device& device : devices) {
+    const cl::CommandQueue& queue = queues.emplace_back(both, device.handle);
+    renderers.emplace_back(scene, test::small_options(), opencl::Queue{both(), queue()});
+    EXPECT_THAT(renderers.back().description(), HasSubstr(device.name));
+    EXPECT_THAT(test::error_of(ExitCode::usage,
+                               [&] {
+                                 Renderer(scene, test::small_options(), {one(), queue()});
+                               }),
+                HasSubstr("queue: found one of another context"));
+  }
+  std::vector<opencl::Frame> frames;
+  for (Renderer& renderer : renderers) frames.push_back(renderer.enqueue());
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(frames[i].done.wait(), CL_SUCCESS);
+    EXPECT_EQ(renderers[i].show(View::full).pixels, expected) << devices[i].name;
+  }
+  // Memory belongs to the context, not to a device.
+  const cl::Buffer shared(both, CL_MEM_READ_WRITE, 48 * 27 * 16),
+      foreign(one, CL_MEM_READ_WRITE, 48 * 27 * 16);
+  const opencl::GBuffer seen{48, 27, frames[0].normals, nullptr, frames[0].depth, shared()};
+  EXPECT_EQ(renderers[1].enqueue_light(seen, scene.cameras().front()).wait(), CL_SUCCESS);
+  std::vector<float> light(48 * 27 * 4);
+  queues[1].enqueueReadBuffer(shared, CL_TRUE, 0, light.size() * sizeof(float), light.data());
+  EXPECT_EQ(three_of_four(light), three_of_four(renderers[0].show(View::irradiance).pixels));
+  opencl::GBuffer elsewhere = seen;
+  elsewhere.irradiance = foreign();
+  EXPECT_THAT(test::error_of(ExitCode::usage,
+                             [&] { renderers[1].enqueue_light(elsewhere, scene.cameras().front()); }),
+              HasSubstr("irradiance: found a buffer of another context"));
+}
+
+TEST(OpenCl, AContextWithoutAUsableDeviceIsNamed) {
+  if (passes_with("LD_PRELOAD=" CLPV_OPENCL_SHIM " CLPV_SHIM_COMPILER=no")) return;
+  ASSERT_FALSE(list_devices().devices.empty());
+  const Device useless = list_devices().devices.front();
+  ASSERT_FALSE(useless.supported());
+  const cl::Context context(useless.handle);
+  const cl::CommandQueue queue(context, useless.handle);
+  for (const opencl::Queue& given : {opencl::Queue{context(), nullptr}, opencl::Queue{nullptr, queue()}}) {
+    EXPECT_THAT(
+        test::error_of(ExitCode::device, [&] { Renderer(Scene(kCornell), test::small_options(), given); }),
+        AllOf(HasSubstr("queue: found one of " + useless.name), HasSubstr("lacks: compiler")));
+  }
+}
+
+TEST(OpenCl, ObjectsOfAFrameInFlightMayGo) {
+  const Owned own;
+  Scene scene(kCornell);
+  const Triangles square{{0, 1, 2}, {0, 2, 3}};
+  const Vectors screen{{0.1f, 0.1f, 0.2f}, {0.4f, 0.1f, 0.2f}, {0.4f, 0.4f, 0.2f}, {0.1f, 0.4f, 0.2f}};
+  const std::vector<float> without = Renderer(scene, test::small_options()).render().pixels;
+  const int mesh = scene.add_mesh({.positions = screen, .triangles = square});
+  const std::vector<float> with = Renderer(scene, test::small_options()).render().pixels;
+  EXPECT_NE(with, without);
+  Renderer renderer(scene, test::small_options(), own.given());
+  renderer.enqueue();  // compiles
+  Barrier barrier(own);
+  const opencl::Frame frame = renderer.enqueue();
+  const cl::Buffer kept(frame.image, true);
+  scene.remove_mesh(mesh);
+  EXPECT_TRUE(barrier.release());
+  const opencl::Frame next = renderer.enqueue();  // in other memory
+  EXPECT_EQ(own.read(kept(), 4 * 48 * 27), with);
+  EXPECT_EQ(own.read(next.image, 4 * 48 * 27), without);
 }
 
 }  // namespace

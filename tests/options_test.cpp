@@ -216,7 +216,12 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
       test::run_here("render " CLPV_SOURCE_DIR "/scenes/cornell.json -o " + image + " --stats " + stats +
                      " --basis sh2 --width 16 --height 9 --grid 8 --preset paper");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const nlohmann::json options = nlohmann::json::parse(test::read_file(stats)).at("options");
+  const nlohmann::json report = nlohmann::json::parse(test::read_file(stats));
+  const nlohmann::json& options = report.at("options");
+  EXPECT_GT(report.at("launches"), 20);
+  EXPECT_GE(report.at("waits"), 1);
+  EXPECT_GT(report.at("host_ms"), 0);
+  EXPECT_LT(report.at("host_ms"), report.at("frame_ms"));
   EXPECT_EQ(options["preset"], "paper");
   EXPECT_EQ(options["basis"], "sh2");
   EXPECT_EQ(options["transport"], "sampled");

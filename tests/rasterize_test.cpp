@@ -314,6 +314,39 @@ TEST(Rasterize, SeveralLaunchesDrawTheSame) {
   }
 }
 
+/// A surface drawn by `rasterizer`.
+SurfaceImage drawn(Rasterizer& rasterizer, const ClpvView& view) {
+  Surface surface = make_surface(test_session(), view, RsmFormat::float32, false);
+  rasterizer.rasterize_camera(surface);
+  return read_surface(test_session(), surface);
+}
+
+TEST(Rasterize, DrawnAheadIsTheSameWithListsThatAreTooShort) {
+  SceneData scene = jittered_plane(20, 5, 4, 0);
+  for (int i = 0; i < 200; ++i) {  // through the near plane, and each over the whole screen
+    add_quad(scene, {-300, -40, -50.0f - static_cast<float>(i)}, {600, 0, 0}, {0, 80, 90},
+             add_material(scene, {0.5f, 0.25f, 0.75f}));
+  }
+  const ClpvView small = small_camera(16, 9), large = small_camera(320, 180);
+  const SurfaceImage whole = camera_image(scene, large);
+  Session& session = test_session();
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  rasterizer.draw_ahead(true);
+  session.timeline().clear();
+  drawn(rasterizer, small);
+  EXPECT_GE(session.timeline().host().waits, 1u) << "the first view waits";
+  for (const char* time : {"lists too short", "lists of the right length"}) {
+    Surface surface = make_surface(session, large, RsmFormat::float32, false);
+    session.timeline().clear();
+    rasterizer.rasterize_camera(surface);
+    EXPECT_EQ(session.timeline().host().waits, 0u) << time;
+    const SurfaceImage ahead = read_surface(session, surface);
+    EXPECT_EQ(whole.depth, ahead.depth) << time;
+    EXPECT_EQ(whole.normal, ahead.normal) << time;
+    EXPECT_EQ(whole.colour, ahead.colour) << time;
+  }
+}
+
 TEST(Rasterize, InconsistentScenesAreRejected) {
   const std::vector<std::function<void(SceneData&)>> faults = {
       [](SceneData& scene) { scene.triangles[1].vertex[2] = 4; },

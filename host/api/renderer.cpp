@@ -113,6 +113,7 @@ SceneCamera camera_at(const Vec3& eye) {
 }
 
 std::vector<std::array<float, 3>> Renderer::State::light(const SceneCamera& camera, const GBuffer& surfaces) {
+  frame->draw_ahead(false);
   const Buffer& irradiance = light(camera, uploaded(session, surfaces));
   return without_alpha(session.read<glm::vec4>(irradiance, surfaces.normals.size()));
 }
@@ -231,7 +232,9 @@ Stats Renderer::stats() const {
   FrameTimes times;
   times.add(state_->session.timeline().times());
   for (const auto& [pass, ms] : times.passes()) stats.stages[pass] = ms[0];
+  const HostWork& host = state_->session.timeline().host();
   stats.frame_ms = state_->frame_ms;
+  stats.host_ms = host.host_ms, stats.launches = host.launches, stats.waits = host.waits;
   stats.build_ms = state_->session.build_ms();
   stats.device_bytes = state_->session.device_bytes();
   stats.peak_device_bytes = state_->session.peak_device_bytes();

@@ -50,7 +50,7 @@ opencl::Frame Renderer::enqueue(View view, const CameraChoice& camera, double se
   State& state = *state_;
   const std::lock_guard lock(state.mutex);
   const std::shared_lock scene_stays(state.file.contents().mutex);
-  state.render(camera, seconds);
+  state.render(camera, seconds, true);
   opencl::Frame frame;
   frame.width = state.options.width, frame.height = state.options.height;
   frame.image = state.frame->image(view).handle()();
@@ -63,6 +63,7 @@ opencl::Frame Renderer::enqueue(View view, const CameraChoice& camera, double se
 
 opencl::Event Renderer::State::enqueue_light(const SceneCamera& camera, const GivenPixels& pixels,
                                              const Buffer& receives) {
+  frame->draw_ahead(true);
   const Buffer& irradiance = light(camera, pixels);
   session.copy(irradiance, receives, std::size_t{pixels.width} * pixels.height * sizeof(cl_float4));
   return all_done(session.queue());

@@ -82,9 +82,11 @@ struct Renderer::State {
   opencl::Event enqueue_light(const SceneCamera& camera, const GivenPixels& pixels, const Buffer& receives);
 
   /// Renders a frame without an image. Sets the metadata of its images.
-  void render(const CameraChoice& camera, double seconds) {
+  /// `ahead`: does not wait for the device (Rasterizer::draw_ahead).
+  void render(const CameraChoice& camera, double seconds, bool ahead = false) {
     metadata.clear();
     pose(seconds);
+    frame->draw_ahead(ahead);
     const SceneCamera chosen = posed.camera(camera);
     frame->render(chosen);
     lit = true;

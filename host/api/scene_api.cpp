@@ -133,7 +133,7 @@ double Scene::exposure() const {
 
 PosedScene::PosedScene(const Scene& file)
     : file_(file),
-      posed_(file.moves() ? std::optional(file.contents().moving) : std::nullopt),
+      posed_(file.contents().moving.moves() ? std::optional(file.contents().moving) : std::nullopt),
       geometries_(file.contents().geometries) {}
 
 bool PosedScene::pose(double seconds) {

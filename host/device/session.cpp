@@ -22,8 +22,8 @@ ProgramSource words_program() {
   return {.file = "buffer_ops.cl", .literals = {}, .generated = {}};
 }
 constexpr std::size_t kWordsGroup = 64;
-constexpr double kNoticeMs = 1000;              // longer waits are explained in the log
-constexpr std::size_t kCopiedBytes = 64 << 10;  // larger writes wait for the queue rather than copy
+constexpr double kNoticeMs = 1000;             // longer waits are explained in the log
+constexpr std::size_t kCopiedBytes = 1 << 20;  // larger writes wait for the queue rather than copy
 constexpr int kStoreShare = 10;  // store_programs() takes at most 1/10 of the process's run time
 const auto kProcessStart = std::chrono::steady_clock::now();
 
@@ -155,7 +155,7 @@ void Session::finish_first_launch(Program& program, const std::string& name) {
   if (!program.launched.insert(name).second) return;
   const auto start = std::chrono::steady_clock::now();
   const Uninterruptible compiling("this kernel");
-  queue_.finish();
+  timeline_.wait([&] { queue_.finish(); });
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
   spdlog::debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name, elapsed.count());
   if (compilation_.claims)
@@ -217,11 +217,14 @@ void Session::store_programs() {
     if (!std::exchange(logged, true) && build_ms_ > kNoticeMs)
       spdlog::info("caching the compiled kernels for later runs");
     const auto binaries = program->built.getInfo<CL_PROGRAM_BINARIES>();
-    if (binaries.size() != 1 || binaries[0].empty()) {
+    const auto devices = program->built.getInfo<CL_PROGRAM_DEVICES>();  // a caller's context may have several
+    const std::size_t ours =
+        std::ranges::find(devices, device_.handle(), [](const auto& d) { return d(); }) - devices.begin();
+    if (ours >= binaries.size() || binaries[ours].empty()) {
       spdlog::debug("{} returns no program binaries to cache", device_.name);
       return;
     }
-    if (!cache_->store(key, binaries[0])) return;  // it logged why; the next program would fail too
+    if (!cache_->store(key, binaries[ours])) return;  // it logged why; the next program would fail too
     program->stored = true;
   }
 }
@@ -303,7 +306,8 @@ const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, 
 void Session::write_bytes(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t at) {
   if (bytes.empty()) return;
   if (bytes.size() > kCopiedBytes) {
-    queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, at, bytes.size(), bytes.data());
+    timeline_.wait(
+        [&] { queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, at, bytes.size(), bytes.data()); });
     return;
   }
   std::erase_if(writes_, [](const Write& write) {
@@ -313,6 +317,15 @@ void Session::write_bytes(const Buffer& buffer, std::span<const std::byte> bytes
   queue_.enqueueWriteBuffer(buffer.handle(), CL_FALSE, at, bytes.size(), write.bytes.data(), nullptr,
                             &write.done);
   writes_.push_back(std::move(write));
+}
+
+std::shared_ptr<const Session::Arriving> Session::read_later(const Buffer& buffer, std::size_t count) {
+  std::erase_if(reads_, [](const auto& read) { return read->arrived(); });
+  const auto read = std::make_shared<Arriving>(std::vector<cl_uint>(count), cl::Event());
+  queue_.enqueueReadBuffer(buffer.handle(), CL_FALSE, 0, count * sizeof(cl_uint), read->values.data(),
+                           nullptr, &read->done);
+  reads_.push_back(read);
+  return read;
 }
 
 void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local) {

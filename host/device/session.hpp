@@ -119,7 +119,8 @@ class Session {
   /// Copies the first `bytes` bytes of `from` to byte `to_byte` of `to`; both are multiples of 4.
   void copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte = 0);
 
-  /// Writes values, which may change after the call. Waits for the queue only if they are more than 64 KiB.
+  /// Writes values, which may change after the call. Waits for the queue only if they are more than
+  /// 1 MiB.
   template <typename T>
   void write(const Buffer& buffer, const std::vector<T>& values) {
     write(buffer, std::span(values), 0);
@@ -138,9 +139,20 @@ class Session {
   template <typename T>
   std::vector<T> read(const Buffer& buffer, std::size_t count) {
     std::vector<T> values(count);
-    if (count > 0) queue_.enqueueReadBuffer(buffer.handle(), CL_TRUE, 0, count * sizeof(T), values.data());
+    if (count == 0) return values;
+    timeline_.wait(
+        [&] { queue_.enqueueReadBuffer(buffer.handle(), CL_TRUE, 0, count * sizeof(T), values.data()); });
     return values;
   }
+
+  /// Numbers on their way from the device.
+  struct Arriving {
+    std::vector<cl_uint> values;
+    cl::Event done;
+    bool arrived() const { return done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE; }
+  };
+  /// Reads without waiting.
+  std::shared_ptr<const Arriving> read_later(const Buffer& buffer, std::size_t count);
 
   /// Returns a read-only 1-D image of `values` (one channel of float) that lives as long as the session. Equal values
   /// share one image. `what` names it in errors. Requires Device::images.
@@ -177,7 +189,8 @@ class Session {
     cl::Event done;
   };
   std::vector<Write> writes_;
-  std::vector<Buffer> retained_;  ///< for Oclgrind, see buffer()
+  std::vector<std::shared_ptr<Arriving>> reads_;  ///< of read_later(), until they have arrived
+  std::vector<Buffer> retained_;                  ///< for Oclgrind, see buffer()
   struct TableImage {
     Buffer values;
     cl::Image1DBuffer image;

@@ -9,20 +9,20 @@ void Timeline::begin(StageMark mark) {
   const auto found = std::ranges::find(entries_, mark, &Entry::mark);
   current_ = found - entries_.begin();
   if (found == entries_.end()) entries_.push_back({std::move(mark), {}, 0});
-  started_ = std::chrono::steady_clock::now();
+  started_ = Clock::now();
 }
 
 void Timeline::end(cl::CommandQueue& queue) {
   if (current_ < 0) return;
   if (!events_valid_ && waits_) {
-    queue.finish();
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - started_;
-    entries_[current_].wall_ms += elapsed.count();
+    wait([&] { queue.finish(); });
+    entries_[current_].wall_ms += since(started_);
   }
   current_ = -1;
 }
 
 void Timeline::add(const cl::Event& event) {
+  ++host_.launches;
   if (current_ >= 0 && events_valid_) entries_[current_].events.push_back(event);
 }
 
@@ -43,7 +43,13 @@ std::vector<StageTime> Timeline::times() const {
 
 void Timeline::clear() {
   entries_.clear();
+  host_ = {};
   current_ = -1;
+  cleared_ = Clock::now();
+}
+
+void Timeline::enqueued() {
+  host_.host_ms = since(cleared_) - host_.waited_ms;
 }
 
 }  // namespace clpv

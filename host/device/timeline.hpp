@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Device time of each stage.
+// Device time of each stage, and what the host did for it.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -26,30 +26,53 @@ struct StageTime {
   bool from_events = true;  ///< false: wall time, since the device's events are implausible
 };
 
-/// Collects the events of launches, by stage.
+/// Work of the host for a frame.
+struct HostWork {
+  unsigned launches = 0;  ///< kernels, fills and copies
+  unsigned waits = 0;     ///< times that the host waited for the device
+  double waited_ms = 0;   ///< sum of the waits [ms]
+  double host_ms = 0;     ///< from clear() to enqueued(), waits not included [ms]
+};
+
+/// Collects the events of launches, by stage, and counts launches and waits.
 class Timeline {
  public:
   /// `events_valid`: true if profiling events report plausible times (Device::profiling_valid). `waits`: without them, end() waits
   /// for the queue to measure wall time; else times are 0.
   explicit Timeline(bool events_valid, bool waits = true) : events_valid_(events_valid), waits_(waits) {}
 
-  void begin(StageMark mark);         ///< starts a stage; times of repeated stages add up
+  void begin(StageMark mark);  ///< starts a stage; times of repeated stages add up
   void end(cl::CommandQueue& queue);
-  void add(const cl::Event& event);   ///< adds an event to the current stage
+  void add(const cl::Event& event);  ///< counts a launch, whose event it adds to the current stage
+  /// Calls `wait`, which waits for the device, and counts it.
+  template <typename Wait>
+  void wait(const Wait& wait) {
+    const Clock::time_point start = Clock::now();
+    wait();
+    ++host_.waits;
+    host_.waited_ms += since(start);
+  }
   std::vector<StageTime> times()
-      const;  ///< waits for the events; one entry per stage, in order of first begin
-  void clear();
+      const;        ///< waits for the events; one entry per stage, in order of first begin
+  void clear();     ///< begins a frame
+  void enqueued();  ///< ends the host's part of a frame
+  const HostWork& host() const { return host_; }  ///< since clear()
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static double since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  }
   struct Entry {
     StageMark mark;
     std::vector<cl::Event> events;
     double wall_ms = 0;
   };
   bool events_valid_, waits_;
+  HostWork host_;
   int current_ = -1;
   std::vector<Entry> entries_;
-  std::chrono::steady_clock::time_point started_;
+  Clock::time_point started_, cleared_;
 };
 
 }  // namespace clpv

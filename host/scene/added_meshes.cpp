@@ -180,6 +180,7 @@ int AddedMeshes::append(Added added, SceneData& scene) {
     scene.triangles.resize(triangles);
     throw;
   }
+  if (added.moves) scene.moving.push_back(range_of(added.instance));
   meshes_.emplace(next_, std::move(added));
   return next_++;
 }
@@ -190,6 +191,7 @@ int AddedMeshes::add(const Mesh& mesh, const Transform& transform, SceneData& sc
   LocalPrimitive primitive = primitive_of(mesh, scene);
   primitive.material = material_slot(mesh.material, scene);
   added.instance.primitive = std::make_shared<const LocalPrimitive>(std::move(primitive));
+  added.moves = mesh.moves;
   return append(std::move(added), scene);
 }
 
@@ -198,6 +200,7 @@ int AddedMeshes::add_instance(int mesh, const Transform& transform, SceneData& s
   const Added& like = entry(kFunction, mesh);
   Added added{{}, tree_of(kFunction, transform), like.positions};
   added.instance.primitive = like.instance.primitive;
+  added.moves = like.moves;
   return append(std::move(added), scene);
 }
 

@@ -152,7 +152,9 @@ Cases CheckChoice::cases() const {
 std::vector<std::string> CheckChoice::arguments() const {
   std::vector<std::string> arguments = {"check"};
   for (const Stage stage : stages) arguments.push_back(fmt::format("--stage={}", name_of(stage)));
-  for (const std::string& text : match) arguments.push_back("--match=" + text);
+  for (const std::string& text : match) {
+    if (!text.empty()) arguments.push_back("--match=" + text);  // empty, it would take the next word
+  }
   if (thorough) arguments.push_back("--thorough");
   if (preset) arguments.push_back(fmt::format("--preset={}", name_of(*preset)));
   return arguments;

@@ -51,6 +51,7 @@ struct Mesh {
   bool smooth =
       false;  ///< without normals: means of the triangles' normals, weighted by angle; else flat, as in glTF
   Material material{};
+  bool moves = false;  ///< will move: its first move then needs no new memory (Scene::set_positions)
 };
 
 }  // namespace clpv

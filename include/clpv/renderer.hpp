@@ -43,6 +43,9 @@ struct Stats {
   /// not run, since its result was cached or the options do not need it.
   std::map<std::string, double> stages;
   double frame_ms = 0;                ///< wall time of render(), the read-back of the image included
+  double host_ms = 0;                 ///< of it the host's work to enqueue the frame, without waits
+  unsigned launches = 0;              ///< kernels, fills and copies of the device
+  unsigned waits = 0;                 ///< times that the host waited for the device, the read-back included
   double build_ms = 0;                ///< time so far for compiling programs or loading them
   std::size_t device_bytes = 0;       ///< device memory in use
   std::size_t peak_device_bytes = 0;  ///< maximum so far

@@ -92,8 +92,8 @@ class Scene {
 
   /// Moves the vertices of a mesh, at all of its places, or one of its places. Normals that the
   /// mesh was given stay without `normals`. The next frame of each renderer recomputes what
-  /// animation recomputes; at the first move of a mesh, and after an addition or removal, also its
-  /// memory and what it caches. Throw as add_mesh().
+  /// animation recomputes; at the first move of a mesh without Mesh::moves, and after an addition or
+  /// removal, also its memory and what it caches. Throw as add_mesh().
   void set_positions(int mesh, std::span<const std::array<float, 3>> positions,
                      std::span<const std::array<float, 3>> normals = {});
   void set_transform(int mesh, const Transform& transform);

@@ -9,7 +9,6 @@
 #include "raster/project.h"
 
 #define CLPV_CLIP_PLANES 5
-#define CLPV_CLIP_CORNERS 12  // each plane adds one to the three; rounding may add a few more
 
 // A polygon of CLPV_CLIP_CORNERS corners, of which CLPV_CORNER(k) is the k-th. Corners are indexed at run time: GPUs keep
 // such a private array in scratch memory, so with one lane polygons lie in local memory, corners of a work-group's

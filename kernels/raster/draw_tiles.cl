@@ -10,6 +10,8 @@
 // In:      list          ClpvRasterTriangle of the view
 //          starts        index in `binned` of the first entry of each slice of each tile
 //          binned        entries: index in `list`, smallest key
+//          counts        CLPV_LISTED and so on. With more entries than most_entered, `starts` and `binned` are
+//                        incomplete: every tile then draws the whole list, which is slow
 //          fresh         1: tiles start empty; 0: they continue from `keys` and `seen`
 //          vertices, triangles, materials, textures, texels   the scene, for masked materials
 // In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers per row of a tile,
@@ -113,11 +115,37 @@ static inline float farthest_of(__global const realW* keys) {
   return -min_lane(-largest);
 }
 
+CLPV_INLINE void draw_listed(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r,
+                             const Scene scene) {
+  const uint kind = r->triangle;
+  if (kind & CLPV_TRIANGLE_MASKED) {
+    draw_masked(view, tile, r, kind, scene);
+  } else {
+    draw(view, tile, r, kind, false, 0, scene.texels);
+  }
+}
+
+// Draws the `count` triangles of the list whose boxes overlap the tile.
+CLPV_RARE void draw_whole_list(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* list,
+                               const uint count, const Scene scene) {
+  const int right = tile.x + W - 1, bottom = tile.y + CLPV_TILE - 1;
+  for (uint first = 0; first < count; first += CLPV_LONGEST_LOOP) {
+    const uint stop = min(count - first, CLPV_LONGEST_LOOP) + first;
+    for (uint i = first; i < stop; ++i) {
+      __global const ClpvRasterTriangle* r = list + i;
+      const bool left_of = (int)(r->last & 0xffffu) < tile.x, right_of = (int)(r->first & 0xffffu) > right;
+      const bool above = (int)(r->last >> 16) < tile.y, below = (int)(r->first >> 16) > bottom;
+      if (!(left_of || right_of || above || below)) draw_listed(view, tile, r, scene);
+    }
+  }
+}
+
 // Triangles of a tile are scattered over the list: prefetch the one that is drawn this many later.
 #define CLPV_DRAW_AHEAD 2
 
 __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const ClpvRasterTriangle* list,
                          __global const uint* starts, __global const uint2* binned,
+                         __global const uint* counts, const uint most_entered,
                          __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
                          __global const ClpvMaterial* materials, __global const float4* textures,
                          __global const uint* texels, __global realW* keys, __global uintW* seen) {
@@ -135,6 +163,10 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
       tile.seen[row * CLPV_TILE_VECTORS] = (uintW)(UINT_MAX);
     }
   }
+  if (counts[CLPV_ENTERED] > most_entered || counts[CLPV_ENTERED_TOO_MANY] > 0) {
+    draw_whole_list(view, tile, list, counts[CLPV_LISTED], scene);
+    return;
+  }
   const uint end = starts[(at + 1) * CLPV_SLICES];
   float farthest = farthest_of(tile.keys);  // triangles behind it are hidden
   for (uint first = starts[at * CLPV_SLICES]; first < end; first += CLPV_LONGEST_LOOP) {
@@ -143,12 +175,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
       if (as_float(binned[i].y) > farthest) continue;
       __global const ClpvRasterTriangle* r = list + binned[i].x;
       CLPV_PREFETCH(list + binned[min(i + CLPV_DRAW_AHEAD, stop - 1)].x);
-      const uint kind = r->triangle;
-      if (kind & CLPV_TRIANGLE_MASKED) {
-        draw_masked(view, tile, r, kind, scene);
-      } else {
-        draw(view, tile, r, kind, false, 0, texels);
-      }
+      draw_listed(view, tile, r, scene);
       farthest = farthest_of(tile.keys);
     }
   }

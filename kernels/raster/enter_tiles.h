@@ -89,7 +89,7 @@ static inline uint take_entries(volatile __global uint* counts, const uint wante
   return at;
 }
 
-// Appends the triangles of the lanes in `mask`, with their entries. Beyond the capacity it only counts them.
+// Appends the triangles of the lanes in `mask`, with their entries. Beyond a capacity it only counts them.
 CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const intW mask,
                             volatile __global uint* counts, const Capacity capacity,
                             __global ClpvRasterTriangle* list, __global uint* entries,
@@ -105,12 +105,14 @@ CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const
   }
   uint index = atomic_add(counts + CLPV_LISTED, triangles), at = take_entries(counts, room);
   const uint end = at + room;
-  if (index + triangles > capacity.list || end > capacity.entries || end < at) return;
+  if (index + triangles > capacity.list) return;
+  const bool room_for_entries = end <= capacity.entries && end >= at;
   for (int lane = 0; lane < W; ++lane) {
     if (!listed[lane]) continue;
     __global int* to = (__global int*)(list + index);
     for (int w = 0; w < CLPV_RASTER_WORDS; ++w) to[w] = words->word[w][lane];
-    at = enter_all(view, words, lane, index++, at, entries, slice_counts);
+    if (room_for_entries) at = enter_all(view, words, lane, index, at, entries, slice_counts);
+    ++index;
   }
-  for (; at < end; ++at) entries[CLPV_ENTRY_WORDS * at] = CLPV_NO_SLICE;
+  for (; room_for_entries && at < end; ++at) entries[CLPV_ENTRY_WORDS * at] = CLPV_NO_SLICE;
 }

@@ -15,7 +15,7 @@
 //          entries   CLPV_ENTRY_WORDS words for each listed triangle and tile of 8 x 8 pixels that it may cover
 //          to_clip   numbers of the triangles that set_up defers
 // In, out: counts    CLPV_LISTED and so on. They count beyond the capacities most_listed and most_entered as well: the
-//                    host then enlarges the lists and starts again.
+//                    host then enlarges the lists and starts again, or draw_tiles draws without entries.
 //          slice_counts   number of entries of each slice of each tile
 // A work-item of set_up takes W triangles.
 #include "raster/clip.h"

@@ -135,7 +135,7 @@ struct GivenMesh {
 std::unique_ptr<GivenMesh> given_mesh(const py::object& positions, const py::object& triangles,
                                       const py::object& normals, const py::object& uvs,
                                       const py::object& colours, bool smooth,
-                                      const std::optional<Material>& material) {
+                                      const std::optional<Material>& material, bool moves) {
   constexpr const char* kFunction = "add_mesh";
   auto given = std::make_unique<GivenMesh>();
   given->positions = floats<3>(kFunction, "positions", positions);
@@ -149,14 +149,15 @@ std::unique_ptr<GivenMesh> given_mesh(const py::object& positions, const py::obj
                  given->uvs,
                  given->colours,
                  smooth,
-                 material.value_or(Material())};
+                 material.value_or(Material()),
+                 moves};
   return given;
 }
 
 int add_mesh(Scene& scene, const py::object& positions, const py::object& triangles,
              const py::object& normals, const py::object& uvs, const py::object& colours, bool smooth,
-             const std::optional<Material>& material, const py::object& transform) {
-  const auto given = given_mesh(positions, triangles, normals, uvs, colours, smooth, material);
+             const std::optional<Material>& material, const py::object& transform, bool moves) {
+  const auto given = given_mesh(positions, triangles, normals, uvs, colours, smooth, material, moves);
   const Transform at = transform_of("add_mesh", transform);
   return without_gil([&] { return scene.add_mesh(given->mesh, at); });
 }
@@ -214,7 +215,7 @@ void add_meshes(py::class_<Scene>& type) {
     define(function, py::arg("positions"), py::arg("triangles"), py::kw_only(),
            py::arg("normals") = py::none(), py::arg("uvs") = py::none(), py::arg("colours") = py::none(),
            py::arg("smooth") = false, py::arg("material") = py::none(), py::arg("transform") = py::none(),
-           doc);
+           py::arg("moves") = false, doc);
   };
   arguments(
       [&](const auto&... all) { type.def("add_mesh", all...); }, &add_mesh,
@@ -227,13 +228,14 @@ void add_meshes(py::class_<Scene>& type) {
       "weighted by "
       "angle. material: None for white;\ntransform: array (4, 4) to the world, which multiplies columns (x, "
       "y, z, 1). "
-      "The arrays are copied. Raises InputError with\narray, index, value found and value allowed.");
+      "moves: it will move, so its\nfirst move needs no new memory (set_positions()). The arrays are copied. "
+      "Raises InputError with array, index, value found and\nvalue allowed.");
   arguments([&](const auto&... all) { type.def_static("from_arrays", all...); },
             [](const py::object& positions, const py::object& triangles, const py::object& normals,
                const py::object& uvs, const py::object& colours, bool smooth,
-               const std::optional<Material>& material, const py::object& transform) {
+               const std::optional<Material>& material, const py::object& transform, bool moves) {
               Scene scene;
-              add_mesh(scene, positions, triangles, normals, uvs, colours, smooth, material, transform);
+              add_mesh(scene, positions, triangles, normals, uvs, colours, smooth, material, transform, moves);
               return scene;
             },
             "from_arrays(positions, triangles, *, ...) -> Scene of one mesh, number 0, as add_mesh() "
@@ -268,9 +270,9 @@ void add_meshes(py::class_<Scene>& type) {
       py::arg("mesh"), py::arg("positions"), py::arg("normals") = py::none(),
       "set_positions(mesh, positions, normals=None): moves its vertices, at all of its places. Normals that "
       "were given "
-      "stay without\n`normals`. The next frame of each renderer recomputes what animation recomputes; at the "
-      "first move of a "
-      "mesh, and after an\naddition or removal, also its memory and what it caches.");
+      "stay without\n`normals`. The next frame of each renderer recomputes what animation recomputes; at the\n"
+      "first move of a mesh added without `moves`, and after an addition or removal, also its memory and what "
+      "it caches.");
   type.def(
       "set_transform",
       [](Scene& scene, int mesh, const py::object& transform) {

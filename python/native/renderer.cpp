@@ -52,6 +52,9 @@ py::dict dict_of(const Stats& stats) {
   py::dict all;
   for (const auto& [stage, ms] : stats.stages) all[py::str(stage)] = ms;
   all["frame"] = stats.frame_ms;
+  all["host"] = stats.host_ms;
+  all["launches"] = stats.launches;
+  all["waits"] = stats.waits;
   all["build"] = stats.build_ms;
   all["device_bytes"] = stats.device_bytes;
   all["peak_device_bytes"] = stats.peak_device_bytes;
@@ -250,8 +253,9 @@ void add_renderer(py::module_& module) {
       [](const Renderer& renderer) { return dict_of(interruptible([&] { return renderer.stats(); })); },
       "Dict of the last frame: device time of each stage [ms] ('propagate', 'gather', ...; 0 if cached or "
       "not needed),\n"
-      "'frame': wall time of render() [ms], 'build': compilation so far [ms], 'device_bytes', "
-      "'peak_device_bytes'.");
+      "'frame': wall time of render() [ms], 'host': the host's work in it, without waiting [ms], 'build': "
+      "compilation so far\n[ms]; numbers of 'launches' (kernels, fills and copies) and of 'waits' for the "
+      "device; 'device_bytes', 'peak_device_bytes'.");
   module.def(
       "pathtrace",
       [](const Scene& scene, const std::string& view, const std::optional<CameraChoice>& camera, int width,

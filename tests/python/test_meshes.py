@@ -146,7 +146,7 @@ def test_float_textures_are_encoded():
 
 
 def test_meshes_change_while_frames_render():
-    scene = clpv.Scene.from_arrays(WALL, SQUARE)
+    scene = clpv.Scene.from_arrays(WALL, SQUARE, moves=True)
     renderer = clpv.Renderer(scene, cascade_size=4, **SMALL)
     positions = WALL.copy()
 
@@ -155,7 +155,8 @@ def test_meshes_change_while_frames_render():
             positions[:] = WALL + (0, 0, 0.01 * step)
             scene.set_positions(0, positions)
             positions[:] = numpy.nan  # the scene has its own copy
-        scene.remove_mesh(scene.add_mesh(WALL, SQUARE))
+            if step % 5 == 0:
+                scene.remove_mesh(scene.add_mesh(WALL, SQUARE))
 
     thread = threading.Thread(target=change)
     thread.start()

@@ -103,8 +103,10 @@ def test_stats(scene):
     renderer.render()
     stats = renderer.stats
     assert stats["propagate"] > 0 and stats["frame"] > stats["propagate"] and stats["device_bytes"] > 0
+    assert 0 < stats["host"] < stats["frame"] and stats["launches"] > 20 and stats["waits"] > 1
     renderer.render()
     assert renderer.stats["propagate"] == 0, "cached"
+    assert renderer.stats["launches"] < stats["launches"]
 
 
 def test_irradiance_takes_arrays_of_any_layout(renderer):

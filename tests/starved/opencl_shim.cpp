@@ -3,6 +3,7 @@
 // call on, but for one.
 //
 //   CLPV_SHIM=CALL:N:CODE    the N-th call (from 1; * is every one) of clCreateBuffer, ... returns that OpenCL code
+//   CLPV_SHIM_COMPILER=no    devices have no compiler
 //   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that were not released
 //
 // "memory" is a call's name for all that allocate, "enqueue" for all that put work on the queue.
@@ -71,6 +72,14 @@ __attribute__((destructor)) void report() {
   const bool failed = fails(kind, #name, code)
 
 extern "C" {
+
+cl_int clGetDeviceInfo(cl_device_id device, cl_device_info info, size_t size, void* value, size_t* needed) {
+  CLPV_NEXT(clGetDeviceInfo);
+  const cl_int code = call(device, info, size, value, needed);
+  const bool hidden = info == CL_DEVICE_COMPILER_AVAILABLE && std::getenv("CLPV_SHIM_COMPILER") != nullptr;
+  if (hidden && code == CL_SUCCESS && value != nullptr) *static_cast<cl_bool*>(value) = CL_FALSE;
+  return code;
+}
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
   CLPV_MAY_FAIL("memory", clCreateBuffer);

@@ -156,6 +156,7 @@ void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
     shader_.light(*camera_surface_, shadowed);
     show(Show::full);
   });
+  session_.timeline().enqueued();
 }
 
 const Buffer& Frame::light(const SceneCamera& camera, const GivenPixels& pixels) {
@@ -177,6 +178,7 @@ const Buffer& Frame::light(const SceneCamera& camera, const GivenPixels& pixels)
   near_hits_.invalidate();  // their content is unknown
   gather(surface, 0, given_irradiance_);
   near_hits_.invalidate();
+  session_.timeline().enqueued();
   return given_irradiance_;
 }
 

@@ -58,6 +58,9 @@ class Frame {
   /// G-buffer of the last render's camera. Undefined before the first render.
   const Surface& seen() const { return *camera_surface_; }
 
+  /// Rasterizer::draw_ahead() of the next frames.
+  void draw_ahead(bool ahead) { rasterizer_.draw_ahead(ahead); }
+
   /// Irradiance [W/m^2] from the last render's light on arbitrary surfaces, in the format of Gatherer, without the near field.
   std::vector<float> irradiance_on(const SurfaceImage& surfaces);
   /// The same at points: position [m] and unit normal of each; one value per point. Throws Error(usage) before the first render.

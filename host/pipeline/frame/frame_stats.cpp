@@ -48,7 +48,12 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
   for (const Energy& e : energies_) {
     energy.push_back({{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
   }
-  const double frame_ms = median(times_.wall_ms());
+  const auto median_of = [&](const auto& part) {
+    std::vector<double> values;
+    for (const FrameCost& cost : times_.costs()) values.push_back(part(cost));
+    return median(values);
+  };
+  const double frame_ms = median_of([](const FrameCost& cost) { return cost.wall_ms; });
   std::vector<StageTime> stages;
   for (const FrameTimes::Series& series : times_.stages())
     stages.push_back({series.mark, median(series.ms), series.from_events});
@@ -58,6 +63,9 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
           {"frames", times_.count()},
           {"stages", clpv::to_json(stages)},
           {"frame_ms", frame_ms},
+          {"host_ms", median_of([](const FrameCost& cost) { return cost.host.host_ms; })},
+          {"launches", median_of([](const FrameCost& cost) { return cost.host.launches; })},
+          {"waits", median_of([](const FrameCost& cost) { return cost.host.waits; })},
           {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
           {"build_ms", session.build_ms()},
           {"startup_ms", startup_ms_},

@@ -21,7 +21,8 @@ class FrameStats {
   void set_times(FrameTimes times) { times_ = std::move(times); }
   void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes);
 
-  /// Returns JSON of schema 1: device, options, frames (number of timed ones), stages, frame_ms, first_launch_ms,
+  /// Returns JSON of schema 1: device, options, frames (number of timed ones), stages, frame_ms,
+  /// host_ms (the host's work, without waits), launches and waits of a frame, first_launch_ms,
   /// build_ms, startup_ms, device_bytes, energy.
   nlohmann::json to_json(const Session& session, const nlohmann::json& options) const;
 

@@ -11,9 +11,9 @@
 
 namespace clpv {
 
-void FrameTimes::add(std::vector<StageTime> stages, double wall_ms) {
+void FrameTimes::add(std::vector<StageTime> stages, const FrameCost& cost) {
   frames_.push_back(std::move(stages));
-  wall_ms_.push_back(wall_ms);
+  costs_.push_back(cost);
 }
 
 std::vector<double> FrameTimes::sums(const std::function<bool(const StageMark&)>& counts) const {
@@ -67,10 +67,11 @@ FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& cam
     frame.invalidate_light();
     const Clock::time_point start = Clock::now();
     frame.render(camera);
+    const HostWork host = session.timeline().host();
     session.queue().finish();
     const std::chrono::duration<double, std::milli> wall = Clock::now() - start;
     if (after) after();
-    if (i >= 0) times.add(session.timeline().times(), wall.count());
+    if (i >= 0) times.add(session.timeline().times(), {wall.count(), host});
   }
   return times;
 }

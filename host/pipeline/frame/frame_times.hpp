@@ -13,13 +13,19 @@
 
 namespace clpv {
 
+/// Cost of a frame on the host's clock.
+struct FrameCost {
+  double wall_ms = 0;  ///< from its first command to the end of its last one
+  HostWork host = {};  ///< to enqueue it
+};
+
 /// Times [ms] of frames: of their stages on the device, and of whole frames on the host's clock.
 class FrameTimes {
  public:
-  void add(std::vector<StageTime> stages, double wall_ms = 0);
+  void add(std::vector<StageTime> stages, const FrameCost& cost = {});
   std::size_t count() const { return frames_.size(); }
 
-  const std::vector<double>& wall_ms() const { return wall_ms_; }
+  const std::vector<FrameCost>& costs() const { return costs_; }
   /// Sums over the stages for which `counts` returns true, one per frame; null: all stages.
   std::vector<double> sums(const std::function<bool(const StageMark&)>& counts = {}) const;
 
@@ -40,7 +46,7 @@ class FrameTimes {
 
  private:
   std::vector<std::vector<StageTime>> frames_;
-  std::vector<double> wall_ms_;
+  std::vector<FrameCost> costs_;
 };
 
 /// Renders `frames` frames that recompute all lighting, after `warm_up` others, and waits for each. `after`, if not null, is

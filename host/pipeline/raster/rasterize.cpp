@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::size_t kRasterGroup = 64;
 constexpr std::size_t kClippers = 1024;  // work-items that share the triangles to be clipped, usually none
-constexpr std::size_t kSpare = 4;        // lists grow by an extra 1/4, since cameras move
+constexpr std::size_t kMostAhead = std::size_t{1} << 22;      // triangles (256 MiB); longer lists wait
+constexpr std::size_t kClippedParts = CLPV_CLIP_CORNERS - 2;  // triangles that one can become
+constexpr std::size_t kSpare = 4;  // lists grow by an extra 1/4, since cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
 const ProgramSource kSetUp{"raster/rasterize.cl", {}, {}}, kBin{"raster/bin_tiles.cl", {}, {}},
     kDraw{"raster/draw_tiles.cl", {}, {}};
@@ -99,20 +101,26 @@ void Rasterizer::find_visible(const Drawing& drawing) {
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
   session_.reserve(slice_counts_, (slices + 1) * sizeof(cl_uint), "slices of tiles");
   session_.reserve(totals_, (slices / CLPV_SLICE_CHUNK + 1) * sizeof(cl_uint), "slices by chunks");
-  draw(drawing, 0, list_clusters(drawing.view), true);
+  const VisibleClusters visible = list_clusters(drawing.view);
+  if (list_ahead(drawing, visible)) return draw_tiles(drawing.view, true);
+  draw(drawing, 0, visible.count, true);
+  drawn_.insert(drawing.kind);
 }
 
-/// Lists the triangle clusters that may be visible and returns their number.
-unsigned Rasterizer::list_clusters(const ClpvView& view) {
+/// Lists the triangle clusters that may be visible.
+Rasterizer::VisibleClusters Rasterizer::list_clusters(const ClpvView& view) {
   const std::vector<cl_uint> visible =
       scene_.clusters->which([&](const Bounds& cluster) { return may_be_visible(view, cluster); });
   session_.write(clusters_, visible);
-  return visible.size();
+  VisibleClusters counted{static_cast<unsigned>(visible.size()), 0};
+  for (const cl_uint cluster : visible)
+    counted.clipped += may_be_clipped(view, scene_.clusters->bounds()[cluster]) ? 1 : 0;
+  return counted;
 }
 
 /// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of their tiles.
 void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) {
-  const cl_uint cull = drawing.cull_back_faces ? 1 : 0;
+  const cl_uint cull = drawing.culls_back_faces() ? 1 : 0;
   session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
   session_.fill_zero(slice_counts_, slice_count(drawing.view) * sizeof(cl_uint));
   if (count == 0) return;
@@ -146,10 +154,34 @@ bool Rasterizer::list(const Drawing& drawing, unsigned first, unsigned count) {
     bin(drawing.view);
     const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
     const std::size_t listed = counts[CLPV_LISTED], entered = counts[CLPV_ENTERED];
+    entered_ = std::max(entered_, entered);
     if (count > 1 && (counts[CLPV_ENTERED_TOO_MANY] > 0 || entered > max_listed_)) return false;
     if (listed <= list_room() && entered <= entry_room()) return true;
     reserve_list(listed);
     reserve_entries(entered);
+  }
+}
+
+/// Lists the triangles of the visible clusters without waiting. The list has room for all of them,
+/// but tiles' entries may not fit. Returns false if the host has to wait.
+bool Rasterizer::list_ahead(const Drawing& drawing, const VisibleClusters& visible) {
+  take_counts();
+  const std::size_t most = CLPV_CLUSTER * (visible.count + (kClippedParts - 1) * visible.clipped);
+  if (!ahead_ || !drawn_.contains(drawing.kind) || most > kMostAhead || entered_ > max_listed_) return false;
+  reserve_list(most);
+  reserve_entries(entered_);
+  set_up(drawing, 0, visible.count);
+  bin(drawing.view);
+  counting_.push_back(session_.read_later(counts_, CLPV_RASTER_COUNTERS));
+  return true;
+}
+
+/// Takes the counters that have arrived.
+void Rasterizer::take_counts() {
+  for (; !counting_.empty() && counting_.front()->arrived(); counting_.pop_front()) {
+    const std::vector<cl_uint>& counts = counting_.front()->values;
+    const bool overflow = counts[CLPV_ENTERED_TOO_MANY] > 0;
+    entered_ = std::max<std::size_t>(entered_, overflow ? max_listed_ + 1 : counts[CLPV_ENTERED]);
   }
 }
 
@@ -163,8 +195,8 @@ void Rasterizer::draw(const Drawing& drawing, unsigned first, unsigned count, bo
 
 void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
   draw_tiles_
-      .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, scene_.vertices, scene_.triangles,
-           scene_.materials, scene_.textures, scene_.texels, keys_, seen_)
+      .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, counts_, entry_room(), scene_.vertices,
+           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, keys_, seen_)
       .launch(cl::NDRange(tiles_along(view.width) * (CLPV_TILE / session_.device().lanes),
                           tiles_along(view.height)),
               pixel_group(session_));
@@ -185,7 +217,7 @@ void Rasterizer::rasterize_camera(Surface& surface) {
     session_.fill_zero(surface.emissive, std::size_t{view.width} * view.height * sizeof(cl_float4));
   }
   if (scene_.triangle_count == 0) return clear(surface);
-  find_visible({view, true});
+  find_visible({view, Kind::camera});
   const bool emissive = has_emissive && scene_.emissive;
   Kernel& kernel = resolve({.orthographic = view.orthographic != 0,
                             .from_light = false,
@@ -201,7 +233,7 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
   const ClpvView& view = surface.view;
   if (surface.format == RsmFormat::paper) surface.colour_scale = largest_flux(light, view);
   if (scene_.triangle_count == 0) return clear(surface);
-  find_visible({view, false});
+  find_visible({view, Kind::rsm});
   resolve({.orthographic = view.orthographic != 0,
            .from_light = true,
            .paper = surface.format == RsmFormat::paper,
@@ -212,7 +244,7 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
 }
 
 void Rasterizer::rasterize_shadow(const ClpvView& view, Buffer& depth) {
-  find_visible({view, false});
+  find_visible({view, Kind::shadow});
   resolve_depth_.set(view, keys_, depth).launch(items_of(session_, view), pixel_group(session_));
 }
 

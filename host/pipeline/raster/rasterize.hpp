@@ -7,7 +7,10 @@
 #pragma once
 
 #include <compare>
+#include <deque>
 #include <map>
+#include <memory>
+#include <set>
 
 #include "device/kernel.hpp"
 #include "device/session.hpp"
@@ -37,10 +40,19 @@ class Rasterizer {
   /// Renders only depth [m], 0 without a surface, into view.width x view.height floats. Both sides cast shadows.
   void rasterize_shadow(const ClpvView& view, Buffer& depth);
 
+  /// Sets whether views are drawn without waiting for the device. Waiting, the host reads how many
+  /// entries the triangle lists need, and grows them first. Otherwise lists have the size that
+  /// earlier views needed. A view that needs more is drawn without lists of tiles: with the same
+  /// result, but slowly. The first view of each kind, and scenes with lists beyond the limit,
+  /// always wait.
+  void draw_ahead(bool ahead) { ahead_ = ahead; }
+
  private:
+  enum class Kind { camera, rsm, shadow };
   struct Drawing {
     ClpvView view;
-    bool cull_back_faces;
+    Kind kind;
+    bool culls_back_faces() const { return kind == Kind::camera; }
   };
 
   /// Variant of the resolve kernel.
@@ -56,9 +68,14 @@ class Rasterizer {
   cl_uint entry_room() const;  ///< capacity in entries
   void clear(Surface& surface);
   void find_visible(const Drawing& drawing);
-  unsigned list_clusters(const ClpvView& view);
+  struct VisibleClusters {
+    unsigned count = 0, clipped = 0;  ///< clusters, and those whose triangles may need clipping
+  };
+  VisibleClusters list_clusters(const ClpvView& view);
   void draw(const Drawing& drawing, unsigned first, unsigned count, bool fresh);
   bool list(const Drawing& drawing, unsigned first, unsigned count);
+  bool list_ahead(const Drawing& drawing, const VisibleClusters& visible);
+  void take_counts();
   void set_up(const Drawing& drawing, unsigned first, unsigned count);
   void bin(const ClpvView& view);
   void draw_tiles(const ClpvView& view, bool fresh);
@@ -69,6 +86,10 @@ class Rasterizer {
   Kernel set_up_, set_up_clipped_;
   std::map<Resolving, Kernel> resolve_;
   Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, resolve_depth_;
+  bool ahead_ = false;
+  std::set<Kind> drawn_;                                           ///< kinds of views drawn so far
+  std::size_t entered_ = 0;                                        ///< largest number of entries so far
+  std::deque<std::shared_ptr<const Session::Arriving>> counting_;  ///< counters of views drawn ahead
   Buffer clusters_, listed_, to_clip_, counts_, entries_, slice_counts_, totals_, binned_, keys_, seen_;
 };
 

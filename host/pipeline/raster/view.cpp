@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/shared/raster.h"
 #include "scene/light_kind.hpp"
 #include "support/error.hpp"
 
@@ -106,6 +107,25 @@ ClpvView directional_shadow_view(const ClpvLight& light, const Bounds& bounds, i
                            std::max(0.5 * spare * (along.y - along.x), kSmallestMargin), bounds, size);
 }
 
+/// A box relative to a view's eye.
+class BoxOfView {
+ public:
+  BoxOfView(const ClpvView& view, const Bounds& bounds)
+      : half_(0.5 * (glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower))),
+        centre_(0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper)) - vector(view.eye)),
+        margin_(kRounding * (glm::length(centre_) + glm::length(half_))) {}
+
+  /// Returns true if some point p of the box, relative to the eye, may have along . p + offset >= 0.
+  bool operator()(const glm::dvec3& along, double offset) const {
+    return glm::dot(along, centre_) + glm::dot(glm::abs(along), half_) + offset >=
+           -margin_ * glm::length(along);
+  }
+
+ private:
+  glm::dvec3 half_, centre_;
+  double margin_;
+};
+
 }  // namespace
 
 ClpvView camera_view(const SceneCamera& camera, int width, int height) {
@@ -160,13 +180,7 @@ std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds
 }
 
 bool may_be_visible(const ClpvView& view, const Bounds& bounds) {
-  const glm::dvec3 lower(bounds.lower), upper(bounds.upper), half = 0.5 * (upper - lower);
-  const glm::dvec3 centre = 0.5 * (lower + upper) - vector(view.eye);
-  const double margin = kRounding * (glm::length(centre) + glm::length(half));
-  // Tests if part of the box is inside a border: along . p + offset >= 0, with p relative to the eye.
-  const auto reaches = [&](const glm::dvec3& along, double offset) {
-    return glm::dot(along, centre) + glm::dot(glm::abs(along), half) + offset >= -margin * glm::length(along);
-  };
+  const BoxOfView reaches(view, bounds);
   const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
   const bool parallel = view.orthographic != 0;
   const double width = view.half_width, height = view.half_height;
@@ -176,6 +190,20 @@ bool may_be_visible(const ClpvView& view, const Bounds& bounds) {
   return reaches(wider + right, beside) && reaches(wider - right, beside) && reaches(higher + up, above) &&
          reaches(higher - up, above) && reaches(-forward, view.far_depth) &&
          (parallel || reaches(forward, -double{view.near_depth}));
+}
+
+bool may_be_clipped(const ClpvView& view, const Bounds& bounds) {
+  const BoxOfView reaches(view, bounds);
+  const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
+  const bool parallel = view.orthographic != 0;
+  const double guard = 2.0 * double{CLPV_GUARD_PIXELS}, width = guard * view.half_width / view.width,
+               height = guard * view.half_height / view.height;
+  const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
+                   higher = parallel ? glm::dvec3(0) : height * forward;
+  const double beside = parallel ? width : 0, above = parallel ? height : 0;
+  return reaches(right - wider, -beside) || reaches(-right - wider, -beside) ||
+         reaches(up - higher, -above) || reaches(-up - higher, -above) ||
+         (!parallel && reaches(-forward, view.near_depth));
 }
 
 bool rsm_follows_cascade(const ClpvLight& light) {

@@ -22,6 +22,10 @@ ClpvView camera_view(const SceneCamera& camera, int width, int height);
 /// Returns false only if `bounds` lies outside one of the view's borders, by a margin for rounding.
 bool may_be_visible(const ClpvView& view, const Bounds& bounds);
 
+/// Returns false only if all of `bounds` lies beyond the near plane and inside the rasteriser's
+/// guard band, by a margin for rounding.
+bool may_be_clipped(const ClpvView& view, const Bounds& bounds);
+
 /// Returns a directional light's orthographic view of a cascade, with `size` texels along each side. It covers the
 /// cascade's cube plus half a cell, since virtual point lights move by as much, for any direction of the light.
 /// Texels form a lattice that is fixed in the world, in the plane across the light. While light, cascade size and
