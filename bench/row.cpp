@@ -12,8 +12,8 @@ namespace clpv {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Statistics, min, median, p95, max, mad)
 
 namespace verify {
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell, triangles,
-                                   pixels)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
+                                   triangles, pixels)
 }
 
 namespace bench {
@@ -94,7 +94,8 @@ nlohmann::json to_json(const Row& row, int index) {
                {"axis", text_or_null(row.axis)},
                {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
                {"preset", text_or_null(row.preset)},
-               {"recompute", text_or_null(row.recompute)}});
+               {"recompute", text_or_null(row.recompute)},
+               {"changed", row.suite == "factors" ? nlohmann::json(row.changed) : nlohmann::json(nullptr)}});
   json.update(row.problem ? problem_json(*row.problem) : no_problem_json());
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},
@@ -113,6 +114,8 @@ nlohmann::json to_json(const Row& row, int index) {
                {"ceiling_share", row.ceiling_share},
                {"max_rel_error", number_or_null(row.max_rel_error)},
                {"tolerance", row.tolerance},
+               {"difference", number_or_null(row.difference)},
+               {"volume_bytes", row.volume_bytes},
                {"published_ms", number_or_null(row.published_ms)}});
   return json;
 }

@@ -42,7 +42,8 @@ struct Row {
   std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`
   std::string axis;    ///< suite scaling: the varied quantity ("grid"), and its `value`
   double value = 0;
-  std::string preset;     ///< suite frame
+  std::string preset;   ///< suite frame
+  std::string changed;  ///< suite factors: options that differ from the preset, "layout=soa evaluate=buffer"
   std::string recompute;  ///< suite frame: results each repetition recomputes: light, everything, nothing
 
   std::vector<double> samples_ms;
@@ -57,6 +58,8 @@ struct Row {
   double ceiling_share = 0;
   std::optional<double> max_rel_error;  ///< against the CPU reference; empty without one
   double tolerance = 0;
+  std::optional<double> difference;    ///< suite factors: NRMSE of indirect light against the preset
+  std::size_t volume_bytes = 0;        ///< suite factors: memory of a light volume
   std::optional<double> published_ms;  ///< time in the paper's Table 1
 
   double gflops() const;

@@ -12,9 +12,9 @@
 namespace clpv::bench {
 
 const std::vector<Suite>& suites() {
-  static const std::vector<Suite> all = {table1_suite(),   layouts_suite(),   bases_suite(),
-                                         scaling_suite(),  ceilings_suite(),  frame_suite(),
-                                         native_suite(), rasterize_suite(), regression_suite()};
+  static const std::vector<Suite> all = {
+      table1_suite(), layouts_suite(), bases_suite(),  scaling_suite(),   ceilings_suite(),
+      frame_suite(),  factors_suite(), native_suite(), rasterize_suite(), regression_suite()};
   return all;
 }
 
@@ -41,6 +41,25 @@ std::vector<Group> groups_by_basis(const std::vector<std::string>& bases,
   std::vector<Group> groups;
   for (const std::string& basis : bases) groups.push_back({[cases, basis] { return cases(basis); }});
   return groups;
+}
+
+std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& passes, const Row& frame) {
+  std::vector<Row> rows;
+  for (const auto& [pass, ms] : passes) {
+    Row row = frame;
+    row.stage = pass;
+    row.name = pass + frame.name.substr(frame.name.find('/'));
+    row.samples_ms = ms;
+    row.times = statistics_of(ms);
+    row.wall_ms = row.cpu_ms = row.first_launch_ms = row.build_ms = 0;
+    row.from_events = true;
+    row.max_rel_error.reset();  // the frame's error is that of the image, not of a pass
+    row.cost = {};
+    row.ceiling.clear();
+    row.ceiling_share = 0;
+    rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
 std::size_t name_width(const std::vector<Row>& rows) {

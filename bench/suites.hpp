@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,6 +43,7 @@ Suite bases_suite();
 Suite scaling_suite();
 Suite ceilings_suite();
 Suite frame_suite();
+Suite factors_suite();
 Suite native_suite();
 Suite rasterize_suite();
 Suite regression_suite();
@@ -55,6 +57,10 @@ RenderOptions published_options(const RenderOptions& sizes, const std::string& b
 /// One group per basis, with the cases that `cases` returns: all bases at once would need gigabytes.
 std::vector<Group> groups_by_basis(const std::vector<std::string>& bases,
                                    const std::function<std::vector<Case>(const std::string& basis)>& cases);
+
+/// A row for each pass of a timed frame: the row of the frame with the pass's times. `passes`: samples
+/// [ms] by name.
+std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& passes, const Row& frame);
 
 /// Length of the longest row name, at least 4.
 std::size_t name_width(const std::vector<Row>& rows);

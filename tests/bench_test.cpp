@@ -9,9 +9,9 @@
 #include <regex>
 #include <sstream>
 
+#include "bench/compare_runs.hpp"
 #include "bench/native/propagate_avx2.hpp"
 #include "bench/native/rasterize_gl.hpp"
-#include "bench/compare_runs.hpp"
 #include "bench/published.hpp"
 #include "bench/report.hpp"
 #include "bench/runner.hpp"
@@ -89,7 +89,7 @@ TEST(BenchCompare, OneRepetitionHasNoSpread) {
 
 TEST(BenchCompare, RatiosAboveALimitFail) {
   const ReportChanges found = compare_runs(report({{"noisy", 10, 5}, {"fast", 10, 0.1}}),
-                                        report({{"noisy", 15, 5}, {"fast", 5, 0.1}}), "o");
+                                           report({{"noisy", 15, 5}, {"fast", 5, 0.1}}), "o");
   EXPECT_NO_THROW(require_ratios(found, 1.2)) << "a change within the spread is none";
   const ReportChanges slow = compare_runs(report({{"slow", 10, 0.1}}), report({{"slow", 15, 0.1}}), "o");
   EXPECT_NO_THROW(require_ratios(slow, 1.6));
@@ -251,6 +251,31 @@ TEST(BenchSuites, Table1HasThePublishedTimes) {
   EXPECT_THAT(table, ::testing::ContainsRegex("geometry volume, small +- +[0-9.]+"));
 }
 
+TEST(BenchSuites, FactorsHaveSumsAndDifferencesFromThePreset) {
+  const std::vector<Row> rows = rows_of(factors_suite(), "/sh2/.*paper/(|rsm-format=float|layout=soa)$");
+  std::map<std::string, Row> sums;
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.status, Status::ok) << row.name << ": " << row.reason;
+    if (row.stage == "sum") sums[row.changed] = row;
+  }
+  ASSERT_EQ(sums.size(), 3u);
+  EXPECT_EQ(sums[""].difference, 0.0);
+  EXPECT_GT(sums["rsm-format=float"].difference, 0.0) << "8-bit normals were rounded";
+  EXPECT_LT(sums["rsm-format=float"].difference, 0.1);
+  EXPECT_LT(sums["layout=soa"].difference, 0.01) << "the same numbers in another order";
+  const double halves = 16 * 16 * 16 * 4 * 3 * 2;
+  EXPECT_GE(sums[""].volume_bytes, halves);
+  EXPECT_LT(sums[""].volume_bytes, 1.1 * halves) << "a border between channels";
+  double parts = 0;
+  for (const Row& row : rows) {
+    if (row.changed.empty() &&
+        (row.stage == "inject-light" || row.stage == "propagate" || row.stage == "gather"))
+      parts += row.times.median;
+  }
+  EXPECT_NEAR(sums[""].times.median, parts, 1e-9);
+  EXPECT_THAT(factors_suite().table(rows), HasSubstr("0.0000  -\n"));
+}
+
 TEST(BenchSuites, EveryPassOfRasterizingIsRightAndThePeerDrawsTheSame) {
   const std::vector<Row> rows = rows_of(rasterize_suite(), "");
   ASSERT_EQ(rows.size(), 6u);
@@ -284,7 +309,8 @@ TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {
   const auto out = test::run_here("bench " + kOneRow + " --output " + now + " --compare " + old + " --plot " +
                                   (folder / "plots").string());
   ASSERT_EQ(out.exit_code, 0) << out.err;
-  EXPECT_THAT(out.out, ::testing::ContainsRegex("propagate/sh2/soa/float +0.0000 .*(HIGHER|within the spread)"))
+  EXPECT_THAT(out.out,
+              ::testing::ContainsRegex("propagate/sh2/soa/float +0.0000 .*(HIGHER|within the spread)"))
       << "three repetitions on a busy machine may have any spread";
   const nlohmann::json document = nlohmann::json::parse(test::read_file(now));
   const nlohmann::json& row = document["benchmarks"][0];

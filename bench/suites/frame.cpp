@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Suite `frame`: whole frames along a camera path, and the time of each stage, with and without cached results.
-#include "pipeline/frame/frame_times.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "bench/suites.hpp"
 #include "options/render_options.hpp"
+#include "pipeline/frame/frame_times.hpp"
 #include "support/named_enum.hpp"
 #include "verify/comparison.hpp"
 
@@ -86,25 +85,6 @@ struct FrameSequence {
   }
 };
 
-std::vector<Row> stage_rows(const FrameSequence& sequence, const Row& frame) {
-  std::vector<Row> rows;
-  for (const auto& [stage, ms] : sequence.times.passes()) {
-    Row row = frame;
-    row.stage = stage;
-    row.name = stage + frame.name.substr(frame.name.find('/'));
-    row.samples_ms = ms;
-    row.times = statistics_of(ms);
-    row.wall_ms = row.cpu_ms = row.first_launch_ms = row.build_ms = 0;
-    row.from_events = true;
-    row.max_rel_error.reset();  // the frame's error is that of the image, not of a stage
-    row.cost = {};
-    row.ceiling.clear();
-    row.ceiling_share = 0;
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
 /// Renders the last frame again after another one, without cached results. Its pixels must be identical.
 Deviation compare_uncached(FrameSequence& sequence, Session& session) {
   const std::vector<float> timed = sequence.frame.read(Show::full);
@@ -131,7 +111,7 @@ Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions
   job.reset = [sequence] { sequence->invalidate(); };
   job.run = [sequence] { sequence->frame.render(sequence->camera(sequence->next++)); };
   job.after_run = [sequence](const std::vector<StageTime>& times) { sequence->add(times); };
-  job.more_rows = [sequence](const Row& row) { return stage_rows(*sequence, row); };
+  job.more_rows = [sequence](const Row& row) { return pass_rows(sequence->times.passes(), row); };
   job.compare = [sequence, &session] { return compare_uncached(*sequence, session); };
   return job;
 }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Measures the paper's claims: the numbers of docs/bases.md and docs/paper/figures.md.
 
-    scripts/claims [lobes] [lambdas] [tables] [light] [views] [texels] [shadows] [columns] [cost] [--model PATH/Sponza.gltf] [--out DIR]
+    scripts/claims [lobes] [lambdas] [tables] [light] [views] [texels] [shadows] [columns] [lit] [--model PATH/Sponza.gltf] [--out DIR]
 
 lobes    errors of clamped cosines in the paper's sets, in other sets that fit its description, and in searched centres
 lambdas  verdicts on lobes along +z, and on the difference of both bases' light at `curtains`, by lambda
@@ -13,7 +13,7 @@ views    errors of sh2 and srbf8v2 against path tracing, paired, in four cameras
 texels   difference of neighbouring texels of an RSM, by size of the cascade; camera `curtains`
 shadows  contrast of indirect light on the floor with and without indirect shadows, and of path tracing; camera `columns`
 columns  irradiance of the floor behind the arcade: behind its first column, and between columns; camera `columns`, Sponza only
-cost     `clpv bench table1`
+lit      share of pixels without direct light, in each camera
 
 Default: all. Scene: Sponza; without --model this project's atrium. Prints tables and writes claims.json into DIR
 (out/claims). First builds. Needs the packages of scripts/setup.
@@ -28,7 +28,7 @@ import subprocess
 
 import numpy as np
 
-from . import CLPV, ROOT, native
+from . import ROOT, native
 
 clpv = native()  # main() builds the native module
 from clpv import search  # noqa: E402
@@ -38,7 +38,6 @@ STEPS, SIZES, TEXELS = (8, 24), (12.5, 50), (256, 1024)
 WIDTH, HEIGHT = 240, 135  # of images that are compared with path tracing
 NOISE = 0.02
 NOISE_OF_PAIRS = 0.05  # of the views' ground truths: both bases of a pair meet the same noise
-REPETITIONS = 7  # of each row of `clpv bench table1`
 UP = 0.99  # minimum y of a floor's normals
 
 
@@ -70,6 +69,16 @@ SIMILAR = 0.1  # of the error of sh2
 TABLE_SIZES = 256, 257, 512, 1024, 0  # 0: H is computed
 
 
+def gram(basis):
+    """A_ij: integrals of products of functions, by Gauss and Legendre in z and evenly in azimuth."""
+    z, weights = np.polynomial.legendre.leggauss(64)
+    azimuth = np.arange(128) * 2 * np.pi / 128
+    radius = np.sqrt(1 - z ** 2)[:, None]
+    directions = np.stack((radius * np.cos(azimuth), radius * np.sin(azimuth), np.repeat(z[:, None], 128, axis=1)), axis=-1)
+    values = basis.evaluate(directions.reshape(-1, 3))
+    return (values * np.repeat(weights * 2 * np.pi / 128, 128)[:, None]).T @ values
+
+
 def of_lobes(bases):
     rows = []
     for name, basis in bases.items():
@@ -77,7 +86,8 @@ def of_lobes(bases):
         rotated = basis.lobe(OBLIQUE, basis.clamped_cosine(OBLIQUE, TABLE_SIZES[0]))
         row = {"basis": name, "n": len(basis), "condition": basis.condition, "up": up["relative_l2"],
                "oblique": oblique["relative_l2"], "oblique_rotated": rotated["relative_l2"],
-               "oblique_rotated_minimum": rotated["minimum"], "mean": basis.mean_error, "minimum": up["minimum"],
+               "oblique_rotated_minimum": rotated["minimum"], "oblique_rotated_peak": rotated["peak_error_degrees"],
+               "up_without_inverse": basis.lobe(ALONG_Z, gram(basis) @ basis.clamped_cosine(ALONG_Z))["relative_l2"], "mean": basis.mean_error, "minimum": up["minimum"],
                "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)}
         rows.append(row)
         print(f"{name:44} {row['n']:3} {row['condition']:9.4g} {row['up']:7.3f} {row['oblique']:7.3f} "
@@ -85,7 +95,7 @@ def of_lobes(bases):
     return rows
 
 
-def lobes(_):
+def lobes(arguments):
     """Errors of the named bases, of other guesses, and of the best sets that a search finds."""
     print(f"{'relative L2 error of the clamped cosine':44} {'N':>3} {'condition':>9} {'+z':>7} {'oblique':>7} "
           f"{'rotated':>8} {'its least':>9} {'mean':>7}")
@@ -93,7 +103,7 @@ def lobes(_):
     rows = of_lobes({**{name: clpv.Basis(name) for name in NAMED}, **guesses})
     searched = []
     print(f"\n{'searched for (clpv.search N)':34} {'condition':>9} {'error':>8} {'minimum':>8}")
-    for count, over, lambdas in itertools.product((4, 6, 8, 9, 12, 14), ("all", "axes"), ("none", "one", "each")):
+    for count, over, lambdas in () if arguments.quick else itertools.product((4, 6, 8, 9, 12, 14), ("all", "axes"), ("none", "one", "each")):
         found = search.search(count, over, lambdas)
         row = {"n": count, "over": over, "lambdas": lambdas, "error": found.error,
                "bound": search.minimum_error(count) if over == "all" else None,
@@ -153,10 +163,14 @@ class Views:
     def __init__(self, arguments):
         self.name, self.shadowed = ("sponza", "columns") if arguments.model else ("atrium", "gallery")
         self.scene = clpv.Scene(ROOT / f"scenes/{self.name}.json", arguments.model)
+        self.truths = arguments.out / "truths"
+        self.truths.mkdir(parents=True, exist_ok=True)
 
     @functools.cache
     def truth(self, camera, view="indirect", noise=NOISE):
-        return clpv.pathtrace(self.scene, view, camera, WIDTH, HEIGHT, noise=noise)
+        image = clpv.pathtrace(self.scene, view, camera, WIDTH, HEIGHT, noise=noise)
+        image.save(self.truths / f"{camera}-{view}-{noise:g}.exr")
+        return image
 
     def renderer(self, **options):
         return clpv.Renderer(self.scene, **{"width": WIDTH, "height": HEIGHT, **options})
@@ -170,9 +184,9 @@ def light(arguments):
     views_of = Views(arguments)
     rows = []
     print(f"{'indirect light, curtains, --preset paper':42} {'difference':>10} {'sh2':>8} {'srbf8v2':>8}  [NRMSE]")
-    for size, texels, steps in itertools.product(SIZES, TEXELS, STEPS):
-        images = [views_of.image("curtains", preset="paper", basis=name, cascade_size=size, rsm_size=texels, iterations=steps)
-                  for name in BASES]
+    for size, texels, steps in itertools.product(SIZES, TEXELS[:1] if arguments.quick else TEXELS, STEPS):
+        images = [views_of.image("curtains", preset="paper", basis=name, cascade_size=size, rsm_size=texels, iterations=steps,
+                                 **({"lobe_time": "host"} if arguments.quick else {})) for name in BASES]
         row = {"cascade_size": size, "rsm_size": texels, "iterations": steps,
                "difference": clpv.compare(images[1], images[0]).nrmse,
                **{name: clpv.compare(image, views_of.truth("curtains")).nrmse for name, image in zip(BASES, images)}}
@@ -310,16 +324,21 @@ def columns(arguments):
     return rows
 
 
-def cost(arguments):
-    scene = ["--scene", "scenes/sponza.json", "--model", arguments.model] if arguments.model else []
-    command = [str(CLPV), "bench", "table1", *scene, "--repetitions", str(REPETITIONS)]
-    text = subprocess.run(command, stdout=subprocess.PIPE, check=True, cwd=ROOT).stdout.decode()
-    print(text)
-    return text.splitlines()
+def lit(arguments):
+    """Share of pixels with a surface that no direct light reaches."""
+    views_of = Views(arguments)
+    renderer = views_of.renderer(preset="fast")
+    rows = []
+    for camera in (each.name for each in views_of.scene.cameras[:3]):
+        albedo = renderer.render("albedo", camera).array[..., :3].sum(axis=-1) > 0
+        direct = renderer.show("direct").array[..., :3].sum(axis=-1) > 0
+        rows.append({"camera": camera, "unlit": float((albedo & ~direct).sum() / albedo.sum())})
+        print(f"{camera:42} {rows[-1]['unlit']:.3f}")
+    return rows
 
 
 CLAIMS = {"lobes": lobes, "lambdas": lambdas, "tables": tables, "light": light, "views": views, "texels": texels,
-          "shadows": shadows, "columns": columns, "cost": cost}
+          "shadows": shadows, "columns": columns, "lit": lit}
 
 
 def main():
@@ -331,6 +350,7 @@ def main():
     for name in arguments.claims:
         if name not in CLAIMS:
             parser.error(f"found '{name}', allowed: {', '.join(CLAIMS)}")
+    arguments.quick = False
     arguments.out = arguments.out.resolve()
     arguments.out.mkdir(parents=True, exist_ok=True)
     subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)

@@ -21,6 +21,7 @@ import pathlib
 import subprocess
 
 import numpy as np
+from matplotlib import pyplot
 
 from . import CLPV, ROOT, native
 from .rows import EXACT_LOBES
@@ -54,13 +55,15 @@ class Frames:
         self.size = {"width": arguments.width, "height": arguments.height}
         self.exposure = arguments.exposure if arguments.exposure is not None else (4.0 if arguments.model else 0.6)
         self.view = f"{'Sponza' if arguments.model else 'atrium'}, camera {camera}, exposure {self.exposure:+g} EV"
-        self.rendered = {}
+        self.rendered, self.pairs = {}, []
+        self.always = {}  # options of all frames of a preset with steps
 
     def frame(self, view, **options):
         """The frame as an Image."""
         key = tuple(options.items())
         if key not in self.rendered:
-            renderer = clpv.Renderer(self.scene, **self.size, **options)
+            always = self.always if options.get("preset") == "paper" else {}
+            renderer = clpv.Renderer(self.scene, **self.size, **{**always, **options})
             self.rendered[key] = {"full": renderer.render("full", self.camera), "indirect": renderer.show("indirect")}
         return self.rendered[key][view]
 
@@ -91,6 +94,7 @@ def sheet(path, title, columns, tiles):
 def pair(frames, view="full", **options):
     """Returns captioned tiles of both bases and of their difference."""
     images = [frames.image(view, basis=basis, **options) for basis in BASES]
+    frames.pairs.append((f"{frames.view}, {view}: " + ", ".join(f"{name} {value}" for name, value in options.items()), images))
     return [*zip(images, BASES), (difference(*images), f"difference x{AMPLIFY}")]
 
 
@@ -155,7 +159,42 @@ def measure(frames, out):
 
 def basis_figures(out):
     for lobe in ("exact", "rotate"):
-        subprocess.run([str(CLPV), "basis", "--lobe", lobe, "--figures", str(out / f"lobes-{lobe}")], check=True)
+        subprocess.run([str(CLPV), "basis", "--lobe", lobe, "--figures", str(out / f"lobes-{lobe}")], check=True, stdout=subprocess.DEVNULL)
+
+
+def paper(arguments):
+    """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness, for scripts/reproduce. Sponza."""
+    out = arguments.out
+    arguments.exposure = None
+    scene = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
+    frames, shadowed, along = (Frames(scene, arguments, camera) for camera in ("curtains", "columns", "atrium"))
+    if arguments.quick:  # the light of run-time lobes within 2e-4, five times as fast
+        frames.always = shadowed.always = {"lobe_time": "host"}
+    basis_figures(out)
+    sheets = []
+    for name, made, draw in (("figure1", frames, lambda: figure1(frames, out)),
+                             *((f"figure4-{preset}", frames, lambda preset=preset: figure4(frames, out, preset)) for preset in PRESETS),
+                             *((f"figure5-{preset}", shadowed, lambda preset=preset: figure5(shadowed, out, preset)) for preset in PRESETS)):
+        made.pairs = []
+        draw()
+        sheets.append({"name": name, "file": f"{name}.jpg", "pairs": [saved(out, f"{name}-{i}", *pair) for i, pair in enumerate(made.pairs)]})
+    rows = []
+    if not arguments.quick:
+        srbf14(along, out)
+        measure(along, out)
+        sheets.append({"name": "srbf14", "file": "srbf14.jpg", "pairs": []})
+        rows = json.loads((out / "figures.json").read_text())["rows"]
+    lobe_files = [str(file.relative_to(out)) for kind in ("rotate", "exact") for file in sorted((out / f"lobes-{kind}").glob("*.png"))]
+    return {"sheets": sheets, "lobes": lobe_files, "rows": rows}
+
+
+def saved(out, name, caption, images):
+    """Writes both images of a pair as JPEG."""
+    files = []
+    for basis, pixels in zip(BASES, images):
+        files.append(f"{name}-{basis}.jpg")
+        pyplot.imsave(out / files[-1], pixels[..., :3], pil_kwargs={"quality": 88})
+    return {"caption": caption, "left": files[0], "right": files[1]}
 
 
 def main():

@@ -96,6 +96,7 @@ DEVICE_SUITES = {
 }
 DOCS_SUITES = {
     "table1": ["sponza", "--repetitions=7"],
+    "factors": ["sponza", "--repetitions=5"],
     "layouts": [],
     "bases": [],
     "scaling": [],
@@ -121,4 +122,4 @@ FRONT_GRIDS = {"clpv": ["--vary=grid=16,24,32,48,64"], "clpv, near off": ["--nea
 FRONT_TIMES = 5, 10, 20, 40, 80
 
 # By the other scripts: subjects of scripts/claims, and scripts/figures.
-SCRIPTS = {"claims": ["lobes", "tables", "light", "views", "texels", "shadows", "columns"], "figures": []}
+SCRIPTS = {"claims": ["lobes", "lambdas", "tables", "light", "views", "texels", "shadows", "columns", "lit"], "figures": []}

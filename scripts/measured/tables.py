@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Writes the tables of measured numbers in the docs, between <!-- table: NAME --> and <!-- end -->, from results/docs.
 
-    scripts/tables            rewrites them in README.md and docs/
-    scripts/tables --check    changes nothing; fails if a table differs from results/docs
+    scripts/tables            rewrites them in README.md and docs/, and claims.json and expected.json in results/paper
+    scripts/tables --check    changes nothing; fails if one of them differs from results/docs
     scripts/tables --list     names of all tables
     scripts/tables --stages FILE.json...   prints stage times of files of `clpv render --stats`, side by side
 
@@ -10,15 +10,17 @@ scripts/measure writes results/docs. Only the standard library.
 """
 import functools
 import json
+import math
 import pathlib
 import re
 import sys
 
-from . import ROOT, RESULTS, rows as known
+from . import ROOT, RESULTS, expected, rows as known, verdicts
 from .rows import PAPER, SHARED
 
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 TABLES = {}  # by name: function that returns lines of cells, the head first
+MEASURED = {}  # by name: documents in place of files of results/docs
 LOADED = set()  # files that tables of the current page use
 
 
@@ -29,7 +31,17 @@ def table(function):
 
 @functools.cache
 def read(name):
+    if name in MEASURED:
+        return MEASURED[name]
     return json.loads((RESULTS / f"docs/{name}.json").read_text(encoding="utf-8"))
+
+
+def result(name):
+    """A file of results/ by its name, "docs/claims"; tables that use one of results/docs say where it was measured."""
+    folder, _, file = name.rpartition("/")
+    if folder == "docs":
+        return load(file)
+    return json.loads((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
 
 
 def load(name):
@@ -87,14 +99,15 @@ def table1(shadows):
     lines = [["[ms]"] + [f"{basis}, {column}" for basis in TABLE1_BASES for column in ("paper", "here")]
              + ["srbf8v2 / sh2, paper", "here"]]
 
-    def add(title, published, here):
-        times = [cell for a, b in zip(published, here) for cell in ("-" if a is None else f"{a:g}", number(b))]
+    def add(title, published, here, spreads):
+        times = [cell for a, b, s in zip(published, here, spreads)
+                 for cell in ("-" if a is None else f"{a:g}", "-" if b is None else f"{number(b)} +- {number(s)}")]
         lines.append([title, *times, ratio(published[-1], published[0]), ratio(here[-1], here[0])])
 
     def at(stage, cascade, layout):
         rows = [found(bench("table1"), stage=stage, cascade=cascade, layout=layout, basis=basis, occlusion=shadows)
                 for basis in TABLE1_BASES]
-        return [[row and row[key] for row in rows] for key in ("published_ms", "median")]
+        return [[row and row[key] for row in rows] for key in ("published_ms", "median", "mad")]
 
     for layout in ("image", "soa"):
         terms = []
@@ -103,15 +116,16 @@ def table1(shadows):
             if stage == "inject-geometry" and not shadows:
                 continue
             for cascade, size in enumerate(("small", "medium", "big")) if stage != "gather" else ((None, None),):
-                published, here = at(stage, cascade, layout)
+                cells = at(stage, cascade, layout)
                 if layout == "image":
-                    add(f"{name}, {size}" if size else name, published, here)
+                    add(f"{name}, {size}" if size else name, *cells)
                 elif not shadows and stage == "propagate":
-                    add(f"in buffers: {name}, {size}", published, here)
+                    add(f"in buffers and constants: {name}, {size}", *cells)
                 if stage != "inject-geometry":
-                    terms.append((published, here))
-        add("sum, without geometry volume" if layout == "image" else "in buffers: the same sum",
-            *([summed(column) for column in zip(*times)] for times in zip(*terms)))
+                    terms.append(cells)
+        published, here, spreads = zip(*terms)
+        add("sum, without geometry volume" if layout == "image" else "in buffers and constants: the same sum",
+            *([summed(column) for column in zip(*times)] for times in (published, here)), [math.hypot(*column) for column in zip(*spreads)])
     return lines
 
 
@@ -482,6 +496,51 @@ def claims_shadows():
         for row in load("claims")["shadows"]["rows"]]
 
 
+SHOWN = 6  # points of a claim whose numbers its line shows
+
+
+def verdict_lines(section):
+    """A line for each claim of a section."""
+    lines = [["statement", "holds if", "verdict", "numbers", "command"]]
+    for claim in verdicts.judged(result):
+        if claim["section"] == section:
+            points = [f"{point['at']}: {point['numbers']}" for point in claim["points"]]
+            more = [f"{len(points) - SHOWN} more"] if len(points) > SHOWN + 1 else []
+            command = f"`{claim['command']}`" if claim["command"].split()[0] in ("clpv", "python3", "scripts/claims") else claim["command"]
+            lines.append([claim["statement"], claim["rule"], f"**{claim['verdict']}**" if len(claim["verdict"]) < 20 else claim["verdict"],
+                          "; ".join(points[:SHOWN if more else None] + more), command])
+    return lines
+
+
+for each in ("theory", "lobes", "light", "shadows", "cost", "conclusions"):
+    TABLES[f"verdicts-{each}"] = functools.partial(verdict_lines, each)
+
+
+# One option at a time, by `clpv bench factors`.
+
+
+@table
+def factors():
+    """A line for each row: times of both bases, their ratio and difference from the preset."""
+    lines = [["changed from `--preset paper`", "sh2 [ms]", "srbf8v2 [ms]", "srbf8v2 / sh2", "propagation: srbf8v2 / sh2",
+              "srbf8v2 over the preset's", "a light volume of srbf8v2 [MiB]", "difference: sh2", "srbf8v2"]]
+    rows = [row for row in bench("factors") if row["stage"] == "sum"]
+    preset = found(rows, basis="srbf8v2", changed="")
+
+    def shown(row):
+        return f"{number(row['median'])} +- {number(row['mad'])}"
+
+    for changed in dict.fromkeys(row["changed"] for row in rows):
+        sh, srbf = (found(rows, basis=basis, changed=changed) for basis in ("sh2", "srbf8v2"))
+        steps = [found(bench("factors"), stage="propagate", basis=basis, changed=changed)["median"] for basis in ("srbf8v2", "sh2")]
+        *before, last = changed.split(" ")
+        title = f"and {last}" if before else f"only {last}" if last else "nothing: as published"
+        lines.append([title, shown(sh), shown(srbf), ratio(srbf["median"], sh["median"]),
+                      ratio(*steps), f"{preset['median'] / srbf['median']:.3g}x faster" if changed else "-",
+                      number(srbf["volume_bytes"] / 2**20), f"{sh['difference']:.4f}", f"{srbf['difference']:.4f}"])
+    return lines
+
+
 # Figures: brightness over steps, by scripts/figures.
 
 
@@ -634,6 +693,19 @@ def print_stages(paths):
 
 
 
+def json_lines(document):
+    """JSON with a line for each row of its lists and for each member of its objects."""
+    members = []
+    for key, value in document.items():
+        if isinstance(value, dict) and value:
+            lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(each)}" for name, each in value.items())
+            members.append(f"{json.dumps(key)}: {{\n{lines}\n}}")
+        else:
+            lines = isinstance(value, list) and ",\n".join(map(json.dumps, value))
+            members.append(f"{json.dumps(key)}: " + (f"[\n{lines}\n]" if lines else json.dumps(value)))
+    return "{" + ",\n".join(members) + "}\n"
+
+
 def main():
     arguments = sys.argv[1:]
     if arguments == ["--list"]:
@@ -644,6 +716,14 @@ def main():
     if arguments not in ([], ["--check"]):
         sys.exit(__doc__.strip())
     differing = []
+    for name, document in (("claims", {"claims": verdicts.judged(result)}), ("expected", expected.expected(result))):
+        file = RESULTS / f"paper/{name}.json"
+        text = json_lines(document)
+        if not file.exists() or file.read_text(encoding="utf-8") != text:
+            differing.append(str(file.relative_to(ROOT)))
+            if not arguments:
+                file.parent.mkdir(exist_ok=True)
+                file.write_text(text, encoding="utf-8")
     for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))]:
         text = page.read_text(encoding="utf-8")
         if written(text) != text:

@@ -1,0 +1,315 @@
+# SPDX-License-Identifier: MIT
+"""Reproduces the paper's figures, Table 1 and claims; compares numbers with expected.json.
+
+    scripts/reproduce [--model PATH/Sponza.gltf] [--quick] [--part NAME...] [--out DIR]
+
+Builds, measures part by part, and writes index.html (one self-contained page) and parts/*.json into
+DIR (out/paper). A second run of the same commit continues: it measures the parts that it lacks.
+Without --model only lobes and tables run. --quick leaves out views, searches for centres, large
+RSMs and srbf14's frames, computes lobes on the host, and times each row two or three times.
+REPRODUCING.md has the minutes of each part.
+
+Exit code 5: numbers left the tolerances of results/paper/expected.json; they are listed. Times are
+not compared. Needs the packages of scripts/setup.
+"""
+import argparse
+import base64
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+from . import CLPV, RESULTS, ROOT, expected, tables, verdicts
+
+LEFT = 5  # exit code
+CLAIMS = ("lobes", "tables", "lit", "texels", "lambdas", "light", "columns", "shadows", "views")
+WITHOUT_MODEL = ("lobes", "tables")
+WHOLE_ONLY = ("views",)
+
+
+def of_claims(name, arguments):
+    from . import claims
+
+    return claims.CLAIMS[name](arguments)
+
+
+def of_bench(suite, options, arguments):
+    file = arguments.out / f"{suite}-rows.json"
+    subprocess.run(
+        [
+            str(CLPV),
+            "bench",
+            suite,
+            "--scene",
+            "scenes/sponza.json",
+            f"--model={arguments.model}",
+            "--camera=curtains",
+            *options,
+            f"--output={file}",
+        ],
+        stdout=subprocess.DEVNULL,
+        check=True,
+        cwd=ROOT,
+    )
+    document = json.loads(file.read_text(encoding="utf-8"))
+    document["context"].pop("host_name", None)
+    file.unlink()
+    return document
+
+
+def of_figures(arguments):
+    from . import figures
+
+    return figures.paper(arguments)
+
+
+def parts_of(arguments):
+    """{name: function} of the parts to measure."""
+    repetitions = "2" if arguments.quick else "7"
+    parts = {name: lambda name=name: of_claims(name, arguments) for name in CLAIMS}
+    parts["figures"] = lambda: of_figures(arguments)
+    parts["table1"] = lambda: of_bench("table1", ["--repetitions", repetitions], arguments)
+    parts["factors"] = lambda: of_bench(
+        "factors",
+        ["--filter=/paper/(layout=soa.*|evaluate=[a-z]*)?$", "--repetitions=2"]
+        if arguments.quick
+        else ["--repetitions=5"],
+        arguments,
+    )
+    left_out = (
+        *(() if arguments.model else set(parts) - set(WITHOUT_MODEL)),
+        *(WHOLE_ONLY if arguments.quick else ()),
+    )
+    return {
+        name: part
+        for name, part in parts.items()
+        if name not in left_out and (not arguments.part or name in arguments.part)
+    }
+
+
+def commit():
+    return subprocess.run(
+        ["git", "describe", "--always", "--dirty"],
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+        cwd=ROOT,
+    ).stdout.strip()
+
+
+def measured(arguments):
+    """{part: {"minutes", "result"}} of this commit, from files of an earlier run or new."""
+    key = {"commit": commit(), "quick": arguments.quick, "model": str(arguments.model)}
+    folder = arguments.out / "parts"
+    folder.mkdir(parents=True, exist_ok=True)
+    done = {}
+    for name, part in parts_of(arguments).items():
+        file = folder / f"{name}.json"
+        found = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+        if found.get("key") != key:
+            print(f"scripts/reproduce: {name}", file=sys.stderr, flush=True)
+            start = time.monotonic()
+            result = part()
+            found = {"key": key, "minutes": (time.monotonic() - start) / 60, "result": result}
+            file.write_text(json.dumps(found), encoding="utf-8")
+        done[name] = found
+    return done
+
+
+def merged(record, fresh):
+    """The record with the numbers of this run; labels tell which rows belong together."""
+    if isinstance(record, dict) and isinstance(fresh, dict):
+        return {
+            **record,
+            **{
+                key: merged(record[key], value) if key in record else value
+                for key, value in fresh.items()
+            },
+        }
+    if isinstance(record, list) and isinstance(fresh, list):
+        rows = {expected.label(row): row for row in record}
+        for row in fresh:
+            rows[expected.label(row)] = merged(rows.get(expected.label(row)), row)
+        return list(rows.values())
+    return fresh
+
+
+def overlay(done):
+    """Puts the numbers of this run in place of the record's, for the tables and the claims."""
+    claims = {name: done[name]["result"] for name in CLAIMS if name in done}
+    tables.MEASURED["claims"] = merged(tables.read("claims"), claims)
+    for name in ("table1", "factors"):
+        if name in done:
+            tables.MEASURED[name] = {"measured": {}, **done[name]["result"]}
+    tables.read.cache_clear()
+
+
+def numbers_of(done):
+    """{number: value} that this run measured, of those with an expected value."""
+    parts = {f"claims/{name}": done[name]["result"] for name in CLAIMS if name in done}
+    if "figures" in done and done["figures"]["result"]["rows"]:
+        parts["figures/rows"] = done["figures"]["result"]["rows"]
+    if "factors" in done:
+        parts["factors/difference"] = expected.differences(done["factors"]["result"])
+    return expected.found(parts)
+
+
+def uri(file):
+    kind = {"jpg": "jpeg", "png": "png"}[file.suffix.lstrip(".")]
+    return f"data:image/{kind};base64," + base64.b64encode(file.read_bytes()).decode("ascii")
+
+
+def turned():
+    """Values of rotated lobes on a grid of directions: 25 polar angles, 48 azimuths."""
+    import numpy
+    from . import native
+
+    clpv = native()
+    theta, phi = numpy.meshgrid(
+        numpy.linspace(0, numpy.pi, 25), numpy.arange(48) * 2 * numpy.pi / 48, indexing="ij"
+    )
+    directions = numpy.stack(
+        (numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)),
+        axis=-1,
+    )
+    lobes = []
+    for name in (
+        "sh2",
+        "sh3",
+        "srbf4",
+        "srbf6",
+        "srbf8v1",
+        "srbf8v2",
+        "srbf8v3",
+        "srbf14",
+        "bins24",
+        "bins96",
+    ):
+        basis = clpv.Basis(name)
+        values = basis.evaluate(directions.reshape(-1, 3)) @ basis.clamped_cosine((-2, 1, -3), 256)
+        lobes.append(
+            {
+                "name": name,
+                "rows": 25,
+                "columns": 48,
+                "values": [round(float(value), 3) for value in values],
+            }
+        )
+    return lobes
+
+
+def page(arguments, done, left, checked, unmeasured):
+    import jinja2
+    from clpv.draw import report
+
+    folders = [ROOT / "python/clpv/draw", ROOT / "scripts/measured"]
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(folders),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    claims = verdicts.judged(tables.result)
+    sections = [
+        (name, [each for each in claims if each["section"] == name])
+        for name in dict.fromkeys(each["section"] for each in claims)
+    ]
+    figures = done["figures"]["result"] if "figures" in done else {"sheets": [], "lobes": []}
+    out = arguments.out
+    sheets = [
+        {
+            "name": sheet["name"],
+            "uri": uri(out / sheet["file"]),
+            "pairs": [
+                {
+                    "caption": pair["caption"],
+                    "left": uri(out / pair["left"]),
+                    "right": uri(out / pair["right"]),
+                }
+                for pair in sheet["pairs"]
+            ],
+        }
+        for sheet in figures["sheets"]
+    ]
+    device = subprocess.run(
+        [str(CLPV), "devices"], stdout=subprocess.PIPE, text=True, check=False, cwd=ROOT
+    ).stdout.splitlines()[:1]
+    minutes = [
+        ["part", "minutes"],
+        *([name, f"{part['minutes']:.1f}"] for name, part in done.items()),
+    ]
+    here = "this run" if "table1" in done else "the record"
+    html = environment.get_template("paper.html").render(
+        subtitle=", ".join(
+            [
+                f"clpv {commit()}",
+                "quick run" if arguments.quick else "whole run",
+                *device,
+                time.strftime("%Y-%m-%d"),
+            ]
+        ),
+        left=left,
+        checked=checked,
+        unmeasured=unmeasured,
+        parts=minutes,
+        sections=sections,
+        sheets=sheets,
+        turned=turned(),
+        lobes=[{"name": name, "uri": uri(out / name)} for name in figures["lobes"]],
+        width=arguments.width,
+        colours=report.page_colours(),
+        tables=[
+            (f"With indirect shadows ({here})", tables.TABLES["table1-shadows"]()),
+            (f"Without indirect shadows ({here})", tables.TABLES["table1-no-shadows"]()),
+            (
+                f"One option at a time ({'this run' if 'factors' in done else 'the record'})",
+                tables.TABLES["factors"](),
+            ),
+        ],
+    )
+    (out / "index.html").write_text(html, encoding="utf-8")
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models")
+    parser.add_argument(
+        "--quick", action="store_true", help="parts of about 10 minutes on two cores"
+    )
+    parser.add_argument(
+        "--part", action="append", metavar="NAME", help="only this part, repeatable"
+    )
+    parser.add_argument(
+        "--out",
+        type=pathlib.Path,
+        default=ROOT / "out/paper",
+        help="output folder (default: out/paper)",
+    )
+    parser.add_argument("--no-build", action="store_true", help="use the build as it is")
+    arguments = parser.parse_args()
+    arguments.out = arguments.out.resolve()
+    arguments.model = str(pathlib.Path(arguments.model).resolve()) if arguments.model else None
+    arguments.width, arguments.height = (480, 270) if arguments.quick else (960, 540)
+    for name in arguments.part or []:
+        if name not in (
+            allowed := parts_of(argparse.Namespace(**{**vars(arguments), "part": None}))
+        ):
+            parser.error(
+                f"--part {name}: allowed: {', '.join(allowed)}; the others need --model, "
+                "or no --quick"
+            )
+    if not arguments.no_build:
+        subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
+    done = measured(arguments)
+    document = json.loads((RESULTS / "paper/expected.json").read_text(encoding="utf-8"))
+    numbers = numbers_of(done)
+    left = expected.left(document, numbers)
+    overlay(done)
+    page(arguments, done, left, len(numbers), len(set(document["numbers"]) - set(numbers)))
+    print(arguments.out / "index.html")
+    print(f"{len(numbers)} numbers, {len(left)} left their tolerance", *left, sep="\n")
+    return LEFT if left else 0
