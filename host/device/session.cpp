@@ -321,7 +321,7 @@ void Session::write_bytes(const Buffer& buffer, std::span<const std::byte> bytes
 
 std::shared_ptr<const Session::Arriving> Session::read_later(const Buffer& buffer, std::size_t count) {
   std::erase_if(reads_, [](const auto& read) { return read->arrived(); });
-  const auto read = std::make_shared<Arriving>(std::vector<cl_uint>(count), cl::Event());
+  const auto read = std::make_shared<Arriving>(Arriving{std::vector<cl_uint>(count), {}});
   queue_.enqueueReadBuffer(buffer.handle(), CL_FALSE, 0, count * sizeof(cl_uint), read->values.data(),
                            nullptr, &read->done);
   reads_.push_back(read);

@@ -361,8 +361,8 @@ class Renderer:
     @property
     def stats(self) -> dict[str, float]:
         """Dict of the last frame: device time of each stage [ms] ('propagate', 'gather', ...; 0 if cached or not needed),
-        'frame': wall time of render() [ms], 'host': the host's work in it, without its 'waits' for the device [ms],
-        'launches' of kernels, fills and copies, 'build': compilation so far [ms], 'device_bytes', 'peak_device_bytes'.
+        'frame': wall time of render() [ms], 'host': the host's work in it, without waiting [ms], 'build': compilation so far
+        [ms]; numbers of 'launches' (kernels, fills and copies) and of 'waits' for the device; 'device_bytes', 'peak_device_bytes'.
         """
     def enqueue(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0) -> DeviceFrame:
         """enqueue(view='full', camera=None, time=0.0) -> DeviceFrame: render() without reading the image back.
@@ -395,8 +395,9 @@ class Scene:
         positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise seen from the front; normals (n, 3), of any
         length; uvs: texture coordinates (n, 2), v = 0 in the first row; colours: linear floats (n, 3) or (n, 4), 0 to 1. Without
         normals: flat ones, as in glTF, or, if smooth, means of the triangles' normals, weighted by angle. material: None for white;
-        transform: array (4, 4) to the world, which multiplies columns (x, y, z, 1). moves: it will move, so its first move needs no new memory (set_positions()). The arrays are copied. Raises InputError with
-        array, index, value found and value allowed.
+        transform: array (4, 4) to the world, which multiplies columns (x, y, z, 1). moves: it will move, so its
+        first move needs no new memory (set_positions()). The arrays are copied. Raises InputError with array, index, value found and
+        value allowed.
         """
     @staticmethod
     def from_arrays(positions: ArrayLike, triangles: ArrayLike, *, normals: ArrayLike | None = None, uvs: ArrayLike | None = None, colours: ArrayLike | None = None, smooth: bool = False, material: Material | None = None, transform: ArrayLike | None = None, moves: bool = False) -> "Scene":
@@ -412,8 +413,8 @@ class Scene:
         """remove_mesh(mesh): removes a mesh from one of its places."""
     def set_positions(self, mesh: int, positions: ArrayLike, normals: ArrayLike | None = None) -> None:
         """set_positions(mesh, positions, normals=None): moves its vertices, at all of its places. Normals that were given stay without
-        `normals`. The next frame of each renderer recomputes what animation recomputes; at the first move of a mesh added without `moves`, and after an
-        addition or removal, also its memory and what it caches.
+        `normals`. The next frame of each renderer recomputes what animation recomputes; at the
+        first move of a mesh added without `moves`, and after an addition or removal, also its memory and what it caches.
         """
     def set_transform(self, mesh: int, transform: ArrayLike) -> None:
         """set_transform(mesh, transform): moves one place of a mesh. As set_positions()."""
