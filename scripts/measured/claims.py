@@ -19,7 +19,6 @@ Default: all. Scene: Sponza; without --model this project's atrium. Prints table
 (out/claims). First builds. Needs the packages of scripts/setup.
 """
 import argparse
-import functools
 import itertools
 import json
 import math
@@ -166,11 +165,14 @@ class Views:
         self.truths = arguments.out / "truths"
         self.truths.mkdir(parents=True, exist_ok=True)
 
-    @functools.cache
+    traced = {}  # of all instances: a scene's cameras and lights have their own names
+
     def truth(self, camera, view="indirect", noise=NOISE):
-        image = clpv.pathtrace(self.scene, view, camera, WIDTH, HEIGHT, noise=noise)
-        image.save(self.truths / f"{camera}-{view}-{noise:g}.exr")
-        return image
+        key = self.name, camera, view, noise
+        if key not in Views.traced:
+            Views.traced[key] = clpv.pathtrace(self.scene, view, camera, WIDTH, HEIGHT, noise=noise)
+            Views.traced[key].save(self.truths / f"{camera}-{view}-{noise:g}.exr")
+        return Views.traced[key]
 
     def renderer(self, **options):
         return clpv.Renderer(self.scene, **{"width": WIDTH, "height": HEIGHT, **options})

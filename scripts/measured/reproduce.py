@@ -278,7 +278,7 @@ def main():
     )
     parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models")
     parser.add_argument(
-        "--quick", action="store_true", help="parts of about 10 minutes on two cores"
+        "--quick", action="store_true", help="fewer rows and samples"
     )
     parser.add_argument(
         "--part", action="append", metavar="NAME", help="only this part, repeatable"
