@@ -47,7 +47,7 @@ struct TimedFrame {
   }
 };
 
-/// What the cases of a group share.
+/// Session, options, scene and image of the preset, which the cases of a group use.
 struct Shared {
   Session& session;
   SuiteOptions options;

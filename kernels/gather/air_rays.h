@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rays from the camera through a medium, and the points where they gather its light (medium.cl).
 //
-//   t_k: density of exp(-sigma t), sigma the mean extinction;   dt_k the part of the ray that it stands for   [m]
+//   t_k: points with a density of exp(-sigma t) along the ray, sigma the mean extinction; dt_k: their shares of its length [m]
 #pragma once
 
 #include "raster/shadow.h"

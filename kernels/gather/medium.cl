@@ -5,9 +5,8 @@
 //   S = sigma_s sum_lights p(w_light, w) E               medium_light: single scattering, E with shadow maps
 //     + sigma_s max(0, sum_l g^l sum_m C_lm Y_lm(w))     medium_volumes: light of the volumes (radiance.h)
 //
-// w: direction of light that travels towards the camera. The 16 pixels of a tile have
-// different t_k (air_rays.h), and a mean over a tile's size joins them. Every second pixel along both axes has a ray.
-// near_layout.h defines the planes.
+// w: direction of light that travels towards the camera. The 16 pixels of a tile have different t_k (air_rays.h), and a mean
+// over a tile's size joins them. Every second pixel along both axes has a ray. near_layout.h defines the planes.
 //
 // medium_light
 //   In:      view, depths [m]      the camera's surface

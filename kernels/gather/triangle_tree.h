@@ -318,4 +318,3 @@ CLPV_INLINE void trace_ray(const Tree tree, const Stack stack, CLPV_SCENE, Rays*
 }
 
 #endif
-

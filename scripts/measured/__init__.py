@@ -3,6 +3,7 @@
 
 rows.py has what is measured, once for both.
 """
+import json
 import os
 import pathlib
 import sys
@@ -19,3 +20,16 @@ def native():
     import clpv
     clpv.__path__.append(str(BUILD / "python/clpv"))
     return clpv
+
+
+def json_lines(document):
+    """JSON with a line for each row of its lists and for each member of its objects."""
+    members = []
+    for key, value in document.items():
+        if isinstance(value, dict) and value:
+            lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(each)}" for name, each in value.items())
+            members.append(f"{json.dumps(key)}: {{\n{lines}\n}}")
+        else:
+            lines = isinstance(value, list) and ",\n".join(map(json.dumps, value))
+            members.append(f"{json.dumps(key)}: " + (f"[\n{lines}\n]" if lines else json.dumps(value)))
+    return "{" + ",\n".join(members) + "}\n"

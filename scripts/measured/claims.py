@@ -348,11 +348,11 @@ def main():
     parser.add_argument("claims", nargs="*", metavar="NAME", help=f"{', '.join(CLAIMS)} (default: all)")
     parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/claims", help="output folder (default: out/claims)")
+    parser.set_defaults(quick=False)  # of scripts/reproduce
     arguments = parser.parse_args()
     for name in arguments.claims:
         if name not in CLAIMS:
             parser.error(f"found '{name}', allowed: {', '.join(CLAIMS)}")
-    arguments.quick = False
     arguments.out = arguments.out.resolve()
     arguments.out.mkdir(parents=True, exist_ok=True)
     subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)

@@ -25,7 +25,7 @@ import subprocess
 import sys
 import tempfile
 
-from . import CLPV, RESULTS, ROOT, charts, rows
+from . import CLPV, RESULTS, ROOT, charts, json_lines, rows
 
 FRAME_COUNT = 9
 STANDING_COUNT = 7
@@ -51,15 +51,10 @@ def run(*arguments):
 
 
 def write(folder, name, document):
-    """JSON with a line for each row of its lists."""
     document.get("context", {}).pop("host_name", None)
     for row in document.get("benchmarks", []):
         row.pop("samples_ms", None)
-    members = []
-    for key, value in document.items():
-        lines = isinstance(value, list) and ",\n".join(map(json.dumps, value))
-        members.append(f"{json.dumps(key)}: " + (f"[\n{lines}\n]" if lines else json.dumps(value)))
-    (folder / f"{name}.json").write_text("{" + ",\n".join(members) + "}\n", encoding="utf-8")
+    (folder / f"{name}.json").write_text(json_lines(document), encoding="utf-8")
 
 
 def measure_device(folder):

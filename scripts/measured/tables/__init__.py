@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: MIT
+"""Writes the tables of measured numbers in the docs, between <!-- table: NAME --> and <!-- end -->, from results/docs.
+
+    scripts/tables            rewrites them in README.md and docs/, and claims.json and expected.json in results/paper
+    scripts/tables --check    changes nothing; fails if one of them differs from results/docs
+    scripts/tables --list     names of all tables
+    scripts/tables --stages FILE.json...   prints stage times of files of `clpv render --stats`, side by side
+
+scripts/measure writes results/docs. Only the standard library.
+"""
+import re
+import sys
+
+from .. import ROOT, RESULTS, expected, json_lines, verdicts
+from . import benchmarks, quality, paper, standing  # they fill TABLES
+from .cells import LOADED, MEASURED, TABLES, read, result
+from .stages import print_stages
+
+__all__ = ["MEASURED", "TABLES", "benchmarks", "main", "paper", "quality", "read", "result", "standing"]
+BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+def drawn(lines):
+    text = ["| " + " | ".join(line) + " |" for line in lines]
+    return "\n".join([text[0], "|" + "---|" * len(lines[0]), *text[1:]]) + "\n"
+
+
+def measured_on():
+    """Commit, device and date of the page's tables: one line if one run of scripts/measure measured them all."""
+    runs = {}
+    for name in sorted(LOADED):
+        measured = read(name)["measured"]
+        key = f"clpv {measured['commit']}, {measured['device']}, {measured['driver']}, {measured['date']}"
+        if "except" in measured:
+            key += f"; except {measured['except']}"
+        runs.setdefault(key, []).append(name)
+    if len(runs) == 1:
+        return f"Measured with {next(iter(runs))} (`results/docs`).\n"
+    return "".join(f"- {', '.join(files)} (`results/docs`): {run}.\n" for run, files in runs.items())
+
+
+def block(match):
+    name = match[2]
+    if name == "measured-on":
+        return match[0]
+    if name not in TABLES:
+        sys.exit(f"scripts/tables: no table '{name}'; allowed: measured-on, {', '.join(TABLES)}")
+    return match[1] + drawn(TABLES[name]()) + match[3]
+
+
+def written(text):
+    """The page with its tables, and where they were measured."""
+    LOADED.clear()
+    text = BLOCK.sub(block, text)
+    return BLOCK.sub(lambda match: match[1] + measured_on() + match[3] if match[2] == "measured-on" else match[0], text)
+
+
+def main():
+    arguments = sys.argv[1:]
+    if arguments == ["--list"]:
+        print("\n".join(["measured-on", *TABLES]))
+        return 0
+    if arguments[:1] == ["--stages"] and len(arguments) > 1:
+        return print_stages(arguments[1:])
+    if arguments not in ([], ["--check"]):
+        sys.exit(__doc__.strip())
+    differing = []
+    for name, document in (("claims", {"claims": verdicts.judged(result)}), ("expected", expected.expected(result))):
+        file = RESULTS / f"paper/{name}.json"
+        text = json_lines(document)
+        if not file.exists() or file.read_text(encoding="utf-8") != text:
+            differing.append(str(file.relative_to(ROOT)))
+            if not arguments:
+                file.parent.mkdir(exist_ok=True)
+                file.write_text(text, encoding="utf-8")
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))]:
+        text = page.read_text(encoding="utf-8")
+        if written(text) != text:
+            differing.append(str(page.relative_to(ROOT)))
+            if not arguments:
+                page.write_text(written(text), encoding="utf-8")
+    if arguments and differing:
+        print(f"{', '.join(differing)}: tables differ from results/docs; run scripts/tables", file=sys.stderr)
+        return 1
+    return 0

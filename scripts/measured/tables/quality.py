@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""Tables of docs/quality.md and README.md: NRMSE of indirect light in %, and energy over the ground truth's."""
+from .. import rows as known
+from ..rows import PAPER
+from .benchmarks import stage_ms
+from .cells import found, load, number, percent, table
+
+
+VIEWS = {"curtains": "curtains", "atrium": "atrium", "columns": "columns", "front": "Cornell, front"}
+
+
+def nrmse(name, options, **view):
+    row = found(load(name)["cells"], options=options, **view)
+    return percent(row and row["nrmse"])
+
+
+def mean(name, options, digits=1):
+    row = found(load(name)["variants"], options=options)
+    return percent(row and row["nrmse"], digits)
+
+
+def energy(row):
+    return f"{row['energy_ratio']:.2f}" if row and row.get("energy_ratio") else "-"
+
+
+def energies(name, options):
+    return " ".join(energy(found(load(name)["cells"], options=options, camera=camera)) for camera in VIEWS)
+
+
+def quality_lines(variants):
+    lines = [["variant", *VIEWS.values(), "mean", "energy", "other suns, mean"]]
+    for name, options in variants.items():
+        lines.append([name] + [nrmse("quality", options, camera=camera) for camera in VIEWS]
+                     + [mean("quality", options), energies("quality", options), mean("quality-suns", options)])
+    return lines
+
+
+@table
+def quality():
+    return quality_lines(known.QUALITY)
+
+
+@table
+def quality_parts():
+    return quality_lines(known.QUALITY_PARTS)
+
+
+@table
+def quality_grid():
+    lines = [["cells along each axis", "mean", "worst", "energy", "frame [ms]", "propagate [ms]", "gather [ms]"]]
+    for grid in known.GRIDS:
+        row = found(load("quality-grid")["variants"], options={**known.FAST, "grid": str(grid)})
+        lines.append([str(grid), percent(row["nrmse"], 1), percent(row["worst_nrmse"], 1), f"{row['energy_ratio']:.2f}",
+                      *map(number, (row["frame_ms"], row["stage_ms"]["propagate"], row["stage_ms"]["gather"]))])
+    return lines
+
+
+@table
+def quality_suns():
+    views = list(VIEWS)[:3]
+    return [["sun", "variant", *views]] + [
+        [sun, name, *(nrmse("quality-suns", options, camera=f"{view}-{sun}") for view in views)]
+        for sun in ("low", "noon", "cross") for name, options in known.SUNS.items()]
+
+
+@table
+def quality_scenes():
+    lines = [["scene", "variant", "each view", "mean", "energy"]]
+    for scene, name in (("atrium", "atrium, its sun"), ("atrium_overcast", "atrium, overcast"),
+                        ("sponza_overcast", "Sponza, overcast")):
+        for label, options in known.SUNS.items():
+            rows = [row for row in load("quality-scenes")["cells"] if (row["scene"], row["options"]) == (scene, options)]
+            if rows and all(row["nrmse"] is not None for row in rows):  # steps reject skies
+                lines.append([name, label, ", ".join(f"{row['camera']} {percent(row['nrmse'])}" for row in rows),
+                              percent(sum(row["nrmse"] for row in rows) / len(rows)), " ".join(map(energy, rows))])
+    return lines
+
+
+@table
+def quality_media():
+    lines = [["scene, camera", "sigma_s, sigma_a [1/m]", "bounces", "`medium`", "`indirect`"]]
+    rows = {}  # cells by view
+    for cell in load("quality-media")["cells"]:
+        rows.setdefault((cell["scene"], cell["camera"], cell["medium"], cell["bounces"]), {})[cell["view"]] = cell
+    for (scene, camera, medium, bounces), views in rows.items():
+        lines.append([f"{scene}, {camera}", medium, bounces,
+                      *(f"{percent(views[view]['nrmse'])} %, {energy(views[view])}" if view in views else "-"
+                        for view in ("medium", "indirect"))])
+    return lines
+
+
+@table
+def quality_bounces():
+    lines = [["variant", *VIEWS.values(), "mean", "energy"]]
+    for name, options in known.BOUNCES.items():
+        lines.append([name] + [nrmse("quality-bounces", options, camera=camera) for camera in VIEWS]
+                     + [mean("quality-bounces", options), energies("quality-bounces", options)])
+    return lines
+
+
+@table
+def quality_lamp():
+    lines = [["ground truth", "variant", "front", "published"]]
+    for truth, file, options, name in (
+            ("one bounce", "quality-lamp", known.FAST, "`--preset fast`"),
+            *(("all bounces", "quality-lamp-bounces", {**known.FAST, "bounces": n}, f"`--preset fast --bounces {n}`") for n in ("1", "2", "all"))):
+        lines.append([truth, name] + [nrmse(file, options, camera=camera) for camera in ("front", "published")])
+    return lines
+
+
+@table
+def quality_steps():
+    lines = [["NRMSE [%], energy", *(f"{s['cascade-size']} m, {s['iterations']} steps" for s in known.SETTINGS)]]
+    for name, options in known.STEPS.items():
+        cells = [found(load("quality-steps")["cells"], options={**options, **setting}) for setting in known.SETTINGS]
+        lines.append([name] + [f"{percent(row['nrmse'])}, {energy(row)}" if row else "-" for row in cells])
+    return lines
+
+
+@table
+def readme():
+    """Frame times beside errors."""
+    lines = [["", "propagate", "gather", "frame", "error"]]
+    for name, quality in {"the defaults": known.BEST, "`--preset fast`": known.FAST,
+                          "published scheme, sh2, in buffers": PAPER,
+                          "published scheme, sh2, in images of halves": PAPER}.items():
+        frame = found(load("frames")["frames"], given=known.FRAMES[name])
+        times = stage_ms(frame, "propagate"), stage_ms(frame, "gather"), frame and frame["frame_ms"]
+        error = mean("quality", quality, 0)
+        lines.append([name, *(f"{number(time)} ms" if time else "-" for time in times), "-" if error == "-" else f"{error} %"])
+    return lines

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// Programs that clpv starts: none comes from the current folder, and file names are no options of theirs (docs/security.md).
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "tests/support/run_program.hpp"
+
+namespace clpv::programs_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_file;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::string kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
+const std::string kSmall =
+    " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2 "
+    "--transport sampled --gather all --blockers seen ";
+
+/// A folder with a trap of every name that Python or a program search could take from it. Each writes a file "sprung".
+class Traps {
+ public:
+  Traps() {
+    const std::string sprung = (folder_ / "sprung").string();
+    for (const char* file :
+         {"clpv/__init__.py", "clpv/draw/__init__.py", "clpv/draw/__main__.py", "jinja2.py", "markupsafe.py",
+          "matplotlib.py", "numpy.py", "json.py", "sitecustomize.py", "usercustomize.py"}) {
+      folder_.write(file, "open('" + sprung + "', 'a').write('" + file + "\\n')\nraise SystemExit(0)\n");
+    }
+    for (const char* file :
+         {"python3", "python", "env", "sh", "ffmpeg", "ld", "cc", "clang", "mpirun", "clpv"}) {
+      folder_.write(file, "#!/bin/sh\necho " + std::string(file) + " >>" + sprung + "\n");
+      ::chmod((folder_ / file).c_str(), 0755);
+    }
+    folder_.write("matplotlibrc", "axes.labelsize: no size\n");  // a warning, were it read
+  }
+  /// `clpv arguments` in the folder, with the current folder in PATH in all its spellings.
+  test::Outcome run(const std::string& arguments, const std::string& variables = "") const {
+    return test::run("cd " + folder_.path().string() + " && PYTHONPATH=. PATH=.::./:\"$PATH\": " + variables +
+                     " " CLPV_PROGRAM " " + arguments);
+  }
+  std::string sprung() const { return read_file(folder_ / "sprung"); }
+  const test::TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST(Programs, NothingOfTheCurrentFolderRuns) {
+  const Traps traps;
+  for (const std::string& command :
+       {std::string("basis sh2 --figures figures"),
+        std::string("bench ceilings --repetitions 1 --plot plots"),
+        "report page " + kTiny + " --width 12 --height 9 --spp 1 --cache cache",
+        "sequence " + kTiny + kSmall + "--frames 1 --fps 1 -o film --video -v.mp4"}) {
+    const test::Outcome outcome = traps.run(command);
+    const bool no_ffmpeg = outcome.err.find("--video needs ffmpeg") != std::string::npos;
+    EXPECT_EQ(outcome.exit_code, no_ffmpeg ? 1 : 0) << command << "\n" << outcome.err;
+    EXPECT_EQ(traps.sprung(), "") << command;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("labelsize")));
+  }
+  EXPECT_TRUE(fs::exists(traps.folder() / "page/index.html"));
+}
+
+TEST(Programs, HelpersAndCompilersOfTheCurrentFolderDoNotRun) {
+  const Traps traps;
+  fs::create_directory(traps.folder() / "pocl");
+  const test::Outcome outcome = traps.run("render " + kTiny + kSmall + "-o a.exr",
+                                          "XDG_CACHE_HOME=cache POCL_CACHE_DIR=$PWD/pocl TMPDIR=.");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(traps.sprung(), "");
+}
+
+// A python3 without NumPy that comes first in PATH (pyenv, conda) once ended `clpv report`.
+TEST(Programs, APythonThatLacksModulesIsPassedOver) {
+  const test::TemporaryFolder folder;
+  folder.write("bin/python3", "#!/bin/sh\necho No module named numpy >&2\nexit 1\n");
+  ::chmod((folder / "bin/python3").c_str(), 0755);
+  const std::string figures = CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string();
+  const test::Outcome passed = test::run("PATH=" + (folder / "bin").string() + ":$PATH " + figures);
+  EXPECT_EQ(passed.exit_code, 0) << passed.err;
+  const test::Outcome named = test::run("CLPV_PYTHON=" + (folder / "bin/python3").string() + " " + figures);
+  EXPECT_EQ(named.exit_code, 1);
+  EXPECT_THAT(named.err, AllOf(HasSubstr("CLPV_PYTHON"), HasSubstr("python3-matplotlib"),
+                               HasSubstr((folder / "bin/python3").string() + ": No module named numpy")));
+}
+
+TEST(Programs, ANameWithAColonOrADashIsAFileToFfmpeg) {
+  const test::TemporaryFolder folder;
+  // Instead of ffmpeg: writes its arguments where the last one says.
+  folder.write("bin/ffmpeg",
+               "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho \"$*\" >\"${last#file:}\"\n");
+  ::chmod((folder / "bin/ffmpeg").c_str(), 0755);
+  for (const std::string& name :
+       {std::string("tcp:x.mp4"), std::string("-y.mp4"), std::string(251, 'a') + ".mp4"}) {
+    const test::Outcome outcome =
+        test::run("cd " + folder.path().string() + " && PATH=" + (folder / "bin").string() + ":$PATH " +
+                  CLPV_PROGRAM " sequence " + kTiny + kSmall + "--frames 1 --fps 1 -o film --video=" + name);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(read_file(folder / name), HasSubstr(" file:/")) << name;
+  }
+}
+
+}  // namespace
+}  // namespace clpv::programs_test
