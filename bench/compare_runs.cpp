@@ -135,7 +135,7 @@ std::string with_spread(double value, double mad) {
 }  // namespace
 
 ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file,
-                        const std::string& after_file) {
+                           const std::string& after_file) {
   const Kind &kind = kind_of(before, file), &after_kind = kind_of(after, after_file);
   if (&kind != &after_kind)
     throw Error(ExitCode::bad_input, "{} is of {}, {} of {}; allowed: two reports of one command", file,

@@ -32,7 +32,7 @@ struct ReportChanges {
 /// Compares two reports. Throws Error(bad_input) if one is no report of schema 1, or if their kinds differ. `file`,
 /// `after_file`: where they are from, for errors.
 ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file,
-                        const std::string& after_file = "this run");
+                           const std::string& after_file = "this run");
 
 /// Throws Error(validation) that names the rows whose ratio exceeds `limit`: beyond the spread, or with unknown spread.
 void require_ratios(const ReportChanges& found, double limit);

@@ -53,10 +53,11 @@ Inputs::Inputs(Session& session, const SceneData& scene, const SceneCamera& came
         make_surface(session, rsm_views(lights.front().data, grid, scene_.bounds, options.rsm_size).front(),
                      options.rsm_format, false);
     rasterizer.rasterize_rsm(lights.front().data, rsm);
-    views_.push_back({grid,
-                      verify::upload_injected(session, without_boundary_texels(read_surface(session, rsm), grid),
-                                              options.rsm_format, rsm.colour_scale),
-                      verify::upload_injected(session, without_boundary_texels(image, grid), RsmFormat::float32)});
+    views_.push_back(
+        {grid,
+         verify::upload_injected(session, without_boundary_texels(read_surface(session, rsm), grid),
+                                 options.rsm_format, rsm.colour_scale),
+         verify::upload_injected(session, without_boundary_texels(image, grid), RsmFormat::float32)});
   }
 }
 

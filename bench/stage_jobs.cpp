@@ -77,9 +77,12 @@ Job propagate_job(Bench& bench, const Problem& problem) {
   const RenderOptions& o = problem.options;
   const int cascade = problem.cascade.value_or(0);
   const std::shared_ptr<const Basis> basis = make_basis(o);
-  verify::PropagateProblem input{
-      basis,        make_transport(o, *basis),             propagate_options(o),
-      o.iterations, bench.inputs().light(*basis, cascade), {}};
+  verify::PropagateProblem input{basis,
+                                 make_transport(o, *basis),
+                                 propagate_options(o),
+                                 o.iterations,
+                                 bench.inputs().light(*basis, cascade),
+                                 {}};
   if (o.blocked()) input.geometry = bench.inputs().geometry(*basis, cascade);
   const std::string key =
       fmt::format("propagate {} {} {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport), lobes_of(o),
@@ -92,12 +95,12 @@ Job sweep_job(Bench& bench, const Problem& problem) {
   const int cascade = problem.cascade.value_or(0);
   const std::shared_ptr<const Basis> basis = make_basis(o);
   verify::SweepProblem input{basis,
-                               make_transport(o, *basis),
-                               sweep_options(o),
-                               {bench.inputs().grids().at(cascade)},
-                               {bench.inputs().light(*basis, cascade)},
-                               {},
-                               {}};
+                             make_transport(o, *basis),
+                             sweep_options(o),
+                             {bench.inputs().grids().at(cascade)},
+                             {bench.inputs().light(*basis, cascade)},
+                             {},
+                             {}};
   input.options.parts = {input.options.parts.at(cascade)};
   if (o.blocked()) input.blockers = {bench.inputs().areas(cascade)};
   const std::string key = fmt::format("sweep {} {} {} {} {} {}", o.basis, name_of(o.directions),

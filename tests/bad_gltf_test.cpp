@@ -74,17 +74,17 @@ const std::string kPrimitive = "/meshes/0/primitives/0", kLights = "/extensions/
 
 TEST_F(BadGltfTest, EveryIndexOutOfRange) {
   std::vector<Row> rows;
-  for (const std::string& place : words_of(
-           "/scene /scenes/0/nodes/0 /nodes/0/children/0 /nodes/0/mesh /nodes/1/camera /nodes/0/skin "
-           "/nodes/1/extensions/KHR_lights_punctual/light /skins/0/joints/0 "
-           "/skins/0/inverseBindMatrices /meshes/0/primitives/0/indices "
-           "/meshes/0/primitives/0/material /meshes/0/primitives/0/attributes/POSITION "
-           "/meshes/0/primitives/0/targets/0/POSITION /accessors/0/bufferView "
-           "/accessors/0/sparse/indices/bufferView /accessors/0/sparse/values/bufferView "
-           "/bufferViews/0/buffer /materials/0/pbrMetallicRoughness/baseColorTexture/index "
-           "/materials/0/emissiveTexture/index /textures/0/source /textures/0/sampler "
-           "/images/0/bufferView /animations/0/samplers/0/input /animations/0/samplers/0/output "
-           "/animations/0/channels/0/target/node")) {
+  for (const std::string& place :
+       words_of("/scene /scenes/0/nodes/0 /nodes/0/children/0 /nodes/0/mesh /nodes/1/camera /nodes/0/skin "
+                "/nodes/1/extensions/KHR_lights_punctual/light /skins/0/joints/0 "
+                "/skins/0/inverseBindMatrices /meshes/0/primitives/0/indices "
+                "/meshes/0/primitives/0/material /meshes/0/primitives/0/attributes/POSITION "
+                "/meshes/0/primitives/0/targets/0/POSITION /accessors/0/bufferView "
+                "/accessors/0/sparse/indices/bufferView /accessors/0/sparse/values/bufferView "
+                "/bufferViews/0/buffer /materials/0/pbrMetallicRoughness/baseColorTexture/index "
+                "/materials/0/emissiveTexture/index /textures/0/source /textures/0/sampler "
+                "/images/0/bufferView /animations/0/samplers/0/input /animations/0/samplers/0/output "
+                "/animations/0/channels/0/target/node")) {
     for (const json& bad : {json(1000), json(-1), json(18446744073709551615ull), json(1.5), json("0")})
       rows.push_back({{{place, bad}}, {place + ": found " + bad.dump()}});
   }

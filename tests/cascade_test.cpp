@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cascades: nested grids around the camera, on whole cells.
 #include "pipeline/frame/cascade.hpp"
-#include "pipeline/sweep/sweep_tables.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/sweep/sweep_tables.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"

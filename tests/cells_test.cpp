@@ -95,8 +95,8 @@ TEST(CellSpheres, AreAViewOfRenderAndNotOfPathtrace) {
                folder.path())
           .exit_code,
       0);
-  const Outcome traced =
-      run_here("pathtrace " + kCornell + " --width 8 --height 8 --spp 1 --view cells -o a.exr", folder.path());
+  const Outcome traced = run_here(
+      "pathtrace " + kCornell + " --width 8 --height 8 --spp 1 --view cells -o a.exr", folder.path());
   EXPECT_EQ(traced.exit_code, 2);
   EXPECT_THAT(traced.err, ::testing::HasSubstr("cells"));
 }

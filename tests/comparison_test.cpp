@@ -68,11 +68,12 @@ TEST(Junit, ListsStagesCasesAndFailures) {
   const auto of = [](const char* stage, const char* variant, double worst, const char* place) {
     return result_of(stage, variant, {worst, 1e-6, place});
   };
-  const std::string xml =
-      junit({of("inject", "sh2", 1e-7, ""), of("gather", "a<b", 0.5, "cell \"1\" & more"),
-             of("gather", "nan", NAN, "cell 2"), {"gather", "dead", {}, Status::failed, "signal <11>"},
-             {"gather", "image", {}, Status::unsupported, "no images"}},
-            "A & B");
+  const std::string xml = junit({of("inject", "sh2", 1e-7, ""),
+                                 of("gather", "a<b", 0.5, "cell \"1\" & more"),
+                                 of("gather", "nan", NAN, "cell 2"),
+                                 {"gather", "dead", {}, Status::failed, "signal <11>"},
+                                 {"gather", "image", {}, Status::unsupported, "no images"}},
+                                "A & B");
   EXPECT_THAT(
       xml,
       AllOf(HasSubstr("<testsuites name=\"clpv check on A &amp; B\" tests=\"5\" failures=\"2\" errors=\"1\" "

@@ -131,9 +131,9 @@ TEST(ExrHeader, TextsAndUnknownTypesAreNoLongerThanTheFile) {
 
 TEST(ExrHeader, ValuesHaveTheSizeOfTheirTypes) {
   // OpenEXR would read past a shorter one, and would take the rest of a longer one for attributes.
-  for (const std::string& type : test::words_of(
-           "box2f box2i chromaticities compression deepImageState double envmap float int keycode "
-           "lineOrder m33d m33f m44d m44f rational tiledesc timecode v2d v2f v2i v3d v3f v3i")) {
+  for (const std::string& type :
+       test::words_of("box2f box2i chromaticities compression deepImageState double envmap float int keycode "
+                      "lineOrder m33d m33f m44d m44f rational tiledesc timecode v2d v2f v2i v3d v3f v3i")) {
     EXPECT_THAT(rejection(one(attribute("a", type, ""))), HasSubstr("'a' (" + type + "): found 0 bytes"));
     EXPECT_THAT(rejection(one(attribute("a", type, std::string(200, '\0')))), HasSubstr("found 200 bytes"));
   }

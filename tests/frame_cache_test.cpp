@@ -124,9 +124,8 @@ TEST_F(CachedFrame, RecomputesOnlyWhatChanged) {
   EXPECT_EQ(passes(at), all);
   EXPECT_EQ(passes(at), kOfEveryFrame);
   at.eye.x += kCell;
-  EXPECT_EQ(passes(at),
-            with(with(with(kOfEveryFrame, kOfView), kOfCells),
-                 {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}))
+  EXPECT_EQ(passes(at), with(with(with(kOfEveryFrame, kOfView), kOfCells),
+                             {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}))
       << "the shadow map stands";
   at.wall = at.sun = 2;  // after the last key
   EXPECT_EQ(passes(at), all);

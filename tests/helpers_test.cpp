@@ -117,9 +117,8 @@ std::map<std::string, std::string> statuses(const test::Outcome& outcome) {
     if (check.at("stage") == "sizes") all["reason"] = check.at("reason");
   }
   EXPECT_FALSE(report.at("passed").get<bool>());
-  EXPECT_EQ(report.at("counts").at("failed"), std::ranges::count(all, "failed", [](const auto& e) {
-    return e.second;
-  }));
+  EXPECT_EQ(report.at("counts").at("failed"),
+            std::ranges::count(all, "failed", [](const auto& e) { return e.second; }));
   return all;
 }
 
@@ -148,14 +147,15 @@ TEST(Check, AKernelThatCrashesFailsOnlyItsRow) {
 }
 
 TEST(Check, AKernelThatDoesNotEndExceedsTheLimit) {
-  const test::Outcome outcome =
-      check_with_sizes("__kernel void sizes(volatile __global uint* bytes) { while (*bytes < 1u << 31) *bytes = 0; }\n",
-                       "--stage sizes,emit --limit 3");
+  const test::Outcome outcome = check_with_sizes(
+      "__kernel void sizes(volatile __global uint* bytes) { while (*bytes < 1u << 31) *bytes = 0; }\n",
+      "--stage sizes,emit --limit 3");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
   auto all = statuses(outcome);
   EXPECT_EQ(all["shared structs"], "failed");
   EXPECT_EQ(all["reason"], "took more than --limit 3 s");
-  EXPECT_TRUE(all.contains("plain") && all.contains("textures and holes")) << "or over the limit too, if compiled";
+  EXPECT_TRUE(all.contains("plain") && all.contains("textures and holes"))
+      << "or over the limit too, if compiled";
 }
 
 TEST(Check, UnsupportedComparisonsAreNoPass) {
@@ -180,10 +180,9 @@ TEST(Check, APresetsCombination) {
   const nlohmann::json report = nlohmann::json::parse(outcome.out);
   for (const nlohmann::json& check : report.at("checks"))
     rows.push_back(check.at("stage").get<std::string>() + " " + check.at("variant").get<std::string>());
-  EXPECT_THAT(rows, ::testing::ElementsAre("inject paper/srbf8v2/image/half/light",
-                                           "inject paper/srbf8v2/image/half/geometry",
-                                           "propagate paper/srbf8v2/image/half",
-                                           "gather paper/srbf8v2/image/half"));
+  EXPECT_THAT(rows, ::testing::ElementsAre(
+                        "inject paper/srbf8v2/image/half/light", "inject paper/srbf8v2/image/half/geometry",
+                        "propagate paper/srbf8v2/image/half", "gather paper/srbf8v2/image/half"));
 }
 
 TEST(Check, ListsAndSelects) {

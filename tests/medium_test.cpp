@@ -308,7 +308,8 @@ Comparison frame_error(const SceneData& scene, const RenderOptions& options, Sho
   Frame frame(test_session(), scene, options);
   frame.render(camera);
   const Image truth = reference::traced_view(
-      reference::trace_paths(scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing),
+      reference::trace_paths(scene, scene.lights_for(camera),
+                             camera_view(camera, options.width, options.height), tracing),
       view);
   return compare(view_image(frame, view), "frame", truth, "ground truth");
 }
@@ -344,7 +345,8 @@ TEST(Medium, ScatteredLightFallsOnSurfaces) {
     EXPECT_NEAR(error.energy_ratio.value(), 1, 0.05);
   };
   expect_near(medium_of(glm::vec3(0.05f), glm::vec3(0.05f), 0.3f, lower, upper), Bounces::one, 1);
-  expect_near(medium_of(glm::vec3(0.5f), {}, 0.3f, lower, upper), Bounces::all, PathTracerOptions::kAllBounces);
+  expect_near(medium_of(glm::vec3(0.5f), {}, 0.3f, lower, upper), Bounces::all,
+              PathTracerOptions::kAllBounces);
 }
 
 TEST(Medium, StepPropagationIsRefused) {

@@ -146,29 +146,15 @@ TEST(Presets, PaperIsThePublishedScheme) {
   options.grid = 16, options.cascades = 2, options.cascade_size = 5, options.iterations = 24;
   options.rsm_size = 64, options.width = 77, options.height = 33;
   set_option(options, "preset", "paper");
-  const nlohmann::json found = to_json(options), published = {{"preset", "paper"},
-                                                              {"basis", "srbf8v2"},
-                                                              {"lambda", 0.25},
-                                                              {"lobe", "rotate"},
-                                                              {"lobe-time", "kernel"},
-                                                              {"evaluate", "image"},
-                                                              {"table-size", 256},
-                                                              {"transport", "sampled"},
-                                                              {"layout", "image"},
-                                                              {"storage", "half"},
-                                                              {"rsm-format", "paper"},
-                                                              {"blocking", "one-sided"},
-                                                              {"blockers", "seen"},
-                                                              {"gather", "all"},
-                                                              {"gather-offset", 0.5},
-                                                              {"grid", 32},
-                                                              {"cascades", 3},
-                                                              {"cascade-size", 12.5},
-                                                              {"rsm-size", 256},
-                                                              {"iterations", 8},
-                                                              {"near", "off"},
-                                                              {"width", 960},
-                                                              {"height", 540}};
+  const nlohmann::json found = to_json(options),
+                       published = {{"preset", "paper"},  {"basis", "srbf8v2"},     {"lambda", 0.25},
+                                    {"lobe", "rotate"},   {"lobe-time", "kernel"},  {"evaluate", "image"},
+                                    {"table-size", 256},  {"transport", "sampled"}, {"layout", "image"},
+                                    {"storage", "half"},  {"rsm-format", "paper"},  {"blocking", "one-sided"},
+                                    {"blockers", "seen"}, {"gather", "all"},        {"gather-offset", 0.5},
+                                    {"grid", 32},         {"cascades", 3},          {"cascade-size", 12.5},
+                                    {"rsm-size", 256},    {"iterations", 8},        {"near", "off"},
+                                    {"width", 960},       {"height", 540}};
   for (const auto& [name, value] : published.items()) EXPECT_EQ(found[name], value) << name;
 }
 
@@ -196,9 +182,9 @@ TEST(Presets, FastHasNoNearFieldAndFineMoreRays) {
 
 TEST(Options, NearPixelsAreAboutAsManyAtEachSizeOfImage) {
   RenderOptions options;
-  const std::map<std::pair<int, int>, int> steps = {
-      {{16, 9}, 1}, {{240, 135}, 1}, {{480, 270}, 2}, {{960, 540}, 4}, {{1280, 720}, 4}, {{1920, 1080}, 8},
-      {{3840, 2160}, 8}};
+  const std::map<std::pair<int, int>, int> steps = {{{16, 9}, 1},     {{240, 135}, 1},  {{480, 270}, 2},
+                                                    {{960, 540}, 4},  {{1280, 720}, 4}, {{1920, 1080}, 8},
+                                                    {{3840, 2160}, 8}};
   for (const auto& [size, step] : steps) {
     std::tie(options.width, options.height) = size;
     options.near_size = NearSize::automatic;

@@ -72,7 +72,7 @@ TEST_F(OutputFile, FollowsASymbolicLinkToAFileOrToNone) {
 }
 
 mode_t mode_of(const fs::path& path) {
-  struct stat found{};
+  struct stat found {};
   EXPECT_EQ(::stat(path.c_str(), &found), 0);
   return found.st_mode & 07777;
 }
@@ -110,10 +110,12 @@ TEST_F(OutputFile, OneFileHasOneUse) {
   fs::create_symlink("new.exr", folder_ / "link.exr");
   fs::create_directory(folder_ / "below");
   const std::vector<NamedFile> inputs{{"SCENE", folder_ / "scene.json"}, {"--model", ""}};
-  check_outputs({{"--output", folder_ / "new.exr"}, {"--stats", folder_ / "new.json"}, {"--log", ""}}, inputs);
+  check_outputs({{"--output", folder_ / "new.exr"}, {"--stats", folder_ / "new.json"}, {"--log", ""}},
+                inputs);
   for (const char* same : {"scene.json", "below/../scene.json", "link.json", "hard.json"}) {
-    const std::string message =
-        error_of(ExitCode::usage, [&] { check_outputs({{"--stats", folder_ / same}}, inputs); });
+    const std::string message = error_of(ExitCode::usage, [&] {
+      check_outputs({{"--stats", folder_ / same}}, inputs);
+    });
     EXPECT_NE(message.find("--stats"), std::string::npos) << message;
     EXPECT_NE(message.find("SCENE"), std::string::npos) << message;
   }

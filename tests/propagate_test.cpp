@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Propagation: the CPU reference against closed forms.
 #include "reference/propagate.hpp"
-#include "tests/support/numbers.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "tests/support/numbers.hpp"
 
 namespace clpv::propagate_test {
 namespace {
-
 
 reference::Volume one_source(const Basis& basis, int n, const std::vector<double>& c, glm::ivec3 at) {
   reference::Volume volume(n, basis.size());

@@ -13,7 +13,6 @@
 namespace clpv::soak_test {
 namespace {
 
-
 constexpr double kFlat = 1.01;  // over frames()
 
 /// CLPV_SOAK_FRAMES sets another number.

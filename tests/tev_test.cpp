@@ -220,8 +220,8 @@ TEST_F(TevCommands, AViewerThatDoesNotAnswerIsAWarning) {
     waiting.push_back(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
     static_cast<void>(connect(waiting.back(), reinterpret_cast<sockaddr*>(&address), size));
   }
-  const Outcome outcome =
-      run("render " + kCornell + kSmall + " -o a.exr --tev=127.0.0.1:" + std::to_string(ntohs(address.sin_port)));
+  const Outcome outcome = run("render " + kCornell + kSmall +
+                              " -o a.exr --tev=127.0.0.1:" + std::to_string(ntohs(address.sin_port)));
   for (const int each : waiting) close(each);
   close(listener);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

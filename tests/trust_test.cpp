@@ -210,9 +210,9 @@ TEST_F(CacheTest, AFullDiskDoesNotEndQuality) {
   if (test::run("unshare -rm mount -t tmpfs none " + disk).exit_code != 0)
     GTEST_SKIP() << "no tmpfs may be mounted here";
   for (const char* size : {"4k", "16k"}) {
-    const test::Outcome outcome = test::run("unshare -rm sh -c 'mount -t tmpfs -o size=" + std::string(size) +
-                                            " none " + disk + " && " CLPV_PROGRAM + quality(folder.path()) +
-                                            " --vary gather-offset=0,1,2,3,4'");
+    const test::Outcome outcome =
+        test::run("unshare -rm sh -c 'mount -t tmpfs -o size=" + std::string(size) + " none " + disk +
+                  " && " CLPV_PROGRAM + quality(folder.path()) + " --vary gather-offset=0,1,2,3,4'");
     EXPECT_EQ(outcome.exit_code, 0) << size << outcome.err;
     EXPECT_EQ(nlohmann::json::parse(outcome.out).at("cells").size(), 5u) << size << outcome.out;
     EXPECT_THAT(outcome.err, HasSubstr("not cached")) << size;
@@ -307,8 +307,7 @@ TEST(Outputs, SpareInputsAndEachOther) {
         "render" + scene + "-o o.exr --dump-normals ./o.exr",
         "render" + scene + "-o o.exr --stats tiny.gltf",  // not named on the command line
         std::string("pathtrace my.json -o o.exr --stats my.json"),
-        "query" + scene + "--points points.csv -o points.csv",
-        "quality" + scene + "--cache cache -o my.json",
+        "query" + scene + "--points points.csv -o points.csv", "quality" + scene + "--cache cache -o my.json",
         std::string("bench regression --scene my.json -o my.json"),
         "sequence times.json" + kSmall + "--frames 1 --fps 1 -o ."}) {
     const test::Outcome outcome = run_here(command, folder.path());

@@ -137,8 +137,7 @@ void run(Options options, const Shared& shared) {
   const auto text = [&](std::string_view format) {
     return as_text(options, format, suite, session, results);
   };
-  if (!options.output.empty())
-    write_file(options.output, text("json"));
+  if (!options.output.empty()) write_file(options.output, text("json"));
   fmt::print("{}", text(options.format));
   std::fflush(stdout);
   bench::ReportChanges changes;

@@ -117,7 +117,8 @@ CheckResults results_of(const verify::Cases& cases, const Options& options, cons
 
 nlohmann::json report_of(const CheckResults& results, const Device& device) {
   nlohmann::json counts, checks = nlohmann::json::array();
-  for (const Status status : values_of<Status>()) counts[std::string(name_of(status))] = count(results, status);
+  for (const Status status : values_of<Status>())
+    counts[std::string(name_of(status))] = count(results, status);
   for (const CheckResult& result : results) checks.push_back(verify::to_json(result));
   return {{"schema", 1},
           {"device", to_json(device)},
@@ -188,9 +189,11 @@ void add_check(CLI::App& app, Shared& shared) {
   add(*command, "--junit", "FILE.xml", options->junit,
       "output file in JUnit format, one test case per comparison");
   command->footer(
-      "A comparison is ok, wrong (beyond its tolerance), failed (the driver reported an error, crashed, or took too "
+      "A comparison is ok, wrong (beyond its tolerance), failed (the driver reported an error, crashed, or "
+      "took too "
       "long)\n"
-      "or unsupported (the device lacks a capability). Exit code 5 if one is wrong or failed, or none is ok.");
+      "or unsupported (the device lacks a capability). Exit code 5 if one is wrong or failed, or none is "
+      "ok.");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

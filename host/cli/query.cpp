@@ -10,8 +10,8 @@
 #include "cli/render_request.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "scene/points_file.hpp"
 #include "scene/load.hpp"
+#include "scene/points_file.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 
@@ -96,7 +96,8 @@ void add_query(CLI::App& app, Shared& shared) {
   add_render_request(*command, options->request);
   command->footer(
       "Adds red,green,blue to each point: the irradiance of indirect light on a surface there [W/m^2], like "
-      "--view\nirradiance with --near off. Outside the cascades, which surround the camera, it is 0. The surface need "
+      "--view\nirradiance with --near off. Outside the cascades, which surround the camera, it is 0. The "
+      "surface need "
       "not be part of\nthe scene: it can be a moving object or mist.");
   command->callback([options, &shared] { run(*options, shared); });
 }

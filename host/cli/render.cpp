@@ -9,11 +9,11 @@
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
 #include "cli/tev.hpp"
+#include "cli/unreached.hpp"
 #include "image/image_io.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/frame/frame_stats.hpp"
 #include "quality/normal_weights.hpp"
-#include "cli/unreached.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
@@ -47,7 +47,8 @@ std::vector<NamedFile> outputs_of(const Options& options) {
   require_extension("--output", options.output, {".exr", ".png"});
   const bool several = options.views.size() > 1 && fs::path(options.output).extension() == ".png";
   std::vector<NamedFile> outputs;
-  for (const Show view : options.views) outputs.push_back({"--output", png_path(options.output, view, several)});
+  for (const Show view : options.views)
+    outputs.push_back({"--output", png_path(options.output, view, several)});
   if (!several) outputs.resize(1);
   if (options.stats != "-") outputs.push_back({"--stats", options.stats});
   outputs.push_back({"--dump-normals", options.normals});

@@ -86,7 +86,8 @@ void run(const Options& options, Shared& shared) {
   subject.shown = [&](const SceneData& posed, const Image& image) {
     if (tev) tev->show(tev_name(posed, camera(posed), options.view), image);
   };
-  Sequence sequence(options, subject, moving, resolved, device, compilation_of(request, shared.device), ranks);
+  Sequence sequence(options, subject, moving, resolved, device, compilation_of(request, shared.device),
+                    ranks);
   sequence.render();
   if (!ranks.is_root()) return;
   warn_of_later_frames(options);

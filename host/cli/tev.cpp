@@ -98,7 +98,8 @@ std::pair<int, std::string> connect_to(const HostPort& to) {
     setsockopt(made, SOL_SOCKET, SO_SNDTIMEO, &kTimeout, sizeof kTimeout);  // of connect() too
     if (connect(made, each->ai_addr, each->ai_addrlen) == 0) return {made, ""};
     // The time-out of a connection is EINPROGRESS.
-    reason = errno == EINPROGRESS ? fmt::format("no answer within {} s", kTimeout.tv_sec) : std::strerror(errno);
+    reason =
+        errno == EINPROGRESS ? fmt::format("no answer within {} s", kTimeout.tv_sec) : std::strerror(errno);
     ::close(made);
   }
   return {-1, reason};

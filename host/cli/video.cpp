@@ -2,6 +2,7 @@
 #include "cli/video.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -49,8 +50,8 @@ Video::~Video() {
 }
 
 void Video::fail(const Process::Result& ended) const {
-  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(),
-              ended.code, ended.output);
+  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(), ended.code,
+              ended.output);
 }
 
 void Video::add(const Image& shown) {

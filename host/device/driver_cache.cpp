@@ -52,7 +52,8 @@ bool CompiledMarks::has(const std::string& key) const {
 void CompiledMarks::add(const std::string& key) const {
   if (!folder_) return;
   const std::string why = folder_->write(name_of_mark(key), std::string_view(""));
-  if (!why.empty()) spdlog::debug("no mark of compiled kernels: {}", why);  // costs later runs their helpers' start
+  if (!why.empty())
+    spdlog::debug("no mark of compiled kernels: {}", why);  // costs later runs their helpers' start
 }
 
 }  // namespace clpv

@@ -49,7 +49,8 @@ std::string build_log(const cl::Program& program, const Device& device) {
   }
 }
 
-bool compiles(const cl::Context& context, const Device& device, const char* text, const std::string& options) {
+bool compiles(const cl::Context& context, const Device& device, const char* text,
+              const std::string& options) {
   try {
     cl::Program(context, text).build(device.handle, options.c_str());
     return true;

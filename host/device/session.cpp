@@ -293,7 +293,8 @@ const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, 
       table.image = cl::Image1DBuffer(context_, CL_MEM_READ_ONLY, cl::ImageFormat(CL_R, CL_FLOAT),
                                       values.size(), table.values.handle());
     } catch (const cl::Error& error) {
-      if (error.err() != CL_INVALID_OPERATION) throw cl_error(error, fmt::format("{} on {}", what, device_.name));
+      if (error.err() != CL_INVALID_OPERATION)
+        throw cl_error(error, fmt::format("{} on {}", what, device_.name));
       throw Error(ExitCode::device,  // PoCL 7.1
                   "evaluate image: the driver of {} makes no 1-D images of buffers: {} failed with {}; "
                   "allowed: exact, buffer",

@@ -47,12 +47,12 @@ const PresetOptions& options_of(PresetName preset) {
   static const PresetOptions best, fast{{"near", "off"}}, fine{{"near-size", "half"}, {"near-rays", "16"}};
   // The published scheme: that of Kaplanyan and Dachsbacher with the paper's basis and sizes.
   static const PresetOptions paper{
-      {"basis", "srbf8v2"},    {"lambda", "0.25"},       {"lobe", "rotate"},        {"lobe-time", "kernel"},
-      {"evaluate", "image"},   {"table-size", "256"},    {"transport", "sampled"},
-      {"rsm-format", "paper"}, {"blockers", "seen"},     {"blocking", "one-sided"}, {"blocker-stride", "1"},
-      {"gather", "all"},       {"gather-offset", "0.5"}, {"layout", "image"},       {"storage", "half"},
-      {"grid", "32"},          {"cascades", "3"},        {"cascade-size", "12.5"},  {"rsm-size", "256"},
-      {"iterations", "8"},     {"near", "off"},          {"width", "960"},          {"height", "540"},
+      {"basis", "srbf8v2"},     {"lambda", "0.25"},        {"lobe", "rotate"},       {"lobe-time", "kernel"},
+      {"evaluate", "image"},    {"table-size", "256"},     {"transport", "sampled"}, {"rsm-format", "paper"},
+      {"blockers", "seen"},     {"blocking", "one-sided"}, {"blocker-stride", "1"},  {"gather", "all"},
+      {"gather-offset", "0.5"}, {"layout", "image"},       {"storage", "half"},      {"grid", "32"},
+      {"cascades", "3"},        {"cascade-size", "12.5"},  {"rsm-size", "256"},      {"iterations", "8"},
+      {"near", "off"},          {"width", "960"},          {"height", "540"},
   };
   switch (preset) {
     case PresetName::best:
@@ -134,11 +134,13 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("gather-offset", o.gather_offset, "distance from the surface at which light is gathered [cells]",
         Range{0, 4});
   visit("near", o.near,
-        "light from surfaces nearer than a cell: from the volumes (off), or by rays (traced), which needs --transport "
+        "light from surfaces nearer than a cell: from the volumes (off), or by rays (traced), which needs "
+        "--transport "
         "sweep; auto: traced with a sweep, else off",
         Named{});
   visit("near-size", o.near_size,
-        "pixels that have rays of --near: all, or one of 2 x 2, 4 x 4 or 8 x 8; auto: about as many as 240 x 135",
+        "pixels that have rays of --near: all, or one of 2 x 2, 4 x 4 or 8 x 8; auto: about as many as 240 x "
+        "135",
         Named{});
   visit("near-rays", o.near_rays, "rays of each of these pixels", Named{});
   visit("width", o.width, "image width [pixels]", Range{1, kMaxPixels});

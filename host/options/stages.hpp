@@ -46,7 +46,7 @@ enum class Pass {
   gather,
   near_trace,  ///< rays of the near field, while their hits are not cached
   near,        ///< light of the near field
-  medium,  ///< light that a medium scatters towards the camera
+  medium,      ///< light that a medium scatters towards the camera
   shade,
   whole,
 };

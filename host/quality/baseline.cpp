@@ -105,14 +105,14 @@ Plan plan_for(Runner& run, double budget_ms) {
 BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera& camera, int frames) {
   const int coarsest = frame.options().cascades - 1;
   const auto shared = [](const StageMark& mark) {
-    return mark.pass == Pass::rasterize_camera || mark.pass == Pass::rasterize_shadow || mark.pass == Pass::shade;
+    return mark.pass == Pass::rasterize_camera || mark.pass == Pass::rasterize_shadow ||
+           mark.pass == Pass::shade;
   };
   const FrameTimes times = measure_frames(session, frame, camera, frames, 1);
   BaselineBudget budget;
   budget.budget_ms = median(times.sums([&](const StageMark& mark) { return !shared(mark); }));
-  budget.rsm_ms = median(times.sums([&](const StageMark& mark) {
-    return mark.pass == Pass::rasterize_rsm && mark.cascade == coarsest;
-  }));
+  budget.rsm_ms = median(times.sums(
+      [&](const StageMark& mark) { return mark.pass == Pass::rasterize_rsm && mark.cascade == coarsest; }));
   for (const auto& [pass, ms] : times.pass_medians())
     if (shared({named<Pass>("pass", pass)})) budget.shared_ms[pass] = ms;
   budget.rsms = frame.read_rsms(coarsest);

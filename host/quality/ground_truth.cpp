@@ -156,7 +156,8 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
   });
   if (!found.empty() && !kept) kept = read_cached(cache, name, scene);
   if (!found.empty() && !kept)
-    throw Error(ExitCode::run_time, "{}: root has it, but this rank cannot read it", (folder / name).string());
+    throw Error(ExitCode::run_time, "{}: root has it, but this rank cannot read it",
+                (folder / name).string());
   if (kept) {
     kept->exposure = scene.exposure;
     return *std::move(kept);

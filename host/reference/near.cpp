@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kSameNormal = 0.7, kSamePlane = 0.1;  // near_surface.h
 constexpr double kWidened = 0.2, kDark = 0.25;         // near_filter.cl
-constexpr double kLeastArriving = 0.5;                                 // near.cl
+constexpr double kLeastArriving = 0.5;                 // near.cl
 
 bool close_to(double value, double limit) {
   return std::abs(value - limit) < kNearEdge * std::max(1.0, std::abs(limit));
@@ -209,8 +209,7 @@ NearImage widened(const NearImage& image) {
     for (const int dy : {-3, 0, 3}) {
       for (const int dx : {-3, 0, 3}) {
         const NearPoint& there = image.at(layer, x + dx, y + dy);
-        const double apart =
-            point.reach > 0 ? glm::length(there.position - point.position) / point.reach : 0;
+        const double apart = point.reach > 0 ? glm::length(there.position - point.position) / point.reach : 0;
         mean.uncertain = mean.uncertain || close_to(apart, kWidened);
         mean.add(there, apart < kWidened ? 1 : 0, point.position, point.normal);
       }
@@ -275,7 +274,8 @@ struct NearPixels {
         double covered = 0;
         for (int dy = -1; dy <= 2; ++dy) {
           for (int dx = -1; dx <= 2; ++dx)
-            covered += same_surface(image.at(0, block_x + dx, block_y + dy), point.position, point.normal, unknown);
+            covered +=
+                same_surface(image.at(0, block_x + dx, block_y + dy), point.position, point.normal, unknown);
         }
         if (covered > 0) continue;
         point.unknown = unknown;

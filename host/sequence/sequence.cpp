@@ -85,8 +85,7 @@ void Sequence::render() {
   if (there > 0) spdlog::info("{} of {} frames existed already", there, options_.frames);
   if (rendered > 0) spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
   for (const std::string& gathered : ranks_.gather(nlohmann::json(times_).dump()))
-    for (auto& [number, frame] : nlohmann::json::parse(gathered).get<SequenceTimes>())
-      times_[number] = frame;
+    for (auto& [number, frame] : nlohmann::json::parse(gathered).get<SequenceTimes>()) times_[number] = frame;
   write_times();
   if (renderer_) renderer_->session.store_programs();
   renderer_.reset();

@@ -46,8 +46,8 @@ struct SequenceSubject {
   float exposure;
   ToneMap tonemap;
   std::function<nlohmann::json(const SceneData& posed, double seconds)>
-      describe;                                                                ///< inputs of a frame, by name
-  std::function<void(Session&, Frame&)> first_frame;                           ///< called after the first frame
+      describe;                                       ///< inputs of a frame, by name
+  std::function<void(Session&, Frame&)> first_frame;  ///< called after the first frame
   std::function<void(const SceneData& posed, const Image&)>
       shown;  ///< called with the linear image of each new frame
 };

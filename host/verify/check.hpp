@@ -23,8 +23,9 @@ struct CheckResult {
   std::string variant;       ///< name of the case: "sh2/sampled/blockers"
   Deviation deviation = {};  ///< of status `ok` and `wrong`
   Status status = Status::ok;
-  std::string reason = {};  ///< of status `failed` and `unsupported`: the driver's words, or the exceeded limit
-  double seconds = 0;       ///< time of the case, with building its kernels
+  std::string reason =
+      {};              ///< of status `failed` and `unsupported`: the driver's words, or the exceeded limit
+  double seconds = 0;  ///< time of the case, with building its kernels
   bool passed() const { return status == Status::ok; }
 };
 using CheckResults = std::vector<CheckResult>;
@@ -41,8 +42,7 @@ struct Case {
 using Cases = std::vector<Case>;
 
 /// Returns a case with one deviation.
-Case deviation_case(Stage stage, const std::string& name,
-                    const std::function<Deviation(Session&)>& compare);
+Case deviation_case(Stage stage, const std::string& name, const std::function<Deviation(Session&)>& compare);
 /// Returns a case that runs a job once.
 Case job_case(Stage stage, const std::string& name, const std::function<Job(Session&)>& make);
 

@@ -72,7 +72,8 @@ Cost cost_of(const GatherWork& p) {
   const auto pixels = static_cast<double>(p.pixels());
   Cost cost;
   cost.bytes = pixels * (sizeof(float) + 2 * sizeof(cl_float4));
-  for (const Volume& volume : p.light.stored)  // images are read once; buffers are packed: read, written, read again
+  for (const Volume& volume :
+       p.light.stored)  // images are read once; buffers are packed: read, written, read again
     cost.bytes += static_cast<double>(volume.bytes()) * (o.format.layout == Layout::image ? 1 : 3);
   cost.working_set = cost.bytes;
   // Reads per pixel in one cascade: eight cells, or one filtered texel. A read of packed buffers has two coefficients
@@ -94,14 +95,11 @@ Job gather_job(Session& session, const GatherProblem& problem, const Share& shar
   Job job;
   job.cost = cost_of(*p);
   job.reset = [p, &session] { session.fill_zero(p->irradiance, p->bytes()); };
-  job.run = [p] {
-    p->gatherer.gather(p->problem.camera, p->light.gathered(), p->irradiance);
-  };
+  job.run = [p] { p->gatherer.gather(p->problem.camera, p->light.gathered(), p->irradiance); };
   job.compare = [p, &session, share] {
     const GatherProblem& q = p->problem;
     const Values expected = share([&] { return expected_pixels(*p); });
-    return compare_pixels(session.read<cl_float4>(p->irradiance, p->pixels()), *expected,
-                          q.image->view.width,
+    return compare_pixels(session.read<cl_float4>(p->irradiance, p->pixels()), *expected, q.image->view.width,
                           tolerance(compared_as(q.options), q.options.format.storage), q.every);
   };
   return job;

@@ -83,7 +83,7 @@ SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool o
 SurfaceImage as_points(SurfaceImage surface) {
   for (std::size_t i = 0; i < surface.depth.size(); ++i) {
     const glm::dvec3 at = reference::surface_position(surface.view, static_cast<double>(i % kWidth),
-                                           static_cast<double>(i / kWidth), surface.depth[i]);
+                                                      static_cast<double>(i / kWidth), surface.depth[i]);
     surface.position.emplace_back(glm::vec3(at), 1);
     if (surface.depth[i] == 0) surface.normal[i] = glm::vec4(0);
   }

@@ -43,9 +43,9 @@ std::string counts(CheckResults::const_iterator first, CheckResults::const_itera
 }  // namespace
 
 std::string junit(const CheckResults& results, const std::string& device) {
-  std::string text = fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"clpv check on {}\" {}>\n",
-      xml_escaped(device), counts(results.begin(), results.end()));
+  std::string text =
+      fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"clpv check on {}\" {}>\n",
+                  xml_escaped(device), counts(results.begin(), results.end()));
   for (auto first = results.begin(); first != results.end();) {
     const auto last = std::find_if(first, results.end(),
                                    [&](const CheckResult& result) { return result.stage != first->stage; });

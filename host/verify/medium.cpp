@@ -52,9 +52,9 @@ Deviation compare_medium(Session& session, const ClpvMedium& medium) {
 }  // namespace
 
 Cases medium_cases(const CheckScope&) {
-  return {deviation_case(Stage::medium, "fog", [](Session& session) { return compare_medium(session, kFog); }),
-          deviation_case(Stage::medium, "dust",
-                         [](Session& session) { return compare_medium(session, kDust); })};
+  return {
+      deviation_case(Stage::medium, "fog", [](Session& session) { return compare_medium(session, kFog); }),
+      deviation_case(Stage::medium, "dust", [](Session& session) { return compare_medium(session, kDust); })};
 }
 
 }  // namespace clpv::verify

@@ -75,8 +75,8 @@ Deviation compare_near(Session& session, const NearCase& variant) {
   const std::vector<reference::MappedLight> lights = near_lights(random);
   std::vector<std::uint8_t> occluded = random_occlusion(kNearCascades, kNearGrid, random);
   if (variant.gather != Gathering::visible) occluded.clear();
-  const CascadeLight cascades = random_cascades(*basis, kNearCascades, kNearFinestEdge, kNearGrid,
-                                                std::move(occluded), random);
+  const CascadeLight cascades =
+      random_cascades(*basis, kNearCascades, kNearFinestEdge, kNearGrid, std::move(occluded), random);
   const CascadesOnDevice light(session, cascades, variant.format);
   const NearOptions options{.gather = {.grid = kNearGrid,
                                        .gather = variant.gather,
@@ -120,8 +120,8 @@ Deviation compare_near(Session& session, const NearCase& variant) {
 Cases near_cases(const CheckScope& scope) {
   Cases cases;
   const auto add = [&](const NearCase& variant) {
-    cases.push_back(deviation_case(
-        Stage::near, variant.name, [variant](Session& session) { return compare_near(session, variant); }));
+    cases.push_back(deviation_case(Stage::near, variant.name,
+                                   [variant](Session& session) { return compare_near(session, variant); }));
   };
   add({.name = "quarter", .step = 4});
   add({.name = "reflects", .reflects = true});

@@ -16,7 +16,8 @@
 namespace clpv::verify {
 namespace {
 
-constexpr int kSignalled = 128;  // exit code of a process that a signal ended, less the signal (Process::Result)
+constexpr int kSignalled =
+    128;  // exit code of a process that a signal ended, less the signal (Process::Result)
 
 std::string claim_of(std::size_t number) {
   return fmt::format("case-{}", number);
@@ -71,8 +72,7 @@ class Dispatch {
     if (const auto failure = failures_.find(number); failure != failures_.end())
       return {{std::string(name_of(compared.stage)), compared.name, {}, Status::failed, failure->second}};
     CheckResults results;
-    for (const nlohmann::json& result :
-         nlohmann::json::parse(helpers_.claims().result(claim_of(number))))
+    for (const nlohmann::json& result : nlohmann::json::parse(helpers_.claims().result(claim_of(number))))
       results.push_back(from_json(result));
     return results;
   }

@@ -14,10 +14,10 @@ namespace clpv::verify {
 
 /// The comparisons that a user chose.
 struct CheckChoice {
-  std::vector<Stage> stages;           ///< empty: all
-  std::vector<std::string> match;      ///< texts that names must contain
-  bool thorough = false;               ///< thorough_scope()
-  std::optional<PresetName> preset;    ///< only its combination of options
+  std::vector<Stage> stages;         ///< empty: all
+  std::vector<std::string> match;    ///< texts that names must contain
+  bool thorough = false;             ///< thorough_scope()
+  std::optional<PresetName> preset;  ///< only its combination of options
 
   /// Returns the chosen cases in order. Throws Error(usage) if there is none.
   Cases cases() const;

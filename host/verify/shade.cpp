@@ -91,8 +91,8 @@ Deviation compare_view(Session& session, Show show, std::optional<std::size_t> c
 Cases shade_cases(const CheckScope&) {
   Cases cases;
   const auto add = [&](const std::string& name, Show show, std::optional<std::size_t> chosen) {
-    cases.push_back(deviation_case(
-        Stage::shade, name, [=](Session& session) { return compare_view(session, show, chosen); }));
+    cases.push_back(deviation_case(Stage::shade, name,
+                                   [=](Session& session) { return compare_view(session, show, chosen); }));
   };
   for (std::size_t i = 0; i < std::size(kKinds); ++i) add(kKinds[i], Show::direct, i);
   for (const Show show : kSurfaceViews) add(fmt::format("view {}", name_of(show)), show, std::nullopt);

@@ -120,8 +120,7 @@ Cost cost_of(const SweepWork& p) {
   cost.bytes =
       cells * (light + (2 * bins + links) * number) + dark * number + swept * n * n * sizeof(float) * planes;
   const double flops_per_direction = kChannels * (4 + 1) * 2 + (q.options.blocking ? 4 : 0);
-  cost.flops =
-      cells * (kChannels * sweep_collect_operations().flops() + directions * flops_per_direction);
+  cost.flops = cells * (kChannels * sweep_collect_operations().flops() + directions * flops_per_direction);
   cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + bins;
   cost.writes_per_cell = kChannels * accesses_per_cell(format, harmonics) + bins;
   cost.working_set =
@@ -189,15 +188,14 @@ SharedVolume random_reflectors(int n, std::mt19937& random) {
 
 Job job_of(Session& session, const SweepCase& c) {
   const std::shared_ptr<const Basis> basis = make_basis(c.basis);
-  SweepProblem problem =
-      random_sweep(basis, make_transport(TransportKind::sweep, *basis, {}, c.blocked_by),
-                   {.grid = c.grid,
-                    .parts = c.parts,
-                    .blocking = c.blocking,
-                    .bounces = c.bounces,
-                    .format = c.format,
-                    .form = c.form,
-                    .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt});
+  SweepProblem problem = random_sweep(basis, make_transport(TransportKind::sweep, *basis, {}, c.blocked_by),
+                                      {.grid = c.grid,
+                                       .parts = c.parts,
+                                       .blocking = c.blocking,
+                                       .bounces = c.bounces,
+                                       .format = c.format,
+                                       .form = c.form,
+                                       .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt});
   if (c.sky) problem.sky = uneven_sky(), problem.sky_scale = kSkyScale;
   return sweep_job(session, problem);
 }
@@ -225,8 +223,8 @@ Job sweep_job(Session& session, const SweepProblem& problem, const Share& share)
     Deviation result{0, tolerance(p->bounces() ? "bounce" : "sweep", o.format.storage)};
     for (std::size_t i = 0; i < p->swept.size(); ++i) {
       const std::vector<float> found = p->swept[i].read(session);
-      const Deviation apart = compare_volumes(
-          found, std::span(*expected).subspan(i * found.size(), found.size()), o.grid);
+      const Deviation apart =
+          compare_volumes(found, std::span(*expected).subspan(i * found.size(), found.size()), o.grid);
       result.take(apart.worst, [&] { return fmt::format("cascade {} {}", i, apart.place); });
     }
     return result;

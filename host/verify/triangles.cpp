@@ -36,8 +36,8 @@ Cases cases_of_formats(Stage stage, const CheckScope& scope,
   formats.insert(formats.begin(), VolumeFormat{});
   Cases cases;
   for (const VolumeFormat& format : formats) {
-    cases.push_back(deviation_case(
-        stage, format_name(format), [=](Session& session) { return compare(session, format); }));
+    cases.push_back(deviation_case(stage, format_name(format),
+                                   [=](Session& session) { return compare(session, format); }));
   }
   return cases;
 }

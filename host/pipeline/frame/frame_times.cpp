@@ -91,10 +91,11 @@ nlohmann::json to_json(const std::vector<StageTime>& times) {
 std::vector<StageTime> stage_times_from_json(const nlohmann::json& json) {
   std::vector<StageTime> times;
   for (const nlohmann::json& stage : json) {
-    times.push_back({{named<Pass>("stage", stage.at("stage").get<std::string>()),
-                      stage.at("cascade").get<std::optional<int>>(), stage.at("light").get<std::optional<int>>()},
-                     stage.at("ms"),
-                     stage.at("timer") == "event"});
+    times.push_back(
+        {{named<Pass>("stage", stage.at("stage").get<std::string>()),
+          stage.at("cascade").get<std::optional<int>>(), stage.at("light").get<std::optional<int>>()},
+         stage.at("ms"),
+         stage.at("timer") == "event"});
   }
   return times;
 }

@@ -67,8 +67,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
       volumes_(session, options.grid, options.format),
       source_(session, volumes_.program("sweep/sweep_source.cl", coefficient_text(basis.size())),
               "sweep_source"),
-      collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_text()),
-               "sweep_collect") {
+      collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_text()), "sweep_collect") {
   const std::size_t plane = plane_numbers(options.grid) * sizeof(float);
   const std::size_t ordinates =
       3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
