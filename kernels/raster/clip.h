@@ -37,32 +37,34 @@ static inline float clip_distance(const ClpvView view, const float4 p, const int
   return CLPV_PARALLEL(view) ? 1.0f : p.w - view.near_depth;
 }
 
-// Clips the convex polygon `from` to the positive side of a plane. Returns the number of corners.
-static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON const float4* from, const int count,
-                                const int plane, CLPV_POLYGON float4* to) {
+// Clips a convex polygon of `count` corners to the positive side of a plane. Returns the number of corners. Works in place,
+// since corner i + 1 is read before the i-th step writes at most i + 2 corners. Rounding may make more than that of an edge
+// within the plane; they are dropped.
+static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON float4* polygon, const int count, const int plane) {
   int kept = 0;
+  const float4 first = polygon[0];
+  float4 a = first;
   for (int i = 0; i < count; ++i) {
-    const float4 a = from[CLPV_CORNER(i)], b = from[CLPV_CORNER(i + 1 == count ? 0 : i + 1)];
+    const float4 b = i + 1 == count ? first : polygon[CLPV_CORNER(i + 1)];
     const float da = clip_distance(view, a, plane), db = clip_distance(view, b, plane);
-    if (da >= 0.0f && kept < CLPV_CLIP_CORNERS) to[CLPV_CORNER(kept++)] = a;
-    if ((da >= 0.0f) != (db >= 0.0f) && kept < CLPV_CLIP_CORNERS) {
+    const int room = min(i + 2, CLPV_CLIP_CORNERS);
+    if (da >= 0.0f && kept < room) polygon[CLPV_CORNER(kept++)] = a;
+    if ((da >= 0.0f) != (db >= 0.0f) && kept < room) {
       const float4 inside = da >= 0.0f ? a : b, outside = da >= 0.0f ? b : a;
       const float di = da >= 0.0f ? da : db, dd = da >= 0.0f ? db : da;
       float4 hit = inside + (outside - inside) * (di / (di - dd));
       if (plane == CLPV_CLIP_PLANES - 1) hit.zw = CLPV_PARALLEL(view) ? hit.zw : (float2)(view.near_depth);
-      to[CLPV_CORNER(kept++)] = hit;
+      polygon[CLPV_CORNER(kept++)] = hit;
     }
+    a = b;
   }
   return kept;
 }
 
-// Clips the triangle that is the first three corners of `polygon`; `other` is for intermediate polygons. Returns the number
-// of corners in `polygon`; 0 if nothing is left. The near plane comes first, since the guard planes intersect in the eye.
-static inline int clip_polygon(const ClpvView view, CLPV_POLYGON float4* polygon, CLPV_POLYGON float4* other) {
+// Clips the triangle that is the first three corners of `polygon`. Returns the number of corners; 0 if nothing is left. The
+// near plane comes first, since the guard planes intersect in the eye.
+static inline int clip_polygon(const ClpvView view, CLPV_POLYGON float4* polygon) {
   int count = 3;
-  for (int plane = CLPV_CLIP_PLANES - 1; plane >= 0; --plane) {
-    count = clip_by_plane(view, polygon, count, plane, other);
-    for (int i = 0; i < count; ++i) polygon[CLPV_CORNER(i)] = other[CLPV_CORNER(i)];
-  }
+  for (int plane = CLPV_CLIP_PLANES - 1; plane >= 0; --plane) count = clip_by_plane(view, polygon, count, plane);
   return count < 3 ? 0 : count;
 }

@@ -16,7 +16,7 @@
 //          vertices, triangles, materials, textures, texels   the scene, for masked materials
 // In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers per row of a tile,
 //                        CLPV_TILE rows per tile, tiles row by row; INFINITY and UINT_MAX for empty pixels
-// A work-item draws W columns of a tile: with W 8 all of it.
+// A work-item draws W columns of a tile: with W 8 all of it, with W 1 a work-group draws eight tiles.
 #include "lanes.h"
 #include "prefetch.h"
 #include "raster/alpha_mask.h"
@@ -57,10 +57,19 @@ CLPV_RARE intW covered_by_giant(__global const ClpvRasterTriangle* r, const int 
   return to_intW((v0 | v1 | v2) >= 0L);
 }
 
-// Columns of a tile of the view, and their buffers: rows lie CLPV_TILE_VECTORS apart.
+// A work-item's columns while it draws: keys and triangles, rows CLPV_PITCH apart. They are indexed at run time, so with one
+// lane they lie in local memory, columns of a work-group next to each other (GPUs keep private arrays in scratch memory).
+#if W == 1
+#define CLPV_GROUP 64
+#define CLPV_PITCH CLPV_GROUP
+#define CLPV_COLUMNS __local
+#else
+#define CLPV_PITCH 1
+#define CLPV_COLUMNS
+#endif
 typedef struct {
-  __global realW* keys;
-  __global uintW* seen;
+  CLPV_COLUMNS realW* keys;
+  CLPV_COLUMNS uintW* seen;
   int x, y;  // first pixel
   float far_key;
 } Tile;
@@ -84,7 +93,7 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
     realW key = key_left + key_y * (float)(tile.y + row - first_y);
     key = key > nearest ? key : nearest;
     key = key < farthest ? key : farthest;
-    const int at = row * CLPV_TILE_VECTORS;
+    const int at = row * CLPV_PITCH;
     const realW old = tile.keys[at];
     const uintW old_seen = tile.seen[at];
     closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
@@ -106,10 +115,10 @@ CLPV_RARE void draw_masked(const ClpvView view, const Tile tile, __global const 
 }
 
 // Largest key of the pixels.
-static inline float farthest_of(__global const realW* keys) {
+static inline float farthest_of(CLPV_COLUMNS const realW* keys) {
   realW largest = keys[0];
   for (int row = 1; row < CLPV_TILE; ++row) {
-    const realW key = keys[row * CLPV_TILE_VECTORS];
+    const realW key = keys[row * CLPV_PITCH];
     largest = key > largest ? key : largest;
   }
   return -min_lane(-largest);
@@ -143,33 +152,11 @@ CLPV_RARE void draw_whole_list(const ClpvView view, const Tile tile, __global co
 // Triangles of a tile are scattered over the list: prefetch the one that is drawn this many later.
 #define CLPV_DRAW_AHEAD 2
 
-__kernel void draw_tiles(const ClpvView view, const uint fresh, __global const ClpvRasterTriangle* list,
-                         __global const uint* starts, __global const uint2* binned,
-                         __global const uint* counts, const uint most_entered,
-                         __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                         __global const ClpvMaterial* materials, __global const float4* textures,
-                         __global const uint* texels, __global realW* keys, __global uintW* seen) {
-  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, x = get_global_id(0) / CLPV_TILE_VECTORS,
-             y = get_global_id(1), vector = get_global_id(0) % CLPV_TILE_VECTORS;
-  if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
-  const uint at = y * tiles_x + x;
-  const Scene scene = {vertices, triangles, materials, textures, texels};
-  const uint row = tile_row(at, 0, vector);
-  const Tile tile = {keys + row, seen + row, (int)(x * CLPV_TILE + vector * W), (int)y * CLPV_TILE,
-                     CLPV_PARALLEL(view) ? view.far_depth : -1.0f / view.far_depth};
-  if (fresh) {
-    for (int row = 0; row < CLPV_TILE; ++row) {
-      tile.keys[row * CLPV_TILE_VECTORS] = (realW)(INFINITY);
-      tile.seen[row * CLPV_TILE_VECTORS] = (uintW)(UINT_MAX);
-    }
-  }
-  if (counts[CLPV_ENTERED] > most_entered || counts[CLPV_ENTERED_TOO_MANY] > 0) {
-    draw_whole_list(view, tile, list, counts[CLPV_LISTED], scene);
-    return;
-  }
-  const uint end = starts[(at + 1) * CLPV_SLICES];
+// Draws the entries binned[first] to binned[end - 1].
+CLPV_INLINE void draw_binned(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* list,
+                             __global const uint2* binned, uint first, const uint end, const Scene scene) {
   float farthest = farthest_of(tile.keys);  // triangles behind it are hidden
-  for (uint first = starts[at * CLPV_SLICES]; first < end; first += CLPV_LONGEST_LOOP) {
+  for (; first < end; first += CLPV_LONGEST_LOOP) {
     const uint stop = min(end - first, CLPV_LONGEST_LOOP) + first;
     for (uint i = first; i < stop; ++i) {
       if (as_float(binned[i].y) > farthest) continue;
@@ -178,6 +165,46 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
       draw_listed(view, tile, r, scene);
       farthest = farthest_of(tile.keys);
     }
+  }
+}
+
+#if W == 1
+__attribute__((reqd_work_group_size(8, CLPV_GROUP / 8, 1)))
+#endif
+__kernel void draw_tiles(const ClpvView view, const uint fresh, __global const ClpvRasterTriangle* list,
+                         __global const uint* starts, __global const uint2* binned,
+                         __global const uint* counts, const uint most_entered,
+                         __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
+                         __global const ClpvMaterial* materials, __global const float4* textures,
+                         __global const uint* texels, __global realW* keys, __global uintW* seen) {
+#if W == 1
+  __local float near_keys[CLPV_TILE * CLPV_GROUP];
+  __local uint nearest[CLPV_TILE * CLPV_GROUP];
+  const uint column = get_local_id(1) * 8 + get_local_id(0);
+#else
+  realW near_keys[CLPV_TILE];
+  uintW nearest[CLPV_TILE];
+  const uint column = 0;
+#endif
+  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, x = get_global_id(0) / CLPV_TILE_VECTORS,
+             y = get_global_id(1), vector = get_global_id(0) % CLPV_TILE_VECTORS;
+  if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
+  const uint at = y * tiles_x + x;
+  const Scene scene = {vertices, triangles, materials, textures, texels};
+  const Tile tile = {near_keys + column, nearest + column, (int)(x * CLPV_TILE + vector * W), (int)y * CLPV_TILE,
+                     CLPV_PARALLEL(view) ? view.far_depth : -1.0f / view.far_depth};
+  for (int row = 0; row < CLPV_TILE; ++row) {
+    tile.keys[row * CLPV_PITCH] = fresh ? (realW)(INFINITY) : keys[tile_row(at, row, vector)];
+    tile.seen[row * CLPV_PITCH] = fresh ? (uintW)(UINT_MAX) : seen[tile_row(at, row, vector)];
+  }
+  if (counts[CLPV_ENTERED] > most_entered || counts[CLPV_ENTERED_TOO_MANY] > 0) {
+    draw_whole_list(view, tile, list, counts[CLPV_LISTED], scene);
+  } else {
+    draw_binned(view, tile, list, binned, starts[at * CLPV_SLICES], starts[(at + 1) * CLPV_SLICES], scene);
+  }
+  for (int row = 0; row < CLPV_TILE; ++row) {
+    keys[tile_row(at, row, vector)] = tile.keys[row * CLPV_PITCH];
+    seen[tile_row(at, row, vector)] = tile.seen[row * CLPV_PITCH];
   }
 }
 

@@ -240,10 +240,10 @@ __kernel void set_up_clipped(const ClpvView view, const uint cull, __global cons
                              const uint most_entered, __global uint* entries, volatile __global uint* slice_counts,
                              __global uint* to_clip) {
 #if W == 1
-  __local float4 polygons[2 * CLPV_CLIP_CORNERS * CLPV_CLIP_GROUP];
-  __local float4 *polygon = polygons + get_local_id(0), *other = polygon + CLPV_CORNER(CLPV_CLIP_CORNERS);
+  __local float4 polygons[CLPV_CLIP_CORNERS * CLPV_CLIP_GROUP];
+  __local float4* polygon = polygons + get_local_id(0);
 #else
-  float4 polygon[CLPV_CLIP_CORNERS], other[CLPV_CLIP_CORNERS];
+  float4 polygon[CLPV_CLIP_CORNERS];
 #endif
   const Capacity capacity = {most_listed, most_entered};
   const intW lane = lane_numbers();
@@ -257,7 +257,7 @@ __kernel void set_up_clipped(const ClpvView view, const uint cull, __global cons
     polygon[CLPV_CORNER(0)] = polygon_corner(view_point(view, a));
     polygon[CLPV_CORNER(1)] = polygon_corner(view_point(view, b));
     polygon[CLPV_CORNER(2)] = polygon_corner(view_point(view, c));
-    const int corners = clip_polygon(view, polygon, other);
+    const int corners = clip_polygon(view, polygon);
     if (corners == 0) continue;
 #if W > 1
     Outline outline;

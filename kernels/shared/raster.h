@@ -10,8 +10,8 @@
 // 2^29, and products of two differences fit 64 bits.
 #define CLPV_GUARD_PIXELS 1048576.0f
 
-// Most corners of a clipped triangle: each of five planes adds one; rounding may add a few more.
-#define CLPV_CLIP_CORNERS 12
+// Most corners of a clipped triangle: each of five planes adds one.
+#define CLPV_CLIP_CORNERS 8
 
 // Outcodes of a vertex. A triangle whose corners all share one of the first six bits is invisible. A triangle with a
 // corner that has one of the last two bits is clipped.

@@ -28,12 +28,24 @@
 #define CLPV_LAST_POINT 0.875f
 #define CLPV_LAYERS 4                   // layers of points in a cube, across z
 
+// Points of a layer are tested at once: with eight lanes all 16, with one lane a row of 4, which takes fewer registers.
+#if W == 1
+typedef float4 Points;
+typedef int4 PointBits;
+#define CLPV_ROWS 1
+#define CLPV_POINTS_X ((float4)(0.125f, 0.375f, 0.625f, 0.875f))
+#define CLPV_POINTS_Y ((float4)(0.125f))
+#else
+typedef float16 Points;
+typedef int16 PointBits;
+#define CLPV_ROWS 4
 #define CLPV_POINTS_X                                                                                           \
   ((float16)(0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f,     \
              0.125f, 0.375f, 0.625f, 0.875f))
 #define CLPV_POINTS_Y                                                                                           \
   ((float16)(0.125f, 0.125f, 0.125f, 0.125f, 0.375f, 0.375f, 0.375f, 0.375f, 0.625f, 0.625f, 0.625f, 0.625f,     \
              0.875f, 0.875f, 0.875f, 0.875f))
+#endif
 
 // W of the eight centres, from number `first` on, one per lane.
 #define CLPV_CENTRES 8
@@ -107,20 +119,21 @@ CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2,
   }
 }
 
-// Mask of the points of the layer at z where the test of a lane is not negative.
-#define CLPV_PASSES(test)                                                                                         \
+// Mask of the points at y + CLPV_POINTS_Y of the layer at z where the test of a lane is not negative.
+#define CLPV_PASSES(test)                                                                                     \
   (tests->x[test][lane] * CLPV_POINTS_X +                                                                       \
-       (tests->y[test][lane] * CLPV_POINTS_Y +                                                                  \
-        (float16)(tests->z[test][lane] * z + tests->offset[test][lane])) >=                                   \
+       (tests->y[test][lane] * (y + CLPV_POINTS_Y) +                                                            \
+        (Points)(tests->z[test][lane] * z + tests->offset[test][lane])) >=                                    \
    0.0f)
 
-// Bits of the candidates that the triangle occludes, for each point of the layer at z.
-CLPV_INLINE int16 find_occluded(const OcclusionTests* tests, const int first, uint candidates, const float z) {
-  int16 occluded = (int16)(0);
+// Bits of the candidates that the triangle occludes, for each of these points.
+CLPV_INLINE PointBits find_occluded(const OcclusionTests* tests, const int first, uint candidates, const float y,
+                                    const float z) {
+  PointBits occluded = (PointBits)(0);
   while (candidates != 0) {
     const int corner = 31 - (int)clz(candidates), lane = W == 1 ? 0 : corner - first;
     candidates ^= 1u << corner;
-    const int16 crossed = CLPV_PASSES(0) & CLPV_PASSES(1) & CLPV_PASSES(2) & CLPV_PASSES(3);
+    const PointBits crossed = CLPV_PASSES(0) & CLPV_PASSES(1) & CLPV_PASSES(2) & CLPV_PASSES(3);
     occluded |= crossed & (1 << corner);
   }
   return occluded;
@@ -128,6 +141,19 @@ CLPV_INLINE int16 find_occluded(const OcclusionTests* tests, const int first, ui
 
 static inline void set_word(__global volatile uint* word, const uint bits) {
   if (bits != 0) atomic_or(word, bits);
+}
+
+// Sets the bits of CLPV_ROWS rows of points, a word each.
+static inline void set_bits(__global volatile uint* words, const PointBits bits) {
+#if W == 1
+  set_word(words, as_uint(convert_uchar4(bits)));
+#else
+  const uint4 of_rows = as_uint4(convert_uchar16(bits));
+  set_word(words, of_rows.x);
+  set_word(words + 1, of_rows.y);
+  set_word(words + 2, of_rows.z);
+  set_word(words + 3, of_rows.w);
+#endif
 }
 
 // Tests a triangle in one cube. `points`: the cube's 64 bytes.
@@ -138,14 +164,13 @@ static inline void occlude_cube(const float3 v0, const float3 v1, const float3 v
     OcclusionTests tests;
     uint candidates[CLPV_LAYERS];
     set_up_tests(v0, v1, v2, normal, first, &tests, candidates);
+#pragma unroll
     for (int layer = 0; layer < CLPV_LAYERS; ++layer) {
       if (candidates[layer] == 0) continue;
-      const int16 occluded = find_occluded(&tests, first, candidates[layer], CLPV_FIRST_POINT + 0.25f * (float)layer);
-      const uint4 bits = as_uint4(convert_uchar16(occluded));
-      set_word(points + 4 * layer, bits.x);
-      set_word(points + 4 * layer + 1, bits.y);
-      set_word(points + 4 * layer + 2, bits.z);
-      set_word(points + 4 * layer + 3, bits.w);
+      const float z = CLPV_FIRST_POINT + 0.25f * (float)layer;
+#pragma unroll 1
+      for (int row = 0; row < 4; row += CLPV_ROWS)
+        set_bits(points + 4 * layer + row, find_occluded(&tests, first, candidates[layer], 0.25f * (float)row, z));
     }
   }
 }
