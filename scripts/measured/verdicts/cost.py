@@ -114,3 +114,19 @@ def shadows_cost(read):
             value <= 1.25 if sure and value >= 1 else None,
             f"{value:.2f}x +- {spread:.2g}",
         )
+
+
+@claim("cost", "stage", "clpv bench scaling")
+def parallel(read):
+    """the method is highly parallelizable
+
+    Holds if: steps of sh2 are at least 1.6 times as fast by two compute units as by one, beyond the
+    spread
+    """
+    rows = [
+        row(read("docs/scaling")["benchmarks"], name=f"propagate/sh2/soa/float/units:{units}")
+        for units in (1, 2)
+    ]
+    value, spread = ratio(*((each["median"], each["mad"]) for each in rows))
+    sure = value - spread >= 1.6 or value + spread < 1.6
+    yield "propagate", value >= 1.6 if sure else None, f"{value:.2f}x +- {spread:.2g}"
