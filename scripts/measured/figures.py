@@ -163,14 +163,18 @@ def basis_figures(out):
 
 
 def paper(arguments):
-    """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness, for scripts/reproduce. Sponza."""
+    """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness, for scripts/reproduce. Sponza;
+    without it Figures 2, 3 and 6 alone."""
     out = arguments.out
     arguments.exposure = None
+    basis_figures(out)
+    lobe_files = [str(file.relative_to(out)) for kind in ("rotate", "exact") for file in sorted((out / f"lobes-{kind}").glob("*.png"))]
+    if not arguments.model:
+        return {"sheets": [], "lobes": lobe_files, "rows": []}
     scene = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
     frames, shadowed, along = (Frames(scene, arguments, camera) for camera in ("curtains", "columns", "atrium"))
     if arguments.quick:  # the light of run-time lobes within 2e-4, five times as fast
         frames.always = shadowed.always = {"lobe_time": "host"}
-    basis_figures(out)
     sheets = []
     for name, made, draw in (("figure1", frames, lambda: figure1(frames, out)),
                              *((f"figure4-{preset}", frames, lambda preset=preset: figure4(frames, out, preset)) for preset in PRESETS),
@@ -184,7 +188,6 @@ def paper(arguments):
         measure(along, out)
         sheets.append({"name": "srbf14", "file": "srbf14.jpg", "pairs": []})
         rows = json.loads((out / "figures.json").read_text())["rows"]
-    lobe_files = [str(file.relative_to(out)) for kind in ("rotate", "exact") for file in sorted((out / f"lobes-{kind}").glob("*.png"))]
     return {"sheets": sheets, "lobes": lobe_files, "rows": rows}
 
 
