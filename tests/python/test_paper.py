@@ -32,6 +32,14 @@ def test_a_verdict_is_made_from_its_points(outcomes, sentence):
     assert verdicts.sentence("lambda", list(zip((0.1, 0.4, 0.6), outcomes, "abc"))) == sentence
 
 
+def test_outcomes_of_fresh_measurements_count(monkeypatch):
+    numpy = pytest.importorskip("numpy")
+    points = [(0.1, numpy.float64(1) > 0, "a"), (0.4, numpy.float64(0) > 0, "b")]
+    rows = [("light", "statement", "rule", "lambda", "command", lambda read: points)]
+    monkeypatch.setattr(verdicts.judge, "CLAIMS", rows)
+    assert verdicts.judged(None)[0]["verdict"] == "holds for lambda <= 0.1"
+
+
 def test_an_interval_covers_both_kinds_of_blocks():
     same = {f"{camera}-{sun}": 0.5 for camera in "abcd" for sun in "xyz"}
     assert verdicts.interval(same) == (0.5, 0.5)

@@ -60,7 +60,10 @@ def judged(read, only=None):
     for section, statement, rule, axis, command, function in CLAIMS:
         if only not in (None, section):
             continue
-        points = list(function(read))
+        points = [  # a fresh measurement may hold NumPy's Booleans
+            (place, None if outcome is None else bool(outcome), numbers)
+            for place, outcome, numbers in function(read)
+        ]
         made.append(
             {
                 "section": section,
