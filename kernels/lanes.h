@@ -29,8 +29,6 @@
 #define CLPV_ROUNDED(name) name##8_rte
 #define load_lanes(from) vload8(0, from)
 #define store_lanes(value, to) vstore8(value, 0, to)
-#define lane_numbers() ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
-#define all_bits(mask) (mask)
 #define first_lane(value) ((value).s0)
 // Gathers one element per lane, at the indices `at`; `member`: empty, or a member of the elements (.flags).
 #define CLPV_GATHER_MEMBER(from, at, member)                                                          \
@@ -41,8 +39,6 @@
 #define CLPV_ROUNDED(name) name##_rte
 #define load_lanes(from) (*(from))
 #define store_lanes(value, to) (*(to) = (value))
-#define lane_numbers() 0
-#define all_bits(mask) ((mask) ? -1 : 0)
 #define first_lane(value) (value)
 #define CLPV_GATHER_MEMBER(from, at, member) ((from)[at] member)
 #endif
@@ -90,6 +86,10 @@ static inline void gather_rows(__global const float4* from, const uintW at, Rows
   ((realW)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, (rows).r6.c, \
            (rows).r7.c))
 
+// 0 to W - 1.
+static inline intW lane_numbers(void) { return (int8)(0, 1, 2, 3, 4, 5, 6, 7); }
+static inline intW all_bits(const intW mask) { return mask; }
+
 // Returns true if a mask holds in no lane.
 static inline bool no_lane(const intW mask) {
   return as_long(convert_char8(mask)) == 0;
@@ -133,6 +133,9 @@ static inline void gather_rows(__global const float4* from, const uintW at, Rows
 }
 
 #define CLPV_COLUMN(rows, c) ((rows).r0.c)
+
+static inline intW lane_numbers(void) { return 0; }
+static inline intW all_bits(const intW mask) { return mask ? -1 : 0; }
 
 static inline bool no_lane(const intW mask) {
   return mask == 0;

@@ -5,7 +5,7 @@
 // the same memory as global ones; compilers to SPIR-V reject it.
 #pragma once
 
-#define CLPV_LINE 64  // [bytes] cache line of most CPUs
+enum { CLPV_LINE = 64 };  // [bytes] cache line of most CPUs
 
 #if (defined(__x86_64__) || defined(__aarch64__)) && defined(__has_builtin)
 #if __has_builtin(__builtin_prefetch)

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "basis/sampling.hpp"
-#include "kernels/shared/near.h"
+#include "kernels/shared/pixel_planes.h"
 
 namespace clpv {
 namespace {
@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint64_t kNearSeed = 1;
 
 /// Order of the pixels of a tile, by which neighbours get directions far from each other (ordered dither).
-constexpr unsigned kTileOrder[CLPV_NEAR_TILE * CLPV_NEAR_TILE] = {0, 8,  2, 10, 12, 4, 14, 6,
-                                                                  3, 11, 1, 9,  15, 7, 13, 5};
+constexpr unsigned kTileOrder[CLPV_PLANE_TILE * CLPV_PLANE_TILE] = {0, 8,  2, 10, 12, 4, 14, 6,
+                                                                    3, 11, 1, 9,  15, 7, 13, 5};
 
 }  // namespace
 
@@ -29,7 +29,7 @@ std::vector<std::vector<glm::vec3>> near_directions(int rays) {
 }
 
 double near_cone(int rays) {
-  return std::sqrt(2 * std::numbers::pi / (CLPV_NEAR_TILE * CLPV_NEAR_TILE * rays));
+  return std::sqrt(2 * std::numbers::pi / (CLPV_PLANE_TILE * CLPV_PLANE_TILE * rays));
 }
 
 }  // namespace clpv

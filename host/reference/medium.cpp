@@ -8,7 +8,7 @@
 
 #include "basis/sampling.hpp"
 #include "basis/sweep.hpp"
-#include "kernels/shared/near.h"
+#include "kernels/shared/pixel_planes.h"
 #include "reference/lighting.hpp"
 #include "reference/radiance.hpp"
 #include "reference/view.hpp"
@@ -22,7 +22,7 @@ namespace {
 // kernels/gather/medium.cl
 constexpr int kStep = 2, kWindow = 2;
 constexpr double kSameEnd = 0.1, kUnlike = 1e-3, kThin = 1e-3;
-constexpr int kBayer[CLPV_NEAR_TILE][CLPV_NEAR_TILE] = {
+constexpr int kBayer[CLPV_PLANE_TILE][CLPV_PLANE_TILE] = {
     {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
 
 /// The part of a pixel's ray in the medium.
@@ -154,7 +154,7 @@ std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions&
   for (int y = 0; y < traced.height; ++y) {
     for (int x = 0; x < traced.width; ++x) {
       const AirRay ray = air_ray(scene.medium, camera, kStep * x, kStep * y);
-      const double place = (kBayer[y % CLPV_NEAR_TILE][x % CLPV_NEAR_TILE] + 0.5) / 16;
+      const double place = (kBayer[y % CLPV_PLANE_TILE][x % CLPV_PLANE_TILE] + 0.5) / 16;
       const bool inside = ray.part.length() > 0;
       traced.ends.push_back(inside ? ray.part.end : 0);
       traced.light.push_back(inside ? scattered_along(basis, options, scene, ray, place) : glm::dvec3(0));

@@ -8,6 +8,7 @@
 
 #include "basis/near_directions.hpp"
 #include "kernels/shared/near.h"
+#include "kernels/shared/pixel_planes.h"
 #include "reference/cascade_sample.hpp"
 #include "reference/radiance.hpp"
 #include "reference/triangle.hpp"
@@ -331,7 +332,7 @@ NearResult near(const Basis& basis, const NearOptions& options, const NearScene&
       for (int x = 0; x < image.width; ++x) {
         NearPoint point = layer == 0 ? pixels.point_at(step * x, step * y) : pixels.other(image, x, y);
         if (point.reach > 0)
-          field.trace(point, directions[y % CLPV_NEAR_TILE * CLPV_NEAR_TILE + x % CLPV_NEAR_TILE]);
+          field.trace(point, directions[y % CLPV_PLANE_TILE * CLPV_PLANE_TILE + x % CLPV_PLANE_TILE]);
         image.layers[layer].push_back(point);
       }
     }

@@ -87,7 +87,7 @@ double ScreenPolygon::distance_to_edge(unsigned px, unsigned py) const {
     smallest = std::min(
         smallest, distance_to_segment(corners_[i], corners_[(i + 1) % corners_.size()], centre(px, py)));
   }
-  return smallest / CLPV_SUBPIXELS;
+  return smallest / int{CLPV_SUBPIXELS};
 }
 
 }  // namespace clpv::reference

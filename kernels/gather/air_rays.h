@@ -7,7 +7,7 @@
 #include "raster/shadow.h"
 #include "raster/surface_row.h"
 
-#define CLPV_THIN 1e-3f  // optical depth below which points are spread evenly
+__constant const float thin_depth = 1e-3f;  // optical depth below which points are spread evenly
 
 // Parts of the rays of W pixels in the medium.
 typedef struct {
@@ -42,7 +42,7 @@ CLPV_INLINE void find_air_point(const AirRays* a, const ClpvMedium medium, const
   const float sigma = (medium.extinction[0] + medium.extinction[1] + medium.extinction[2]) * (1.0f / 3.0f);
   const realW length = a->end - a->start, x = (place + (float)k) * (1.0f / (float)steps);
   const realW reached = 1.0f - exp(-sigma * length);
-  const intW thin = sigma * length < (realW)(CLPV_THIN);
+  const intW thin = sigma * length < (realW)(thin_depth);
   const realW deep = -log(1.0f - x * reached) * (1.0f / sigma);
   const realW t = thin ? x * length : (deep < length ? deep : length);
   const realW spread = thin ? length * exp(-sigma * t) : reached * (1.0f / sigma);

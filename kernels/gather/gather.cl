@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Gathers the irradiance of every surface that the camera sees from the accumulated volumes of all cascades.
 //
-//   E(n) = max(0, g(n) . c) / s^2,   c: coefficients interpolated trilinearly at p + offset s n
+//   E = 4 I(-n) / s^2           face transports
+//   E = alpha(-n) . c / s^2     sweep
 //
-// docs/method.md, 'Gathering'. g depends on basis and transport (has_faces, host/basis/transport.hpp); cascades.h has the
-// weights of cascades.
+// not below 0, with the coefficients c interpolated trilinearly at p + offset s n. docs/method.md,
+// 'Gathering'; cascades.h has the weights of cascades.
 //
 // In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
 //       grids       ClpvGrid of each of `cascades` cascades, finest first

@@ -21,7 +21,8 @@ CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
   store_lanes(at.z, points->z);
 }
 
-CLPV_INLINE float sample_cells(CLPV_IMAGE_IN volume, const SamplePoints* at, const int i, Sampled* s) {
+CLPV_INLINE float sample_cells(__read_only image3d_t volume, const SamplePoints* at, const int i,
+                               Sampled* s) {
   s->r = light_sample(volume, 0, at->x[i], at->y[i], at->z[i]);
   s->g = light_sample(volume, 1, at->x[i], at->y[i], at->z[i]);
   s->b = light_sample(volume, 2, at->x[i], at->y[i], at->z[i]);
@@ -33,7 +34,7 @@ CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
                   dot_coefficients(weights, sampled.b), 0.0f);
 }
 
-#define CLPV_GATHERED CLPV_IMAGE_IN
+#define CLPV_GATHERED __read_only image3d_t
 #define CLPV_GATHERED_VOLUME(c) , CLPV_GATHERED volume##c
 #define CLPV_ADD_NUMBERED(c) \
   CLPV_ADD_CASCADE(c, volume##c);

@@ -11,10 +11,12 @@
 #pragma once
 
 // Steps from a record to its neighbours; 0 in a grid of one cell.
-#define CLPV_DX (CLPV_GRID > 1 ? CLPV_PAIRS : 0)
-#define CLPV_DY (CLPV_GRID * CLPV_DX)
-#define CLPV_DZ (CLPV_GRID * CLPV_DY)
-#define CLPV_CELLS (CLPV_GRID * CLPV_GRID * CLPV_GRID)
+enum {
+  CLPV_DX = CLPV_GRID > 1 ? CLPV_PAIRS : 0,
+  CLPV_DY = CLPV_GRID * CLPV_DX,
+  CLPV_DZ = CLPV_GRID * CLPV_DY,
+  CLPV_CELLS = CLPV_GRID * CLPV_GRID * CLPV_GRID,
+};
 
 // Coefficients of a record, or interpolated at a point.
 typedef struct {
@@ -72,7 +74,8 @@ CLPV_INLINE float8 corner_weights(const float x, const float y, const float z) {
 }
 
 #if CLPV_VISIBLE
-#define CLPV_MIN_VISIBLE (1.0f / 64.0f)  // visible share of all weight below which all cells count
+// Visible share of all weight below which all cells count.
+__constant const float min_visible = 1.0f / 64.0f;
 
 // Visible shares of the eight cells: their bits at eight sample points, interpolated trilinearly so that light is
 // continuous, and constant beyond the outermost points.
@@ -87,14 +90,14 @@ CLPV_INLINE float8 visible_shares(__global const uchar* at, const float8 weights
 }
 
 // Multiplies the weights of cells by their visible shares and returns the factor that normalises them. If less than
-// CLPV_MIN_VISIBLE is visible, the weights do not change.
+// min_visible is visible, the weights do not change.
 CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoints* points, const int i,
                                    float8* weights) {
   const float8 from = corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
   const float8 visible = *weights * visible_shares(cascade.occluded + points->visibility_point[i], from);
   const float4 four = visible.lo + visible.hi;
   const float total = four.x + four.y + four.z + four.w;
-  if (!(total > CLPV_MIN_VISIBLE)) return 1.0f;
+  if (!(total > min_visible)) return 1.0f;
   *weights = visible;
   return 1.0f / total;
 }
@@ -117,14 +120,16 @@ CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* 
 
 // Element by element: Oclgrind 21.10 crashes on a float8 built from two float4, because lanes are
 // uninitialised while it is built.
-#define CLPV_PAIR(a, b) ((float8)(a, a, a, a, b, b, b, b))
+CLPV_INLINE float8 repeat_pair(const float a, const float b) {
+  return (float8)(a, a, a, a, b, b, b, b);
+}
 
 CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
   float8 sum = 0.0f;
 #pragma unroll
   for (int j = 0; j < CLPV_PAIRS; ++j) {
     const float odd = 2 * j + 1 < CLPV_N ? weights.c[2 * j + 1] : 0.0f;
-    sum = fma(CLPV_PAIR(weights.c[2 * j], odd), sampled.pair[j], sum);
+    sum = fma(repeat_pair(weights.c[2 * j], odd), sampled.pair[j], sum);
   }
   return sum.lo + sum.hi;
 }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Light that a medium scatters towards the camera (docs/method.md, 'Media').
 //
-//   L = sum over k of T(t_k) S(t_k) dt_k                 [W/m^2/sr], points t_k of the ray
-//   S = sigma_s sum_lights p(w_light, w) E               medium_light: single scattering, E with shadow maps
-//     + sigma_s max(0, sum_l g^l sum_m C_lm Y_lm(w))     medium_volumes: light of the volumes (radiance.h)
+//   L = T(eye, x) L_surface(x) + integral of T(eye, p) S(p) dt      [W/m^2/sr]
+//   S(p) = sigma_s [sum_lights p(w_light, w) E_light(p)
+//          + max(0, sum_l g^l sum_m C_lm(p) Y_lm(w))]
 //
-// w: direction of light that travels towards the camera. The 16 pixels of a tile have different t_k (air_rays.h), and a mean
-// over a tile's size joins them. Every second pixel along both axes has a ray. near_layout.h defines the planes.
+// medium_light adds the first sum, single scattering with shadow maps, and medium_volumes the
+// second, light of the volumes (radiance.h). The integral is a sum over points t_k. w: direction of
+// light that travels towards the camera. The 16 pixels of a tile have different t_k (air_rays.h),
+// and a mean over a tile's size joins them. Every second pixel along both axes has a ray.
+// pixel_planes.h defines the planes.
 //
 // medium_light
 //   In:      view, depths [m]      the camera's surface
@@ -24,32 +27,34 @@
 //   In, out: image                 RGBA; alpha stays
 // A work-item processes W pixels of a row.
 //
-// From the host: CLPV_NEAR_STEP 2, CLPV_NEAR_LAYERS 1, CLPV_LIGHT_STEPS, CLPV_VOLUME_STEPS.
+// From the host: CLPV_PLANE_STEP 2, CLPV_PLANE_LAYERS 1, CLPV_LIGHT_STEPS, CLPV_VOLUME_STEPS.
 #include "gather/air_rays.h"
-#include "gather/near_layout.h"
+#include "gather/pixel_planes.h"
 #include "gather/radiance.h"
 #include "raster/shadow.h"
 #include "raster/surface_row.h"
 
-#define CLPV_SAME_END 0.1f  // relative difference of ends from which pixels do not count
-#define CLPV_UNLIKE 1e-3f   // fallback weight if no neighbour has similar depth
+// Relative difference of ends from which pixels do not count.
+__constant const float same_end = 0.1f;
+__constant const float unlike_weight = 1e-3f;  // fallback weight if no neighbour has similar depth
 
 // Rays of the pixels of a row of planes; none in the border.
-CLPV_INLINE void find_plane_rays(const ClpvView view, const NearRow r, __global const float* depths, const ClpvMedium medium,
+CLPV_INLINE void find_plane_rays(const ClpvView view, const PlaneRow r,
+                                 __global const float* depths, const ClpvMedium medium,
                                  AirRays* a) {
   const intW column = r.x + lane_numbers(), last = (intW)((int)r.width - 1);
-  const intW x = min(column, last) * CLPV_NEAR_STEP;
-  const uintW pixel = as_uintW(r.y * CLPV_NEAR_STEP * (int)view.width + x);
+  const intW x = min(column, last) * CLPV_PLANE_STEP;
+  const uintW pixel = as_uintW(r.y * CLPV_PLANE_STEP * (int)view.width + x);
   PixelRow p;
   p.x = to_realW(x);
-  p.y = (realW)((float)(r.y * CLPV_NEAR_STEP));
+  p.y = (realW)((float)(r.y * CLPV_PLANE_STEP));
   find_air_rays(view, p, (realW)CLPV_GATHER(depths, pixel), medium, a);
   a->inside &= column <= last;
   a->end = a->inside ? a->end : ZERO;
 }
 
 // Place in (0, 1) of each pixel's point within its interval: the ordered dither of a 4 x 4 tile (Bayer 1973).
-CLPV_INLINE realW place_in_interval(const NearRow r) {
+CLPV_INLINE realW place_in_interval(const PlaneRow r) {
   const uint y = (uint)r.y;
   const uintW x = as_uintW(r.x + lane_numbers()), across = (x ^ y) & 1u, beyond = ((x ^ y) >> 1) & 1u;
   const uintW place = 8u * across + 4u * (y & 1u) + 2u * beyond + ((y >> 1) & 1u);
@@ -59,7 +64,7 @@ CLPV_INLINE realW place_in_interval(const NearRow r) {
 __kernel void medium_light(const ClpvView view, __global const float* depths, const ClpvLight light,
                            __global const ClpvView* views, const uint count, const uint which,
                            __global const float* map, __global float* scattered) {
-  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   AirRays a;
   find_plane_rays(view, r, depths, light.medium, &a);
@@ -80,13 +85,14 @@ __kernel void medium_light(const ClpvView view, __global const float* depths, co
     const realW seen = phase * light_reaches(shadow, position);
     sum = vec_add_scaled(sum, seen, vec_product(share, irradiance));
   }
-  const Vec before = load_near_vectors(scattered, r.plane, r.at), added = vec_masked(a.inside, vec_product(sigma, sum));
-  store_near_vectors(vec_add_scaled(before, ONE, added), scattered, r.plane, r.at);
+  const Vec before = load_plane_vectors(scattered, r.plane, r.at),
+            added = vec_masked(a.inside, vec_product(sigma, sum));
+  store_plane_vectors(vec_add_scaled(before, ONE, added), scattered, r.plane, r.at);
 }
 
 __kernel void medium_volumes(const ClpvView view, __global const float* depths, const ClpvMedium medium,
                              __global float* ends, __global float* scattered, CLPV_RADIANCE) {
-  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   AirRays a;
   find_plane_rays(view, r, depths, medium, &a);
@@ -113,19 +119,20 @@ __kernel void medium_volumes(const ClpvView view, __global const float* depths, 
     const Vec arriving = vec(load_lanes(red), load_lanes(green), load_lanes(blue));
     sum = vec_add_scaled(sum, ONE, vec_product(share, arriving));
   }
-  store_near_vectors(vec_masked(a.inside, vec_product(vec_of(medium.scattering), sum)), scattered, r.plane, r.at);
+  store_plane_vectors(vec_masked(a.inside, vec_product(vec_of(medium.scattering), sum)), scattered,
+                      r.plane, r.at);
 }
 
 // Weight of pixels whose rays end at `other`, for rays that end at `end`: 1 for equal ends; 0 outside the medium.
 CLPV_INLINE realW similarity(const realW end, const realW other) {
   const realW off = fabs(end - other), most = end > other ? end : other;
-  const realW weight = 1.0f - off / (CLPV_SAME_END * most);
+  const realW weight = 1.0f - off / (same_end * most);
   return other > ZERO ? (weight > ZERO ? weight : ZERO) : ZERO;
 }
 
 __kernel void medium_blur(const ClpvView view, __global const float* ends, __global const float* scattered,
                           __global float* blurred) {
-  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   const realW end = load_lanes(ends + r.at);
   Vec sum = vec(ZERO, ZERO, ZERO);
@@ -135,22 +142,26 @@ __kernel void medium_blur(const ClpvView view, __global const float* ends, __glo
       const float share = (dy == -2 || dy == 2 ? 0.5f : 1.0f) * (dx == -2 || dx == 2 ? 0.5f : 1.0f);
       const uint at = (uint)((int)r.at + dy * (int)r.pitch + dx);
       const realW weight = share * similarity(end, load_lanes(ends + at));
-      sum = vec_add_scaled(sum, weight, load_near_vectors(scattered, r.plane, at));
+      sum = vec_add_scaled(sum, weight, load_plane_vectors(scattered, r.plane, at));
       weights += weight;
     }
   }
-  store_near_vectors(vec_times(sum, weights > ZERO ? 1.0f / weights : ZERO), blurred, r.plane, r.at);
+  store_plane_vectors(vec_times(sum, weights > ZERO ? 1.0f / weights : ZERO), blurred, r.plane,
+                      r.at);
 }
 
 // Spreads pixels over W pixels of the camera: on each the near pixel at its left, or with `right` the nearest one at its
-// right. They are loaded from CLPV_WIDEN_FROM on.
+// right. They are loaded from widen_from() on.
+static inline uint widen_from(const uint px, const bool right) {
+  return (px + (W == 1 && right ? 1u : 0u)) / 2;
+}
+CLPV_INLINE realW widen(const realW v, const bool right) {
 #if W == 8
-#define CLPV_WIDEN(v) (right ? (v).s01122334 : (v).s00112233)
-#define CLPV_WIDEN_FROM(px, right) ((px) / 2)
+  return right ? v.s01122334 : v.s00112233;
 #elif W == 1
-#define CLPV_WIDEN(v) (v)
-#define CLPV_WIDEN_FROM(px, right) (((px) + ((right) ? 1u : 0u)) / 2)
+  return v;
 #endif
+}
 
 __kernel void medium_add(const ClpvView view, __global const float* depths, const ClpvMedium medium,
                          __global const float* ends, __global const float* blurred, const uint alone,
@@ -161,16 +172,17 @@ __kernel void medium_add(const ClpvView view, __global const float* depths, cons
   const uintW pixel = first + min(as_uintW(lane_numbers()), (uintW)(p.count - 1));
   AirRays a;
   find_air_rays(view, p, (realW)CLPV_GATHER(depths, pixel), medium, &a);
-  const NearRow r = find_near_row(view, (int)p.px / W, (int)p.py / CLPV_NEAR_STEP);
+  const PlaneRow r = find_plane_row(view, (int)p.px / W, (int)p.py / CLPV_PLANE_STEP);
   Vec sum = vec(ZERO, ZERO, ZERO);
   realW weights = ZERO;
   for (uint corner = 0; corner < 4; ++corner) {
     const bool right = corner % 2 == 1;
-    const uint at = r.at - p.px + CLPV_WIDEN_FROM(p.px, right) + (corner / 2) * (p.py % 2) * r.pitch;
+    const uint at = r.at - p.px + widen_from(p.px, right) + (corner / 2) * (p.py % 2) * r.pitch;
     const realW end = load_lanes(ends + at), red = load_lanes(blurred + at), green = load_lanes(blurred + r.plane + at),
                  blue = load_lanes(blurred + 2 * r.plane + at);
-    const Vec light = vec(CLPV_WIDEN(red), CLPV_WIDEN(green), CLPV_WIDEN(blue));
-    const realW weight = similarity(a.end, CLPV_WIDEN(end)) + (corner == 0 ? CLPV_UNLIKE : 0.0f);
+    const Vec light = vec(widen(red, right), widen(green, right), widen(blue, right));
+    const realW weight =
+        similarity(a.end, widen(end, right)) + (corner == 0 ? unlike_weight : 0.0f);
     sum = vec_add_scaled(sum, weight, light);
     weights += weight;
   }

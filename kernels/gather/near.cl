@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Near field: rays find light from surfaces nearer than R, which replaces the volumes' (docs/method.md, 'Near field').
 //
-//   D = (pi / K) sum_k (X(w_k) - v(w_k))     [W/m^2], w_k cosine-distributed about the normal n
-//   X(w) = L_hit if a surface is met along w within R, else L(p + offset s n + R w, -w)
-//   v(w) = L(p + offset s n, -w)
+//   D = (pi / K) sum_k d(w_k)                                [W/m^2], w_k cosine-distributed about the normal n
+//   d(w) = L_hit - L(p + h s n, -w)                          if a surface is met along w within R
+//   d(w) = q (L(p + h s n + R w, -w) - L(p + h s n, -w))     else, q the weight of the correction (miss_weight)
 //
-// R and s: edge of a cell of the cascades at p, blended like their light. near_trace.cl finds hits, near_light.cl their
-// radiance; radiance.h has L. near_filter.cl adds D to the irradiance E that is gathered at p.
+// h: CLPV_GATHER_OFFSET. R and s: edge of a cell of the cascades at p, blended like their light.
+// near_trace.cl finds hits, near_light.cl their radiance; radiance.h has L. near_filter.cl adds D
+// to the irradiance E that is gathered at p.
 //
 // In:   points, directions    near_layout.h
 //       distances             per ray: distance of the hit [m], INFINITY without one
@@ -18,7 +19,8 @@
 #include "gather/radiance.h"
 #include "raster/surface_row.h"
 
-#define CLPV_LEAST_ARRIVING 0.5f  // minimum ratio of arriving to leaving irradiance at which misses get full weight
+// Minimum ratio of arriving to leaving irradiance at which misses get full weight.
+__constant const float least_arriving = 0.5f;
 
 // Weight in [0, 1] of the correction for rays that miss. Nine harmonics of light that leaves a bright surface are
 // not 0 towards it: where more leaves than arrives, the correction would be the difference of two such errors.
@@ -26,13 +28,13 @@
 CLPV_INLINE float miss_weight(const Sampled* field, const float4 arriving, const float x, const float y, const float z) {
   const float4 leaving = field_irradiance(field, -x, -y, -z);
   const float in = arriving.x + arriving.y + arriving.z, out = leaving.x + leaving.y + leaving.z;
-  return in >= CLPV_LEAST_ARRIVING * out ? 1.0f : in / (CLPV_LEAST_ARRIVING * out);
+  return in >= least_arriving * out ? 1.0f : in / (least_arriving * out);
 }
 
 __kernel void near(const ClpvView view, __global const float* points, __global const realW* directions,
                    __global const float* distances, __global const float* radiances, __global float* light,
                    CLPV_RADIANCE) {
-  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   NearPoints p;
   load_near_points(points, r, &p);
@@ -50,7 +52,8 @@ __kernel void near(const ClpvView view, __global const float* points, __global c
     trusts[i] = miss_weight(&here.at[i], arriving, n.x[i], n.y[i], n.z[i]);
     x[i] = arriving.x, y[i] = arriving.y, z[i] = arriving.z;
   }
-  store_near_vectors(vec(load_lanes(x), load_lanes(y), load_lanes(z)), light + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at);
+  store_plane_vectors(vec(load_lanes(x), load_lanes(y), load_lanes(z)),
+                      light + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at);
   const realW trust = load_lanes(trusts);
   const Vec lifted = vec_add_scaled(p.position, (realW)(CLPV_GATHER_OFFSET) * p.reach, p.normal);
   Vec sum = vec(ZERO, ZERO, ZERO);
@@ -70,11 +73,11 @@ __kernel void near(const ClpvView view, __global const float* points, __global c
       for (int j = 0; j < CLPV_PAIRS; ++j) change.pair[j] -= here.at[i].pair[j];
       volumes[i] += shares[i] * radiance_along(&change, back.x[i], back.y[i], back.z[i]);
     }
-    const Vec met = load_near_vectors(radiances + 3 * k * r.plane, r.plane, r.at);
+    const Vec met = load_plane_vectors(radiances + 3 * k * r.plane, r.plane, r.at);
     sum = vec_add_scaled(sum, ONE, vec_masked(hit & lit, met));
   }
   for (int i = 0; i < W; ++i) x[i] = volumes[i].x, y[i] = volumes[i].y, z[i] = volumes[i].z;
   sum = vec(sum.x + load_lanes(x), sum.y + load_lanes(y), sum.z + load_lanes(z));
-  store_near_vectors(vec_times(sum, (realW)(M_PI_F / CLPV_NEAR_RAYS)), light + CLPV_NEAR_DIFFERENCE * r.plane, r.plane,
-                     r.at);
+  store_plane_vectors(vec_times(sum, (realW)(M_PI_F / CLPV_NEAR_RAYS)),
+                      light + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, r.at);
 }

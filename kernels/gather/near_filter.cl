@@ -17,13 +17,16 @@
 //   those in the four by four blocks around, on the same surface or else on any.
 //   In:      places, normals       the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
 //            points, widened
-//   In, out: irradiance    E [W/m^2] per pixel of the camera; E + D, or where D < 0: E darkened(1 + mean D / mean E)
+//   In, out: irradiance    E [W/m^2] per pixel of the camera:
+//     E = E_gathered + mean D                             mean D >= 0, per channel
+//     E = E_gathered f(1 + mean D / mean E_gathered)      elsewhere (darkened)
+//     f(x) = x, or below 1/4: 1 / (16 (1/2 - x))
 // A work-item processes W pixels of a row.
 #include "gather/near_surface.h"
 #include "raster/surface_row.h"
 
-#define CLPV_WIDENED 0.2f  // [R]
-#define CLPV_DARK 0.25f    // share of light below which darkening slows down
+__constant const float widened_reach = 0.2f;  // [R]
+__constant const float dark_share = 0.25f;  // share of light below which darkening slows down
 
 // Sums of D, E and weights.
 typedef struct {
@@ -37,29 +40,34 @@ CLPV_INLINE void add_weighted(const Vec difference, const Vec gathered, const re
   sum->weight += weight;
 }
 
-CLPV_INLINE void store_means(const WeightedSum sum, const NearRow r, __global float* light) {
+CLPV_INLINE void store_means(const WeightedSum sum, const PlaneRow r, __global float* light) {
   const realW scale = sum.weight > ZERO ? 1.0f / sum.weight : ZERO;
-  store_near_vectors(vec_times(sum.difference, scale), light + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, r.at);
-  store_near_vectors(vec_times(sum.gathered, scale), light + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at);
+  store_plane_vectors(vec_times(sum.difference, scale), light + CLPV_NEAR_DIFFERENCE * r.plane,
+                      r.plane, r.at);
+  store_plane_vectors(vec_times(sum.gathered, scale), light + CLPV_NEAR_GATHERED * r.plane, r.plane,
+                      r.at);
 }
 
-#define CLPV_NO_SUM {{ZERO, ZERO, ZERO}, {ZERO, ZERO, ZERO}, ZERO}
+static inline WeightedSum no_sum(void) {
+  const WeightedSum none = {{ZERO, ZERO, ZERO}, {ZERO, ZERO, ZERO}, ZERO};
+  return none;
+}
 
 __kernel void near_blur(const ClpvView view, __global const float* points, __global const float* light,
                         __global float* blurred) {
-  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   NearSurfaces here;
   load_near_surfaces(points, r.plane, r.at, &here);
-  WeightedSum sum = CLPV_NO_SUM;
+  WeightedSum sum = no_sum();
   for (int dy = -2; dy <= 2 && lane_bits(here.reach > ZERO) != 0u; ++dy) {
     for (int dx = -2; dx <= 2; ++dx) {
       const float share = (dy == -2 || dy == 2 ? 0.5f : 1.0f) * (dx == -2 || dx == 2 ? 0.5f : 1.0f);
       const uint at = (uint)((int)r.at + dy * (int)r.pitch + dx);
       NearSurfaces n;
       load_near_surfaces(points, r.plane, at, &n);
-      add_weighted(load_near_vectors(light + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, at),
-                   load_near_vectors(light + CLPV_NEAR_GATHERED * r.plane, r.plane, at),
+      add_weighted(load_plane_vectors(light + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, at),
+                   load_plane_vectors(light + CLPV_NEAR_GATHERED * r.plane, r.plane, at),
                    same_surface(n, here.position, here.normal) ? (realW)(share) : ZERO, &sum);
     }
   }
@@ -68,12 +76,12 @@ __kernel void near_blur(const ClpvView view, __global const float* points, __glo
 
 __kernel void near_widen(const ClpvView view, __global const float* points, __global const float* blurred,
                          __global float* widened) {
-  const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1));
+  const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   NearSurfaces here;
   load_near_surfaces(points, r.plane, r.at, &here);
-  const realW far = CLPV_WIDENED * here.reach;
-  WeightedSum sum = CLPV_NO_SUM;
+  const realW far = widened_reach * here.reach;
+  WeightedSum sum = no_sum();
   for (int dy = -3; dy <= 3 && lane_bits(far > ZERO) != 0u; dy += 3) {
     for (int dx = -3; dx <= 3; dx += 3) {
       const uint at = (uint)((int)r.at + dy * (int)r.pitch + dx);
@@ -81,8 +89,8 @@ __kernel void near_widen(const ClpvView view, __global const float* points, __gl
       load_near_surfaces(points, r.plane, at, &n);
       const Vec apart = vec_minus(n.position, here.position);
       const intW near = (vec_dot(apart, apart) < far * far) & same_surface(n, here.position, here.normal);
-      add_weighted(load_near_vectors(blurred + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, at),
-                   load_near_vectors(blurred + CLPV_NEAR_GATHERED * r.plane, r.plane, at),
+      add_weighted(load_plane_vectors(blurred + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, at),
+                   load_plane_vectors(blurred + CLPV_NEAR_GATHERED * r.plane, r.plane, at),
                    near ? ONE : ZERO, &sum);
     }
   }
@@ -92,7 +100,7 @@ __kernel void near_widen(const ClpvView view, __global const float* points, __gl
 // Share of light that stays where D < 0, of the share `left` = (mean E + mean D) / mean E: never 0, though nine harmonics
 // may leave less than nothing.
 CLPV_INLINE realW darkened(const realW left) {
-  return left > CLPV_DARK ? left : CLPV_DARK * CLPV_DARK / (2.0f * CLPV_DARK - left);
+  return left > dark_share ? left : dark_share * dark_share / (2.0f * dark_share - left);
 }
 
 // Factor of E in a channel where D < 0, else 1.
@@ -105,26 +113,30 @@ CLPV_INLINE realW clamp_positive(const realW v) {
   return v > ZERO ? v : ZERO;
 }
 
-#if CLPV_NEAR_LAYERS > 1
+#if CLPV_PLANE_LAYERS > 1
 // Adds near pixels on the surfaces of W pixels of the camera, or on any: those from `first` on, spread over them.
 CLPV_INLINE void add_spread(__global const float* points, __global const float* widened, const uint plane, const uint first,
                             const bool right, const Surfaces s, const bool any, const realW weight, WeightedSum* sum) {
-  const uint at = CLPV_SPREAD_FROM(first, right);
+  const uint at = spread_from(first, right);
   if (lane_bits(load_lanes(points + CLPV_NEAR_REACH * plane + at) > ZERO) == 0u) return;
   NearSurfaces n;
   load_near_surfaces(points, plane, at, &n);
   spread_surfaces(&n, right);
-  add_weighted(spread_vectors(load_near_vectors(widened + CLPV_NEAR_DIFFERENCE * plane, plane, at), right),
-               spread_vectors(load_near_vectors(widened + CLPV_NEAR_GATHERED * plane, plane, at), right),
-               (any ? n.reach > ZERO : same_surface(n, s.position, s.normal)) ? weight : ZERO, sum);
+  add_weighted(
+      spread_vectors(load_plane_vectors(widened + CLPV_NEAR_DIFFERENCE * plane, plane, at), right),
+      spread_vectors(load_plane_vectors(widened + CLPV_NEAR_GATHERED * plane, plane, at), right),
+      (any ? n.reach > ZERO : same_surface(n, s.position, s.normal)) ? weight : ZERO, sum);
 }
 
 // Means at W pixels of the camera.
-CLPV_INLINE void interpolate_light(const ClpvView view, const PixelRow p, const Surfaces s, const NearRow r,
-                              __global const float* points, __global const float* widened, WeightedSum* sum) {
-  const uint first = r.at - p.px + p.px / CLPV_NEAR_STEP, second = near_second(view) * r.pitch;
-  const realW across = to_realW(((int)p.px + lane_numbers()) % CLPV_NEAR_STEP) * (1.0f / CLPV_NEAR_STEP);
-  const float down = (float)(p.py % CLPV_NEAR_STEP) * (1.0f / CLPV_NEAR_STEP);
+CLPV_INLINE void interpolate_light(const ClpvView view, const PixelRow p, const Surfaces s,
+                                   const PlaneRow r, __global const float* points,
+                                   __global const float* widened, WeightedSum* sum) {
+  const uint first = r.at - p.px + p.px / CLPV_PLANE_STEP,
+             second = second_layer_row(view) * r.pitch;
+  const realW across =
+      to_realW(((int)p.px + lane_numbers()) % CLPV_PLANE_STEP) * (1.0f / CLPV_PLANE_STEP);
+  const float down = (float)(p.py % CLPV_PLANE_STEP) * (1.0f / CLPV_PLANE_STEP);
   for (uint layer = 0; layer < 2; ++layer) {
     for (uint corner = 0; corner < 4; ++corner) {
       const bool right = corner % 2 == 1, below = corner / 2 == 1;
@@ -153,11 +165,12 @@ __kernel void near_add(const ClpvView view, __global const Place* places, __glob
   if (p.count == 0) return;
   Surfaces s;
   CLPV_LOAD_SURFACES(view, p, places, normals, &s);
-  const NearRow r = find_near_row(view, (int)p.px / W, (int)p.py / CLPV_NEAR_STEP);
-  WeightedSum mean = CLPV_NO_SUM;
-#if CLPV_NEAR_STEP == 1
-  add_weighted(load_near_vectors(widened + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, r.at),
-               load_near_vectors(widened + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at), ONE, &mean);
+  const PlaneRow r = find_plane_row(view, (int)p.px / W, (int)p.py / CLPV_PLANE_STEP);
+  WeightedSum mean = no_sum();
+#if CLPV_PLANE_STEP == 1
+  add_weighted(load_plane_vectors(widened + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, r.at),
+               load_plane_vectors(widened + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at), ONE,
+               &mean);
 #else
   interpolate_light(view, p, s, r, points, widened, &mean);
 #endif

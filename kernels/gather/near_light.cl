@@ -34,7 +34,7 @@ typedef struct {
 CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* points, __global const uint* counts,
                                    __global const realW* hits, CLPV_SCENE, HitSurface* s) {
   const uint tile = find_near_tile(view), first = get_global_id(2) * W;
-  if (tile == CLPV_NO_TILE || first >= counts[tile]) return false;
+  if (tile == no_tile || first >= counts[tile]) return false;
   hits += (tile * CLPV_TILE_HITS + first) / W * CLPV_HIT_ROWS;
   const intW listed = lane_numbers() < (intW)((int)(counts[tile] - first));
   const realW u = listed ? hits[CLPV_HIT_U] : ZERO, v = listed ? hits[CLPV_HIT_V] : ZERO,
@@ -42,18 +42,14 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   const uintW zero = (uintW)(0u), triangle = listed ? as_uintW(hits[CLPV_HIT_TRIANGLE]) : zero,
               pixel = listed ? as_uintW(hits[CLPV_HIT_PIXEL]) : zero;
   s->radiance = as_uintW(hits[CLPV_HIT_RADIANCE]);
-  const uint plane = near_plane(view);
+  const uint plane = plane_size(view);
   const Vec origin = vec((realW)CLPV_GATHER(points, pixel), (realW)CLPV_GATHER(points, pixel + plane),
                          (realW)CLPV_GATHER(points, pixel + 2 * plane));
   const realW reach = (realW)CLPV_GATHER(points + CLPV_NEAR_REACH * plane, pixel);
-  Rows indices;
-  gather_rows(triangles, triangle, &indices);
-  VertexAttributes a, b, c;
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, x)), &a);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, y)), &b);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, z)), &c);
-  MaterialLanes material;
-  load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), &material);
+  TriangleLanes t;
+  load_triangles(CLPV_PASS_SCENE, triangle, &t);
+  const VertexAttributes a = t.a, b = t.b, c = t.c;
+  const MaterialLanes material = t.material;
   const Vec w = vec(1.0f - u - v, u, v);
   const Vec edge1 = vec_minus(b.position, a.position), edge2 = vec_minus(c.position, a.position);
   const Vec across = vec_cross(edge1, edge2);
@@ -91,7 +87,7 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
 // Adds radiance, 0 outside the mask `lit`.
 CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const intW lit, const Vec radiance, const uint fresh,
                               __global const uint* counts, __global float* radiances) {
-  const uint plane = near_plane(view);
+  const uint plane = plane_size(view);
   const uint left = counts[find_near_tile(view)] - get_global_id(2) * W;
   const VecLanes added = unpack(lit, radiance);
   uint at[W];

@@ -2,7 +2,7 @@
 // Points of the near field's pixels (near_layout.h).
 //
 // near_points
-//   First layer: of each block of CLPV_NEAR_STEP x CLPV_NEAR_STEP pixels the first. Empties all other points.
+//   First layer: of each block of CLPV_PLANE_STEP x CLPV_PLANE_STEP pixels the first. Empties all other points.
 // near_others
 //   Second layer: of each block the first pixel whose surface no near pixel of the four by four blocks around it has.
 //
@@ -54,29 +54,30 @@ CLPV_INLINE void load_camera_pixels(const ClpvView view, __global const Place* p
   c->normal = vec_masked(c->seen, vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z)));
 }
 
-CLPV_INLINE void store_points(const NearRow r, const Vec position, const Vec normal, const realW reach,
-                              __global float* points) {
-  store_near_vectors(position, points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
-  store_near_vectors(normal, points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
+CLPV_INLINE void store_points(const PlaneRow r, const Vec position, const Vec normal,
+                              const realW reach, __global float* points) {
+  store_plane_vectors(position, points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
+  store_plane_vectors(normal, points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
   store_lanes(reach, points + CLPV_NEAR_REACH * r.plane + r.at);
 }
 
 __kernel void near_points(const ClpvView view, __global const Place* places, __global const float4* normals,
                           __global const ClpvGrid* grids, const uint cascades, __global float* points) {
-  const NearRow r = find_near_row(view, (int)get_global_id(0) - CLPV_NEAR_COLUMNS / W,
-                                  (int)get_global_id(1) - CLPV_NEAR_ROWS);
-  if ((uint)(r.x + CLPV_NEAR_COLUMNS) >= r.pitch || r.y >= (int)r.height + CLPV_NEAR_ROWS) return;
+  const PlaneRow r = find_plane_row(view, (int)get_global_id(0) - CLPV_PLANE_COLUMNS / W,
+                                  (int)get_global_id(1) - CLPV_PLANE_ROWS);
+  if ((uint)(r.x + CLPV_PLANE_COLUMNS) >= r.pitch || r.y >= (int)r.height + CLPV_PLANE_ROWS) return;
   const intW x = r.x + lane_numbers();
-  const intW inside = (x >= 0) & (x < (int)r.width) & (r.y >= 0 && r.y < (int)near_pixels(view.height) ? -1 : 0);
+  const intW inside =
+      (x >= 0) & (x < (int)r.width) & (r.y >= 0 && r.y < (int)plane_pixels(view.height) ? -1 : 0);
   CameraPixels c;
-  load_camera_pixels(view, places, normals, x * CLPV_NEAR_STEP, r.y * CLPV_NEAR_STEP, inside, &c);
+  load_camera_pixels(view, places, normals, x * CLPV_PLANE_STEP, r.y * CLPV_PLANE_STEP, inside, &c);
   store_points(r, c.position, c.normal, find_reach(grids, cascades, c.position, c.seen), points);
 }
 
-#if CLPV_NEAR_LAYERS > 1
+#if CLPV_PLANE_LAYERS > 1
 // Mask of the surfaces that none of the near pixels in columns and rows `from` to `to` has.
-CLPV_INLINE intW on_no_surface(__global const float* points, const NearRow r, const int from, const int to,
-                               const CameraPixels c, intW wanted) {
+CLPV_INLINE intW on_no_surface(__global const float* points, const PlaneRow r, const int from,
+                               const int to, const CameraPixels c, intW wanted) {
   for (int dy = from; dy <= to; ++dy) {
     for (int dx = from; dx <= to; ++dx) {
       NearSurfaces n;
@@ -89,15 +90,17 @@ CLPV_INLINE intW on_no_surface(__global const float* points, const NearRow r, co
 
 __kernel void near_others(const ClpvView view, __global const Place* places, __global const float4* normals,
                           __global const ClpvGrid* grids, const uint cascades, __global float* points) {
-  const NearRow first = find_near_row(view, get_global_id(0), get_global_id(1));
-  if (!row_has_pixels(first) || first.y >= (int)near_pixels(view.height)) return;
-  const intW x = (first.x + lane_numbers()) * CLPV_NEAR_STEP;
+  const PlaneRow first = find_plane_row(view, get_global_id(0), get_global_id(1));
+  if (!row_has_pixels(first) || first.y >= (int)plane_pixels(view.height)) return;
+  const intW x = (first.x + lane_numbers()) * CLPV_PLANE_STEP;
   intW found = (intW)(0);
   Vec position = vec(ZERO, ZERO, ZERO), normal = position;
-  for (int dy = 0; dy < CLPV_NEAR_STEP && first.y * CLPV_NEAR_STEP + dy < (int)view.height; ++dy) {
-    for (int dx = 0; dx < CLPV_NEAR_STEP; ++dx) {
+  for (int dy = 0; dy < CLPV_PLANE_STEP && first.y * CLPV_PLANE_STEP + dy < (int)view.height;
+       ++dy) {
+    for (int dx = 0; dx < CLPV_PLANE_STEP; ++dx) {
       CameraPixels c;
-      load_camera_pixels(view, places, normals, x + dx, first.y * CLPV_NEAR_STEP + dy, x + dx < (int)view.width, &c);
+      load_camera_pixels(view, places, normals, x + dx, first.y * CLPV_PLANE_STEP + dy,
+                         x + dx < (int)view.width, &c);
       intW wanted = on_no_surface(points, first, 0, 1, c, c.seen & (found == 0));
       if (lane_bits(wanted) == 0u) continue;
       wanted = on_no_surface(points, first, -1, 2, c, wanted);
@@ -108,7 +111,8 @@ __kernel void near_others(const ClpvView view, __global const Place* places, __g
       normal = vec(wanted ? c.normal.x : normal.x, wanted ? c.normal.y : normal.y, wanted ? c.normal.z : normal.z);
     }
   }
-  const NearRow second = find_near_row(view, get_global_id(0), (int)(get_global_id(1) + near_second(view)));
+  const PlaneRow second =
+      find_plane_row(view, get_global_id(0), (int)(get_global_id(1) + second_layer_row(view)));
   store_points(second, position, normal, find_reach(grids, cascades, position, found), points);
 }
 #endif

@@ -7,9 +7,10 @@
 //       counts, hits         per tile: number of hits, and their list (near_layout.h)
 // A work-item traces the rays of a tile, which share an entry to the tree.
 #include "gather/near_layout.h"
-#include "gather/triangle_tree.h"
-
-#if W > 1
+#if W == 1
+#include "gather/tree_stack.h"
+#else
+#include "gather/tree_lists.h"
 
 // Widens the bounds along an axis by half balls of radius `reach` about W points.
 CLPV_INLINE void add_half_balls(const intW lit, const realW at, const realW normal, const realW reach, const int axis,
@@ -25,11 +26,12 @@ CLPV_INLINE void add_half_balls(const intW lit, const realW at, const realW norm
 // Box about the rays of a tile.
 CLPV_INLINE void box_of_tile(const ClpvView view, __global const float* points, Box* box) {
   for (int axis = 0; axis < 3; ++axis) box->lower[axis] = CLPV_TREE_FAR, box->upper[axis] = -CLPV_TREE_FAR;
-  for (int y = 0; y < CLPV_NEAR_TILE; ++y) {
-    const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1) * CLPV_NEAR_TILE + y);
+  for (int y = 0; y < CLPV_PLANE_TILE; ++y) {
+    const PlaneRow r =
+        find_plane_row(view, get_global_id(0), get_global_id(1) * CLPV_PLANE_TILE + y);
     if (!row_has_pixels(r)) continue;
-    const Vec p = load_near_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
-    const Vec n = load_near_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
+    const Vec p = load_plane_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
+    const Vec n = load_plane_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
     const realW reach = load_lanes(points + CLPV_NEAR_REACH * r.plane + r.at);
     const intW lit = reach > ZERO;
     const realW wide = reach * (1.0f + 2.0f * CLPV_NEAR_LIFT);
@@ -42,8 +44,8 @@ CLPV_INLINE void box_of_tile(const ClpvView view, __global const float* points, 
 #endif
 
 // Appends the hits of rays k of a row.
-CLPV_INLINE void add_hits(const NearRow r, const uint k, const realW reach, const Rays* rays, __global float* list,
-                          uint* count) {
+CLPV_INLINE void add_hits(const PlaneRow r, const uint k, const realW reach, const Rays* rays,
+                          __global float* list, uint* count) {
   const uint bits = lane_bits(load_lanes(rays->distance) < reach);
   for (uint rest = bits; rest != 0; rest &= rest - 1u) {
     const uint i = lowest_bit(rest);
@@ -71,7 +73,7 @@ __kernel void near_trace(const ClpvView view, __global const float* points, __gl
   const Stack stack = {stacked_nodes + item, stacked_children + item};
 #endif
   const uint tile = find_near_tile(view);
-  if (tile == CLPV_NO_TILE) return;
+  if (tile == no_tile) return;
   const Tree tree = {nodes, leaves};
 #if W > 1
   Box box;
@@ -81,8 +83,9 @@ __kernel void near_trace(const ClpvView view, __global const float* points, __gl
 #endif
   __global float* list = hits + (size_t)tile * CLPV_TILE_HITS * CLPV_HIT_ROWS;
   uint count = 0;
-  for (int y = 0; y < CLPV_NEAR_TILE; ++y) {
-    const NearRow r = find_near_row(view, get_global_id(0), get_global_id(1) * CLPV_NEAR_TILE + y);
+  for (int y = 0; y < CLPV_PLANE_TILE; ++y) {
+    const PlaneRow r =
+        find_plane_row(view, get_global_id(0), get_global_id(1) * CLPV_PLANE_TILE + y);
     if (!row_has_pixels(r)) continue;
     NearPoints p;
     load_near_points(points, r, &p);

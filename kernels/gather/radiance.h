@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Radiance from the packed volumes of swept light.
 //
-//   L(p, w) = sum_i Y_i(w) C_i(p)      [W/m^2/sr], light that travels along w
-//   C(p)    = sum over cascades of share c(p) / s^2, c interpolated trilinearly, cells that p cannot see left out
-//   E(p, n) = max(0, alpha(-n) . C(p))   [W/m^2]
+//   L(p, w) = sum_i Y_i(w) c_i(p) / s^2      [W/m^2/sr], light that travels along w
+//   E(p, n) = max(0, alpha(-n) . C(p))       [W/m^2], C(p) = c(p) / s^2
+//
+// c is interpolated trilinearly, cells that p cannot see left out; C is a mean over cascades by
+// their shares.
 //
 // L may be negative: it is the projection of the light on nine harmonics. docs/method.md, 'The sweep', 'Gathering'.
 #pragma once

@@ -8,12 +8,12 @@
 
 #include "raster/project.h"
 
-#define CLPV_CLIP_PLANES 5
+enum { CLPV_CLIP_PLANES = 5 };
 
 // A polygon of CLPV_CLIP_CORNERS corners, of which CLPV_CORNER(k) is the k-th. Corners are indexed at run time: GPUs keep
 // such a private array in scratch memory, so with one lane polygons lie in local memory, corners of a work-group's
 // CLPV_CLIP_GROUP work-items next to each other.
-#define CLPV_CLIP_GROUP 64
+enum { CLPV_CLIP_GROUP = 64 };
 #if W == 1
 #define CLPV_POLYGON __local
 #define CLPV_CORNER(k) ((k) * CLPV_CLIP_GROUP)
@@ -68,3 +68,59 @@ static inline int clip_polygon(const ClpvView view, CLPV_POLYGON float4* polygon
   for (int plane = CLPV_CLIP_PLANES - 1; plane >= 0; --plane) count = clip_by_plane(view, polygon, count, plane);
   return count < 3 ? 0 : count;
 }
+
+// Corners of a clipped polygon on the screen, for a fan of triangles about the first.
+#if W > 1
+
+// Padded so that W lanes can be loaded from any of them.
+typedef struct {
+  int x[CLPV_CLIP_CORNERS + W], y[CLPV_CLIP_CORNERS + W];
+  float key[CLPV_CLIP_CORNERS + W];
+} Outline;
+
+static inline void project_polygon(const ClpvView view, const float4* polygon, const int corners, Outline* outline) {
+  for (int k = 0; k < CLPV_CLIP_CORNERS + W; ++k) {
+    const float4 at = polygon[k < corners ? k : 0];
+    const ViewPoint point = {(realW)(at.x), (realW)(at.y), (realW)(at.w), (realW)(at.z)};
+    const ScreenCorner corner = project(view, point);
+    outline->x[k] = first_lane(corner.x);
+    outline->y[k] = first_lane(corner.y);
+    outline->key[k] = first_lane(corner.key);
+  }
+}
+
+// Corners k to k + W - 1.
+static inline ScreenCorner outline_corners(const ClpvView view, const Outline* outline,
+                                           const int k) {
+  const ScreenCorner corner = {load_lanes(outline->x + k), load_lanes(outline->y + k), load_lanes(outline->key + k)};
+  return corner;
+}
+
+// The first corner, W times.
+static inline ScreenCorner outline_apex(const ClpvView view, const Outline* outline) {
+  const ScreenCorner corner = {(intW)(outline->x[0]), (intW)(outline->y[0]), (realW)(outline->key[0])};
+  return corner;
+}
+
+#else
+
+typedef struct {
+  CLPV_POLYGON const float4* polygon;  // projected corner by corner, as they are needed
+} Outline;
+
+static inline void project_polygon(const ClpvView view, CLPV_POLYGON const float4* polygon,
+                                   const int corners, Outline* outline) {
+  outline->polygon = polygon;
+}
+
+CLPV_INLINE ScreenCorner outline_corners(const ClpvView view, const Outline* outline, const int k) {
+  const float4 at = outline->polygon[CLPV_CORNER(k)];
+  const ViewPoint point = {at.x, at.y, at.w, at.z};
+  return project(view, point);
+}
+
+CLPV_INLINE ScreenCorner outline_apex(const ClpvView view, const Outline* outline) {
+  return outline_corners(view, outline, 0);
+}
+
+#endif

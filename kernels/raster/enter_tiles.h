@@ -57,10 +57,9 @@ static inline uint enter_all(const ClpvView view, const RasterWords* words, cons
   const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, nearest = (uint)words->word[11][lane];
   const uint slice = slice_of(view, as_float(nearest));
   const TileRange tiles = tiles_of(words, lane);
-#define CLPV_SLICE_AT(x, y) (((uint)(y) * tiles_x + (uint)(x)) * CLPV_SLICES + slice)
   if (tiles.left == tiles.right && tiles.top == tiles.bottom) {
-    enter(entries + CLPV_ENTRY_WORDS * at, CLPV_SLICE_AT(tiles.left, tiles.top), index, nearest,
-          slice_counts);
+    enter(entries + CLPV_ENTRY_WORDS * at, (tiles.top * tiles_x + tiles.left) * CLPV_SLICES + slice,
+          index, nearest, slice_counts);
     return at + 1;
   }
   const int left = tiles.left * CLPV_TILE, top = tiles.top * CLPV_TILE;
@@ -72,13 +71,13 @@ static inline uint enter_all(const ClpvView view, const RasterWords* words, cons
     long a_here = a_left, b_here = b_left, c_here = c_left;
     for (int x = tiles.left; x <= tiles.right; ++x) {
       if ((a_here | b_here | c_here) >= 0) {
-        enter(entries + CLPV_ENTRY_WORDS * at++, CLPV_SLICE_AT(x, y), index, nearest, slice_counts);
+        enter(entries + CLPV_ENTRY_WORDS * at++, (y * tiles_x + x) * CLPV_SLICES + slice, index,
+              nearest, slice_counts);
       }
       a_here += CLPV_TILE * a.step_x, b_here += CLPV_TILE * b.step_x, c_here += CLPV_TILE * c.step_x;
     }
     a_left += CLPV_TILE * a.step_y, b_left += CLPV_TILE * b.step_y, c_left += CLPV_TILE * c.step_y;
   }
-#undef CLPV_SLICE_AT
   return at;
 }
 

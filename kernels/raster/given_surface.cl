@@ -7,7 +7,8 @@
 // length, but for rounding, do not change. A work-item takes one of `count` pixels.
 #include "raster/surface_row.h"
 
-#define CLPV_UNIT_ROUNDING 1e-5f  // largest difference of a unit normal's square from 1
+// Largest difference of a unit normal's square from 1.
+__constant const float unit_rounding = 1e-5f;
 
 static inline bool is_finite(const float v) {
   return fabs(v) < INFINITY;  // false for NaN
@@ -20,7 +21,7 @@ CLPV_INLINE float4 unit_normal(const float4 n) {
   const float most = fmax(fmax(fabs(n.x), fabs(n.y)), fabs(n.z));
   if (!(most > 0.0f)) return none;
   const float square = n.x * n.x + n.y * n.y + n.z * n.z;
-  if (fabs(square - 1.0f) < CLPV_UNIT_ROUNDING) return (float4)(n.x, n.y, n.z, 0.0f);
+  if (fabs(square - 1.0f) < unit_rounding) return (float4)(n.x, n.y, n.z, 0.0f);
   const float x = n.x / most, y = n.y / most, z = n.z / most, scale = rsqrt(x * x + y * y + z * z);
   return (float4)(scale * x, scale * y, scale * z, 0.0f);
 }

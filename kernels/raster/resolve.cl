@@ -45,14 +45,10 @@ static inline Uv uv_step(const Face face, const Weights weights, const Vec along
 // Evaluates the surface of each lane's triangle at `depth` [m] behind its pixel.
 CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const realW depth, const uintW triangle,
                                   CLPV_SCENE, PixelSurface* surface) {
-  Rows indices;
-  gather_rows(triangles, triangle, &indices);
-  VertexAttributes a, b, c;
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, x)), &a);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, y)), &b);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, z)), &c);
-  MaterialLanes material;
-  load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), &material);
+  TriangleLanes t;
+  load_triangles(CLPV_PASS_SCENE, triangle, &t);
+  const VertexAttributes a = t.a, b = t.b, c = t.c;
+  const MaterialLanes material = t.material;
   const Face face = make_face(view, a.position, b.position, c.position);
   const Weights weights = find_weights(face);
   const Vec w = weights_at(view, face, weights, p.x, p.y, depth);

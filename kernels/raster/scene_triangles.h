@@ -62,6 +62,21 @@ CLPV_INLINE void load_material(__global const float4* materials, const uintW ind
 #endif
 }
 
+// W triangles of the scene.
+typedef struct {
+  VertexAttributes a, b, c;
+  MaterialLanes material;
+} TriangleLanes;
+
+CLPV_INLINE void load_triangles(CLPV_SCENE, const uintW number, TriangleLanes* t) {
+  Rows indices;
+  gather_rows(triangles, number, &indices);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, x)), &t->a);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, y)), &t->b);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, z)), &t->c);
+  load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), &t->material);
+}
+
 // Interpolated normal of length 1, flipped to the side of `front`. Near a silhouette the interpolated normal itself may
 // point to the other side.
 static inline Vec normal_towards(const Vec front, const Vec interpolated) {

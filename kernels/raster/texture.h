@@ -111,6 +111,13 @@ static inline realW decode_srgb(const uintW byte) {
   return byte > 10u ? linear : x * (1.0f / 12.92f);
 }
 
+// The channel of four texels whose byte is at bit `shift`: linear.
+CLPV_INLINE realW filter_channel(const TexelQuad f, const uint shift) {
+  return filter_quad(
+      f, decode_srgb((f.texel00 >> shift) & 255u), decode_srgb((f.texel01 >> shift) & 255u),
+      decode_srgb((f.texel10 >> shift) & 255u), decode_srgb((f.texel11 >> shift) & 255u));
+}
+
 // Bilinear look-up in one entry of the table: linear colour.
 CLPV_INLINE void sample_bilinear(__global const float4* table, __global const uint* texels, const uintW entry,
                                  const Uv uv, Vec* colour) {
@@ -118,23 +125,21 @@ CLPV_INLINE void sample_bilinear(__global const float4* table, __global const ui
   load_level(table, entry, &level);
   TexelQuad f;
   load_texel_quad(level, texels, uv, &f);
-#define CLPV_CHANNEL(shift)                                                                          \
-  filter_quad(f, decode_srgb((f.texel00 >> shift) & 255u), decode_srgb((f.texel01 >> shift) & 255u), \
-              decode_srgb((f.texel10 >> shift) & 255u), decode_srgb((f.texel11 >> shift) & 255u))
-  colour->x = CLPV_CHANNEL(0);
-  colour->y = CLPV_CHANNEL(8);
-  colour->z = CLPV_CHANNEL(16);
-#undef CLPV_CHANNEL
+  colour->x = filter_channel(f, 0);
+  colour->y = filter_channel(f, 8);
+  colour->z = filter_channel(f, 16);
+}
+
+static inline realW alpha_of(const uintW texel) {
+  return to_realW(as_intW(texel >> 24)) * (1.0f / 255.0f);
 }
 
 // Bilinear look-up of alpha in a level, in [0, 1].
 CLPV_INLINE realW sample_level_alpha(const Level level, __global const uint* texels, const Uv uv) {
   TexelQuad f;
   load_texel_quad(level, texels, uv, &f);
-#define CLPV_ALPHA(texel) (to_realW(as_intW((texel) >> 24)) * (1.0f / 255.0f))
-  return filter_quad(f, CLPV_ALPHA(f.texel00), CLPV_ALPHA(f.texel01), CLPV_ALPHA(f.texel10),
-                     CLPV_ALPHA(f.texel11));
-#undef CLPV_ALPHA
+  return filter_quad(f, alpha_of(f.texel00), alpha_of(f.texel01), alpha_of(f.texel10),
+                     alpha_of(f.texel11));
 }
 
 CLPV_INLINE realW sample_alpha(__global const float4* table, __global const uint* texels,

@@ -16,7 +16,7 @@ typedef struct {
 } PixelRow;
 
 // Vectors of W pixels in a row of a tile, and index of one in the buffers of draw_tiles.cl.
-#define CLPV_TILE_VECTORS (CLPV_TILE / W)
+enum { CLPV_TILE_VECTORS = CLPV_TILE / W };
 static inline uint tile_row(const uint tile, const uint row, const uint vector) {
   return (tile * CLPV_TILE + row) * CLPV_TILE_VECTORS + vector;
 }

@@ -18,5 +18,5 @@ typedef struct {
 
 // Mean of a texture over a sub-triangle: CLPV_EMIT_SAMPLES^2 samples, at the mip level for CLPV_EMIT_FOOTPRINT times
 // their distance, so that all texels have about the same weight.
-#define CLPV_EMIT_SAMPLES 8
+enum { CLPV_EMIT_SAMPLES = 8 };
 #define CLPV_EMIT_FOOTPRINT 2.0f

@@ -3,15 +3,18 @@
 // host and kernels.
 #pragma once
 
-#define CLPV_SUBPIXELS 256  // vertices snap to 1/256 pixel
-#define CLPV_TILE 8         // pixels along each edge of a tile; with eight lanes a work-item draws a tile (draw_tiles.cl)
+enum {
+  CLPV_SUBPIXELS = 256,  // vertices snap to 1/256 pixel
+  CLPV_TILE =
+      8,  // pixels along each edge of a tile; with eight lanes a work-item draws a tile (draw_tiles.cl)
+};
 
 // Guard band [pixels]: triangles that reach farther are clipped. Coordinates in 1/CLPV_SUBPIXELS pixel then stay below
 // 2^29, and products of two differences fit 64 bits.
 #define CLPV_GUARD_PIXELS 1048576.0f
 
 // Most corners of a clipped triangle: each of five planes adds one.
-#define CLPV_CLIP_CORNERS 8
+enum { CLPV_CLIP_CORNERS = 8 };
 
 // Outcodes of a vertex. A triangle whose corners all share one of the first six bits is invisible. A triangle with a
 // corner that has one of the last two bits is clipped.
@@ -28,9 +31,9 @@ enum {
 };
 
 // Up to this size [pixels] the edge functions of a triangle fit 32 bits inside its box.
-#define CLPV_SMALL_PIXELS 64
+enum { CLPV_SMALL_PIXELS = 64 };
 // Up to this size [pixels] edge functions divided by 256 fit 32 bits within a tile (draw_tiles.cl).
-#define CLPV_GIANT_PIXELS 131072
+enum { CLPV_GIANT_PIXELS = 131072 };
 
 // Flags in `triangle`, next to its index in the scene:
 #define CLPV_TRIANGLE_MASKED 0x80000000u  // its material is masked
@@ -46,7 +49,7 @@ typedef struct {
   unsigned int triangle;     // index and flags as above
 } ClpvRasterTriangle;
 
-#define CLPV_RASTER_WORDS 16
+enum { CLPV_RASTER_WORDS = 16 };
 
 // Counters of a pass: triangles listed, triangles to clip, entries, and overflows of 32 bits in the number of entries.
 enum {
@@ -58,11 +61,13 @@ enum {
 };
 
 // Depth slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most hidden ones are skipped.
-#define CLPV_SLICES 8
+enum { CLPV_SLICES = 8 };
 
 // An entry has four uint32 words: slice of a tile or CLPV_NO_SLICE, number within the slice, index of the triangle in
 // the list, and its smallest key. Sorted entries keep the last two.
 #define CLPV_NO_SLICE 0xffffffffu
-#define CLPV_ENTRY_WORDS 4
-#define CLPV_ENTRY_GROUP 1024u  // entries that a work-group sorts
-#define CLPV_SLICE_CHUNK 256u   // slices that a work-item sums
+enum {
+  CLPV_ENTRY_WORDS = 4,
+  CLPV_ENTRY_GROUP = 1024,  // entries that a work-group sorts
+  CLPV_SLICE_CHUNK = 256,  // slices that a work-item sums
+};

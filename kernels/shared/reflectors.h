@@ -2,12 +2,10 @@
 // Per-face sums of voxelised albedo: reflectors.cl writes them, face_albedo.cl reads them; shared by host and kernels.
 #pragma once
 
-// Face directions of a light cell: +x, -x, +y, -y, +z, -z.
-#define CLPV_CELL_FACES 6
-
-// uint32 words of a face: 64 coverage bits (two words), the number of samples, and the sums of red, green and blue
-// albedo.
+// Face directions of a light cell: +x, -x, +y, -y, +z, -z. uint32 words of a face: 64 coverage bits
+// (two words), the number of samples, and the sums of red, green and blue albedo.
 enum {
+  CLPV_CELL_FACES = 6,
   CLPV_FACE_WORDS = 6,
   CLPV_FACE_SAMPLES = 2,
   CLPV_FACE_ALBEDO = 3,

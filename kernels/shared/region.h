@@ -24,4 +24,4 @@ typedef struct {
 } ClpvRegion;
 
 // Triangles of a cluster: neighbours in the scene that are processed or skipped together.
-#define CLPV_CLUSTER 64
+enum { CLPV_CLUSTER = 64 };

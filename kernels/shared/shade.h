@@ -13,7 +13,9 @@ enum {
   CLPV_SHOW_DEPTH,  // [m] along the camera's forward axis, three times
 };
 
-#define CLPV_SHADOW_TAPS 4  // texels along each side of the shadow filter; no map may be smaller
+enum {
+  CLPV_SHADOW_TAPS = 4,  // texels along each side of the shadow filter; no map may be smaller
+};
 
 // Lift of a receiver along its normal [texels of the shadow map at its depth]: a constant, and a part times the sine of
 // the light's angle to the normal.

@@ -3,8 +3,10 @@
 // kernels.
 #pragma once
 
-#define CLPV_SWEEP_BINS 24
-#define CLPV_AXIS_BINS 8  // bins swept across x, which come first; as many across y, then z
+enum {
+  CLPV_SWEEP_BINS = 24,
+  CLPV_AXIS_BINS = 8,  // bins swept across x, which come first; as many across y, then z
+};
 
 // A bin of directions. Light travels from plane to plane, within a plane from row to row, and within a row from column
 // to column.
@@ -35,8 +37,11 @@ typedef struct {
 
 // Sizes in numbers for a grid of n cells along each axis: of a row, a plane and a volume of planes (sweep_layout.h),
 // and of a row (pitch), a plane and a volume with a border of one cell on every side.
-#define CLPV_SWEEP_LINE 32  // padding after each plane and each volume
-#define CLPV_SWEEP_FIRST 8  // from the start of a bordered row to its first cell: aligned for eight lanes
+enum {
+  CLPV_SWEEP_LINE = 32,  // padding after each plane and each volume
+  CLPV_SWEEP_FIRST =
+      8,  // from the start of a bordered row to its first cell: aligned for eight lanes
+};
 #define CLPV_SWEEP_ROW_OF(n) (((n) + 7) / 8 * 8)
 #define CLPV_SWEEP_PLANE_OF(n) ((n)*CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_LINE)
 #define CLPV_SWEEP_VOLUME_OF(n) ((n)*CLPV_SWEEP_PLANE_OF(n) + CLPV_SWEEP_LINE)

@@ -3,8 +3,10 @@
 // by host and kernels.
 #pragma once
 
-#define CLPV_TREE_WIDTH 8  // children of a node, triangles of a leaf
-#define CLPV_TREE_DEPTH 32  // nodes on a path from the root to a leaf, at most
+enum {
+  CLPV_TREE_WIDTH = 8,  // children of a node, triangles of a leaf
+  CLPV_TREE_DEPTH = 32,  // nodes on a path from the root to a leaf, at most
+};
 
 // Rows of a node: lower x, y, z and upper x, y, z of the children's boxes [m], and the children (int): the number of a
 // node, or ~ the number of a leaf. Missing children have boxes that no ray hits. Node 0 is the root.

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Transmittance of the links into a cell from the blockers at its corners.
 //
-//   T = 1 - clamp(B, 0, 1),   B the blocking potential along the link, a mean over the corners of the face, edge or
-//                             corner that it passes
+//   T = 1 - clamp(B, 0, 1)
+//   B = sum_a |w_a| B_a           areas
+//   B = sum_i c_i b_i(-w)         one-sided
 //
-// docs/method.md, 'Blockers'. From the host (host/codegen/transmittance_source.cpp): CLPV_LINKS, struct Links, and for
-// each link CLPV_LINK_SIDES, the side of the cell that it passes (-1, 0 or 1 along each axis), and CLPV_LINK_BLOCKED,
-// half the weights of the blockers' numbers, divided by the number of corners.
+// B is the blocking potential along the link, B_a or c_i a mean over the corners of the face, edge
+// or corner that it passes. docs/method.md, 'Blockers'. From the host
+// (host/codegen/transmittance_source.cpp): CLPV_LINKS, struct Links, and for each link
+// CLPV_LINK_SIDES, the side of the cell that it passes (-1, 0 or 1 along each axis), and
+// CLPV_LINK_BLOCKED, half the weights of the blockers' numbers, divided by the number of corners.
 #pragma once
 
 #include "volume/geometry.h"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Propagates light by one step, from every cell to its six neighbours, and adds it to the sum of all steps.
 //
-//   F = max(0, Omega_f I(w_f)) T_f,   c += (F / pi) c(n_f)      for the five visible faces f of each neighbour
+//   F = max(0, Omega_f I(w_f)) T_f      for the five visible faces f of each neighbour
+//   I(w) = sum_i c_i b_i(w)
+//   c += (F / pi) c(n_f)
 //
 // Kaplanyan and Dachsbacher 2010, 'Cascaded light propagation volumes'; docs/method.md, 'Propagation'.
 //
@@ -25,8 +27,10 @@
 #include "volume/transmittance.h"
 #endif
 
-#define CLPV_AXES 6
-#define CLPV_SEEN_FACES 5  // of a neighbour
+enum {
+  CLPV_AXES = 6,
+  CLPV_SEEN_FACES = 5,  // of a neighbour
+};
 
 __constant const float face_flux[CLPV_AXES * CLPV_SEEN_FACES][CLPV_N] = CLPV_FACE_FLUX;
 __constant const int face_normal[CLPV_AXES * CLPV_SEEN_FACES] = CLPV_FACE_NORMAL;
@@ -97,11 +101,7 @@ CLPV_INLINE Coefficients gain_light(CLPV_VOLUME_IN source, const int channel, co
   }
   Coefficients gained = zero_coefficients();
 #pragma unroll
-  for (int n = 0; n < CLPV_AXES; ++n) {
-#pragma unroll
-    for (int i = 0; i < CLPV_N; ++i)
-      if (lobes[n][i] != 0.0f) gained.c[i] = fma((realW)(lobes[n][i]), arriving[n], gained.c[i]);
-  }
+  for (int n = 0; n < CLPV_AXES; ++n) gained = add_row(gained, arriving[n], lobes[n]);
   return gained;
 }
 #endif

@@ -11,9 +11,9 @@
 // docs/method.md, 'More bounces'. D [W] is the incident flux on a face, R in [0, 1] the reflectance of a face per
 // channel, I the injected light, B the sources of the next sweep. By reciprocity E is the incident flux while every face
 // emits what it reflects of 1 W: inject_unit, a sweep along 24 directions and extend_series add one term of the series.
-// E depends only on geometry. Of light L_b in bins b (w_b, Omega_b) a face of normal a receives
-//   D_a = sum_b Omega_b max(0, -w_b.a) L_b s^2
-// and it emits a flux Phi as the lobe Phi max(0, w.a) / pi, projected on the basis.
+// E depends only on geometry. A face of normal a that receives D_a (face_fluxes.h) emits, projected
+// on the basis,
+//   I(w) = Phi_a max(0, w.a) / pi,   Phi_a = R_a D_a
 //
 // In:   swept             L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
 //       reflectors, series  R, S: volumes of six numbers per cell and channel, faces as in shared/reflectors.h
@@ -30,7 +30,6 @@
 #include "volume/light.h"
 
 #define CLPV_VOLUME faces
-#define CLPV_VOLUME_N CLPV_GRID
 #define CLPV_VOLUME_CELL FaceFluxes
 #define CLPV_VOLUME_COUNT CLPV_CELL_FACES
 #include "volume/instance.h"
@@ -64,11 +63,7 @@ CLPV_INLINE FaceFluxes sum_series(const FaceFluxes returned, const FaceFluxes re
 CLPV_INLINE Coefficients reflected_intensity(const FaceFluxes flux) {
   Coefficients c = zero_coefficients();
 #pragma unroll
-  for (int a = 0; a < CLPV_CELL_FACES; ++a) {
-#pragma unroll
-    for (int i = 0; i < CLPV_N; ++i)
-      if (lobes[a][i] != 0.0f) c.c[i] = fma((realW)(lobes[a][i]), flux.c[a], c.c[i]);
-  }
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) c = add_row(c, flux.c[a], lobes[a]);
   return c;
 }
 
@@ -145,18 +140,15 @@ __kernel void extend_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLP
 // Incident flux on one face of a row of finer cells from (x, y, z) on, from the coarser cells' faces: trilinear, and a
 // quarter, since a finer face has a quarter of the area.
 CLPV_INLINE realW interpolate_flux(CLPV_BUFFER_IN incident, const int x, const int y, const int z) {
-  CLPV_BUFFER_IN from = incident + bordered_index(CLPV_LOWER(z), CLPV_LOWER(y), CLPV_LOWER(x));
-  const float tz = CLPV_UPPER_WEIGHT(z), ty = CLPV_UPPER_WEIGHT(y);
-#define CLPV_BILINEAR(at)                                                                                          \
-  ((1.0f - tz) * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, at) + ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_SWEEP_PITCH)) + \
-   tz * ((1.0f - ty) * CLPV_SWEEP_LOAD(from, (at) + CLPV_BORDERED_PLANE) +                                         \
-         ty * CLPV_SWEEP_LOAD(from, (at) + CLPV_BORDERED_PLANE + CLPV_SWEEP_PITCH)))
-  const realW v = CLPV_BILINEAR(0);
+  CLPV_BUFFER_IN from = incident + bordered_index(lower_cell(z), lower_cell(y), lower_cell(x));
+  const float tz = upper_weight(z), ty = upper_weight(y);
+  const realW v = interpolate_rows(from, 0, CLPV_SWEEP_PITCH, CLPV_BORDERED_PLANE, ty, tz);
 #if W == 8
-  return 0.25f * (x & 1 ? CLPV_ODD(v) : CLPV_EVEN(v));
+  return 0.25f * (x & 1 ? interpolate_odd(v) : interpolate_even(v));
 #else
-  const float tx = CLPV_UPPER_WEIGHT(x);
-  return 0.25f * ((1.0f - tx) * v + tx * CLPV_BILINEAR(1));
+  const float tx = upper_weight(x);
+  return 0.25f * ((1.0f - tx) * v +
+                  tx * interpolate_rows(from, 1, CLPV_SWEEP_PITCH, CLPV_BORDERED_PLANE, ty, tz));
 #endif
 }
 

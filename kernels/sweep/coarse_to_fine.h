@@ -6,14 +6,32 @@
 // and 1/4.
 #pragma once
 
-// Lower one of the two coarser cells about finer cell u, and the weight of the upper one.
-#define CLPV_LOWER(u) (((u) - 1) >> 1)
-#define CLPV_UPPER_WEIGHT(u) ((u) & 1 ? 0.25f : 0.75f)
+#include "sweep/sweep_layout.h"
 
-// Finer cells u to u + 7, from eight coarser cells that start with CLPV_LOWER(u); for odd and even u.
-#define CLPV_ODD(v)                                                               \
-  (0.75f * (float8)((v).s0, (v).s1, (v).s1, (v).s2, (v).s2, (v).s3, (v).s3, (v).s4) + \
-   0.25f * (float8)((v).s1, (v).s0, (v).s2, (v).s1, (v).s3, (v).s2, (v).s4, (v).s3))
-#define CLPV_EVEN(v)                                                              \
-  (0.75f * (float8)((v).s1, (v).s1, (v).s2, (v).s2, (v).s3, (v).s3, (v).s4, (v).s4) + \
-   0.25f * (float8)((v).s0, (v).s2, (v).s1, (v).s3, (v).s2, (v).s4, (v).s3, (v).s5))
+// Lower one of the two coarser cells about finer cell u, and the weight of the upper one.
+static inline int lower_cell(const int u) { return (u - 1) >> 1; }
+static inline float upper_weight(const int u) { return u & 1 ? 0.25f : 0.75f; }
+
+#if W == 8
+// Finer cells u to u + 7, from eight coarser cells that start with lower_cell(u); for odd and even
+// u.
+CLPV_INLINE float8 interpolate_odd(const float8 v) {
+  return 0.75f * (float8)(v.s0, v.s1, v.s1, v.s2, v.s2, v.s3, v.s3, v.s4) +
+         0.25f * (float8)(v.s1, v.s0, v.s2, v.s1, v.s3, v.s2, v.s4, v.s3);
+}
+CLPV_INLINE float8 interpolate_even(const float8 v) {
+  return 0.75f * (float8)(v.s1, v.s1, v.s2, v.s2, v.s3, v.s3, v.s4, v.s4) +
+         0.25f * (float8)(v.s0, v.s2, v.s1, v.s3, v.s2, v.s4, v.s3, v.s5);
+}
+#endif
+
+// W cells between four rows: from index `at` on, and at the distances `row` and `plane` from there.
+// `row_weight`, `plane_weight`: of the farther ones.
+CLPV_INLINE realW interpolate_rows(CLPV_BUFFER_IN from, const int at, const int row,
+                                   const int plane, const float row_weight,
+                                   const float plane_weight) {
+  return (1.0f - plane_weight) * ((1.0f - row_weight) * read_numbers(from, at) +
+                                  row_weight * read_numbers(from, at + row)) +
+         plane_weight * ((1.0f - row_weight) * read_numbers(from, at + plane) +
+                         row_weight * read_numbers(from, at + plane + row));
+}

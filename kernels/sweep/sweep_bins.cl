@@ -23,7 +23,7 @@
 // Stores eight numbers of the halo; cells outside the grid are dark.
 CLPV_INLINE void store_halo(const realW light, const int first, CLPV_BUFFER_OUT halo_light, const int at) {
   const intW i = first + lane_numbers();
-  CLPV_SWEEP_STORE(halo_light, at, select(ZERO, light, i >= 0 && i < CLPV_GRID));
+  write_numbers(halo_light, at, select(ZERO, light, i >= 0 && i < CLPV_GRID));
 }
 CLPV_INLINE void store_halo_row(const ClpvSweepHalo halo, __global const float* d, const int row, const int column,
                                 CLPV_BUFFER_OUT halo_light, const int at) {
@@ -45,20 +45,21 @@ CLPV_INLINE void store_halo_column(const ClpvSweepHalo halo, __global const floa
 CLPV_INLINE void store_halo_plane(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate, const int plane,
                                   __global const float* d) {
   const ClpvSweepBin bin = s->bin;
-  const int p = plane - CLPV_HALO_FIRST(halo, bin.plane_axis);
+  const int p = plane - halo_first(halo, bin.plane_axis);
   if (p < 0 || p >= halo.side) return;
-  const int first_row = CLPV_HALO_FIRST(halo, bin.row_axis), first_column = CLPV_HALO_FIRST(halo, bin.column_axis);
+  const int first_row = halo_first(halo, bin.row_axis),
+            first_column = halo_first(halo, bin.column_axis);
   const int end = min(first_row + halo.side, CLPV_GRID);
-  const int plane_layer = plane - CLPV_HALO_LAYER(halo, bin.plane_axis, bin.plane_sign);
+  const int plane_layer = plane - halo_layer(halo, bin.plane_axis, bin.plane_sign);
   for (int row = max(first_row, 0); row < end && (plane_layer == 0 || plane_layer == 1); ++row)
     store_halo_row(halo, d, row, first_column, s->halo_light,
                    halo_index(halo, ordinate, CLPV_BORDER_PLANE, plane_layer, row - first_row, 0));
   for (int layer = 0; layer < 2; ++layer) {
-    const int row = CLPV_HALO_LAYER(halo, bin.row_axis, bin.row_sign) + layer;
+    const int row = halo_layer(halo, bin.row_axis, bin.row_sign) + layer;
     if (row >= 0 && row < CLPV_GRID)
       store_halo_row(halo, d, row, first_column, s->halo_light,
                      halo_index(halo, ordinate, CLPV_BORDER_ROW, layer, p, 0));
-    const int column = CLPV_HALO_LAYER(halo, bin.column_axis, bin.column_sign) + layer;
+    const int column = halo_layer(halo, bin.column_axis, bin.column_sign) + layer;
     if (column >= 0 && column < CLPV_GRID)
       store_halo_column(halo, d, first_row, column, s->halo_light,
                         halo_index(halo, ordinate, CLPV_BORDER_COLUMN, layer, p, 0));

@@ -29,28 +29,26 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const
   const int sign = plane_face ? bin.plane_sign : (row_face ? bin.row_sign : bin.column_sign);
   const int row_axis = plane_face ? bin.row_axis : bin.plane_axis;
   const int column_axis = face == CLPV_BORDER_COLUMN ? bin.row_axis : bin.column_axis;
-#define CLPV_OFFSET(axis) ((axis) == 0 ? dx : ((axis) == 1 ? dy : dz))
-  const int layer = (sign > 0 ? -1 : CLPV_GRID) + CLPV_OFFSET(across);
-  const int r = row + CLPV_OFFSET(row_axis), c = column + CLPV_OFFSET(column_axis);
+  const int layer = (sign > 0 ? -1 : CLPV_GRID) + along_axis(across, dx, dy, dz);
+  const int r = row + along_axis(row_axis, dx, dy, dz),
+            c = column + along_axis(column_axis, dx, dy, dz);
   const int pitch = CLPV_SWEEP_HALO_PITCH_OF(halo.side), next = halo.side * pitch;
   const int coarser = ordinate / CLPV_PARTS * CLPV_COARSER_PARTS + direction->coarser;
   CLPV_BUFFER_IN light =
-      halo_light + halo_index(halo, coarser, face, 0, CLPV_LOWER(r) - CLPV_HALO_FIRST(halo, row_axis),
-                              CLPV_LOWER(c) - CLPV_HALO_FIRST(halo, column_axis));
-  const float tl = CLPV_UPPER_WEIGHT(layer), tr = CLPV_UPPER_WEIGHT(r);
-#define CLPV_BILINEAR(at)                                                                                          \
-  ((1.0f - tl) * ((1.0f - tr) * CLPV_SWEEP_LOAD(light, at) + tr * CLPV_SWEEP_LOAD(light, (at) + pitch)) +          \
-   tl * ((1.0f - tr) * CLPV_SWEEP_LOAD(light, (at) + next) + tr * CLPV_SWEEP_LOAD(light, (at) + next + pitch)))
-  const realW v = direction->from_coarser * CLPV_BILINEAR(0);
+      halo_light + halo_index(halo, coarser, face, 0, lower_cell(r) - halo_first(halo, row_axis),
+                              lower_cell(c) - halo_first(halo, column_axis));
+  const float tl = upper_weight(layer), tr = upper_weight(r);
+  const realW v = direction->from_coarser * interpolate_rows(light, 0, pitch, next, tr, tl);
 #if W == 8
-  const realW in = c & 1 ? CLPV_ODD(v) : CLPV_EVEN(v);
+  const realW in = c & 1 ? interpolate_odd(v) : interpolate_even(v);
 #else
-  const float tc = CLPV_UPPER_WEIGHT(c);
-  const realW in = (1.0f - tc) * v + tc * direction->from_coarser * CLPV_BILINEAR(1);
+  const float tc = upper_weight(c);
+  const realW in = (1.0f - tc) * v +
+                   tc * direction->from_coarser * interpolate_rows(light, 1, pitch, next, tr, tl);
 #endif
   if (plane_face) {
     store_lanes(in, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + plane_index(row, column));
   } else {
-    CLPV_SWEEP_STORE(border, border_index(ordinate, face, row, column), in);
+    write_numbers(border, border_index(ordinate, face, row, column), in);
   }
 }

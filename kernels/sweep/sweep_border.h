@@ -27,10 +27,22 @@ CLPV_INLINE int border_index(const int ordinate, const int face, const int plane
   return side * CLPV_SWEEP_PITCH + 1 + at;
 }
 
-// First cell of the halo along an axis. A halo is passed by value, and its arrays are indexed only by literals
-// (region.h).
-#define CLPV_HALO_FIRST(halo, axis) \
-  ((axis) == 0 ? (halo).first[0] : ((axis) == 1 ? (halo).first[1] : (halo).first[2]))
+// The one of three numbers that belongs to an axis. Structs that kernels get by value have their
+// arrays indexed only by literals (region.h).
+CLPV_INLINE int along_axis(const int axis, const int x, const int y, const int z) {
+  return axis == 0 ? x : (axis == 1 ? y : z);
+}
+
+// First cell of the halo along an axis.
+CLPV_INLINE int halo_first(const ClpvSweepHalo halo, const int axis) {
+  return along_axis(axis, halo.first[0], halo.first[1], halo.first[2]);
+}
+
+// Lower one of the two halo layers across an axis, for light along `sign`.
+CLPV_INLINE int halo_layer(const ClpvSweepHalo halo, const int axis, const int sign) {
+  return sign > 0 ? along_axis(axis, halo.layers[0], halo.layers[2], halo.layers[4])
+                  : along_axis(axis, halo.layers[1], halo.layers[3], halo.layers[5]);
+}
 
 // Index in a halo. (i, j) is (row, column) in CLPV_BORDER_PLANE, (plane, column) in CLPV_BORDER_ROW and (plane, row) in
 // CLPV_BORDER_COLUMN.

@@ -2,12 +2,16 @@
 // One step of a sweep: W cells of a plane, all channels and all directions of a bin. Both forms of the sweep
 // use it (sweep_bins.cl, sweep_planes.cl).
 //
-//   D = I + sum_k t_k T_k D_k            k: the four cells of the previous plane that light comes from
-//   L s^2 = sum_d share_d D_d            d: the directions of the bin
+//   D = I + sum_k t_k T_k D_k                               k: the four cells of the previous plane that light comes from
+//   t = (1-t_u)(1-t_v), t_u(1-t_v), (1-t_u)t_v, t_u t_v      of these cells
+//   t_u = |w_u| / |w_m|
+//   I_w = sum_i c_i (1 / Omega) Int_part b_i dw             I of direction w
+//   L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b)            d: the directions of bin b
 //
 // Discrete ordinates by short characteristics (docs/method.md, 'The sweep'). D [W/sr] is the light along a direction, I
-// [W/sr] the injected light, sum_j mean_dj c_j with the mean of basis function j over the direction's part of a bin, T_k
-// in [0, 1] the transmittance of the link from cell k; t_k and share_d are in ClpvSweepDirection.
+// [W/sr] the injected light, T_k in [0, 1] the transmittance of the link from cell k.
+// ClpvSweepDirection has t and the share Omega_d / (|w_m| Omega_b), BinSweep the means of the basis
+// functions over a direction's part of a bin.
 //
 // With CLPV_MEDIUM, light from the previous plane is attenuated in each channel, and the medium scatters light into it:
 //
@@ -61,12 +65,14 @@ typedef struct {
    sums,                                                                                                      \
    halo_light CLPV_MEDIUM_MEMBER}
 
-// Nonzero if W cells hold sources.
+// Returns true if any of W cells holds sources.
+CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
 #if CLPV_SOURCE_LANES >= W
-#define CLPV_LIT(lit, source) ((lit)[(source) / CLPV_SOURCE_LANES])
+  return lit[source / CLPV_SOURCE_LANES] != 0;
 #else
-#define CLPV_LIT(lit, source) as_ulong(vload8(0, (lit) + (source)))
+  return as_ulong(vload8(0, lit + source)) != 0ul;
 #endif
+}
 
 // Adds I to D in cells that hold sources, and to `sum`. `planes`: D of the bin's first ordinate in these cells.
 CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float* planes, realW* sum) {
@@ -76,7 +82,7 @@ CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float
     for (int part = 0; part < CLPV_PARTS; ++part) injected[part] = 0.0f;
     for (int j = 0; j < CLPV_EMITTING; ++j) {
       const int volume = channel * CLPV_SOURCES + s->coefficients[j];
-      const realW c = CLPV_SWEEP_LOAD(s->sources + volume * CLPV_SWEEP_VOLUME, source);
+      const realW c = read_numbers(s->sources + volume * CLPV_SWEEP_VOLUME, source);
 #pragma unroll
       for (int part = 0; part < CLPV_PARTS; ++part)
         injected[part] = fma((realW)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
@@ -90,6 +96,13 @@ CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float
   }
 }
 
+#if CLPV_MEDIUM
+// Index in `inside` of cell i along an axis.
+CLPV_INLINE int inside_index(const int axis, const int i) {
+  return axis * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + i;
+}
+#endif
+
 // `from`: plane buffer of the previous plane; `to`: plane buffer of this one, which may be the same.
 CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __global float* to, const int plane,
                              const int row, const int column) {
@@ -101,42 +114,44 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
   __global const float* from2 = from0 - bin.row_sign * CLPV_SWEEP_PITCH;
   __global const float* from3 = from2 - bin.column_sign;
 #if CLPV_BLOCKING
-#define CLPV_LINK(k) const realW t##k = CLPV_SWEEP_LOAD(s->links + bin.links[k] * CLPV_SWEEP_VOLUME, at)
-  CLPV_LINK(0);
-  CLPV_LINK(1);
-  CLPV_LINK(2);
-  CLPV_LINK(3);
-#define CLPV_TAP(k) (s->directions[part].taps[k] * t##k)
-#else
-#define CLPV_TAP(k) ((realW)(s->directions[part].taps[k]))
+  realW links[4];
+#pragma unroll
+  for (int k = 0; k < 4; ++k)
+    links[k] = read_numbers(s->links + bin.links[k] * CLPV_SWEEP_VOLUME, at);
 #endif
 #if CLPV_MEDIUM
-#define CLPV_INSIDE(axis, i) ((axis)*CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + (i))
   const int upstream = plane - bin.plane_sign;
   const int scattered_upstream = upstream < 0 || upstream >= CLPV_GRID ? at : sweep_index(upstream, row, column);
-  const realW across = 0.5f * s->inside[CLPV_INSIDE(bin.row_axis, row)] *
-                           load_lanes(s->inside + CLPV_INSIDE(bin.column_axis, column));
-  const realW inside = across * s->inside[CLPV_INSIDE(bin.plane_axis, plane)],
-                  inside_upstream = across * s->inside[CLPV_INSIDE(bin.plane_axis, upstream)];
+  const realW across = 0.5f * s->inside[inside_index(bin.row_axis, row)] *
+                           load_lanes(s->inside + inside_index(bin.column_axis, column));
+  const realW inside = across * s->inside[inside_index(bin.plane_axis, plane)],
+                  inside_upstream = across * s->inside[inside_index(bin.plane_axis, upstream)];
   realW scattered[3];
 #pragma unroll
   for (int channel = 0; channel < 3; ++channel) {
     CLPV_BUFFER_IN volume = s->scattered + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME;
-    scattered[channel] =
-        inside * CLPV_SWEEP_LOAD(volume, at) + inside_upstream * CLPV_SWEEP_LOAD(volume, scattered_upstream);
+    scattered[channel] = inside * read_numbers(volume, at) +
+                         inside_upstream * read_numbers(volume, scattered_upstream);
   }
 #endif
   realW sum[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll
   for (int part = 0; part < CLPV_PARTS; ++part) {
-    const realW w0 = CLPV_TAP(0), w1 = CLPV_TAP(1), w2 = CLPV_TAP(2), w3 = CLPV_TAP(3);
+    realW w[4];
+#pragma unroll
+    for (int k = 0; k < 4; ++k) {
+      w[k] = (realW)(s->directions[part].taps[k]);
+#if CLPV_BLOCKING
+      w[k] *= links[k];
+#endif
+    }
 #pragma unroll
     for (int channel = 0; channel < 3; ++channel) {
       const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
-      realW d = w0 * load_lanes(from0 + ordinate);
-      d = fma(w1, load_lanes(from1 + ordinate), d);
-      d = fma(w2, load_lanes(from2 + ordinate), d);
-      d = fma(w3, load_lanes(from3 + ordinate), d);
+      realW d = w[0] * load_lanes(from0 + ordinate);
+      d = fma(w[1], load_lanes(from1 + ordinate), d);
+      d = fma(w[2], load_lanes(from2 + ordinate), d);
+      d = fma(w[3], load_lanes(from3 + ordinate), d);
 #if CLPV_MEDIUM
       const realW lost = 1.0f - s->directions[part].attenuation[channel];
       d = fma(lost, s->directions[part].flux * scattered[channel] - (inside + inside_upstream) * d, d);
@@ -146,38 +161,32 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
     }
   }
   const int source = plane * bin.plane + row * bin.row + column;
-  if (CLPV_LIT(s->lit, source)) add_sources(s, source, to + here, sum);
+  if (holds_sources(s->lit, source)) add_sources(s, source, to + here, sum);
 #pragma unroll
   for (int channel = 0; channel < 3; ++channel)
-    CLPV_SWEEP_STORE(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME, at, sum[channel]);
+    write_numbers(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME, at,
+                  sum[channel]);
 }
 
 // Row or column upstream of the grid.
-#define CLPV_UPSTREAM(sign) ((sign) > 0 ? -1 : CLPV_GRID)
+CLPV_INLINE int upstream_of_grid(const int sign) { return sign > 0 ? -1 : CLPV_GRID; }
 
 // Copy the boundary condition of a plane from the border into the plane buffer, where the next plane reads it:
 // W cells of the row upstream, and of the column upstream (one cell with one lane).
 CLPV_INLINE void copy_border_row(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
                                  const int column) {
-  planes += ordinate * CLPV_BORDERED_PLANE + plane_index(CLPV_UPSTREAM(s->bin.row_sign), column);
-  store_lanes(CLPV_SWEEP_LOAD(s->border, border_index(ordinate, CLPV_BORDER_ROW, plane, column)), planes);
+  planes += ordinate * CLPV_BORDERED_PLANE + plane_index(upstream_of_grid(s->bin.row_sign), column);
+  store_lanes(read_numbers(s->border, border_index(ordinate, CLPV_BORDER_ROW, plane, column)),
+              planes);
 }
 CLPV_INLINE void copy_border_column(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
                                     const int row) {
-  const realW light = CLPV_SWEEP_LOAD(s->border, border_index(ordinate, CLPV_BORDER_COLUMN, plane, row));
-  planes += ordinate * CLPV_BORDERED_PLANE + plane_index(row, CLPV_UPSTREAM(s->bin.column_sign));
-#if W == 8
-#define CLPV_DO(lane) \
-  if (row + 0x##lane <= CLPV_GRID) planes[0x##lane * CLPV_SWEEP_PITCH] = light.s##lane;
-  CLPV_DO(0) CLPV_DO(1) CLPV_DO(2) CLPV_DO(3) CLPV_DO(4) CLPV_DO(5) CLPV_DO(6) CLPV_DO(7)
-#undef CLPV_DO
-#else
-  *planes = light;
-#endif
+  const realW light =
+      read_numbers(s->border, border_index(ordinate, CLPV_BORDER_COLUMN, plane, row));
+  planes += ordinate * CLPV_BORDERED_PLANE + plane_index(row, upstream_of_grid(s->bin.column_sign));
+  float numbers[W];
+  store_lanes(light, numbers);
+#pragma unroll
+  for (int lane = 0; lane < W; ++lane)
+    if (row + lane <= CLPV_GRID) planes[lane * CLPV_SWEEP_PITCH] = numbers[lane];
 }
-
-// Lower one of the two halo layers across an axis, for light along `sign`.
-#define CLPV_HALO_LAYER(halo, axis, sign)                                                                   \
-  ((axis) == 0 ? ((sign) > 0 ? (halo).layers[0] : (halo).layers[1])                                         \
-               : ((axis) == 1 ? ((sign) > 0 ? (halo).layers[2] : (halo).layers[3])                          \
-                              : ((sign) > 0 ? (halo).layers[4] : (halo).layers[5])))

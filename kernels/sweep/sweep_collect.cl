@@ -30,11 +30,7 @@ CLPV_INLINE Coefficients project_bins(const Bins bins) {
   const Bins folded = fold_bins(bins);
   Coefficients c = zero_coefficients();
 #pragma unroll
-  for (int b = 0; b < CLPV_SWEEP_BINS; ++b) {
-#pragma unroll
-    for (int i = 0; i < CLPV_N; ++i)
-      if (projection[b][i] != 0.0f) c.c[i] = fma((realW)(projection[b][i]), folded.c[b], c.c[i]);
-  }
+  for (int b = 0; b < CLPV_SWEEP_BINS; ++b) c = add_row(c, folded.c[b], projection[b]);
   return c;
 }
 
@@ -59,7 +55,7 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated
     CLPV_BUFFER_OUT faces = incident + channel * CLPV_CELL_FACES * CLPV_BORDERED_VOLUME;
 #pragma unroll
     for (int i = 0; i < CLPV_CELL_FACES; ++i)
-      CLPV_SWEEP_STORE(faces + i * CLPV_BORDERED_VOLUME, bordered, CLPV_WITHIN(x, flux.c[i]));
+      write_numbers(faces + i * CLPV_BORDERED_VOLUME, bordered, zero_outside(x, flux.c[i]));
 #endif
   }
 }

@@ -12,23 +12,18 @@
 #include "shared/sweep.h"
 #include "volume/numbers.h"
 
-#define CLPV_SWEEP_ROW CLPV_SWEEP_ROW_OF(CLPV_GRID)
-#define CLPV_SWEEP_PLANE CLPV_SWEEP_PLANE_OF(CLPV_GRID)
-#define CLPV_SWEEP_VOLUME CLPV_SWEEP_VOLUME_OF(CLPV_GRID)
+enum {
+  CLPV_SWEEP_ROW = CLPV_SWEEP_ROW_OF(CLPV_GRID),
+  CLPV_SWEEP_PLANE = CLPV_SWEEP_PLANE_OF(CLPV_GRID),
+  CLPV_SWEEP_VOLUME = CLPV_SWEEP_VOLUME_OF(CLPV_GRID),
+};
 
 // Plane buffers, and volumes that a finer cascade interpolates, have a border of one cell on every side.
-#define CLPV_SWEEP_PITCH CLPV_SWEEP_PITCH_OF(CLPV_GRID)
-#define CLPV_BORDERED_PLANE CLPV_SWEEP_BORDERED_PLANE_OF(CLPV_GRID)
-#define CLPV_BORDERED_VOLUME CLPV_SWEEP_BORDERED_VOLUME_OF(CLPV_GRID)
-
-// W numbers of a row of a volume, float or half.
-#if W == 8
-#define CLPV_SWEEP_LOAD(from, at) CLPV_READ_ROW(from, at)
-#define CLPV_SWEEP_STORE(to, at, value) CLPV_WRITE_ROW(to, at, value)
-#else
-#define CLPV_SWEEP_LOAD(from, at) CLPV_READ(from, at)
-#define CLPV_SWEEP_STORE(to, at, value) CLPV_WRITE(to, at, value)
-#endif
+enum {
+  CLPV_SWEEP_PITCH = CLPV_SWEEP_PITCH_OF(CLPV_GRID),
+  CLPV_BORDERED_PLANE = CLPV_SWEEP_BORDERED_PLANE_OF(CLPV_GRID),
+  CLPV_BORDERED_VOLUME = CLPV_SWEEP_BORDERED_VOLUME_OF(CLPV_GRID),
+};
 
 // Index of a cell in a volume, in a plane buffer and in a bordered volume.
 CLPV_INLINE int sweep_index(const int plane, const int row, const int column) {

@@ -28,10 +28,10 @@ __kernel void sweep_links(CLPV_VOLUME_IN blockers, CLPV_BUFFER_OUT transmittance
     for (int v = 0; v < CLPV_AXIS_LINKS; ++v) {
       const int across_y = v + CLPV_AXIS_LINKS, across_z = v + 2 * CLPV_AXIS_LINKS;
       tiles[v].row[r] = links.c[volume_links[v]];
-      CLPV_SWEEP_STORE(transmittance + across_y * CLPV_SWEEP_VOLUME, sweep_index(y + r, z, x),
-                       CLPV_WITHIN(x, links.c[volume_links[across_y]]));
-      CLPV_SWEEP_STORE(transmittance + across_z * CLPV_SWEEP_VOLUME, sweep_index(z, y + r, x),
-                       CLPV_WITHIN(x, links.c[volume_links[across_z]]));
+      write_numbers(transmittance + across_y * CLPV_SWEEP_VOLUME, sweep_index(y + r, z, x),
+                       zero_outside(x, links.c[volume_links[across_y]]));
+      write_numbers(transmittance + across_z * CLPV_SWEEP_VOLUME, sweep_index(z, y + r, x),
+                       zero_outside(x, links.c[volume_links[across_z]]));
     }
   }
   for (int v = 0; v < CLPV_AXIS_LINKS; ++v) store_x_tile(transmittance + v * CLPV_SWEEP_VOLUME, tiles[v], x, y, z);

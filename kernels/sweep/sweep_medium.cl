@@ -97,7 +97,7 @@ CLPV_INLINE realW phase_to(const LitRow row, const float g, const float4 bin) {
 }
 
 CLPV_INLINE void add_to_row(CLPV_BUFFER_OUT volume, const int at, const realW added) {
-  CLPV_SWEEP_STORE(volume, at, CLPV_SWEEP_LOAD(volume, at) + added);
+  write_numbers(volume, at, read_numbers(volume, at) + added);
 }
 
 // Adds the tile from cell (x, y, z) on, whose rows lie along x, to a bin's volume.
@@ -185,7 +185,7 @@ __kernel void scatter_swept(const ClpvMedium medium, CLPV_BUFFER_IN lit, CLPV_BU
       if (b < CLPV_AXIS_BINS) {
         tiles[b].row[r] = sum;
       } else {
-        CLPV_SWEEP_STORE(sources + first + b * CLPV_SWEEP_VOLUME, bin_index(b, x, y + r, z), sum);
+        write_numbers(sources + first + b * CLPV_SWEEP_VOLUME, bin_index(b, x, y + r, z), sum);
       }
     }
   }

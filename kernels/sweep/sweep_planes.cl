@@ -24,18 +24,19 @@
 CLPV_INLINE void store_halo_cell(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate, const int3 cell,
                                  const float d) {
   const ClpvSweepBin bin = s->bin;
-  const int p = cell.z - CLPV_HALO_FIRST(halo, bin.plane_axis), r = cell.y - CLPV_HALO_FIRST(halo, bin.row_axis),
-            c = cell.x - CLPV_HALO_FIRST(halo, bin.column_axis);
+  const int p = cell.z - halo_first(halo, bin.plane_axis),
+            r = cell.y - halo_first(halo, bin.row_axis),
+            c = cell.x - halo_first(halo, bin.column_axis);
   if (p < 0 || r < 0 || c < 0 || p >= halo.side || r >= halo.side || c >= halo.side) return;
-  int layer = cell.z - CLPV_HALO_LAYER(halo, bin.plane_axis, bin.plane_sign);
+  int layer = cell.z - halo_layer(halo, bin.plane_axis, bin.plane_sign);
   if (layer == 0 || layer == 1)
-    CLPV_WRITE(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_PLANE, layer, r, c), d);
-  layer = cell.y - CLPV_HALO_LAYER(halo, bin.row_axis, bin.row_sign);
+    write_number(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_PLANE, layer, r, c), d);
+  layer = cell.y - halo_layer(halo, bin.row_axis, bin.row_sign);
   if (layer == 0 || layer == 1)
-    CLPV_WRITE(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_ROW, layer, p, c), d);
-  layer = cell.x - CLPV_HALO_LAYER(halo, bin.column_axis, bin.column_sign);
+    write_number(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_ROW, layer, p, c), d);
+  layer = cell.x - halo_layer(halo, bin.column_axis, bin.column_sign);
   if (layer == 0 || layer == 1)
-    CLPV_WRITE(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_COLUMN, layer, p, r), d);
+    write_number(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_COLUMN, layer, p, r), d);
 }
 
 __kernel void sweep_plane(__constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,

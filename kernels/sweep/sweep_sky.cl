@@ -22,6 +22,6 @@ __kernel void sweep_sky(__global const float* sky, const float scale, __global f
   if (face == CLPV_BORDER_PLANE) {
     store_lanes(in, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + plane_index(row, column));
   } else {
-    CLPV_SWEEP_STORE(border, border_index(ordinate, face, row, column), in);
+    write_numbers(border, border_index(ordinate, face, row, column), in);
   }
 }

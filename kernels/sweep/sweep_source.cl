@@ -22,7 +22,7 @@ CLPV_INLINE realW sum_light(CLPV_VOLUME_IN injected, const int x, const int y, c
 #pragma unroll
     for (int i = 0; i < CLPV_N; ++i) sum += fabs(c.c[i]);
   }
-  return CLPV_WITHIN(x, sum);
+  return zero_outside(x, sum);
 }
 
 // Copies a channel of a tile, across z and across x.
@@ -37,7 +37,8 @@ CLPV_INLINE void copy_tile(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, con
       c = light_load(injected, channel, x, y + r, z);
 #pragma unroll
       for (int i = 0; i < CLPV_N; ++i)
-        CLPV_SWEEP_STORE(across_z + i * CLPV_SWEEP_VOLUME, sweep_index(z, y + r, x), CLPV_WITHIN(x, c.c[i]));
+        write_numbers(across_z + i * CLPV_SWEEP_VOLUME, sweep_index(z, y + r, x),
+                      zero_outside(x, c.c[i]));
     }
 #pragma unroll
     for (int i = 0; i < CLPV_N; ++i) tiles[i].row[r] = c.c[i];

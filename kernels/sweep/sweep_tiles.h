@@ -18,13 +18,15 @@ CLPV_INLINE SweepTile transpose_tile(const SweepTile a) {
                         CLPV_COLUMN_OF_ROWS(s6), CLPV_COLUMN_OF_ROWS(s7)}};
   return t;
 }
-// Lanes beyond the grid's last cell become 0.
-#define CLPV_WITHIN(x, value) \
-  (CLPV_GRID % 8 == 0 ? (value) : select(ZERO, value, (x) + lane_numbers() < CLPV_GRID))
 #else
 CLPV_INLINE SweepTile transpose_tile(const SweepTile a) { return a; }
-#define CLPV_WITHIN(x, value) (value)
 #endif
+
+// Sets lanes beyond the grid's last cell to 0.
+CLPV_INLINE realW zero_outside(const int x, const realW value) {
+  if (CLPV_GRID % W == 0) return value;
+  return x + lane_numbers() < CLPV_GRID ? value : ZERO;
+}
 
 // Numbers of W cells in each bin. The first CLPV_AXIS_BINS bins are swept across x, then follow those across y and z.
 typedef struct {
@@ -39,7 +41,7 @@ CLPV_INLINE void load_x_bins(CLPV_BUFFER_IN volumes, const int x, const int y, c
     for (int r = 0; r < W; ++r) {
       columns.row[r] = 0.0f;
       if (x + r < CLPV_GRID)
-        columns.row[r] = CLPV_SWEEP_LOAD(volumes + b * CLPV_SWEEP_VOLUME, sweep_index(x + r, z, y));
+        columns.row[r] = read_numbers(volumes + b * CLPV_SWEEP_VOLUME, sweep_index(x + r, z, y));
     }
     tiles[b] = transpose_tile(columns);
   }
@@ -58,7 +60,7 @@ CLPV_INLINE Bins load_bins(CLPV_BUFFER_IN volumes, const SweepTile* tiles, const
   for (int b = 0; b < CLPV_AXIS_BINS; ++b) bins.c[b] = tiles[b].row[r];
 #pragma unroll
   for (int b = CLPV_AXIS_BINS; b < CLPV_SWEEP_BINS; ++b)
-    bins.c[b] = CLPV_SWEEP_LOAD(volumes + b * CLPV_SWEEP_VOLUME, bin_index(b, x, y, z));
+    bins.c[b] = read_numbers(volumes + b * CLPV_SWEEP_VOLUME, bin_index(b, x, y, z));
   return bins;
 }
 
@@ -68,6 +70,6 @@ CLPV_INLINE void store_x_tile(CLPV_BUFFER_OUT volume, const SweepTile tile, cons
   const SweepTile columns = transpose_tile(tile);
   for (int r = 0; r < W; ++r) {
     if (x + r >= CLPV_GRID) break;
-    CLPV_SWEEP_STORE(volume, sweep_index(x + r, z, y), columns.row[r]);
+    write_numbers(volume, sweep_index(x + r, z, y), columns.row[r]);
   }
 }

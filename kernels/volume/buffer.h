@@ -2,25 +2,21 @@
 // Load and store of volumes in buffers, for the layouts soa.h, aos.h and tiled.h. Part of the template instance.h.
 //
 // A layout defines
-//   NAME_address(channel, x, y, z)            index of coefficient 0
-//   CLPV_NEXT, CLPV_LANE                      steps to the next coefficient, and to the next cell along x
-//   CLPV_BEFORE_LOAD, CLPV_LOAD_LANES(i)      statements before a load; coefficient i of 8 cells of `volume` from index
-//                                             `at` on
-//   CLPV_BEFORE_STORE, CLPV_STORE_LANES(i), CLPV_AFTER_STORE     statements that store 8 cells of `cell`, all inside
-//                                                                the grid
+//   NAME_address(channel, x, y, z)     index of coefficient 0
+//   CLPV_NEXT, CLPV_LANE               steps to the next coefficient, and to the next cell along x
+//   NAME_load_eight(volume, at, x)     with W 8: the cells x to x + 7, from index `at` on
+//   NAME_store_eight(volume, at, cell) with W 8: stores them; all are inside the grid
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume, const int channel, const int x,
                                                            const int y, const int z) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
-  CLPV_VOLUME_CELL cell;
 #if W == 8
-  CLPV_BEFORE_LOAD
-#pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = CLPV_LOAD_LANES(i);
+  return CLPV_PASTE(CLPV_VOLUME, load_eight)(volume, at, x);
 #else
+  CLPV_VOLUME_CELL cell;
 #pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = CLPV_READ(volume, at + i * CLPV_NEXT);
-#endif
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = read_number(volume, at + i * CLPV_NEXT);
   return cell;
+#endif
 }
 
 CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const int channel, const int x, const int y,
@@ -32,30 +28,21 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const in
     for (int lane = 0; lane < CLPV_VOLUME_N - x; ++lane) {
 #pragma unroll
       for (int i = 0; i < CLPV_VOLUME_COUNT; ++i)
-        CLPV_WRITE(volume, at + lane * CLPV_LANE + i * CLPV_NEXT, ((const float*)&cell.c[i])[lane]);
+        write_number(volume, at + lane * CLPV_LANE + i * CLPV_NEXT,
+                     ((const float*)&cell.c[i])[lane]);
     }
     return;
   }
 #endif
-  CLPV_BEFORE_STORE
-#pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) CLPV_STORE_LANES(i)
-  CLPV_AFTER_STORE
+  CLPV_PASTE(CLPV_VOLUME, store_eight)(volume, at, cell);
 #else
 #pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) CLPV_WRITE(volume, at + i * CLPV_NEXT, cell.c[i]);
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_number(volume, at + i * CLPV_NEXT, cell.c[i]);
 #endif
 }
 
-#undef CLPV_AFTER_STORE
-#undef CLPV_STORE_LANES
-#undef CLPV_BEFORE_STORE
-#undef CLPV_LOAD_LANES
-#undef CLPV_BEFORE_LOAD
-#undef CLPV_TRANSPOSED
 #undef CLPV_LANE
 #undef CLPV_NEXT
 #undef CLPV_BLOCK
 #undef CLPV_ROWS
-#undef CLPV_BLOCKS
 #undef CLPV_PITCH

@@ -41,6 +41,17 @@ CLPV_INLINE Coefficient dot_coefficients(const Coefficients a, const Coefficient
   return r;
 }
 
+// sum + factor row, without the products of zeros: the product of a matrix and a vector is a sum of
+// rows.
+CLPV_INLINE Coefficients add_row(const Coefficients sum, const Coefficient factor,
+                                 __constant const float* row) {
+  Coefficients r = sum;
+#pragma unroll
+  for (int i = 0; i < CLPV_N; ++i)
+    if (row[i] != 0.0f) r.c[i] = fma((Coefficient)(row[i]), factor, r.c[i]);
+  return r;
+}
+
 // Adds constant . a, without the products of zeros.
 CLPV_INLINE Coefficient add_product(const Coefficient sum, __constant const float* constants, const Coefficients a) {
   Coefficient r = sum;

@@ -17,14 +17,14 @@
 #include "volume/soa.h"
 #include "volume/buffer.h"
 
-__kernel void image_to_planes(CLPV_IMAGE_IN image, CLPV_BUFFER_OUT planes) {
+__kernel void image_to_planes(__read_only image3d_t image, CLPV_BUFFER_OUT planes) {
   const int x = get_global_id(0), y = get_global_id(1);
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   planes_store(planes, channel, x, y, z, light_load(image, channel, x, y, z));
 }
 
-__kernel void planes_to_image(CLPV_BUFFER_IN planes, CLPV_IMAGE_OUT image) {
+__kernel void planes_to_image(CLPV_BUFFER_IN planes, __write_only image3d_t image) {
   const int x = get_global_id(0), y = get_global_id(1);
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;

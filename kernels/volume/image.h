@@ -4,21 +4,11 @@
 // A single image holds all: OpenCL 1.2 guarantees 8 writable images per kernel. Groups of four coefficients are stacked
 // along z and channels along y, with a texel of zeros between them; the sampler's border is zero as well. The host sees
 // to it that a kernel either reads or writes an image.
-#ifndef CLPV_VOLUME_IMAGE_ONCE
-#define CLPV_VOLUME_IMAGE_ONCE
-#pragma OPENCL EXTENSION cl_khr_3d_image_writes : enable
-#define CLPV_IMAGE_IN __read_only image3d_t
-#define CLPV_IMAGE_OUT __write_only image3d_t
-__constant sampler_t nearest_sampler = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_NEAREST;
-#ifdef CLPV_FILTERED
-__constant sampler_t linear_sampler = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_LINEAR;
-#endif
-#endif
-
 #define CLPV_STEP (CLPV_VOLUME_N + 1)                // step to the next channel, and to the next four coefficients
 #define CLPV_FOURS ((CLPV_VOLUME_COUNT + 3) / 4)
 
-CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_IMAGE_IN volume, const int channel, const int x,
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(__read_only image3d_t volume,
+                                                           const int channel, const int x,
                                                            const int y, const int z) {
   float4 texels[CLPV_FOURS];
   for (int four = 0; four < CLPV_FOURS; ++four) {
@@ -30,8 +20,9 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_IMAGE_IN volume,
   return cell;
 }
 
-CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_IMAGE_OUT volume, const int channel, const int x, const int y,
-                                                const int z, const CLPV_VOLUME_CELL cell) {
+CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(__write_only image3d_t volume, const int channel,
+                                                const int x, const int y, const int z,
+                                                const CLPV_VOLUME_CELL cell) {
   float4 texels[CLPV_FOURS];
   texels[CLPV_FOURS - 1] = 0.0f;
 #pragma unroll
@@ -44,7 +35,8 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_IMAGE_OUT volume, const int
 #ifdef CLPV_FILTERED
 // Trilinear sample at a point in units of samples, sample 0 at 0.0; points are clamped to the outermost samples.
 // CLPV_FILTERED 1: by the device's filter, one read per four coefficients; 0: from eight texels.
-CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(CLPV_IMAGE_IN volume, const int channel, const float x,
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(__read_only image3d_t volume,
+                                                             const int channel, const float x,
                                                              const float y, const float z) {
   const float top = (float)(CLPV_VOLUME_N - 1);
   const float px = clamp(x, 0.0f, top), py = clamp(y, 0.0f, top), pz = clamp(z, 0.0f, top);

@@ -7,17 +7,11 @@
 
 #if CLPV_STORAGE_HALF
 #define CLPV_NUMBER half
-#define CLPV_READ(from, at) halves_to_floats((ushort8)(((__global const ushort*)(from))[at])).s0
-#define CLPV_WRITE(to, at, value) ((__global ushort*)(to))[at] = floats_to_halves((float8)(value)).s0
-#define CLPV_READ_ROW(from, at) read_halves((from) + (at))
-#define CLPV_WRITE_ROW(to, at, value) write_halves((to) + (at), value)
 #else
 #define CLPV_NUMBER float
-#define CLPV_READ(from, at) (from)[at]
-#define CLPV_WRITE(to, at, value) (to)[at] = value
-#define CLPV_READ_ROW(from, at) vload8(0, (from) + (at))
-#define CLPV_WRITE_ROW(to, at, value) vstore8(value, 0, (to) + (at))
 #endif
+#define CLPV_BUFFER_IN __global const CLPV_NUMBER*
+#define CLPV_BUFFER_OUT __global CLPV_NUMBER*
 
 #if CLPV_STORAGE_HALF
 // Conversion through a private vector: PoCL 3.1 assumes 16-byte alignment in vload_half8 and vstore_half8.
@@ -33,13 +27,42 @@ CLPV_INLINE ushort8 floats_to_halves(const float8 values) {
 typedef struct __attribute__((packed, aligned(2))) {
   ushort8 bits;
 } HalfRow;
-CLPV_INLINE float8 read_halves(__global const half* from) {
-  return halves_to_floats(((__global const HalfRow*)from)->bits);
+
+CLPV_INLINE float read_number(CLPV_BUFFER_IN from, const int at) {
+  return halves_to_floats((ushort8)(((__global const ushort*)from)[at])).s0;
 }
-CLPV_INLINE void write_halves(__global half* to, const float8 value) {
-  ((__global HalfRow*)to)->bits = floats_to_halves(value);
+CLPV_INLINE void write_number(CLPV_BUFFER_OUT to, const int at, const float value) {
+  ((__global ushort*)to)[at] = floats_to_halves((float8)(value)).s0;
+}
+CLPV_INLINE float8 read_eight(CLPV_BUFFER_IN from, const int at) {
+  return halves_to_floats(((__global const HalfRow*)(from + at))->bits);
+}
+CLPV_INLINE void write_eight(CLPV_BUFFER_OUT to, const int at, const float8 value) {
+  ((__global HalfRow*)(to + at))->bits = floats_to_halves(value);
+}
+#else
+CLPV_INLINE float read_number(CLPV_BUFFER_IN from, const int at) { return from[at]; }
+CLPV_INLINE void write_number(CLPV_BUFFER_OUT to, const int at, const float value) {
+  to[at] = value;
+}
+CLPV_INLINE float8 read_eight(CLPV_BUFFER_IN from, const int at) { return vload8(0, from + at); }
+CLPV_INLINE void write_eight(CLPV_BUFFER_OUT to, const int at, const float8 value) {
+  vstore8(value, 0, to + at);
 }
 #endif
 
-#define CLPV_BUFFER_IN __global const CLPV_NUMBER*
-#define CLPV_BUFFER_OUT __global CLPV_NUMBER*
+// W numbers from index `at` on.
+CLPV_INLINE realW read_numbers(CLPV_BUFFER_IN from, const int at) {
+#if W == 8
+  return read_eight(from, at);
+#else
+  return read_number(from, at);
+#endif
+}
+CLPV_INLINE void write_numbers(CLPV_BUFFER_OUT to, const int at, const realW value) {
+#if W == 8
+  write_eight(to, at, value);
+#else
+  write_number(to, at, value);
+#endif
+}

@@ -10,8 +10,18 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
   return channel * (CLPV_VOLUME_COUNT * CLPV_NEXT) + ((z + 1) * CLPV_ROWS + (y + 1)) * CLPV_PITCH + (x + 1);
 }
 
-#define CLPV_BEFORE_LOAD
-#define CLPV_LOAD_LANES(i) CLPV_READ_ROW(volume, at + i * CLPV_NEXT)
-#define CLPV_BEFORE_STORE
-#define CLPV_STORE_LANES(i) CLPV_WRITE_ROW(volume, at + i * CLPV_NEXT, cell.c[i]);
-#define CLPV_AFTER_STORE
+#if W == 8
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN volume,
+                                                                 const int at, const int x) {
+  CLPV_VOLUME_CELL cell;
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = read_eight(volume, at + i * CLPV_NEXT);
+  return cell;
+}
+
+CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_eight)(CLPV_BUFFER_OUT volume, const int at,
+                                                      const CLPV_VOLUME_CELL cell) {
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_eight(volume, at + i * CLPV_NEXT, cell.c[i]);
+}
+#endif

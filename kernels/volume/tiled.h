@@ -2,24 +2,24 @@
 // Volume layout `tiled`: blocks of 8 samples along x by all coefficients, with the 8 samples of a coefficient adjacent.
 // A row starts with a block of zeros, which also ends the previous row; rows of zeros form the rest of the border. Part
 // of the template instance.h; buffer.h defines the functions.
-#define CLPV_BLOCKS ((CLPV_VOLUME_N + 7) / 8 + 1)  // blocks of a row
-#define CLPV_ROWS (CLPV_VOLUME_N + 2)
 #define CLPV_BLOCK (8 * CLPV_VOLUME_COUNT)
 #define CLPV_NEXT 8  // step to the next coefficient
 #define CLPV_LANE 1  // step to the next cell along x in the same block
 
 CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x, const int y, const int z) {
-  const int row = (channel * CLPV_ROWS + (z + 1)) * CLPV_ROWS + (y + 1);
-  return (row * CLPV_BLOCKS + 1 + (x >> 3)) * CLPV_BLOCK + (x & 7);
+  const int rows = CLPV_VOLUME_N + 2, row_blocks = (CLPV_VOLUME_N + 7) / 8 + 1;
+  const int row = (channel * rows + (z + 1)) * rows + (y + 1);
+  return (row * row_blocks + 1 + (x >> 3)) * CLPV_BLOCK + (x & 7);
 }
 
+#if W == 8
 // Loads 8 samples from x on. Most callers have x a multiple of 8, or 1 less or more, which compilers derive from
 // literal offsets.
 CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int at, const int x) {
   const int block = at - (x & 7);
-  const float8 row = CLPV_READ_ROW(volume, block);
+  const float8 row = read_eight(volume, block);
   if ((x & 7) == 0) return row;
-  const float8 next = CLPV_READ_ROW(volume, block + CLPV_BLOCK);
+  const float8 next = read_eight(volume, block + CLPV_BLOCK);
   // Element by element, as in gather_packed.h.
   if ((x & 7) == 1)
     return (float8)(row.s1, row.s2, row.s3, row.s4, row.s5, row.s6, row.s7, next.s0);
@@ -29,8 +29,18 @@ CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int
   return vload8(0, (const float*)both + (x & 7));
 }
 
-#define CLPV_BEFORE_LOAD
-#define CLPV_LOAD_LANES(i) CLPV_PASTE(CLPV_VOLUME, row)(volume, at + i * CLPV_NEXT, x)
-#define CLPV_BEFORE_STORE
-#define CLPV_STORE_LANES(i) CLPV_WRITE_ROW(volume, at + i * CLPV_NEXT, cell.c[i]);
-#define CLPV_AFTER_STORE
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN volume,
+                                                                 const int at, const int x) {
+  CLPV_VOLUME_CELL cell;
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i)
+    cell.c[i] = CLPV_PASTE(CLPV_VOLUME, row)(volume, at + i * CLPV_NEXT, x);
+  return cell;
+}
+
+CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_eight)(CLPV_BUFFER_OUT volume, const int at,
+                                                      const CLPV_VOLUME_CELL cell) {
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_eight(volume, at + i * CLPV_NEXT, cell.c[i]);
+}
+#endif

@@ -17,19 +17,6 @@
 #include "voxels/voxelize_triangle.h"
 #include "shared/blockers.h"
 
-// Index of the words of a corner, CLPV_NO_WORD outside the region. `corner`: along u, v and the axis, from the base.
-#define CLPV_NO_WORD 0xffffffffu
-static inline uint blocker_word(const ClpvRegion* region, const uint axis, const int3 corner) {
-  int at[3];
-  at[(axis + 1) % 3] = corner.x;
-  at[(axis + 2) % 3] = corner.y;
-  at[axis] = corner.z;
-  const int x = at[0] - region->first[0], y = at[1] - region->first[1], z = at[2] - region->first[2];
-  if (!in_region(region, x, y, z)) return CLPV_NO_WORD;
-  const int n = CLPV_GRID + 1;
-  return (uint)((z * n + y) * n + x) * CLPV_BLOCKER_WORDS + axis * 2u;
-}
-
 // Sets the bits of W samples from (u, v) on along a row, one word for each corner that they lie at.
 CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks, const uint axis, const int u,
                          const int v, const intW covered, const realW w) {
@@ -41,8 +28,11 @@ CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks
   for (int k = first; k <= last; ++k) {
     const uint bits = lane_bits(covered & (cell == k));
     if (bits == 0) continue;
-    const uint word = blocker_word(region, axis, (int3)(u / CLPV_VOXEL_SAMPLES, v / CLPV_VOXEL_SAMPLES, k));
-    if (word != CLPV_NO_WORD) atomic_or(masks + word + row / 4, bits << (8 * (row % 4) + u % CLPV_VOXEL_SAMPLES));
+    const int3 corner = (int3)(u / CLPV_VOXEL_SAMPLES, v / CLPV_VOXEL_SAMPLES, k);
+    const uint number = find_region_cell(region, axis, corner, CLPV_GRID + 1);
+    if (number == no_cell) continue;
+    atomic_or(masks + number * CLPV_BLOCKER_WORDS + 2u * axis + row / 4,
+              bits << (8 * (row % 4) + u % CLPV_VOXEL_SAMPLES));
   }
 }
 

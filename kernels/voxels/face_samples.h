@@ -18,7 +18,7 @@ typedef struct {
 } TriangleSurface;
 
 // Samples of one cell's face that a triangle covers, row by row, with the cell number along the axis at each.
-#define CLPV_ROW_VECTORS (CLPV_VOXEL_SAMPLES / W)
+enum { CLPV_ROW_VECTORS = CLPV_VOXEL_SAMPLES / W };
 typedef struct {
   intW covered[CLPV_VOXEL_SAMPLES][CLPV_ROW_VECTORS], cell[CLPV_VOXEL_SAMPLES][CLPV_ROW_VECTORS];
   int first, last;  // smallest and largest cell number

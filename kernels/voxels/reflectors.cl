@@ -63,21 +63,8 @@ CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* sur
   atomic_add(face + CLPV_FACE_ALBEDO + 2, blue);
 }
 
-// Index of the words of a face; CLPV_NO_WORD for a cell outside the region. `cell`: along u, v and the axis, from the
-// base. `direction`: 0 towards larger numbers, 1 towards smaller ones.
-#define CLPV_NO_WORD 0xffffffffu
-static inline uint face_word(const ClpvRegion* region, const uint axis, const int3 cell, const uint direction) {
-  int at[3];
-  at[(axis + 1) % 3] = cell.x;
-  at[(axis + 2) % 3] = cell.y;
-  at[axis] = cell.z;
-  const int x = at[0] - region->first[0], y = at[1] - region->first[1], z = at[2] - region->first[2];
-  if (!in_region(region, x, y, z)) return CLPV_NO_WORD;
-  return (uint)((z * CLPV_GRID + y) * CLPV_GRID + x) * (CLPV_CELL_FACES * CLPV_FACE_WORDS) +
-         (2 * axis + direction) * CLPV_FACE_WORDS;
-}
-
-// Adds a triangle, projected along an axis and moved to where it emits and receives, to the faces of one direction.
+// Adds a triangle, projected along an axis and moved to where it emits and receives, to the faces
+// of one `direction`: 0 towards larger numbers, 1 towards smaller ones.
 CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle* t, const TriangleSurface* surface,
                               const uint axis, const uint direction, const float weight,
                               __global volatile uint* faces) {
@@ -92,8 +79,10 @@ CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle*
       FaceSamples samples;
       find_face_samples(t, surface, i, j, rows, cells, &samples);
       for (int k = samples.first; k <= samples.last; ++k) {
-        const uint word = face_word(region, axis, (int3)(i, j, k), direction);
-        if (word != CLPV_NO_WORD) add_face(t, surface, &samples, (int3)(i, j, k), weight, faces + word);
+        const uint cell = find_region_cell(region, axis, (int3)(i, j, k), CLPV_GRID);
+        if (cell == no_cell) continue;
+        const uint face = cell * CLPV_CELL_FACES + 2u * axis + direction;
+        add_face(t, surface, &samples, (int3)(i, j, k), weight, faces + face * CLPV_FACE_WORDS);
       }
     }
   }

@@ -9,10 +9,6 @@
 // cascade: number of the cascade in `masks`. A work-item processes a cell.
 #include "voxels/region.h"
 
-#define CLPV_THIS_CELL                                                                       \
-  const int x = (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2); \
-  if (x >= cells || y >= cells) return;
-
 static inline size_t mask_index(const int cells, const int words, const uint cascade, const int x, const int y,
                                 const int z) {
   return ((((size_t)cascade * cells + z) * cells + y) * cells + x) * words;
@@ -22,7 +18,8 @@ static inline bool is_valid(const int i, const int valid) { return i >= 0 && i <
 
 __kernel void move_masks(const ClpvRegion region, const int cells, const int valid, const int words,
                          __global const uint* masks, const uint cascade, __global uint* moved) {
-  CLPV_THIS_CELL
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
+  if (x >= cells || y >= cells) return;
   const int from_x = x + region.moved[0], from_y = y + region.moved[1], from_z = z + region.moved[2];
   const bool stays = is_valid(x, valid) && is_valid(y, valid) && is_valid(z, valid) &&
                      is_valid(from_x, valid) && is_valid(from_y, valid) && is_valid(from_z, valid);
@@ -35,7 +32,8 @@ __kernel void move_masks(const ClpvRegion region, const int cells, const int val
 
 __kernel void clear_masks(const ClpvRegion region, const int cells, const int words, __global uint* masks,
                           const uint cascade) {
-  CLPV_THIS_CELL
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
+  if (x >= cells || y >= cells) return;
   const ClpvBox all = region.all;
   if (x < all.low[0] || x > all.high[0] || y < all.low[1] || y > all.high[1] || z < all.low[2] || z > all.high[2]) return;
   if (!in_region(&region, x, y, z)) return;

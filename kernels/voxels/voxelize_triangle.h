@@ -3,8 +3,8 @@
 // reflectors.cl).
 //
 // Coordinates: u and v along the two axes after the axis of projection, in samples; w along the axis, in cells. All
-// three count from half a cell before the region's base. A sample within CLPV_VOXEL_TOLERANCE outside an edge is
-// covered, so that triangles that share an edge leave no gap despite rounding.
+// three count from half a cell before the region's base. A sample within voxel_tolerance outside an
+// edge is covered, so that triangles that share an edge leave no gap despite rounding.
 #pragma once
 
 #include "lanes.h"
@@ -12,9 +12,10 @@
 #include "raster/texture.h"
 #include "vec.h"
 
-#define CLPV_VOXEL_SAMPLES 8
-#define CLPV_VOXEL_TOLERANCE (1.0f / 256.0f)  // [samples]
-#define CLPV_VOXEL_LIMIT 8e6f  // [samples] coordinates are clamped to it, so that floats hold them as integers
+enum { CLPV_VOXEL_SAMPLES = 8 };
+__constant const float voxel_tolerance = 1.0f / 256.0f;  // [samples]
+// [samples] coordinates are clamped to it, so that floats hold them as integers.
+__constant const float voxel_limit = 8e6f;
 
 #ifndef CLPV_MASKED
 #define CLPV_MASKED 1  // 0: no material of the scene is masked
@@ -43,7 +44,7 @@ static inline bool find_grid_corners(const ClpvRegion* region, __global const Cl
     float* at = corners->at[axis];
     for (int i = 0; i < 3; ++i) {
       at[i] = (corner[i]->position[axis] - region->base[axis]) * per_sample + CLPV_VOXEL_SAMPLES / 2;
-      at[i] = clamp(at[i], -CLPV_VOXEL_LIMIT, CLPV_VOXEL_LIMIT);
+      at[i] = clamp(at[i], -voxel_limit, voxel_limit);
     }
     const int first = region->first[axis] + region->all.low[axis], end = region->first[axis] + region->all.high[axis] + 2;
     within = within && fmax(at[0], fmax(at[1], at[2])) >= (float)(CLPV_VOXEL_SAMPLES * first) &&
@@ -74,15 +75,15 @@ static inline bool project_triangle(const GridCorners* corners, const uint axis,
     const int j = (i + 1) % 3;
     t->e_u[i] = side * (t->v[i] - t->v[j]);
     t->e_v[i] = side * (t->u[j] - t->u[i]);
-    t->tolerance[i] = CLPV_VOXEL_TOLERANCE * (fabs(t->e_u[i]) + fabs(t->e_v[i]));
+    t->tolerance[i] = voxel_tolerance * (fabs(t->e_u[i]) + fabs(t->e_v[i]));
   }
-  return fabs(area) > 0.0f && fabs(t->w_u) <= CLPV_VOXEL_LIMIT && fabs(t->w_v) <= CLPV_VOXEL_LIMIT;
+  return fabs(area) > 0.0f && fabs(t->w_u) <= voxel_limit && fabs(t->w_v) <= voxel_limit;
 }
 
 // First and last sample between three coordinates, within cells `first` to `last`, counted from the base.
 static inline int2 voxel_range(const int first, const int last, const float a, const float b, const float c) {
-  const float from = ceil(fmin(a, fmin(b, c)) - 0.5f - CLPV_VOXEL_TOLERANCE);
-  const float to = floor(fmax(a, fmax(b, c)) - 0.5f + CLPV_VOXEL_TOLERANCE);
+  const float from = ceil(fmin(a, fmin(b, c)) - 0.5f - voxel_tolerance);
+  const float to = floor(fmax(a, fmax(b, c)) - 0.5f + voxel_tolerance);
   return (int2)((int)fmax(from, (float)(CLPV_VOXEL_SAMPLES * first)),
                 (int)fmin(to, (float)(CLPV_VOXEL_SAMPLES * (last + 1) - 1)));
 }
@@ -93,13 +94,17 @@ static inline int2 cells_along(const ClpvRegion* region, const uint axis) {
          (int2)(of_axis(region->all.low, axis), of_axis(region->all.high, axis));
 }
 
+// Mask of the points (u, v) inside edge i.
+static inline intW inside_edge(const ProjectedTriangle* t, const int i, const realW u,
+                               const float v) {
+  return t->e_u[i] * (u - t->u[i]) + t->e_v[i] * (v - t->v[i]) >= -t->tolerance[i];
+}
+
 // Mask of the W samples from (u, v) on along a row that the triangle covers.
 CLPV_INLINE intW voxel_covered(const ProjectedTriangle* t, const float u, const float v) {
   const realW at = u + 0.5f + to_realW(lane_numbers());
   const float row = v + 0.5f;
-#define CLPV_EDGE(i) (t->e_u[i] * (at - t->u[i]) + t->e_v[i] * (row - t->v[i]) >= -t->tolerance[i])
-  return CLPV_EDGE(0) & CLPV_EDGE(1) & CLPV_EDGE(2);
-#undef CLPV_EDGE
+  return inside_edge(t, 0, at, row) & inside_edge(t, 1, at, row) & inside_edge(t, 2, at, row);
 }
 
 // Depth w of the triangle's plane at those samples, clamped to the range of its vertices.

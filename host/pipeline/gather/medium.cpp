@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/gather/medium.hpp"
 
-#include "kernels/shared/near.h"
+#include "kernels/shared/pixel_planes.h"
 
 namespace clpv {
 namespace {
@@ -14,9 +14,8 @@ unsigned medium_pixels(unsigned pixels) {
 
 ProgramSource medium_source(const Basis& basis, const MediumOptions& options) {
   ProgramSource source = with_radiance({"gather/medium.cl", {}, {}}, basis, options.gather);
-  source.literals.integer("CLPV_NEAR_STEP", kMediumStep)
-      .integer("CLPV_NEAR_LAYERS", 1)
-      .number("CLPV_NEAR_RAYS", 1)
+  source.literals.integer("CLPV_PLANE_STEP", kMediumStep)
+      .integer("CLPV_PLANE_LAYERS", 1)
       .integer("CLPV_LIGHT_STEPS", options.light_steps)
       .integer("CLPV_VOLUME_STEPS", options.volume_steps)
       .flag("CLPV_MEDIUM", true);
@@ -37,7 +36,7 @@ MediumLight::MediumLight(Session& session, const Basis& basis, const ClpvMedium&
 
 void MediumLight::reserve(const ClpvView& view) {
   const std::size_t plane =
-      CLPV_NEAR_PLANE_OF(std::size_t{medium_pixels(view.width)}, medium_pixels(view.height));
+      CLPV_PLANE_SIZE_OF(std::size_t{medium_pixels(view.width)}, medium_pixels(view.height));
   if (plane == plane_) return;
   plane_ = plane;
   session_.reserve(ends_, plane * sizeof(cl_float), "ends of rays in the medium");

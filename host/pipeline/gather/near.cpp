@@ -3,6 +3,7 @@
 
 #include "basis/near_directions.hpp"
 #include "kernels/shared/near.h"
+#include "kernels/shared/pixel_planes.h"
 
 namespace clpv {
 namespace {
@@ -11,7 +12,7 @@ unsigned near_pixels(unsigned pixels, int step) {
   return (pixels + step - 1) / step;
 }
 
-/// Number of layers of pixels (near_layout.h).
+/// Number of layers of pixels (pixel_planes.h).
 int layers(int step) {
   return step == 1 ? 1 : 2;
 }
@@ -19,17 +20,17 @@ int layers(int step) {
 /// Rows of all layers.
 unsigned near_rows(unsigned height, int step) {
   const unsigned rows = near_pixels(height, step);
-  return layers(step) == 1 ? rows : CLPV_NEAR_SECOND_OF(rows) + rows;
+  return layers(step) == 1 ? rows : CLPV_PLANE_SECOND_OF(rows) + rows;
 }
 
 unsigned tiles_down(unsigned rows) {
-  return (rows + CLPV_NEAR_TILE - 1) / CLPV_NEAR_TILE;
+  return (rows + CLPV_PLANE_TILE - 1) / CLPV_PLANE_TILE;
 }
 
 ProgramSource near_source(const char* file, const SceneBuffers& buffers, const NearOptions& options) {
   ProgramSource source{file, {}, {}};
-  source.literals.integer("CLPV_NEAR_STEP", options.step)
-      .integer("CLPV_NEAR_LAYERS", layers(options.step))
+  source.literals.integer("CLPV_PLANE_STEP", options.step)
+      .integer("CLPV_PLANE_LAYERS", layers(options.step))
       .number("CLPV_NEAR_RAYS", options.rays)
       .real("CLPV_NEAR_CONE", near_cone(options.rays))
       .flag("CLPV_TEXTURED", buffers.textured)
@@ -48,12 +49,12 @@ ProgramSource reflecting(ProgramSource source) {
 std::vector<cl_float8> direction_rows(int rays) {
   const std::vector<std::vector<glm::vec3>> directions = near_directions(rays);
   std::vector<cl_float8> rows;
-  for (int y = 0; y < CLPV_NEAR_TILE; ++y) {
+  for (int y = 0; y < CLPV_PLANE_TILE; ++y) {
     for (int ray = 0; ray < rays; ++ray) {
       for (int axis = 0; axis < 3; ++axis) {
         cl_float8& row = rows.emplace_back();
         for (int lane = 0; lane < 8; ++lane)
-          row.s[lane] = directions[CLPV_NEAR_TILE * y + lane % CLPV_NEAR_TILE][ray][axis];
+          row.s[lane] = directions[CLPV_PLANE_TILE * y + lane % CLPV_PLANE_TILE][ray][axis];
       }
     }
   }
@@ -122,7 +123,7 @@ void NearField::upload_tree() {
 void NearField::reserve(const ClpvView& view) {
   const std::size_t width = near_pixels(view.width, options_.step),
                     height = near_rows(view.height, options_.step);
-  const std::size_t numbers = CLPV_NEAR_PLANE_OF(width, height) * sizeof(cl_float);
+  const std::size_t numbers = CLPV_PLANE_SIZE_OF(width, height) * sizeof(cl_float);
   if (width == width_ && height == height_) return;
   width_ = height_ = 0;  // until memory suffices
   session_.reserve(points_, CLPV_NEAR_PLANES * numbers, "points of the near field");
@@ -130,7 +131,7 @@ void NearField::reserve(const ClpvView& view) {
   const std::size_t tiles = items_along(session_, width) * tiles_down(height),
                     lanes = session_.device().lanes;
   session_.reserve(counts_, tiles * sizeof(cl_uint), "hits of the near field");
-  const std::size_t hits = tiles * lanes * CLPV_NEAR_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
+  const std::size_t hits = tiles * lanes * CLPV_PLANE_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
   session_.reserve(hits_, hits, "hits of the near field");
   session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
   session_.reserve(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers, "near field");
@@ -152,7 +153,7 @@ void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
                            const std::vector<ShadowedLight>& lights) {
   const ClpvView& view = camera.view;
   const cl::NDRange rays(items_along(session_, near_pixels(view.width, options_.step)),
-                         tiles_down(near_rows(view.height, options_.step)), CLPV_NEAR_TILE * options_.rays);
+                         tiles_down(near_rows(view.height, options_.step)), CLPV_PLANE_TILE * options_.rays);
   const cl::NDRange group(8, session_.device().lanes == 8 ? 1 : 8, 1);
   bool fresh = true;
   if (buffers_.emissive || lights.empty()) {
@@ -175,8 +176,8 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
   reserve(view);
   const unsigned width = near_pixels(view.width, options_.step),
                  height = near_rows(view.height, options_.step);
-  const cl::NDRange with_border(items_along(session_, CLPV_NEAR_PITCH_OF(width)),
-                                height + 2 * CLPV_NEAR_ROWS);
+  const cl::NDRange with_border(items_along(session_, CLPV_PLANE_PITCH_OF(width)),
+                                height + 2 * CLPV_PLANE_ROWS);
   PixelKernels& pixels = pixel_kernels(camera.points());
   pixels.first.set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
       .launch(with_border, pixel_group(session_));

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Sizes of planes of pixels with an empty border (gather/pixel_planes.h), shared by host and
+// kernels.
+#pragma once
+
+enum {
+  CLPV_PLANE_TILE = 4,  // pixels along each side of a square, each of which has its own directions
+  CLPV_PLANE_COLUMNS =
+      8,  // empty columns before and at least as many after each row, for the filter's window
+  CLPV_PLANE_ROWS = 3,  // empty rows above and below
+};
+
+// First row of the second layer (near_points.cl); at least CLPV_PLANE_ROWS empty rows lie before
+// it.
+#define CLPV_PLANE_SECOND_OF(height) (((height) + CLPV_PLANE_ROWS + CLPV_PLANE_TILE - 1) / CLPV_PLANE_TILE * CLPV_PLANE_TILE)
+
+// Numbers of a row and of a plane of `width` x `height` pixels, the rows of both layers.
+#define CLPV_PLANE_PITCH_OF(width) (((width) + 7) / 8 * 8 + 2 * CLPV_PLANE_COLUMNS)
+#define CLPV_PLANE_SIZE_OF(width, height) (CLPV_PLANE_PITCH_OF(width) * ((height) + 2 * CLPV_PLANE_ROWS))
