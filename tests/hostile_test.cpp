@@ -223,8 +223,7 @@ TEST(HostileSurroundings, Outputs) {
         "query " + kCornell + " --points @/points.csv -o @/none/a.csv"})
     rejected(command, {"none/a.", "no folder"});
   for (const std::string& command :
-       {"render " + kCornell + " -o @/out.exr --dump-volume @/file",
-        "sequence " + kCornell + " --frames 1 --fps 1 -o @/file",
+       {"sequence " + kCornell + " --frames 1 --fps 1 -o @/file",
         std::string("report @/file/there " + kCornell), std::string("basis sh2 --figures @/file/there"),
         std::string("bench ceilings --plot @/file/there")})
     rejected(command, {"file"});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Output files are complete or absent; headers of .npy and .vti files.
+// Output files are complete or absent; headers of .npy files.
 #include "support/output_file.hpp"
 
 #include <gtest/gtest.h>
@@ -160,29 +160,6 @@ TEST_F(OutputFile, NpyHasNumPysHeaderAndTheValues) {
   EXPECT_EQ(static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]), header - 10);
   write_npy(folder_ / "b.npy", values, line);
   EXPECT_NE(read_file(folder_ / "b.npy").find("'shape': (6,), }"), std::string::npos);
-}
-
-TEST_F(OutputFile, VtiDescribesTheGridAndItsBytes) {
-  std::vector<float> first(2 * 3 * 4), second(first.size() * 3);
-  for (std::size_t i = 0; i < first.size(); ++i) first[i] = static_cast<float>(i);
-  for (std::size_t i = 0; i < second.size(); ++i) second[i] = -static_cast<float>(i);
-  const VtiArray arrays[] = {{"a<b", 1, first}, {"rgb", 3, second}};
-  write_vti(folder_ / "v.vti", {{2, 3, 4}, {-1.5, 0, 2}, {0.25, 0.25, 0.5}}, arrays);
-  const std::string file = read_file(folder_ / "v.vti");
-  EXPECT_NE(file.find("WholeExtent=\"0 2 0 3 0 4\" Origin=\"-1.5 0 2\" Spacing=\"0.25 0.25 0.5\""),
-            std::string::npos);
-  EXPECT_NE(file.find("Name=\"a&lt;b\" NumberOfComponents=\"1\" format=\"appended\" offset=\"0\""),
-            std::string::npos);
-  const std::size_t start = file.find("\n_") + 2;
-  const std::size_t offset = 8 + first.size() * 4;
-  EXPECT_NE(file.find("Name=\"rgb\" NumberOfComponents=\"3\" format=\"appended\" offset=\"" +
-                      std::to_string(offset)),
-            std::string::npos);
-  std::uint64_t bytes = 0;
-  std::memcpy(&bytes, file.data() + start + offset, 8);
-  EXPECT_EQ(bytes, second.size() * 4);
-  EXPECT_EQ(std::memcmp(file.data() + start + 8, first.data(), first.size() * 4), 0);
-  EXPECT_EQ(std::memcmp(file.data() + start + offset + 8, second.data(), second.size() * 4), 0);
 }
 
 TEST(ProgressLine, ShowsShareAndTimeLeft) {

@@ -21,7 +21,6 @@
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
-#include "volume/volume_files.hpp"
 
 namespace clpv {
 namespace render_command {
@@ -30,7 +29,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   RenderRequest request;
-  std::string output, stats, dump, normals, tev;
+  std::string output, stats, normals, tev;
   int frames = 5;
   double time = 0;
   std::vector<Show> views = {Show::full};
@@ -52,11 +51,6 @@ std::vector<NamedFile> outputs_of(const Options& options) {
   if (!several) outputs.resize(1);
   if (options.stats != "-") outputs.push_back({"--stats", options.stats});
   outputs.push_back({"--dump-normals", options.normals});
-  if (!options.dump.empty()) {
-    create_folder("--dump-volume", options.dump);
-    for (const char* file : {"cascade0.npy", "grids.json"})
-      outputs.push_back({"--dump-volume", fs::path(options.dump) / file});
-  }
   return outputs;
 }
 
@@ -78,22 +72,6 @@ void write_images(Frame& frame, const Options& options, float exposure,
     shown.metadata = metadata;
     write_png(png_path(output, view, views.size() > 1), shown);
   }
-}
-
-/// Adds the cascade to `grids`: origin is the lower corner of the first cell.
-void dump_volume(Session& session, const Options& options, const CascadeVolumes& volumes,
-                 nlohmann::json& grids) {
-  std::vector<float> values = volumes.accumulated.read(session);
-  for (float& value : values) value /= volumes.light_scale;
-  const VolumeShape& shape = volumes.accumulated.shape();
-  const fs::path stem = fs::path(options.dump) / fmt::format("cascade{}", volumes.cascade);
-  write_volume_npy(stem.string() + ".npy", values, shape.n, shape.coefficients);
-  write_volume_vti(stem.string() + ".vti", values, volumes.grid, shape.coefficients);
-  grids.push_back({{"file", stem.filename().string() + ".npy"},
-                   {"cascade", volumes.cascade},
-                   {"origin_metres", volumes.grid.origin},
-                   {"cell_metres", volumes.grid.cell},
-                   {"cells", volumes.grid.n}});
 }
 
 void run(const Options& options, const Shared& shared) {
@@ -119,12 +97,9 @@ void run(const Options& options, const Shared& shared) {
                 session.device().driver);
   spdlog::debug("options: {}", to_json(resolved).dump());
   progress.advance();
-  nlohmann::json grids = nlohmann::json::array();
   frame.render(camera, [&](const CascadeVolumes& volumes) {
     if (!options.stats.empty()) stats.add_energy(session, frame, volumes);
-    if (!options.dump.empty()) dump_volume(session, options, volumes, grids);
   });
-  if (!options.dump.empty()) write_file(fs::path(options.dump) / "grids.json", grids.dump(2) + "\n");
   stats.end_first_frame(session);
   warn_of_unreached(session, frame, camera.name);
   stop_if_interrupted();
@@ -174,11 +149,6 @@ void add_render(CLI::App& app, Shared& shared) {
                    "number of timed frames for --stats, after a warm-up frame; it has their medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  add(*command, "--dump-volume", "DIR", options->dump,
-      "output folder for accumulated light of each cascade, as cascadeN.npy and .vti: coefficients of the "
-      "basis, in\n"
-      "float32 [W/sr], of either sign, ordered (red, green, blue; coefficient; z; y; x). grids.json has "
-      "origin and cell");
   add(*command, "--dump-normals", "FILE.json", options->normals,
       "output file for lit surface normals, weighted by reflected flux, for python3 -m clpv.search "
       "--weights");

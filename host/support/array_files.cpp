@@ -4,11 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <bit>
-#include <cstdint>
 #include <stdexcept>
+#include <string>
 
 #include "support/output_file.hpp"
-#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -36,35 +35,6 @@ void write_npy(const std::filesystem::path& path, std::span<const float> values,
   file.push_back(static_cast<char>(header.size() >> 8));
   file += header;
   file.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-  write_file(path, file);
-}
-
-void write_vti(const std::filesystem::path& path, const VtiGrid& grid, std::span<const VtiArray> arrays) {
-  const auto& n = grid.cells;
-  const std::size_t cells = std::size_t(n[0]) * std::size_t(n[1]) * std::size_t(n[2]);
-  const std::string extent =
-      fmt::format("0 {} 0 {} 0 {}", n[0], n[1], n[2]);  // of points: one more than cells
-  std::string file = fmt::format(
-      "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-      "<ImageData WholeExtent=\"{0}\" Origin=\"{1}\" Spacing=\"{2}\">\n<Piece Extent=\"{0}\">\n<CellData>\n",
-      extent, fmt::join(grid.origin, " "), fmt::join(grid.spacing, " "));
-  std::string data;
-  for (const VtiArray& array : arrays) {
-    if (array.values.size() != cells * std::size_t(array.components)) {
-      throw std::logic_error("write_vti: array size and grid differ");
-    }
-    file += fmt::format(
-        "<DataArray type=\"Float32\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
-        "offset=\"{}\"/>\n",
-        xml_escaped(array.name), array.components, data.size());
-    const std::uint64_t bytes = array.values.size_bytes();
-    data.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
-    data.append(reinterpret_cast<const char*>(array.values.data()), bytes);
-  }
-  file += "</CellData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_";
-  file += data;
-  file += "\n</AppendedData>\n</VTKFile>\n";
   write_file(path, file);
 }
 
