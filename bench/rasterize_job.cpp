@@ -96,10 +96,10 @@ struct DepthComparison {
   std::string place;  ///< of the last difference
 };
 
-void compare(DepthComparison& comparison, const reference::RayScene& rays, Pass pass, const ClpvView& v,
+void compare(DepthComparison& comparison, const pathtracer::RayScene& rays, Pass pass, const ClpvView& v,
              const std::vector<float>& depth) {
-  const reference::Faces faces =
-      pass == Pass::rasterize_camera ? reference::Faces::culled : reference::Faces::all;
+  const pathtracer::Faces faces =
+      pass == Pass::rasterize_camera ? pathtracer::Faces::culled : pathtracer::Faces::all;
   for (std::size_t i = 0; i < depth.size(); i += kCheckedTexels) {
     const auto at = [&](double behind) {
       return glm::vec3(reference::surface_position(v, i % v.width, i / v.width, behind));
@@ -114,7 +114,7 @@ void compare(DepthComparison& comparison, const reference::RayScene& rays, Pass 
 }
 
 Deviation compare(const RasterTask& task, const std::vector<std::vector<float>>& depths) {
-  const reference::RayScene rays(*task.scene);
+  const pathtracer::RayScene rays(*task.scene);
   DepthComparison comparison;
   for (std::size_t v = 0; v < depths.size(); ++v)
     compare(comparison, rays, task.pass, task.views[v], depths[v]);

@@ -46,7 +46,7 @@ class Cornell : public ::testing::Test {
     options.cascades = scene_->cascades.value(), options.cascade_size = scene_->cascade_size.value();
     Frame frame(test::test_session(), *scene_, options);
     budget_ = baseline_budget(test::test_session(), frame, camera_, 1);
-    reference::PathTracerOptions tracing;
+    pathtracer::PathTracerOptions tracing;
     tracing.noise = 0.02;
     truth_ = traced_view(
         trace_paths(*scene_, scene_->lights_for(camera_), camera_view(camera_, kWidth, kHeight), tracing),

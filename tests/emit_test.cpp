@@ -191,7 +191,8 @@ TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
   const std::vector<float> found = frame.read(Show::irradiance);
   PathTracerOptions options;
   options.samples = 256;
-  const TracedImage truth = reference::trace_paths(scene, {}, camera_view(scene.cameras[0], 24, 24), options);
+  const TracedImage truth =
+      pathtracer::trace_paths(scene, {}, camera_view(scene.cameras[0], 24, 24), options);
   double wanted = 0;
   for (const glm::vec3& e : truth.irradiance) wanted += e.x / truth.irradiance.size();
   EXPECT_NEAR(mean(found, 0), wanted, 0.15 * wanted)

@@ -40,7 +40,7 @@ Quality quality(const SceneData& scene, const Image& truth, const std::string& b
 
 TEST(EmptyRoom, FinerCellsAreNoWorse) {
   const SceneData scene = load_scene(test::scene_file("empty_room.json"));
-  reference::PathTracerOptions traced;
+  pathtracer::PathTracerOptions traced;
   traced.noise = 0.04;
   const Image truth = traced_view(
       trace_paths(scene, scene.lights, camera_view(scene.camera("front"), kWidth, kHeight), traced),

@@ -46,7 +46,7 @@ TracedImage traced(const SceneData& scene, const ClpvView& view, int bounces, st
   PathTracerOptions options;
   options.bounces = bounces;
   options.samples = samples;
-  return reference::trace_paths(scene, scene.lights_for({}), view, options);
+  return pathtracer::trace_paths(scene, scene.lights_for({}), view, options);
 }
 
 TEST(Medium, PhaseFunctionIntegratesToOneAndHasTheMeanCosineOfItsAnisotropy) {
@@ -138,7 +138,7 @@ TEST(Medium, AbsorptionFollowsBeersLaw) {
   const glm::vec3 absorption(0.2, 1, 4);
   scene.medium = medium_of({}, absorption, 0, glm::vec3(-1), {1, 1, 0});
   const ClpvView view = view_of({0, 0, 0.5}, {0, 0, -1}, {0, 1, 0}, 1e-3f, 1, 1);
-  const Image seen = reference::traced_view(traced(scene, view, 1, 16), Show::full);
+  const Image seen = pathtracer::traced_view(traced(scene, view, 1, 16), Show::full);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean(seen.pixels, c), 3 * std::exp(-double{absorption[c]}), 1e-5);
 }
 
@@ -148,7 +148,7 @@ TEST(Medium, WhiteFurnaceIsUniform) {
   for (const float anisotropy : {0.0f, 0.6f, -0.5f}) {
     scene.medium = medium_of({0.3, 1, 3}, {}, anisotropy, {-0.8, -1, -1}, {1, 0.7, 1});
     const TracedImage image = traced(scene, kInRoom, PathTracerOptions::kAllBounces, 16384);
-    const Image seen = reference::traced_view(image, Show::full);
+    const Image seen = pathtracer::traced_view(image, Show::full);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean(seen.pixels, c), 1, 0.01) << "anisotropy " << anisotropy;
   }
 }
@@ -165,7 +165,7 @@ TEST(Medium, LightScatteredOnceFollowsItsIntegral) {
   const double extinction = scattering + absorption;
   const double expected = scattering * phase(0.4, 0) * 5 * std::exp(-extinction * 0.8) *
                           -std::expm1(-extinction * 3) / extinction;
-  const Image seen = reference::traced_view(traced(scene, view, 1, 1024), Show::medium);
+  const Image seen = pathtracer::traced_view(traced(scene, view, 1, 1024), Show::medium);
   EXPECT_NEAR(mean(seen.pixels, 0), expected, 2e-3 * expected);
 }
 
@@ -188,7 +188,7 @@ TEST(Medium, LightOfALampScatteredOnceFollowsItsIntegral) {
     expected +=
         4.0 / kSteps * scattering * phase(0.4, offset.x / r) * 5 / (r * r) * std::exp(-extinction * (t + r));
   }
-  const Image seen = reference::traced_view(traced(scene, view, 1, 256), Show::medium);
+  const Image seen = pathtracer::traced_view(traced(scene, view, 1, 256), Show::medium);
   EXPECT_NEAR(mean(seen.pixels, 0), expected, 2e-3 * expected);
 }
 
@@ -307,9 +307,9 @@ Comparison frame_error(const SceneData& scene, const RenderOptions& options, Sho
   const SceneCamera& camera = scene.cameras.front();
   Frame frame(test_session(), scene, options);
   frame.render(camera);
-  const Image truth = reference::traced_view(
-      reference::trace_paths(scene, scene.lights_for(camera),
-                             camera_view(camera, options.width, options.height), tracing),
+  const Image truth = pathtracer::traced_view(
+      pathtracer::trace_paths(scene, scene.lights_for(camera),
+                              camera_view(camera, options.width, options.height), tracing),
       view);
   return compare(view_image(frame, view), "frame", truth, "ground truth");
 }

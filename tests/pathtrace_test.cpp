@@ -69,9 +69,9 @@ TEST_F(PathtraceCommand, WritesLayersMetadataAndStats) {
 }
 
 namespace fs = std::filesystem;
-using reference::cached_ground_truth;
-using reference::GroundTruth;
-using reference::PathTracerOptions;
+using cached_ground_truth;
+using GroundTruth;
+using pathtracer::PathTracerOptions;
 
 class CachedReference : public ::testing::Test {
  protected:

@@ -148,7 +148,7 @@ double lit(const SceneData& scene, const RenderOptions& options = small_frame())
 double traced(const SceneData& scene, int bounces = 1, std::uint32_t samples = 1024) {
   PathTracerOptions options;
   options.samples = samples, options.bounces = bounces;
-  return mean(reference::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options).irradiance);
+  return mean(pathtracer::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options).irradiance);
 }
 
 TEST(SkyFrame, AnOpenPlaneGetsPiTimesTheRadiance) {
@@ -189,7 +189,7 @@ TEST(PathTracer, ASmallSunInAMapLightsByItsSolidAngle) {
 
 TEST(PathTracer, TheSkyIsSampledByItsRadiance) {
   const Sky sky = map_of(7, 5, [](int x, int y) { return static_cast<float>((x + y) % 3); });
-  const reference::SkySampler sampler(&sky);
+  const pathtracer::SkySampler sampler(&sky);
   double share = 0, whole = 0;
   constexpr int kSide = 200;
   for (int i = 0; i < kSide * kSide; ++i) {
@@ -203,7 +203,7 @@ TEST(PathTracer, TheSkyIsSampledByItsRadiance) {
       whole += sky.solid_angle(y) * sky.texels[static_cast<std::size_t>(y * 7 + x)].x;
   }
   EXPECT_NEAR(share, whole, 1e-6 * whole);
-  EXPECT_TRUE(reference::SkySampler(nullptr).empty());
+  EXPECT_TRUE(pathtracer::SkySampler(nullptr).empty());
 }
 
 // Light from the floor to a wall and from the wall to the floor: the same paths for as many
@@ -230,8 +230,9 @@ TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
   const std::vector<float> full = frame.read(Show::full), indirect = frame.read(Show::indirect);
   PathTracerOptions options;
   options.samples = 2;
-  const TracedImage image = reference::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options);
-  const Image truth = reference::traced_view(image, Show::full);
+  const TracedImage image =
+      pathtracer::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options);
+  const Image truth = pathtracer::traced_view(image, Show::full);
   for (std::size_t i = 0; i < 4 * 16; ++i) EXPECT_NEAR(full[i], truth.pixels[i], 1e-4) << i;  // the top row
   EXPECT_EQ(full[3], 1);
   EXPECT_GT(full[0], 0);

@@ -165,9 +165,9 @@ TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
   set_log_level(true, 0);
   const SceneData scene = load_scene(kTiny);
   const auto traced = [&] {
-    return reference::cached_ground_truth(cache.path(), scene, scene.cameras[0], 8, 6, {.samples = 1});
+    return cached_ground_truth(cache.path(), scene, scene.cameras[0], 8, 6, {.samples = 1});
   };
-  const reference::GroundTruth first = traced();
+  const GroundTruth first = traced();
   ASSERT_TRUE(first.traced);
   ASSERT_FALSE(traced().traced);
   const std::string whole = read_file(first.file);
@@ -176,7 +176,7 @@ TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
     flipped[i] ^= 0x10;
     for (const std::string& damaged : {flipped, whole.substr(0, i)}) {
       CacheFolder(cache.path()).write(first.file.filename(), damaged);
-      const reference::GroundTruth again = traced();
+      const GroundTruth again = traced();
       EXPECT_TRUE(extract_layer(again.image, "indirect", "again").pixels ==
                   extract_layer(first.image, "indirect", "first").pixels)
           << i;

@@ -249,10 +249,10 @@ Image pathtrace(const Scene& scene, View view, const CameraChoice& camera, const
   PosedScene posed(scene);
   posed.pose(options.seconds);
   const SceneCamera chosen = posed.camera(camera);
-  const reference::TracedImage traced = reference::trace_paths(
+  const pathtracer::TracedImage traced = pathtracer::trace_paths(
       posed.scene(), posed.scene().lights_for(chosen), camera_view(chosen, options.width, options.height),
       {options.bounces, options.samples, options.noise, options.seed, options.threads}, options.progress);
-  Image image = reference::traced_view(traced, view);
+  Image image = pathtracer::traced_view(traced, view);
   image.metadata = {{"camera", chosen.name},
                     {"time", fmt::format("{}", options.seconds)},
                     {"spp_traced", fmt::format("{}", traced.samples)},

@@ -99,7 +99,7 @@ struct SpreadRow {
 Irradiance joint_bilateral(const View& view, const Irradiance& image, std::span<const Tap> taps) {
   const auto width = static_cast<int>(view.width()), height = static_cast<int>(view.height());
   Irradiance sums(image.size());
-  view.parallel_for(view.height(), 1, [&](reference::PathSampler&, std::size_t row, std::size_t) {
+  view.parallel_for(view.height(), 1, [&](pathtracer::PathSampler&, std::size_t row, std::size_t) {
     const int y = static_cast<int>(row);
     for (const Tap& tap : taps) {
       const int first = std::max(0, -tap.x), last = std::min(width, width - tap.x);
@@ -143,7 +143,7 @@ Irradiance upsampled(const View& full, const View& thin, const Irradiance& image
   const auto last = static_cast<int>(thin.height()) - 1;
   Irradiance sums(width * height);
   // Bands of rows between the same two thinned rows: the first one starts above the image.
-  full.parallel_for(thin.height() + 1, 1, [&](reference::PathSampler&, std::size_t band, std::size_t) {
+  full.parallel_for(thin.height() + 1, 1, [&](pathtracer::PathSampler&, std::size_t band, std::size_t) {
     SpreadRow spread(width);
     const int above = static_cast<int>(band) - 1,
               start = above * static_cast<int>(stride) + static_cast<int>(stride) / 2;
@@ -163,7 +163,7 @@ Irradiance upsampled(const View& full, const View& thin, const Irradiance& image
     }
     for (std::size_t y = first; y < end; ++y) normalise(sums, y * width, (y + 1) * width);
   });
-  full.for_each_pixel([&](reference::PathSampler&, std::size_t pixel) {
+  full.for_each_pixel([&](pathtracer::PathSampler&, std::size_t pixel) {
     const std::size_t x = pixel % width / stride, y = pixel / width / stride;
     if (!sums.computed(pixel)) sums.set(pixel, image.at(y * thin.width() + x));
   });

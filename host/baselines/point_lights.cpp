@@ -77,8 +77,8 @@ std::vector<PointLight> draw_lights(std::span<const SurfaceImage> rsms, unsigned
 Irradiance light_by(const View& view, std::span<const PointLight> lights, unsigned interleave) {
   const unsigned width = view.width(), sets = interleave * interleave;
   Irradiance image(view.hits().size());
-  view.for_each_pixel([&](reference::PathSampler&, std::size_t pixel) {
-    const reference::Hit& hit = *view.hits()[pixel];
+  view.for_each_pixel([&](pathtracer::PathSampler&, std::size_t pixel) {
+    const pathtracer::Hit& hit = *view.hits()[pixel];
     const glm::vec3 origin = view.rays().offset_origin(hit);
     const auto x = static_cast<unsigned>(pixel % width), y = static_cast<unsigned>(pixel / width);
     glm::vec3 sum(0);

@@ -115,7 +115,7 @@ glm::vec3 origin_of(const ClpvGrid& grid) {
 }
 
 /// Radiance that arrives from a surface: emitted, and one reflection of the lights.
-glm::vec3 radiance_of(const View& view, reference::PathSampler& sampler, const reference::Hit& hit,
+glm::vec3 radiance_of(const View& view, pathtracer::PathSampler& sampler, const pathtracer::Hit& hit,
                       const glm::vec3& direction) {
   glm::dvec3 sum = sampler.direct({hit}) * std::numbers::inv_pi;
   if (sum != glm::dvec3(0)) sum *= glm::dvec3(view.rays().materials().albedo(hit.point));
@@ -132,7 +132,7 @@ void Probes::find_probes() {
   std::vector<std::vector<char>>
       used;  // the cubes by their first cell, by grid; threads write the same value
   for (const ClpvGrid& grid : grids_) used.emplace_back(std::size_t{grid.n} * grid.n * grid.n, 0);
-  view_.for_each_pixel([&](reference::PathSampler&, std::size_t pixel) {
+  view_.for_each_pixel([&](pathtracer::PathSampler&, std::size_t pixel) {
     corners_[pixel] = {};
     for (std::size_t g = 0; g < grids_.size(); ++g) {
       const ClpvGrid& grid = grids_[g];
@@ -180,14 +180,14 @@ void Probes::trace(unsigned rays) {
   const float share = std::max(1 / (frame_ + 1.0f), 1 - kHysteresis);
   constexpr std::size_t kGrain = 8;
   view_.parallel_for(
-      positions_.size(), kGrain, [&](reference::PathSampler& sampler, std::size_t first, std::size_t last) {
+      positions_.size(), kGrain, [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
         std::vector<glm::vec3> radiance(rays);
         std::vector<glm::vec2> distance(rays);
         for (std::size_t probe = first; probe < last; ++probe) {
           for (unsigned i = 0; i < rays; ++i) {
             const auto hit =
                 view_.rays().intersect(positions_[probe], directions[i], 0,
-                                       std::numeric_limits<float>::infinity(), reference::Faces::all);
+                                       std::numeric_limits<float>::infinity(), pathtracer::Faces::all);
             const float length = hit ? std::min(hit->distance, limits_[probe]) : limits_[probe];
             distance[i] = {length, length * length};
             radiance[i] = hit                   ? radiance_of(view_, sampler, *hit, directions[i])
@@ -205,7 +205,7 @@ glm::vec3 Probes::sample(std::size_t pixel) const {
   const Corner& corner = corners_[pixel];
   if (corner.grid < 0) return glm::vec3(0);
   const ClpvGrid& grid = grids_[corner.grid];
-  const reference::Hit& hit = *view_.hits()[pixel];
+  const pathtracer::Hit& hit = *view_.hits()[pixel];
   const glm::vec3 lifted =
       hit.position +
       kBias * grid.cell * (0.2f * hit.normal + 0.8f * glm::normalize(view_.eye() - hit.position));
@@ -246,7 +246,7 @@ Irradiance Probes::render(unsigned rays) {
   trace(rays);
   ++frame_;
   Irradiance image(view_.hits().size());
-  view_.for_each_pixel([&](reference::PathSampler&, std::size_t pixel) { image.set(pixel, sample(pixel)); });
+  view_.for_each_pixel([&](pathtracer::PathSampler&, std::size_t pixel) { image.set(pixel, sample(pixel)); });
   return image;
 }
 

@@ -23,18 +23,18 @@ View::View(const SceneData& scene, const SceneCamera& camera, int width, int hei
       height_(static_cast<unsigned>(height)),
       hits_(std::size_t{width_} * height_),
       surfaces_(kSurfacePlanes, hits_.size()) {
-  reference::TracedImage& image = shared_->image;
+  pathtracer::TracedImage& image = shared_->image;
   image.view = camera_view(camera, width, height);
   image.depth.assign(hits_.size(), 0);
   for (auto* layer : {&image.normal, &image.albedo, &image.emissive, &image.direct, &image.irradiance})
     layer->assign(hits_.size(), glm::vec3(0));
   parallel_for(hits_.size(), width_,
-               [&](reference::PathSampler& sampler, std::size_t first, std::size_t last) {
+               [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
                  for (std::size_t i = first; i < last; ++i) {
                    const auto x = static_cast<unsigned>(i % width_), y = static_cast<unsigned>(i / width_);
                    hits_[i] = sampler.primary_hit(image.view, x, y);
                    if (!hits_[i]) continue;
-                   const reference::Hit& hit = *hits_[i];
+                   const pathtracer::Hit& hit = *hits_[i];
                    image.depth[i] = hit.distance;
                    image.normal[i] = hit.normal;
                    image.albedo[i] = rays().materials().albedo(hit.point, footprint(image.view, x, y, hit));
@@ -70,8 +70,8 @@ View View::thinned(unsigned stride) const {
   return {*this, stride};
 }
 
-reference::TracedImage View::with(const Irradiance& irradiance) const {
-  reference::TracedImage image = shared_->image;
+pathtracer::TracedImage View::with(const Irradiance& irradiance) const {
+  pathtracer::TracedImage image = shared_->image;
   for (std::size_t i = 0; i < irradiance.size(); ++i) image.irradiance[i] = irradiance.at(i);
   return image;
 }

@@ -63,9 +63,9 @@ class View {
   unsigned stride() const { return stride_; }  ///< 1: of all pixels
 
   const SceneData& scene() const { return shared_->scene; }
-  const reference::RayScene& rays() const { return shared_->rays; }
-  const reference::Emitters& emitters() const { return shared_->emitters; }
-  const reference::SkySampler& sky() const { return shared_->sky; }
+  const pathtracer::RayScene& rays() const { return shared_->rays; }
+  const pathtracer::Emitters& emitters() const { return shared_->emitters; }
+  const pathtracer::SkySampler& sky() const { return shared_->sky; }
   int threads() const { return shared_->threads; }
   int bounces() const { return shared_->options.bounces; }
 
@@ -73,11 +73,11 @@ class View {
   unsigned height() const { return height_; }
   const glm::vec3& eye() const { return shared_->eye; }
   /// Surfaces of the pixels' centres: what the camera's ray hits, and its summary for the filter.
-  const std::vector<std::optional<reference::Hit>>& hits() const { return hits_; }
+  const std::vector<std::optional<pathtracer::Hit>>& hits() const { return hits_; }
   const Planes& surfaces() const { return surfaces_; }
 
   /// G-buffer of all pixels with this irradiance.
-  reference::TracedImage with(const Irradiance& irradiance) const;
+  pathtracer::TracedImage with(const Irradiance& irradiance) const;
 
   /// Calls action(sampler, first, last) for ranges of up to `grain` items that cover [0, count), on all threads.
   template <typename Action>
@@ -85,7 +85,7 @@ class View {
     std::atomic<std::size_t> next{0};
     const auto run = [&] {
       const Shared& s = *shared_;
-      reference::PathSampler sampler(s.rays, s.lights, s.emitters, s.sky, nullptr, s.options);
+      pathtracer::PathSampler sampler(s.rays, s.lights, s.emitters, s.sky, nullptr, s.options);
       for (std::size_t first; (first = next.fetch_add(grain)) < count;)
         action(sampler, first, std::min(count, first + grain));
     };
@@ -98,7 +98,7 @@ class View {
   template <typename Action>
   void for_each_pixel(const Action& action) const {
     parallel_for(hits_.size(), width_,
-                 [&](reference::PathSampler& sampler, std::size_t first, std::size_t last) {
+                 [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
                    for (std::size_t pixel = first; pixel < last; ++pixel) {
                      if (hits_[pixel]) action(sampler, pixel);
                    }
@@ -108,14 +108,14 @@ class View {
  private:
   struct Shared {  ///< by all views of a scene from a camera
     const SceneData& scene;
-    reference::RayScene rays;
-    reference::Emitters emitters;
-    reference::SkySampler sky;
+    pathtracer::RayScene rays;
+    pathtracer::Emitters emitters;
+    pathtracer::SkySampler sky;
     std::vector<SceneLight> lights;
-    reference::PathTracerOptions options;
+    pathtracer::PathTracerOptions options;
     int threads;
     glm::vec3 eye;
-    reference::TracedImage image;  ///< G-buffer of all pixels
+    pathtracer::TracedImage image;  ///< G-buffer of all pixels
 
     Shared(const SceneData& of, const SceneCamera& camera, int bounces, int use_threads);
   };
@@ -123,7 +123,7 @@ class View {
 
   std::shared_ptr<Shared> shared_;
   unsigned width_, height_, stride_ = 1;
-  std::vector<std::optional<reference::Hit>> hits_;
+  std::vector<std::optional<pathtracer::Hit>> hits_;
   Planes surfaces_;
 };
 

@@ -231,10 +231,10 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
       ->group(kGroup);
 }
 
-reference::PathTracerOptions TracingOptions::resolved() const {
-  reference::PathTracerOptions result = values;
+pathtracer::PathTracerOptions TracingOptions::resolved() const {
+  pathtracer::PathTracerOptions result = values;
   if (bounces == "all") {
-    result.bounces = reference::PathTracerOptions::kAllBounces;
+    result.bounces = pathtracer::PathTracerOptions::kAllBounces;
   } else {
     result.bounces = parse_number<int>(bounces).value_or(0);
     if (result.bounces < 1)
@@ -249,7 +249,7 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
       "maximum number of reflections between light and visible surface: 1, 2, ... or all")
       ->group(kGroup);
   auto* samples = add(command, "--spp", "N", options.values.samples, "paths per pixel")
-                      ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples))
+                      ->check(CLI::Range(1u, pathtracer::PathTracerOptions::kMaxSamples))
                       ->group(kGroup);
   command
       .add_option("--noise", options.values.noise,
@@ -267,7 +267,7 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
       ->group(kGroup);
 }
 
-reference::TraceProgress trace_progress(Progress& progress) {
+pathtracer::TraceProgress trace_progress(Progress& progress) {
   return [&progress](double share) { progress.reach(static_cast<std::uint64_t>(share * kTraceSteps)); };
 }
 

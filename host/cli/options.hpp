@@ -113,17 +113,17 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
 /// The options of path tracing, shared by `pathtrace`, `quality` and `report`.
 struct TracingOptions {
   std::string bounces = "1";
-  reference::PathTracerOptions values;  ///< all but `bounces`
+  pathtracer::PathTracerOptions values;  ///< all but `bounces`
 
   /// Throws Error(usage) unless --bounces is a number from 1 or all.
-  reference::PathTracerOptions resolved() const;
+  pathtracer::PathTracerOptions resolved() const;
 };
 
 /// Adds --bounces, --spp, --noise, --seed and --threads; `options` must outlive the parse.
 void add_tracing_options(CLI::App& command, TracingOptions& options);
 
 /// Returns a callback that shows the progress of trace_paths on a bar.
-reference::TraceProgress trace_progress(Progress& progress);
+pathtracer::TraceProgress trace_progress(Progress& progress);
 inline constexpr std::uint64_t kTraceSteps = 10000;  ///< steps of that bar
 
 }  // namespace clpv

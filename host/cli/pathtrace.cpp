@@ -51,14 +51,14 @@ nlohmann::json resolved(const Options& options, const SceneCamera& camera) {
   return json;
 }
 
-Image compose(const reference::TracedImage& traced, const std::vector<Show>& views) {
+Image compose(const pathtracer::TracedImage& traced, const std::vector<Show>& views) {
   if (views.size() == 1) return traced_view(traced, views[0]);
   Image image;
   for (const Show view : views) append_layer(image, traced_view(traced, view), std::string(name_of(view)));
   return image;
 }
 
-void write_outputs(const Options& options, const SceneCamera& camera, const reference::TracedImage& traced,
+void write_outputs(const Options& options, const SceneCamera& camera, const pathtracer::TracedImage& traced,
                    double seconds) {
   const nlohmann::json asked = resolved(options, camera);
   const nlohmann::json noise = std::isnan(traced.noise) ? nlohmann::json() : nlohmann::json(traced.noise);
@@ -80,7 +80,7 @@ void write_outputs(const Options& options, const SceneCamera& camera, const refe
 
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
-  reference::PathTracerOptions tracing = options.tracing.resolved();
+  pathtracer::PathTracerOptions tracing = options.tracing.resolved();
   for (const Show view : options.views) require_traceable(view);
   require_extension("--output", options.output, {".exr"});
   const std::vector<NamedFile> outputs{{"--output", options.output}, {"--stats", options.stats}};
@@ -93,12 +93,12 @@ void run(const Options& options, Shared& shared) {
   const auto started = std::chrono::steady_clock::now();
   std::optional<Tev> tev;
   if (!options.tev.empty() && ranks.is_root()) tev.emplace(options.tev);
-  const auto show = [&](const reference::TracedImage& traced) {
+  const auto show = [&](const pathtracer::TracedImage& traced) {
     for (const Show view : options.views) tev->show(tev_name(scene, camera, view), traced_view(traced, view));
   };
   if (tev) tracing.observer = show;
   Progress progress("path tracing", kTraceSteps);
-  const reference::TracedImage traced = reference::trace_paths(
+  const pathtracer::TracedImage traced = pathtracer::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
       trace_progress(progress), ranks);
   if (!ranks.is_root()) return;

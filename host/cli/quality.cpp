@@ -176,7 +176,7 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
                          {"given", options.given}};
   for (const Subject& subject : subjects) {
     for (std::size_t view = 0; view < subject.cameras.size(); ++view) {
-      const reference::GroundTruth& truth = subject.truths[view];
+      const GroundTruth& truth = subject.truths[view];
       json["ground_truths"].push_back({{"scene", subject.scene.name},
                                        {"camera", subject.cameras[view].name},
                                        {"file", truth.file.string()},
@@ -192,7 +192,7 @@ nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
   const std::vector<Variant> variants = variants_of(options);
-  const reference::PathTracerOptions tracing = options.tracing.resolved();
+  const pathtracer::PathTracerOptions tracing = options.tracing.resolved();
   if (!options.baselines.names.empty() && ranks.size() > 1)
     throw Error(ExitCode::usage, "--baseline: found {} ranks; allowed: one", ranks.size());
   if (!options.output.empty()) require_extension("--output", options.output, {".json"});

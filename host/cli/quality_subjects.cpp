@@ -82,13 +82,13 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
   return subjects;
 }
 
-void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
+void trace_truths(Subject& subject, int width, int height, const pathtracer::PathTracerOptions& options,
                   const std::filesystem::path& folder, Ranks& ranks) {
   for (const SceneCamera& camera : subject.cameras) {
     Progress progress(fmt::format("ground truth {} {}", subject.scene.name, camera.name), kTraceSteps);
-    subject.truths.push_back(reference::cached_ground_truth(folder, subject.scene, camera, width, height,
-                                                            options, trace_progress(progress), ranks));
-    const reference::GroundTruth& truth = subject.truths.back();
+    subject.truths.push_back(cached_ground_truth(folder, subject.scene, camera, width, height, options,
+                                                 trace_progress(progress), ranks));
+    const GroundTruth& truth = subject.truths.back();
     spdlog::debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
   }
 }

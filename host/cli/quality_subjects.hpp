@@ -30,7 +30,7 @@ void add_subject_options(CLI::App& command, QualitySubjects& subjects);
 struct Subject {
   SceneData scene;
   std::vector<SceneCamera> cameras;
-  std::vector<reference::GroundTruth> truths;  ///< one per camera, after tracing
+  std::vector<GroundTruth> truths;  ///< one per camera, after tracing
 };
 
 /// Returns the files that the command line names.
@@ -45,7 +45,7 @@ std::filesystem::path quality_cache(const std::string& given);
 std::vector<Subject> load_subjects(const QualitySubjects& given);
 
 /// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar. Collective over all ranks.
-void trace_truths(Subject& subject, int width, int height, const reference::PathTracerOptions& options,
+void trace_truths(Subject& subject, int width, int height, const pathtracer::PathTracerOptions& options,
                   const std::filesystem::path& folder, Ranks& ranks = single_rank());
 
 }  // namespace clpv

@@ -110,7 +110,7 @@ Image render_indirect(Session& session, const Subject& subject, const SceneCamer
 nlohmann::json view(Session& session, const Options& options, const Subject& subject, std::size_t index,
                     const Drawing& drawing, const std::string& stem, Progress& progress) {
   const SceneCamera& camera = subject.cameras[index];
-  const reference::GroundTruth& traced = subject.truths[index];
+  const GroundTruth& traced = subject.truths[index];
   const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
   const float exposure = exposure_of(truth);
   nlohmann::json shots = nlohmann::json::array();

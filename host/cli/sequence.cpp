@@ -124,7 +124,7 @@ void add_sequence(CLI::App& app, Shared& shared) {
                     "write stability.json: change of light between frames on static surfaces");
   add(*command, "--traced", "SPP", options->traced,
       "paths per pixel for the path-traced noise of --stability")
-      ->check(CLI::Range(1u, reference::PathTracerOptions::kMaxSamples));
+      ->check(CLI::Range(1u, pathtracer::PathTracerOptions::kMaxSamples));
   add_tev(*command, options->tev);
   add_shown_options(*command, options->request);
   add_render_request(*command, options->request);

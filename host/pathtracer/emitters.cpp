@@ -11,7 +11,7 @@
 #include "reference/triangle.hpp"
 #include "scene/emission.hpp"
 
-namespace clpv::reference {
+namespace clpv::pathtracer {
 namespace {
 
 constexpr int kEdgeSamples = 4;  // texture samples along a triangle's edge
@@ -23,12 +23,12 @@ double brightest(const glm::dvec3& colour) {
 }
 
 /// Approximate mean radiance of a triangle's front, in the brightest channel [W/m^2/sr].
-double mean_radiance(const SceneData& scene, const Materials& materials, std::uint32_t triangle) {
+double mean_radiance(const SceneData& scene, const reference::Materials& materials, std::uint32_t triangle) {
   const ClpvMaterial& material = scene.materials[scene.triangles[triangle].material];
   const double white = brightest({material.emissive[0], material.emissive[1], material.emissive[2]});
   if (material.emissive_texture == CLPV_NO_TEXTURE) return white;
   const auto [a, b, c] = corners_of(scene, scene.triangles[triangle]);
-  const Footprint footprint{(b - a) / double{kEdgeSamples}, (c - a) / double{kEdgeSamples}};
+  const reference::Footprint footprint{(b - a) / double{kEdgeSamples}, (c - a) / double{kEdgeSamples}};
   double sum = 0;
   int samples = 0;
   for (int row = 0; row < kEdgeSamples; ++row) {
@@ -42,7 +42,7 @@ double mean_radiance(const SceneData& scene, const Materials& materials, std::ui
 
 }  // namespace
 
-Emitters::Emitters(const SceneData& scene, const Materials& materials)
+Emitters::Emitters(const SceneData& scene, const reference::Materials& materials)
     : scene_(scene), materials_(materials) {
   double total = 0;
   std::vector<double> areas;
@@ -78,7 +78,7 @@ glm::dvec3 Emitters::front_normal(std::uint32_t triangle) const {
   return glm::normalize(glm::cross(b - a, c - a));
 }
 
-glm::dvec3 Emitters::radiance(const SurfacePoint& point, const glm::dvec3& towards) const {
+glm::dvec3 Emitters::radiance(const reference::SurfacePoint& point, const glm::dvec3& towards) const {
   const ClpvMaterial& material = scene_.materials[scene_.triangles[point.triangle].material];
   if (!emits(material) || (!double_sided(material) && glm::dot(front_normal(point.triangle), towards) <= 0))
     return glm::dvec3(0);
@@ -134,4 +134,4 @@ double SkySampler::density(const glm::dvec3& direction) const {
   return weight(sky_->texel_at(direction)) / total_;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::pathtracer

@@ -10,11 +10,11 @@
 #include "scene/scene.hpp"
 #include "scene/sky.hpp"
 
-namespace clpv::reference {
+namespace clpv::pathtracer {
 
 /// A sampled point.
 struct EmitterSample {
-  SurfacePoint point;
+  reference::SurfacePoint point;
   glm::vec3 position{0};  ///< [m]
   double density = 0;     ///< probability density over area [1/m^2]
 };
@@ -23,7 +23,7 @@ struct EmitterSample {
 /// and its points have constant density over area. Borrows the scene and the materials.
 class Emitters {
  public:
-  Emitters(const SceneData& scene, const Materials& materials);
+  Emitters(const SceneData& scene, const reference::Materials& materials);
 
   /// Returns true if no triangle emits.
   bool empty() const { return triangles_.empty(); }
@@ -38,11 +38,11 @@ class Emitters {
   glm::dvec3 front_normal(std::uint32_t triangle) const;
 
   /// Radiance that a point emits to the side of direction `towards` [W/m^2/sr].
-  glm::dvec3 radiance(const SurfacePoint& point, const glm::dvec3& towards) const;
+  glm::dvec3 radiance(const reference::SurfacePoint& point, const glm::dvec3& towards) const;
 
  private:
   const SceneData& scene_;
-  const Materials& materials_;
+  const reference::Materials& materials_;
   std::vector<std::uint32_t> triangles_;
   std::vector<double> cdf_;        ///< cumulative probability of triangles_
   std::vector<double> densities_;  ///< one per triangle of the scene [1/m^2]
@@ -81,4 +81,4 @@ class SkySampler {
   double total_ = 0;                 ///< integral of weight over the sphere
 };
 
-}  // namespace clpv::reference
+}  // namespace clpv::pathtracer

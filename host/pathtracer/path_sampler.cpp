@@ -21,7 +21,7 @@
 #include "scene/light_kind.hpp"
 #include "scene/medium.hpp"
 
-namespace clpv::reference {
+namespace clpv::pathtracer {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -57,8 +57,8 @@ void PathSampler::Flights::take(const glm::dvec3& more, glm::dvec3& throughput) 
 
 std::optional<Hit> PathSampler::primary_hit(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
   ++ray_count_;
-  const glm::dvec3 origin = surface_position(view, px, py, 0),
-                   at_unit_depth = surface_position(view, px, py, 1);
+  const glm::dvec3 origin = reference::surface_position(view, px, py, 0),
+                   at_unit_depth = reference::surface_position(view, px, py, 1);
   return rays_.intersect(glm::vec3(origin), glm::vec3(at_unit_depth - origin), view.near_depth,
                          view.far_depth, Faces::culled);
 }
@@ -92,7 +92,7 @@ glm::dvec3 PathSampler::direct(const Vertex& at) {
   glm::dvec3 sum(0);
   for (const SceneLight& light : lights_) {
     if (at.in_medium && kind_of(light.data) != LightKind::directional) continue;  // from_beams()
-    const Incident in = light_at(light.data, glm::dvec3(at.hit.position));
+    const reference::Incident in = reference::light_at(light.data, glm::dvec3(at.hit.position));
     const double cosine = factor(at, in.towards);
     if (cosine <= 0 || in.irradiance == glm::dvec3(0)) continue;
     ++ray_count_;
@@ -119,7 +119,7 @@ glm::dvec3 PathSampler::from_beams(const glm::dvec3& origin, const glm::dvec3& d
     const double beside = away * std::tan(glm::mix(first, last, random)),
                  t = std::clamp(foot + beside, part.start, part.end);
     const glm::dvec3 at = origin + t * direction;
-    const Incident in = light_at(light.data, at);
+    const reference::Incident in = reference::light_at(light.data, at);
     if (in.irradiance == glm::dvec3(0)) continue;
     ++ray_count_;
     if (shadowed(light.data, glm::vec3(at), in.towards)) continue;
@@ -217,7 +217,7 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
 
 glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream,
                                  Flights flights) {
-  const Materials& materials = rays_.materials();
+  const reference::Materials& materials = rays_.materials();
   glm::dvec3 sum(0), throughput(1);
   Vertex at = start;
   for (int bounce = 1;; ++bounce) {
@@ -289,4 +289,4 @@ PathSampler::Vertex PathSampler::in_medium(const glm::dvec3& origin, const glm::
   return vertex;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::pathtracer

@@ -12,7 +12,7 @@
 #include "pathtracer/path_tracer.hpp"
 #include "pathtracer/ray_scene.hpp"
 
-namespace clpv::reference {
+namespace clpv::pathtracer {
 
 /// Borrows its arguments. Each thread has its own, for its count of rays.
 class PathSampler {
@@ -82,4 +82,4 @@ class PathSampler {
   std::uint64_t ray_count_ = 0;
 };
 
-}  // namespace clpv::reference
+}  // namespace clpv::pathtracer

@@ -21,7 +21,7 @@
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 
-namespace clpv::reference {
+namespace clpv::pathtracer {
 namespace {
 
 constexpr std::uint32_t kTile = 16;          // edge of a tile [pixels], the unit of work of a thread
@@ -30,7 +30,8 @@ constexpr std::uint32_t kMaxSamples = PathTracerOptions::kMaxSamples;
 
 /// Unit direction of the ray through a pixel's centre.
 glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
-  return glm::normalize(surface_position(view, px, py, 1) - surface_position(view, px, py, 0));
+  return glm::normalize(reference::surface_position(view, px, py, 1) -
+                        reference::surface_position(view, px, py, 0));
 }
 
 /// The part of a pixel's ray that the camera sees.
@@ -43,7 +44,8 @@ struct PrimaryRay {
 PrimaryRay primary_ray(const ClpvView& view, std::size_t pixel, float depth) {
   const auto x = static_cast<std::uint32_t>(pixel % view.width),
              y = static_cast<std::uint32_t>(pixel / view.width);
-  const glm::dvec3 origin = surface_position(view, x, y, 0), at_unit_depth = surface_position(view, x, y, 1);
+  const glm::dvec3 origin = reference::surface_position(view, x, y, 0),
+                   at_unit_depth = reference::surface_position(view, x, y, 1);
   const double length = glm::length(at_unit_depth - origin);
   return {origin, (at_unit_depth - origin) / length,
           depth > 0 ? length * depth : std::numeric_limits<double>::infinity()};
@@ -192,7 +194,7 @@ class ImageTracer {
     const Hit& hit = *hits_[i];
     image_.depth[i] = hit.distance;
     image_.normal[i] = hit.normal;
-    const Footprint pixel = footprint(image_.view, x, y, hit);
+    const reference::Footprint pixel = footprint(image_.view, x, y, hit);
     image_.albedo[i] = rays_.materials().albedo(hit.point, pixel);
     image_.emissive[i] = rays_.materials().emissive(hit.point, pixel);
     image_.direct[i] = glm::vec3(sampler.direct({hit}));
@@ -361,4 +363,4 @@ Image traced_view(const TracedImage& traced, Show show) {
   return image;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::pathtracer

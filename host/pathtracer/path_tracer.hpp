@@ -22,7 +22,7 @@
 #include "parallel/ranks.hpp"
 #include "scene/scene.hpp"
 
-namespace clpv::reference {
+namespace clpv::pathtracer {
 
 struct TracedImage;
 
@@ -73,4 +73,4 @@ TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& l
 /// R, G, B, A of one view, units and meaning as in kernels/shared/shade.h: alpha 1 where there is a surface, else all 0.
 Image traced_view(const TracedImage& traced, Show show);
 
-}  // namespace clpv::reference
+}  // namespace clpv::pathtracer

@@ -17,7 +17,7 @@
 #include <embree3/rtcore.h>
 #endif
 
-namespace clpv::reference {
+namespace clpv::pathtracer {
 namespace {
 
 // Common interface to Embree 3 and 4 for queries with a filter function per ray.
@@ -81,7 +81,7 @@ void check(RTCDevice device) {
 
 struct RayScene::Impl {
   const SceneData* scene = nullptr;
-  std::optional<Materials> materials;
+  std::optional<reference::Materials> materials;
   std::array<std::vector<std::uint32_t>, 2> triangles;  // indices in scene->triangles, by geometry
   float extent = 0;                                     // largest coordinate [m]
   RtcDevice device;
@@ -149,12 +149,14 @@ void RayScene::Impl::attach(unsigned id) {
   check(device.get());
 }
 
-Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit) {
-  const glm::dvec3 normal(hit.geometric), here = surface_position(view, px, py, hit.distance);
-  const glm::dvec3 ray = surface_position(view, px, py, 1) - surface_position(view, px, py, 0);
+reference::Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit) {
+  const glm::dvec3 normal(hit.geometric), here = reference::surface_position(view, px, py, hit.distance);
+  const glm::dvec3 ray =
+      reference::surface_position(view, px, py, 1) - reference::surface_position(view, px, py, 0);
   const auto step = [&](double x, double y) {
-    const glm::dvec3 offset = surface_position(view, x, y, hit.distance) - here;  // at the same depth
-    return offset - ray * glm::dot(normal, offset) / glm::dot(normal, ray);       // onto the triangle's plane
+    const glm::dvec3 offset =
+        reference::surface_position(view, x, y, hit.distance) - here;        // at the same depth
+    return offset - ray * glm::dot(normal, offset) / glm::dot(normal, ray);  // onto the triangle's plane
   };
   return {step(px + 1.0, py), step(px, py + 1.0)};
 }
@@ -189,7 +191,7 @@ RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
-const Materials& RayScene::materials() const {
+const reference::Materials& RayScene::materials() const {
   return *impl_->materials;
 }
 
@@ -207,10 +209,10 @@ std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3&
   hit.point = {impl_->triangle(query.hit), {query.hit.u, query.hit.v}};
   const Triangle& triangle = scene.triangles[hit.point.triangle];
   hit.distance = query.ray.tfar;
-  hit.position = interpolate(scene, triangle, hit.point.weights, position);
+  hit.position = reference::interpolate(scene, triangle, hit.point.weights, reference::position);
   hit.geometric = glm::normalize(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z));
   if (glm::dot(hit.geometric, direction) > 0) hit.geometric = -hit.geometric;
-  hit.normal = interpolate(scene, triangle, hit.point.weights, normal);
+  hit.normal = reference::interpolate(scene, triangle, hit.point.weights, reference::normal);
   const float length = glm::length(hit.normal);
   hit.normal = length > 0 ? hit.normal / length : hit.geometric;  // 0 if opposite normals cancel out
   if (glm::dot(hit.normal, hit.geometric) < 0) hit.normal = -hit.normal;
@@ -231,4 +233,4 @@ glm::vec3 RayScene::offset_origin(const Hit& hit) const {
   return hit.position + offset * hit.geometric;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv::pathtracer

@@ -10,20 +10,20 @@
 #include "reference/materials.hpp"
 #include "scene/scene.hpp"
 
-namespace clpv::reference {
+namespace clpv::pathtracer {
 
 /// Intersection of a ray with a surface.
 struct Hit {
   float distance = 0;  ///< in lengths of the ray's direction
   glm::vec3 position{
       0};  ///< [m], interpolated from the vertices: more precise than origin + distance * direction
-  glm::vec3 geometric{0};  ///< unit normal of the triangle, on the side of the ray's origin
-  glm::vec3 normal{0};     ///< unit normal interpolated from the vertices, on the side of `geometric`
-  SurfacePoint point;      ///< the position in barycentric coordinates
+  glm::vec3 geometric{0};         ///< unit normal of the triangle, on the side of the ray's origin
+  glm::vec3 normal{0};            ///< unit normal interpolated from the vertices, on the side of `geometric`
+  reference::SurfacePoint point;  ///< the position in barycentric coordinates
 };
 
 /// Footprint on the surface of the pixel (px, py) with primary hit `hit`, whose `distance` is the depth.
-Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit);
+reference::Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit);
 
 /// Faces that a ray can hit.
 enum class Faces {
@@ -40,7 +40,7 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  const Materials& materials() const;
+  const reference::Materials& materials() const;
 
   /// The nearest surface at origin + t direction, t in (nearest, furthest), without holes of masked materials.
   std::optional<Hit> intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest,
@@ -58,4 +58,4 @@ class RayScene {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace clpv::reference
+}  // namespace clpv::pathtracer

@@ -175,8 +175,8 @@ baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& ful
 }
 
 MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view,
-                                  const BaselineBudget& budget, const reference::GroundTruth& truth,
-                                  Show show, int runs) {
+                                  const BaselineBudget& budget, const GroundTruth& truth, Show show,
+                                  int runs) {
   require_baseline(baseline, view.scene(), view.bounces(), show);
   MeasuredBaseline measured;
   QualityCell& cell = measured.cell;

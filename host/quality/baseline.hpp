@@ -57,8 +57,8 @@ struct MeasuredBaseline {
 /// truth. The cell's settings are samples, threads and budget; its stage `baseline` is the median time. Throws as
 /// require_baseline().
 MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view,
-                                  const BaselineBudget& budget, const reference::GroundTruth& truth,
-                                  Show show, int runs);
+                                  const BaselineBudget& budget, const GroundTruth& truth, Show show,
+                                  int runs);
 
 /// The method's irradiance of all pixels of `full` with this number of samples in each pixel of `thin`, its thinned view.
 /// `frames`: of irradiance probes. Sets counts of what it used in `settings`.

@@ -18,14 +18,14 @@
 #include "support/fingerprint.hpp"
 #include "support/named_enum.hpp"
 
-namespace clpv::reference {
+namespace clpv {
 namespace {
 
 // Increment when the tracer's results change; this invalidates cached references.
 constexpr int kTracerRevision = 1;
 
 std::string key(const SceneData& scene, const SceneCamera& camera, const ClpvView& view,
-                const PathTracerOptions& options) {
+                const pathtracer::PathTracerOptions& options) {
   Fingerprint print;
   print.add(version()).add(kTracerRevision).add(scene_fingerprint(scene));
   for (const SceneLight& light : scene.lights_for(camera)) print.add(std::vector{light.data});
@@ -48,27 +48,27 @@ std::vector<Show> views_of(bool medium) {
   return views;
 }
 
-Image all_views(const TracedImage& traced) {
+Image all_views(const pathtracer::TracedImage& traced) {
   Image image;
   for (const Show show : views_of(traced.medium.has_value()))
-    append_layer(image, traced_view(traced, show), std::string(name_of(show)));
+    append_layer(image, pathtracer::traced_view(traced, show), std::string(name_of(show)));
   return image;
 }
 
-void describe(Image& image, const SceneData& scene, const SceneCamera& camera, const TracedImage& traced,
-              const PathTracerOptions& options) {
+void describe(Image& image, const SceneData& scene, const SceneCamera& camera,
+              const pathtracer::TracedImage& traced, const pathtracer::PathTracerOptions& options) {
   image.metadata["command"] = "pathtrace";
   image.metadata["version"] = version();
   image.metadata["scene"] = scene.name;
   image.metadata["camera"] = camera.name;
   image.metadata["bounces"] =
-      options.bounces == PathTracerOptions::kAllBounces ? "all" : std::to_string(options.bounces);
+      options.bounces == pathtracer::PathTracerOptions::kAllBounces ? "all" : std::to_string(options.bounces);
   image.metadata["seed"] = std::to_string(options.seed);
   image.metadata["spp_traced"] = std::to_string(traced.samples);
   image.metadata["noise_reached"] = fmt::format("{}", traced.noise);
 }
 
-constexpr const char* kFingerprint = "fingerprint";  // metadata: of the rest of a cached image
+constexpr const char* kCacheFingerprint = "fingerprint";  // metadata: of the rest of a cached image
 
 std::string fingerprint_of(const Image& image) {
   Fingerprint print;
@@ -82,7 +82,7 @@ std::string fingerprint_of(const Image& image) {
     print.add(name).add(values);
   }
   for (const auto& [name, value] : image.metadata)
-    if (name != kFingerprint && !value.empty()) print.add(name).add(value);  // files lack empty values
+    if (name != kCacheFingerprint && !value.empty()) print.add(name).add(value);  // files lack empty values
   return print.hex();
 }
 
@@ -91,7 +91,7 @@ GroundTruth decode(const std::filesystem::path& file, const std::string& bytes, 
   GroundTruth truth;
   truth.image = decode_image(file, bytes);
   truth.file = file;
-  if (const auto found = truth.image.metadata.find(kFingerprint);
+  if (const auto found = truth.image.metadata.find(kCacheFingerprint);
       found == truth.image.metadata.end() || found->second != fingerprint_of(truth.image))
     throw Error(ExitCode::bad_input, "{}: damaged: its fingerprint differs", file.string());
   for (const Show show : views_of(scene.medium.has_value()))
@@ -141,8 +141,8 @@ bool can_be_cached(const std::string& problem) {
 
 GroundTruth cached_ground_truth(const std::filesystem::path& folder, const SceneData& scene,
                                 const SceneCamera& camera, int width, int height,
-                                const PathTracerOptions& options, const TraceProgress& progress,
-                                Ranks& ranks) {
+                                const pathtracer::PathTracerOptions& options,
+                                const pathtracer::TraceProgress& progress, Ranks& ranks) {
   const ClpvView view = camera_view(camera, width, height);
   const CacheFolder cache(folder);
   const std::string name = fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
@@ -162,15 +162,16 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
     kept->exposure = scene.exposure;
     return *std::move(kept);
   }
-  const TracedImage traced = trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);
+  const pathtracer::TracedImage traced =
+      pathtracer::trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);
   GroundTruth truth{all_views(traced), folder / name, true, traced.samples, traced.noise, scene.exposure};
   describe(truth.image, scene, camera, traced, options);
   if (cached) {  // at rank 0
-    truth.image.metadata[kFingerprint] = fingerprint_of(truth.image);
+    truth.image.metadata[kCacheFingerprint] = fingerprint_of(truth.image);
     const auto bytes = exr_bytes(truth.image);
     can_be_cached(cache.write(name, std::as_bytes(std::span(bytes))));
   }
   return truth;
 }
 
-}  // namespace clpv::reference
+}  // namespace clpv

@@ -8,15 +8,15 @@
 #include "pathtracer/path_tracer.hpp"
 #include "scene/scene.hpp"
 
-namespace clpv::reference {
+namespace clpv {
 
-/// Ground truth of one camera: an image with one layer per view of a frame ("indirect", ...; traced_view).
+/// Ground truth of one camera: an image with one layer per view of a frame ("indirect", ...; pathtracer::traced_view).
 struct GroundTruth {
   Image image;
   std::filesystem::path file;  ///< cache file
   bool traced = false;         ///< true: traced by this call; false: read from the cache
   std::uint32_t samples = 0;
-  double noise = 0;    ///< TracedImage::noise
+  double noise = 0;    ///< pathtracer::TracedImage::noise
   float exposure = 0;  ///< the scene's [EV]
 };
 
@@ -24,13 +24,13 @@ struct GroundTruth {
 /// The file name contains a key over scene content, camera, size, options and program version, but no file paths.
 /// A damaged file is traced again, with a warning; one that CacheFolder does not trust is ignored.
 /// Collective over all `ranks`; each rank receives the result. Rank 0 reads and writes the cache.
-/// A folder that cannot be written is a warning before tracing, and a failure to write one after it. Throws like trace_paths.
+/// A folder that cannot be written is a warning before tracing, and a failure to write one after it. Throws like pathtracer::trace_paths.
 GroundTruth cached_ground_truth(const std::filesystem::path& folder, const SceneData& scene,
                                 const SceneCamera& camera, int width, int height,
-                                const PathTracerOptions& options, const TraceProgress& progress = {},
-                                Ranks& ranks = single_rank());
+                                const pathtracer::PathTracerOptions& options,
+                                const pathtracer::TraceProgress& progress = {}, Ranks& ranks = single_rank());
 
 /// Hash of all scene content that affects light: geometry, materials, textures.
 std::string scene_fingerprint(const SceneData& scene);
 
-}  // namespace clpv::reference
+}  // namespace clpv

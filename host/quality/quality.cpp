@@ -32,7 +32,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 }  // namespace
 
-void fill_errors(QualityCell& cell, const Image& image, const reference::GroundTruth& truth, Show show) {
+void fill_errors(QualityCell& cell, const Image& image, const GroundTruth& truth, Show show) {
   const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
   const Comparison c = compare(image, "the rendered frame", layer, truth.file.string(), truth.exposure);
   cell.nrmse = c.nrmse_valid;
@@ -83,8 +83,8 @@ std::string describe(const Variant& variant) {
   return text;
 }
 
-QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
-                    const reference::GroundTruth& truth, Show show, int frames) {
+QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera, const GroundTruth& truth,
+                    Show show, int frames) {
   Image image;
   const FrameTimes times =
       measure_frames(session, frame, camera, frames, 1, [&] { image = view_image(frame, show); });
@@ -97,8 +97,8 @@ QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
   return cell;
 }
 
-std::string quality_key(const reference::GroundTruth& truth, const Device& device,
-                        const RenderOptions& options, Show show, int frames) {
+std::string quality_key(const GroundTruth& truth, const Device& device, const RenderOptions& options,
+                        Show show, int frames) {
   static const std::string program = program_fingerprint();
   Fingerprint print;
   print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);

@@ -56,16 +56,16 @@ struct QualityCell {
 
 /// Renders a warm-up frame and `frames` timed ones, and compares the view `show` of the last with the ground truth.
 /// Sets all fields except names and variant. Throws the errors of Frame and compare.
-QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
-                    const reference::GroundTruth& truth, Show show, int frames);
+QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera, const GroundTruth& truth,
+                    Show show, int frames);
 
 /// Sets the errors of an image of the view `show`. Throws the errors of compare.
-void fill_errors(QualityCell& cell, const Image& image, const reference::GroundTruth& truth, Show show);
+void fill_errors(QualityCell& cell, const Image& image, const GroundTruth& truth, Show show);
 
 /// Cache key over all inputs of a cell: ground truth, device (but not the number of its sub-devices), options, view,
 /// number of timed frames, kernels and program.
-std::string quality_key(const reference::GroundTruth& truth, const Device& device,
-                        const RenderOptions& options, Show show, int frames);
+std::string quality_key(const GroundTruth& truth, const Device& device, const RenderOptions& options,
+                        Show show, int frames);
 
 /// Cells cached on disk, so that an interrupted run can resume.
 class QualityStore {

@@ -59,7 +59,7 @@ Sequence::Sequence(const SequenceOptions& options, SequenceSubject subject, Movi
       ranks_(ranks) {
   Fingerprint print;
   print.add(program_fingerprint()).add(device_.platform).add(device_.name).add(device_.driver);
-  still_ = print.add(reference::scene_fingerprint(moving_.scene())).hex();
+  still_ = print.add(scene_fingerprint(moving_.scene())).hex();
   if (ranks.is_root()) times_ = read_times(times_file(), options.frames);
 }
 

@@ -141,10 +141,10 @@ std::optional<double> Stability::noise(const SceneData& scene, const SceneCamera
                                        const std::vector<bool>& counted) const {
   if (traced_ == 0) return {};
   const auto traced = [&](std::uint64_t seed) {
-    reference::PathTracerOptions options;
+    pathtracer::PathTracerOptions options;
     options.samples = traced_, options.seed = seed;
     const auto image =
-        reference::trace_paths(scene, scene.lights_for(camera), before_->surfaces.view, options);
+        pathtracer::trace_paths(scene, scene.lights_for(camera), before_->surfaces.view, options);
     std::vector<float> values;
     for (const glm::vec3& e : image.irradiance) values.insert(values.end(), {e.x, e.y, e.z, 0});
     return values;

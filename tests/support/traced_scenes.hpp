@@ -9,8 +9,8 @@
 
 namespace clpv::test {
 
-using reference::PathTracerOptions;
-using reference::TracedImage;
+using pathtracer::PathTracerOptions;
+using pathtracer::TracedImage;
 
 inline constexpr float kOpen = std::numeric_limits<float>::infinity();
 
@@ -31,7 +31,7 @@ inline ClpvView view_of(glm::vec3 eye, glm::vec3 forward, glm::vec3 up, float ha
 /// By the scene's own lights.
 inline TracedImage trace_paths(const SceneData& scene, const ClpvView& view,
                                const PathTracerOptions& options) {
-  return reference::trace_paths(scene, scene.lights, view, options);
+  return pathtracer::trace_paths(scene, scene.lights, view, options);
 }
 
 /// A material of one albedo.
