@@ -277,6 +277,29 @@ def test_r_returns_to_the_scenes_camera(viewer):
         assert np.allclose(handle.camera.position, made.scene.cameras[0].eye)
 
 
+def test_a_resting_camera_gets_64_rays_and_a_moving_one_2(viewer, monkeypatch):
+    made, port = viewer
+    drawn, get = [], made.renderers.get
+
+    def noted(size, options):
+        if not drawn or drawn[-1] != (size[1], options["near_rays"]):
+            drawn.append((size[1], options["near_rays"]))
+        return get(size, options)
+
+    def drawn_in(seconds, count):
+        end = time.monotonic() + seconds
+        while len(drawn) < count and time.monotonic() < end:
+            time.sleep(0.02)
+        return drawn[:count]
+
+    monkeypatch.setattr(made.renderers, "get", noted)
+    with browser(port) as client:
+        client.send(moved())
+        assert drawn_in(60, 3) == [(288, "2"), (720, "4"), (720, "64")]
+        client.send(moved(position=(0.28, 0.27, -0.2)))
+        assert drawn_in(60, 4)[3] == (288, "2")
+
+
 class Tab:
     """A page of a headless Chromium, over its debugging protocol."""
 
