@@ -152,12 +152,13 @@ void Session::compile_with_helpers() {
 /// Builds a program whose kernels helpers have compiled, from the driver's cache, while they
 /// compile others.
 void Session::build_one_compiled(const Claims& claims) {
-  for (auto& [key, program] : programs_) {
-    if (program->built() != nullptr || program->kernels.empty()) continue;
-    const bool compiled = std::ranges::all_of(program->kernels, [&](const std::string& kernel) {
-      return claims.finished(name_of_claim(key, kernel));
+  for (const auto& entry : programs_) {
+    Program& program = *entry.second;
+    if (program.built() != nullptr || program.kernels.empty()) continue;
+    const bool compiled = std::ranges::all_of(program.kernels, [&](const std::string& kernel) {
+      return claims.finished(name_of_claim(program.key, kernel));
     });
-    if (compiled) return build(*program);
+    if (compiled) return build(program);
   }
 }
 
