@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Random values and combinations of every option of `clpv render`, on scenes at the limits of sizes and lights. Each run writes
-// finite pixels, or ends with code 2 to 5 and a message that names an option or the scene file, within a minute.
+// finite pixels, or ends with code 2 to 5 and a message that names an option or the scene file, within a
+// minute of processor time.
 #include "tests/support/random_options.hpp"
 
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <map>
 #include <random>
 #include <string>
@@ -27,9 +28,9 @@ namespace {
 using namespace test;
 using ::testing::HasSubstr;
 
-constexpr std::chrono::seconds kPatience{60};
-constexpr int kKernels = 3;   // combinations of options that compile
-constexpr int kNumbers = 12;  // combinations of other options with each
+constexpr double kPatience = 60;  // of processor time [s], so that other processes do not count
+constexpr int kKernels = 3;       // combinations of options that compile
+constexpr int kNumbers = 12;      // combinations of other options with each
 const Caps kCaps{{"width", 24},       {"height", 24},     {"grid", 12},    {"rsm-size", 48},
                  {"shadow-size", 48}, {"iterations", 12}, {"cascades", 4}, {"table-size", 1024}};
 
@@ -158,9 +159,9 @@ class RandomOptions : public ::testing::Test {
 
   Outcome render(const std::string& words) {
     SCOPED_TRACE(words);
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     const Outcome outcome = run_here("-q render " + words + " -o out.exr", folder_.path());
-    EXPECT_LT(std::chrono::steady_clock::now() - start, kPatience);
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, kPatience);
     ++codes_[outcome.exit_code];
     if (outcome.exit_code != 0) {
       EXPECT_THAT(outcome.exit_code, ::testing::AllOf(::testing::Ge(2), ::testing::Le(5))) << outcome.err;

@@ -53,6 +53,11 @@ std::optional<cl::Program> load_program(const cl::Context& context, const Device
   }
 }
 
+/// Name of the file that a helper writes when it has compiled a kernel of the program with that key.
+std::string name_of_claim(const std::string& key, const std::string& kernel) {
+  return fmt::format("{}.{}", Fingerprint().add(key).hex(), kernel);
+}
+
 /// Writes a program's text to the folder CLPV_PROGRAM_DUMP, for other compilers and for bug reports.
 void dump(const ProgramSource& source, const std::string& text) {
   const char* folder = std::getenv("CLPV_PROGRAM_DUMP");
@@ -131,16 +136,30 @@ void Session::compile_with_helpers() {
   const auto start = std::chrono::steady_clock::now();
   Progress progress("compiling kernels", kernels);
   Helpers helpers(compilation_.helpers);
+  helped_ = true;
   while (helpers.wait()) {
     stop_if_interrupted("kernels were being compiled");
+    build_one_compiled(helpers.claims());
     progress.reach(std::min(helpers.claims().finished_count(), kernels));  // some are described later
   }
-  helped_ = true;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   spdlog::debug("{} helpers compiled {} kernels in {:.1f} s", helper_count(),
                 helpers.claims().finished_count(), elapsed.count());
   if (!helpers.failures().empty())
     spdlog::debug("a helper failed, so this process compiles the rest: {}", helpers.failures());
+}
+
+/// Builds a program whose kernels helpers have compiled, from the driver's cache, while they
+/// compile others.
+void Session::build_one_compiled(const Claims& claims) {
+  for (const auto& entry : programs_) {
+    Program& program = *entry.second;
+    if (program.built() != nullptr || program.kernels.empty()) continue;
+    const bool compiled = std::ranges::all_of(program.kernels, [&](const std::string& kernel) {
+      return claims.finished(name_of_claim(program.key, kernel));
+    });
+    if (compiled) return build(program);
+  }
 }
 
 bool Session::claims(Program& program) {
@@ -158,8 +177,7 @@ void Session::finish_first_launch(Program& program, const std::string& name) {
   timeline_.wait([&] { queue_.finish(); });
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
   spdlog::debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name, elapsed.count());
-  if (compilation_.claims)
-    compilation_.claims->finish(fmt::format("{}.{}", Fingerprint().add(program.key).hex(), name));
+  if (compilation_.claims) compilation_.claims->finish(name_of_claim(program.key, name));
   stop_if_interrupted("kernels were being compiled");
 }
 
@@ -186,7 +204,8 @@ void Session::build(Program& program) {
   if (!program.stored) program.built = build_program(context_, device_, program.source, program.text);
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
   const double before_ms = std::exchange(build_ms_, build_ms_ + elapsed.count());
-  if (!program.stored && !marks_.has(program.key) && before_ms <= kNoticeMs && build_ms_ > kNoticeMs)
+  const bool slow = before_ms <= kNoticeMs && build_ms_ > kNoticeMs;
+  if (slow && !program.stored && !helped_ && !marks_.has(program.key))
     spdlog::info("compiling kernels for {}: slow on the first run only", device_.name);
   spdlog::debug("kernels/{}: {} in {:.1f} ms", program.source.file,
                 program.stored ? "from the cache" : "compiled", elapsed.count());

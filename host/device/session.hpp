@@ -173,6 +173,7 @@ class Session {
   void build(Program& program);
   bool load(Program& program);
   void compile_with_helpers();
+  void build_one_compiled(const Claims& claims);
 
   void write_bytes(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t at);
   void require_room(std::size_t bytes, const std::string& what) const;

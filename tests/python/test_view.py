@@ -237,12 +237,20 @@ def test_an_error_ends_one_client(viewer, monkeypatch):
         good.send(moved())
         assert drawn_after(made, before)
         spared = set(made.clients)
-        camera_of = view.camera_of
-        monkeypatch.setattr(view, "camera_of", lambda handle: camera_of(handle) if handle.client_id in spared else 1 / 0)
+        camera_of, failed = view.camera_of, []
+
+        def fail_for_others(handle):
+            if handle.client_id in spared:
+                return camera_of(handle)
+            failed.append(handle.client_id)
+            raise ZeroDivisionError
+
+        monkeypatch.setattr(view, "camera_of", fail_for_others)
         bad.send(moved())
         end = time.monotonic() + 30
-        while time.monotonic() < end and set(made.clients) != spared:
+        while time.monotonic() < end and not (failed and set(made.clients) == spared):
             time.sleep(0.02)
+        assert failed
         before = made.frames
         good.send(moved(position=(0.28, 0.27, -0.21)))
         assert drawn_after(made, before) and set(made.clients) == spared
@@ -275,6 +283,29 @@ def test_r_returns_to_the_scenes_camera(viewer):
         while time.monotonic() < end and np.allclose(handle.camera.position, (5, 5, 5)):
             time.sleep(0.02)
         assert np.allclose(handle.camera.position, made.scene.cameras[0].eye)
+
+
+def test_a_resting_camera_gets_64_rays_and_a_moving_one_2(viewer, monkeypatch):
+    made, port = viewer
+    drawn, get = [], made.renderers.get
+
+    def noted(size, options):
+        if not drawn or drawn[-1] != (size[1], options["near_rays"]):
+            drawn.append((size[1], options["near_rays"]))
+        return get(size, options)
+
+    def drawn_in(seconds, count):
+        end = time.monotonic() + seconds
+        while len(drawn) < count and time.monotonic() < end:
+            time.sleep(0.02)
+        return drawn[:count]
+
+    monkeypatch.setattr(made.renderers, "get", noted)
+    with browser(port) as client:
+        client.send(moved())
+        assert drawn_in(60, 3) == [(288, "2"), (720, "4"), (720, "64")]
+        client.send(moved(position=(0.28, 0.27, -0.2)))
+        assert drawn_in(60, 4)[3] == (288, "2")
 
 
 class Tab:
