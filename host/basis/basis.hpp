@@ -38,6 +38,9 @@ class Basis {
   ///   static Coefficients cosine_integrals(float x, float y, float z)  alpha_i(d), d unit
   virtual std::string kernel_source() const = 0;
 
+  /// Number of bands of spherical harmonics, in the order of SphericalHarmonics; 0: another basis.
+  virtual int bands() const { return 0; }
+
   /// Unit normals of planes through the origin where functions are discontinuous: quadrature splits there.
   virtual std::vector<glm::dvec3> creases() const { return {}; }
 

@@ -17,6 +17,7 @@ class SphericalHarmonics : public Basis {
   void evaluate(const glm::dvec3& w, std::span<double> b) const override;
   void cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const override;
   std::string kernel_source() const override;
+  int bands() const override { return bands_; }
 
  private:
   struct Function {

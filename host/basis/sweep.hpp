@@ -6,6 +6,7 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -53,6 +54,16 @@ int coarser_part(int part, int parts, int coarser_parts);
 /// injects along a direction is this row times its coefficients, negative values included: the sum over all directions
 /// is then the exact energy.
 Matrix part_means(const Basis& basis, int parts);
+
+/// What bands of spherical harmonics lack of a clamped cosine about n, by z = w . n:
+///   max(0, z) - sum_i alpha_i(n) Y_i(w) = |z| / 2 - even[0] - even[1] z^2 - even[2] z^4
+/// A cell whose light leaves about one normal injects it, too (docs/method.md, 'The sweep').
+struct CosineRest {
+  std::array<double, 3> even;
+};
+/// Returns the rest for a sweep along 24 parts^2 directions, where z is the mean over a part. even[0] is such that the sum
+/// over all directions is 0 in the mean over n, so that cells keep their energy. Empty for bases that are no harmonics.
+std::optional<CosineRest> cosine_rest(const Basis& basis, int parts);
 
 /// Returns the basis of swept light: the nine spherical harmonics of bands 0 to 2. Convolution with the clamped cosine leaves
 /// almost nothing beyond band 2 (Ramamoorthi and Hanrahan 2001, 'An efficient representation for irradiance environment

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -34,7 +36,11 @@ class Sweep {
  public:
   Sweep(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
         const BoundaryCondition& boundary)
-      : cascade_(cascade), boundary_(boundary), n_(cascade.grid.n), means_(part_means(basis, cascade.parts)) {
+      : cascade_(cascade),
+        boundary_(boundary),
+        n_(cascade.grid.n),
+        means_(part_means(basis, cascade.parts)),
+        rest_(cosine_rest(basis, cascade.parts)) {
     set_transmittances(std::get<std::vector<SweepLink>>(transport.scheme));
   }
 
@@ -59,7 +65,7 @@ class Sweep {
                                                               : inflow(channel, bin, part, d, q);
           arriving += d.taps[k] * transmitted * upstream;
         }
-        field.at(channel, 0, p.x, p.y, p.z) = dot(means, cascade_.injected->cell(channel, p)) +
+        field.at(channel, 0, p.x, p.y, p.z) = injected(cascade_.injected->cell(channel, p), means) +
                                               in_medium(channel, bin, sweep_bin, d, p, arriving);
       }
     });
@@ -67,6 +73,19 @@ class Sweep {
   }
 
  private:
+  /// Light that a cell of coefficients c injects along a direction, with the basis's means over its part.
+  double injected(const std::vector<double>& c, std::span<const double> means) const {
+    const double field = dot(means, c);
+    if (!rest_) return field;
+    const double linear = std::hypot(c[1], c[2], c[3]), uniform = c[0];
+    if (uniform <= 0 || linear == 0) return field;
+    const double alpha0 = std::sqrt(std::numbers::pi) / 2, alpha1 = std::sqrt(std::numbers::pi / 3), y1 = std::sqrt(3 / (4 * std::numbers::pi));
+    const double r = std::min(1.0, linear / alpha1 / (uniform / alpha0));
+    const double z = (means[1] * c[1] + means[2] * c[2] + means[3] * c[3]) / (y1 * linear);
+    const auto [e0, e2, e4] = rest_->even;
+    return field + std::pow(r, 4) * uniform / alpha0 * (std::abs(z) / 2 - e0 - e2 * z * z - e4 * std::pow(z, 4));
+  }
+
   /// Part of a cell in the medium.
   double inside(const glm::ivec3& p) const {
     const double cell = double{cascade_.grid.cell};
@@ -135,6 +154,7 @@ class Sweep {
   BoundaryCondition boundary_;
   int n_;
   Matrix means_;                       ///< part_means()
+  std::optional<CosineRest> rest_;     ///< cosine_rest()
   std::vector<Volume> transmittance_;  ///< by link_of()
 };
 

@@ -78,7 +78,7 @@ class Sweeper {
   };
   Directions make_directions(const Basis& basis, int parts, int coarser, bool feeds_finer) const;
   void make_cascades(const Basis& basis);
-  ProgramSource sweep_program(int coefficients, int emitting, int parts) const;
+  ProgramSource sweep_program(const Basis& basis, int emitting, int parts) const;
   void enter_medium(std::size_t cascade, const ClpvGrid& grid);
   void run(const SweepStep& step, const SweepInput& input);
   const Volume& light_of(const SweepStep& step, const SweepInput& input);
