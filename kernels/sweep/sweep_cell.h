@@ -223,9 +223,12 @@ CLPV_INLINE void copy_border_column(const BinSweep* s, __global float* planes, c
   const realW light =
       read_numbers(s->border, border_index(ordinate, CLPV_BORDER_COLUMN, plane, row));
   planes += ordinate * CLPV_BORDERED_PLANE + plane_index(row, upstream_of_grid(s->bin.column_sign));
-  float numbers[W];
-  store_lanes(light, numbers);
-#pragma unroll
-  for (int lane = 0; lane < W; ++lane)
-    if (row + lane <= CLPV_GRID) planes[lane * CLPV_SWEEP_PITCH] = numbers[lane];
+#if W == 8
+#define CLPV_DO(lane) \
+  if (row + 0x##lane <= CLPV_GRID) planes[0x##lane * CLPV_SWEEP_PITCH] = light.s##lane;
+  CLPV_DO(0) CLPV_DO(1) CLPV_DO(2) CLPV_DO(3) CLPV_DO(4) CLPV_DO(5) CLPV_DO(6) CLPV_DO(7)
+#undef CLPV_DO
+#else
+  *planes = light;
+#endif
 }
