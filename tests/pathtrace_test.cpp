@@ -69,8 +69,6 @@ TEST_F(PathtraceCommand, WritesLayersMetadataAndStats) {
 }
 
 namespace fs = std::filesystem;
-using cached_ground_truth;
-using GroundTruth;
 using pathtracer::PathTracerOptions;
 
 class CachedReference : public ::testing::Test {
