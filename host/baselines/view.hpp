@@ -76,6 +76,17 @@ class View {
   const std::vector<std::optional<pathtracer::Hit>>& hits() const { return hits_; }
   const Planes& surfaces() const { return surfaces_; }
 
+  struct Arriving {
+    glm::vec3 radiance;  ///< [W/m^2/sr]
+    float distance;      ///< [m]
+  };
+  /// Radiance that arrives from the nearest surface at origin + t direction, t in (0, furthest), and its
+  /// distance t: emitted, and one reflection of the lights. Empty without a surface.
+  std::optional<Arriving> radiance(pathtracer::PathSampler& sampler, const glm::vec3& origin,
+                                   const glm::vec3& direction, float furthest) const;
+  /// Radiance of the sky; 0 without one.
+  glm::vec3 sky_radiance(const glm::vec3& direction) const;
+
   /// G-buffer of all pixels with this irradiance.
   pathtracer::TracedImage with(const Irradiance& irradiance) const;
 

@@ -6,6 +6,7 @@
 
 #include "baselines/filter.hpp"
 #include "baselines/methods.hpp"
+#include "baselines/radiance_cascades.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/frame/frame_times.hpp"
 #include "scene/emission.hpp"
@@ -33,13 +34,30 @@ bool has_probes(Baseline baseline) {
   return baseline == Baseline::ddgi_first || baseline == Baseline::ddgi_converged;
 }
 
+bool has_cascades(Baseline baseline) {
+  return baseline == Baseline::radiance_cascades || baseline == Baseline::radiance_cascades_fine;
+}
+
+/// Settings of radiance cascades by the number of samples, 12 directions each, and the stride of pixels,
+/// which is that of probes too. Searched: docs/lab/experiments.md.
+baselines::RadianceCascadeSettings cascade_settings(unsigned samples, unsigned stride) {
+  return {.side = static_cast<unsigned>(std::sqrt(double(samples))),
+          .spacing = static_cast<float>(stride),
+          .first = 4,
+          .ratio = 4,
+          .cascades = 2};
+}
+constexpr baselines::RadianceCascadeSettings kFineCascades{
+    .side = 4, .spacing = 0.5f, .first = 8, .cascades = 2};
+
 /// The fewest samples that a method gets before it leaves out pixels. Below them its errors are larger than those of
 /// interpolation.
 unsigned fewest_samples(Baseline baseline) {
-  return lights_by_rsm(baseline)                ? 16
-         : has_probes(baseline)                 ? 8
-         : baseline == Baseline::paths_filtered ? 2
-                                                : 1;
+  return lights_by_rsm(baseline)                   ? 16
+         : has_probes(baseline)                    ? 8
+         : baseline == Baseline::radiance_cascades ? 4
+         : baseline == Baseline::paths_filtered    ? 2
+                                                   : 1;
 }
 
 struct Timed {
@@ -131,7 +149,7 @@ void require_baseline(Baseline baseline, const SceneData& scene, int bounces, Sh
     throw Error(ExitCode::usage,
                 "baseline {}: found a sky or emissive surfaces, which no RSM has; allowed: lights", name);
   }
-  if ((lights_by_rsm(baseline) || has_probes(baseline)) && bounces != 1)
+  if ((lights_by_rsm(baseline) || has_probes(baseline) || has_cascades(baseline)) && bounces != 1)
     throw Error(ExitCode::usage, "baseline {}: found more than one bounce; allowed: bounces 1", name);
 }
 
@@ -147,6 +165,13 @@ baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& ful
     const unsigned count = interleave * interleave * samples;
     settings["vpls"] = count, settings["vpls_per_pixel"] = samples;
     return baselines::light_by(thin, baselines::draw_lights(budget.rsms, count), interleave);
+  };
+  const auto cascades = [&](const baselines::View& view, const baselines::RadianceCascadeSettings& chosen) {
+    baselines::CascadedImage image = baselines::radiance_cascades(view, budget.grids, chosen);
+    settings["directions"] = 12 * chosen.side * chosen.side, settings["spacing"] = double{chosen.spacing};
+    settings["probes"] = static_cast<double>(image.probes);
+    settings["megabytes"] = static_cast<double>(image.bytes) / 1e6;
+    return std::move(image.irradiance);
   };
   switch (baseline) {
     case Baseline::paths:
@@ -170,6 +195,10 @@ baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& ful
       settings["rays_per_probe"] = samples, settings["probes"] = static_cast<double>(probes.count());
       return image;
     }
+    case Baseline::radiance_cascades:
+      return all_pixels(cascades(thin, cascade_settings(samples, thin.stride())));
+    case Baseline::radiance_cascades_fine:
+      return cascades(full, kFineCascades);
   }
   return baselines::Irradiance();
 }
@@ -181,13 +210,15 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
   MeasuredBaseline measured;
   QualityCell& cell = measured.cell;
   Runner run(baseline, view, budget);
-  Plan plan = plan_for(run, budget.budget_ms);
+  const bool any_time = baseline == Baseline::radiance_cascades_fine;
+  Plan plan = any_time ? Plan{1, 1} : plan_for(run, budget.budget_ms);
   Timed last;
   double taken = 0;
   for (int correction = 0;; ++correction) {
     std::vector<double> times;
     for (int i = 0; i < runs; ++i) times.push_back((last = run(plan.samples, plan.stride)).ms);
     taken = median(times);
+    if (any_time) break;
     const double ratio = budget.budget_ms / taken;
     const auto better = static_cast<unsigned>(std::clamp(plan.samples * ratio, 1.0, double{kMaxSamples}));
     if (std::abs(ratio - 1) <= kTolerance || better == plan.samples || correction == kCorrections) break;

@@ -17,17 +17,20 @@
 namespace clpv {
 
 enum class Baseline {
-  paths,            ///< path tracing
-  paths_filtered,   ///< the same with a joint bilateral filter
-  vpl,              ///< virtual point lights, the same for all pixels
-  vpl_interleaved,  ///< different ones in each pixel of a 4 x 4 block, with a joint bilateral filter
-  ddgi_first,       ///< irradiance probes, first frame
-  ddgi_converged,   ///< the same after kConvergedFrames frames; the time is that of one
+  paths,                   ///< path tracing
+  paths_filtered,          ///< the same with a joint bilateral filter
+  vpl,                     ///< virtual point lights, the same for all pixels
+  vpl_interleaved,         ///< different ones in each pixel of a 4 x 4 block, with a joint bilateral filter
+  ddgi_first,              ///< irradiance probes, first frame
+  ddgi_converged,          ///< the same after kConvergedFrames frames; the time is that of one
+  radiance_cascades,       ///< radiance cascades
+  radiance_cascades_fine,  ///< eight probes in each cell, 192 directions; takes its own time
 };
 
 template <>
 inline constexpr auto kNames<Baseline> = name_list("paths", "paths-filtered", "vpl", "vpl-interleaved",
-                                                   "ddgi-first", "ddgi-converged");
+                                                   "ddgi-first", "ddgi-converged", "radiance-cascades",
+                                                   "radiance-cascades-fine");
 
 inline constexpr unsigned kConvergedFrames = 128;
 
@@ -53,9 +56,9 @@ struct MeasuredBaseline {
   Image image;
 };
 
-/// Chooses the number of samples so that the method takes the budget, runs it `runs` times, and compares it with the ground
-/// truth. The cell's settings are samples, threads and budget; its stage `baseline` is the median time. Throws as
-/// require_baseline().
+/// Chooses the number of samples so that the method takes the budget, unless it is radiance_cascades_fine.
+/// Runs it `runs` times, and compares it with the ground truth. The cell's settings are samples, threads and
+/// budget; its stage `baseline` is the median time. Throws as require_baseline().
 MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view,
                                   const BaselineBudget& budget, const GroundTruth& truth, Show show,
                                   int runs);

@@ -58,6 +58,11 @@ CENTRES = {"srbf8v2": {"basis": "srbf8v2"}, "eight searched centres": {"centres"
            "the same, for Sponza's normals": {"centres": SEARCHED_NORMALS},
            **{basis: {"basis": basis} for basis in ("srbf6", "srbf8v1", "srbf8v3", "sh3")}}  # without the near field
 
+# Radiance cascades beside other methods.
+CASCADE_CAMERAS = "curtains", "atrium", "columns", "front", "nave", "gallery"
+CASCADE_METHODS = ("ddgi-first", "ddgi-converged", "paths-filtered", "vpl-interleaved", "radiance-cascades",
+                   "radiance-cascades-fine")
+
 # Files of results/docs by `clpv quality`: scenes and options of all runs, and what each run sets.
 VIEWS = ["sponza", "cornell", "--camera=curtains", "--camera=atrium", "--camera=columns", "--camera=front"]
 QUALITY_FILES = {
@@ -68,6 +73,8 @@ QUALITY_FILES = {
     "quality-suns": (["sponza_other_suns", "--noise=0.03"], [*QUALITY.values(), *QUALITY_PARTS.values()]),
     "quality-scenes": (["atrium", "atrium_overcast", "sponza_overcast", "--noise=0.03"], list(SUNS.values())),
     "quality-bounces": ([*VIEWS, "--noise=0.05", "--bounces=all"], list(BOUNCES.values())),
+    "quality-cascades": (["sponza", "cornell", "atrium", *(f"--camera={name}" for name in CASCADE_CAMERAS), "--noise=0.03",
+                          "--frames=3", f"--baseline={','.join(CASCADE_METHODS)}", "--baseline-time=21.9"], [{}]),
     "quality-lamp": (["cornell_lamp", "--noise=0.02"], [FAST]),
     "quality-lamp-bounces": (["cornell_lamp", "--noise=0.02", "--bounces=all"], [{**FAST, "bounces": n} for n in ("1", "2", "all")]),
     "quality-steps": (["sponza", "--camera=atrium", "--noise=0.03"],
@@ -112,7 +119,8 @@ STANDING = [["sponza", "cornell", "atrium", "--camera=curtains", "--camera=atriu
             ["atrium_living", "--time=4"]]
 STANDING_LARGE = [["sponza", "cornell", "atrium", "--camera=curtains", "--camera=front", "--camera=nave"]]
 STANDING_FRAMES = [["--preset=best", "--vary=near=traced,off"], ["--preset=paper", "--basis=sh2"]]
-METHODS = "paths", "paths-filtered", "vpl", "vpl-interleaved", "ddgi-first", "ddgi-converged"
+METHODS = ("paths", "paths-filtered", "vpl", "vpl-interleaved", "ddgi-first", "ddgi-converged",
+           "radiance-cascades", "radiance-cascades-fine")
 BASELINES = ["--preset=best", f"--baseline={','.join(METHODS)}"]
 SIZES = {"small": ["--noise=0.03"], "large": ["--width=960", "--height=540", "--noise=0.06"]}
 SHARED = "rasterize-camera", "rasterize-shadow", "shade"  # stages whose time baselines do not get

@@ -129,3 +129,20 @@ def readme():
         error = mean("quality", quality, 0)
         lines.append([name, *(f"{number(time)} ms" if time else "-" for time in times), "-" if error == "-" else f"{error} %"])
     return lines
+
+
+@table
+def quality_cascades():
+    cells = load("quality-cascades")["cells"]
+    views = list(dict.fromkeys((cell["scene"], cell["camera"]) for cell in cells))
+    lines = [["NRMSE [%]", *(f"{scene}, {camera}" for scene, camera in views), "mean", "FLIP", "light [ms]", "memory [MB]"]]
+    for method in (None, *known.CASCADE_METHODS):
+        options = {"baseline": method} if method else {}
+        found_cells = [found(cells, options=options, scene=scene, camera=camera) for scene, camera in views]
+        times = sorted(cell["stage_ms"].get("baseline", 0) for cell in found_cells)
+        memory = max(cell["settings"].get("megabytes", 0) for cell in found_cells)
+        lines.append([f"`{method}`" if method else "clpv, the defaults", *(percent(cell["nrmse"]) for cell in found_cells),
+                      *(f"{sum(cell[name] for cell in found_cells) * factor / len(views):.{digits}f}"
+                        for name, factor, digits in (("nrmse", 100, 1), ("flip", 1, 3))),
+                      f"{times[0]:.0f}-{times[-1]:.0f}" if method else "-", number(memory) if memory else "-"])
+    return lines

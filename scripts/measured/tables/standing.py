@@ -11,6 +11,28 @@ METHODS = {"clpv": "**clpv, the defaults**", "clpv, near off": "clpv, `--preset 
            **{name: f"`{name}`" for name in known.METHODS}}
 
 
+def handed_in():
+    """Scores of other renderers, as `python3 -m clpv.score -o` writes them."""
+    return [json.loads(path.read_text(encoding="utf-8")) for path in sorted((RESULTS / "quality/scores").glob("*.json"))]
+
+
+@table
+def scores():
+    """A line for each method and scene: means over its views."""
+    lines = [["method", "scene", "views", "NRMSE [%]", "bias [%]", "noise [%]", "energy", "FLIP"]]
+    for document in handed_in():
+        scenes = {}
+        for row in document["views"]:
+            scenes.setdefault(row["view"].partition("-")[0], []).append(row)
+        for scene, rows in scenes.items():
+            def mean_of(name, rows=rows):
+                values = [row.get(name) for row in rows]
+                return None if None in values else sum(values) / len(values)
+            lines.append([document["method"], scene, str(len(rows)), *(percent(mean_of(name), 1) for name in ("nrmse", "bias", "noise")),
+                          f"{mean_of('energy_ratio'):.3f}", f"{mean_of('flip'):.3f}"])
+    return lines
+
+
 def standing():
     """(name, document) of each device and commit."""
     return [(f"{i + 1}", json.loads(path.read_text(encoding="utf-8")))
