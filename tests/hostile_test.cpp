@@ -121,7 +121,7 @@ TEST(HostileCommandLines, OfFrames) {
           {"--iterations 24",
            {"--iterations 24 has no effect with transport sweep (the default)",
             "allowed with transport sampled or exact"}},
-          {"--lambda 0.3", {"--lambda 0.3 has no effect with basis sh3 (the default)"}},
+          {"--lambda 0.3", {"--lambda 0.3 has no effect with basis sh2 (the default)"}},
           {"--lobe rotate --basis bins24", {"--lobe rotate has no effect with basis bins24;"}},
           {"--evaluate buffer --basis srbf4", {"--evaluate buffer has no effect with transport sweep"}},
           {"--table-size 64 --basis srbf4", {"--table-size 64 has no effect with lobe exact"}},

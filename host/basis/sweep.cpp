@@ -126,7 +126,8 @@ std::optional<CosineRest> cosine_rest(const Basis& basis, int parts) {
   for (int d = 0; d < means.rows(); ++d) {
     const glm::dvec3 mean = glm::dvec3(means(d, 3), means(d, 1), means(d, 2)) / y1;
     const double square = glm::dot(mean, mean);
-    const double share = bins[d / (parts * parts)].directions[d % (parts * parts)].solid_angle / (4 * std::numbers::pi);
+    const double share =
+        bins[d / (parts * parts)].directions[d % (parts * parts)].solid_angle / (4 * std::numbers::pi);
     rest.even[0] +=
         share * (std::sqrt(square) / 4 - rest.even[1] * square / 3 - rest.even[2] * square * square / 5);
   }

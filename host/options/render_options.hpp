@@ -23,7 +23,7 @@ namespace clpv {
 /// scheme (docs/method.md).
 struct RenderOptions {
   PresetName preset = PresetName::best;  ///< the last preset set; later options may override it
-  std::string basis = "sh3";             ///< one of basis_names(), or the name in the file `centres`
+  std::string basis = "sh2";             ///< one of basis_names(), or the name in the file `centres`
   std::string centres;                   ///< file of an SRBF set that replaces `basis`; empty: none
   double lambda = 0.25;
   LobeKind lobe = LobeKind::exact;

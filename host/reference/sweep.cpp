@@ -79,11 +79,13 @@ class Sweep {
     if (!rest_) return field;
     const double linear = std::hypot(c[1], c[2], c[3]), uniform = c[0];
     if (uniform <= 0 || linear == 0) return field;
-    const double alpha0 = std::sqrt(std::numbers::pi) / 2, alpha1 = std::sqrt(std::numbers::pi / 3), y1 = std::sqrt(3 / (4 * std::numbers::pi));
+    const double alpha0 = std::sqrt(std::numbers::pi) / 2, alpha1 = std::sqrt(std::numbers::pi / 3),
+                 y1 = std::sqrt(3 / (4 * std::numbers::pi));
     const double r = std::min(1.0, linear / alpha1 / (uniform / alpha0));
     const double z = (means[1] * c[1] + means[2] * c[2] + means[3] * c[3]) / (y1 * linear);
     const auto [e0, e2, e4] = rest_->even;
-    return field + std::pow(r, 4) * uniform / alpha0 * (std::abs(z) / 2 - e0 - e2 * z * z - e4 * std::pow(z, 4));
+    return field +
+           std::pow(r, 4) * uniform / alpha0 * (std::abs(z) / 2 - e0 - e2 * z * z - e4 * std::pow(z, 4));
   }
 
   /// Part of a cell in the medium.

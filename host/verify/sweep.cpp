@@ -256,7 +256,7 @@ Cases sweep_cases(const CheckScope& scope) {
       {.basis = "sh3", .grid = 9, .parts = {1, 3}, .form = SweepForm::planes, .sky = true},
       {.basis = "bins24", .grid = 9, .parts = {1, 2}, .sky = true},
       {.basis = "sh2", .grid = 8, .parts = {1, 1}, .blocked_by = Blocking::one_sided},
-      {.basis = "sh3", .grid = 9, .parts = {3, 2}, .blocking = false},
+      {.basis = "sh2", .grid = 9, .parts = {3, 2}, .blocking = false},
       {.basis = "srbf8v2", .grid = 1, .parts = {1, 1}},
       {.basis = "sh3", .grid = 9, .parts = {2, 1}, .medium = true},
       {.basis = "sh3", .grid = 9, .parts = {1, 1}, .form = SweepForm::planes, .medium = true},

@@ -81,7 +81,8 @@ CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
 
 // Adds what harmonics lack of a clamped cosine about the normal n of the cells' light, the direction of band 1:
 //
-//   I += r^4 c_0 / alpha_0 (|z| / 2 - e_0 - e_2 z^2 - e_4 z^4),   z = w . n,   r = (|c_1| / |alpha_1|) / (c_0 / alpha_0)
+//   I_w += r^4 c_0 / alpha_0 (|z| / 2 - e_0 - e_2 z^2 - e_4 z^4),   z = w . n
+//   r = (|c_1| / |alpha_1|) / (c_0 / alpha_0)
 //
 // r is 1 where all light leaves about n, and less where normals differ. `source`: c_0 of a channel.
 CLPV_INLINE void add_cosine_rest(const BinSweep* s, CLPV_BUFFER_IN source, const int at, realW injected[CLPV_PARTS]) {

@@ -31,12 +31,12 @@ class ValidationError(Error, RuntimeError):
     """A result differs from its reference."""
 
 class Basis:
-    """Basis(name='sh3', bandwidth=None, centres=None): N functions b_i on the unit sphere.
+    """Basis(name='sh2', bandwidth=None, centres=None): N functions b_i on the unit sphere.
 
     bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre; centres: array (N, 3), for
     radial functions of one's own. Directions may have any length.
     """
-    def __init__(self, name: str = 'sh3', bandwidth: float | Sequence[float] | None = None, centres: ArrayLike | None = None) -> None:
+    def __init__(self, name: str = 'sh2', bandwidth: float | Sequence[float] | None = None, centres: ArrayLike | None = None) -> None:
         ...
     @property
     def name(self) -> str:

@@ -122,11 +122,11 @@ void add_basis(py::module_& module) {
   module.def("bases", &basis_names, "bases() -> list of the names of all bases.");
   py::class_<Basis> type(
       module, "Basis",
-      "Basis(name='sh3', bandwidth=None, centres=None): N functions b_i on the unit sphere.\n\n"
+      "Basis(name='sh2', bandwidth=None, centres=None): N functions b_i on the unit sphere.\n\n"
       "bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre; centres: array "
       "(N, 3), for\n"
       "radial functions of one's own. Directions may have any length.");
-  type.def(py::init(&make), py::arg("name") = "sh3", py::arg("bandwidth") = py::none(),
+  type.def(py::init(&make), py::arg("name") = "sh2", py::arg("bandwidth") = py::none(),
            py::arg("centres") = py::none());
   type.def_property_readonly("name", &Basis::name);
   type.def("__len__", &Basis::size);

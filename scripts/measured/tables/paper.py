@@ -70,7 +70,7 @@ def basis_images():
     for name, options in known.CENTRES.items():
         lines.append([name, mean("quality-centres", {**known.EXACT_LOBES, **options}),
                       mean("quality-centres" if "centres" in options else "quality",
-                           known.FAST if name == "sh3" else {**known.FAST, **options})])
+                           known.FAST if name == "sh2" else {**known.FAST, **options})])
     return lines
 
 

@@ -20,7 +20,7 @@ def equal(read):
 def means(read):
     """Mean NRMSE over four views, by basis, of `--preset fast`."""
     return {
-        each["options"].get("basis", "sh3"): each["nrmse"]
+        each["options"].get("basis", "sh2"): each["nrmse"]
         for each in read("docs/quality")["variants"]
         if each["options"].get("preset") == "fast" and set(each["options"]) <= {"preset", "basis"}
     }
