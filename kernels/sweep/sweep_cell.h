@@ -22,6 +22,7 @@
 #pragma once
 
 #include "shared/sweep.h"
+#include "sweep/cosine_rest.h"
 #include "sweep/sweep_border.h"
 #include "sweep/sweep_layout.h"
 
@@ -74,43 +75,6 @@ CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
 #endif
 }
 
-#if CLPV_COSINE_REST
-#define CLPV_ALPHA_0 0.886226925f  // sqrt(pi) / 2: integral of a clamped cosine times Y_0
-#define CLPV_ALPHA_1 1.02332671f   // sqrt(pi / 3): length of its integrals with band 1
-#define CLPV_Y_1 0.488602512f      // largest value of a function of band 1
-
-// Adds what harmonics lack of a clamped cosine about the normal n of the cells' light, the direction of band 1:
-//
-//   I_w += r^4 c_0 / alpha_0 (|z| / 2 - e_0 - e_2 z^2 - e_4 z^4),   z = w . n
-//   r = (|c_1| / |alpha_1|) / (c_0 / alpha_0)
-//
-// r is 1 where all light leaves about n, and less where normals differ. `source`: c_0 of a channel.
-CLPV_INLINE void add_cosine_rest(const BinSweep* s, CLPV_BUFFER_IN source, const int at, realW injected[CLPV_PARTS]) {
-  const realW uniform = read_numbers(source, at);
-  realW z[CLPV_PARTS], square = ZERO;
-#pragma unroll
-  for (int part = 0; part < CLPV_PARTS; ++part) z[part] = ZERO;
-  for (int j = 1; j < 4; ++j) {
-    const realW c = read_numbers(source + j * CLPV_SWEEP_VOLUME, at);
-    square = fma(c, c, square);
-#pragma unroll
-    for (int part = 0; part < CLPV_PARTS; ++part) z[part] = fma((realW)(s->means[part * CLPV_EMITTING + j]), c, z[part]);
-  }
-  const intW directed = (square > ZERO) & (uniform > ZERO);
-  const realW linear = sqrt(directed ? square : ONE);
-  realW r = CLPV_ALPHA_0 / CLPV_ALPHA_1 * linear / (directed ? uniform : ONE);
-  r = r < ONE ? r : ONE;
-  const realW amplitude = directed ? r * r * (r * r) * uniform * (1.0f / CLPV_ALPHA_0) : ZERO;
-  const realW scale = 1.0f / (CLPV_Y_1 * linear);
-#pragma unroll
-  for (int part = 0; part < CLPV_PARTS; ++part) {
-    const realW along = z[part] * scale, even = along * along;
-    const realW lacking = 0.5f * fabs(along) - (CLPV_COSINE_E0 + even * (CLPV_COSINE_E2 + even * CLPV_COSINE_E4));
-    injected[part] = fma(amplitude, lacking, injected[part]);
-  }
-}
-#endif
-
 // Adds I to D in cells that hold sources, and to `sum`. `planes`: D of the bin's first ordinate in these cells.
 CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float* planes, realW* sum) {
   for (int channel = 0; channel < 3; ++channel) {
@@ -125,7 +89,7 @@ CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float
         injected[part] = fma((realW)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
     }
 #if CLPV_COSINE_REST
-    add_cosine_rest(s, s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME, source, injected);
+    add_cosine_rest(s->means, s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME, source, injected);
 #endif
 #pragma unroll
     for (int part = 0; part < CLPV_PARTS; ++part) {

@@ -96,7 +96,7 @@ def more_sh(read):
     ]
     for name, a, b in (
         ("published", exact, published),
-        ("sweep", means(read)["sh3"], means(read)["sh2"]),
+        ("sweep, lobes completed", means(read)["sh3"], means(read)["sh2"]),
     ):
         yield name, a < (1 - SIMILAR) * b, f"{a:.3f}, {b:.3f}"
 
