@@ -55,7 +55,7 @@ int coarser_part(int part, int parts, int coarser_parts);
 /// is then the exact energy.
 Matrix part_means(const Basis& basis, int parts);
 
-/// What bands of spherical harmonics lack of a clamped cosine about n, by z = w . n:
+/// Difference between a clamped cosine about n and its bands of spherical harmonics, by z = w . n:
 ///   max(0, z) - sum_i alpha_i(n) Y_i(w) = |z| / 2 - even[0] - even[1] z^2 - even[2] z^4
 /// A cell whose light leaves about one normal injects it, too (docs/method.md, 'The sweep').
 struct CosineRest {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the harmonics of a cell's light lack of a clamped cosine (docs/method.md, 'The sweep'; host/basis/sweep.hpp).
+// Completes the harmonics of a cell's light to a clamped cosine (docs/method.md, 'The sweep'; host/basis/sweep.hpp).
 #pragma once
 
 #include "sweep/sweep_layout.h"
