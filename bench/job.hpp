@@ -16,10 +16,10 @@ using verify::Deviation, verify::kChannels;
 /// A job of `clpv check`, with what only its timing needs.
 struct Job : verify::Job {
   bool own_stages = false;  ///< true: `run` marks stages on the timeline itself, and the row has wall times
-  std::function<void(const std::vector<StageTime>&)> after_run =
-      {};  ///< called after each run, warm-up included; may be null
-  std::function<std::vector<Row>(const Row&)> more_rows =
-      {};  ///< further rows, after the job's own; may be null
+  /// Called after each run, warm-up included; may be null.
+  std::function<void(const std::vector<StageTime>&)> after_run = {};
+  /// Returns further rows, after the job's own; may be null.
+  std::function<std::vector<Row>(const Row&)> more_rows = {};
 };
 
 /// A row before its measurement: its identity, and a function that sets up its work.

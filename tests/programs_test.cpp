@@ -5,19 +5,17 @@
 #include <sys/stat.h>
 
 #include "tests/support/run_program.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::programs_test {
 namespace {
 
 namespace fs = std::filesystem;
+using test::kSmallSteps;
+using test::kTiny;
 using test::read_file;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-const std::string kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
-const std::string kSmall =
-    " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2 "
-    "--transport sampled --gather all --blockers seen ";
 
 /// A folder with a trap of every name that Python or a program search could take from it. Each writes a file "sprung".
 class Traps {
@@ -54,7 +52,7 @@ TEST(Programs, NothingOfTheCurrentFolderRuns) {
        {std::string("basis sh2 --figures figures"),
         std::string("bench ceilings --repetitions 1 --plot plots"),
         "report page " + kTiny + " --width 12 --height 9 --spp 1 --cache cache",
-        "sequence " + kTiny + kSmall + "--frames 1 --fps 1 -o film --video -v.mp4"}) {
+        "sequence " + kTiny + kSmallSteps + "--frames 1 --fps 1 -o film --video -v.mp4"}) {
     const test::Outcome outcome = traps.run(command);
     const bool no_ffmpeg = outcome.err.find("--video needs ffmpeg") != std::string::npos;
     EXPECT_EQ(outcome.exit_code, no_ffmpeg ? 1 : 0) << command << "\n" << outcome.err;
@@ -67,7 +65,7 @@ TEST(Programs, NothingOfTheCurrentFolderRuns) {
 TEST(Programs, HelpersAndCompilersOfTheCurrentFolderDoNotRun) {
   const Traps traps;
   fs::create_directory(traps.folder() / "pocl");
-  const test::Outcome outcome = traps.run("render " + kTiny + kSmall + "-o a.exr",
+  const test::Outcome outcome = traps.run("render " + kTiny + kSmallSteps + "-o a.exr",
                                           "XDG_CACHE_HOME=cache POCL_CACHE_DIR=$PWD/pocl TMPDIR=.");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(traps.sprung(), "");
@@ -95,9 +93,9 @@ TEST(Programs, ANameWithAColonOrADashIsAFileToFfmpeg) {
   ::chmod((folder / "bin/ffmpeg").c_str(), 0755);
   for (const std::string& name :
        {std::string("tcp:x.mp4"), std::string("-y.mp4"), std::string(251, 'a') + ".mp4"}) {
-    const test::Outcome outcome =
-        test::run("cd " + folder.path().string() + " && PATH=" + (folder / "bin").string() + ":$PATH " +
-                  CLPV_PROGRAM " sequence " + kTiny + kSmall + "--frames 1 --fps 1 -o film --video=" + name);
+    const test::Outcome outcome = test::run(
+        "cd " + folder.path().string() + " && PATH=" + (folder / "bin").string() + ":$PATH " +
+        CLPV_PROGRAM " sequence " + kTiny + kSmallSteps + "--frames 1 --fps 1 -o film --video=" + name);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(read_file(folder / name), HasSubstr(" file:/")) << name;
   }

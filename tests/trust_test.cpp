@@ -23,21 +23,19 @@
 #include "support/scratch_folder.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::trust_test {
 namespace {
 
 namespace fs = std::filesystem;
+using test::kSmallSteps;
+using test::kTiny;
 using test::read_file;
 using test::run_here;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-const std::string kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
-const std::string kSmall =
-    " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2 "
-    "--transport sampled --gather all --blockers seen ";
 
 // --------------------------------------------------------------------------------------------------- caches
 
@@ -187,7 +185,7 @@ TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
 
 /// `clpv quality` of one cell.
 std::string quality(const fs::path& cache) {
-  return " quality " + kTiny + kSmall + "--spp 1 --frames 1 --format json --cache " + cache.string();
+  return " quality " + kTiny + kSmallSteps + "--spp 1 --frames 1 --format json --cache " + cache.string();
 }
 
 TEST_F(CacheTest, AFifoInPlaceOfACellOrTruthDoesNotEndQuality) {
@@ -282,8 +280,8 @@ TEST(ScratchFolders, AMissingTmpdirIsNamed) {
       test::run("TMPDIR=/nonexistent " CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string());
   const test::Outcome cold =
       test::run("TMPDIR=/nonexistent POCL_CACHE_DIR=" + folder.path().string() +
-                " XDG_CACHE_HOME=" + folder.path().string() + " " CLPV_PROGRAM " render " + kTiny + kSmall +
-                "-o " + (folder / "a.exr").string());
+                " XDG_CACHE_HOME=" + folder.path().string() + " " CLPV_PROGRAM " render " + kTiny +
+                kSmallSteps + "-o " + (folder / "a.exr").string());
   for (const test::Outcome& outcome : {drawing, cold}) {
     if (outcome.exit_code == 0) continue;  // one core compiles without helpers
     EXPECT_EQ(outcome.exit_code, 1);
@@ -301,7 +299,7 @@ TEST(Outputs, SpareInputsAndEachOther) {
   folder.write("my.json", R"({"model": "tiny.gltf"})");
   folder.write("times.json", R"({"model": "tiny.gltf"})");
   folder.write("points.csv", "0,0,0,0,1,0\n");
-  const std::string scene = " my.json" + kSmall;
+  const std::string scene = " my.json" + kSmallSteps;
   for (const std::string& command :
        {"render" + scene + "-o o.exr --stats o.exr", "render" + scene + "-o o.exr --stats my.json",
         "render" + scene + "-o o.exr --dump-normals ./o.exr",
@@ -309,7 +307,7 @@ TEST(Outputs, SpareInputsAndEachOther) {
         std::string("pathtrace my.json -o o.exr --stats my.json"),
         "query" + scene + "--points points.csv -o points.csv", "quality" + scene + "--cache cache -o my.json",
         std::string("bench regression --scene my.json -o my.json"),
-        "sequence times.json" + kSmall + "--frames 1 --fps 1 -o ."}) {
+        "sequence times.json" + kSmallSteps + "--frames 1 --fps 1 -o ."}) {
     const test::Outcome outcome = run_here(command, folder.path());
     EXPECT_EQ(outcome.exit_code, 2) << command << "\n" << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("allowed: another file")) << command;
@@ -317,7 +315,8 @@ TEST(Outputs, SpareInputsAndEachOther) {
     EXPECT_FALSE(fs::exists(folder / "o.exr")) << command;
   }
   fs::copy(folder / "my.json", folder / "again.json");
-  EXPECT_EQ(run_here("render again.json" + kSmall + "-o o.exr --stats s.json", folder.path()).exit_code, 0);
+  EXPECT_EQ(run_here("render again.json" + kSmallSteps + "-o o.exr --stats s.json", folder.path()).exit_code,
+            0);
   EXPECT_EQ(run_here("compare o.exr o.exr -o o.exr", folder.path()).exit_code, 2);
 }
 
@@ -326,7 +325,7 @@ TEST(Outputs, DevicesAndFifosAreRejectedBeforeTheWork) {
   ASSERT_EQ(::mkfifo((folder / "fifo.exr").c_str(), 0666), 0);
   fs::create_symlink("/dev/full", folder / "full.exr");
   for (const char* name : {"fifo.exr", "full.exr"}) {
-    const test::Outcome outcome = run_here("render " + kTiny + kSmall + "-o " + name, folder.path());
+    const test::Outcome outcome = run_here("render " + kTiny + kSmallSteps + "-o " + name, folder.path());
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_THAT(outcome.err, HasSubstr(std::string(name) + ": cannot be written: it is not a regular file"));
   }
@@ -340,8 +339,8 @@ TEST(Outputs, MetadataHoldsNoFolderUserOrHost) {
   char host[256] = "";
   ::gethostname(host, sizeof host - 1);
   for (const std::string& command :
-       {"render " + scene + " --model " + kTiny + kSmall + "-o a.exr",
-        "render " + scene + " --model " + kTiny + kSmall + "-o a.png",
+       {"render " + scene + " --model " + kTiny + kSmallSteps + "-o a.exr",
+        "render " + scene + " --model " + kTiny + kSmallSteps + "-o a.png",
         "pathtrace " + scene + " --model " + kTiny + " --width 8 --height 6 --spp 1 -o a.exr"}) {
     const test::Outcome outcome = run_here(command, folder.path());
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

@@ -113,15 +113,13 @@ Matrix part_means(const Basis& basis, int parts) {
   return means;
 }
 
-std::optional<CosineRest> cosine_rest(const Basis& basis, int parts) {
+std::optional<CosineRest> cosine_rest(const Basis& basis, const Matrix& means, int parts) {
   if (basis.bands() < 2) return std::nullopt;
   // Clamped cosine in Legendre polynomials: 1/4 + z/2 + 5/16 P_2 - 3/32 P_4 and on.
   CosineRest rest{};
   if (basis.bands() > 2) rest.even[1] = 15.0 / 32;
   if (basis.bands() > 4) rest.even[1] += 90.0 / 256, rest.even[2] = -105.0 / 256;
-  const SphericalHarmonics linear(2);
-  const Matrix means = part_means(linear, parts);
-  const double y1 = linear.evaluate(glm::dvec3(0, 0, 1))[2];
+  const double y1 = basis.evaluate(glm::dvec3(0, 0, 1))[2];
   const std::vector<SweepBin> bins = sweep_bins(parts);
   for (int d = 0; d < means.rows(); ++d) {
     const glm::dvec3 mean = glm::dvec3(means(d, 3), means(d, 1), means(d, 2)) / y1;

@@ -61,9 +61,10 @@ Matrix part_means(const Basis& basis, int parts);
 struct CosineRest {
   std::array<double, 3> even;
 };
-/// Returns the rest for a sweep along 24 parts^2 directions, where z is the mean over a part. even[0] is such that the sum
-/// over all directions is 0 in the mean over n, so that cells keep their energy. Empty for bases that are no harmonics.
-std::optional<CosineRest> cosine_rest(const Basis& basis, int parts);
+/// Returns the rest for a sweep along 24 parts^2 directions, where z is the mean over a part; `means`: part_means(). even[0] is
+/// such that the sum over all directions is 0 in the mean over n, so that cells keep their energy. Empty for bases that are no
+/// harmonics.
+std::optional<CosineRest> cosine_rest(const Basis& basis, const Matrix& means, int parts);
 
 /// Returns the basis of swept light: the nine spherical harmonics of bands 0 to 2. Convolution with the clamped cosine leaves
 /// almost nothing beyond band 2 (Ramamoorthi and Hanrahan 2001, 'An efficient representation for irradiance environment

@@ -40,7 +40,7 @@ class Sweep {
         boundary_(boundary),
         n_(cascade.grid.n),
         means_(part_means(basis, cascade.parts)),
-        rest_(cosine_rest(basis, cascade.parts)) {
+        rest_(cosine_rest(basis, means_, cascade.parts)) {
     set_transmittances(std::get<std::vector<SweepLink>>(transport.scheme));
   }
 

@@ -23,8 +23,8 @@ struct CheckResult {
   std::string variant;       ///< name of the case: "sh2/sampled/blockers"
   Deviation deviation = {};  ///< of status `ok` and `wrong`
   Status status = Status::ok;
-  std::string reason =
-      {};              ///< of status `failed` and `unsupported`: the driver's words, or the exceeded limit
+  /// Of status `failed` and `unsupported`: the driver's words, or the exceeded limit.
+  std::string reason = {};
   double seconds = 0;  ///< time of the case, with building its kernels
   bool passed() const { return status == Status::ok; }
 };

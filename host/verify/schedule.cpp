@@ -16,8 +16,7 @@
 namespace clpv::verify {
 namespace {
 
-constexpr int kSignalled =
-    128;  // exit code of a process that a signal ended, less the signal (Process::Result)
+constexpr int kSignalled = 128;  // exit code after a signal, less the signal (Process::Result)
 
 std::string claim_of(std::size_t number) {
   return fmt::format("case-{}", number);

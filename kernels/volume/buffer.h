@@ -5,7 +5,15 @@
 //   NAME_address(channel, x, y, z)     index of coefficient 0
 //   CLPV_NEXT, CLPV_LANE               steps to the next coefficient, and to the next cell along x
 //   NAME_load_eight(volume, at, x)     with W 8: the cells x to x + 7, from index `at` on
-//   NAME_store_eight(volume, at, cell) with W 8: stores them; all are inside the grid
+//   NAME_store_eight(volume, at, cell) with W 8, aos.h: stores them; all are inside the grid
+#if W == 8 && CLPV_LAYOUT != CLPV_AOS  // eight samples of a coefficient are adjacent
+CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_eight)(CLPV_BUFFER_OUT volume, const int at,
+                                                      const CLPV_VOLUME_CELL cell) {
+#pragma unroll
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_eight(volume, at + i * CLPV_NEXT, cell.c[i]);
+}
+#endif
+
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume, const int channel, const int x,
                                                            const int y, const int z) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);

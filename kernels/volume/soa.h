@@ -18,10 +18,4 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN 
   for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = read_eight(volume, at + i * CLPV_NEXT);
   return cell;
 }
-
-CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_eight)(CLPV_BUFFER_OUT volume, const int at,
-                                                      const CLPV_VOLUME_CELL cell) {
-#pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_eight(volume, at + i * CLPV_NEXT, cell.c[i]);
-}
 #endif

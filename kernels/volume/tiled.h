@@ -37,10 +37,4 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN 
     cell.c[i] = CLPV_PASTE(CLPV_VOLUME, row)(volume, at + i * CLPV_NEXT, x);
   return cell;
 }
-
-CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_eight)(CLPV_BUFFER_OUT volume, const int at,
-                                                      const CLPV_VOLUME_CELL cell) {
-#pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_eight(volume, at + i * CLPV_NEXT, cell.c[i]);
-}
 #endif

@@ -13,6 +13,11 @@ namespace clpv::test {
 inline const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json",
                          kTiny = CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf";
 
+/// Options of a small frame by few steps, for starts of the program that need any frame.
+inline const std::string kSmallSteps =
+    " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2 "
+    "--transport sampled --gather all --blockers seen ";
+
 inline std::filesystem::path scene_file(const std::string& name) {
   return std::filesystem::path(CLPV_SOURCE_DIR) / "scenes" / name;
 }

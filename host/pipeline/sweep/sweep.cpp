@@ -12,7 +12,6 @@
 #include "basis/sweep.hpp"
 #include "codegen/constants.hpp"
 #include "codegen/sweep_source.hpp"
-#include "pipeline/sweep/sweep_tables.hpp"
 
 namespace clpv {
 namespace {
@@ -120,22 +119,21 @@ void Sweeper::make_cascades(const Basis& basis) {
   }
 }
 
-/// Program of sweep_bins.cl or sweep_planes.cl, for light in `basis`. A bin depends on `emitting` coefficients.
-ProgramSource Sweeper::sweep_program(const Basis& basis, int emitting, int parts) const {
+/// Program of sweep_bins.cl or sweep_planes.cl, for light of `coefficients`.
+ProgramSource Sweeper::sweep_program(int coefficients, const SweepMeans& means, int parts) const {
   ProgramSource source{whole_bins() ? "sweep/sweep_bins.cl" : "sweep/sweep_planes.cl", {}, {}};
   source.literals.integer("CLPV_GRID", options_.grid)
       .integer("CLPV_PARTS", parts * parts)
-      .integer("CLPV_SOURCES", basis.size())
-      .integer("CLPV_EMITTING", emitting)
+      .integer("CLPV_SOURCES", coefficients)
+      .integer("CLPV_EMITTING", means.emitting)
       .integer("CLPV_SOURCE_LANES", volumes_.lanes())
       .flag("CLPV_BLOCKING", options_.blocking)
       .flag("CLPV_MEDIUM", options_.medium.has_value());
   add_format_literals(source.literals, options_.format, whole_bins() ? 8 : 1);
-  const std::optional<CosineRest> rest = cosine_rest(basis, parts);
-  source.literals.flag("CLPV_COSINE_REST", rest.has_value());
-  if (rest) {
-    for (std::size_t i = 0; i < rest->even.size(); ++i)
-      source.literals.real(fmt::format("CLPV_COSINE_E{}", 2 * i), rest->even[i]);
+  source.literals.flag("CLPV_COSINE_REST", means.rest.has_value());
+  if (means.rest) {
+    for (std::size_t i = 0; i < means.rest->even.size(); ++i)
+      source.literals.real(fmt::format("CLPV_COSINE_E{}", 2 * i), means.rest->even[i]);
   }
   return source;
 }
@@ -148,18 +146,18 @@ bool Sweeper::whole_bins() const {
 Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int coarser,
                                              bool feeds_finer) const {
   const SweepMeans means = sweep_means(basis, parts);
-  Directions made{parts,
-                  coarser,
-                  feeds_finer,
-                  session_.upload(sweep_direction_table(parts, coarser), "directions to sweep"),
-                  session_.upload(means.coefficients, "coefficients of the sweep's bins"),
-                  session_.upload(means.means, "means of the basis's functions"),
-                  Kernel(session_, sweep_program(basis, means.emitting, parts),
-                         whole_bins() ? "sweep_bin" : "sweep_plane"),
-                  zeroed_buffer(session_, feeds_finer ? halo_bytes(options_, parts) : sizeof(float),
-                                "boundary light of a finer cascade"),
-                  {},
-                  {}};
+  Directions made{
+      parts,
+      coarser,
+      feeds_finer,
+      session_.upload(sweep_direction_table(parts, coarser), "directions to sweep"),
+      session_.upload(means.coefficients, "coefficients of the sweep's bins"),
+      session_.upload(means.means, "means of the basis's functions"),
+      Kernel(session_, sweep_program(basis.size(), means, parts), whole_bins() ? "sweep_bin" : "sweep_plane"),
+      zeroed_buffer(session_, feeds_finer ? halo_bytes(options_, parts) : sizeof(float),
+                    "boundary light of a finer cascade"),
+      {},
+      {}};
   if (coarser > 0) {
     ProgramSource border = border_program("sweep/sweep_border.cl", options_, parts, session_.device().lanes);
     border.literals.integer("CLPV_COARSER_PARTS", coarser * coarser);

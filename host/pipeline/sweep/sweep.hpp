@@ -18,6 +18,7 @@
 #include "pipeline/sweep/bounce.hpp"
 #include "pipeline/sweep/sweep_medium.hpp"
 #include "pipeline/sweep/sweep_plan.hpp"
+#include "pipeline/sweep/sweep_tables.hpp"
 #include "pipeline/sweep/sweep_volumes.hpp"
 #include "volume/volume.hpp"
 
@@ -78,7 +79,7 @@ class Sweeper {
   };
   Directions make_directions(const Basis& basis, int parts, int coarser, bool feeds_finer) const;
   void make_cascades(const Basis& basis);
-  ProgramSource sweep_program(const Basis& basis, int emitting, int parts) const;
+  ProgramSource sweep_program(int coefficients, const SweepMeans& means, int parts) const;
   void enter_medium(std::size_t cascade, const ClpvGrid& grid);
   void run(const SweepStep& step, const SweepInput& input);
   const Volume& light_of(const SweepStep& step, const SweepInput& input);

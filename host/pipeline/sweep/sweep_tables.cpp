@@ -99,7 +99,7 @@ SweepMeans sweep_means(const Basis& basis, int parts) {
     }
   }
   const auto most = std::ranges::max_element(used, {}, &std::vector<int>::size);
-  SweepMeans table{static_cast<int>(most->size()), {}, {}};
+  SweepMeans table{static_cast<int>(most->size()), {}, {}, cosine_rest(basis, means, parts)};
   for (int bin = 0; bin < kSweepBins; ++bin) {
     used[bin].resize(table.emitting, kNone);
     for (const int i : used[bin]) table.coefficients.push_back(i == kNone ? 0 : i);

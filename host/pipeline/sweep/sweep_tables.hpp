@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "basis/basis.hpp"
+#include "basis/sweep.hpp"
 #include "kernels/shared/grid.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/sweep.h"
@@ -25,9 +27,10 @@ std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& gri
 
 /// part_means() without the coefficients that no direction of a bin depends on (they belong to other bins).
 struct SweepMeans {
-  int emitting;                   ///< coefficients per bin, the most of any bin
-  std::vector<int> coefficients;  ///< 24 x emitting
-  std::vector<float> means;       ///< 24 parts^2 x emitting; 0 for entries that a bin does not need
+  int emitting;                    ///< coefficients per bin, the most of any bin
+  std::vector<int> coefficients;   ///< 24 x emitting
+  std::vector<float> means;        ///< 24 parts^2 x emitting; 0 for entries that a bin does not need
+  std::optional<CosineRest> rest;  ///< cosine_rest()
 };
 SweepMeans sweep_means(const Basis& basis, int parts);
 
