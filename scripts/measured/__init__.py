@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Measured numbers: scripts/measure, scripts/claims and scripts/reproduce measure them, scripts/tables and scripts/charts show them.
+"""Measured numbers: scripts/measure and scripts/reproduce measure them, scripts/tables and scripts/charts show them.
 
 rows.py has what is measured, once for both.
 """

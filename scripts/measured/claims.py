@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Measures the paper's claims: the numbers of docs/bases.md and docs/paper/figures.md.
-
-    scripts/claims [lobes] [lambdas] [tables] [light] [views] [texels] [shadows] [columns] [lit] [--model PATH/Sponza.gltf] [--out DIR]
+"""Numbers of the paper's claims, for docs/bases.md and docs/paper/figures.md: a function for each part of scripts/reproduce.
 
 lobes    errors of clamped cosines in the paper's sets, in other sets that fit its description, and in searched centres
 lambdas  verdicts on lobes along +z, and on the difference of both bases' light at `curtains`, by lambda
@@ -12,24 +10,21 @@ views    errors of sh2 and srbf8v2 against path tracing, paired, in four cameras
          smallest cascade
 texels   difference of neighbouring texels of an RSM, by size of the cascade; camera `curtains`
 shadows  contrast of indirect light on the floor with and without indirect shadows, and of path tracing; camera `columns`
-columns  irradiance of the floor behind the arcade: behind its first column, and between columns; camera `columns`, Sponza only
+columns  irradiance of the floor behind the arcade: behind its first column, and between columns; camera `columns`
 lit      share of pixels without direct light, in each camera
 
-Default: all. Scene: Sponza; without --model this project's atrium. Prints tables and writes claims.json into DIR
-(out/claims). First builds. Needs the packages of scripts/setup.
+All but lobes and tables are of Sponza. `arguments`: model, out (folder) and quick, of scripts/reproduce.
 """
-import argparse
+import concurrent.futures
 import itertools
 import json
 import math
-import pathlib
-import subprocess
 
 import numpy as np
 
 from . import ROOT, native
 
-clpv = native()  # main() builds the native module
+clpv = native()
 from clpv import search  # noqa: E402
 
 BASES = ("sh2", "srbf8v2")
@@ -84,33 +79,31 @@ def of_lobes(bases):
     for name, basis in bases.items():
         up, oblique = map(basis.lobe, (ALONG_Z, OBLIQUE))
         rotated = basis.lobe(OBLIQUE, basis.clamped_cosine(OBLIQUE, TABLE_SIZES[0]))
-        row = {"basis": name, "n": len(basis), "condition": basis.condition, "up": up["relative_l2"],
-               "oblique": oblique["relative_l2"], "oblique_rotated": rotated["relative_l2"],
-               "oblique_rotated_minimum": rotated["minimum"], "oblique_rotated_peak": rotated["peak_error_degrees"],
-               "up_without_inverse": basis.lobe(ALONG_Z, gram(basis) @ basis.clamped_cosine(ALONG_Z))["relative_l2"], "mean": basis.mean_error, "minimum": up["minimum"],
-               "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)}
-        rows.append(row)
-        print(f"{name:44} {row['n']:3} {row['condition']:9.4g} {row['up']:7.3f} {row['oblique']:7.3f} "
-              f"{row['oblique_rotated']:8.3f} {row['oblique_rotated_minimum']:9.3f} {row['mean']:7.3f}")
+        scaled = basis.lobe(ALONG_Z, gram(basis) @ basis.clamped_cosine(ALONG_Z))
+        rows.append({"basis": name, "n": len(basis), "condition": basis.condition, "up": up["relative_l2"],
+                     "oblique": oblique["relative_l2"], "oblique_rotated": rotated["relative_l2"],
+                     "oblique_rotated_minimum": rotated["minimum"], "oblique_rotated_peak": rotated["peak_error_degrees"],
+                     "up_without_inverse": scaled["relative_l2"], "mean": basis.mean_error, "minimum": up["minimum"],
+                     "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)})
     return rows
+
+
+SEARCHES = [*itertools.product((4, 6, 8, 9, 12, 14), ("all", "axes"), ("none", "one", "each"))]
+
+
+def searched_for(count, over, lambdas):
+    found = search.search(count, over, lambdas)
+    return {"n": count, "over": over, "lambdas": lambdas, "error": found.error,
+            "bound": search.minimum_error(count) if over == "all" else None,
+            "condition": found.condition, "lambda": 0 if lambdas == "each" else found.lambdas[0]}
 
 
 def lobes(arguments):
     """Errors of the named bases, of other guesses, and of the best sets that a search finds."""
-    print(f"{'relative L2 error of the clamped cosine':44} {'N':>3} {'condition':>9} {'+z':>7} {'oblique':>7} "
-          f"{'rotated':>8} {'its least':>9} {'mean':>7}")
     guesses = {name: clpv.Basis(name, centres=centres) for name, centres in GUESSES.items()}
     rows = of_lobes({**{name: clpv.Basis(name) for name in NAMED}, **guesses})
-    searched = []
-    print(f"\n{'searched for (clpv.search N)':34} {'condition':>9} {'error':>8} {'minimum':>8}")
-    for count, over, lambdas in () if arguments.quick else itertools.product((4, 6, 8, 9, 12, 14), ("all", "axes"), ("none", "one", "each")):
-        found = search.search(count, over, lambdas)
-        row = {"n": count, "over": over, "lambdas": lambdas, "error": found.error,
-               "bound": search.minimum_error(count) if over == "all" else None,
-               "condition": found.condition, "lambda": 0 if lambdas == "each" else found.lambdas[0]}
-        searched.append(row)
-        bound = f"{row['bound']:8.4f}" if row["bound"] is not None else f"{'-':>8}"
-        print(f"{f'{count}, over {over}, lambdas {lambdas}':34} {row['condition']:9.4g} {row['error']:8.4f} {bound}")
+    with concurrent.futures.ProcessPoolExecutor() as processes:
+        searched = [] if arguments.quick else list(processes.map(searched_for, *zip(*SEARCHES)))
     return {"sets": rows, "searched": searched}
 
 
@@ -138,22 +131,18 @@ def lambdas(arguments):
                      "similar": abs(errors["srbf8v2"] - of_sh2) <= SIMILAR * of_sh2,
                      "difference": clpv.compare(image, image_of_sh2).nrmse,
                      "error": clpv.compare(image, views_of.truth("curtains")).nrmse})
-        print(rows[-1])
     return rows
 
 
 def tables(_):
     """Lobes that are rotated through tables of H: errors along +z, and energies of the transport."""
     rows = []
-    print(f"{'rotated lobes':10} {'entries':>8} {'+z':>8} {'peak off':>9} {'energy 8':>9} {'energy 24':>9}")
     for name, size in itertools.product((name for name in NAMED if name.startswith("srbf")), TABLE_SIZES):
         basis = clpv.Basis(name)
         lobe = basis.lobe(ALONG_Z, basis.clamped_cosine(ALONG_Z, size))
         row = {"basis": name, "entries": size, "up": lobe["relative_l2"], "peak_error_degrees": lobe["peak_error_degrees"],
                "energy_sampled_8": basis.energy(8, table_size=size), "energy_sampled_24": basis.energy(24, table_size=size)}
         rows.append(row)
-        print(f"{name:10} {size:8} {row['up']:8.4f} {row['peak_error_degrees']:8.1f}d {row['energy_sampled_8']:9.4f} "
-              f"{row['energy_sampled_24']:9.4f}")
     return rows
 
 
@@ -161,8 +150,7 @@ class Views:
     """The scene of claims about light, its images and its ground truth."""
 
     def __init__(self, arguments):
-        self.name, self.shadowed = ("sponza", "columns") if arguments.model else ("atrium", "gallery")
-        self.scene = clpv.Scene(ROOT / f"scenes/{self.name}.json", arguments.model)
+        self.scene = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
         self.noise = NOISE_OF_QUICK if arguments.quick else NOISE
         self.truths = arguments.out / "truths"
         self.truths.mkdir(parents=True, exist_ok=True)
@@ -171,7 +159,7 @@ class Views:
 
     def truth(self, camera, view="indirect", noise=None):
         noise = noise or self.noise
-        key = self.name, camera, view, noise
+        key = camera, view, noise
         if key not in Views.traced:
             Views.traced[key] = clpv.pathtrace(self.scene, view, camera, WIDTH, HEIGHT, noise=noise)
             Views.traced[key].save(self.truths / f"{camera}-{view}-{noise:g}.exr")
@@ -188,7 +176,6 @@ def light(arguments):
     """Over steps, cascades and RSMs: how far apart the bases are, and how far off each is."""
     views_of = Views(arguments)
     rows = []
-    print(f"{'indirect light, curtains, --preset paper':42} {'difference':>10} {'sh2':>8} {'srbf8v2':>8}  [NRMSE]")
     for size, texels, steps in itertools.product(SIZES, TEXELS[:1] if arguments.quick else TEXELS, STEPS):
         images = [views_of.image("curtains", preset="paper", basis=name, cascade_size=size, rsm_size=texels, iterations=steps,
                                  **({"lobe_time": "host"} if arguments.quick else {})) for name in BASES]
@@ -196,27 +183,23 @@ def light(arguments):
                "difference": clpv.compare(images[1], images[0]).nrmse,
                **{name: clpv.compare(image, views_of.truth("curtains")).nrmse for name, image in zip(BASES, images)}}
         rows.append(row)
-        print(f"{f'{size:g} m, RSM {texels}, {steps} steps':42} {row['difference']:10.3f} {row['sh2']:8.4f} "
-              f"{row['srbf8v2']:8.4f}")
     return rows
 
 
 # A fourth camera for the paired comparison, beside the scene's own three.
-FOURTH = {"sponza": clpv.Camera((7.4, 1.6, -0.3), (-6.0, 2.2, -0.3), name="back"),
-          "atrium": clpv.Camera((5.0, 1.6, 0.4), (-6.0, 2.2, 0.0), name="back")}
+FOURTH = clpv.Camera((7.4, 1.6, -0.3), (-6.0, 2.2, -0.3), name="back")
 
 
 def views(arguments):
     """Of each setting: both errors in every view, and mean, standard error and signs of their paired differences."""
     views_of = Views(arguments)
-    cameras = [*views_of.scene.cameras[:3], FOURTH[views_of.name]]
+    cameras = [*views_of.scene.cameras[:3], FOURTH]
     suns = json.loads((ROOT / "scenes/sponza_other_suns.json").read_text())["lights"]
     views_of.scene.lights = [clpv.Light(direction=sun["direction"], intensity=sun["illuminance_lux"], name=sun["name"])
                              for sun in suns]
     views_of.scene.cameras = [camera.replace(name=f"{camera.name}-{sun['name']}", light=sun["name"])
                               for camera, sun in itertools.product(cameras, suns)]
     rows, summary = [], []
-    print(f"{'paired, sh2 minus srbf8v2 [NRMSE]':34} {'mean':>8} {'error':>8} {'srbf8v2 better':>15}")
     for size, steps in itertools.product(SIZES, STEPS):
         errors = {name: {} for name in BASES}
         for name in BASES:
@@ -233,18 +216,13 @@ def views(arguments):
         summary.append({"cascade_size": size, "iterations": steps, "mean": differences.mean(),
                         "standard_error": differences.std(ddof=1) / math.sqrt(len(apart)), "srbf8v2_better": better,
                         "views": len(apart), "apart": apart})
-        print(f"{f'{size:g} m, {steps} steps':34} {summary[-1]['mean']:+8.4f} {summary[-1]['standard_error']:8.4f} "
-              f"{f'{better} of {len(apart)}':>15}")
-        for camera, value in apart.items():
-            print(f"  {camera:32} {errors['sh2'][camera]:8.4f} {errors['srbf8v2'][camera]:8.4f} {value:+8.4f}")
     return {"summary": summary, "rows": rows}
 
 
 def shadows(arguments):
     """Contrast of irradiance between the floor's darkest and brightest quarter in the ground truth, for every image."""
     views_of = Views(arguments)
-    camera = views_of.shadowed
-    albedo, normal = (views_of.truth(camera, view, NOISE).array.astype(float) for view in ("albedo", "normal"))
+    albedo, normal = (views_of.truth("columns", view, NOISE).array.astype(float) for view in ("albedo", "normal"))
     albedo = albedo[..., :3].sum(axis=-1)
     floor = (normal[..., 1] > UP) & (albedo > 0)
 
@@ -254,20 +232,16 @@ def shadows(arguments):
     def contrast(light):
         return (light[bright].mean() - light[dark].mean()) / (light[bright].mean() + light[dark].mean())
 
-    irradiance, rows = on_floor(views_of.truth(camera, noise=NOISE)), []
+    irradiance, rows = on_floor(views_of.truth("columns", noise=NOISE)), []
     dark, bright = irradiance <= np.quantile(irradiance, 0.25), irradiance >= np.quantile(irradiance, 0.75)
-    print(f"{'contrast of indirect light on the floor':42} {'shadows on':>10} {'off':>8}")
     rows.append({"image": "path traced", "on": contrast(irradiance), "off": None})
-    print(f"{'path traced':42} {rows[0]['on']:10.3f} {'-':>8}")
     variants = [{"preset": "paper", "basis": name} for name in BASES] + [{"preset": "best"}]
     variants.append({"preset": "paper", "basis": "sh2", "grid": "64", "iterations": "16"})  # light reaches as far
     for variant in variants:
         constant = {"lobe_time": "host"} if arguments.quick and variant["preset"] == "paper" else {}
-        on, off = (contrast(on_floor(views_of.image(camera, **variant, **constant, **blockers)))
+        on, off = (contrast(on_floor(views_of.image("columns", **variant, **constant, **blockers)))
                    for blockers in ({}, {"blockers": "none"}))
-        name = " ".join(variant.values())
-        rows.append({"image": name, "on": on, "off": off})
-        print(f"{name:42} {on:10.3f} {off:8.3f}")
+        rows.append({"image": " ".join(variant.values()), "on": on, "off": off})
     return {"floor_pixels": int(floor.sum()), "rows": rows}
 
 
@@ -283,7 +257,6 @@ def texels(arguments):
     sun /= np.linalg.norm(sun)
     renderer = views_of.renderer(width=min(TEXELS), height=min(TEXELS))
     rows = []
-    print(f"{'neighbouring texels of the RSM, 256^2':42} {'flux':>8} {'normals beyond 60 degrees':>26}")
     for size in sorted({size * 2 ** cascade for size in SIZES for cascade in range(3)}):
         above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0), near=0.05,
                                fov=math.degrees(2 * math.atan(size / 2 / FROM_THE_SUN)))
@@ -299,7 +272,6 @@ def texels(arguments):
             cosines += [(normal[here] * normal[there]).sum(axis=-1)[both]]
         apart, cosines, fluxes = map(np.concatenate, (apart, cosines, fluxes))
         rows.append({"size": size, "flux": apart.mean() / fluxes.mean(), "normals": (cosines < OTHER_WAY).mean()})
-        print(f"{f'{size:g} m':42} {rows[-1]['flux']:8.3f} {rows[-1]['normals']:26.3f}")
     return rows
 
 
@@ -310,13 +282,9 @@ FIRST_COLUMN, CURTAINS = (-6.25, -6.1, -5.95), (-7, -6.85, -6.7, -5.35, -5.2, -5
 
 def columns(arguments):
     """Irradiance behind the first column and behind the curtains beside it, with and without indirect shadows."""
-    if not arguments.model:
-        print("columns: needs --model, since it knows where Sponza's columns are")
-        return None
     views_of = Views(arguments)
     points = [(x, 0.02, BEHIND_ARCADE) for x in FIRST_COLUMN + CURTAINS]
     rows = []
-    print(f"{'floor behind the arcade':42} {'column':>8} {'curtains':>9} {'ratio':>7} {'without shadows':>16}")
     for variant in ["preset=paper lobe-time=host basis=sh2", "preset=paper lobe-time=host basis=srbf8v2", "preset=best", "grid=64"]:
         options = dict(option.replace("-", "_").split("=") for option in variant.split())
         means = []
@@ -326,7 +294,6 @@ def columns(arguments):
             light = renderer.irradiance(points, [(0, 1, 0)] * len(points)).astype(float).sum(axis=-1)
             means += [light[:len(FIRST_COLUMN)].mean(), light[len(FIRST_COLUMN):].mean()]
         rows.append({"options": variant, **dict(zip(("column", "curtains", "column_off", "curtains_off"), means))})
-        print(f"{variant:42} {means[0]:8.4f} {means[1]:9.4f} {means[0] / means[1]:7.2f} {means[2] / means[3]:16.2f}")
     return rows
 
 
@@ -339,31 +306,9 @@ def lit(arguments):
         albedo = renderer.render("albedo", camera).array[..., :3].sum(axis=-1) > 0
         direct = renderer.show("direct").array[..., :3].sum(axis=-1) > 0
         rows.append({"camera": camera, "unlit": float((albedo & ~direct).sum() / albedo.sum())})
-        print(f"{camera:42} {rows[-1]['unlit']:.3f}")
     return rows
 
 
 CLAIMS = {"lobes": lobes, "lambdas": lambdas, "tables": tables, "light": light, "views": views, "texels": texels,
           "shadows": shadows, "columns": columns, "lit": lit}
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("claims", nargs="*", metavar="NAME", help=f"{', '.join(CLAIMS)} (default: all)")
-    parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/claims", help="output folder (default: out/claims)")
-    parser.set_defaults(quick=False)  # of scripts/reproduce
-    arguments = parser.parse_args()
-    for name in arguments.claims:
-        if name not in CLAIMS:
-            parser.error(f"found '{name}', allowed: {', '.join(CLAIMS)}")
-    arguments.out = arguments.out.resolve()
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
-    file = arguments.out / "claims.json"
-    results = json.loads(file.read_text()) if file.exists() else {}
-    for name in arguments.claims or CLAIMS:
-        results[name] = CLAIMS[name](arguments)
-        file.write_text(json.dumps(results, indent=2) + "\n")
-        print()
 

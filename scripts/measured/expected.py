@@ -4,28 +4,27 @@
 Only the standard library.
 """
 
-# Parts of results/docs, the command that measures each, and tolerances by the end of a number's
-# name: absolute, relative. Lobes are computed in double on the host. Tables are read in float,
-# where fused multiply-adds decide single entries. Light: devices round differently, and the ground
-# truth has a noise of 0.02 (views: 0.05). Columns: mean of nine points.
+# Parts of results/docs, and tolerances by the end of a number's name: absolute, relative. Lobes are
+# computed in double on the host. Tables are read in float, where fused multiply-adds decide single
+# entries. Light: devices round differently, and the ground truth has a noise of 0.02 (views: 0.05).
+# Columns: mean of nine points.
 PARTS = {
-    "claims/lobes": ("scripts/claims lobes", {"peak": (0.5, 0), "": (1e-3, 1e-2)}),
-    "claims/tables": ("scripts/claims tables", {"degrees": (0.5, 0), "": (1e-2, 1e-2)}),
-    "claims/lambdas": (
-        "scripts/claims lambdas",
-        {"error": (0.03, 0), "difference": (0.01, 0), "": (1e-3, 1e-2)},
-    ),
-    "claims/light": ("scripts/claims light", {"difference": (0.01, 0), "": (0.03, 0.03)}),
-    "claims/views": (
-        "scripts/claims views",
-        {"better": (1, 0), "mean": (0.01, 0), "standard_error": (0.01, 0), "": (0.05, 0.05)},
-    ),
-    "claims/texels": ("scripts/claims texels", {"": (5e-3, 0.02)}),
-    "claims/shadows": ("scripts/claims shadows", {"": (0.03, 0)}),
-    "claims/columns": ("scripts/claims columns", {"": (1e-3, 0.05)}),
-    "claims/lit": ("scripts/claims lit", {"": (5e-3, 0)}),
-    "figures/rows": ("scripts/figures", {"": (5e-3, 0.03)}),
-    "factors/difference": ("clpv bench factors", {"": (5e-3, 0.05)}),
+    "claims/lobes": {"peak": (0.5, 0), "": (1e-3, 1e-2)},
+    "claims/tables": {"degrees": (0.5, 0), "": (1e-2, 1e-2)},
+    "claims/lambdas": {"error": (0.03, 0), "difference": (0.01, 0), "": (1e-3, 1e-2)},
+    "claims/light": {"difference": (0.01, 0), "": (0.03, 0.03)},
+    "claims/views": {
+        "better": (1, 0),
+        "mean": (0.01, 0),
+        "standard_error": (0.01, 0),
+        "": (0.05, 0.05),
+    },
+    "claims/texels": {"": (5e-3, 0.02)},
+    "claims/shadows": {"": (0.03, 0)},
+    "claims/columns": {"": (1e-3, 0.05)},
+    "claims/lit": {"": (5e-3, 0)},
+    "figures/rows": {"": (5e-3, 0.03)},
+    "factors/difference": {"": (5e-3, 0.05)},
 }
 # Fields that name a row, and fields that are no results.
 IDENTITY = (
@@ -107,18 +106,15 @@ def found(parts):
 def tolerance(name, value):
     part = next(part for part in PARTS if name.startswith(part))
     absolute, relative = next(
-        allowed for end, allowed in PARTS[part][1].items() if name.endswith(end)
+        allowed for end, allowed in PARTS[part].items() if name.endswith(end)
     )
     return float(f"{max(absolute, relative * abs(value)):.2g}")
 
 
 def expected(read):
-    """expected.json: {number: [value, tolerance]}, and the command and file of each part."""
+    """expected.json: {number: [value, tolerance]}, and the file of each part."""
     return {
-        "sources": {
-            part: {"command": command, "file": f"results/docs/{part.split('/')[0]}.json"}
-            for part, (command, _) in PARTS.items()
-        },
+        "files": {part: f"results/docs/{part.split('/')[0]}.json" for part in PARTS},
         "numbers": {
             name: [float(f"{value:.6g}"), tolerance(name, value)]
             for name, value in found(parts_of(read)).items()

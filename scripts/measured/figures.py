@@ -1,23 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Renders the paper's Figures 1 to 6 with clpv: contact sheets with captions, and numbers.
+"""The paper's Figures 1 to 6 by clpv, for scripts/reproduce: contact sheets with captions, and numbers.
 
-    scripts/figures [--model PATH/Sponza.gltf] [--out DIR]
-
-Scene: Sponza; without --model this project's atrium. Output: DIR (out/figures).
-
-figure1, figure4   camera `curtains`, by `--preset paper` and by the defaults with the paper's two bases
+figure1, figure4   Sponza, camera `curtains`, by `--preset paper` and by the defaults with the paper's two bases
 figure2, 3, 6      by `clpv basis --figures`, with both kinds of lobes
-figure5            camera `columns` (atrium: `gallery`), as figure1
-srbf14.jpg         srbf14 with rotated lobes and sampled transport, and with exact ones; camera `atrium` (`nave`)
-figures.json       brightness of indirect light after 8 and 24 steps
+figure5            camera `columns`, as figure1
+srbf14             srbf14 with rotated lobes and sampled transport, and with exact ones; camera `atrium`
 
-These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md describes them. First builds. Needs
-the packages of scripts/setup.
+These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md describes them.
 """
-import argparse
 import itertools
-import json
-import pathlib
 import subprocess
 
 import numpy as np
@@ -26,12 +17,13 @@ from matplotlib import pyplot
 from . import CLPV, ROOT, native
 from .rows import EXACT_LOBES
 
-clpv = native()  # main() builds the native module
+clpv = native()
 from clpv.draw import style  # noqa: E402
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 PRESETS = ("paper", "best")
 BASES = ("sh2", "srbf8v2")
+LOBES = ("rotate", "exact")
 SIZES = (12.5, 50)  # m, edge of the smallest cascade
 STEPS = (8, 24)
 # Three settings for srbf14. The first's errors are those of the table too.
@@ -42,6 +34,7 @@ SETTINGS = {
     "both exact": {**EXACT, "transport": "exact"},
 }
 AMPLIFY = 15  # factor of difference images, as in the paper
+EXPOSURE = 4  # of all images [EV]
 WIDTH, DPI = 12.7, 85  # sheets: inches, pixels per inch
 # A pixel counts as darker if it lost more than this share of the view's mean; smaller changes are rounding.
 DARKER = 0.02
@@ -53,8 +46,7 @@ class Frames:
     def __init__(self, scene, arguments, camera):
         self.scene, self.camera = scene, camera
         self.size = {"width": arguments.width, "height": arguments.height}
-        self.exposure = arguments.exposure if arguments.exposure is not None else (4.0 if arguments.model else 0.6)
-        self.view = f"{'Sponza' if arguments.model else 'atrium'}, camera {camera}, exposure {self.exposure:+g} EV"
+        self.view = f"Sponza, camera {camera}, exposure {EXPOSURE:+g} EV"
         self.rendered, self.pairs = {}, []
         self.always = {}  # options of all frames of a preset with steps
 
@@ -69,7 +61,7 @@ class Frames:
 
     def image(self, view="full", **options):
         """Pixels for a display, transparent without a surface."""
-        return self.frame(view, **options).display(self.exposure)
+        return self.frame(view, **options).display(EXPOSURE)
 
     def indirect(self, **options):
         """Luminance of the indirect light."""
@@ -88,7 +80,6 @@ def sheet(path, title, columns, tiles):
     for i, (pixels, caption) in enumerate(tiles):
         made.tile(i, caption).imshow(pixels, interpolation="lanczos", aspect="auto")
     made.save(path, DPI)
-    print(path)
 
 
 def pair(frames, view="full", **options):
@@ -135,40 +126,34 @@ def srbf14(frames, out):
 
 
 def variants():
-    """Yields the variants that figures.json compares at both numbers of steps."""
+    """Yields the variants whose brightness is compared at both numbers of steps."""
     for basis in BASES:
         yield {"preset": "paper", "basis": basis}
     for setting in SETTINGS.values():
         yield {"preset": "paper", "basis": "srbf14", **setting}
 
 
-def measure(frames, out):
-    """Writes the mean indirect light at both numbers of steps, and the share of pixels that the later steps darken."""
+def brightness(frames):
+    """Rows: mean luminance of the indirect light at both numbers of steps, and the share of pixels that the later steps darken."""
     rows = []
-    print(f"{'indirect light':44} {'8 steps':>8} {'24 steps':>8} {'ratio':>6} {'darker pixels':>14}")
     for variant, size in itertools.product(variants(), SIZES):
         few, many = (frames.indirect(**variant, cascade_size=size, iterations=steps) for steps in STEPS)
-        lost = float((many < few - DARKER * few.mean()).mean())
-        row = {**variant, "cascade_size": size, "mean_8": few.mean(), "mean_24": many.mean(), "darker": lost}
-        rows.append(row)
-        name = " ".join(str(value) for value in variant.values())
-        print(f"{name + f', {size:g} m':44} {row['mean_8']:8.4f} {row['mean_24']:8.4f} "
-              f"{row['mean_24'] / row['mean_8']:6.3f} {100 * lost:12.1f} %")
-    (out / "figures.json").write_text(json.dumps({"view": frames.view, "rows": rows}, indent=2) + "\n")
+        darker = float((many < few - DARKER * few.mean()).mean())
+        rows.append({**variant, "cascade_size": size, "mean_8": float(few.mean()), "mean_24": float(many.mean()), "darker": darker})
+    return rows
 
 
 def basis_figures(out):
-    for lobe in ("exact", "rotate"):
+    for lobe in LOBES:
         subprocess.run([str(CLPV), "basis", "--lobe", lobe, "--figures", str(out / f"lobes-{lobe}")], check=True, stdout=subprocess.DEVNULL)
 
 
 def paper(arguments):
-    """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness, for scripts/reproduce. Sponza;
-    without it Figures 2, 3 and 6 alone."""
+    """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness. Without a model Figures 2, 3 and 6
+    alone."""
     out = arguments.out
-    arguments.exposure = None
     basis_figures(out)
-    lobe_files = [str(file.relative_to(out)) for kind in ("rotate", "exact") for file in sorted((out / f"lobes-{kind}").glob("*.png"))]
+    lobe_files = [str(file.relative_to(out)) for kind in LOBES for file in sorted((out / f"lobes-{kind}").glob("*.png"))]
     if not arguments.model:
         return {"sheets": [], "lobes": lobe_files, "rows": []}
     scene = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
@@ -182,13 +167,11 @@ def paper(arguments):
         made.pairs = []
         draw()
         sheets.append({"name": name, "file": f"{name}.jpg", "pairs": [saved(out, f"{name}-{i}", *pair) for i, pair in enumerate(made.pairs)]})
-    rows = []
-    if not arguments.quick:
-        srbf14(along, out)
-        measure(along, out)
-        sheets.append({"name": "srbf14", "file": "srbf14.jpg", "pairs": []})
-        rows = json.loads((out / "figures.json").read_text())["rows"]
-    return {"sheets": sheets, "lobes": lobe_files, "rows": rows}
+    if arguments.quick:
+        return {"sheets": sheets, "lobes": lobe_files, "rows": []}
+    srbf14(along, out)
+    sheets.append({"name": "srbf14", "file": "srbf14.jpg", "pairs": []})
+    return {"sheets": sheets, "lobes": lobe_files, "rows": brightness(along)}
 
 
 def saved(out, name, caption, images):
@@ -198,26 +181,3 @@ def saved(out, name, caption, images):
         files.append(f"{name}-{basis}.jpg")
         pyplot.imsave(out / files[-1], pixels[..., :3], pil_kwargs={"quality": 88})
     return {"caption": caption, "left": files[0], "right": files[1]}
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models")
-    parser.add_argument("--exposure", type=float, help="exposure of all images [EV] (default: 4; without --model: 0.6)")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/figures", help="output folder (default: out/figures)")
-    parser.add_argument("--width", type=int, default=960, help="image width [pixels] (default: 960)")
-    parser.add_argument("--height", type=int, default=540, help="image height [pixels] (default: 540)")
-    arguments = parser.parse_args()
-    subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    scene = clpv.Scene(ROOT / ("scenes/sponza.json" if arguments.model else "scenes/atrium.json"), arguments.model)
-    shadowed, whole = ("columns", "atrium") if arguments.model else ("gallery", "nave")
-    frames, shadows, along = (Frames(scene, arguments, camera) for camera in ("curtains", shadowed, whole))
-    basis_figures(arguments.out)
-    figure1(frames, arguments.out)
-    for preset in PRESETS:
-        figure4(frames, arguments.out, preset)
-        figure5(shadows, arguments.out, preset)
-    srbf14(along, arguments.out)
-    measure(along, arguments.out)
-

@@ -3,13 +3,13 @@
 
     scripts/measure NAME [DEVICE]                              into results/NAME: 15 minutes on two cores
     scripts/measure quality --model PATH/Sponza.gltf [DEVICE]  into results/quality: half an hour on two cores
-    scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: about two hours on two cores
+    scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: about an hour on two cores
 
 NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. DEVICE: as --device of clpv takes it; default: the first.
 The first form runs `clpv check` and four suites of `clpv bench`. The second compares clpv and other methods at equal time with
-path tracing, and names its file after device and commit (docs/results.md). The third runs more suites, frames with --stats, scripts/claims,
-scripts/figures and `clpv quality` against path tracing, and redraws the charts in docs/images; scripts/tables then writes the
-tables. Commit and build first (scripts/build), and keep the machine free of other work. Files hold no samples and no host name.
+path tracing, and names its file after device and commit (docs/results.md). The third runs more suites, frames with --stats, and
+`clpv quality` against path tracing, and redraws the charts in docs/images; scripts/tables then writes the tables. The paper's
+numbers are those of scripts/reproduce --record. Commit and build first (scripts/build), and keep the machine free of other work. Files hold no samples and no host name.
 `clpv quality` caches ground truths, and for the docs finished cells, so a second run of it is short. The third form needs
 Debian's Python and its packages.
 """
@@ -29,7 +29,7 @@ from . import CLPV, RESULTS, ROOT, charts, json_lines, rows
 
 FRAME_COUNT = 9
 STANDING_COUNT = 7
-PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", *rows.SCRIPTS]
+PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media"]
 
 
 def output(*command):
@@ -160,13 +160,6 @@ def measure_docs(folder, model, parts):
         charts.draw_errors([("clpv, the defaults", folder / "quality-grid.json"),
                             ("published scheme, sh2 in buffers", folder / "quality-grid-published.json")],
                            ROOT / "docs/images/front.png")
-    for script, claims in rows.SCRIPTS.items():
-        if script not in parts:
-            continue
-        out = f"out/{script}"
-        subprocess.run([f"scripts/{script}", *claims, f"--model={model}", f"--out={out}"], stdout=subprocess.DEVNULL,
-                       check=True, cwd=ROOT)
-        write(folder, script, {"measured": measured, **json.loads((ROOT / out / f"{script}.json").read_text())})
 
 
 def search_centres(sponza):

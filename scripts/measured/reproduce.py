@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Reproduces the paper's figures, Table 1 and claims; compares numbers with expected.json.
 
-    scripts/reproduce [--model PATH/Sponza.gltf] [--quick] [--part NAME...] [--out DIR]
+    scripts/reproduce [--model PATH/Sponza.gltf] [--quick] [--part NAME...] [--out DIR] [--record]
 
 Builds, measures part by part, and writes index.html (one self-contained page) and parts/*.json into
 DIR (out/paper). A second run of the same commit continues: it measures the parts that it lacks.
 Without --model only lobes, tables and Figures 2, 3 and 6 run. --quick leaves out views, searches for centres, large
 RSMs and srbf14's frames, computes lobes on the host, and times each row two or three times.
+--record puts the numbers into results/docs and the figures into docs/images; scripts/tables then writes the tables.
 REPRODUCING.md has the minutes of each part.
 
 Exit code 5: numbers left the tolerances of results/paper/expected.json; they are listed. Times are
@@ -16,11 +17,13 @@ import argparse
 import base64
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import time
 
 from . import CLPV, RESULTS, ROOT, expected, tables, verdicts
+from .measure import measured_with, write
 
 LEFT = 5  # exit code
 CLAIMS = ("lobes", "tables", "lit", "texels", "lambdas", "light", "columns", "shadows", "views")
@@ -155,6 +158,30 @@ def numbers_of(done):
     return expected.found(parts)
 
 
+def record(done, out):
+    """Writes results/docs from the parts of this run, and docs/images from its figures."""
+    devices = subprocess.run(
+        [str(CLPV), "devices", "--format=json"], stdout=subprocess.PIPE, check=True
+    ).stdout
+    now = measured_with(json.loads(devices)["devices"][0])
+    folder = RESULTS / "docs"
+    claims = {name: done[name]["result"] for name in CLAIMS if name in done}
+    if claims:
+        earlier = tables.read("claims")
+        whole = len(claims) == len(CLAIMS)
+        parts = f"{', '.join(claims)}: clpv {now['commit']}, {now['date']}"
+        measured = now if whole else {**earlier["measured"], "except": parts}
+        write(folder, "claims", {**earlier, **claims, "measured": measured})
+    for name in ("table1", "factors"):
+        if name in done:
+            write(folder, name, {"measured": now, **done[name]["result"]})
+    if "figures" in done:
+        figures = done["figures"]["result"]
+        write(folder, "figures", {"measured": now, "rows": figures["rows"]})
+        for sheet in figures["sheets"]:
+            shutil.copy(out / sheet["file"], ROOT / "docs/images")
+
+
 def uri(file):
     kind = {"jpg": "jpeg", "png": "png"}[file.suffix.lstrip(".")]
     return f"data:image/{kind};base64," + base64.b64encode(file.read_bytes()).decode("ascii")
@@ -287,6 +314,9 @@ def main():
         default=ROOT / "out/paper",
         help="output folder (default: out/paper)",
     )
+    parser.add_argument(
+        "--record", action="store_true", help="write results/docs and docs/images; whole runs only"
+    )
     parser.add_argument("--no-build", action="store_true", help="use the build as it is")
     arguments = parser.parse_args()
     arguments.out = arguments.out.resolve()
@@ -300,12 +330,16 @@ def main():
                 f"--part {name}: allowed: {', '.join(allowed)}; the others need --model, "
                 "or no --quick"
             )
+    if arguments.record and (arguments.quick or not arguments.model):
+        parser.error("--record: needs --model, excludes --quick")
     if not arguments.no_build:
         subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
     done = measured(arguments)
     document = json.loads((RESULTS / "paper/expected.json").read_text(encoding="utf-8"))
     numbers = numbers_of(done)
     left = expected.left(document, numbers)
+    if arguments.record:
+        record(done, arguments.out)
     overlay(done)
     page(arguments, done, left, len(numbers), len(set(document["numbers"]) - set(numbers)))
     print(arguments.out / "index.html")

@@ -102,8 +102,6 @@ DEVICE_SUITES = {
     "frame": ["--repetitions=5", "--basis=sh2,srbf8v2"],
 }
 DOCS_SUITES = {
-    "table1": ["sponza", "--repetitions=7"],
-    "factors": ["sponza", "--repetitions=5"],
     "layouts": [],
     "bases": [],
     "scaling": [],
@@ -128,6 +126,3 @@ SHARED = "rasterize-camera", "rasterize-shadow", "shade"  # stages whose time ba
 FRONT = [*VIEWS, "--noise=0.03"]
 FRONT_GRIDS = {"clpv": ["--vary=grid=16,24,32,48,64"], "clpv, near off": ["--near=off", "--vary=grid=16,24,32,48,64"]}
 FRONT_TIMES = 5, 10, 20, 40, 80
-
-# By the other scripts: subjects of scripts/claims, and scripts/figures.
-SCRIPTS = {"claims": ["lobes", "lambdas", "tables", "light", "views", "texels", "shadows", "columns", "lit"], "figures": []}

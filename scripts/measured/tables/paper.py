@@ -7,7 +7,7 @@ from .quality import mean
 from .cells import TABLES, found, load, number, result, table
 
 
-# Bases: errors of clamped cosines, by scripts/claims.
+# Bases: errors of clamped cosines, by scripts/reproduce.
 
 
 @table
@@ -74,7 +74,7 @@ def basis_images():
     return lines
 
 
-# Claims about light, by scripts/claims.
+# Claims about light, by scripts/reproduce.
 
 
 @table
@@ -126,7 +126,7 @@ def verdict_lines(section):
     for claim in verdicts.judged(result, section):
         points = [f"{point['at']}: {point['numbers']}" for point in claim["points"]]
         more = [f"{len(points) - SHOWN} more"] if len(points) > SHOWN + 1 else []
-        command = f"`{claim['command']}`" if claim["command"].split()[0] in ("clpv", "python3", "scripts/claims") else claim["command"]
+        command = f"`{claim['command']}`" if claim["command"].split()[0] in ("clpv", "python3", "scripts/reproduce") else claim["command"]
         lines.append([claim["statement"], claim["rule"], f"**{claim['verdict']}**" if len(claim["verdict"]) < 20 else claim["verdict"],
                       "; ".join(points[:SHOWN if more else None] + more), command])
     return lines
@@ -136,7 +136,7 @@ for each in ("theory", "lobes", "light", "shadows", "cost", "conclusions"):
     TABLES[f"verdicts-{each}"] = functools.partial(verdict_lines, each)
 
 
-# Figures: brightness over steps, by scripts/figures.
+# Figures: brightness over steps, by scripts/reproduce.
 
 
 @table

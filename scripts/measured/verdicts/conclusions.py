@@ -3,7 +3,7 @@
 from .judge import SIMILAR, claim, row
 
 
-@claim("conclusions", "lambda", "scripts/claims lambdas")
+@claim("conclusions", "lambda", "scripts/reproduce --part lambdas")
 def equal(read):
     """8v2 and SH are practically equal
 
@@ -41,7 +41,7 @@ def suitable(read):
         yield (f"sweep {basis}", means(read)[basis] > 0.5, f"{means(read)[basis]:.2f}")
 
 
-@claim("conclusions", "N", "scripts/claims lobes")
+@claim("conclusions", "N", "scripts/reproduce --part lobes")
 def difficult(read):
     """perfect lobes are very difficult to find
 

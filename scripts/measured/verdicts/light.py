@@ -38,11 +38,11 @@ def signed(apart, wanted):
     return outcome, f"{statistics.fmean(apart.values()):+.3f} ({low:+.3f} to {high:+.3f})"
 
 
-VIEWS = "scripts/claims views"
+VIEWS = "scripts/reproduce --part views"
 SPREAD = "95 % interval of the mean, block bootstrap over 4 cameras and 3 suns"
 
 
-@claim("light", "camera", "scripts/claims lit")
+@claim("light", "camera", "scripts/reproduce --part lit")
 def unlit(read):
     """most surfaces of Sponza are lit indirectly only
 
@@ -76,7 +76,7 @@ def worse_big(read):
             yield setting(each), *signed(each["apart"], -1)
 
 
-@claim("light", "setting", "scripts/claims light")
+@claim("light", "setting", "scripts/reproduce --part light")
 def detail(read):
     """since bigger cascades have less detail in the RSM
 
@@ -94,7 +94,7 @@ def detail(read):
         )
 
 
-@claim("light", "cascade [m]", "scripts/claims texels")
+@claim("light", "cascade [m]", "scripts/reproduce --part texels")
 def texels(read):
     """neighbouring texels of the RSM then differ completely
 
@@ -134,7 +134,7 @@ def diverse(read):
         )
 
 
-@claim("light", "cascade, RSM", "scripts/claims light")
+@claim("light", "cascade, RSM", "scripts/reproduce --part light")
 def more_steps(read):
     """24 steps increase the difference
 
@@ -189,7 +189,7 @@ def grows(read, varied, first, second, fixed, values):
         )
 
 
-@claim("light", "steps, RSM", "scripts/claims light")
+@claim("light", "steps, RSM", "scripts/reproduce --part light")
 def decrease(read):
     """bigger cascades decrease the difference
 

@@ -11,7 +11,7 @@ def by_lambda(read):
 OF_THE_PAPER = "srbf4", "srbf8v1", "srbf8v2", "srbf8v3"
 
 
-@claim("lobes", "lambda", "scripts/claims lambdas")
+@claim("lobes", "lambda", "scripts/reproduce --part lambdas")
 def best_up(read):
     """along +z srbf14 is best
 
@@ -22,7 +22,7 @@ def best_up(read):
         yield (each["lambda"], each["srbf14"] < least, f"{each['srbf14']:.3f}, next {least:.3f}")
 
 
-@claim("lobes", "lambda", "scripts/claims lambdas")
+@claim("lobes", "lambda", "scripts/reproduce --part lambdas")
 def similar_up(read):
     """along +z srbf4, 8v1 and 8v3 are similar
 
@@ -36,7 +36,7 @@ def similar_up(read):
         )
 
 
-@claim("lobes", "lambda", "scripts/claims lambdas")
+@claim("lobes", "lambda", "scripts/reproduce --part lambdas")
 def worse_up(read):
     """and worse than SH
 
@@ -51,7 +51,7 @@ def worse_up(read):
         )
 
 
-@claim("lobes", "lambda", "scripts/claims lambdas")
+@claim("lobes", "lambda", "scripts/reproduce --part lambdas")
 def similar_to_sh(read):
     """along +z 8v2 is very similar to SH
 
@@ -61,7 +61,7 @@ def similar_to_sh(read):
         yield (each["lambda"], similar(each["srbf8v2"], each["sh2"]), f"{each['srbf8v2']:.3f}")
 
 
-@claim("lobes", "guess", "scripts/claims lobes")
+@claim("lobes", "guess", "scripts/reproduce --part lobes")
 def guesses(read):
     """the same for other guesses of the centres
 
@@ -130,7 +130,7 @@ def deformed(read):
         )
 
 
-@claim("lobes", "direction", "scripts/claims lobes")
+@claim("lobes", "direction", "scripts/reproduce --part lobes")
 def important(read):
     """positions of centres are extremely important
 

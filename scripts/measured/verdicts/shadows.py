@@ -9,7 +9,7 @@ NAMES = {
     "paper sh2 64 16": "sh2 in 64^3 cells",
     "best": "the defaults",
 }
-SHADOWS = "scripts/claims shadows"
+SHADOWS = "scripts/reproduce --part shadows"
 
 
 def contrasts(read, *images):
@@ -55,7 +55,7 @@ COLUMNS = {
 }
 
 
-@claim("shadows", "image", "scripts/claims columns")
+@claim("shadows", "image", "scripts/reproduce --part columns")
 def first_column(read):
     """the first column casts a shadow
 

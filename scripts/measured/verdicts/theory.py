@@ -9,7 +9,7 @@ def sets(read):
     return {each["basis"]: each for each in read("docs/claims")["lobes"]["sets"]}
 
 
-@claim("theory", "SH", "scripts/claims lobes")
+@claim("theory", "SH", "scripts/reproduce --part lobes")
 def many(read):
     """SRBF beat SH where both use many coefficients (Tsai and Shih: in all-frequency transfer,
     which is not tested)
@@ -37,7 +37,7 @@ def narrower(_):
         yield (value, width(value) < width(value - 0.05), f"{width(value):.0f} degrees")
 
 
-@claim("theory", "set", "scripts/claims lobes")
+@claim("theory", "set", "scripts/reproduce --part lobes")
 def normalised(read):
     """coefficients must be normalised by A^-1
 
@@ -52,7 +52,7 @@ def normalised(read):
         )
 
 
-@claim("theory", "set", "scripts/claims lobes")
+@claim("theory", "set", "scripts/reproduce --part lobes")
 def must_rotate(read):
     """SRBF lobes must be rotated by a matrix; SH has a short cut
 
@@ -82,7 +82,7 @@ def invariant(read):
         )
 
 
-@claim("theory", "set", "scripts/claims tables")
+@claim("theory", "set", "scripts/reproduce --part tables")
 def buffered(read):
     """the singular integral may come from a buffer
 
