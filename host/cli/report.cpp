@@ -2,10 +2,12 @@
 // clpv report: HTML page with images and ground truth, errors over times, and benchmarks; uses python/clpv/draw.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <ranges>
 
 #include "cli/commands.hpp"
 #include "cli/drawing.hpp"
@@ -16,7 +18,6 @@
 #include "clpv/version.hpp"
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
-#include "image/tone_map.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "support/array_files.hpp"
 #include "support/error.hpp"
@@ -32,7 +33,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::string folder, cache;
   QualitySubjects subjects;
-  std::vector<std::string> quality, benchmarks;
+  std::vector<std::string> quality, benchmarks, images;
   std::string width = "240", height = "135";
   TracingOptions tracing;
 };
@@ -88,14 +89,27 @@ float exposure_of(const Image& truth) {
   return sum > 0 ? static_cast<float>(std::log2(kMean * count / sum)) : 0;
 }
 
-/// Image input of the page: display-encoded image and linear values.
-nlohmann::json add_image(const Drawing& drawing, const std::string& stem, const Image& image,
-                         float exposure) {
-  write_png(drawing.folder() / (stem + ".png"), display_image(image, exposure, ToneMap::aces));
-  write_npy(drawing.folder() / (stem + ".npy"), image.pixels,
+/// Adds linear values of an image. Returns the file's name.
+std::string add_values(const Drawing& drawing, const std::string& stem, const Image& image) {
+  const std::string name = stem + ".npy";
+  write_npy(drawing.folder() / name, image.pixels,
             std::array{static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width),
                        image.channels.size()});
-  return {{"image", stem + ".png"}, {"values", stem + ".npy"}};
+  return name;
+}
+
+fs::path file_of(const std::string& folder, const Subject& subject, const SceneCamera& camera) {
+  return fs::path(folder) / fmt::format("{}-{}.exr", subject.scene.name, camera.name);
+}
+
+/// The image of another method for a view. Throws Error(bad_input) without channels R, G and B.
+Image read_image_of_method(const fs::path& path) {
+  Image image = extract_layer(read_image(path), "", path.string());
+  const std::array colours{"R", "G", "B"};
+  if (!std::ranges::equal(colours, image.channels | std::views::take(3)))
+    throw Error(ExitCode::bad_input, "{}: channels {}; allowed: R, G, B and perhaps A", path.string(),
+                fmt::join(image.channels, ", "));
+  return image;
 }
 
 Image render_indirect(Session& session, const Subject& subject, const SceneCamera& camera,
@@ -106,7 +120,7 @@ Image render_indirect(Session& session, const Subject& subject, const SceneCamer
   return view_image(frame, Show::indirect);
 }
 
-/// View of one camera: the ground truth, and each variant's image with its errors.
+/// View of one camera: the ground truth, and each image with its errors: of our variants, then of other methods.
 nlohmann::json view(Session& session, const Options& options, const Subject& subject, std::size_t index,
                     const Drawing& drawing, const std::string& stem, Progress& progress) {
   const SceneCamera& camera = subject.cameras[index];
@@ -114,23 +128,39 @@ nlohmann::json view(Session& session, const Options& options, const Subject& sub
   const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
   const float exposure = exposure_of(truth);
   nlohmann::json shots = nlohmann::json::array();
-  for (const PageVariant& variant : page_variants(options)) {
-    const Image image = render_indirect(session, subject, camera, options, variant);
-    nlohmann::json shot = to_json(compare(image, variant.title, truth, "truth", exposure));
-    shot.update(add_image(drawing, fmt::format("{}-{}", stem, shots.size()), image, exposure));
-    shot.update({{"title", variant.title}, {"options", as_arguments(variant.given)}});
+  const auto add_shot = [&](const std::string& title, const std::string& source, const Image& image,
+                            const nlohmann::json& given) {
+    nlohmann::json shot = to_json(compare(image, source, truth, "truth", exposure));
+    shot.update({{"title", title},
+                 {"options", given},
+                 {"values", add_values(drawing, fmt::format("{}-{}", stem, shots.size()), image)}});
     shots.push_back(std::move(shot));
+  };
+  for (const PageVariant& variant : page_variants(options)) {
+    add_shot(variant.title, variant.title, render_indirect(session, subject, camera, options, variant),
+             as_arguments(variant.given));
     progress.advance();
+  }
+  for (const std::string& folder : options.images) {
+    const fs::path file = file_of(folder, subject, camera);
+    add_shot(fs::weakly_canonical(folder).filename().string(), file.string(), read_image_of_method(file),
+             nullptr);
   }
   return {{"scene", subject.scene.name},
           {"camera", camera.name},
-          {"truth", add_image(drawing, stem + "-truth", truth, exposure)},
+          {"exposure", exposure},
+          {"truth", add_values(drawing, stem + "-truth", truth)},
           {"shots", shots}};
 }
 
 nlohmann::json views(Session& session, const Options& options, const Drawing& drawing) {
   nlohmann::json all = nlohmann::json::array();
-  for (Subject& subject : load_subjects(options.subjects)) {
+  std::vector<Subject> subjects = load_subjects(options.subjects);
+  for (const Subject& subject : subjects)  // before minutes of tracing
+    for (const SceneCamera& camera : subject.cameras)
+      for (const std::string& folder : options.images)
+        read_image_of_method(file_of(folder, subject, camera));
+  for (Subject& subject : subjects) {
     const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
     trace_truths(subject, size.width, size.height, options.tracing.resolved(),
                  quality_cache(options.cache) / "references");
@@ -149,6 +179,8 @@ void run(const Options& options, const Shared& shared) {
   std::vector<NamedFile> inputs = files_of(options.subjects);
   for (const std::string& file : options.quality) inputs.push_back({"--quality", file});
   for (const std::string& file : options.benchmarks) inputs.push_back({"--bench", file});
+  if (!options.images.empty() && options.subjects.scenes.empty())
+    throw Error(ExitCode::usage, "--images: needs a scene");
   check_outputs({{"DIR", output}}, inputs);
   const Drawing drawing("report", "clpv report");
   nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},
@@ -182,6 +214,8 @@ void add_report(CLI::App& app, Shared& shared) {
       "results of clpv quality -o FILE.json, repeatable");
   add(*command, "--bench", "FILE.json", options->benchmarks,
       "results of clpv bench table1 or layouts -o FILE.json, repeatable");
+  add(*command, "--images", "DIR", options->images,
+      "images of another method: DIR/SCENE-CAMERA.exr of indirect light, repeatable");
   command->add_option("--width", options->width, "width of the images [pixels]")->capture_default_str();
   command->add_option("--height", options->height, "height of the images [pixels]")->capture_default_str();
   add_tracing_options(*command, options->tracing);

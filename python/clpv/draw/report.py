@@ -1,56 +1,25 @@
 # SPDX-License-Identifier: MIT
 """The report page: one self-contained HTML file.
 
-report.json: "subtitle"; "views", each with "scene", "camera", the "truth", and "shots" with "title", "options" and the numbers of
-`clpv compare`. Truth and shots name an "image" (.png, as shown) and "values" (.npy: rows, columns, R G B A, linear).
+report.json: "subtitle"; "views", each with "scene", "camera", "exposure", "truth", and "shots" with "title", "options" (null: an
+image of another method), "values" and the numbers of `clpv compare`. Truth and values are files (.npy: rows, columns, R G B or R G B A, linear).
 "quality" and "benchmarks": {"file", "document"} of `clpv quality` and `clpv bench` with --output. "marked": options of
 variants to highlight.
 """
-import base64
-import io
 import pathlib
 import re
 
 import jinja2
 import numpy
 from markupsafe import Markup
-from matplotlib import image, pyplot
+from matplotlib import pyplot
 
 from clpv.draw import bench, documents, style
 from clpv.draw.documents import NUMBER
+from clpv.score import page
 
-FULL_SCALE = 1.5  # of false colour, in root mean squares of the ground truth
-COLOURS = "inferno"  # readable in greyscale and by colour-blind readers
-LUMINANCE = (0.2126, 0.7152, 0.0722)  # Rec. 709
 VARIANT = {"options": dict, "rejected": int, "nrmse": NUMBER, "worst_nrmse": NUMBER, "energy_ratio": NUMBER,
            "frame_ms": NUMBER}
-
-
-def data_uri(png):
-    return "data:image/png;base64," + base64.b64encode(png).decode("ascii")
-
-
-def coloured(shares):
-    """Returns the colours R G B A of values in [0, 1]."""
-    return pyplot.get_cmap(COLOURS)(numpy.asarray(shares, dtype=float))
-
-
-def as_png(pixels):
-    out = io.BytesIO()
-    image.imsave(out, pixels, format="png", metadata={"Software": None})
-    return out.getvalue()
-
-
-def false_colour(shot, truth):
-    """Returns R G B A: luminance of the absolute difference over the ground truth's root mean square, 0 to FULL_SCALE. Pixels
-    without a surface in either image are transparent."""
-    surface = truth[..., 3] > 0
-    squares = (truth[surface, :3] @ LUMINANCE) ** 2
-    rms = numpy.sqrt(squares.mean()) if squares.size else 0
-    errors = abs(shot[..., :3] - truth[..., :3]) @ LUMINANCE
-    colours = coloured(numpy.clip(errors / (rms * FULL_SCALE), 0, 1) if rms > 0 else 0 * errors)
-    colours[~(surface & (shot[..., 3] > 0))] = 0
-    return colours
 
 
 def inlined(figure, titles=()):
@@ -74,17 +43,14 @@ def page_colours():
             **{f"c{i}": colour for i, colour in enumerate(style.COLOURS)}}
 
 
-def view(shown, folder):
-    """Returns a view with its images as data URIs."""
-    truth = numpy.load(folder / shown["truth"]["values"])
-
-    def uri(entry):
-        return data_uri((folder / entry["image"]).read_bytes())
-
-    shots = [{**shot, "uri": uri(shot), "error_uri": data_uri(as_png(false_colour(numpy.load(folder / shot["values"]),
-                                                                                  truth)))}
-             for shot in shown["shots"]]
-    return {**shown, "truth_uri": uri(shown["truth"]), "shots": shots}
+def viewer(views, folder):
+    """HTML of the viewer with all views."""
+    def values(name):
+        pixels = numpy.load(folder / name)
+        return pixels[..., :3], pixels[..., 3] if pixels.shape[2] > 3 else numpy.ones(pixels.shape[:2])
+    return Markup(page.viewer([page.view(f"{shown['scene']}, {shown['camera']}", shown["exposure"], *values(shown["truth"]),
+                                         [(shot["title"], *values(shot["values"])) for shot in shown["shots"]])
+                               for shown in views]))
 
 
 def variants(quality, marked):
@@ -154,9 +120,8 @@ def draw(source, target):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
                                      trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     html = environment.get_template("page.html").render(
-        subtitle=report["subtitle"], views=[view(shown, source) for shown in report["views"]], quality=quality,
+        subtitle=report["subtitle"], views=report["views"], viewer=viewer(report["views"], source), quality=quality,
         quality_chart=inlined(error_against_cost(quality), [row["name"] for row in quality]),
         table1=table1([row for row in rows if row["suite"] == "table1"]), layouts=layouts,
-        layouts_chart=inlined(bench.layouts(layouts)), full_scale=FULL_SCALE, colours=page_colours(),
-        legend=data_uri(as_png(coloured(numpy.linspace(0, 1, 256)[None].repeat(12, axis=0)))))
+        layouts_chart=inlined(bench.layouts(layouts)), colours=page_colours())
     documents.write(target, html.encode("utf-8"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A page that shows images of several methods beside the truths: slider, zoom, exposure, error maps. One HTML file."""
+"""Images of several methods beside the truths: slider, zoom, exposure, error maps. A page of its own, or a part of a report."""
 import base64
 import json
 import pathlib
@@ -21,25 +21,39 @@ def entry(title, image):
     return {"title": title, "halves": text_of(numpy.clip(image, -LARGEST_HALF, LARGEST_HALF).astype("<f2"))}
 
 
-def view_of(view, suite_folder, folders):
-    """A view with the truth and each method's image, the mean of its frames."""
-    truth, alpha = suite.read_truth(suite_folder, view)
+def view(name, exposure, truth, alpha, shots):
+    """A view of the viewer. `shots`: (title, image, its alpha); images have the truth's size."""
     images = [entry("path tracing", truth)]
-    for title, folder in folders.items():
-        frames = [suite.read_image(file, truth) for file in suite.frames_of(folder, view["name"])]
-        mean = numpy.mean([rgb for rgb, _ in frames], axis=0)
-        valid = numpy.logical_and.reduce([alpha > 0, *(mask > 0 for _, mask in frames)])
-        seen = numpy.where(valid, errors.flip_map(mean, truth, valid, view["exposure"]), 0)
-        images.append({**entry(title, mean), "flip": text_of(numpy.round(255 * seen).astype(numpy.uint8))})
-    return {"name": view["name"], "width": truth.shape[1], "height": truth.shape[0], "exposure": view["exposure"],
-            "images": images}
+    for title, image, mask in shots:
+        valid = (alpha > 0) & (mask > 0)
+        seen = numpy.where(valid, errors.flip_map(image, truth, valid, exposure), 0)
+        images.append({**entry(title, image), "flip": text_of(numpy.round(255 * seen).astype(numpy.uint8))})
+    return {"name": name, "width": truth.shape[1], "height": truth.shape[0], "exposure": exposure, "images": images}
+
+
+def part(name):
+    return pathlib.Path(__file__).with_name(name).read_text(encoding="utf-8")
+
+
+def viewer(views):
+    """HTML of the viewer, to stand in a page."""
+    return part("viewer.html").replace("DATA", json.dumps(views).replace("<", "\\u003c"), 1)
+
+
+def mean_of(frames):
+    """Mean and common alpha of a method's frames: (image, alpha)."""
+    return numpy.mean([rgb for rgb, _ in frames], axis=0), numpy.min([mask for _, mask in frames], axis=0)
 
 
 def write(target, suite_folder, folders, only=("*",)):
     """Writes the page. `folders`: {title: folder}, which suite.score() accepts. Throws BadImage for more than 30 MB."""
-    views = [view_of(view, suite_folder, folders) for view in suite.chosen(suite.read_suite(suite_folder), only)]
-    data = json.dumps(views).replace("<", "\\u003c")
-    page = pathlib.Path(__file__).with_name("page.html").read_text(encoding="utf-8").replace("DATA", data, 1)
+    views = []
+    for each in suite.chosen(suite.read_suite(suite_folder), only):
+        truth, alpha = suite.read_truth(suite_folder, each)
+        shots = [(title, *mean_of([suite.read_image(file, truth) for file in suite.frames_of(folder, each["name"])]))
+                 for title, folder in folders.items()]
+        views.append(view(each["name"], each["exposure"], truth, alpha, shots))
+    page = part("page.html").replace("VIEWER", viewer(views), 1)
     if len(page) > LARGEST:
         raise BadImage(f"{target}: found {len(page)} bytes; allowed: {LARGEST}; use --only for fewer views")
     target.write_text(page, encoding="utf-8")
