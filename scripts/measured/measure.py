@@ -92,7 +92,7 @@ def measure_standing(folder, model):
                 "--output=FOLDER/frame.png", "--stats")
     time = sum(stage["ms"] for stage in stats["stages"] if stage["stage"] not in rows.SHARED)
     groups = {"small": (rows.STANDING, "small", rows.STANDING_FRAMES + [rows.BASELINES]),
-              "small_with_time_of_large": (rows.STANDING, "small", [rows.BASELINES + [f"--baseline-time={time:.1f}"]]),
+              "small_with_time_of_large": (rows.STANDING, "small", [rows.OF_A_TIME + [f"--baseline-time={time:.1f}"]]),
               "large": (rows.STANDING_LARGE, "large", rows.STANDING_FRAMES + [rows.BASELINES])}
     document = {"measured": measured_with(stats["device"]), "frames": STANDING_COUNT, "time_of_large_ms": time,
                 "ground_truths": []}
@@ -121,7 +121,7 @@ def measure_front(model):
     for series, options in rows.FRONT_GRIDS.items():
         variants += [{**row, "series": series} for row in run("quality", *given, "--preset=best", *options, "--output")["variants"]]
     for time in rows.FRONT_TIMES:
-        report = run("quality", *given, *rows.BASELINES, f"--baseline-time={time}", "--output")
+        report = run("quality", *given, *rows.OF_A_TIME, f"--baseline-time={time}", "--output")
         variants += [{**row, "series": row["options"]["baseline"]} for row in report["variants"] if "baseline" in row["options"]]
     return variants
 

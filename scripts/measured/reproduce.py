@@ -26,7 +26,7 @@ from . import CLPV, RESULTS, ROOT, expected, tables, verdicts
 from .measure import measured_with, write
 
 LEFT = 5  # exit code
-CLAIMS = ("lobes", "tables", "lit", "texels", "lambdas", "light", "columns", "shadows", "views")
+CLAIMS = ("lobes", "tables", "lit", "texels", "lambdas", "light", "arcade", "shadows", "views")
 WITHOUT_MODEL = ("lobes", "tables", "figures")
 WHOLE_ONLY = ("views",)
 
@@ -169,9 +169,10 @@ def record(done, out):
     if claims:
         earlier = tables.read("claims")
         whole = len(claims) == len(CLAIMS)
-        parts = f"{', '.join(claims)}: clpv {now['commit']}, {now['date']}"
-        measured = now if whole else {**earlier["measured"], "except": parts}
-        write(folder, "claims", {**earlier, **claims, "measured": measured})
+        later = f"{', '.join(claims)}: clpv {now['commit']}, {now['date']}"
+        measured = now if whole else {**earlier["measured"], "except": later}
+        parts = {name: claims.get(name, earlier.get(name)) for name in CLAIMS}
+        write(folder, "claims", {"measured": measured, **parts})
     for name in ("table1", "factors"):
         if name in done:
             write(folder, name, {"measured": now, **done[name]["result"]})
