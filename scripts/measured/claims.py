@@ -10,7 +10,7 @@ views    errors of sh2 and srbf8v2 against path tracing, paired, in four cameras
          smallest cascade
 texels   difference of neighbouring texels of an RSM, by size of the cascade; camera `curtains`
 shadows  contrast of indirect light on the floor with and without indirect shadows, and of path tracing; camera `columns`
-arcade   shadows of the arcade's columns in the irradiance of the wall behind it, by a sun along the nave
+arcade   shadows of the arcade's columns and curtains in the irradiance of the wall behind it, by a sun along the nave
 lit      share of pixels without direct light, in each camera
 
 All but lobes and tables are of Sponza. `arguments`: model, out (folder) and quick, of scripts/reproduce.
@@ -275,8 +275,8 @@ def texels(arguments):
     return rows
 
 
-# Of 24 suns and both sides of the nave, the light in which path tracing has the clearest shadows of columns: sunlit floor and walls
-# of the nave shine through the arcade at z = -2.5 m onto the wall behind it, at z = -6.2 m.
+# Of 24 suns and both sides of the nave, the light in which path tracing shows the arcade most clearly: sunlit floor and walls of the
+# nave shine through it, at z = -2.5 m, onto the wall behind it, at z = -6.2 m. Curtains hang between its columns.
 ALONG_THE_NAVE = clpv.Light(direction=(0.1736, -0.9848, 0), intensity=10, name="along")
 SPACING, A_COLUMN, PERIODS, MIDDLE = 3.78, 1.2, 4, -0.7  # of the columns in x, x of one, length of the strip, its middle [m]
 AT_WALL, BEFORE_WALL = -6.2, 0.05  # z [m]
@@ -287,7 +287,7 @@ ACROSS, SAMPLES = 180, 2048
 
 def arcade(arguments):
     """Of the wall's irradiance, over four columns: twice its mean product with -cos(2 pi (x - x_column) / spacing), over its mean.
-    Above 0: darker behind columns than between them."""
+    Above 0: darker behind columns than behind curtains."""
     views_of = Views(arguments)
     views_of.scene.lights = [ALONG_THE_NAVE]
     half, y, far = PERIODS * SPACING / 2, sum(STRIP) / 2, 40
