@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Vectors of W lanes: pixels of a row, cells of a row, triangles, rays. First text of every program with generated text.
 //
-// W 8 is for CPUs, and kernels with it use no function that PoCL does not inline, such as any(), floor() or log2(). W 1 is
+// W 8 is for CPUs; inner loops with it call no function that PoCL does not inline, such as any(), floor() or log2(). W 1 is
 // for GPUs, which run work-items themselves in lanes, and for kernels on images. There, PoCL vectorises work-items only in
 // short kernels of straight-line code, without branches (volume/whole_groups.h).
 #pragma once

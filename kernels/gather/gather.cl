@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Gathers the irradiance of every surface that the camera sees from the accumulated volumes of all cascades.
 //
-//   E = 4 I(-n) / s^2           face transports
+//   E = 4 I(-n) / s^2           steps
 //   E = alpha(-n) . c / s^2     sweep
 //
 // not below 0, with the coefficients c interpolated trilinearly at p + offset s n. docs/method.md,
@@ -82,6 +82,7 @@ __kernel void gather(const ClpvView view, __global const Place* places, __global
     g.weights[i] = gather_weights(normal.x[i], normal.y[i], normal.z[i] CLPV_PASS_TABLE);
     g.sums[i] = 0.0f;
   }
+  // The host's CLPV_ADD_CASCADES calls this for each cascade, the finest first.
 #define CLPV_ADD_CASCADE(c, volume) add_cascade(&g, grids + c, volume)
   CLPV_ADD_CASCADES
   for (uint i = 0; i < p.count; ++i) irradiance[g.surfaces.first + i] = unit * g.sums[i];

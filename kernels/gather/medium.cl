@@ -14,7 +14,7 @@
 // medium_light
 //   In:      view, depths [m]      the camera's surface
 //            light, views, count, which, map   the light and one of its shadow maps (shade.cl)
-//   In, out: scattered             L, three planes
+//   In, out: scattered             in-scattered light, three planes; medium_volumes initialises it
 // medium_volumes
 //   In:      view, depths, medium, CLPV_RADIANCE
 //   Out:     ends                  where each ray leaves the medium or meets a surface [m]; 0 if it is never in the medium
@@ -187,7 +187,7 @@ __kernel void medium_add(const ClpvView view, __global const float* depths, cons
     weights += weight;
   }
   const VecLanes added = unpack(a.inside, vec_times(sum, 1.0f / weights));
-  const VecLanes kept = unpack(a.end >= ZERO, medium_transmittance(medium, a.end - a.start));
+  const VecLanes kept = unpack((intW)(-1), medium_transmittance(medium, a.end - a.start));
   for (uint i = 0; i < p.count; ++i) {
     const float4 light = (float4)(added.x[i], added.y[i], added.z[i], 0.0f), before = image[first + i];
     image[first + i] = alone ? (float4)(light.x, light.y, light.z, 1.0f)

@@ -69,7 +69,7 @@ __kernel void near(const ClpvView view, __global const float* points, __global c
     store_lanes(lit ? (hit ? ONE : trust) : ZERO, shares);
     for (int i = 0; i < W; ++i) {
       if (!(shares[i] > 0.0f)) continue;
-      Sampled change = there.at[i];
+      Sampled change = there.at[i];  // 0 where the ray hit
       for (int j = 0; j < CLPV_PAIRS; ++j) change.pair[j] -= here.at[i].pair[j];
       volumes[i] += shares[i] * radiance_along(&change, back.x[i], back.y[i], back.z[i]);
     }

@@ -2,7 +2,8 @@
 // Finds the cell of each texel of a surface: the first step of injection (inject.cl).
 //
 //   light:     cell of p + n s / 2       half a cell off the surface, so that a surface does not light itself
-//   blocking:  corner nearest to p       B = A / (max(|n.w|, 0.1) s^2): blocked share of a surfel, footprint A along w
+//   blocking:  corner nearest to p       B = A / (max(|n.w|, 0.1) s^2): blocked share of a surfel; its footprint A
+//                                        along w is that of stride x stride texels
 //
 // docs/method.md, 'Injection' and 'Blockers'.
 //
@@ -75,17 +76,17 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
 #endif
     float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
           z = (position.z - grid.origin[2]) * per_metre;
-    int counts = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) & not_zero(normal.x, normal.y, normal.z);
+    int valid = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) & not_zero(normal.x, normal.y, normal.z);
 #if CLPV_GEOMETRY
     shares[i] = blocked_share(view, grid, (float)px, (float)py, depth, normal, stride);
 #else
     x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
     const float3 flux = load_colour(colours, texel, colour_scale);
-    counts = counts & all_finite(flux.x, flux.y, flux.z) & not_zero(flux.x, flux.y, flux.z);
+    valid = valid & all_finite(flux.x, flux.y, flux.z) & not_zero(flux.x, flux.y, flux.z);
 #endif
     x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;
-    counts = counts & in_grid((float)n, x, y, z);  // false for points that are not finite
-    const uint cx = counts ? (uint)x : 0, cy = counts ? (uint)y : 0, cz = counts ? (uint)z : 0;
-    keys[i] = counts ? cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
+    valid = valid & in_grid((float)n, x, y, z);  // false for points that are not finite
+    const uint cx = valid ? (uint)x : 0, cy = valid ? (uint)y : 0, cz = valid ? (uint)z : 0;
+    keys[i] = valid ? cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
   }
 }

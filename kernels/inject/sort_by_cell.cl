@@ -9,7 +9,7 @@
 // the second splits them again.
 //
 // In:   keys    cell of each texel, or CLPV_NO_CELL (cell_keys.h)
-// Out:  sorted  (key, texel) of every other texel, two words each; the host reads their number from `all`
+// Out:  sorted  (key, texel) of each texel that has a cell, two words each; the host reads their number from `total`
 // counts[digit][chunk] holds the number of elements of a chunk with a digit, then the index of the first of them. The
 // host zeroes it.
 #include "shared/sort.h"
@@ -102,10 +102,10 @@ __kernel void sum_digits(__global const uint* counts, const uint chunks, const u
   totals[digit] = sum;
 }
 
-// Prefix sum, second half: counts become the index of each chunk's first element with a digit. all[0]: number of
+// Prefix sum, second half: counts become the index of each chunk's first element with a digit. total[0]: number of
 // elements.
 __kernel void place_digits(__global uint* counts, const uint chunks, const uint digits,
-                           __global const uint* totals, __global uint* all) {
+                           __global const uint* totals, __global uint* total) {
   const uint digit = get_global_id(0);
   if (digit >= digits) return;
   uint at = 0;
@@ -115,5 +115,5 @@ __kernel void place_digits(__global uint* counts, const uint chunks, const uint 
     counts[digit * chunks + c] = at;
     at += count;
   }
-  if (digit == digits - 1) all[0] = at;
+  if (digit == digits - 1) total[0] = at;
 }

@@ -34,7 +34,7 @@ static inline float clip_distance(const ClpvView view, const float4 p, const int
   if (plane == 1) return guard.x * p.z + p.x;
   if (plane == 2) return guard.y * p.z - p.y;
   if (plane == 3) return guard.y * p.z + p.y;
-  return CLPV_PARALLEL(view) ? 1.0f : p.w - view.near_depth;
+  return CLPV_IS_ORTHOGRAPHIC(view) ? 1.0f : p.w - view.near_depth;
 }
 
 // Clips a convex polygon of `count` corners to the positive side of a plane. Returns the number of corners. Works in place,
@@ -53,7 +53,7 @@ static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON float4* polygo
       const float4 inside = da >= 0.0f ? a : b, outside = da >= 0.0f ? b : a;
       const float di = da >= 0.0f ? da : db, dd = da >= 0.0f ? db : da;
       float4 hit = inside + (outside - inside) * (di / (di - dd));
-      if (plane == CLPV_CLIP_PLANES - 1) hit.zw = CLPV_PARALLEL(view) ? hit.zw : (float2)(view.near_depth);
+      if (plane == CLPV_CLIP_PLANES - 1) hit.zw = CLPV_IS_ORTHOGRAPHIC(view) ? hit.zw : (float2)(view.near_depth);
       polygon[CLPV_CORNER(kept++)] = hit;
     }
     a = b;

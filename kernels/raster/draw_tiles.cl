@@ -160,7 +160,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
   const uint at = y * tiles_x + x;
   const Scene scene = {vertices, triangles, materials, textures, texels};
   const Tile tile = {near_keys + column, nearest + column, (int)(x * CLPV_TILE + vector * W), (int)y * CLPV_TILE,
-                     CLPV_PARALLEL(view) ? view.far_depth : -1.0f / view.far_depth};
+                     CLPV_IS_ORTHOGRAPHIC(view) ? view.far_depth : -1.0f / view.far_depth};
   for (int row = 0; row < CLPV_TILE; ++row) {
     tile.keys[row * CLPV_PITCH] = fresh ? (realW)(INFINITY) : keys[tile_row(at, row, vector)];
     tile.seen[row * CLPV_PITCH] = fresh ? (uintW)(UINT_MAX) : seen[tile_row(at, row, vector)];

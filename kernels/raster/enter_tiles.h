@@ -22,7 +22,7 @@ typedef struct {
 } TileRange;
 
 static inline TileRange tiles_of(const RasterWords* words, const int lane) {
-  const uint first = (uint)words->word[13][lane], last = (uint)words->word[14][lane];
+  const uint first = (uint)words->word[CLPV_FIRST_WORD][lane], last = (uint)words->word[CLPV_LAST_WORD][lane];
   const TileRange tiles = {(int)(first & 0xffffu) / CLPV_TILE, (int)(last & 0xffffu) / CLPV_TILE,
                        (int)(first >> 16) / CLPV_TILE, (int)(last >> 16) / CLPV_TILE};
   return tiles;
@@ -31,7 +31,7 @@ static inline TileRange tiles_of(const RasterWords* words, const int lane) {
 // Depth slice of a triangle with this smallest key. Orthographic: slices of equal depth; perspective: one per doubling
 // of the depth.
 static inline uint slice_of(const ClpvView view, const float nearest) {
-  if (CLPV_PARALLEL(view)) return (uint)clamp(nearest * (CLPV_SLICES / view.far_depth), 0.0f, CLPV_SLICES - 1.0f);
+  if (CLPV_IS_ORTHOGRAPHIC(view)) return (uint)clamp(nearest * (CLPV_SLICES / view.far_depth), 0.0f, CLPV_SLICES - 1.0f);
   return (uint)clamp((as_int(-1.0f / nearest) - as_int(view.near_depth)) >> 23, 0, CLPV_SLICES - 1);
 }
 
@@ -54,7 +54,7 @@ static inline Edge side_of(const RasterWords* words, const int i, const int lane
 // the last one.
 static inline uint enter_all(const ClpvView view, const RasterWords* words, const int lane, const uint index, uint at,
                              __global uint* entries, volatile __global uint* slice_counts) {
-  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, nearest = (uint)words->word[11][lane];
+  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, nearest = (uint)words->word[CLPV_NEAREST_WORD][lane];
   const uint slice = slice_of(view, as_float(nearest));
   const TileRange tiles = tiles_of(words, lane);
   if (tiles.left == tiles.right && tiles.top == tiles.bottom) {

@@ -98,10 +98,10 @@ CLPV_INLINE void write_words(const ClpvView view, const ScreenTriangles t, const
   store_lanes(as_intW(edge_on ? nearest : plane.x), words->word[8]);
   store_lanes(as_intW(edge_on ? ZERO : plane.y), words->word[9]);
   store_lanes(as_intW(edge_on ? ZERO : plane.z), words->word[10]);
-  store_lanes(as_intW(nearest), words->word[11]);
+  store_lanes(as_intW(nearest), words->word[CLPV_NEAREST_WORD]);
   store_lanes(as_intW(farthest), words->word[12]);
-  store_lanes(box.left + (box.top << 16), words->word[13]);
-  store_lanes(box.right + (box.bottom << 16), words->word[14]);
+  store_lanes(box.left + (box.top << 16), words->word[CLPV_FIRST_WORD]);
+  store_lanes(box.right + (box.bottom << 16), words->word[CLPV_LAST_WORD]);
   store_lanes(as_intW(t.triangle | kinds), words->word[15]);
 }
 

@@ -166,7 +166,8 @@ CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shado
   return vec_times(irradiance, find_visibility(view, shadow.map, r, *lit));
 }
 
-// 1 where the light reaches points in the air, else 0: the nearest texel of its map.
+// 1 where the light reaches points in the air, else 0: the nearest texel of its map. 0 too where another view of the light covers
+// them.
 CLPV_INLINE realW light_reaches(const ShadowMap shadow, const Vec position) {
   if (shadow.count == 0) return ONE;
   const ClpvView view = shadow.views[shadow.which];

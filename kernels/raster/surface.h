@@ -22,9 +22,9 @@ typedef float4 SurfaceTexel;
 // Nonzero for an orthographic view. The literal CLPV_ORTHOGRAPHIC (0 or 1) from the host specialises a kernel for one
 // kind of view.
 #ifdef CLPV_ORTHOGRAPHIC
-#define CLPV_PARALLEL(view) CLPV_ORTHOGRAPHIC
+#define CLPV_IS_ORTHOGRAPHIC(view) CLPV_ORTHOGRAPHIC
 #else
-#define CLPV_PARALLEL(view) ((view).orthographic != 0.0f)
+#define CLPV_IS_ORTHOGRAPHIC(view) ((view).orthographic != 0.0f)
 #endif
 
 // Screen coordinates (sx, sy) of a pixel's centre.

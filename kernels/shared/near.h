@@ -17,7 +17,7 @@ enum {
   CLPV_NEAR_LIGHT_PLANES = 6,
 };
 
-// Rows of eight hits: weights of the triangle's second and third vertex, distance [m], the triangle (uint), its pixel in a
+// Rows of W hits: weights of the triangle's second and third vertex, distance [m], the triangle (uint), its pixel in a
 // plane (uint), and the ray's place among the radiances (uint).
 enum {
   CLPV_HIT_U,

@@ -49,7 +49,13 @@ typedef struct {
   unsigned int triangle;     // index and flags as above
 } ClpvRasterTriangle;
 
-enum { CLPV_RASTER_WORDS = 16 };
+// Words of a ClpvRasterTriangle.
+enum {
+  CLPV_NEAREST_WORD = 11,
+  CLPV_FIRST_WORD = 13,
+  CLPV_LAST_WORD = 14,
+  CLPV_RASTER_WORDS = 16,
+};
 
 // Counters of a pass: triangles listed, triangles to clip, entries, and overflows of 32 bits in the number of entries.
 enum {

@@ -24,7 +24,7 @@ typedef struct {
   float from_coarser;  // D here for 1 of the coarser cascade's D
   int coarser;         // part of the bin that contains this direction in the coarser cascade
   float attenuation[3];  // exp(-sigma_t s / |w_m|) of a medium, by channel; 1 without one
-  float flux;            // |w_m|
+  float cosine;          // |w_m|
   int unused;
 } ClpvSweepDirection;
 

@@ -6,7 +6,8 @@
 //   B = sum_i c_i b_i(-w)         one-sided
 //
 // B is the blocking potential along the link, B_a or c_i a mean over the corners of the face, edge
-// or corner that it passes. docs/method.md, 'Blockers'. From the host
+// or corner that it passes. A sweep has links from 26 neighbours, steps have 30: six neighbours with five
+// faces each. docs/method.md, 'Blockers'. From the host
 // (host/codegen/transmittance_source.cpp): CLPV_LINKS, struct Links, and for each link
 // CLPV_LINK_SIDES, the side of the cell that it passes (-1, 0 or 1 along each axis), and
 // CLPV_LINK_BLOCKED, half the weights of the blockers' numbers, divided by the number of corners.

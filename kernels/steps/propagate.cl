@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Propagates light by one step, from every cell to its six neighbours, and adds it to the sum of all steps.
+// Propagates light by one step, into every cell from its six neighbours, and adds it to the sum of all steps.
 //
 //   F = max(0, Omega_f I(w_f)) T_f      for the five visible faces f of each neighbour
 //   I(w) = sum_i c_i b_i(w)

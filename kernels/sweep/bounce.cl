@@ -2,16 +2,16 @@
 // Reflects swept light off the surfaces in a cascade's cells: one more bounce, or all bounces as a truncated Neumann
 // series.
 //
-//   B = I + R D               inject_reflected       one bounce; only R D with `injected_share` 0
-//   B = I + R D_1 + S D_2     inject_series          all bounces in the coarsest cascade; D_2: incident flux of R D_1
-//   S = R (1 + E)             extend_series          E: flux that other surfaces return of 1 W leaving a face
-//   B = I + R D_coarser / 4   inject_interpolated    all bounces in a finer cascade
-//   B = R or S                inject_unit            faces emit what they reflect of 1 W
+//   I' = I + R D              inject_reflected       one bounce; only R D with `injected_share` 0
+//   I' = I + R D_1 + S D_2    inject_series          all bounces in the coarsest cascade; D_2: incident flux of R D_1
+//   S = R (1 + X)             extend_series          X: flux that other surfaces return of 1 W leaving a face
+//   I' = I + R D_coarser / 4  inject_interpolated    all bounces in a finer cascade
+//   I' = R or S               inject_unit            faces emit what they reflect of 1 W
 //
 // docs/method.md, 'More bounces'. D [W] is the incident flux on a face, R in [0, 1] the reflectance of a face per
-// channel, I the injected light, B the sources of the next sweep. By reciprocity E is the incident flux while every face
+// channel, I the injected light, I' the sources of the next sweep. By reciprocity X is the incident flux while every face
 // emits what it reflects of 1 W: inject_unit, a sweep along 24 directions and extend_series add one term of the series.
-// E depends only on geometry. A face of normal a that receives D_a (face_fluxes.h) emits, projected
+// X depends only on geometry. A face of normal a that receives D_a (face_fluxes.h) emits, projected
 // on the basis,
 //   I(w) = Phi_a max(0, w.a) / pi,   Phi_a = R_a D_a
 //
@@ -20,7 +20,7 @@
 //       incident          D [W] of the next coarser cascade: a bordered volume for each channel and face
 //                         (sweep_collect.cl)
 //       injected          I: light volume [W/sr]
-// Out:  bounced           B: light volume [W/sr]
+// Out:  bounced           I': light volume [W/sr]
 // From the host (host/codegen/sweep_source.cpp): Coefficients of the basis, CLPV_LOBES, the lobe of 1 W about each face's
 // normal, and the text for face_fluxes.h.
 // A work-item computes a tile of W x W cells of a slice and channel.
@@ -51,7 +51,7 @@ CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
   return sum;
 }
 
-// R (1 + E)
+// R (1 + X)
 CLPV_INLINE FaceFluxes sum_series(const FaceFluxes returned, const FaceFluxes reflectance) {
   FaceFluxes series;
 #pragma unroll

@@ -12,9 +12,10 @@
 // Adds what harmonics lack of a clamped cosine about the normal n of the cells' light, the direction of band 1:
 //
 //   I_w += r^4 c_0 / alpha_0 (|z| / 2 - e_0 - e_2 z^2 - e_4 z^4),   z = w . n
-//   r = (|c_1| / |alpha_1|) / (c_0 / alpha_0)
+//   r = min(1, (|c_1| / |alpha_1|) / (c_0 / alpha_0))
 //
-// r is 1 where all light leaves about n, and less where normals differ. `source`: c_0 of a channel.
+// r is 1 where all light leaves about n, and less where normals differ; nothing is added without light or direction. `source`: c_0
+// of a channel.
 CLPV_INLINE void add_cosine_rest(__constant const float* means, CLPV_BUFFER_IN source, const int at,
                                  realW injected[CLPV_PARTS]) {
   const realW uniform = read_numbers(source, at);
@@ -35,8 +36,8 @@ CLPV_INLINE void add_cosine_rest(__constant const float* means, CLPV_BUFFER_IN s
   const realW scale = 1.0f / (CLPV_Y_1 * linear);
 #pragma unroll
   for (int part = 0; part < CLPV_PARTS; ++part) {
-    const realW along = z[part] * scale, even = along * along;
-    const realW lacking = 0.5f * fabs(along) - (CLPV_COSINE_E0 + even * (CLPV_COSINE_E2 + even * CLPV_COSINE_E4));
+    const realW along = z[part] * scale, squared = along * along;
+    const realW lacking = 0.5f * fabs(along) - (CLPV_COSINE_E0 + squared * (CLPV_COSINE_E2 + squared * CLPV_COSINE_E4));
     injected[part] = fma(amplitude, lacking, injected[part]);
   }
 }

@@ -19,6 +19,9 @@
 //
 // f is the part in the medium of a cell, J s^2 [W/sr] the source function of the bin (sweep_medium.cl); f and f J are
 // means of the cell and its neighbour upstream along m.
+//
+// From the host: CLPV_PARTS directions of a bin, CLPV_SOURCES coefficients stored per channel, CLPV_EMITTING of them that a bin's
+// light depends on, CLPV_BLOCKING, CLPV_MEDIUM, CLPV_COSINE_REST.
 #pragma once
 
 #include "shared/sweep.h"
@@ -53,6 +56,7 @@ typedef struct {
 #define CLPV_MEDIUM_MEMBER
 #endif
 
+// A BinSweep of bin b, from the kernel's parameters and its `bin`, by their names.
 #define CLPV_BIN_SWEEP(b)                                                                                     \
   {b,                                                                                                         \
    bin,                                                                                                       \
@@ -118,10 +122,10 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
   __global const float* from2 = from0 - bin.row_sign * CLPV_SWEEP_PITCH;
   __global const float* from3 = from2 - bin.column_sign;
 #if CLPV_BLOCKING
-  realW links[4];
+  realW transmittance[4];
 #pragma unroll
   for (int k = 0; k < 4; ++k)
-    links[k] = read_numbers(s->links + bin.links[k] * CLPV_SWEEP_VOLUME, at);
+    transmittance[k] = read_numbers(s->links + bin.links[k] * CLPV_SWEEP_VOLUME, at);
 #endif
 #if CLPV_MEDIUM
   const int upstream = plane - bin.plane_sign;
@@ -141,24 +145,24 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
   realW sum[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll
   for (int part = 0; part < CLPV_PARTS; ++part) {
-    realW w[4];
+    realW t[4];
 #pragma unroll
     for (int k = 0; k < 4; ++k) {
-      w[k] = (realW)(s->directions[part].taps[k]);
+      t[k] = (realW)(s->directions[part].taps[k]);
 #if CLPV_BLOCKING
-      w[k] *= links[k];
+      t[k] *= transmittance[k];
 #endif
     }
 #pragma unroll
     for (int channel = 0; channel < 3; ++channel) {
       const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
-      realW d = w[0] * load_lanes(from0 + ordinate);
-      d = fma(w[1], load_lanes(from1 + ordinate), d);
-      d = fma(w[2], load_lanes(from2 + ordinate), d);
-      d = fma(w[3], load_lanes(from3 + ordinate), d);
+      realW d = t[0] * load_lanes(from0 + ordinate);
+      d = fma(t[1], load_lanes(from1 + ordinate), d);
+      d = fma(t[2], load_lanes(from2 + ordinate), d);
+      d = fma(t[3], load_lanes(from3 + ordinate), d);
 #if CLPV_MEDIUM
       const realW lost = 1.0f - s->directions[part].attenuation[channel];
-      d = fma(lost, s->directions[part].flux * scattered[channel] - (inside + inside_upstream) * d, d);
+      d = fma(lost, s->directions[part].cosine * scattered[channel] - (inside + inside_upstream) * d, d);
 #endif
       store_lanes(d, to + here + ordinate);
       sum[channel] = fma((realW)(s->directions[part].share), d, sum[channel]);

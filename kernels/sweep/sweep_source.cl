@@ -62,7 +62,7 @@ __kernel void sweep_source(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, __g
     if (x + r >= CLPV_GRID) break;
     lit[(CLPV_SWEEP_VOLUME + sweep_index(x + r, z, y)) / W] = light[r] != 0.0f;
   }
-  // A sweep of eight lanes may read single cells (images on a CPU), whose neighbours then need zeros.
+  // Sweeps of eight lanes read the neighbours of a cell with light, so W 1 writes dark cells too.
   if (W == 8 && no_lane(columns != 0.0f)) return;
   for (int channel = 0; channel < 3; ++channel) copy_tile(injected, sources, channel, x, y, z);
 }

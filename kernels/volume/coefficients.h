@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Arithmetic on the N coefficients of a cell. Loops over them are unrolled, so that they stay in registers.
+// Arithmetic on the N numbers of a cell: coefficients of the basis, and in some programs numbers of a blocker, of six
+// faces, or nine harmonics. Loops over them are unrolled, so that they stay in registers.
 //
 // From the host (coefficient_text), since generated text before this file uses them: CLPV_N, type Coefficient (realW,
 // or float where one cell is read at a time) and struct Coefficients, an array c of them.

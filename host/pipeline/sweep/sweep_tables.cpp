@@ -45,7 +45,7 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
       ClpvSweepDirection entry{};
       for (std::size_t k = 0; k < d.taps.size(); ++k) entry.taps[k] = d.taps[k];
       for (float& channel : entry.attenuation) channel = 1;
-      entry.flux = d.flux;
+      entry.cosine = d.flux;
       entry.share = d.solid_angle / (d.flux * bins[b].solid_angle);
       if (coarser_parts > 0) {
         entry.coarser = coarser_part(static_cast<int>(part), parts, coarser_parts);
