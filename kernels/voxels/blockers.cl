@@ -28,8 +28,7 @@ CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks
   for (int k = first; k <= last; ++k) {
     const uint bits = lane_bits(covered & (cell == k));
     if (bits == 0) continue;
-    const int3 corner = (int3)(u / CLPV_VOXEL_SAMPLES, v / CLPV_VOXEL_SAMPLES, k);
-    const uint number = find_region_cell(region, axis, corner, CLPV_GRID + 1);
+    const uint number = find_region_cell(region, axis, u / CLPV_VOXEL_SAMPLES, v / CLPV_VOXEL_SAMPLES, k, CLPV_GRID + 1);
     if (number == no_cell) continue;
     atomic_or(masks + number * CLPV_BLOCKER_WORDS + 2u * axis + row / 4,
               bits << (8 * (row % 4) + u % CLPV_VOXEL_SAMPLES));

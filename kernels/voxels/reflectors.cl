@@ -27,13 +27,13 @@ static inline uint fixed_sum(const realW count, const realW share) {
 
 // Adds the samples of cell k in column i and row j to its face. `weight`: the triangle's share of the axis.
 CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* surface, const FaceSamples* samples,
-                          const int3 cell, const float weight, __global volatile uint* face) {
+                          const int i, const int j, const int k, const float weight, __global volatile uint* face) {
   float count[CLPV_VOXEL_SAMPLES], middle[CLPV_VOXEL_SAMPLES];
   uint words[2] = {0, 0}, total = 0;
   for (int row = 0; row < CLPV_VOXEL_SAMPLES; ++row) {
     uint bits = 0, columns = 0;
     for (int vector = 0; vector < CLPV_ROW_VECTORS; ++vector) {
-      const intW here = samples->covered[row][vector] & (samples->cell[row][vector] == cell.z);
+      const intW here = samples->covered[row][vector] & (samples->cell[row][vector] == k);
       bits |= lane_bits(here) << (vector * W);
       columns += sum_lanes_uint(as_uintW(all_bits(here) & (vector * W + lane_numbers())));
     }
@@ -48,8 +48,8 @@ CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* sur
   for (int row = 0; row < CLPV_VOXEL_SAMPLES; row += W) {
     const realW counts = load_lanes(count + row);
     Vec albedo;
-    find_albedo(t, surface, (float)(CLPV_VOXEL_SAMPLES * cell.x) + 0.5f + load_lanes(middle + row),
-                (float)(CLPV_VOXEL_SAMPLES * cell.y + row) + 0.5f + to_realW(lane_numbers()),
+    find_albedo(t, surface, (float)(CLPV_VOXEL_SAMPLES * i) + 0.5f + load_lanes(middle + row),
+                (float)(CLPV_VOXEL_SAMPLES * j + row) + 0.5f + to_realW(lane_numbers()),
                 counts > ONE ? counts : ONE, &albedo);
     red += fixed_sum(weight * counts, albedo.x);
     green += fixed_sum(weight * counts, albedo.y);
@@ -79,10 +79,10 @@ CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle*
       FaceSamples samples;
       find_face_samples(t, surface, i, j, rows, cells, &samples);
       for (int k = samples.first; k <= samples.last; ++k) {
-        const uint cell = find_region_cell(region, axis, (int3)(i, j, k), CLPV_GRID);
+        const uint cell = find_region_cell(region, axis, i, j, k, CLPV_GRID);
         if (cell == no_cell) continue;
         const uint face = cell * CLPV_CELL_FACES + 2u * axis + direction;
-        add_face(t, surface, &samples, (int3)(i, j, k), weight, faces + face * CLPV_FACE_WORDS);
+        add_face(t, surface, &samples, i, j, k, weight, faces + face * CLPV_FACE_WORDS);
       }
     }
   }

@@ -22,15 +22,15 @@ static inline bool in_region(const ClpvRegion* region, const int x, const int y,
          CLPV_IN_BOX(6) | CLPV_IN_BOX(7);
 #undef CLPV_IN_BOX
 }
-// Number of a cell among the cells^3 of a cascade; no_cell outside the region. `cell`: along u, v
-// and the axis, from the base.
+// Number of a cell among the cells^3 of a cascade; no_cell outside the region. u, v, w: the cell along u, v and the axis,
+// from the base; not an int3, whose components Intel's CPU runtime 2026.22 permutes in work-items of large kernels.
 __constant const uint no_cell = 0xffffffffu;
-static inline uint find_region_cell(const ClpvRegion* region, const uint axis, const int3 cell,
-                                    const int cells) {
+static inline uint find_region_cell(const ClpvRegion* region, const uint axis, const int u, const int v,
+                                    const int w, const int cells) {
   int at[3];
-  at[(axis + 1) % 3] = cell.x;
-  at[(axis + 2) % 3] = cell.y;
-  at[axis] = cell.z;
+  at[(axis + 1) % 3] = u;
+  at[(axis + 2) % 3] = v;
+  at[axis] = w;
   const int x = at[0] - region->first[0], y = at[1] - region->first[1], z = at[2] - region->first[2];
   return in_region(region, x, y, z) ? (uint)((z * cells + y) * cells + x) : no_cell;
 }
