@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vectors of three components, W at a time (lanes.h).
+// Vectors of three components, W at a time (lanes.h). Functions do not return vec(...): with rusticl 25.0 a function that
+// returns another one's struct loses components (results/rusticl-25.0.7-llvmpipe/faults.c).
 #pragma once
 
 #include "lanes.h"
@@ -8,25 +9,22 @@ typedef struct {
   realW x, y, z;
 } Vec;
 
-static inline Vec vec(const realW x, const realW y, const realW z) {
-  const Vec v = {x, y, z};
-  return v;
-}
+static inline Vec vec(const realW x, const realW y, const realW z) { return (Vec){x, y, z}; }
 
 static inline Vec vec_of(const float v[3]) {
-  return vec((realW)(v[0]), (realW)(v[1]), (realW)(v[2]));
+  return (Vec){(realW)(v[0]), (realW)(v[1]), (realW)(v[2])};
 }
 static inline Vec vec_load(__global const float* v) {
-  return vec((realW)(v[0]), (realW)(v[1]), (realW)(v[2]));
+  return (Vec){(realW)(v[0]), (realW)(v[1]), (realW)(v[2])};
 }
 static inline Vec vec_minus(const Vec a, const Vec b) {
-  return vec(a.x - b.x, a.y - b.y, a.z - b.z);
+  return (Vec){a.x - b.x, a.y - b.y, a.z - b.z};
 }
 static inline Vec vec_times(const Vec a, const realW s) {
-  return vec(a.x * s, a.y * s, a.z * s);
+  return (Vec){a.x * s, a.y * s, a.z * s};
 }
 static inline Vec vec_product(const Vec a, const Vec b) {
-  return vec(a.x * b.x, a.y * b.y, a.z * b.z);
+  return (Vec){a.x * b.x, a.y * b.y, a.z * b.z};
 }
 static inline realW vec_dot(const Vec a, const Vec b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -40,15 +38,15 @@ static inline realW vec_dot_unfused(const Vec a, const Vec b) {
 
 // a + s b
 static inline Vec vec_add_scaled(const Vec a, const realW s, const Vec b) {
-  return vec(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
+  return (Vec){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
 
 static inline Vec vec_cross(const Vec a, const Vec b) {
-  return vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+  return (Vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 // w.x a + w.y b + w.z c
 static inline Vec vec_blend(const Vec w, const Vec a, const Vec b, const Vec c) {
-  return vec(w.x * a.x + w.y * b.x + w.z * c.x, w.x * a.y + w.y * b.y + w.z * c.y,
-             w.x * a.z + w.y * b.z + w.z * c.z);
+  return (Vec){w.x * a.x + w.y * b.x + w.z * c.x, w.x * a.y + w.y * b.y + w.z * c.y,
+             w.x * a.z + w.y * b.z + w.z * c.z};
 }
