@@ -158,8 +158,7 @@ nlohmann::json views(Session& session, const Options& options, const Drawing& dr
   std::vector<Subject> subjects = load_subjects(options.subjects);
   for (const Subject& subject : subjects)  // before minutes of tracing
     for (const SceneCamera& camera : subject.cameras)
-      for (const std::string& folder : options.images)
-        read_image_of_method(file_of(folder, subject, camera));
+      for (const std::string& folder : options.images) read_image_of_method(file_of(folder, subject, camera));
   for (Subject& subject : subjects) {
     const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
     trace_truths(subject, size.width, size.height, options.tracing.resolved(),
