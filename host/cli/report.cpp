@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <ranges>
 
 #include "cli/commands.hpp"
 #include "cli/drawing.hpp"
@@ -106,9 +105,11 @@ fs::path file_of(const std::string& folder, const Subject& subject, const SceneC
 Image read_image_of_method(const fs::path& path) {
   Image image = extract_layer(read_image(path), "", path.string());
   const std::array colours{"R", "G", "B"};
-  if (!std::ranges::equal(colours, image.channels | std::views::take(3)))
+  if (image.channels.size() < colours.size() ||
+      !std::equal(colours.begin(), colours.end(), image.channels.begin())) {
     throw Error(ExitCode::bad_input, "{}: channels {}; allowed: R, G, B and perhaps A", path.string(),
                 fmt::join(image.channels, ", "));
+  }
   return image;
 }
 
