@@ -28,7 +28,7 @@ import tempfile
 from . import CLPV, RESULTS, ROOT, charts, json_lines, rows
 
 FRAME_COUNT = 9
-STANDING_COUNT = 7
+STANDING_COUNT = 5
 PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media"]
 
 
