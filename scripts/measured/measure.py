@@ -2,7 +2,7 @@
 """Measures a device for results/, the standing benchmark of quality, or all numbers that the tables in the docs show.
 
     scripts/measure NAME [DEVICE]                              into results/NAME: 15 minutes on two cores
-    scripts/measure quality --model PATH/Sponza.gltf [DEVICE]  into results/quality: half an hour on two cores
+    scripts/measure quality --model PATH/Sponza.gltf [DEVICE]  into results/quality: 13 minutes on two cores, as much again for truths
     scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: about an hour on two cores
 
 NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. DEVICE: as --device of clpv takes it; default: the first.
