@@ -275,8 +275,8 @@ def texels(arguments):
     return rows
 
 
-# Of 24 suns and both sides of the nave, the light in which path tracing shows the arcade most clearly: sunlit floor and walls of the
-# nave shine through it, at z = -2.5 m, onto the wall behind it, at z = -6.2 m. Curtains hang between its columns.
+# Path tracing shows the arcade most clearly in this light, of 24 suns and both sides of the nave: sunlit floor and walls of the nave
+# shine through it, at z = -2.5 m, onto the wall behind it, at z = -6.2 m. Curtains hang between its columns.
 ALONG_THE_NAVE = clpv.Light(direction=(0.1736, -0.9848, 0), intensity=10, name="along")
 SPACING, A_COLUMN, PERIODS, MIDDLE = 3.78, 1.2, 4, -0.7  # of the columns in x, x of one, length of the strip, its middle [m]
 AT_WALL, BEFORE_WALL = -6.2, 0.05  # z [m]
