@@ -3,7 +3,7 @@
 
     scripts/measure NAME [DEVICE]                              into results/NAME: 15 minutes on two cores
     scripts/measure quality --model PATH/Sponza.gltf [DEVICE]  into results/quality: 13 minutes on two cores, as much again for truths
-    scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: about an hour on two cores
+    scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: up to two hours on two cores
 
 NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. DEVICE: as --device of clpv takes it; default: the first.
 The first form runs `clpv check` and four suites of `clpv bench`. The second compares clpv and other methods at equal time with

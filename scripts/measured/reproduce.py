@@ -170,7 +170,9 @@ def record(done, out):
         earlier = tables.read("claims")
         whole = len(claims) == len(CLAIMS)
         later = f"{', '.join(claims)}: clpv {now['commit']}, {now['date']}"
-        measured = now if whole else {**earlier["measured"], "except": later}
+        older = earlier["measured"].get("except")
+        excepted = f"{older}; {later}" if older else later
+        measured = now if whole else {**earlier["measured"], "except": excepted}
         parts = {name: claims.get(name, earlier.get(name)) for name in CLAIMS}
         write(folder, "claims", {"measured": measured, **parts})
     for name in ("table1", "factors"):
