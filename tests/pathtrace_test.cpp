@@ -68,7 +68,13 @@ TEST_F(PathtraceCommand, WritesLayersMetadataAndStats) {
   EXPECT_GT(stats["rays"], 45);
 }
 
-namespace fs = std::filesystem;
+TEST_F(PathtraceCommand, ViewsWithoutRandomPathsTakeOne) {
+  const test::Outcome outcome = reference(
+      "floor.json", "--width 9 --height 5 --noise 0.001 --view albedo,normal,depth,direct -o " + file("a.exr"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(read_image(file("a.exr")).metadata.at("spp_traced"), "1");
+}
+
 using pathtracer::PathTracerOptions;
 
 class CachedReference : public ::testing::Test {

@@ -249,9 +249,10 @@ Image pathtrace(const Scene& scene, View view, const CameraChoice& camera, const
   PosedScene posed(scene);
   posed.pose(options.seconds);
   const SceneCamera chosen = posed.camera(camera);
+  const std::uint32_t samples = needs_paths(view) ? options.samples : 1;
   const pathtracer::TracedImage traced = pathtracer::trace_paths(
       posed.scene(), posed.scene().lights_for(chosen), camera_view(chosen, options.width, options.height),
-      {options.bounces, options.samples, options.noise, options.seed, options.threads}, options.progress);
+      {options.bounces, samples, options.noise, options.seed, options.threads}, options.progress);
   Image image = pathtracer::traced_view(traced, view);
   image.metadata = {{"camera", chosen.name},
                     {"time", fmt::format("{}", options.seconds)},

@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
-#include "cli/tev.hpp"
 #include "clpv/version.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -26,7 +25,7 @@ namespace clpv {
 namespace pathtrace_command {
 
 struct Options : SceneRequest {
-  std::string output, stats, tev;
+  std::string output, stats;
   std::vector<Show> views = {Show::full};
   int width = 960, height = 540;
   double time = 0;
@@ -82,6 +81,7 @@ void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
   pathtracer::PathTracerOptions tracing = options.tracing.resolved();
   for (const Show view : options.views) require_traceable(view);
+  if (std::ranges::none_of(options.views, needs_paths)) tracing.samples = 1;
   require_extension("--output", options.output, {".exr"});
   const std::vector<NamedFile> outputs{{"--output", options.output}, {"--stats", options.stats}};
   check_outputs(outputs, options.files());
@@ -91,18 +91,11 @@ void run(const Options& options, Shared& shared) {
   const SceneData& scene = moving.scene();
   const SceneCamera& camera = scene.camera(options.camera);
   const auto started = std::chrono::steady_clock::now();
-  std::optional<Tev> tev;
-  if (!options.tev.empty() && ranks.is_root()) tev.emplace(options.tev);
-  const auto show = [&](const pathtracer::TracedImage& traced) {
-    for (const Show view : options.views) tev->show(tev_name(scene, camera, view), traced_view(traced, view));
-  };
-  if (tev) tracing.observer = show;
   Progress progress("path tracing", kTraceSteps);
   const pathtracer::TracedImage traced = pathtracer::trace_paths(
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
       trace_progress(progress), ranks);
   if (!ranks.is_root()) return;
-  if (tev) show(traced);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
     spdlog::warn("noise {:.4f} after the maximum of {} paths per pixel; requested: {}", traced.noise,
@@ -128,7 +121,6 @@ void add_options(CLI::App& command, Options& options) {
       ->check(CLI::Range(1, 16384))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
-  add_tev(command, options.tev);
   add(command, "--stats", "FILE.json", options.stats,
       "output file for paths, noise, rays and time [s], as JSON");
 }

@@ -8,7 +8,6 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
-#include "cli/tev.hpp"
 #include "cli/unreached.hpp"
 #include "image/image_io.hpp"
 #include "pipeline/frame/frame.hpp"
@@ -29,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   RenderRequest request;
-  std::string output, stats, normals, tev;
+  std::string output, stats, normals;
   int frames = 5;
   double time = 0;
   std::vector<Show> views = {Show::full};
@@ -107,10 +106,6 @@ void run(const Options& options, const Shared& shared) {
   if (!options.stats.empty()) stats.set_times(measure_frames(session, frame, camera, options.frames, 0));
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
-  if (!options.tev.empty()) {
-    Tev tev(options.tev);
-    for (const Show view : options.views) tev.show(tev_name(scene, camera, view), view_image(frame, view));
-  }
   write_images(frame, options, request.exposure_of(scene), metadata_of(described));
   if (!options.normals.empty())
     write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
@@ -152,7 +147,6 @@ void add_render(CLI::App& app, Shared& shared) {
   add(*command, "--dump-normals", "FILE.json", options->normals,
       "output file for lit surface normals, weighted by reflected flux, for python3 -m clpv.search "
       "--weights");
-  add_tev(*command, options->tev);
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -7,7 +7,6 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
-#include "cli/tev.hpp"
 #include "cli/unreached.hpp"
 #include "cli/video.hpp"
 #include "pathtracer/path_tracer.hpp"
@@ -26,7 +25,7 @@ constexpr double kMaxFramesPerSecond = 1000;
 
 struct Options : SequenceOptions {
   RenderRequest request;
-  std::string video, tev;
+  std::string video;
   bool stability = false;
 };
 
@@ -73,18 +72,13 @@ void run(const Options& options, Shared& shared) {
   };
   log_scene(moving.scene(), camera(moving.scene()), resolved);
   if (!moving.moves()) spdlog::warn("{}: nothing moves: all frames are equal", request.scene);
-  std::optional<Tev> tev;
-  if (!options.tev.empty() && ranks.is_root()) tev.emplace(options.tev);
 
-  SequenceSubject subject{request.camera, request.exposure_of(moving.scene()), request.tonemap, {}, {}, {}};
+  SequenceSubject subject{request.camera, request.exposure_of(moving.scene()), request.tonemap, {}, {}};
   subject.describe = [&](const SceneData& posed, double seconds) {
     return describe(request, resolved, posed, camera(posed), seconds);
   };
   subject.first_frame = [&](Session& session, Frame& frame) {
     warn_of_unreached(session, frame, camera(moving.scene()).name);
-  };
-  subject.shown = [&](const SceneData& posed, const Image& image) {
-    if (tev) tev->show(tev_name(posed, camera(posed), options.view), image);
   };
   Sequence sequence(options, subject, moving, resolved, device, compilation_of(request, shared.device),
                     ranks);
@@ -125,7 +119,6 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add(*command, "--traced", "SPP", options->traced,
       "paths per pixel for the path-traced noise of --stability")
       ->check(CLI::Range(1u, pathtracer::PathTracerOptions::kMaxSamples));
-  add_tev(*command, options->tev);
   add_shown_options(*command, options->request);
   add_render_request(*command, options->request);
   command->footer(

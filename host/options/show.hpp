@@ -34,6 +34,11 @@ inline constexpr auto kNames<Show> = name_list("full", "direct", "indirect", "ir
 inline constexpr std::array kSurfaceViews{Show::full,   Show::direct, Show::indirect, Show::irradiance,
                                           Show::albedo, Show::normal, Show::depth};
 
+/// Returns true if path tracing estimates the view by random paths. The others follow from primary and shadow rays.
+constexpr bool needs_paths(Show show) {
+  return show == Show::full || show == Show::indirect || show == Show::irradiance || show == Show::medium;
+}
+
 /// Throws Error(usage) for a view that the path tracer does not have.
 inline void require_traceable(Show show) {
   if (show == Show::cells)

@@ -2,7 +2,6 @@
 // Path tracer: distributes tiles over threads and ranks, and adds paths until the noise is reached.
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -59,9 +58,6 @@ glm::vec3 seen_through(const TracedImage& traced, std::size_t pixel) {
       transmittance(*traced.medium, medium_part(*traced.medium, ray.origin, ray.direction, ray.length)));
 }
 
-using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds kObserveEvery{1};
-
 /// Traces one image, tile by tile.
 class ImageTracer {
  public:
@@ -76,8 +72,7 @@ class ImageTracer {
         ranks_(ranks),
         hits_(std::size_t{view.width} * view.height),
         layers_(scene.medium ? 2 : 1),
-        rank_sums_(2 * layers_ * hits_.size(), glm::dvec3(0)),
-        counts_(rank_sums_.size(), 0) {
+        rank_sums_(2 * layers_ * hits_.size(), glm::dvec3(0)) {
     image_.view = view;
     image_.sky = scene.sky != nullptr;
     image_.medium = scene.medium;
@@ -107,8 +102,6 @@ class ImageTracer {
     std::size_t done = 0;
     parallel_for(items, [&](PathSampler& sampler, std::size_t item) {
       const auto half = static_cast<std::uint32_t>(item % 2);
-      std::vector<std::pair<std::size_t, glm::dvec3>>
-          sums;  // by index, stored under the lock: observe() reads them
       for_each_pixel(item / 2, [&](std::size_t i, std::uint32_t, std::uint32_t) {
         const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
         const auto add = [&](std::size_t pixel, const auto& path_of) {
@@ -116,7 +109,7 @@ class ImageTracer {
           for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half) && !interrupted();
                ++s)
             sum += path_of(s);
-          sums.emplace_back(2 * pixel + half, sum);
+          rank_sums_[2 * pixel + half] = sum;
         };
         if (hits_[i]) add(i, [&](std::uint32_t s) { return sampler.indirect({*hits_[i]}, s, stream); });
         if (layers_ == 1) return;
@@ -126,12 +119,7 @@ class ImageTracer {
         });
       });
       const std::lock_guard lock(mutex_);
-      for (const auto& [index, sum] : sums) {
-        rank_sums_[index] = sum;
-        counts_[index] = half_of(samples, half);
-      }
       done += count;
-      observe();
       if (progress_ && ranks_.is_root())
         progress_(progress_start_ +
                   (progress_end_ - progress_start_) * std::min(1.0, static_cast<double>(done) / items.end));
@@ -149,20 +137,6 @@ class ImageTracer {
     ranks_.sum({&rays, 1});
     image_.rays = static_cast<std::uint64_t>(rays);
     return std::move(image_);
-  }
-
-  /// Shows the paths so far to the observer, if the last time is a second ago.
-  void observe() {
-    const Clock::time_point now = Clock::now();
-    if (!options_.observer || !ranks_.is_root() || now - observed_ < kObserveEvery) return;
-    TracedImage partial = image_;
-    for (std::size_t i = 0; i < layers_ * hits_.size(); ++i) {
-      const std::uint32_t count = counts_[2 * i] + counts_[2 * i + 1];
-      if (count > 0)
-        layer_number(partial, i) = glm::vec3((rank_sums_[2 * i] + rank_sums_[2 * i + 1]) / double(count));
-    }
-    options_.observer(partial);
-    observed_ = Clock::now();
   }
 
   double current_noise() const { return image_.noise; }
@@ -264,8 +238,6 @@ class ImageTracer {
   // Irradiance [W/m^2], and with a medium scattered radiance [W/m^2/sr], summed over paths, of this rank and of all ranks: two
   // independent halves per pixel.
   std::vector<glm::dvec3> rank_sums_, sums_;
-  std::vector<std::uint32_t> counts_;  // paths in rank_sums_
-  Clock::time_point observed_ = Clock::now();
   TracedImage image_;
   std::mutex mutex_;
   int threads_ = 1;

@@ -24,8 +24,6 @@
 
 namespace clpv::pathtracer {
 
-struct TracedImage;
-
 struct PathTracerOptions {
   static constexpr int kAllBounces = 0;
   static constexpr std::uint32_t kMaxSamples = 1u << 24;
@@ -36,9 +34,6 @@ struct PathTracerOptions {
   double noise = 0.02;        ///< with samples 0: stops at this TracedImage::noise
   std::uint64_t seed = 1;
   int threads = 0;  ///< per rank; 0: one per available processor
-  /// Receives the image of the paths so far about once a second, on rank 0 by one thread at a time. With several ranks it lacks
-  /// the paths of the others.
-  std::function<void(const TracedImage&)> observer = {};
 };
 
 /// A traced image: one value per pixel, row 0 first, 0 where there is no surface.

@@ -178,7 +178,6 @@ bool Sequence::render(int number) {
 
 void Sequence::write(int number, Frame& frame, const nlohmann::json& description, const std::string& key) {
   Image image = view_image(frame, options_.view);
-  subject_.shown(moving_.scene(), image);
   image.metadata = metadata_of(description);
   image.metadata[kKey] = key;
   if (options_.format == FrameFormat::exr) return write_exr(options_.file(number), image);

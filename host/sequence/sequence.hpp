@@ -40,7 +40,7 @@ struct SequenceOptions {
   std::filesystem::path file(int frame) const;
 };
 
-/// Content of the frames, and the functions that receive them.
+/// Content of the frames, and a function that receives the first.
 struct SequenceSubject {
   std::string camera;
   float exposure;
@@ -48,8 +48,6 @@ struct SequenceSubject {
   std::function<nlohmann::json(const SceneData& posed, double seconds)>
       describe;                                       ///< inputs of a frame, by name
   std::function<void(Session&, Frame&)> first_frame;  ///< called after the first frame
-  std::function<void(const SceneData& posed, const Image&)>
-      shown;  ///< called with the linear image of each new frame
 };
 
 /// Renders the frames; scene, device and device resources persist between frames. The ranks share them out.
