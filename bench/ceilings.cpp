@@ -17,25 +17,28 @@
 namespace clpv::bench {
 namespace {
 
-constexpr double kMinSampleMs = 2;        // minimum duration of a sample, far above a clock tick and a launch
-constexpr cl_uint kMaxPasses = 1u << 22;  // results stay integers that a float represents exactly
-constexpr int kChains = 12, kUnrolled = 4;   // as in kernels/ceilings.cl
-constexpr std::size_t kItemsPerUnit = 2048;  // work-items per compute unit of a device other than a CPU
+// Minimum duration of a sample, far above a clock tick and a launch.
+constexpr double kMinSampleMs = 2;
+constexpr cl_uint kMaxPasses = 1u << 22;    // results stay integers that a float represents exactly
+constexpr int kChains = 12, kUnrolled = 4;  // as in kernels/ceilings.cl
+// Work-items per compute unit of a device other than a CPU.
+constexpr std::size_t kItemsPerUnit = 2048;
 
 /// Global and local size of a launch.
 struct LaunchSize {
   std::size_t items, local;
 };
 
-/// Launch size of a stream. A CPU gets one work-item per core, so that each core repeats its share of the working set.
+/// Launch size of a stream. A CPU gets one work-item per core, so that each core repeats its share
+/// of the working set.
 LaunchSize stream_size(const Device& device) {
   if (device.type == "cpu") return {device.compute_units, 1};
   constexpr std::size_t kLocal = 64;
   return {device.compute_units * kItemsPerUnit, kLocal};
 }
 
-/// Launch size of arithmetic. The kernel's types are vectors, so that a CPU core runs one work-item at a time; many
-/// work-items balance the load.
+/// Launch size of arithmetic. The kernel's types are vectors, so that a CPU core runs one work-item
+/// at a time; many work-items balance the load.
 LaunchSize fma_size(const Device& device) {
   constexpr std::size_t kPerCore = 128;
   if (device.type == "cpu") return {device.compute_units * kPerCore, 1};
@@ -71,9 +74,11 @@ Case ceiling_case(const std::string& name, std::function<Job()> make) {
 /// Deviation of values that must all equal `expected`.
 Deviation deviation_from(const std::vector<float>& values, double expected) {
   verify::WorstError worst;
-  for (std::size_t i = 0; i < values.size(); ++i) worst.take(std::abs(values[i] - expected) / expected, i);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    worst.take(std::abs(values[i] - expected) / expected, i);
   if (worst.value == 0) return {0, 0, {}};
-  return {worst.value, 0, fmt::format("value {}: {}, expected {}", worst.at, values[worst.at], expected)};
+  return {worst.value, 0,
+          fmt::format("value {}: {}, expected {}", worst.at, values[worst.at], expected)};
 }
 
 Job fma_job(Session& session, int width) {
@@ -99,7 +104,8 @@ Job fma_job(Session& session, int width) {
 Job stream_job(Session& session, std::size_t bytes) {
   constexpr std::size_t kWidth = 16;
   const LaunchSize size = stream_size(session.device());
-  const std::size_t per_item = std::max<std::size_t>(1, bytes / 3 / (kWidth * sizeof(float)) / size.items),
+  const std::size_t per_item =
+                        std::max<std::size_t>(1, bytes / 3 / (kWidth * sizeof(float)) / size.items),
                     vectors = per_item * size.items, values = vectors * kWidth;
   const std::size_t block = session.device().type == "cpu" ? per_item : 1;
   const ProgramSource source{
@@ -109,7 +115,8 @@ Job stream_job(Session& session, std::size_t bytes) {
                b = session.upload(std::vector<float>(values, 2.0f), "ceilings, stream"),
                c = session.buffer(values * sizeof(float), "ceilings, stream");
   const auto launch = [=](cl_uint passes) {
-    kernel->set(passes, static_cast<cl_uint>(per_item / block), a, b, c).launch(size.items, size.local);
+    kernel->set(passes, static_cast<cl_uint>(per_item / block), a, b, c)
+        .launch(size.items, size.local);
   };
   const cl_uint passes = calibrated_passes(session, launch);
   Job job;
@@ -138,12 +145,13 @@ Job launch_job(Session& session) {
 std::vector<Case> ceiling_cases(Session& session) {
   std::vector<Case> cases;
   for (const int width : {4, 8, 16}) {
-    cases.push_back(
-        ceiling_case(fmt::format("fma/{}", width), [&session, width] { return fma_job(session, width); }));
+    cases.push_back(ceiling_case(fmt::format("fma/{}", width),
+                                 [&session, width] { return fma_job(session, width); }));
   }
   // Working sets [KiB], from one core's cache to main memory.
   for (const std::size_t kib : {128u, 512u, 2048u, 8192u, 32768u, 262144u}) {
-    const std::string size = kib < 1024 ? fmt::format("{}KiB", kib) : fmt::format("{}MiB", kib / 1024);
+    const std::string size =
+        kib < 1024 ? fmt::format("{}KiB", kib) : fmt::format("{}MiB", kib / 1024);
     cases.push_back(ceiling_case("stream/" + size, [&session, kib] {
       return stream_job(session, std::min(kib << 10, session.largest_buffer() / 2));
     }));

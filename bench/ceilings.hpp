@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Roofline ceilings of a device: peak arithmetic, bandwidth and launch time (kernels/ceilings.cl).
-// Williams, Waterman and Patterson, 'Roofline: an insightful visual performance model' (CACM 52(4), 2009).
+// Williams, Waterman and Patterson, 'Roofline: an insightful visual performance model' (CACM 52(4),
+// 2009).
 #pragma once
 
 #include <vector>
@@ -20,7 +21,8 @@ struct Ceilings {
   std::vector<Bandwidth> bandwidths;  ///< by rising working set: caches first, memory last
   double launch_ms = 0;               ///< device time of an empty launch
 
-  /// Bandwidth [GB/s] of the smallest measured working set of at least `bytes`, else of the largest.
+  /// Bandwidth [GB/s] of the smallest measured working set of at least `bytes`, else of the
+  /// largest.
   double gbps(double bytes) const;
 };
 

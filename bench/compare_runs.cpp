@@ -16,7 +16,8 @@
 namespace clpv::bench {
 namespace {
 
-constexpr double kDeviationPerMad = 1.4826;  // standard deviation of a normal distribution over its MAD
+// Standard deviation of a normal distribution over its MAD.
+constexpr double kDeviationPerMad = 1.4826;
 
 constexpr double kMax = std::numeric_limits<double>::max();
 constexpr double kMaxRows = 1u << 20;
@@ -41,7 +42,8 @@ std::vector<Value> values_of_bench(const nlohmann::json& report, const std::stri
   std::vector<Value> values;
   for (const nlohmann::json& row : report.at("benchmarks")) {
     if (row.at("status") != "unsupported")
-      values.push_back({row.at("name"), row.at("median"), row.at("mad"), row.value("repetitions", 2) > 1});
+      values.push_back(
+          {row.at("name"), row.at("median"), row.at("mad"), row.value("repetitions", 2) > 1});
   }
   return values;
 }
@@ -61,8 +63,8 @@ std::vector<Value> values_of_quality(const nlohmann::json& report, const std::st
   std::vector<Value> values;
   for (const nlohmann::json& cell : report.at("cells")) {
     if (cell.at("rejected") != "") continue;
-    std::string name =
-        fmt::format("{}:{}", cell.at("scene").get<std::string>(), cell.at("camera").get<std::string>());
+    std::string name = fmt::format("{}:{}", cell.at("scene").get<std::string>(),
+                                   cell.at("camera").get<std::string>());
     for (const auto& [option, value] : cell.at("options").items())
       name += fmt::format(" {}={}", option, value.get<std::string>());
     if (const auto nrmse = cell.find("nrmse"); nrmse != cell.end() && nrmse->is_number())
@@ -85,7 +87,8 @@ std::vector<Value> values_of_stats(const nlohmann::json& report, const std::stri
   for (const nlohmann::json& stage : report.at("stages")) {
     std::string name = stage.at("stage");
     for (const char* part : {"cascade", "light"}) {  // null in stages of all
-      if (const auto number = stage.find(part); number != stage.end() && number->is_number_integer())
+      if (const auto number = stage.find(part);
+          number != stage.end() && number->is_number_integer())
         name += fmt::format("/{}:{}", part, number->get<int>());
     }
     values.push_back({name, stage.at("ms"), 0, false});
@@ -108,7 +111,8 @@ const Kind& kind_of(const nlohmann::json& report, const std::string& file) {
     if (report.is_object() && report.contains(kind.key)) return kind;
   }
   throw Error(ExitCode::bad_input,
-              "{}: no report; allowed: JSON of clpv bench, clpv quality or clpv render --stats", file);
+              "{}: no report; allowed: JSON of clpv bench, clpv quality or clpv render --stats",
+              file);
 }
 
 std::map<std::string, Value> by_name(const std::vector<Value>& values) {
@@ -134,15 +138,16 @@ std::string with_spread(double value, double mad) {
 
 }  // namespace
 
-ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& after, const std::string& file,
-                           const std::string& after_file) {
+ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& after,
+                           const std::string& file, const std::string& after_file) {
   const Kind &kind = kind_of(before, file), &after_kind = kind_of(after, after_file);
   if (&kind != &after_kind)
-    throw Error(ExitCode::bad_input, "{} is of {}, {} of {}; allowed: two reports of one command", file,
-                kind.command, after_file, after_kind.command);
+    throw Error(ExitCode::bad_input, "{} is of {}, {} of {}; allowed: two reports of one command",
+                file, kind.command, after_file, after_kind.command);
   const std::vector<Value> old_values = kind.values(before, file),
                            new_values = kind.values(after, after_file);
-  const std::map<std::string, Value> old_named = by_name(old_values), new_named = by_name(new_values);
+  const std::map<std::string, Value> old_named = by_name(old_values),
+                                     new_named = by_name(new_values);
   ReportChanges result;
   for (const Value& value : new_values) {
     const auto old_value = old_named.find(value.name);
@@ -171,7 +176,8 @@ void require_ratios(const ReportChanges& found, double limit) {
 std::string changes_table(const ReportChanges& found) {
   std::size_t width = 3;
   for (const Change& change : found.changes) width = std::max(width, change.name.size());
-  std::string text = fmt::format("{:<{}} {:>22} {:>22} {:>8}\n", "row", width, "before", "after", "ratio");
+  std::string text =
+      fmt::format("{:<{}} {:>22} {:>22} {:>8}\n", "row", width, "before", "after", "ratio");
   for (const Change& change : found.changes) {
     const char* verdict = !change.spread_known  ? "spread unknown"
                           : !change.significant ? "within the spread"
@@ -183,7 +189,8 @@ std::string changes_table(const ReportChanges& found) {
   }
   for (const std::string& name : found.only_before)
     text += fmt::format("{}: only in the earlier run\n", name);
-  for (const std::string& name : found.only_after) text += fmt::format("{}: only in this run\n", name);
+  for (const std::string& name : found.only_after)
+    text += fmt::format("{}: only in this run\n", name);
   return text;
 }
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kColumns = 6, kBoxes = 5 + kColumns, kFaces = 6;
 
-/// Adds one side of a box: the parallelogram corner, corner + u, corner + v, as divisions^2 pairs of triangles.
+/// Adds one side of a box: the parallelogram corner, corner + u, corner + v, as divisions^2 pairs
+/// of triangles.
 void add_side(SceneData& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v,
               int divisions, unsigned material) {
   const glm::vec3 normal = glm::normalize(glm::cross(u, v));
@@ -59,13 +60,16 @@ SceneData make_hall(int triangles) {
   constexpr float kHalf = 12, kThick = 0.5f, kHeight = 10;
   const glm::vec3 stone(0.7f, 0.65f, 0.6f);
   add_box(scene, {-kHalf, -kThick, -kHalf}, {kHalf, 0, kHalf}, divisions, stone);
-  add_box(scene, {-kHalf, 0, -kHalf}, {-kHalf + kThick, kHeight, kHalf}, divisions, {0.7f, 0.2f, 0.15f});
-  add_box(scene, {kHalf - kThick, 0, -kHalf}, {kHalf, kHeight, kHalf}, divisions, {0.2f, 0.5f, 0.2f});
+  add_box(scene, {-kHalf, 0, -kHalf}, {-kHalf + kThick, kHeight, kHalf}, divisions,
+          {0.7f, 0.2f, 0.15f});
+  add_box(scene, {kHalf - kThick, 0, -kHalf}, {kHalf, kHeight, kHalf}, divisions,
+          {0.2f, 0.5f, 0.2f});
   add_box(scene, {-kHalf, 0, -kHalf}, {kHalf, kHeight, -kHalf + kThick}, divisions, stone);
   add_box(scene, {-kHalf, 0, kHalf - kThick}, {kHalf, kHeight, kHalf}, divisions, stone);
   for (int i = 0; i < kColumns; ++i) {
     const glm::vec3 foot(i % 2 == 0 ? -5 : 5, 0, -6 + 5 * (i / 2));
-    add_box(scene, foot - glm::vec3(0.6f, 0, 0.6f), foot + glm::vec3(0.6f, 7, 0.6f), divisions, stone);
+    add_box(scene, foot - glm::vec3(0.6f, 0, 0.6f), foot + glm::vec3(0.6f, 7, 0.6f), divisions,
+            stone);
   }
   scene.lower = {-kHalf, -kThick, -kHalf};
   scene.upper = {kHalf, kHeight, kHalf};

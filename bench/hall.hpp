@@ -6,8 +6,8 @@
 
 namespace clpv::bench {
 
-/// Makes a hall of 24 x 10 x 24 m without a roof, with one camera and one sun. Its evenly tessellated boxes have about
-/// `triangles` triangles, at least 132.
+/// Makes a hall of 24 x 10 x 24 m without a roof, with one camera and one sun. Its evenly
+/// tessellated boxes have about `triangles` triangles, at least 132.
 SceneData make_hall(int triangles);
 
 inline constexpr int kHallTriangles = 20000;

@@ -30,7 +30,8 @@ SurfaceImage without_boundary_texels(SurfaceImage image, const ClpvGrid& grid) {
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     if (image.depth[i] <= 0) continue;
     const bool light = near_boundary(reference::grid_point(image, i, grid, true));
-    if (light || near_boundary(reference::grid_point(image, i, grid, false) + 0.5)) image.depth[i] = 0;
+    if (light || near_boundary(reference::grid_point(image, i, grid, false) + 0.5))
+      image.depth[i] = 0;
   }
   return image;
 }
@@ -43,21 +44,22 @@ Inputs::Inputs(Session& session, const SceneData& scene, const SceneCamera& came
   const std::vector<SceneLight> lights = scene.lights_for(camera);
   if (lights.empty()) throw Error(ExitCode::bad_input, "{}: no light; bench needs one", scene.name);
   Rasterizer rasterizer(session, scene_);
-  Surface surface =
-      make_surface(session, camera_view(camera, options.width, options.height), RsmFormat::float32, false);
+  Surface surface = make_surface(session, camera_view(camera, options.width, options.height),
+                                 RsmFormat::float32, false);
   rasterizer.rasterize_camera(surface);
   const SurfaceImage image = read_surface(session, surface);
   for (const ClpvGrid& grid :
        cascade_grids(camera.eye, options.cascades, options.cascade_size, options.grid)) {
-    Surface rsm =
-        make_surface(session, rsm_views(lights.front().data, grid, scene_.bounds, options.rsm_size).front(),
-                     options.rsm_format, false);
+    Surface rsm = make_surface(
+        session, rsm_views(lights.front().data, grid, scene_.bounds, options.rsm_size).front(),
+        options.rsm_format, false);
     rasterizer.rasterize_rsm(lights.front().data, rsm);
     views_.push_back(
         {grid,
          verify::upload_injected(session, without_boundary_texels(read_surface(session, rsm), grid),
                                  options.rsm_format, rsm.colour_scale),
-         verify::upload_injected(session, without_boundary_texels(image, grid), RsmFormat::float32)});
+         verify::upload_injected(session, without_boundary_texels(image, grid),
+                                 RsmFormat::float32)});
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Inputs of the benchmarked stages: RSMs and G-buffer of a scene, and the volumes injected from them.
+// Inputs of the benchmarked stages: RSMs and G-buffer of a scene, and the volumes injected from
+// them.
 #pragma once
 
 #include <map>
@@ -15,13 +16,15 @@
 
 namespace clpv::bench {
 
-/// RSMs and G-buffer of one scene, rasterised on the device once. Texels within rounding of a cell boundary (about 0.1 %)
-/// are emptied, so that a stage and its CPU reference assign every texel to the same cell.
+/// RSMs and G-buffer of one scene, rasterised on the device once. Texels within rounding of a cell
+/// boundary (about 0.1 %) are emptied, so that a stage and its CPU reference assign every texel to
+/// the same cell.
 class Inputs {
  public:
-  /// Rasterises `scene` from `camera` and from the first light that applies there. `options` gives sizes and cascades. Throws
-  /// Error(bad_input) if no light applies.
-  Inputs(Session& session, const SceneData& scene, const SceneCamera& camera, const RenderOptions& options);
+  /// Rasterises `scene` from `camera` and from the first light that applies there. `options` gives
+  /// sizes and cascades. Throws Error(bad_input) if no light applies.
+  Inputs(Session& session, const SceneData& scene, const SceneCamera& camera,
+         const RenderOptions& options);
 
   /// Surfaces of one cascade.
   struct CascadeViews {
@@ -31,12 +34,16 @@ class Inputs {
   const CascadeViews& views(int cascade) const { return views_.at(cascade); }
   std::vector<ClpvGrid> grids() const;
 
-  /// Injected light volume and geometry volume of a cascade in a basis, blocking one-sided as published. Computed at the
-  /// first call.
-  verify::SharedVolume light(const Basis& basis, int cascade) { return injected(basis, cascade).light; }
-  verify::SharedVolume geometry(const Basis& basis, int cascade) { return injected(basis, cascade).geometry; }
-  /// Areas blocked by the scene's triangles in a cascade, at cell corners, as the sweep by default takes them. Computed at
-  /// the first call.
+  /// Injected light volume and geometry volume of a cascade in a basis, blocking one-sided as
+  /// published. Computed at the first call.
+  verify::SharedVolume light(const Basis& basis, int cascade) {
+    return injected(basis, cascade).light;
+  }
+  verify::SharedVolume geometry(const Basis& basis, int cascade) {
+    return injected(basis, cascade).geometry;
+  }
+  /// Areas blocked by the scene's triangles in a cascade, at cell corners, as the sweep by default
+  /// takes them. Computed at the first call.
   verify::SharedVolume areas(int cascade);
 
  private:

@@ -15,7 +15,8 @@ using verify::Deviation, verify::kChannels;
 
 /// A job of `clpv check`, with what only its timing needs.
 struct Job : verify::Job {
-  bool own_stages = false;  ///< true: `run` marks stages on the timeline itself, and the row has wall times
+  /// True: `run` marks stages on the timeline itself, and the row has wall times.
+  bool own_stages = false;
   /// Called after each run, warm-up included; may be null.
   std::function<void(const std::vector<StageTime>&)> after_run = {};
   /// Returns further rows, after the job's own; may be null.
@@ -24,8 +25,9 @@ struct Job : verify::Job {
 
 /// A row before its measurement: its identity, and a function that sets up its work.
 struct Case {
-  Row row;                    ///< suite, stage, name, n and problem
-  std::function<Job()> make;  ///< builds kernels and allocates; Error(device) makes the row `unsupported`
+  Row row;  ///< suite, stage, name, n and problem
+  /// Builds kernels and allocates; Error(device) makes the row `unsupported`.
+  std::function<Job()> make;
 };
 
 }  // namespace clpv::bench

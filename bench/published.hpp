@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Times of the paper's Table 1, measured by its authors on a Radeon HD 6870 (Silvestre and Pereira, 'Cascaded Light
-// Propagation Volumes using Spherical Radial Basis Functions').
+// Times of the paper's Table 1, measured by its authors on a Radeon HD 6870 (Silvestre and Pereira,
+// 'Cascaded Light Propagation Volumes using Spherical Radial Basis Functions').
 #pragma once
 
 #include <array>
@@ -28,14 +28,15 @@ inline constexpr std::array<PublishedTimes, 6> kPublishedTimes{{
     {"srbf8v2", false, {3.511, 4.460, 4.276}, {7.427, 7.794, 7.019}, 1.721},
 }};
 
-/// Published time of a pass [ms]: inject_light and propagate per cascade, gather without a cascade. Empty for everything
-/// that the table lacks, such as the injection of the geometry volume.
+/// Published time of a pass [ms]: inject_light and propagate per cascade, gather without a cascade.
+/// Empty for everything that the table lacks, such as the injection of the geometry volume.
 constexpr std::optional<double> published_ms(Pass pass, std::string_view basis, bool shadows,
                                              std::optional<int> cascade) {
   for (const PublishedTimes& times : kPublishedTimes) {
     if (times.basis != basis || times.shadows != shadows) continue;
     if (pass == Pass::gather && !cascade) return times.light_buffer;
-    const bool listed = cascade && *cascade >= 0 && *cascade < static_cast<int>(times.injection.size());
+    const bool listed =
+        cascade && *cascade >= 0 && *cascade < static_cast<int>(times.injection.size());
     if (listed && pass == Pass::inject_light) return times.injection[*cascade];
     if (listed && pass == Pass::propagate) return times.propagation[*cascade];
   }

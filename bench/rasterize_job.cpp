@@ -16,8 +16,9 @@
 namespace clpv::bench {
 namespace {
 
-// Depths of every kCheckedTexels-th pixel are compared with traced rays. The rasteriser snaps corners to 1/256 pixel, so
-// depths differ at edges and on surfaces at grazing angles; the error is the share of pixels that differ.
+// Depths of every kCheckedTexels-th pixel are compared with traced rays. The rasteriser snaps
+// corners to 1/256 pixel, so depths differ at edges and on surfaces at grazing angles; the error is
+// the share of pixels that differ.
 constexpr std::size_t kCheckedTexels = 31;
 constexpr double kDepthTolerance = 1e-2, kMaxDifferentShare = 0.02;
 
@@ -35,8 +36,8 @@ struct RasterTask {
   }
 };
 
-RasterTask make_task(std::shared_ptr<const SceneData> scene, const std::string& camera_name, Pass pass,
-                     const RenderOptions& options) {
+RasterTask make_task(std::shared_ptr<const SceneData> scene, const std::string& camera_name,
+                     Pass pass, const RenderOptions& options) {
   const SceneCamera& camera = scene->camera(camera_name);
   const Bounds bounds = bounds_of(scene->vertices, scene->triangles);
   RasterTask task{std::move(scene), pass, {}, {}};
@@ -45,7 +46,8 @@ RasterTask make_task(std::shared_ptr<const SceneData> scene, const std::string& 
     return task;
   }
   const std::vector<SceneLight> lights = task.scene->lights_for(camera);
-  if (lights.empty()) throw Error(ExitCode::bad_input, "{}: no light; bench needs one", task.scene->name);
+  if (lights.empty())
+    throw Error(ExitCode::bad_input, "{}: no light; bench needs one", task.scene->name);
   task.light = lights.front().data;
   if (pass == Pass::rasterize_shadow) {
     task.views = shadow_views(task.light, bounds, options.shadow_size);
@@ -53,7 +55,8 @@ RasterTask make_task(std::shared_ptr<const SceneData> scene, const std::string& 
   }
   for (const ClpvGrid& grid :
        cascade_grids(camera.eye, options.cascades, options.cascade_size, options.grid)) {
-    const std::vector<ClpvView> cascade_views = rsm_views(task.light, grid, bounds, options.rsm_size);
+    const std::vector<ClpvView> cascade_views =
+        rsm_views(task.light, grid, bounds, options.rsm_size);
     task.views.insert(task.views.end(), cascade_views.begin(), cascade_views.end());
     if (!rsm_follows_cascade(task.light)) break;
   }
@@ -73,7 +76,8 @@ struct Rasterization {
         rasterizer(session, buffers) {
     for (const ClpvView& view : task.views) {
       if (task.pass == Pass::rasterize_shadow) {
-        depths.push_back(session.buffer(std::size_t{view.width} * view.height * sizeof(float), "shadow map"));
+        depths.push_back(
+            session.buffer(std::size_t{view.width} * view.height * sizeof(float), "shadow map"));
       } else {
         surfaces.push_back(make_surface(session, view, RsmFormat::float32, false));
         depths.push_back(surfaces.back().depth);
@@ -85,19 +89,21 @@ struct Rasterization {
     for (std::size_t v = 0; v < task.views.size(); ++v) {
       if (task.pass == Pass::rasterize_camera) rasterizer.rasterize_camera(surfaces[v]);
       if (task.pass == Pass::rasterize_rsm) rasterizer.rasterize_rsm(task.light, surfaces[v]);
-      if (task.pass == Pass::rasterize_shadow) rasterizer.rasterize_shadow(task.views[v], depths[v]);
+      if (task.pass == Pass::rasterize_shadow)
+        rasterizer.rasterize_shadow(task.views[v], depths[v]);
     }
   }
 };
 
-/// Numbers of checked pixels, and of those whose depth differs from that of the ray through their centre.
+/// Numbers of checked pixels, and of those whose depth differs from that of the ray through their
+/// centre.
 struct DepthComparison {
   double checked = 0, different = 0;
   std::string place;  ///< of the last difference
 };
 
-void compare(DepthComparison& comparison, const pathtracer::RayScene& rays, Pass pass, const ClpvView& v,
-             const std::vector<float>& depth) {
+void compare(DepthComparison& comparison, const pathtracer::RayScene& rays, Pass pass,
+             const ClpvView& v, const std::vector<float>& depth) {
   const pathtracer::Faces faces =
       pass == Pass::rasterize_camera ? pathtracer::Faces::culled : pathtracer::Faces::all;
   for (std::size_t i = 0; i < depth.size(); i += kCheckedTexels) {
@@ -127,9 +133,10 @@ Cost cost_of(const RasterTask& task) {
   const double pixel =
       task.pass == Pass::rasterize_shadow ? sizeof(float) : sizeof(float) + 2 * sizeof(cl_float4);
   Cost cost;
-  cost.bytes = static_cast<double>(task.views.size() * (scene.vertices.size() * sizeof(ClpvVertex) +
-                                                        scene.triangles.size() * sizeof(ClpvTriangle))) +
-               task.pixels() * pixel;
+  cost.bytes =
+      static_cast<double>(task.views.size() * (scene.vertices.size() * sizeof(ClpvVertex) +
+                                               scene.triangles.size() * sizeof(ClpvTriangle))) +
+      task.pixels() * pixel;
   cost.working_set = cost.bytes;
   cost.triangles = static_cast<double>(task.views.size() * scene.triangles.size());
   cost.pixels = task.pixels();
@@ -138,9 +145,10 @@ Cost cost_of(const RasterTask& task) {
 
 }  // namespace
 
-Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene, const std::string& camera,
-                  Pass pass, const RenderOptions& options) {
-  const auto r = std::make_shared<Rasterization>(session, make_task(std::move(scene), camera, pass, options));
+Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene,
+                  const std::string& camera, Pass pass, const RenderOptions& options) {
+  const auto r =
+      std::make_shared<Rasterization>(session, make_task(std::move(scene), camera, pass, options));
   const auto bytes = [r](std::size_t v) {
     return std::size_t{r->task.views[v].width} * r->task.views[v].height * sizeof(float);
   };
@@ -159,14 +167,16 @@ Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene, cons
   return job;
 }
 
-Job rasterize_gl_job(Session&, std::shared_ptr<const SceneData> scene, const std::string& camera, Pass pass,
-                     const RenderOptions& options) {
-  const auto task = std::make_shared<RasterTask>(make_task(std::move(scene), camera, pass, options));
+Job rasterize_gl_job(Session&, std::shared_ptr<const SceneData> scene, const std::string& camera,
+                     Pass pass, const RenderOptions& options) {
+  const auto task =
+      std::make_shared<RasterTask>(make_task(std::move(scene), camera, pass, options));
   const auto gl = std::make_shared<GlRasterizer>(*task->scene, pass, task->views, task->light);
   Job job;
   job.own_stages = true;  // nothing runs on the device: wall time
   job.run = [gl] { gl->draw(); };
-  if (pass != Pass::rasterize_shadow) job.compare = [gl, task] { return compare(*task, gl->depths()); };
+  if (pass != Pass::rasterize_shadow)
+    job.compare = [gl, task] { return compare(*task, gl->depths()); };
   job.cost = cost_of(*task);
   return job;
 }

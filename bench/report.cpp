@@ -48,8 +48,9 @@ std::string kernel_hash() {
 }
 
 std::string now() {
-  return fmt::format("{:%FT%TZ}",
-                     fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  return fmt::format(
+      "{:%FT%TZ}",
+      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
 }  // namespace
@@ -85,7 +86,8 @@ nlohmann::json context_json(const Session& session) {
 nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
                            const std::vector<Row>& rows) {
   nlohmann::json list = nlohmann::json::array(), with_ceilings = context;
-  for (std::size_t i = 0; i < rows.size(); ++i) list.push_back(to_json(rows[i], static_cast<int>(i)));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    list.push_back(to_json(rows[i], static_cast<int>(i)));
   with_ceilings["ceilings"] = ceilings;
   return {{"context", with_ceilings}, {"benchmarks", list}};
 }
@@ -107,16 +109,19 @@ namespace {
 /// Reasons of rows above 100 % of a ceiling, one line each.
 std::string notes_above_ceilings(const std::vector<Row>& rows) {
   static constexpr std::pair<std::string_view, const char*> kReasons[] = {
-      {"bandwidth", "caches serve some of the counted bytes, or the machine was slower for the ceiling"},
+      {"bandwidth",
+       "caches serve some of the counted bytes, or the machine was slower for the ceiling"},
       {"fma",
-       "the compiler removes some of the counted operations, or the machine was slower for the ceiling"},
+       "the compiler removes some of the counted operations, or the machine was slower for the "
+       "ceiling"},
       {"launch", "the machine was slower for the ceiling"}};
   std::string text;
   for (const auto& [ceiling, reason] : kReasons) {
     const auto above = [&, name = ceiling](const Row& row) {
       return row.ceiling == name && std::round(100 * row.ceiling_share) > 100;
     };
-    if (std::ranges::any_of(rows, above)) text += fmt::format("above 100% {}: {}\n", ceiling, reason);
+    if (std::ranges::any_of(rows, above))
+      text += fmt::format("above 100% {}: {}\n", ceiling, reason);
   }
   return text;
 }
@@ -126,8 +131,8 @@ std::string notes_above_ceilings(const std::vector<Row>& rows) {
 std::string report_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
   const std::string head =
-      fmt::format("{:<{}} {:>10} {:>8} {:>10} {:>9} {:>8} {:>16} {:>9}\n", "row", width, "median ms", "mad",
-                  "wall ms", "GFLOP/s", "GB/s", "of ceiling", "error");
+      fmt::format("{:<{}} {:>10} {:>8} {:>10} {:>9} {:>8} {:>16} {:>9}\n", "row", width,
+                  "median ms", "mad", "wall ms", "GFLOP/s", "GB/s", "of ceiling", "error");
   return head +
          row_lines(rows, width,
                    [](const Row& row) {

@@ -95,7 +95,8 @@ nlohmann::json to_json(const Row& row, int index) {
                {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
                {"preset", text_or_null(row.preset)},
                {"recompute", text_or_null(row.recompute)},
-               {"changed", row.suite == "factors" ? nlohmann::json(row.changed) : nlohmann::json(nullptr)}});
+               {"changed",
+                row.suite == "factors" ? nlohmann::json(row.changed) : nlohmann::json(nullptr)}});
   json.update(row.problem ? problem_json(*row.problem) : no_problem_json());
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},

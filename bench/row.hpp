@@ -15,8 +15,8 @@ namespace clpv::bench {
 
 using verify::Cost, verify::Status;
 
-/// Default settings of timed stages: transport, lobes and blocking as published, volumes of layout `soa` in float, no
-/// occlusion.
+/// Default settings of timed stages: transport, lobes and blocking as published, volumes of layout
+/// `soa` in float, no occlusion.
 RenderOptions timed_options();
 
 /// Blockers of a timed stage: as published, or none.
@@ -28,10 +28,12 @@ constexpr Blockers blockers_if(bool occlusion) {
 struct Problem {
   RenderOptions options = timed_options();
   std::optional<int> cascade;
-  bool filtered = true;  ///< gathering from images: true samples by the device's filter, false reads texels
+  /// Gathering from images: true samples by the device's filter, false reads texels.
+  bool filtered = true;
 };
 
-/// Name of the lobes: "exact", "rotate", or "rotate-kernel" for lobes rotated in the kernel at run time.
+/// Name of the lobes: "exact", "rotate", or "rotate-kernel" for lobes rotated in the kernel at run
+/// time.
 std::string lobes_of(const RenderOptions& options);
 
 struct Row {
@@ -43,8 +45,10 @@ struct Row {
   std::string axis;    ///< suite scaling: the varied quantity ("grid"), and its `value`
   double value = 0;
   std::string preset;   ///< suite frame
-  std::string changed;  ///< suite factors: options that differ from the preset, "layout=soa evaluate=buffer"
-  std::string recompute;  ///< suite frame: results each repetition recomputes: light, everything, nothing
+  std::string changed;  ///< suite factors: options that differ from the preset, "layout=soa
+                        ///< evaluate=buffer"
+  /// Suite frame: results each repetition recomputes: light, everything, nothing.
+  std::string recompute;
 
   std::vector<double> samples_ms;
   Statistics times;    ///< of samples_ms
@@ -52,22 +56,24 @@ struct Row {
   double wall_ms = 0;  ///< median
   bool from_events = true;
   double first_launch_ms = 0, build_ms = 0;
-  std::size_t device_bytes = 0, host_bytes = 0;  ///< peaks of the run so far: buffers, process memory
+  /// Peaks of the run so far: buffers, process memory.
+  std::size_t device_bytes = 0, host_bytes = 0;
   Cost cost;
-  std::string ceiling;  ///< binding ceiling: "fma", "bandwidth" or "launch"; empty without measured ceilings
+  std::string ceiling;  ///< binding ceiling: "fma", "bandwidth" or "launch"; empty without measured
+                        ///< ceilings
   double ceiling_share = 0;
   std::optional<double> max_rel_error;  ///< against the CPU reference; empty without one
   double tolerance = 0;
-  std::optional<double> difference;    ///< suite factors: NRMSE of indirect light against the preset
-  std::size_t volume_bytes = 0;        ///< suite factors: memory of a light volume
+  std::optional<double> difference;  ///< suite factors: NRMSE of indirect light against the preset
+  std::size_t volume_bytes = 0;      ///< suite factors: memory of a light volume
   std::optional<double> published_ms;  ///< time in the paper's Table 1
 
   double gflops() const;
   double gbps() const;
 };
 
-/// JSON with Google Benchmark's keys and clpv's (docs/benchmarks.md lists them). `iterations` is the number of propagation
-/// steps; Google Benchmark's key of that name would always be 1.
+/// JSON with Google Benchmark's keys and clpv's (docs/benchmarks.md lists them). `iterations` is
+/// the number of propagation steps; Google Benchmark's key of that name would always be 1.
 nlohmann::json to_json(const Row& row, int index);
 
 }  // namespace clpv::bench

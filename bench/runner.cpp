@@ -35,7 +35,8 @@ struct CaseRun {
   std::vector<double> wall_ms;
 };
 
-/// Runs the work once and returns its time [ms], by the device's events where they are reliable, else by the host's clock.
+/// Runs the work once and returns its time [ms], by the device's events where they are reliable,
+/// else by the host's clock.
 double run_once(Session& session, CaseRun& run) {
   Job& job = run.job;
   session.timeline().clear();
@@ -127,7 +128,8 @@ void repeat(Session& session, std::vector<CaseRun>& runs, const RunnerOptions& o
 }
 
 std::vector<Case> filtered(std::vector<Case> cases, const std::optional<std::regex>& filter) {
-  if (filter) std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.row.name, *filter); });
+  if (filter)
+    std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.row.name, *filter); });
   return cases;
 }
 
@@ -140,7 +142,8 @@ RowLog::RowLog(const std::filesystem::path& file) : file_(file) {
 
 void RowLog::check() const {
   if (!out_)
-    throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(), std::strerror(errno));
+    throw Error(ExitCode::run_time, "{}: cannot be written: {}", file_.string(),
+                std::strerror(errno));
 }
 
 void RowLog::started(const std::string& name) {
@@ -157,7 +160,8 @@ void RowLog::write(const std::string& line) {
   check();
 }
 
-std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, const RunnerOptions& options) {
+std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases,
+                           const RunnerOptions& options) {
   std::vector<CaseRun> runs(cases.size());
   for (std::size_t i = 0; i < cases.size(); ++i) {
     spdlog::debug("{}", cases[i].row.name);
@@ -183,7 +187,8 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, con
 }
 
 Results run_suite(Session& session, const Suite& suite, const BenchOptions& options) {
-  const std::vector<Group> groups = suite.groups(session, options.suite);  // own what cases refer to
+  // Own what cases refer to.
+  const std::vector<Group> groups = suite.groups(session, options.suite);
   std::vector<std::vector<Case>> selected;
   std::size_t count = 0;
   for (const Group& group : groups) {
@@ -192,7 +197,8 @@ Results run_suite(Session& session, const Suite& suite, const BenchOptions& opti
   }
   if (count == 0) throw Error(ExitCode::usage, "--filter: matches no row of suite {}", suite.name);
   const bool is_ceilings_suite = suite.name == "ceilings";
-  const std::vector<Case> ceilings = is_ceilings_suite ? std::vector<Case>{} : ceiling_cases(session);
+  const std::vector<Case> ceilings =
+      is_ceilings_suite ? std::vector<Case>{} : ceiling_cases(session);
   Progress progress("bench " + suite.name,
                     (count + ceilings.size()) * static_cast<std::size_t>(options.repetitions + 1));
   Results results;

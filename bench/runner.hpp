@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Times cases. Repetitions of all cases run in random order, so that a disturbance of the machine affects all equally.
+// Times cases. Repetitions of all cases run in random order, so that a disturbance of the machine
+// affects all equally.
 #pragma once
 
 #include <filesystem>
@@ -18,13 +19,16 @@ namespace clpv::bench {
 
 inline constexpr int kMaxRepetitions = 10000;
 
-/// Log with a line of JSON at the start and the end of each row, flushed at once. It survives crashes and hangs.
+/// Log with a line of JSON at the start and the end of each row, flushed at once. It survives
+/// crashes and hangs.
 class RowLog {
  public:
-  /// Truncates the file; an empty path disables the log. Throws Error(run_time) if the file cannot be written.
+  /// Truncates the file; an empty path disables the log. Throws Error(run_time) if the file cannot
+  /// be written.
   explicit RowLog(const std::filesystem::path& file);
 
-  /// Writes {"started": NAME}, before the row's setup. After a crash, the last one without a {"row": ...} names the row.
+  /// Writes {"started": NAME}, before the row's setup. After a crash, the last one without a
+  /// {"row": ...} names the row.
   void started(const std::string& name);
   /// Writes {"row": ...}, as in the report.
   void done(const Row& row);
@@ -40,14 +44,17 @@ class RowLog {
 struct RunnerOptions {
   int repetitions = 15;
   const Ceilings* ceilings = nullptr;  ///< sets the rows' ceiling_share; null: not set
-  Progress* progress = nullptr;        ///< advances once per case set up and once per repetition; may be null
-  RowLog* log = nullptr;               ///< may be null
+  /// Advances once per case set up and once per repetition; may be null.
+  Progress* progress = nullptr;
+  RowLog* log = nullptr;  ///< may be null
 };
 
-/// Sets up every case and runs it once, as drivers compile at the first launch. Then times all cases interleaved and
-/// verifies their outputs. Returns rows in the order of `cases`. A wrong output gives Status::wrong, a missing capability
-/// Status::unsupported. Throws all other errors, and Interrupted after the current repetition if the user interrupts.
-std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases, const RunnerOptions& options);
+/// Sets up every case and runs it once, as drivers compile at the first launch. Then times all
+/// cases interleaved and verifies their outputs. Returns rows in the order of `cases`. A wrong
+/// output gives Status::wrong, a missing capability Status::unsupported. Throws all other errors,
+/// and Interrupted after the current repetition if the user interrupts.
+std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases,
+                           const RunnerOptions& options);
 
 struct Results {
   Ceilings ceilings;

@@ -39,7 +39,8 @@ Problem with_sweep(Problem problem) {
   return problem;
 }
 
-Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Problem& problem) {
+Case stage_case(Bench& bench, const std::string& suite, const StageJob& job,
+                const Problem& problem) {
   const Problem timed = job.stage == Stage::sweep ? with_sweep(problem) : problem;
   return {make_row(suite, job.name(), timed),
           [&bench, make = job.make, timed] { return make(bench, timed); }};
@@ -54,8 +55,8 @@ Job make_inject_job(Bench& bench, const Problem& problem, bool light, bool geome
   verify::InjectProblem input{make_basis(o), inject_options(o, false), views.grid, {}, {}};
   if (light) input.light = views.rsm;
   if (geometry) input.blockers = {views.rsm, views.camera};
-  const std::string key = fmt::format("inject {} {} {} {} {} {} {}", o.basis, o.lambda, lobes_of(o), light,
-                                      geometry, o.grid, cascade);
+  const std::string key = fmt::format("inject {} {} {} {} {} {} {}", o.basis, o.lambda, lobes_of(o),
+                                      light, geometry, o.grid, cascade);
   return {verify::inject_job(bench.session, input, bench.share(key))};
 }
 
@@ -85,8 +86,8 @@ Job propagate_job(Bench& bench, const Problem& problem) {
                                  {}};
   if (o.blocked()) input.geometry = bench.inputs().geometry(*basis, cascade);
   const std::string key =
-      fmt::format("propagate {} {} {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport), lobes_of(o),
-                  o.blocked(), o.grid, o.iterations, cascade);
+      fmt::format("propagate {} {} {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),
+                  lobes_of(o), o.blocked(), o.grid, o.iterations, cascade);
   return {verify::propagate_job(bench.session, input, bench.share(key))};
 }
 
@@ -111,15 +112,17 @@ Job sweep_job(Bench& bench, const Problem& problem) {
 Job gather_job(Bench& bench, const Problem& problem) {
   const RenderOptions& o = problem.options;
   const std::shared_ptr<const Basis> basis = make_basis(o);
-  verify::GatherProblem input{basis, o.transport, gather_options(o), {bench.inputs().grids(), {}, {}}};
+  verify::GatherProblem input{
+      basis, o.transport, gather_options(o), {bench.inputs().grids(), {}, {}}};
   input.options.filtered = problem.filtered;
   for (int c = 0; c < static_cast<int>(input.cascades.grids.size()); ++c)
     input.cascades.light.push_back(bench.inputs().light(*basis, c));
   const verify::InjectedSurface& camera = bench.inputs().views(0).camera;
   input.camera = camera.surface, input.image = camera.image;
   input.every = kCheckedPixels;
-  const std::string key = fmt::format("gather {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport),
-                                      lobes_of(o), name_of(o.evaluate), o.grid);
+  const std::string key =
+      fmt::format("gather {} {} {} {} {} {}", o.basis, o.lambda, name_of(o.transport), lobes_of(o),
+                  name_of(o.evaluate), o.grid);
   return {verify::gather_job(bench.session, input, bench.share(key))};
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Jobs for the pipeline's stages inject, propagate, sweep, gather and rasterize, each with its cost and its CPU reference.
+// Jobs for the pipeline's stages inject, propagate, sweep, gather and rasterize, each with its cost
+// and its CPU reference.
 #pragma once
 
 #include <functional>
@@ -22,7 +23,8 @@ namespace clpv::bench {
 struct Bench {
   Session& session;
   std::function<std::shared_ptr<Inputs>()> make_inputs;  ///< called at the first use of inputs()
-  /// Results of the CPU reference, by a key over what they depend on. Problems that should agree share one.
+  /// Results of the CPU reference, by a key over what they depend on. Problems that should agree
+  /// share one.
   std::map<std::string, verify::Values> references;
 
   Inputs& inputs() {
@@ -41,12 +43,13 @@ struct Bench {
   }
 };
 
-/// Makes a row for `stage` of `problem`. Its name is STAGE/BASIS/LAYOUT/STORAGE, then all settings that differ from
-/// timed_options(), then `suffix` ("/grid:64").
+/// Makes a row for `stage` of `problem`. Its name is STAGE/BASIS/LAYOUT/STORAGE, then all settings
+/// that differ from timed_options(), then `suffix` ("/grid:64").
 Row make_row(const std::string& suite, std::string_view stage, const Problem& problem,
              const std::string& suffix = {});
 
-/// RSM -> light volume and, with occlusion, RSM and G-buffer -> geometry volume. Cascade problem.cascade, default 0.
+/// RSM -> light volume and, with occlusion, RSM and G-buffer -> geometry volume. Cascade
+/// problem.cascade, default 0.
 Job inject_job(Bench& bench, const Problem& problem);
 /// RSM -> light volume only.
 Job inject_light_job(Bench& bench, const Problem& problem);
@@ -54,15 +57,17 @@ Job inject_light_job(Bench& bench, const Problem& problem);
 Job inject_geometry_job(Bench& bench, const Problem& problem);
 /// Light volume -> accumulated light volume; occlusion by the geometry volume.
 Job propagate_job(Bench& bench, const Problem& problem);
-/// Light volume -> swept light of one cascade in nine harmonics, with a dark border. Occlusion by the scene's triangles; the
-/// time includes the links' transmittance. Needs a problem of with_sweep().
+/// Light volume -> swept light of one cascade in nine harmonics, with a dark border. Occlusion by
+/// the scene's triangles; the time includes the links' transmittance. Needs a problem of
+/// with_sweep().
 Job sweep_job(Bench& bench, const Problem& problem);
 /// The problem with the default transport: the sweep, with blockers as areas.
 Problem with_sweep(Problem problem);
-/// Accumulated volumes of all cascades -> irradiance of every pixel. Verifies every kCheckedPixels-th pixel.
+/// Accumulated volumes of all cascades -> irradiance of every pixel. Verifies every
+/// kCheckedPixels-th pixel.
 Job gather_job(Bench& bench, const Problem& problem);
-inline constexpr std::size_t kCheckedPixels =
-    61;  // a prime, so that checked pixels lie in all rows and columns
+// A prime, so that checked pixels lie in all rows and columns.
+inline constexpr std::size_t kCheckedPixels = 61;
 
 /// A stage that works on volumes, or one pass of it, and its job.
 struct StageJob {
@@ -79,16 +84,18 @@ inline constexpr StageJob kInject{Stage::inject, inject_job},
     kGather{Stage::gather, gather_job, Pass::gather};
 inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kSweep, kGather};
 
-/// Rasterises a scene for `camera` (empty: its first) and the first light that applies there. `pass` is rasterize_camera (the
-/// camera's G-buffer), rasterize_shadow (shadow maps) or rasterize_rsm (RSMs of all cascades). Throws Error(bad_input) if
-/// a pass needs a light and none applies.
-Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene, const std::string& camera,
-                  Pass pass, const RenderOptions& options);
+/// Rasterises a scene for `camera` (empty: its first) and the first light that applies there.
+/// `pass` is rasterize_camera (the camera's G-buffer), rasterize_shadow (shadow maps) or
+/// rasterize_rsm (RSMs of all cascades). Throws Error(bad_input) if a pass needs a light and none
+/// applies.
+Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene,
+                  const std::string& camera, Pass pass, const RenderOptions& options);
 /// The same work by OpenGL (bench/native/rasterize_gl.hpp).
-Job rasterize_gl_job(Session& session, std::shared_ptr<const SceneData> scene, const std::string& camera,
-                     Pass pass, const RenderOptions& options);
+Job rasterize_gl_job(Session& session, std::shared_ptr<const SceneData> scene,
+                     const std::string& camera, Pass pass, const RenderOptions& options);
 
 /// A case of `job` with `problem`, or with with_sweep(problem) for the sweep.
-Case stage_case(Bench& bench, const std::string& suite, const StageJob& job, const Problem& problem);
+Case stage_case(Bench& bench, const std::string& suite, const StageJob& job,
+                const Problem& problem);
 
 }  // namespace clpv::bench

@@ -36,14 +36,17 @@ RenderOptions published_options(const RenderOptions& sizes, const std::string& b
   return options;
 }
 
-std::vector<Group> groups_by_basis(const std::vector<std::string>& bases,
-                                   const std::function<std::vector<Case>(const std::string& basis)>& cases) {
+std::vector<Group> groups_by_basis(
+    const std::vector<std::string>& bases,
+    const std::function<std::vector<Case>(const std::string& basis)>& cases) {
   std::vector<Group> groups;
-  for (const std::string& basis : bases) groups.push_back({[cases, basis] { return cases(basis); }});
+  for (const std::string& basis : bases)
+    groups.push_back({[cases, basis] { return cases(basis); }});
   return groups;
 }
 
-std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& passes, const Row& frame) {
+std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& passes,
+                           const Row& frame) {
   std::vector<Row> rows;
   for (const auto& [pass, ms] : passes) {
     Row row = frame;
@@ -73,9 +76,10 @@ std::string row_lines(const std::vector<Row>& rows, std::size_t width,
   std::string text;
   for (const Row& row : rows) {
     const bool timed = row.status == Status::ok || row.status == Status::wrong;
-    text += fmt::format("{:<{}} {}{}\n", row.name, width,
-                        timed ? columns(row) : fmt::format("{}: {}", name_of(row.status), row.reason),
-                        row.status == Status::wrong ? "  WRONG: " + row.reason : "");
+    text +=
+        fmt::format("{:<{}} {}{}\n", row.name, width,
+                    timed ? columns(row) : fmt::format("{}: {}", name_of(row.status), row.reason),
+                    row.status == Status::wrong ? "  WRONG: " + row.reason : "");
   }
   return text;
 }

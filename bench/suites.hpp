@@ -16,13 +16,15 @@ namespace clpv::bench {
 
 /// Scene, camera, bases and settings for a suite.
 struct SuiteOptions {
-  std::shared_ptr<const SceneData> scene;    ///< null: the hall of hall.hpp
-  std::string camera;                        ///< by name; empty: the scene's first
-  std::vector<std::string> bases;            ///< empty: the suite's default bases
-  RenderOptions settings = timed_options();  ///< settings of all rows, apart from those that the suite varies
+  std::shared_ptr<const SceneData> scene;  ///< null: the hall of hall.hpp
+  std::string camera;                      ///< by name; empty: the scene's first
+  std::vector<std::string> bases;          ///< empty: the suite's default bases
+  /// Settings of all rows, apart from those that the suite varies.
+  RenderOptions settings = timed_options();
 };
 
-/// Cases that are timed interleaved with each other. Groups run one after another, and each releases its memory.
+/// Cases that are timed interleaved with each other. Groups run one after another, and each
+/// releases its memory.
 using Group = std::function<std::vector<Case>()>;
 
 struct Suite {
@@ -54,17 +56,21 @@ Problem basis_problem(const SuiteOptions& options, const std::string& basis);
 /// The paper's settings (`--preset paper`) with `basis`, and sizes and cascades from `sizes`.
 RenderOptions published_options(const RenderOptions& sizes, const std::string& basis);
 
-/// One group per basis, with the cases that `cases` returns: all bases at once would need gigabytes.
-std::vector<Group> groups_by_basis(const std::vector<std::string>& bases,
-                                   const std::function<std::vector<Case>(const std::string& basis)>& cases);
+/// One group per basis, with the cases that `cases` returns: all bases at once would need
+/// gigabytes.
+std::vector<Group> groups_by_basis(
+    const std::vector<std::string>& bases,
+    const std::function<std::vector<Case>(const std::string& basis)>& cases);
 
-/// A row for each pass of a timed frame: the row of the frame with the pass's times. `passes`: samples
-/// [ms] by name.
-std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& passes, const Row& frame);
+/// A row for each pass of a timed frame: the row of the frame with the pass's times. `passes`:
+/// samples [ms] by name.
+std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& passes,
+                           const Row& frame);
 
 /// Length of the longest row name, at least 4.
 std::size_t name_width(const std::vector<Row>& rows);
-/// Text with one line per row: the name padded to `width`, then `columns` of a timed row, or status and reason.
+/// Text with one line per row: the name padded to `width`, then `columns` of a timed row, or status
+/// and reason.
 std::string row_lines(const std::vector<Row>& rows, std::size_t width,
                       const std::function<std::string(const Row&)>& columns);
 

@@ -13,7 +13,8 @@ constexpr const char* kImageModule = "clpv_images.so";  // found by the program'
 const ImageCodec* load_codec() {
   void* module = ::dlopen(kImageModule, RTLD_NOW | RTLD_LOCAL);
   void* get = module != nullptr ? ::dlsym(module, kGetImageCodec) : nullptr;
-  if (get == nullptr) throw Error(ExitCode::run_time, "image codecs cannot be loaded: {}", ::dlerror());
+  if (get == nullptr)
+    throw Error(ExitCode::run_time, "image codecs cannot be loaded: {}", ::dlerror());
   return reinterpret_cast<GetImageCodec*>(get)();
 }
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Measures the limits of a device, for the roofline of `clpv bench`: fused multiply-adds, memory bandwidth, launches.
+// Measures the limits of a device, for the roofline of `clpv bench`: fused multiply-adds, memory
+// bandwidth, launches.
 //
 //   fma_peak   a = a / 2 + 1, 48 vector FMAs per pass and work-item; out: one float per work-item
 //   stream     c = a + pass b, three vectors moved per element (McCalpin's STREAM triad)
 //   nothing    an empty kernel
 //
-// From the host: CLPV_WIDTH, floats of a vector; CLPV_BLOCK, consecutive vectors of a work-item: all of its vectors on
-// a CPU, whose cores stream through a part of memory each, or 1 where neighbouring work-items should access
-// neighbouring memory.
+// From the host: CLPV_WIDTH, floats of a vector; CLPV_BLOCK, consecutive vectors of a work-item:
+// all of its vectors on a CPU, whose cores stream through a part of memory each, or 1 where
+// neighbouring work-items should access neighbouring memory.
 #ifndef CLPV_WIDTH
 #define CLPV_WIDTH 8
 #endif
@@ -19,7 +20,8 @@
 typedef CLPV_PASTE(float, CLPV_WIDTH) Vector;
 
 // Independent chains: enough to hide the latency of an FMA, few enough to fit into registers.
-#define CLPV_EACH_CHAIN(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(10) DO(11)
+#define CLPV_EACH_CHAIN(DO) \
+  DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(10) DO(11)
 
 // Every chain converges to 2 from any start, which verifies the result.
 __kernel void fma_peak(const uint passes, const float start, __global float* out) {
@@ -29,7 +31,8 @@ __kernel void fma_peak(const uint passes, const float start, __global float* out
 #undef CLPV_DO
 #define CLPV_DO(i) a##i = fma(a##i, (Vector)(0.5f), (Vector)(1.0f));
   for (uint pass = 0; pass < passes; ++pass) {
-    CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO)
+    CLPV_EACH_CHAIN(CLPV_DO)
+    CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO)
   }
 #undef CLPV_DO
   Vector sum = 0.0f;
@@ -40,8 +43,8 @@ __kernel void fma_peak(const uint passes, const float start, __global float* out
 }
 
 // `blocks`: blocks of CLPV_BLOCK vectors per work-item.
-__kernel void stream(const uint passes, const uint blocks, __global const Vector* a, __global const Vector* b,
-                     __global Vector* c) {
+__kernel void stream(const uint passes, const uint blocks, __global const Vector* a,
+                     __global const Vector* b, __global Vector* c) {
   const uint item = get_global_id(0), items = get_global_size(0);
   for (uint pass = 1; pass <= passes; ++pass) {
     const Vector factor = (float)pass;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Vectors of W lanes: pixels of a row, cells of a row, triangles, rays. First text of every program with generated text.
+// Vectors of W lanes: pixels of a row, cells of a row, triangles, rays. First text of every program
+// with generated text.
 //
-// W 8 is for CPUs; inner loops with it call no function that PoCL does not inline, such as any(), floor() or log2(). W 1 is
-// for GPUs, which run work-items themselves in lanes, and for kernels on images. There, PoCL vectorises work-items only in
-// short kernels of straight-line code, without branches (volume/whole_groups.h).
+// W 8 is for CPUs; inner loops with it call no function that PoCL does not inline, such as any(),
+// floor() or log2(). W 1 is for GPUs, which run work-items themselves in lanes, and for kernels on
+// images. There, PoCL vectorises work-items only in short kernels of straight-line code, without
+// branches (volume/whole_groups.h).
 #pragma once
 
 #ifndef CLPV_W
@@ -14,25 +16,28 @@
 // Large functions need the attribute: PoCL leaves them out of line.
 #define CLPV_INLINE static inline __attribute__((always_inline))
 
-// Rare code, which would take registers from all other if it were inlined. GPUs keep the stack of calls in scratch memory.
+// Rare code, which would take registers from all other if it were inlined. GPUs keep the stack of
+// calls in scratch memory.
 #if W == 1
 #define CLPV_RARE CLPV_INLINE
 #else
 #define CLPV_RARE __attribute__((noinline))
 #endif
 
-// Vectors of W numbers, conversions between them, and load and store of W numbers that follow one another. A comparison
-// of vectors is a mask: an intW, -1 where it holds and 0 elsewhere. With one lane it is 1 or 0: write `mask == 0` in place
-// of ~mask, and all_bits(mask) where its bits are numbers.
+// Vectors of W numbers, conversions between them, and load and store of W numbers that follow one
+// another. A comparison of vectors is a mask: an intW, -1 where it holds and 0 elsewhere. With one
+// lane it is 1 or 0: write `mask == 0` in place of ~mask, and all_bits(mask) where its bits are
+// numbers.
 #if W == 8
 #define CLPV_VECTOR(name) name##8
 #define CLPV_ROUNDED(name) name##8_rte
 #define load_lanes(from) vload8(0, from)
 #define store_lanes(value, to) vstore8(value, 0, to)
 #define first_lane(value) ((value).s0)
-// Gathers one element per lane, at the indices `at`; `member`: empty, or a member of the elements (.flags).
-#define CLPV_GATHER_MEMBER(from, at, member)                                                          \
-  ((from)[(at).s0] member, (from)[(at).s1] member, (from)[(at).s2] member, (from)[(at).s3] member,    \
+// Gathers one element per lane, at the indices `at`; `member`: empty, or a member of the elements
+// (.flags).
+#define CLPV_GATHER_MEMBER(from, at, member)                                                       \
+  ((from)[(at).s0] member, (from)[(at).s1] member, (from)[(at).s2] member, (from)[(at).s3] member, \
    (from)[(at).s4] member, (from)[(at).s5] member, (from)[(at).s6] member, (from)[(at).s7] member)
 #elif W == 1
 #define CLPV_VECTOR(name) name
@@ -62,9 +67,9 @@ typedef CLPV_VECTOR(uchar) bytesW;
 #define ZERO ((realW)(0.0f))
 #define ONE ((realW)(1.0f))
 
-// Gathers a float4 per lane, then reads it by columns: one load per lane instead of four. Functions that read buffers
-// return structs through pointers: Oclgrind does not know the annotations that compilers give to functions that return
-// one.
+// Gathers a float4 per lane, then reads it by columns: one load per lane instead of four. Functions
+// that read buffers return structs through pointers: Oclgrind does not know the annotations that
+// compilers give to functions that return one.
 #if W == 8
 
 typedef struct {
@@ -82,9 +87,9 @@ static inline void gather_rows(__global const float4* from, const uintW at, Rows
   rows->r7 = from[at.s7];
 }
 
-#define CLPV_COLUMN(rows, c)                                                                           \
-  ((realW)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, (rows).r6.c, \
-           (rows).r7.c))
+#define CLPV_COLUMN(rows, c)                                                             \
+  ((realW)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, \
+           (rows).r6.c, (rows).r7.c))
 
 // 0 to W - 1.
 static inline intW lane_numbers(void) { return (int8)(0, 1, 2, 3, 4, 5, 6, 7); }
@@ -97,7 +102,8 @@ static inline bool no_lane(const intW mask) {
 
 // Bits of a mask; the first lane is the lowest bit.
 static inline uint lane_bits(const intW mask) {
-  return (uint)(((as_ulong(convert_char8(mask)) & 0x0101010101010101ul) * 0x0102040810204080ul) >> 56);
+  return (uint)(((as_ulong(convert_char8(mask)) & 0x0101010101010101ul) * 0x0102040810204080ul) >>
+                56);
 }
 
 // Sums and extremes over all lanes.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Prefetches memory that hardware prefetch cannot predict, on CPUs; a no-op elsewhere.
 //
-// OpenCL's prefetch() does nothing on PoCL 3.1. Clang's builtin takes only private pointers, which on a CPU address
-// the same memory as global ones; compilers to SPIR-V reject it.
+// OpenCL's prefetch() does nothing on PoCL 3.1. Clang's builtin takes only private pointers, which
+// on a CPU address the same memory as global ones; compilers to SPIR-V reject it.
 #pragma once
 
 enum { CLPV_LINE = 64 };  // [bytes] cache line of most CPUs

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Reports the layout of the structs that device and host share, for `clpv check`: sizes and offsets of members.
+// Reports the layout of the structs that device and host share, for `clpv check`: sizes and offsets
+// of members.
 //
-// Out:  bytes  one number per SIZE and OFFSET of CLPV_EACH_SHARED (shared/fields.h), in its order [bytes]
+// Out:  bytes  one number per SIZE and OFFSET of CLPV_EACH_SHARED (shared/fields.h), in its order
+//              [bytes]
 // A single work-item.
 #include "shared/emit.h"
 #include "shared/fields.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Meshes from memory: rooms that change are compared with rooms that are made as changed; shared slots, rejected arrays.
+// Meshes from memory: rooms that change are compared with rooms that are made as changed; shared
+// slots, rejected arrays.
 #include "host/scene/added_meshes.hpp"
 
 #include <gmock/gmock.h>
@@ -50,7 +51,8 @@ struct Room {
   Scene scene;
   int floor, wall;
 
-  explicit Room(const Positions& wall_positions, const Transform& at = kIdentity, bool moves = false) {
+  explicit Room(const Positions& wall_positions, const Transform& at = kIdentity,
+                bool moves = false) {
     const Positions ground = floor_at(0);
     floor = scene.add_mesh({.positions = ground, .triangles = kSquare});
     Material red;
@@ -94,7 +96,8 @@ TEST(AddedMeshes, OnlyTheFirstMoveOfAMeshThatWasNotToMoveRebuildsAFrame) {
   EXPECT_EQ(rebuilds(room, room.wall, 0.2), 0u);
   EXPECT_EQ(renderer.render().pixels, of_fixed.render().pixels);
   EXPECT_EQ(renderer.render().pixels, Room(wall_at(-2), moved_by(0.2, 0, 0)).image());
-  EXPECT_EQ(rebuilds(room, room.scene.add_instance(room.wall, kIdentity), 0.3), 0u) << "its copies move too";
+  EXPECT_EQ(rebuilds(room, room.scene.add_instance(room.wall, kIdentity), 0.3), 0u)
+      << "its copies move too";
   renderer.render();
   EXPECT_GT(renderer.stats().stages.at("propagate"), 0);
   renderer.render();
@@ -145,7 +148,8 @@ TEST(AddedMeshes, EqualMaterialsAndFreedTexturesShareTheirSlots) {
 }
 
 TEST(AddedMeshes, SmoothNormalsAreWeightedByAngle) {
-  // A corner of a cube at vertex 0: a square of two triangles (45 degrees each) and two squares of one triangle (90 degrees).
+  // A corner of a cube at vertex 0: a square of two triangles (45 degrees each) and two squares of
+  // one triangle (90 degrees).
   const Positions corner{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}};
   const Triangles triangles{{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {0, 4, 3}};
   AddedMeshes meshes;
@@ -164,8 +168,10 @@ TEST(AddedMeshes, BadArraysAreRejectedByNameAndIndex) {
   Room room(wall_at(-2));
   const Positions good = wall_at(-2);
   Positions bad = good;
-  const auto rejected = [&](const Mesh& mesh, const std::string& what, const Transform& at = kIdentity) {
-    EXPECT_THAT(test::error_of(ExitCode::bad_input, [&] { room.scene.add_mesh(mesh, at); }), HasSubstr(what));
+  const auto rejected = [&](const Mesh& mesh, const std::string& what,
+                            const Transform& at = kIdentity) {
+    EXPECT_THAT(test::error_of(ExitCode::bad_input, [&] { room.scene.add_mesh(mesh, at); }),
+                HasSubstr(what));
   };
   rejected({.positions = good, .triangles = Triangles{{0, 1, 2}, {0, 2, 4}}},
            "add_mesh: triangles[1]: found index 4; allowed: 0 to 3");
@@ -174,7 +180,8 @@ TEST(AddedMeshes, BadArraysAreRejectedByNameAndIndex) {
   rejected({.positions = good, .triangles = kSquare, .normals = std::span(good).first(3)},
            "normals: found 3 elements; allowed: 4");
   const std::vector<std::array<float, 2>> uvs(4, {0, INFINITY});
-  rejected({.positions = good, .triangles = kSquare, .uvs = uvs}, "uvs[0]: found inf in component 1");
+  rejected({.positions = good, .triangles = kSquare, .uvs = uvs},
+           "uvs[0]: found inf in component 1");
   bad[2][1] = NAN;
   rejected({.positions = bad, .triangles = kSquare}, "positions[2]: found nan in component 1");
   bad[2][1] = 1e8f;
@@ -186,15 +193,18 @@ TEST(AddedMeshes, BadArraysAreRejectedByNameAndIndex) {
   rejected({.positions = good, .triangles = kSquare}, "transform[1][2]: found nan", shear);
   rejected({.positions = good, .triangles = kSquare, .material = {.base_colour = {1, 2, 1, 1}}},
            "base_colour[1]: found 2");
-  rejected({.positions = good, .triangles = kSquare, .material = {.texture = Material::Texture{2, 2, {1}}}},
+  rejected({.positions = good,
+            .triangles = kSquare,
+            .material = {.texture = Material::Texture{2, 2, {1}}}},
            "texture: found 1 bytes");
   const Triangles many(bounds::kTriangles + 1);
   rejected({.positions = good, .triangles = many}, "more triangles");
-  EXPECT_THAT(test::error_of(ExitCode::bad_input, [&] { room.scene.set_positions(room.wall, bad); }),
-              HasSubstr("set_positions"));
   EXPECT_THAT(
-      test::error_of(ExitCode::bad_input, [&] { room.scene.set_transform(room.wall, moved_by(1e9, 0, 0)); }),
-      HasSubstr("set_transform"));
+      test::error_of(ExitCode::bad_input, [&] { room.scene.set_positions(room.wall, bad); }),
+      HasSubstr("set_positions"));
+  EXPECT_THAT(test::error_of(ExitCode::bad_input,
+                             [&] { room.scene.set_transform(room.wall, moved_by(1e9, 0, 0)); }),
+              HasSubstr("set_transform"));
   EXPECT_EQ(room.image(), Room(wall_at(-2)).image()) << "unchanged after errors";
 }
 

@@ -46,7 +46,8 @@ TEST_F(AnimationTest, PropertiesWithoutCurvesAreConstant) {
   MovingScene moving = load();
   moving.pose(1);
   EXPECT_THAT(position(moving.scene(), 0, 0), IsNear(glm::vec3(5, 6, 7), kClose));
-  EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(5, 8, 7), kClose)) << "a quarter turn about z";
+  EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(5, 8, 7), kClose))
+      << "a quarter turn about z";
 }
 
 TEST_F(AnimationTest, ParentsCarryTheirChildren) {
@@ -102,7 +103,8 @@ TEST_F(AnimationTest, RotationsInShortIntegers) {
   MovingScene moving = load();
   moving.pose(0.5);
   const float angle = glm::quarter_pi<float>();
-  EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(std::cos(angle), std::sin(angle), 0), 1e-4f));
+  EXPECT_THAT(position(moving.scene(), 0, 1),
+              IsNear(glm::vec3(std::cos(angle), std::sin(angle), 0), 1e-4f));
 }
 
 TEST_F(AnimationTest, CamerasAndLightsFollowTheirNodes) {
@@ -111,10 +113,12 @@ TEST_F(AnimationTest, CamerasAndLightsFollowTheirNodes) {
   model.document["extensions"]["KHR_lights_punctual"]["lights"] =
       json::parse(R"([{"type": "directional"}, {"type": "point", "intensity": 3}])");
   const int head = model.add(
-      "nodes", json::parse(R"({"camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}})"));
+      "nodes",
+      json::parse(R"({"camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}})"));
   model.add(
       "nodes",
-      json::parse(R"({"translation": [1, 1, 1], "extensions": {"KHR_lights_punctual": {"light": 1}}})"));
+      json::parse(
+          R"({"translation": [1, 1, 1], "extensions": {"KHR_lights_punctual": {"light": 1}}})"));
   animate<float>(head, "rotation", {0, 1}, {0, 0, 0, 1, 0, kHalf, 0, kHalf});  // -z to -x
   animate<float>(head, "translation", {0, 2}, {0, 0, 0, 0, 4, 0});
   MovingScene moving = load();
@@ -154,7 +158,8 @@ TEST_F(AnimationTest, TheFirstOfSeveralChannelsWins) {
   model.add("animations", {{"samplers", json::array()}, {"channels", json::array()}});
   animate<float>(0, "translation", {0, 1}, {0, 0, 0, 9, 9, 9});
   MovingScene moving = load();
-  EXPECT_THAT(moving.scene().notes, Contains(HasSubstr("/animations/1: node 0 is moved by an earlier")));
+  EXPECT_THAT(moving.scene().notes,
+              Contains(HasSubstr("/animations/1: node 0 is moved by an earlier")));
   moving.pose(1);
   EXPECT_THAT(position(moving.scene(), 0, 0), IsNear(glm::vec3(1, 0, 0), kClose));
 }

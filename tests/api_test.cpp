@@ -38,7 +38,8 @@ TEST(Api, RendersCornell) {
 
 TEST(Api, ReturnsLightAtAnyPoint) {
   Renderer renderer(Scene(kCornell), test::small_options());
-  EXPECT_THROW(renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}), Error) << "before the first frame";
+  EXPECT_THROW(renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}), Error)
+      << "before the first frame";
   renderer.render();
   const auto up = renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}),
              down = renderer.irradiance({0.28, 0.27, 0.3}, {0, -4, 0});
@@ -59,7 +60,8 @@ TEST(Api, AnimatedScenesRenderAtAnyTime) {
   const auto light = renderer.irradiance({0, 0.5, 0}, {0, -1, 0});
   EXPECT_NE(start.pixels, later.pixels);
   EXPECT_EQ(later.metadata.at("time"), "0.6");
-  EXPECT_EQ(other.render(View::full, {}, 0.6).pixels, later.pixels) << "each renderer has its own instant";
+  EXPECT_EQ(other.render(View::full, {}, 0.6).pixels, later.pixels)
+      << "each renderer has its own instant";
   EXPECT_EQ(renderer.render().pixels, start.pixels);
   EXPECT_NE(renderer.irradiance({0, 0.5, 0}, {0, -1, 0}), light) << "of the last frame";
   EXPECT_THROW(renderer.render(View::full, {}, NAN), Error);
@@ -85,7 +87,8 @@ TEST(Api, AnyCameraRenders) {
   const Scene scene(kCornell);
   Renderer renderer(scene, test::small_options());
   EXPECT_THROW(renderer.render(View::full, "nowhere"), Error);
-  const Image named = renderer.render(View::full, "front"), given = renderer.render(View::full, front());
+  const Image named = renderer.render(View::full, "front"),
+              given = renderer.render(View::full, front());
   EXPECT_LT(difference(given, named), 1e-4);
   EXPECT_EQ(named.metadata.at("camera"), "front");
   EXPECT_THAT(given.metadata.at("camera"), ::testing::StartsWith("eye 0.278")) << "its numbers";
@@ -111,7 +114,8 @@ TEST(Api, BadCamerasAreRejectedWithTheirMember) {
   rejected("light", [](Camera& c) { c.light = "none of this name"; });
   for (const double angle : {0.0, 180.0, -1.0, double{NAN}})
     rejected("vertical_fov_degrees", [&](Camera& c) { c.vertical_fov_degrees = angle; });
-  for (const double near : {0.0, -1.0, infinity}) rejected("near", [&](Camera& c) { c.near = near; });
+  for (const double near : {0.0, -1.0, infinity})
+    rejected("near", [&](Camera& c) { c.near = near; });
 }
 
 TEST(Api, CamerasOfASceneCanBeChanged) {
@@ -260,8 +264,8 @@ TEST(Api, VolumesHoldTheLight) {
   const double c0 = v.values[(cell[2] * 16 + cell[1]) * 16 + cell[0]];
   const double radiance = c0 / std::sqrt(4 * M_PI) / (v.cell * v.cell);
   double irradiance = 0;
-  for (const Vec3& n :
-       {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}})
+  for (const Vec3& n : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1},
+                        Vec3{0, 0, -1}})
     irradiance += renderer.irradiance(centre, n)[0] / 6;
   EXPECT_NEAR(irradiance / (M_PI * radiance), 1, 0.1);
 }
@@ -281,7 +285,8 @@ TEST(Api, IrradianceOfManyPointsIsThatOfEach) {
                                          Vec3{0, normals[i][1], 0});
     for (int c = 0; c < 3; ++c) EXPECT_EQ(all[i][c], static_cast<float>(one[c])) << i;
   }
-  EXPECT_TRUE(renderer.irradiance(std::span(positions).first(0), std::span(normals).first(0)).empty());
+  EXPECT_TRUE(
+      renderer.irradiance(std::span(positions).first(0), std::span(normals).first(0)).empty());
   normals.pop_back();
   EXPECT_THROW(renderer.irradiance(positions, normals), Error);
   normals.push_back({0, 0, 0});
@@ -324,7 +329,8 @@ TEST(Api, PathtraceIsComparable) {
 
 TEST(Api, OptionsAreThoseOfTheProgram) {
   const auto all = Options::all();
-  EXPECT_TRUE(std::ranges::any_of(all, [](const OptionDescription& o) { return o.name == "basis"; }));
+  EXPECT_TRUE(
+      std::ranges::any_of(all, [](const OptionDescription& o) { return o.name == "basis"; }));
   EXPECT_THAT(test::error_of(ExitCode::usage, [] { Options().set("layout", "planes"); }),
               ::testing::AllOf(HasSubstr("planes"), HasSubstr("soa")));
   EXPECT_THROW(Options().set("no-such-option", "1"), Error);
@@ -332,13 +338,14 @@ TEST(Api, OptionsAreThoseOfTheProgram) {
 
 TEST(Api, ErrorsHaveTheirExitCode) {
   test::error_of(ExitCode::bad_input, [] { Scene("/nowhere/scene.json"); });
-  test::error_of(ExitCode::device,
-                 [] { Renderer(Scene(kCornell), test::small_options(), "no device of this name"); });
+  test::error_of(ExitCode::device, [] {
+    Renderer(Scene(kCornell), test::small_options(), "no device of this name");
+  });
 }
 
 TEST(Api, ListsTheDeviceThatTestsRunOn) {
-  EXPECT_TRUE(
-      std::ranges::any_of(all_devices(), [](const DeviceDescription& d) { return d.missing.empty(); }));
+  EXPECT_TRUE(std::ranges::any_of(all_devices(),
+                                  [](const DeviceDescription& d) { return d.missing.empty(); }));
 }
 
 }  // namespace

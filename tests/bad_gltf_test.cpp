@@ -36,9 +36,11 @@ struct BadGltfTest : AnimationTest {
     folder.write("image.png", decode_base64(kPngGrey));
     wear("image.png");
     primitive()["indices"] = model.accessor<std::uint8_t>("SCALAR", {0, 1, 2});
-    attributes()["JOINTS_0"] = model.accessor<std::uint8_t>("VEC4", std::vector<std::uint8_t>(12, 0));
+    attributes()["JOINTS_0"] =
+        model.accessor<std::uint8_t>("VEC4", std::vector<std::uint8_t>(12, 0));
     attributes()["WEIGHTS_0"] = model.accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
-    primitive()["targets"] = {{{"POSITION", model.accessor<float>("VEC3", std::vector<float>(9, 0))}}};
+    primitive()["targets"] = {
+        {{"POSITION", model.accessor<float>("VEC3", std::vector<float>(9, 0))}}};
     model.make_sparse(0, {0, 2}, {0, 0, 0, 0, 1, 0});
     model.document["samplers"] = json::array({json::object()});
     model.document["scenes"] = {{{"nodes", {0, 1}}}};
@@ -64,35 +66,39 @@ struct BadGltfTest : AnimationTest {
       change(model.document, row.changes);
       const std::string message = rejected();
       EXPECT_THAT(message, HasSubstr("; allowed: "));
-      for (const std::string& word : row.words) EXPECT_THAT(message, HasSubstr(word)) << row.changes[0].first;
+      for (const std::string& word : row.words)
+        EXPECT_THAT(message, HasSubstr(word)) << row.changes[0].first;
       model.document = sound;
     }
   }
 };
 
-const std::string kPrimitive = "/meshes/0/primitives/0", kLights = "/extensions/KHR_lights_punctual/lights";
+const std::string kPrimitive = "/meshes/0/primitives/0",
+                  kLights = "/extensions/KHR_lights_punctual/lights";
 
 TEST_F(BadGltfTest, EveryIndexOutOfRange) {
   std::vector<Row> rows;
   for (const std::string& place :
-       words_of("/scene /scenes/0/nodes/0 /nodes/0/children/0 /nodes/0/mesh /nodes/1/camera /nodes/0/skin "
-                "/nodes/1/extensions/KHR_lights_punctual/light /skins/0/joints/0 "
+       words_of("/scene /scenes/0/nodes/0 /nodes/0/children/0 /nodes/0/mesh /nodes/1/camera "
+                "/nodes/0/skin /nodes/1/extensions/KHR_lights_punctual/light /skins/0/joints/0 "
                 "/skins/0/inverseBindMatrices /meshes/0/primitives/0/indices "
                 "/meshes/0/primitives/0/material /meshes/0/primitives/0/attributes/POSITION "
                 "/meshes/0/primitives/0/targets/0/POSITION /accessors/0/bufferView "
                 "/accessors/0/sparse/indices/bufferView /accessors/0/sparse/values/bufferView "
                 "/bufferViews/0/buffer /materials/0/pbrMetallicRoughness/baseColorTexture/index "
                 "/materials/0/emissiveTexture/index /textures/0/source /textures/0/sampler "
-                "/images/0/bufferView /animations/0/samplers/0/input /animations/0/samplers/0/output "
-                "/animations/0/channels/0/target/node")) {
-    for (const json& bad : {json(1000), json(-1), json(18446744073709551615ull), json(1.5), json("0")})
+                "/images/0/bufferView /animations/0/samplers/0/input "
+                "/animations/0/samplers/0/output /animations/0/channels/0/target/node")) {
+    for (const json& bad :
+         {json(1000), json(-1), json(18446744073709551615ull), json(1.5), json("0")})
       rows.push_back({{{place, bad}}, {place + ": found " + bad.dump()}});
   }
   expect_all_rejected(rows);
 }
 
 TEST_F(BadGltfTest, Documents) {
-  const std::string camera = "/cameras/0/perspective", texture = "/materials/0/pbrMetallicRoughness";
+  const std::string camera = "/cameras/0/perspective",
+                    texture = "/materials/0/pbrMetallicRoughness";
   expect_all_rejected({
       {{{"/asset", nullptr}}, {"/asset", "nothing"}},
       {{{"/asset/version", "1.0"}}, {"/asset/version", "'1.0'", "2.x"}},
@@ -100,13 +106,12 @@ TEST_F(BadGltfTest, Documents) {
       {{{"/asset/minVersion", "2.1"}}, {"/asset/minVersion", "'2.1'", "2.0"}},
       {{{"/extensionsRequired", {"KHR_texture_transform", "KHR_draco_mesh_compression"}}},
        {"/extensionsRequired/1", "'KHR_draco_mesh_compression'", "KHR_lights_punctual"}},
-      {{{"/extensionsRequired",
-         {"\x1b[2J\xc2\x9b"
-          "0m"}}},
-       {"'?[2J?0m'"}},
+      {{{"/extensionsRequired", {"\x1b[2J\xc2\x9b0m"}}}, {"'?[2J?0m'"}},
       {{{"/materials", 7}}, {"/materials", "found 7", "an array"}},
-      {{{"/materials/0/doubleSided", "yes"}}, {"/materials/0/doubleSided", "\"yes\"", "true or false"}},
-      {{{texture + "/baseColorFactor", {1, 1, "red", 1}}}, {texture + "/baseColorFactor", "\"red\""}},
+      {{{"/materials/0/doubleSided", "yes"}},
+       {"/materials/0/doubleSided", "\"yes\"", "true or false"}},
+      {{{texture + "/baseColorFactor", {1, 1, "red", 1}}},
+       {texture + "/baseColorFactor", "\"red\""}},
       {{{"/textures/0/source", nullptr}}, {"/textures/0", "no source"}},
       {{{"/images/0", json::object()}}, {"/images/0", "image[0]"}},
       {{{"/images/0/bufferView", 0}}, {"/images/0", "image[0]"}},
@@ -124,8 +129,10 @@ TEST_F(BadGltfTest, Nodes) {
   const json identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   expect_all_rejected({
       {{{"/nodes/0/children", {0}}}, {"/scenes/0/nodes", "node 0, a child of node 0"}},
-      {{{"/nodes/0/children", {1}}, {"/nodes/1/children", {0}}, {"/scenes", nullptr}}, {"/nodes", "a cycle"}},
-      {{{"/nodes/2", {{"children", {1}}}}, {"/nodes/0/children", {1}}}, {"/nodes/1", "parents 0 and 2"}},
+      {{{"/nodes/0/children", {1}}, {"/nodes/1/children", {0}}, {"/scenes", nullptr}},
+       {"/nodes", "a cycle"}},
+      {{{"/nodes/2", {{"children", {1}}}}, {"/nodes/0/children", {1}}},
+       {"/nodes/1", "parents 0 and 2"}},
       {{{"/scenes/0/nodes", {0, 1, 0}}}, {"/scenes/0/nodes", "node 0 twice"}},
       {{{"/scenes/0/nodes", {0}}}, {"/skins/0/joints", "node 1", "nodes of the scene"}},
       {{{"/nodes/1/scale", {1e29, 1, 1}}}, {"vertex 1", "/nodes/0", "within"}},
@@ -133,7 +140,8 @@ TEST_F(BadGltfTest, Nodes) {
       {{{"/nodes/1/rotation", {0, 0, 0, 0}}}, {"/nodes/1/rotation", "a unit quaternion"}},
       {{{"/nodes/0/matrix", std::vector<int>(15, 1)}}, {"/nodes/0/matrix"}},
       {{{"/nodes/1/matrix", identity}}, {"/nodes/1/matrix", "translation by /animations/0"}},
-      {{{"/nodes/0/weights", {1, 2, 3}}}, {"/nodes/0/weights", "3 weights", "each of 1 morph targets"}},
+      {{{"/nodes/0/weights", {1, 2, 3}}},
+       {"/nodes/0/weights", "3 weights", "each of 1 morph targets"}},
       {{{"/nodes/0/weights", {"half"}}}, {"/nodes/0/weights/0"}},
       {{{"/meshes/0/weights", {1, 2}}}, {"/meshes/0/weights", "2 weights"}},
   });
@@ -145,14 +153,16 @@ TEST_F(BadGltfTest, Nodes) {
 }
 
 TEST_F(BadGltfTest, Attributes) {
-  const int nan = floats("VEC3", {0, 0, 0, 0, NAN, 0, 0, 0, 0}), pairs = floats("VEC2", {0, 0, 0, 0, 0, 0}),
-            one = floats("VEC3", {0, 0, 0}), infinite = floats("VEC3", {0, 0, 0, 0, 0, 0, 0, 0, INFINITY}),
-            far = floats("VEC3", {0, 0, 0, 1e8f, 0, 0, 0, 0, 0}), scalars = floats("SCALAR", {0, 1, 2}),
+  const int nan = floats("VEC3", {0, 0, 0, 0, NAN, 0, 0, 0, 0}),
+            pairs = floats("VEC2", {0, 0, 0, 0, 0, 0}), one = floats("VEC3", {0, 0, 0}),
+            infinite = floats("VEC3", {0, 0, 0, 0, 0, 0, 0, 0, INFINITY}),
+            far = floats("VEC3", {0, 0, 0, 1e8f, 0, 0, 0, 0, 0}),
+            scalars = floats("SCALAR", {0, 1, 2}),
             outside = model.accessor<std::uint16_t>("SCALAR", {0, 1, 3}),
             four = model.accessor<std::uint8_t>("SCALAR", {0, 1, 2, 0}),
             largest = model.accessor<std::uint32_t>("SCALAR", {0, 1, 0xffffffffu}),
-            zeros =
-                model.add("accessors", {{"componentType", 5126}, {"count", 3000000000u}, {"type", "VEC3"}}),
+            zeros = model.add("accessors",
+                              {{"componentType", 5126}, {"count", 3000000000u}, {"type", "VEC3"}}),
             unbound = model.accessor<std::uint16_t>("VEC4", {0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0}),
             weights = floats("VEC4", {1, 0, 0, 0, 1, -1, 0, 0, 1, 0, 0, 0}),
             few_weights = floats("VEC4", {1, 0, 0, 0});
@@ -166,7 +176,8 @@ TEST_F(BadGltfTest, Attributes) {
       {{{attributes + "/NORMAL", nan}},
        {attributes + "/NORMAL", "nan in component 1 of element 1", "finite"}},
       {{{position, infinite}}, {position, "inf in component 2 of element 2"}},
-      {{{position, far}, {"/nodes/0/skin", nullptr}}, {"vertex 1", "(100000000, 0, 0) m", "within"}},
+      {{{position, far}, {"/nodes/0/skin", nullptr}},
+       {"vertex 1", "(100000000, 0, 0) m", "within"}},
       {{{indices, outside}}, {kPrimitive, "index 3 of element 2", "0 to 2"}},
       {{{indices, largest}}, {kPrimitive, "index 4294967295 of element 2"}},
       {{{indices, scalars}}, {indices, "componentType 5126", "SCALAR of unsigned integers"}},
@@ -174,14 +185,17 @@ TEST_F(BadGltfTest, Attributes) {
       {{{indices, zeros}}, {"/meshes/0/primitives", "no bufferView"}},
       {{{position, zeros}, {indices, nullptr}, {attributes + "/TEXCOORD_0", nullptr}},
        {kPrimitive, "1000000000 more triangles"}},
-      {{{attributes + "/JOINTS_0", unbound}}, {attributes + "/JOINTS_0", "joint 2 of vertex 1", "0 to 0"}},
+      {{{attributes + "/JOINTS_0", unbound}},
+       {attributes + "/JOINTS_0", "joint 2 of vertex 1", "0 to 0"}},
       {{{attributes + "/JOINTS_0", weights}},
        {attributes + "/JOINTS_0", "5126", "componentType 5121 or 5123"}},
       {{{attributes + "/WEIGHTS_0", nullptr}}, {"JOINTS_0 without WEIGHTS_0"}},
-      {{{attributes + "/WEIGHTS_0", weights}}, {attributes + "/WEIGHTS_0", "-1 in component 1 of vertex 1"}},
+      {{{attributes + "/WEIGHTS_0", weights}},
+       {attributes + "/WEIGHTS_0", "-1 in component 1 of vertex 1"}},
       {{{attributes + "/WEIGHTS_0", few_weights}}, {attributes + "/WEIGHTS_0", "3 of VEC4"}},
       {{{skin, one}}, {skin, "1 of VEC3", "MAT4 of floats"}},
-      {{{kPrimitive + "/targets/0/POSITION", one}}, {kPrimitive + "/targets/0/POSITION", "3 of VEC3"}},
+      {{{kPrimitive + "/targets/0/POSITION", one}},
+       {kPrimitive + "/targets/0/POSITION", "3 of VEC3"}},
       {{{kPrimitive + "/targets/0/POSITION", nan}}, {kPrimitive + "/targets/0/POSITION", "nan"}},
       {{{"/meshes/0/primitives/1", {{"attributes", {{"POSITION", 0}}}}}},
        {"/meshes/0/primitives/1/targets", "0 morph targets", "first primitive has, 1"}},
@@ -189,7 +203,8 @@ TEST_F(BadGltfTest, Attributes) {
 }
 
 TEST_F(BadGltfTest, BuffersViewsAndAccessors) {
-  const std::string accessor = "/accessors/0", view = "/bufferViews/0", sparse = accessor + "/sparse";
+  const std::string accessor = "/accessors/0", view = "/bufferViews/0",
+                    sparse = accessor + "/sparse";
   const int outside = model.view(bytes_of<std::uint16_t>({0, 3})),
             falling = model.view(bytes_of<std::uint16_t>({2, 1}));
   std::vector<Row> rows = {
@@ -198,7 +213,8 @@ TEST_F(BadGltfTest, BuffersViewsAndAccessors) {
       {{{accessor + "/byteOffset", -12}}, {accessor + "/byteOffset", "-12"}},
       {{{accessor + "/type", "VEC5"}}, {accessor + "/type", "VEC5"}},
       {{{accessor + "/componentType", 5130}}, {accessor + "/componentType"}},
-      {{{sparse + "/indices/bufferView", outside}}, {sparse + "/indices", "index 3 at 1", "below 3"}},
+      {{{sparse + "/indices/bufferView", outside}},
+       {sparse + "/indices", "index 3 at 1", "below 3"}},
       {{{sparse + "/indices/bufferView", falling}}, {sparse + "/indices", "index 1 at 1"}},
       {{{sparse + "/count", 3}}, {accessor, "3 elements up to byte 6"}},
       {{{sparse + "/values/byteOffset", 2147483647}}, {accessor, "up to byte 2147483671"}},
@@ -207,7 +223,8 @@ TEST_F(BadGltfTest, BuffersViewsAndAccessors) {
       {{{view + "/byteLength", 4096}}, {view, "bytes up to 4096"}},
       {{{view + "/byteOffset", 4294967295u}}, {view, "bytes up to 4294967331"}},
   };
-  for (const std::uint64_t count : {0xffffffffull, 0x1555555555555556ull, 0xffffffffffffffffull, 0ull})
+  for (const std::uint64_t count :
+       {0xffffffffull, 0x1555555555555556ull, 0xffffffffffffffffull, 0ull})
     rows.push_back({{{accessor + "/count", count}}, {accessor, std::to_string(count)}});
   for (const int stride : {0, 3, 14, 256, -4})
     rows.push_back({{{view + "/byteStride", stride}}, {view, std::to_string(stride)}});
@@ -224,13 +241,16 @@ TEST_F(BadGltfTest, BuffersViewsAndAccessors) {
   const std::string size = "/buffers/0/byteLength", uri = "/buffers/0/uri";
   EXPECT_THAT(rejected_with({{size, 1 << 20}}),
               AllOf(HasSubstr(size), HasSubstr("1048576"), HasSubstr("truncated")));
-  EXPECT_THAT(rejected_with({{size, 1ull << 40}}), AllOf(HasSubstr(size), HasSubstr("1099511627776")));
+  EXPECT_THAT(rejected_with({{size, 1ull << 40}}),
+              AllOf(HasSubstr(size), HasSubstr("1099511627776")));
   EXPECT_THAT(rejected_with({{"/buffers/1", {{"byteLength", 1u << 31}, {"uri", "model.bin"}}}}),
               AllOf(HasSubstr("/buffers/1/byteLength"), HasSubstr("in all")));
-  EXPECT_THAT(rejected_with({{uri, "data:application/octet-stream;base64,!!"}}), HasSubstr("/buffers/0"));
+  EXPECT_THAT(rejected_with({{uri, "data:application/octet-stream;base64,!!"}}),
+              HasSubstr("/buffers/0"));
   EXPECT_THAT(rejected_with({{uri, "data:text/html;base64,AAAA"}}),
               AllOf(HasSubstr(uri), HasSubstr("no such file")));
-  EXPECT_THAT(rejected_with({{uri, nullptr}}), AllOf(HasSubstr("/buffers/0"), HasSubstr("'uri' is missing")));
+  EXPECT_THAT(rejected_with({{uri, nullptr}}),
+              AllOf(HasSubstr("/buffers/0"), HasSubstr("'uri' is missing")));
   EXPECT_THAT(rejected_with({{"/buffers/1", {{"byteLength", 1}}}}),
               AllOf(HasSubstr("/buffers/1"), HasSubstr("no uri")));
 }
@@ -241,12 +261,13 @@ TEST_F(BadGltfTest, Animations) {
   const auto times = [&](float a, float b) { return floats("SCALAR", {a, b}); };
   const int shorts = model.accessor<std::uint16_t>("SCALAR", {0, 1}),
             three = floats("VEC3", std::vector<float>(9, 0)),
-            still = floats("VEC4", {0, 0, 0, 1, 0, 0, 0, 0.1f}), nan = floats("VEC3", {0, 0, 0, 1, NAN, 1}),
-            scalars = floats("SCALAR", {0, 1, 2}),
+            still = floats("VEC4", {0, 0, 0, 1, 0, 0, 0, 0.1f}),
+            nan = floats("VEC3", {0, 0, 0, 1, NAN, 1}), scalars = floats("SCALAR", {0, 1, 2}),
             integers = model.accessor<std::uint32_t>("VEC3", {0, 0, 0, 1, 1, 1}),
-            many_times =
-                model.add("accessors", {{"componentType", 5126}, {"count", 100000000}, {"type", "SCALAR"}}),
-            many = model.add("accessors", {{"componentType", 5126}, {"count", 100000000}, {"type", "VEC3"}});
+            many_times = model.add(
+                "accessors", {{"componentType", 5126}, {"count", 100000000}, {"type", "SCALAR"}}),
+            many = model.add("accessors",
+                             {{"componentType", 5126}, {"count", 100000000}, {"type", "VEC3"}});
   expect_all_rejected({
       {{{input, times(2, 1)}}, {input, "1 s at 1", "more than the 2 s"}},
       {{{input, times(1, 1)}}, {input, "1 s at 1", "more than the 1 s"}},
@@ -284,23 +305,25 @@ TEST_F(BadGltfTest, TooManyInstancesAndMorphTargets) {
   GltfBuilder many;
   std::vector<std::uint32_t> corners(99999);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
-  const int zeros = many.add("accessors", {{"componentType", 5126}, {"count", 99999}, {"type", "VEC3"}});
+  const int zeros =
+      many.add("accessors", {{"componentType", 5126}, {"count", 99999}, {"type", "VEC3"}});
   many.mesh({{"POSITION", zeros}}, {{"indices", many.accessor<std::uint32_t>("SCALAR", corners)}});
   model = many;
   for (int i = 0; i < 20000; ++i) model.add("nodes", {{"mesh", 0}});
-  EXPECT_THAT(rejected(),
-              AllOf(HasSubstr(kPrimitive), HasSubstr("2000079999 vertices"), HasSubstr("20001 nodes")));
+  EXPECT_THAT(rejected(), AllOf(HasSubstr(kPrimitive), HasSubstr("2000079999 vertices"),
+                                HasSubstr("20001 nodes")));
   model = many;
   for (int i = 0; i < 1000; ++i) primitive()["targets"].push_back({{"POSITION", zeros}});
-  EXPECT_THAT(rejected(), AllOf(HasSubstr(kPrimitive + "/targets/223"), HasSubstr("299997 more numbers"),
-                                HasSubstr("67108864 in all")));
+  EXPECT_THAT(rejected(), AllOf(HasSubstr(kPrimitive + "/targets/223"),
+                                HasSubstr("299997 more numbers"), HasSubstr("67108864 in all")));
 }
 
 TEST_F(BadGltfTest, PosesBeyondTheBoundsAreRejected) {
   // A spline from a rotation to its negative with zero tangents has length 0 half way; a node
   // leaves the bounds.
   animate<float>(0, "rotation", {0, 1},
-                 {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0}, "CUBICSPLINE");
+                 {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0},
+                 "CUBICSPLINE");
   animate<float>(0, "translation", {0, 0.9f, 1}, {0, 0, 0, 0, 0, 0, 1e30f, 0, 0});
   model.document["nodes"][0].erase("skin");
   MovingScene moving = load();
@@ -321,8 +344,8 @@ struct BadImageTest : BadInputTest {
 };
 
 TEST_F(BadImageTest, Images) {
-  std::string png = decode_base64(kPngRgba2x2), jpeg = decode_base64(kJpegRed8x8), corrupt = png, text = png,
-              large = png;
+  std::string png = decode_base64(kPngRgba2x2), jpeg = decode_base64(kJpegRed8x8), corrupt = png,
+              text = png, large = png;
   for (const std::size_t at : {16, 20}) png.replace(at, 4, std::string("\0\0\xea\x60", 4));
   EXPECT_THAT(rejected_image(png),
               AllOf(HasSubstr("/images/0"), HasSubstr("60000 x 60000"), HasSubstr("16384")));
@@ -343,7 +366,8 @@ TEST_F(BadImageTest, Images) {
     large.replace(at, 4, std::string("\0\0\x40\0", 4));  // 16384: 1 GiB each
   model.document["images"].push_back({{"uri", "image.png"}});
   model.document["textures"].push_back({{"source", 1}});
-  model.document["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}}});
+  model.document["materials"].push_back(
+      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}}});
   EXPECT_THAT(rejected_image(large),
               AllOf(HasSubstr("/images/1"), HasSubstr("bytes of texels"), HasSubstr("1073741824")));
 }

@@ -16,7 +16,8 @@ TEST_F(BadInputTest, Files) {
   EXPECT_THAT(rejection(folder / "none.json"), HasSubstr("no file"));
   EXPECT_THAT(rejection(folder / "folder.gltf"), HasSubstr("a folder"));
   EXPECT_THAT(rejection(folder / "zero.gltf"), HasSubstr("not a regular file"));
-  EXPECT_THAT(rejection(folder.write("model.obj", "")), AllOf(HasSubstr("'.obj'"), HasSubstr(".json")));
+  EXPECT_THAT(rejection(folder.write("model.obj", "")),
+              AllOf(HasSubstr("'.obj'"), HasSubstr(".json")));
 }
 
 TEST_F(BadInputTest, TextsThatAreNoJson) {
@@ -122,7 +123,8 @@ TEST_F(BadInputTest, UrisThatLeaveTheFolder) {
                                  std::string("here.png%00"),
                                  std::string("%zz")}) {
     const std::string message = rejection(load_with(uri));
-    EXPECT_THAT(message, AllOf(HasSubstr("/images/0/uri"), HasSubstr("allowed: a relative path"))) << uri;
+    EXPECT_THAT(message, AllOf(HasSubstr("/images/0/uri"), HasSubstr("allowed: a relative path")))
+        << uri;
   }
 }
 
@@ -142,7 +144,8 @@ struct BadSceneFileTest : BadInputTest {
   BadSceneFileTest() { model.write(folder); }
 
   void expect_rejected(const std::string& members, const std::vector<std::string>& words) {
-    const std::string text = "{" + members + "}", message = rejection(folder.write("scene.json", text));
+    const std::string text = "{" + members + "}",
+                      message = rejection(folder.write("scene.json", text));
     EXPECT_THAT(message, HasSubstr("scene.json"));
     for (const std::string& word : words) EXPECT_THAT(message, HasSubstr(word)) << text;
   }
@@ -206,7 +209,8 @@ TEST_F(BadSceneFileTest, Lights) {
       R"("lights": [{)", "}]",
       {
           {R"("kind": "sun")", {"/lights/0/kind", "directional, spot, point"}},
-          {R"("kind": "directional", "direction": [0, 0, 1])", {"/lights/0/illuminance_lux", "needs it"}},
+          {R"("kind": "directional", "direction": [0, 0, 1])",
+           {"/lights/0/illuminance_lux", "needs it"}},
           {R"("kind": "directional", "direction": [0, 0, 0], "illuminance_lux": 1)",
            {"/lights/0/direction", "no length"}},
           {R"("kind": "point", "position": [0, 0, 0], "intensity_candela": 1, "direction": [0, 0, 1])",
@@ -225,23 +229,23 @@ TEST_F(BadSceneFileTest, KeysOfCameras) {
   const std::string still = R"("eye": [0, 0, 0], "target": [0, 0, 1], )",
                     ahead = R"("target": [0, 0, 1], "keys": [)", time = "/cameras/0/keys/0/time",
                     range = "a number from 0 to 1000000";
-  expect_rows(
-      R"("cameras": [{"name": "walk", )", "}]",
-      {
-          {ahead + R"({"time": 2, "eye": [0, 0, 0]}, {"time": 2, "eye": [1, 0, 0]}])",
-           {"/cameras/0/keys/1/time", "found 2 s", "more than the 2 s"}},
-          {ahead + R"({"time": -1, "eye": [0, 0, 0]}])", {time, range}},
-          {ahead + R"({"time": 1e7, "eye": [0, 0, 0]}])", {time, range}},
-          {ahead + R"({"time": "noon", "eye": [0, 0, 0]}])", {time, range}},
-          {ahead + R"({"eye": [0, 0, 0]}])", {time, "found nothing"}},
-          {still + R"("keys": [{"time": 0}])", {"/cameras/0/keys/0", "only a time", "vertical_fov_degrees"}},
-          {still + R"("keys": [{"time": 0, "eye": [0, 0, 0]}])",
-           {"/cameras/0/keys/0/eye", "a duplicate of /cameras/0/eye"}},
-          {still + R"("keys": [])", {"/cameras/0/keys", "an array of 1 to 65536"}},
-          {still + R"("interpolation": "step")", {"/cameras/0/interpolation", "no keys"}},
-          {R"("keys": [{"time": 0, "eye": [0, 0, 0]}])",
-           {"/cameras/0/target", "found nothing", "or in keys"}},
-      });
+  expect_rows(R"("cameras": [{"name": "walk", )", "}]",
+              {
+                  {ahead + R"({"time": 2, "eye": [0, 0, 0]}, {"time": 2, "eye": [1, 0, 0]}])",
+                   {"/cameras/0/keys/1/time", "found 2 s", "more than the 2 s"}},
+                  {ahead + R"({"time": -1, "eye": [0, 0, 0]}])", {time, range}},
+                  {ahead + R"({"time": 1e7, "eye": [0, 0, 0]}])", {time, range}},
+                  {ahead + R"({"time": "noon", "eye": [0, 0, 0]}])", {time, range}},
+                  {ahead + R"({"eye": [0, 0, 0]}])", {time, "found nothing"}},
+                  {still + R"("keys": [{"time": 0}])",
+                   {"/cameras/0/keys/0", "only a time", "vertical_fov_degrees"}},
+                  {still + R"("keys": [{"time": 0, "eye": [0, 0, 0]}])",
+                   {"/cameras/0/keys/0/eye", "a duplicate of /cameras/0/eye"}},
+                  {still + R"("keys": [])", {"/cameras/0/keys", "an array of 1 to 65536"}},
+                  {still + R"("interpolation": "step")", {"/cameras/0/interpolation", "no keys"}},
+                  {R"("keys": [{"time": 0, "eye": [0, 0, 0]}])",
+                   {"/cameras/0/target", "found nothing", "or in keys"}},
+              });
 }
 
 TEST_F(BadSceneFileTest, KeysOfLights) {
@@ -254,7 +258,8 @@ TEST_F(BadSceneFileTest, KeysOfLights) {
            {"/lights/0/keys/0/eye", "unknown key"}},
           {sun + R"("interpolation": "smooth", "keys": [{"time": 0, "direction": [0, -1, 0]}])",
            {"/lights/0/interpolation", "linear, step"}},
-          {sun + R"("keys": [{"time": 0, "direction": [0, -2, 0]}, {"time": 1, "direction": [0, 1, 0]}])",
+          {sun +
+               R"("keys": [{"time": 0, "direction": [0, -2, 0]}, {"time": 1, "direction": [0, 1, 0]}])",
            {"/lights/0/keys/1/direction", "the opposite of the key before"}},
           {sun + R"("keys": [{"time": 0, "direction": [0, 0, 0]}])", {direction, "no length"}},
           {R"("kind": "directional", "keys": [{"time": 0, "direction": [0, -1, 0]}])",

@@ -44,24 +44,27 @@ class Cornell : public ::testing::Test {
     view_ = std::make_unique<baselines::View>(*scene_, camera_, kWidth, kHeight, 1, 2);
     RenderOptions options;
     options.width = kWidth, options.height = kHeight;
-    options.cascades = scene_->cascades.value(), options.cascade_size = scene_->cascade_size.value();
+    options.cascades = scene_->cascades.value(),
+    options.cascade_size = scene_->cascade_size.value();
     Frame frame(test::test_session(), *scene_, options);
     budget_ = baseline_budget(test::test_session(), frame, camera_, 1);
     pathtracer::PathTracerOptions tracing;
     tracing.noise = 0.02;
-    truth_ = traced_view(
-        trace_paths(*scene_, scene_->lights_for(camera_), camera_view(camera_, kWidth, kHeight), tracing),
-        Show::indirect);
+    truth_ = traced_view(trace_paths(*scene_, scene_->lights_for(camera_),
+                                     camera_view(camera_, kWidth, kHeight), tracing),
+                         Show::indirect);
   }
   static void TearDownTestSuite() { view_.reset(), scene_.reset(); }
 
   static baselines::Irradiance run(Baseline baseline, unsigned samples, unsigned stride = 1,
                                    unsigned frames = 1) {
     std::map<std::string, double> settings;
-    return run_baseline(baseline, *view_, view_->thinned(stride), budget_, samples, frames, settings);
+    return run_baseline(baseline, *view_, view_->thinned(stride), budget_, samples, frames,
+                        settings);
   }
   static Comparison errors(const baselines::Irradiance& irradiance) {
-    return compare(traced_view(view_->with(irradiance), Show::indirect), "baseline", truth_, "ground truth");
+    return compare(traced_view(view_->with(irradiance), Show::indirect), "baseline", truth_,
+                   "ground truth");
   }
 
   static inline std::unique_ptr<SceneData> scene_;
@@ -83,7 +86,8 @@ TEST_F(Cornell, ConvergesToPathTracing) {
   for (const auto& [baseline, samples, nrmse, energy] :
        {Limit{Baseline::paths, 512, 0.06}, Limit{Baseline::vpl, 4096, 0.12},
         Limit{Baseline::vpl_interleaved, 1024, 0.14}, Limit{Baseline::paths_filtered, 128, 0.4},
-        Limit{Baseline::ddgi_first, 512, 0.25}, Limit{Baseline::radiance_cascades, 64, 0.3, 0.08}}) {
+        Limit{Baseline::ddgi_first, 512, 0.25},
+        Limit{Baseline::radiance_cascades, 64, 0.3, 0.08}}) {
     const Comparison many = errors(run(baseline, samples)), few = errors(run(baseline, 4));
     EXPECT_LT(many.nrmse_valid.value(), nrmse) << name_of(baseline);
     EXPECT_NEAR(many.energy_ratio.value(), 1, energy) << name_of(baseline);
@@ -117,7 +121,8 @@ TEST_F(Cornell, FilterKeepsAConstant) {
     if (thin.hits()[i]) part.set(i, {1, 2, 3});
   }
   for (const baselines::Irradiance& filtered :
-       {baselines::wavelet_filter(*view_, image, 4), joint_bilateral(*view_, image, baselines::block_taps()),
+       {baselines::wavelet_filter(*view_, image, 4),
+        joint_bilateral(*view_, image, baselines::block_taps()),
         baselines::upsampled(*view_, thin, part)}) {
     for (std::size_t i = 0; i < image.size(); ++i)
       EXPECT_LT(glm::length(filtered.at(i) - image.at(i)), 1e-4f) << i;
@@ -145,7 +150,8 @@ TEST(BaselineFilter, InterpolatesBetweenThinnedPixels) {
   camera.eye = {0, 2, 0}, camera.forward = {0, -1, 0}, camera.up = {0, 0, -1};
   const baselines::View view(scene, camera, 32, 16, 1, 2), thin = view.thinned(4);
   baselines::Irradiance part(thin.hits().size());
-  for (std::size_t i = 0; i < part.size(); ++i) part.set(i, glm::vec3(static_cast<float>(i % 8) * 4 + 2));
+  for (std::size_t i = 0; i < part.size(); ++i)
+    part.set(i, glm::vec3(static_cast<float>(i % 8) * 4 + 2));
   const baselines::Irradiance image = baselines::upsampled(view, thin, part);
   for (std::size_t i = 0; i < image.size(); ++i)
     EXPECT_NEAR(image.at(i).x, std::clamp(static_cast<float>(i % 32), 2.0f, 30.0f), 1e-3f) << i;
@@ -174,8 +180,8 @@ TEST(BaselineProbes, FurnaceIsEvenlyLit) {
   }
 }
 
-// A closed room with a box, whose surfaces emit the same radiance: rays that end nowhere would lose light.
-// Intervals end at walls and at the box, probes lie behind walls and in the box.
+// A closed room with a box, whose surfaces emit the same radiance: rays that end nowhere would lose
+// light. Intervals end at walls and at the box, probes lie behind walls and in the box.
 TEST(BaselineRadianceCascades, FurnaceIsEvenlyLit) {
   SceneData scene = furnace();
   test::add_box(scene, {1.01f, 0.81f, 1.13f}, -0.7f, 0);
@@ -196,7 +202,8 @@ TEST(BaselineRadianceCascades, FurnaceIsEvenlyLit) {
   }
 }
 
-/// Irradiance at a point of a floor, y = 0, of a wall z = `z`, 0 < y < `height`, |x| < `half`, of radiance 1: midpoint rule.
+/// Irradiance at a point of a floor, y = 0, of a wall z = `z`, 0 < y < `height`, |x| < `half`, of
+/// radiance 1: midpoint rule.
 double irradiance_of_wall(const glm::vec3& at, double half, double height, double z) {
   constexpr int kSteps = 256;
   double sum = 0;
@@ -219,7 +226,8 @@ TEST(BaselineRadianceCascades, ApproachAWallsLight) {
   camera.eye = {0, 1, 0}, camera.forward = {0, -1, 0}, camera.up = {0, 0, -1};
   const baselines::View view(scene, camera, 24, 24, 1, 2);
   const auto error = [&](float cell, unsigned side) {
-    const ClpvGrid grid{{-2.03f, -2.03f, -2.03f}, cell, static_cast<std::uint32_t>(4.06f / cell), {1, 1, 1}};
+    const ClpvGrid grid{
+        {-2.03f, -2.03f, -2.03f}, cell, static_cast<std::uint32_t>(4.06f / cell), {1, 1, 1}};
     const baselines::CascadedImage image = baselines::radiance_cascades(
         view, {grid}, {.side = side, .first = 4, .cascades = 4, .bilinear_fix = true});
     double squares = 0, power = 0;
@@ -234,7 +242,8 @@ TEST(BaselineRadianceCascades, ApproachAWallsLight) {
   EXPECT_LT(fine, 0.04);  // rays between probes change their direction, so a few per cent remain
 }
 
-// Directions have equal solid angles: their means are those of the sphere. Four of the next cascade surround each.
+// Directions have equal solid angles: their means are those of the sphere. Four of the next cascade
+// surround each.
 TEST(BaselineRadianceCascades, DirectionsAreHierarchical) {
   for (const unsigned side : {1u, 2u, 3u, 4u}) {
     const auto directions = baselines::healpix_directions(side),
@@ -247,7 +256,8 @@ TEST(BaselineRadianceCascades, DirectionsAreHierarchical) {
       for (unsigned i = 0; i < 4; ++i) {
         const glm::vec3 child = next[baselines::healpix_child(d, side, i)];
         for (const glm::vec3& other : directions)
-          EXPECT_LE(glm::dot(child, other), glm::dot(child, directions[d]) + 0.02f) << side << " " << d;
+          EXPECT_LE(glm::dot(child, other), glm::dot(child, directions[d]) + 0.02f)
+              << side << " " << d;
       }
     }
     EXPECT_LT(glm::length(sum), 1e-5);
@@ -271,16 +281,20 @@ TEST(BaselineLights, CarryAllFluxAndArea) {
 
 TEST(BaselineRejection, NamesWhatAMethodDoesNotHave) {
   const auto reason = [](Baseline baseline, const SceneData& scene, int bounces, Show show) {
-    return test::error_of(ExitCode::usage, [&] { require_baseline(baseline, scene, bounces, show); });
+    return test::error_of(ExitCode::usage,
+                          [&] { require_baseline(baseline, scene, bounces, show); });
   };
   const SceneData lit = load_scene(scene_file("cornell.json")), glowing = furnace();
   EXPECT_THAT(reason(Baseline::vpl, glowing, 1, Show::indirect), HasSubstr("emissive"));
-  EXPECT_THAT(reason(Baseline::ddgi_first, lit, 2, Show::indirect), HasSubstr("allowed: bounces 1"));
-  EXPECT_THAT(reason(Baseline::radiance_cascades, lit, 2, Show::indirect), HasSubstr("allowed: bounces 1"));
+  EXPECT_THAT(reason(Baseline::ddgi_first, lit, 2, Show::indirect),
+              HasSubstr("allowed: bounces 1"));
+  EXPECT_THAT(reason(Baseline::radiance_cascades, lit, 2, Show::indirect),
+              HasSubstr("allowed: bounces 1"));
   EXPECT_THAT(reason(Baseline::paths, lit, 1, Show::full),
               HasSubstr("found view 'full'; allowed: indirect, irradiance"));
-  EXPECT_THAT(reason(Baseline::paths, load_scene(scene_file("cornell_fog.json")), 1, Show::indirect),
-              HasSubstr("medium"));
+  EXPECT_THAT(
+      reason(Baseline::paths, load_scene(scene_file("cornell_fog.json")), 1, Show::indirect),
+      HasSubstr("medium"));
   require_baseline(Baseline::paths, glowing, 0, Show::irradiance);
 }
 

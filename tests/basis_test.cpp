@@ -40,9 +40,10 @@ TEST_P(BasisOf, GramMatrixAndIntegralsAreThoseOfItsFunctions) {
     }
   }
   for (int i = 0; i < n; ++i) {
-    EXPECT_NEAR(basis_->integrals()[static_cast<std::size_t>(i)], integrals[static_cast<std::size_t>(i)],
-                1e-11);
-    for (int j = 0; j < n; ++j) EXPECT_NEAR(basis_->gram()(i, j), gram(i, j), 1e-11) << i << ' ' << j;
+    EXPECT_NEAR(basis_->integrals()[static_cast<std::size_t>(i)],
+                integrals[static_cast<std::size_t>(i)], 1e-11);
+    for (int j = 0; j < n; ++j)
+      EXPECT_NEAR(basis_->gram()(i, j), gram(i, j), 1e-11) << i << ' ' << j;
   }
 }
 
@@ -134,16 +135,17 @@ TEST(LobeQuality, OfAnSrbfLobePointByPoint) {
   const double tilt = quality.peak_error_degrees * std::numbers::pi / 180;
   for (int i = 0; i < 720; ++i) {
     const double phi = i * std::numbers::pi / 360;
-    highest =
-        std::max(highest, basis->value(c, std::cos(tilt) * kOblique +
-                                              std::sin(tilt) * (std::cos(phi) * u + std::sin(phi) * v)));
+    highest = std::max(
+        highest, basis->value(c, std::cos(tilt) * kOblique +
+                                     std::sin(tilt) * (std::cos(phi) * u + std::sin(phi) * v)));
   }
   EXPECT_NEAR(highest, maximum, 1e-3);
 }
 
 TEST(ClampedCosine, Bands) {
   const double expected[] = {kPi, 2 * kPi / 3, kPi / 4, 0, -kPi / 24};
-  for (int band = 0; band < 5; ++band) EXPECT_NEAR(cosine_band(band), expected[band], 1e-15) << band;
+  for (int band = 0; band < 5; ++band)
+    EXPECT_NEAR(cosine_band(band), expected[band], 1e-15) << band;
 }
 
 TEST(ClampedCosine, ChebyshevSeriesOfTheKernelText) {
@@ -153,7 +155,8 @@ TEST(ClampedCosine, ChebyshevSeriesOfTheKernelText) {
     for (double t = -1; t <= 1; t += 1.0 / 64) {
       const double theta = std::acos(std::clamp(2 * t * t - 1, -1.0, 1.0));
       double sum = 0;
-      for (std::size_t k = 0; k < c.size(); ++k) sum += c[k] * std::cos(static_cast<double>(k) * theta);
+      for (std::size_t k = 0; k < c.size(); ++k)
+        sum += c[k] * std::cos(static_cast<double>(k) * theta);
       EXPECT_NEAR(sum, g.even(t), 2e-7 * c[0]) << lambda << ' ' << t;
     }
   }
@@ -172,7 +175,8 @@ TEST(Rejected, IllConditionedSetsNamingLambdaAndNumber) {
 
 TEST(Rejected, LambdaOutsideItsRangeAndUnknownNames) {
   for (const double lambda : {0.0, 1.0, -0.25, 2.0, std::nan("")}) {
-    EXPECT_THAT(rejection("srbf8v2", lambda), ::testing::HasSubstr("greater than 0 and less than 1"))
+    EXPECT_THAT(rejection("srbf8v2", lambda),
+                ::testing::HasSubstr("greater than 0 and less than 1"))
         << lambda;
   }
   EXPECT_THAT(rejection("srbf7", .25), ::testing::HasSubstr("allowed: sh2, sh3, sh4, sh5, srbf4"));

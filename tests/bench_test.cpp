@@ -59,10 +59,10 @@ nlohmann::json report(const std::vector<std::tuple<std::string, double, double>>
 }
 
 TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
-  const auto before =
-      report({{"same", 10, 0.1}, {"slow", 10, 0.1}, {"noisy", 10, 2}, {"fast", 10, 0}, {"gone", 1, 0}});
-  const auto after =
-      report({{"same", 10.05, 0.1}, {"slow", 13, 0.1}, {"noisy", 13, 2}, {"fast", 5, 0}, {"new", 1, 0}});
+  const auto before = report(
+      {{"same", 10, 0.1}, {"slow", 10, 0.1}, {"noisy", 10, 2}, {"fast", 10, 0}, {"gone", 1, 0}});
+  const auto after = report(
+      {{"same", 10.05, 0.1}, {"slow", 13, 0.1}, {"noisy", 13, 2}, {"fast", 5, 0}, {"new", 1, 0}});
   const ReportChanges found = compare_runs(before, after, "old.json");
   ASSERT_EQ(found.changes.size(), 4u);
   EXPECT_FALSE(found.changes[0].significant);
@@ -91,7 +91,8 @@ TEST(BenchCompare, RatiosAboveALimitFail) {
   const ReportChanges found = compare_runs(report({{"noisy", 10, 5}, {"fast", 10, 0.1}}),
                                            report({{"noisy", 15, 5}, {"fast", 5, 0.1}}), "o");
   EXPECT_NO_THROW(require_ratios(found, 1.2)) << "a change within the spread is none";
-  const ReportChanges slow = compare_runs(report({{"slow", 10, 0.1}}), report({{"slow", 15, 0.1}}), "o");
+  const ReportChanges slow =
+      compare_runs(report({{"slow", 10, 0.1}}), report({{"slow", 15, 0.1}}), "o");
   EXPECT_NO_THROW(require_ratios(slow, 1.6));
   try {
     require_ratios(slow, 1.2);
@@ -154,13 +155,14 @@ TEST(BenchPublished, CellsAreThoseOfTheTable) {
 
 /// The keys of docs/benchmarks.md: of the context, of a row.
 const std::vector<std::string> kContext = test::words_of(
-    "date host_name device driver platform build_options kernel_hash git_describe host_cpu clpv_version "
-    "executable library_build_type");
+    "date host_name device driver platform build_options kernel_hash git_describe host_cpu "
+    "clpv_version executable library_build_type");
 const std::vector<std::string> kRow = test::words_of(
-    "name run_name suite stage basis layout storage lobe transport run_type status time_unit ceiling "
-    "occlusion filtered samples_ms n grid iterations repetitions threads family_index min median p95 max mad "
-    "real_time cpu_time wall_ms first_launch_ms build_ms device_bytes host_bytes flops bytes reads_per_cell "
-    "writes_per_cell gflops gbps max_rel_error tolerance ceiling_share");
+    "name run_name suite stage basis layout storage lobe transport run_type status time_unit "
+    "ceiling occlusion filtered samples_ms n grid iterations repetitions threads family_index min "
+    "median p95 max mad real_time cpu_time wall_ms first_launch_ms build_ms device_bytes "
+    "host_bytes flops bytes reads_per_cell writes_per_cell gflops gbps max_rel_error tolerance "
+    "ceiling_share");
 
 /// Small enough that compiling dominates the time.
 SuiteOptions small() {
@@ -176,8 +178,10 @@ std::vector<Row> rows_of(const Suite& suite, const std::string& filter,
   std::vector<Row> rows;
   for (const Group& group : suite.groups(test::test_session(), options)) {
     std::vector<Case> cases = group();
-    std::erase_if(cases, [&](const Case& c) { return !std::regex_search(c.row.name, std::regex(filter)); });
-    std::ranges::move(run_cases(test::test_session(), cases, {.repetitions = 1}), std::back_inserter(rows));
+    std::erase_if(
+        cases, [&](const Case& c) { return !std::regex_search(c.row.name, std::regex(filter)); });
+    std::ranges::move(run_cases(test::test_session(), cases, {.repetitions = 1}),
+                      std::back_inserter(rows));
   }
   return rows;
 }
@@ -203,9 +207,9 @@ TEST(BenchSuites, NativeComparesWithCodeByHand) {
   expect_right(rows);
   EXPECT_THAT(names_of(rows),
               ElementsAre("propagate/sh2/soa/float/occlusion", "native/sh2/soa/float/occlusion"));
-  EXPECT_THAT(
-      native_suite().table(rows),
-      ::testing::ContainsRegex("propagate/sh2/soa/float/occlusion .*[0-9]+[.][0-9]+ +[0-9.]+ +[0-9.e-]+\n"));
+  EXPECT_THAT(native_suite().table(rows),
+              ::testing::ContainsRegex(
+                  "propagate/sh2/soa/float/occlusion .*[0-9]+[.][0-9]+ +[0-9.]+ +[0-9.e-]+\n"));
 }
 
 TEST(BenchSuites, RegressionHasTheSweepAndWhatItsProgramsTookToBuild) {
@@ -213,10 +217,10 @@ TEST(BenchSuites, RegressionHasTheSweepAndWhatItsProgramsTookToBuild) {
   options.bases = {"bins24"};
   const std::vector<Row> rows = rows_of(regression_suite(), "^sweep", options);
   expect_right(rows);
-  EXPECT_THAT(names_of(rows),
-              ElementsAre("sweep/bins24/soa/float", "build/sweep/bins24/soa/float",
-                          "sweep/bins24/soa/float/occlusion", "build/sweep/bins24/soa/float/occlusion",
-                          "sweep/bins24/soa/half", "build/sweep/bins24/soa/half"));
+  EXPECT_THAT(names_of(rows), ElementsAre("sweep/bins24/soa/float", "build/sweep/bins24/soa/float",
+                                          "sweep/bins24/soa/float/occlusion",
+                                          "build/sweep/bins24/soa/float/occlusion",
+                                          "sweep/bins24/soa/half", "build/sweep/bins24/soa/half"));
   EXPECT_EQ(to_json(rows[0], 0)["transport"], "sweep");
   const nlohmann::json actions = nlohmann::json::parse(report_github_action(rows));
   ASSERT_EQ(actions.size(), rows.size());
@@ -236,14 +240,14 @@ TEST(BenchSuites, RowsOfScalingNameTheirAxis) {
 }
 
 TEST(BenchSuites, Table1HasThePublishedTimes) {
-  const std::vector<Row> rows =
-      rows_of(table1_suite(), "(inject-|gather).*/sh2/.*(cascade:0|gather/.*soa.*)$|gather/sh2/soa");
+  const std::vector<Row> rows = rows_of(
+      table1_suite(), "(inject-|gather).*/sh2/.*(cascade:0|gather/.*soa.*)$|gather/sh2/soa");
   expect_right(rows);
   const std::vector<std::string> names = names_of(rows);
-  ASSERT_THAT(names,
-              ::testing::IsSupersetOf({"inject-light/sh2/image/half/rotate-kernel/occlusion/cascade:0",
-                                       "inject-geometry/sh2/image/half/rotate-kernel/occlusion/cascade:0",
-                                       "gather/sh2/soa/float"}));
+  ASSERT_THAT(names, ::testing::IsSupersetOf(
+                         {"inject-light/sh2/image/half/rotate-kernel/occlusion/cascade:0",
+                          "inject-geometry/sh2/image/half/rotate-kernel/occlusion/cascade:0",
+                          "gather/sh2/soa/float"}));
   EXPECT_EQ(rows[0].published_ms, 2.028);
   EXPECT_FALSE(rows[1].published_ms);
   const std::string table = table1_suite().table(rows);
@@ -252,7 +256,8 @@ TEST(BenchSuites, Table1HasThePublishedTimes) {
 }
 
 TEST(BenchSuites, FactorsHaveSumsAndDifferencesFromThePreset) {
-  const std::vector<Row> rows = rows_of(factors_suite(), "/sh2/.*paper/(|rsm-format=float|layout=soa)$");
+  const std::vector<Row> rows =
+      rows_of(factors_suite(), "/sh2/.*paper/(|rsm-format=float|layout=soa)$");
   std::map<std::string, Row> sums;
   for (const Row& row : rows) {
     EXPECT_EQ(row.status, Status::ok) << row.name << ": " << row.reason;
@@ -282,7 +287,8 @@ TEST(BenchSuites, EveryPassOfRasterizingIsRightAndThePeerDrawsTheSame) {
   const std::string missing = gl_missing();
   for (const Row& row : rows) {
     const bool peer = row.name.ends_with("/opengl"), there = !peer || missing.empty();
-    EXPECT_EQ(row.status, there ? Status::ok : Status::unsupported) << row.name << ": " << row.reason;
+    EXPECT_EQ(row.status, there ? Status::ok : Status::unsupported)
+        << row.name << ": " << row.reason;
     if (!there) {
       EXPECT_EQ(row.reason, missing);
       continue;
@@ -303,14 +309,15 @@ const std::string kOneRow = "bases --basis sh2 --filter 'propagate/sh2/soa/float
 
 TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {
   const test::TemporaryFolder folder;
-  const std::string old = folder.write("old.json", report({{"propagate/sh2/soa/float", 1e-6, 0}}).dump())
-                              .string(),
-                    now = (folder / "new.json").string();
-  const auto out = test::run_here("bench " + kOneRow + " --output " + now + " --compare " + old + " --plot " +
-                                  (folder / "plots").string());
+  const std::string
+      old =
+          folder.write("old.json", report({{"propagate/sh2/soa/float", 1e-6, 0}}).dump()).string(),
+      now = (folder / "new.json").string();
+  const auto out = test::run_here("bench " + kOneRow + " --output " + now + " --compare " + old +
+                                  " --plot " + (folder / "plots").string());
   ASSERT_EQ(out.exit_code, 0) << out.err;
-  EXPECT_THAT(out.out,
-              ::testing::ContainsRegex("propagate/sh2/soa/float +0.0000 .*(HIGHER|within the spread)"))
+  EXPECT_THAT(out.out, ::testing::ContainsRegex(
+                           "propagate/sh2/soa/float +0.0000 .*(HIGHER|within the spread)"))
       << "three repetitions on a busy machine may have any spread";
   const nlohmann::json document = nlohmann::json::parse(test::read_file(now));
   const nlohmann::json& row = document["benchmarks"][0];

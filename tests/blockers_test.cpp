@@ -16,7 +16,8 @@ namespace {
 using namespace test;
 
 constexpr int kGrid = 4;
-const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // corners at 0..4, their cells half a metre round them
+const ClpvGrid kCells = {
+    {0, 0, 0}, 1, kGrid, {}};  // corners at 0..4, their cells half a metre round them
 
 /// Shares [axis][z][y][x], by the kernels.
 struct Shares {
@@ -29,7 +30,8 @@ struct Shares {
 Shares blocked(const SceneData& scene) {
   Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
   const SceneBuffers buffers = upload_scene(test_session(), scene);
-  VoxelField(test_session(), buffers, blocker_masks(buffers, kGrid, 1, {})).update(0, kCells, geometry);
+  VoxelField(test_session(), buffers, blocker_masks(buffers, kGrid, 1, {}))
+      .update(0, kCells, geometry);
   return {geometry.read(test_session())};
 }
 
@@ -54,7 +56,8 @@ TEST(Blockers, AWallBlocksExactlyTheSquaresItCovers) {
 TEST(Blockers, OverlappingWallsCountOnce) {
   SceneData scene;
   const unsigned material = add_material(scene);
-  for (const float x : {1.6f, 1.9f, 2.3f}) add_quad(scene, {x, -9, -9}, {0, 20, 0}, {0, 0, 20}, material);
+  for (const float x : {1.6f, 1.9f, 2.3f})
+    add_quad(scene, {x, -9, -9}, {0, 20, 0}, {0, 0, 20}, material);
   EXPECT_EQ(sum(blocked(scene), 0), 25);
 }
 
@@ -83,7 +86,8 @@ TEST(Blockers, ASlantedWallBlocksAlongEachAxisItCrosses) {
 
 TEST(Blockers, HolesOfMaskedMaterialsLetLightPass) {
   SceneData scene;
-  Texture stripes{.width = 2, .height = 1, .rgba = {255, 255, 255, 255, 255, 255, 255, 0}, .name = "stripes"};
+  Texture stripes{
+      .width = 2, .height = 1, .rgba = {255, 255, 255, 255, 255, 255, 255, 0}, .name = "stripes"};
   scene.textures.push_back(stripes);
   const unsigned material = add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED);
   scene.materials[material].texture = 0;

@@ -58,11 +58,13 @@ TEST(Bounce, AWhiteFaceReturnsEvenLight) {
   const std::vector<double> even(kSweepBins, 1.0);
   const std::vector<double> arriving = flux * std::span<const double>(even);
   for (int side = 0; side < kCellFaces; ++side) {
-    EXPECT_NEAR(arriving[static_cast<std::size_t>(side)], std::numbers::pi, 0.05 * std::numbers::pi);
+    EXPECT_NEAR(arriving[static_cast<std::size_t>(side)], std::numbers::pi,
+                0.05 * std::numbers::pi);
     for (int b = 0; b < kSweepBins; ++b) {
-      const double cosine =
-          (side % 2 == 0 ? 1 : -1) * sweep_bins(1)[static_cast<std::size_t>(b)].directions[0].w[side / 2];
-      EXPECT_NEAR(light(b, side) * arriving[static_cast<std::size_t>(side)], std::max(0.0, cosine), 0.02);
+      const double cosine = (side % 2 == 0 ? 1 : -1) *
+                            sweep_bins(1)[static_cast<std::size_t>(b)].directions[0].w[side / 2];
+      EXPECT_NEAR(light(b, side) * arriving[static_cast<std::size_t>(side)], std::max(0.0, cosine),
+                  0.02);
     }
   }
 }
@@ -100,7 +102,8 @@ struct Room {
       for (int side = 0; side < kCellFaces; ++side) {
         if (p[side / 2] != (side % 2 == 0 ? kFirst : kLast)) continue;
         for (int channel = 0; channel < 3; ++channel) {
-          for (int b = 0; b < kSweepBins; ++b) light.at(channel, b, p.x, p.y, p.z) += leaving(b, side);
+          for (int b = 0; b < kSweepBins; ++b)
+            light.at(channel, b, p.x, p.y, p.z) += leaving(b, side);
         }
       }
     });
@@ -109,8 +112,8 @@ struct Room {
   /// All light inside.
   double lit(Bounces bounces, int parts = 1) const {
     const SweptCascade cascade{grid, &light, &blockers, parts};
-    const reference::Volume swept_light =
-        reference::sweep_bounced(*make_basis("bins24"), swept(), {cascade}, {&reflectors}, bounces)[0];
+    const reference::Volume swept_light = reference::sweep_bounced(
+        *make_basis("bins24"), swept(), {cascade}, {&reflectors}, bounces)[0];
     double sum = 0;
     reference::for_each_cell(kGrid, [&](const glm::ivec3& p) {
       if (!inside(p)) return;
@@ -164,9 +167,10 @@ TEST(BouncedFrame, LaterBouncesLeaveALamp) {
 // own bounces.
 TEST(BouncedFrame, CascadesDoNotCountLightTwice) {
   for (const Bounces bounces : {Bounces::two, Bounces::all}) {
-    const double share = irradiance(small_frame(bounces, 1)) / irradiance(small_frame(Bounces::one, 1));
-    EXPECT_NEAR(irradiance(small_frame(bounces, 2)) / irradiance(small_frame(Bounces::one, 2)), share,
-                0.1 * share);
+    const double share =
+        irradiance(small_frame(bounces, 1)) / irradiance(small_frame(Bounces::one, 1));
+    EXPECT_NEAR(irradiance(small_frame(bounces, 2)) / irradiance(small_frame(Bounces::one, 2)),
+                share, 0.1 * share);
   }
 }
 

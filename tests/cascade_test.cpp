@@ -56,7 +56,8 @@ TEST(Cascade, RejectsCellsBelowTheResolutionOfCoordinates) {
     cascade_grids({1e7f, 0, 0}, 2, 12.5, 32);
   });
   EXPECT_THAT(message, ::testing::HasSubstr("cascade-size: found 12.5"));
-  EXPECT_THAT(message, ::testing::HasSubstr("allowed here: 3200 or more"));  // floats are 1 m apart there
+  EXPECT_THAT(message,
+              ::testing::HasSubstr("allowed here: 3200 or more"));  // floats are 1 m apart there
   for (const int count : {1, 2, 3}) {
     for (const double size : {3200.0, 3613.7}) {
       const auto grids = cascade_grids({9.9e6f, 3.3f, -1.1e6f}, count, size, 32);
@@ -95,7 +96,8 @@ TEST(Cascade, ItIsKnownWhetherCascadesMeetTheScene) {
   const SceneData scene = floor_of(10);
   EXPECT_TRUE(cascades_meet(scene, {0, 1, 0}, 3, 1, 32));
   EXPECT_TRUE(cascades_meet(scene, {0, 1.9f, 0}, 3, 1, 32));
-  EXPECT_FALSE(cascades_meet(scene, {0, 2.3f, 0}, 3, 1, 32)) << "the coarsest ends 2 m from the eye";
+  EXPECT_FALSE(cascades_meet(scene, {0, 2.3f, 0}, 3, 1, 32))
+      << "the coarsest ends 2 m from the eye";
   EXPECT_FALSE(cascades_meet(SceneData{}, {0, 0, 0}, 3, 1, 32));
 }
 
@@ -109,9 +111,9 @@ class WideModel : public ::testing::Test {
     path_ = model.write(folder_).string();
   }
   test::Outcome render(const std::string& more) const {
-    return test::run_here("render " + path_ +
-                          " --width 12 --height 9 --grid 8 --rsm-size 64 --shadow-size 16 " + "-o " +
-                          (folder_ / "a.exr").string() + " --frames 1 --stats " + stats() + " " + more);
+    return test::run_here(
+        "render " + path_ + " --width 12 --height 9 --grid 8 --rsm-size 64 --shadow-size 16 " +
+        "-o " + (folder_ / "a.exr").string() + " --frames 1 --stats " + stats() + " " + more);
   }
   std::string stats() const { return (folder_ / "stats.json").string(); }
 
@@ -133,7 +135,8 @@ TEST_F(WideModel, IsLitIndirectly) {
 TEST_F(WideModel, CascadesThatDoNotReachItAreWarnedOf) {
   const test::Outcome outcome = render("--cascade-size 12.5");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, ::testing::HasSubstr("nothing of the scene is in the cascades, which end 25 m"));
+  EXPECT_THAT(outcome.err,
+              ::testing::HasSubstr("nothing of the scene is in the cascades, which end 25 m"));
 }
 
 }  // namespace

@@ -90,13 +90,14 @@ TEST(CellSpheres, AreShadedByTheirIrradiance) {
 
 TEST(CellSpheres, AreAViewOfRenderAndNotOfPathtrace) {
   const TemporaryFolder folder;
-  EXPECT_EQ(
-      run_here("render " + kCornell + " --width 32 --height 18 --grid 8 --rsm-size 32 --view cells -o a.exr",
-               folder.path())
-          .exit_code,
-      0);
-  const Outcome traced = run_here(
-      "pathtrace " + kCornell + " --width 8 --height 8 --spp 1 --view cells -o a.exr", folder.path());
+  EXPECT_EQ(run_here("render " + kCornell +
+                         " --width 32 --height 18 --grid 8 --rsm-size 32 --view cells -o a.exr",
+                     folder.path())
+                .exit_code,
+            0);
+  const Outcome traced =
+      run_here("pathtrace " + kCornell + " --width 8 --height 8 --spp 1 --view cells -o a.exr",
+               folder.path());
   EXPECT_EQ(traced.exit_code, 2);
   EXPECT_THAT(traced.err, ::testing::HasSubstr("cells"));
 }

@@ -93,7 +93,8 @@ TEST_F(CentresFile, RejectsWithThePlace) {
 }
 
 TEST_F(CentresFile, IsDescribedByTheProgram) {
-  const test::Outcome good = test::run_here("basis --format json --lambda 0.3 --centres " + file(kAxesFile));
+  const test::Outcome good =
+      test::run_here("basis --format json --lambda 0.3 --centres " + file(kAxesFile));
   ASSERT_EQ(good.exit_code, 0) << good.err;
   const auto json = nlohmann::json::parse(good.out);
   EXPECT_EQ(json.at("schema"), 1);

@@ -16,7 +16,8 @@ void expect_agreement(Stage stage, Session& session) {
   for (const verify::CheckResult& result : results) {
     const verify::Deviation& found = result.deviation;
     EXPECT_TRUE(result.passed()) << result.stage << " " << result.variant << ": " << found.worst
-                                 << ", allowed " << found.allowed << "; " << found.place << result.reason;
+                                 << ", allowed " << found.allowed << "; " << found.place
+                                 << result.reason;
   }
 }
 

@@ -33,7 +33,8 @@ TEST(CommandLine, ExitCodes) {
   EXPECT_EQ(clpv("--device 99 check --stage sizes").exit_code, 4);
   const test::TemporaryFolder kernels;  // one of them computes something else
   kernels.write("sizes.cl", "__kernel void sizes(__global uint* bytes) { bytes[0] = 1; }\n");
-  EXPECT_EQ(test::run("CLPV_KERNEL_DIR=" + kernels.path().string() + " " CLPV_PROGRAM " check --stage sizes")
+  EXPECT_EQ(test::run("CLPV_KERNEL_DIR=" + kernels.path().string() +
+                      " " CLPV_PROGRAM " check --stage sizes")
                 .exit_code,
             5);
 }
@@ -56,20 +57,22 @@ TEST(CommandLine, HelpIsShortAndHelpAllIsWhole) {
   const std::string brief = clpv("render --help").out, whole = clpv("render --help-all").out;
   for (const char* common : {"--basis", "--grid", "--transport", "--near", "--output"})
     EXPECT_THAT(brief, HasSubstr(common));
-  for (const char* rare : {"  --lobe-time=", "  --blocker-stride=", "  --table-size=", "  --rsm-format="}) {
+  for (const char* rare :
+       {"  --lobe-time=", "  --blocker-stride=", "  --table-size=", "  --rsm-format="}) {
     EXPECT_THAT(brief, ::testing::Not(HasSubstr(rare)));
     EXPECT_THAT(whole, HasSubstr(rare));
   }
   EXPECT_THAT(brief, ::testing::ContainsRegex("--help-all lists [0-9]+ more options"));
-  EXPECT_THAT(clpv("--help").out, AllOf(HasSubstr("Look:"), HasSubstr("Measure:"), HasSubstr("Verify:"),
-                                        ::testing::Not(HasSubstr("prepare"))));
+  EXPECT_THAT(clpv("--help").out,
+              AllOf(HasSubstr("Look:"), HasSubstr("Measure:"), HasSubstr("Verify:"),
+                    ::testing::Not(HasSubstr("prepare"))));
 }
 
 TEST(CommandLine, AClosedPipeEndsTheProgram) {
   // SIGPIPE ends the program without a message, like any other.
   const test::TemporaryFolder folder;
-  const test::Outcome outcome =
-      test::run("{ " CLPV_PROGRAM " basis; echo $? >" + (folder / "code").string() + "; } | exec true");
+  const test::Outcome outcome = test::run("{ " CLPV_PROGRAM " basis; echo $? >" +
+                                          (folder / "code").string() + "; } | exec true");
   EXPECT_EQ(outcome.err, "");
   const std::string code = test::read_file(folder / "code");
   EXPECT_TRUE(code == "141\n" || code == "0\n") << code;  // 0: it was done before

@@ -51,7 +51,8 @@ TEST(Compare, IdenticalImages) {
 }
 
 TEST(Compare, AConstantOffset) {
-  const Comparison c = compare(plain(8, 8, 0.75f, 0.75f, 0.75f), "a", plain(8, 8, 0.5f, 0.5f, 0.5f), "b");
+  const Comparison c =
+      compare(plain(8, 8, 0.75f, 0.75f, 0.75f), "a", plain(8, 8, 0.5f, 0.5f, 0.5f), "b");
   EXPECT_FALSE(c.identical);
   EXPECT_NEAR(c.rmse, 0.25, 1e-12);
   EXPECT_NEAR(c.nrmse.value(), 0.5, 1e-12);
@@ -161,9 +162,9 @@ TEST_F(CompareCommand, ComparesALayerAndWritesTheDifference) {
   write_exr(file("b.exr"), b);
   ASSERT_EQ(run(file("a.exr") + " " + file("b.exr")), 0);
   EXPECT_TRUE(output()["identical"].get<bool>());
-  ASSERT_EQ(
-      run(file("a.exr") + " " + file("b.exr") + " --layer indirect -o " + file("d.exr") + " --amplify 10"),
-      0);
+  ASSERT_EQ(run(file("a.exr") + " " + file("b.exr") + " --layer indirect -o " + file("d.exr") +
+                " --amplify 10"),
+            0);
   EXPECT_NEAR(output()["max_error"].get<double>(), 0.01, 1e-6);
   EXPECT_NEAR(read_image(file("d.exr")).at(0, 0, 0), 0.1f, 1e-5);
   ASSERT_EQ(run(file("a.exr") + " " + file("b.exr") + " --layer indirect -o " + file("d.png")), 0);
@@ -194,7 +195,8 @@ TEST_F(CompareCommand, ComparesASuiteOfImagesWithTheirGroundTruths) {
 
   write_exr(file("truths/room-left-fedcba9876543210.exr"), truth);
   EXPECT_EQ(run(suite), 3);
-  EXPECT_NE(outcome_.err.find("found 2 ground truths room-left-HASH.exr of 6x4 pixels"), std::string::npos)
+  EXPECT_NE(outcome_.err.find("found 2 ground truths room-left-HASH.exr of 6x4 pixels"),
+            std::string::npos)
       << outcome_.err;
   write_exr(file("ours/room-left.exr"), plain(5, 4, 1, 1, 1));
   EXPECT_EQ(run(suite), 3);

@@ -47,10 +47,12 @@ TEST(Comparison, AReferenceOfNothingAllowsNothing) {
 
 TEST(Comparison, EitherOfTwoNearlyEqualBlockersIsRight) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const std::vector<double> up = basis->clamped_cosine({0, 1, 0}), along = basis->clamped_cosine({1, 0, 0});
+  const std::vector<double> up = basis->clamped_cosine({0, 1, 0}),
+                            along = basis->clamped_cosine({1, 0, 0});
   reference::Volume a(2, basis->size(), 1), b = a;
   const auto put = [](reference::Volume& to, int x, const std::vector<double>& c, double scale) {
-    for (std::size_t i = 0; i < c.size(); ++i) to.at(0, static_cast<int>(i), x, 0, 0) = scale * c[i];
+    for (std::size_t i = 0; i < c.size(); ++i)
+      to.at(0, static_cast<int>(i), x, 0, 0) = scale * c[i];
   };
   put(a, 0, up, 1), put(b, 0, along, 1.0005);  // as halves may round it
   put(a, 1, up, 1), put(b, 1, along, 1.01);
@@ -76,13 +78,16 @@ TEST(Junit, ListsStagesCasesAndFailures) {
                                 "A & B");
   EXPECT_THAT(
       xml,
-      AllOf(HasSubstr("<testsuites name=\"clpv check on A &amp; B\" tests=\"5\" failures=\"2\" errors=\"1\" "
-                      "skipped=\"1\">"),
-            HasSubstr("<testsuite name=\"inject\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"0\">"),
-            HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\" time=\"0.000\"/>"),
-            HasSubstr("name=\"a&lt;b\" time=\"0.000\">"),
-            HasSubstr("cell &quot;1&quot; &amp; more</failure>"), HasSubstr("<error>signal &lt;11></error>"),
-            HasSubstr("<skipped message=\"no images\"/>")));
+      AllOf(
+          HasSubstr("<testsuites name=\"clpv check on A &amp; B\" tests=\"5\" failures=\"2\" "
+                    "errors=\"1\" skipped=\"1\">"),
+          HasSubstr(
+              "<testsuite name=\"inject\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"0\">"),
+          HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\" time=\"0.000\"/>"),
+          HasSubstr("name=\"a&lt;b\" time=\"0.000\">"),
+          HasSubstr("cell &quot;1&quot; &amp; more</failure>"),
+          HasSubstr("<error>signal &lt;11></error>"),
+          HasSubstr("<skipped message=\"no images\"/>")));
 }
 
 TEST(Junit, IsWrittenByTheCheck) {

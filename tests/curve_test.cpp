@@ -53,7 +53,8 @@ TEST(Curve, SplineIsTheCubicOfItsValuesAndSlopes) {
   const auto p = [](double x) { return ((2 * x - 3) * x + 1) * x + 5; };
   const auto slope = [](double x) { return (6 * x - 6) * x + 1; };
   Curve curve{Interpolation::cubic_spline, 1, {0, 0.5, 2}, {}};
-  for (const double x : curve.times) curve.values = joined({curve.values, {slope(x), p(x), slope(x)}});
+  for (const double x : curve.times)
+    curve.values = joined({curve.values, {slope(x), p(x), slope(x)}});
   for (const double x : {0.0, 0.1, 0.25, 0.5, 0.6, 1.0, 1.7, 2.0})
     EXPECT_NEAR(at(curve, x)[0], p(x), 10 * kExact) << x;
 }

@@ -47,8 +47,10 @@ TEST_F(SkinTest, VerticesFollowTheirJoints) {
   model.document["nodes"][2]["translation"] = {2, 10, 0};
   const SceneData scene = load_scene(model.write(folder));
   EXPECT_THAT(position(scene, 0, 0), IsNear(glm::vec3(0, 0, 4), kNear));
-  EXPECT_THAT(position(scene, 0, 1), IsNear(glm::vec3(1, 10, 0), kNear)) << "its bind matrix takes 2 off";
-  EXPECT_THAT(position(scene, 0, 2), IsNear(glm::vec3(0, 6, 2), kNear)) << "half way between the two";
+  EXPECT_THAT(position(scene, 0, 1), IsNear(glm::vec3(1, 10, 0), kNear))
+      << "its bind matrix takes 2 off";
+  EXPECT_THAT(position(scene, 0, 2), IsNear(glm::vec3(0, 6, 2), kNear))
+      << "half way between the two";
   EXPECT_TRUE(scene.moving.empty());
   EXPECT_THAT(scene.notes, Not(Contains(HasSubstr("skin"))));
 }
@@ -69,7 +71,8 @@ TEST_F(SkinTest, JointsMoveAndTheirChildrenToo) {
 TEST_F(SkinTest, NormalsTurnWithTheirJoints) {
   primitive()["attributes"]["NORMAL"] = model.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
   const float half = std::sqrt(0.5f);
-  model.document["nodes"][2] = {{"translation", {2, 0, 0}}, {"rotation", {0, half, 0, half}}};  // z to x
+  model.document["nodes"][2] = {{"translation", {2, 0, 0}},
+                                {"rotation", {0, half, 0, half}}};  // z to x
   const SceneData scene = load_scene(model.write(folder));
   EXPECT_THAT(normal(scene, 0, 0), IsNear(glm::vec3(0, 0, 1), kNear));
   EXPECT_THAT(normal(scene, 0, 1), IsNear(glm::vec3(1, 0, 0), kNear));
@@ -88,8 +91,9 @@ TEST_F(SkinTest, WeightsAreSharesAndNoneMeansTheFirstJoint) {
 /// The triangle with two targets: one lifts its third corner by 2, the other moves its second one.
 struct MorphTest : AnimationTest {
   MorphTest() {
-    primitive()["targets"] = {{{"POSITION", model.accessor<float>("VEC3", {0, 0, 0, 0, 0, 0, 0, 0, 2})}},
-                              {{"POSITION", model.accessor<float>("VEC3", {0, 0, 0, 3, 0, 0, 0, 0, 0})}}};
+    primitive()["targets"] = {
+        {{"POSITION", model.accessor<float>("VEC3", {0, 0, 0, 0, 0, 0, 0, 0, 2})}},
+        {{"POSITION", model.accessor<float>("VEC3", {0, 0, 0, 3, 0, 0, 0, 0, 0})}}};
   }
 };
 
@@ -102,7 +106,8 @@ TEST_F(MorphTest, TargetsAddUpByTheWeightsOfTheNodeElseTheMesh) {
   model.document["nodes"][0]["weights"] = {1, 0};
   const SceneData of_node = load_scene(model.write(folder));
   EXPECT_THAT(position(of_node, 0, 2), IsNear(glm::vec3(0, 1, 2), kNear));
-  EXPECT_THAT(normal(of_node, 0, 0), IsNear(face_normal(of_node, 0), kNear)) << "flat normals are recomputed";
+  EXPECT_THAT(normal(of_node, 0, 0), IsNear(face_normal(of_node, 0), kNear))
+      << "flat normals are recomputed";
   EXPECT_TRUE(of_node.moving.empty());
 }
 

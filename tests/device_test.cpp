@@ -55,7 +55,8 @@ TEST(ChooseDevice, RejectsWithTheReason) {
   const auto rejected = [](const std::vector<Device>& of, const char* choice) {
     return test::error_of(ExitCode::device, [&] { choose_device(of, choice); });
   };
-  EXPECT_THAT(rejected(devices, "7"), AllOf(HasSubstr("'7'"), HasSubstr("1: Big GPU (Third Platform)")));
+  EXPECT_THAT(rejected(devices, "7"),
+              AllOf(HasSubstr("'7'"), HasSubstr("1: Big GPU (Third Platform)")));
   rejected(devices, "1:0");  // a platform without devices
   EXPECT_THAT(rejected(devices, "gpu"), HasSubstr("several"));
   EXPECT_THAT(rejected(devices, "old"), HasSubstr("OpenCL 1.2, compiler"));
@@ -72,10 +73,11 @@ TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
   ASSERT_EQ(json.at("devices").size(), 1u);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json["devices"][0].items()) keys.push_back(key);
-  EXPECT_THAT(keys, ::testing::UnorderedElementsAre(
-                        "index", "platform_index", "device_index", "platform", "name", "driver", "version",
-                        "type", "compute_units", "max_alloc_bytes", "images", "image3d_writes",
-                        "int64_atomics", "fp64", "profiling_valid", "supported", "missing"));
+  EXPECT_THAT(keys, ::testing::UnorderedElementsAre("index", "platform_index", "device_index",
+                                                    "platform", "name", "driver", "version", "type",
+                                                    "compute_units", "max_alloc_bytes", "images",
+                                                    "image3d_writes", "int64_atomics", "fp64",
+                                                    "profiling_valid", "supported", "missing"));
 }
 
 TEST(DevicesCommand, WithoutDriversIsAnEmptyListAndAMessage) {
@@ -96,8 +98,10 @@ TEST(ClError, NamesCodeCallAndAdvice) {
   const Error memory =
       cl_error(cl::Error(CL_MEM_OBJECT_ALLOCATION_FAILURE, "clEnqueueNDRangeKernel"), "kernel 'x'");
   EXPECT_EQ(memory.code(), ExitCode::run_time);
-  EXPECT_THAT(memory.what(), HasSubstr("kernel 'x': clEnqueueNDRangeKernel failed with "
-                                       "CL_MEM_OBJECT_ALLOCATION_FAILURE (-4)"));
+  EXPECT_THAT(
+      memory.what(),
+      HasSubstr(
+          "kernel 'x': clEnqueueNDRangeKernel failed with CL_MEM_OBJECT_ALLOCATION_FAILURE (-4)"));
   EXPECT_THAT(memory.what(), HasSubstr("smaller grid"));
   EXPECT_EQ(cl_error(cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs")).code(), ExitCode::device);
 }

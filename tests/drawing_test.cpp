@@ -42,10 +42,11 @@ TEST_F(Drawing, BasisFiguresAreWrittenAndListed) {
 }
 
 TEST_F(Drawing, AReportIsOnePageWithItsViews) {
-  const test::Outcome outcome = run_here(
-      "report " + file("page") +
-      " " CLPV_SOURCE_DIR "/scenes/cornell.json --camera front --width 48 --height 27 --spp 4 --cache " +
-      file("cache"));
+  const test::Outcome outcome =
+      run_here("report " + file("page") +
+               " " CLPV_SOURCE_DIR
+               "/scenes/cornell.json --camera front --width 48 --height 27 --spp 4 --cache " +
+               file("cache"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("index.html"));
   const std::string html = test::read_file(file("page/index.html"));

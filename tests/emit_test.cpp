@@ -59,7 +59,8 @@ TEST(Emit, FluxIsPiTimesRadianceTimesArea) {
     const unsigned flags = sides == 2 ? CLPV_MATERIAL_DOUBLE_SIDED : 0;
     add_quad(scene, {-0.6f, 0.3f, 0.1f}, {0.7f, 0.2f, 0}, {0, 0.3f, 0.5f},
              add_lamp_material(scene, {5, 1, 0.25f}, flags));
-    const double area = glm::length(glm::cross(glm::dvec3(0.7f, 0.2f, 0), glm::dvec3(0, 0.3f, 0.5f)));
+    const double area =
+        glm::length(glm::cross(glm::dvec3(0.7f, 0.2f, 0), glm::dvec3(0, 0.3f, 0.5f)));
     const glm::dvec3 flux = total(emitted(scene, plan_of(scene, grids_about({0, 0, 0})), 2));
     EXPECT_NEAR(flux.x, sides * 2 * pi * 5 * area, 1e-4 * flux.x);
     EXPECT_NEAR(flux.y, sides * 2 * pi * 1 * area, 1e-4 * flux.y);
@@ -112,7 +113,8 @@ TEST(Emit, HolesDoNotEmit) {
 // nowhere twice, none outside.
 TEST(Emit, PointsAreAsFarApartAsTheCellsThere) {
   SceneData scene;
-  add_quad(scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0}, add_lamp_material(scene, glm::vec3(1)));
+  add_quad(scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0},
+           add_lamp_material(scene, glm::vec3(1)));
   const std::vector<ClpvGrid> grids = grids_about({0.3f, 0.2f, -0.4f}, 3);
   const EmissionPlan plan = plan_of(scene, grids);
   EXPECT_EQ(plan.coarsened, 0);
@@ -121,8 +123,10 @@ TEST(Emit, PointsAreAsFarApartAsTheCellsThere) {
     for (std::size_t c = 0; c < grids.size(); ++c) {
       const ClpvGrid& grid = grids[c];
       const glm::dvec3 within =
-          (point.position - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) / double{grid.cell};
-      if (std::min({within.x, within.y, within.z}) < 0 || std::max({within.x, within.y, within.z}) > grid.n)
+          (point.position - glm::dvec3(grid.origin[0], grid.origin[1], grid.origin[2])) /
+          double{grid.cell};
+      if (std::min({within.x, within.y, within.z}) < 0 ||
+          std::max({within.x, within.y, within.z}) > grid.n)
         continue;
       areas[c] += point.flux.x / pi;
       if (c > 0) continue;
@@ -149,7 +153,8 @@ TEST(Emit, TheNumberOfPointsIsBounded) {
   EXPECT_LT(few.points, all.points);
   EXPECT_NEAR(total(emitted(scene, few)).x, total(emitted(scene, all)).x, 1e-3);
   EXPECT_THROW(plan_emission(scene, triangles, grids, 1), Error);
-  for (int i = 0; i < 50; ++i) add_triangle(scene, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, lamp);  // of no area
+  for (int i = 0; i < 50; ++i)
+    add_triangle(scene, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, lamp);  // of no area
   EXPECT_EQ(plan_of(scene, grids).points, all.points);
 }
 
@@ -236,7 +241,8 @@ TEST(EmissiveFrame, StaticEmittersKeepTheirPoints) {
   for (std::size_t i = 0; i < 4; ++i) scene.vertices[i].position[1] -= 0.1f;
   frame.scene_moved();
   frame.render(scene.cameras[0]);
-  for (const StageTime& time : test_session().timeline().times()) EXPECT_NE(time.mark.pass, Pass::emit);
+  for (const StageTime& time : test_session().timeline().times())
+    EXPECT_NE(time.mark.pass, Pass::emit);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An empty room against path tracing and a closed form: indirect light converges as cells and directions get smaller.
+// An empty room against path tracing and a closed form: indirect light converges as cells and
+// directions get smaller.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -31,9 +32,9 @@ constexpr const char* kCamera = "front";
 Image traced(const SceneData& scene) {
   pathtracer::PathTracerOptions options;
   options.noise = 0.04;
-  return traced_view(
-      trace_paths(scene, scene.lights, camera_view(scene.camera(kCamera), kWidth, kHeight), options),
-      Show::indirect);
+  return traced_view(trace_paths(scene, scene.lights,
+                                 camera_view(scene.camera(kCamera), kWidth, kHeight), options),
+                     Show::indirect);
 }
 
 std::unique_ptr<Frame> rendered(const SceneData& scene, const std::string& basis, int grid,
@@ -50,7 +51,8 @@ std::unique_ptr<Frame> rendered(const SceneData& scene, const std::string& basis
 }
 
 Quality quality(Frame& frame, const Image& truth) {
-  const Comparison comparison = compare(view_image(frame, Show::indirect), "frame", truth, "ground truth");
+  const Comparison comparison =
+      compare(view_image(frame, Show::indirect), "frame", truth, "ground truth");
   return {comparison.nrmse_valid.value(), comparison.energy_ratio.value()};
 }
 
@@ -65,14 +67,16 @@ TEST(EmptyRoom, FinerCellsAndDirectionsConverge) {
   EXPECT_LT(fine.nrmse, 0.7 * quality(*rendered(scene, "bins24", 64), truth).nrmse);
 }
 
-// One bounce of light that falls on the floor alone: the floor is plane, so it stays dark. Four or nine harmonics of its
-// cells' light, without what they lack of a clamped cosine, give it a quarter of the room's mean.
+// One bounce of light that falls on the floor alone: the floor is plane, so it stays dark. Four or
+// nine harmonics of its cells' light, without what they lack of a clamped cosine, give it a quarter
+// of the room's mean.
 TEST(EmptyRoom, AFloorDoesNotLightItself) {
   SceneData scene = load_scene(test::scene_file("empty_room.json"));
   scene.lights = {{"steep", directional_light(glm::normalize(glm::vec3(0, -0.9f, 0.44f)))}};
   for (const std::string basis : {"sh2", "sh3"}) {
     const std::unique_ptr<Frame> frame = rendered(scene, basis, 64, Directions::of384);
-    const std::vector<float> light = frame->read(Show::indirect), normals = frame->read(Show::normal);
+    const std::vector<float> light = frame->read(Show::indirect),
+                             normals = frame->read(Show::normal);
     double floor = 0, room = 0;
     int pixels = 0;
     for (std::size_t i = 0; i < light.size(); i += 4) {

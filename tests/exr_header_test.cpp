@@ -20,8 +20,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 DeclaredImage walked(const std::string& bytes) {
-  return read_exr_header("a.exr",
-                         std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+  return read_exr_header(
+      "a.exr", std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
 
 std::string rejection(const std::string& bytes) {
@@ -66,9 +66,11 @@ std::string one(const std::string& attributes, std::size_t room = 8) {
 
 TEST(ExrHeader, IsWhatOpenExrReads) {
   int images = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image")) {
     const std::string bytes = test::read_file(entry.path());
-    if (!bytes.starts_with("\x76\x2f\x31\x01") || entry.path().filename().string().starts_with("hostile_"))
+    if (!bytes.starts_with("\x76\x2f\x31\x01") ||
+        entry.path().filename().string().starts_with("hostile_"))
       continue;
     const test::TemporaryFolder folder;
     const Image image = read_image(folder.write("a.exr", bytes));
@@ -91,7 +93,8 @@ TEST(ExrHeader, TheFirstOfSeveralPartsIsReturned) {
   EXPECT_EQ(declared.channels, 1) << "the second has three";
   const std::size_t second = bytes.rfind("compression\0compression\0"s);
   bytes.replace(second + 24, 4, number(1u << 30));
-  EXPECT_THAT(rejection(bytes), AllOf(HasSubstr("part 1, attribute 'compression'"), HasSubstr("1073741824")));
+  EXPECT_THAT(rejection(bytes),
+              AllOf(HasSubstr("part 1, attribute 'compression'"), HasSubstr("1073741824")));
 }
 
 TEST(ExrHeader, TakesTilesAndDeepPartsByFlagsAndTypes) {
@@ -105,15 +108,15 @@ TEST(ExrHeader, TakesTilesAndDeepPartsByFlagsAndTypes) {
   EXPECT_EQ(declared.chunk_height, 8);
   EXPECT_TRUE(walked(file(deep, size + deep_type + '\0', 512)).deep);
   EXPECT_FALSE(walked(one(size + deep_type, 512)).deep);
-  EXPECT_TRUE(walked(file(several, size + tiles + part_type("tiledimage") + '\0' + '\0', 256)).tiled);
+  EXPECT_TRUE(
+      walked(file(several, size + tiles + part_type("tiledimage") + '\0' + '\0', 256)).tiled);
 }
 
 TEST(ExrHeader, PartsAreOfTypesThatOpenExrChecks) {
   for (const Flags flags : {deep, several}) {
-    EXPECT_THAT(
-        rejection(file(flags, part_type("scanlin") + '\0' + '\0')),
-        HasSubstr(
-            "part 0: found type 'scanlin'; allowed: scanlineimage, tiledimage, deepscanline, deeptile"));
+    EXPECT_THAT(rejection(file(flags, part_type("scanlin") + '\0' + '\0')),
+                HasSubstr("part 0: found type 'scanlin'; allowed: scanlineimage, tiledimage, "
+                          "deepscanline, deeptile"));
     EXPECT_THAT(rejection(file(flags, window(4, 4) + '\0' + '\0')), HasSubstr("found type ''"));
   }
   expect_accepted(one(part_type("scanlin")));  // OpenEXR reads the flags
@@ -131,38 +134,47 @@ TEST(ExrHeader, TextsAndUnknownTypesAreNoLongerThanTheFile) {
 
 TEST(ExrHeader, ValuesHaveTheSizeOfTheirTypes) {
   // OpenEXR would read past a shorter one, and would take the rest of a longer one for attributes.
-  for (const std::string& type :
-       test::words_of("box2f box2i chromaticities compression deepImageState double envmap float int keycode "
-                      "lineOrder m33d m33f m44d m44f rational tiledesc timecode v2d v2f v2i v3d v3f v3i")) {
-    EXPECT_THAT(rejection(one(attribute("a", type, ""))), HasSubstr("'a' (" + type + "): found 0 bytes"));
-    EXPECT_THAT(rejection(one(attribute("a", type, std::string(200, '\0')))), HasSubstr("found 200 bytes"));
+  for (const std::string& type : test::words_of(
+           "box2f box2i chromaticities compression deepImageState double envmap float int keycode "
+           "lineOrder m33d m33f m44d m44f rational tiledesc timecode v2d v2f v2i v3d v3f v3i")) {
+    EXPECT_THAT(rejection(one(attribute("a", type, ""))),
+                HasSubstr("'a' (" + type + "): found 0 bytes"));
+    EXPECT_THAT(rejection(one(attribute("a", type, std::string(200, '\0')))),
+                HasSubstr("found 200 bytes"));
   }
   EXPECT_THAT(rejection(one(attribute("a", "floatvector", "12345"))), HasSubstr("4 per number"));
 }
 
 TEST(ExrHeader, ValuesHaveTheSizeThatTheySay) {
   const auto preview = [](std::uint32_t width, std::uint32_t height, std::size_t bytes) {
-    return one(attribute("preview", "preview", number(width) + number(height) + std::string(bytes, 'x')));
+    return one(
+        attribute("preview", "preview", number(width) + number(height) + std::string(bytes, 'x')));
   };
   expect_accepted(preview(2, 3, 24));
   for (const std::string& bytes :
-       {preview(2, 3, 23), preview(2, 3, 28), preview(40000, 40000, 24), preview(0xffffffffu, 0xffffffffu, 4),
-        preview(0x7fffffff, 0x7fffffff, 4)}) {
+       {preview(2, 3, 23), preview(2, 3, 28), preview(40000, 40000, 24),
+        preview(0xffffffffu, 0xffffffffu, 4), preview(0x7fffffff, 0x7fffffff, 4)}) {
     EXPECT_THAT(rejection(bytes), HasSubstr("pixels in"));
   }
-  EXPECT_THAT(rejection(one(attribute("preview", "preview", "1234567"))), HasSubstr("found 7 bytes"));
-  const auto texts = [](const std::string& value) { return one(attribute("a", "stringvector", value)); };
+  EXPECT_THAT(rejection(one(attribute("preview", "preview", "1234567"))),
+              HasSubstr("found 7 bytes"));
+  const auto texts = [](const std::string& value) {
+    return one(attribute("a", "stringvector", value));
+  };
   expect_accepted(texts(number(1) + "a" + number(0) + number(2) + "bc"));
   EXPECT_THAT(rejection(texts(number(1) + "a" + number(9) + "bc")), HasSubstr("found 9 bytes"));
   EXPECT_THAT(rejection(texts(number(1) + "ab")), HasSubstr("found 4 bytes"));
 }
 
 TEST(ExrHeader, ChannelsAreCountedAndEndWhereTheySay) {
-  const auto channels = [](const std::string& list) { return one(attribute("channels", "chlist", list)); };
+  const auto channels = [](const std::string& list) {
+    return one(attribute("channels", "chlist", list));
+  };
   EXPECT_EQ(walked(channels(channel("B") + channel("G") + '\0')).channels, 2);
   EXPECT_EQ(walked(channels("\0"s)).channels, 0);
   EXPECT_THAT(rejection(channels(channel("B"))), HasSubstr("no end of a name in 0 bytes"));
-  EXPECT_THAT(rejection(channels(channel("B") + '\0' + "more")), HasSubstr("4 bytes after the last channel"));
+  EXPECT_THAT(rejection(channels(channel("B") + '\0' + "more")),
+              HasSubstr("4 bytes after the last channel"));
   EXPECT_THAT(rejection(channels("B\0"s + "123")), HasSubstr("found 16 bytes"));
   EXPECT_THAT(rejection(one(attribute(std::string(256, 'n'), "int", "1234"))),
               HasSubstr("no end of a name in 256 bytes"));
@@ -201,14 +213,16 @@ TEST(ExrHeader, TablesOfChunksFitIntoTheFile) {
                 HasSubstr(fmt::format("part 0: found {} chunks", chunks)));
   }
   const auto tiles = [](std::uint32_t width, std::uint32_t height) {
-    return window(16384, 16384) + attribute("tiles", "tiledesc", number(width) + number(height) + '\0');
+    return window(16384, 16384) +
+           attribute("tiles", "tiledesc", number(width) + number(height) + '\0');
   };
   EXPECT_THAT(rejection(file(tiled, tiles(1, 1) + '\0')), HasSubstr("found 268435456 chunks"));
   expect_accepted(file(tiled, tiles(16384, 8192) + '\0', 16));
   expect_accepted(file(tiled, tiles(0, 0) + '\0', 0));  // which OpenEXR does
   EXPECT_THAT(rejection(one(attribute("chunkCount", "int", number(1u << 30)))),
               HasSubstr("1073741824 chunks"));
-  const std::string part = window(4, 4) + part_type("scanlineimage") + '\0';  // 4 chunks, and as many
+  // 4 chunks, and as many.
+  const std::string part = window(4, 4) + part_type("scanlineimage") + '\0';
   expect_accepted(file(several, part + part + '\0', 64));
   EXPECT_THAT(rejection(file(several, part + part + '\0', 8)), HasSubstr("part 1: found 4 chunks"));
   EXPECT_THAT(rejection(file(several, part + part + '\0', 40)),
@@ -216,9 +230,11 @@ TEST(ExrHeader, TablesOfChunksFitIntoTheFile) {
 }
 
 TEST(ExrHeader, AFileMayEndAnywhere) {
-  const std::string whole = one(window(4, 4) + attribute("channels", "chlist", channel("Y") + '\0'), 0);
+  const std::string whole =
+      one(window(4, 4) + attribute("channels", "chlist", channel("Y") + '\0'), 0);
   for (std::size_t length = 0; length < whole.size(); ++length) {
-    EXPECT_THAT(rejection(whole.substr(0, length)), AllOf(HasSubstr("a.exr"), HasSubstr("found"))) << length;
+    EXPECT_THAT(rejection(whole.substr(0, length)), AllOf(HasSubstr("a.exr"), HasSubstr("found")))
+        << length;
   }
 }
 

@@ -41,7 +41,8 @@ TEST(Flip, PlainColours) {
 
 TEST(Flip, StripesAndEdges) {
   const auto stripes = [](int period) {
-    return drawn(64, 48, [=](int x, int) { return glm::vec3(x % period < period / 2 ? 0.25f : 0.75f); });
+    return drawn(64, 48,
+                 [=](int x, int) { return glm::vec3(x % period < period / 2 ? 0.25f : 0.75f); });
   };
   const Image grey = drawn(64, 48, [](int, int) { return glm::vec3(0.5f); });
   EXPECT_NEAR(mean(flip(stripes(2), grey)), 0.26794, 1e-4);
@@ -55,7 +56,8 @@ TEST(Flip, StripesAndEdges) {
 }
 
 TEST(Flip, FinerPixelsAreSeenLess) {
-  const Image stripes = drawn(64, 48, [](int x, int) { return glm::vec3(x % 8 < 4 ? 0.25f : 0.75f); });
+  const Image stripes =
+      drawn(64, 48, [](int x, int) { return glm::vec3(x % 8 < 4 ? 0.25f : 0.75f); });
   const Image grey = drawn(64, 48, [](int, int) { return glm::vec3(0.5f); });
   EXPECT_LT(mean(flip(stripes, grey, 200)), 0.8 * mean(flip(stripes, grey)));
 }

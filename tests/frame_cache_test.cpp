@@ -107,7 +107,8 @@ Passes with(Passes passes, const Passes& more) {
   return passes;
 }
 
-const Passes kOfLight{Pass::rasterize_shadow, Pass::rasterize_rsm, Pass::inject_light, Pass::propagate};
+const Passes kOfLight{Pass::rasterize_shadow, Pass::rasterize_rsm, Pass::inject_light,
+                      Pass::propagate};
 const Passes kOfView{Pass::near_trace};
 const Passes kOfCells{Pass::blockers, Pass::visibility, Pass::reflectors};
 

@@ -97,9 +97,11 @@ TEST(Frame, TheBackWallIsRedNearTheRedWall) {
     // a ratio of 1.34.
     constexpr int kLeft = 37, kSide = 6, kTop = 18, kLow = 30;
     const auto red_over_green = [&](int left) {
-      return mean(light, left, kTop, left + kSide, kLow, 0) / mean(light, left, kTop, left + kSide, kLow, 1);
+      return mean(light, left, kTop, left + kSide, kLow, 0) /
+             mean(light, left, kTop, left + kSide, kLow, 1);
     };
-    EXPECT_GT(red_over_green(kLeft), 1.2 * red_over_green(kWidth - kLeft - kSide)) << name_of(transport);
+    EXPECT_GT(red_over_green(kLeft), 1.2 * red_over_green(kWidth - kLeft - kSide))
+        << name_of(transport);
   }
 }
 
@@ -142,7 +144,8 @@ TEST(Frame, RejectsOptionsThatDoNotGoTogether) {
 }
 
 /// Accumulated light of the finest cascade, seen from `eye`.
-std::vector<float> finest_light(const SceneData& scene, const RenderOptions& options, const glm::vec3& eye) {
+std::vector<float> finest_light(const SceneData& scene, const RenderOptions& options,
+                                const glm::vec3& eye) {
   Frame frame(test::test_session(), scene, options);
   SceneCamera camera = scene.camera("");
   camera.eye = eye;
@@ -159,7 +162,8 @@ TEST(Frame, MovingByACellShiftsLightByOne) {
   RenderOptions options = small_options(scene);
   options.blockers = Blockers::none;
   options.transport = TransportKind::sampled;
-  options.iterations = 0;  // then cells in both grids have the same light, as none comes from outside
+  // Then cells in both grids have the same light, as none comes from outside.
+  options.iterations = 0;
   const auto cell = static_cast<float>(options.cascade_size / options.grid);
   const glm::vec3 eye = (glm::floor(scene.camera("").eye / cell) + 0.25f) * cell;
   const auto here = finest_light(scene, options, eye),
@@ -210,13 +214,15 @@ TEST(Frame, TooLargeAGridNamesOneThatCanFit) {
   const std::string message = test::error_of(
       ExitCode::run_time, [&] { Frame(session, load_scene(scene_file("cornell.json")), options); });
   ASSERT_THAT(message, ::testing::HasSubstr("grid: found 64, and at most "));
-  const int fits = std::stoi(message.substr(message.find("at most ", message.find("grid: found")) + 8));
+  const int fits =
+      std::stoi(message.substr(message.find("at most ", message.find("grid: found")) + 8));
   EXPECT_GT(fits, 8);
   EXPECT_LT(fits, 64);
   options.grid = 512;
   EXPECT_THAT(
-      test::error_of(ExitCode::device,
-                     [&] { Frame(test::test_session(), load_scene(scene_file("cornell.json")), options); }),
+      test::error_of(
+          ExitCode::device,
+          [&] { Frame(test::test_session(), load_scene(scene_file("cornell.json")), options); }),
       ::testing::HasSubstr("kernels address at most 2147483647: grid 4"));
 }
 

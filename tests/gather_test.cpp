@@ -89,20 +89,22 @@ SurfaceImage walk(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3
 /// Irradiance E [W/m^2] of each pixel, by the CPU reference, from volumes of grid_of(0),
 /// grid_of(1), ... `occluded`: bytes as VoxelField stores them.
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, GatherOptions options,
-                               const std::vector<reference::Volume>& light, const SurfaceImage& image,
+                               const std::vector<reference::Volume>& light,
+                               const SurfaceImage& image,
                                const std::vector<std::uint8_t>& occluded = {}) {
   options.grid = kGrid;
   std::vector<reference::Cascade> cascades;
   for (std::size_t c = 0; c < light.size(); ++c) {
     cascades.push_back({grid_of(static_cast<int>(c)), &light[c]});
-    if (!occluded.empty()) cascades[c].occluded = occluded.data() + c * occluded.size() / light.size();
+    if (!occluded.empty())
+      cascades[c].occluded = occluded.data() + c * occluded.size() / light.size();
   }
   return reference::gather(basis, transport, options, cascades, image);
 }
 
 /// Expects E of every pixel to be `expected(pixel)` times 1, 2, 3 in the three channels.
-void expect_all(const std::vector<glm::dvec3>& found, const std::function<double(std::size_t)>& expected,
-                double scale) {
+void expect_all(const std::vector<glm::dvec3>& found,
+                const std::function<double(std::size_t)>& expected, double scale) {
   for (std::size_t pixel = 0; pixel < found.size(); ++pixel) {
     for (int channel = 0; channel < 3; ++channel)
       ASSERT_NEAR(found[pixel][channel], expected(pixel) * (channel + 1), kFloat * scale)
@@ -128,9 +130,10 @@ TEST(Gather, UniformLightIsTheSameEverywhereInside) {
     const std::unique_ptr<Basis> basis = make_basis(name);
     const std::vector<double> c = times(1.75, basis->constant());
     const SurfaceImage image = walk({-0.98, 0.9, -0.9}, {0.97, -0.98, 0.9}, kTilted);
-    const std::vector<glm::dvec3> found = gather(*basis, TransportKind::sampled, {}, {uniform(c)}, image);
-    expect_all(found,
-               4 * basis->value(c, -kTilted) / (kCell * kCell));  // spherical harmonics: 4 . 1.75 / s^2
+    const std::vector<glm::dvec3> found =
+        gather(*basis, TransportKind::sampled, {}, {uniform(c)}, image);
+    expect_all(found, 4 * basis->value(c, -kTilted) /
+                          (kCell * kCell));  // spherical harmonics: 4 . 1.75 / s^2
   }
 }
 
@@ -169,9 +172,11 @@ TEST(Gather, LinearLightIsReproducedWithTheOffset) {
   const glm::dvec3 from(-0.98, 0.8, -0.9), to(0.97, -0.95, 0.95);
   for (const double offset : {0.5, 0.75, 0.0}) {
     const std::vector<glm::dvec3> found =
-        gather(*basis, TransportKind::sampled, {.gather_offset = offset}, {light}, walk(from, to, kTilted));
+        gather(*basis, TransportKind::sampled, {.gather_offset = offset}, {light},
+               walk(from, to, kTilted));
     const auto expected = [&](std::size_t pixel) {
-      const glm::dvec3 p(along(from.x, to.x, pixel), along(from.y, to.y, pixel), along(from.z, to.z, pixel));
+      const glm::dvec3 p(along(from.x, to.x, pixel), along(from.y, to.y, pixel),
+                         along(from.z, to.z, pixel));
       return 4 * intensity(p / double{kCell} + kGrid / 2.0 + offset * kTilted) / (kCell * kCell);
     };
     expect_all(found, expected, 3 * 4 * 10 / (kCell * kCell));
@@ -198,14 +203,16 @@ TEST(Gather, CascadesHandOverWithoutASeam) {
   expect_all(found, expected, 3 * fine);
   for (std::size_t pixel = 1; pixel < kPixels; ++pixel) {
     const double step = std::abs(found[pixel].x - found[pixel - 1].x);
-    ASSERT_LE(step, 1.01 * fine / (3 * kCell) * (to - from) / kPixels) << "a jump at pixel " << pixel;
+    ASSERT_LE(step, 1.01 * fine / (3 * kCell) * (to - from) / kPixels)
+        << "a jump at pixel " << pixel;
   }
   EXPECT_EQ(found.back(), glm::dvec3(0)) << "outside all cascades";
 }
 
 TEST(Gather, SharesDoNotJumpWhereTheEyeCrossesIntoAnotherCell) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const reference::Volume fine = uniform(times(5, basis->constant())), coarse = uniform(basis->constant());
+  const reference::Volume fine = uniform(times(5, basis->constant())),
+                          coarse = uniform(basis->constant());
   const auto seen_from = [&](float eye, const glm::dvec3& p) {
     const auto grids = cascade_grids({eye, 0.1f, 0.2f}, 2, double{kCell} * kGrid, kGrid);
     return reference::gather(*basis, TransportKind::sampled, {.grid = kGrid},
@@ -258,9 +265,10 @@ TEST(Gather, HiddenCellsDoNotLightASurface) {
   const Walled scene = walled(*basis);
   const double lit = 4 * 2.0 / (kCell * kCell);
   const auto on_wall = [&](double side, Gathering gathering) {
-    const SurfaceImage image = walk({side * 1e-4, -0.98, -0.9}, {side * 1e-4, 0.97, 0.95}, {side, 0, 0});
-    return gather(*basis, TransportKind::sampled, {.gather = gathering, .gather_offset = 0.25}, {scene.light},
-                  image, scene.occluded);
+    const SurfaceImage image =
+        walk({side * 1e-4, -0.98, -0.9}, {side * 1e-4, 0.97, 0.95}, {side, 0, 0});
+    return gather(*basis, TransportKind::sampled, {.gather = gathering, .gather_offset = 0.25},
+                  {scene.light}, image, scene.occluded);
   };
   const auto is = [](double e) { return [e](std::size_t) { return e; }; };
   expect_all(on_wall(-1, Gathering::visible), is(lit), 3 * lit);
@@ -276,8 +284,9 @@ TEST(Gather, AllCellsCountWhereNoneIsVisible) {
   const auto basis = make_basis("sh2");
   const SurfaceImage image = walk({-1, 0.1, 0.3}, {1, -0.2, 0.1}, kTilted);
   const std::vector<std::uint8_t> nothing(visibility_bytes(kGrid), 0xff);
-  const std::vector<glm::dvec3> found = gather(*basis, TransportKind::sampled, {.gather = Gathering::visible},
-                                               {uniform(times(1.75, basis->constant()))}, image, nothing);
+  const std::vector<glm::dvec3> found =
+      gather(*basis, TransportKind::sampled, {.gather = Gathering::visible},
+             {uniform(times(1.75, basis->constant()))}, image, nothing);
   expect_all(found, 4 * 1.75 / (kCell * kCell));
 }
 

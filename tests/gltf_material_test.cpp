@@ -22,7 +22,8 @@ TEST_F(GltfMaterialTest, MaterialFactorsAndFlags) {
   model.triangle({{"material", 0}});
   const SceneData scene = load();
   ASSERT_EQ(scene.materials.size(), 4u);
-  EXPECT_THAT(scene.materials[0].base_colour, ElementsAre(0.1f, 0.2f, 0.3f, 0.4f)) << "of a metal too";
+  EXPECT_THAT(scene.materials[0].base_colour, ElementsAre(0.1f, 0.2f, 0.3f, 0.4f))
+      << "of a metal too";
   EXPECT_THAT(scene.materials[0].emissive, ElementsAre(4, 2, 8));
   EXPECT_EQ(scene.materials[0].flags, 0u);
   EXPECT_EQ(scene.materials[1].flags, CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED);
@@ -42,7 +43,8 @@ TEST_F(GltfMaterialTest, TexturesKeepTheirBytes) {
   EXPECT_EQ(texture.width, 2u);
   EXPECT_EQ(texture.height, 2u);
   // Row 0 first, colours not multiplied by alpha.
-  EXPECT_THAT(texture.rgba, ElementsAre(255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 0, 128, 128, 128, 255));
+  EXPECT_THAT(texture.rgba,
+              ElementsAre(255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 0, 128, 128, 128, 255));
   EXPECT_EQ(scene.materials[0].texture, 0u);
 }
 
@@ -116,7 +118,8 @@ TEST_F(GltfMaterialTest, TextureCoordinateSets) {
   const int position = model.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0});
   const int first = model.accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
   const int second = model.accessor<float>("VEC2", {7, 7, 8, 8, 9, 9});
-  model.mesh({{"POSITION", position}, {"TEXCOORD_0", first}, {"TEXCOORD_3", second}}, {{"material", 0}});
+  model.mesh({{"POSITION", position}, {"TEXCOORD_0", first}, {"TEXCOORD_3", second}},
+             {{"material", 0}});
   EXPECT_EQ(uv(load(), 0), glm::vec2(0));
   texture["texCoord"] = 3;
   EXPECT_EQ(uv(load(), 0), glm::vec2(7));
@@ -141,7 +144,8 @@ TEST_F(GltfMaterialTest, EmissiveTextures) {
   material.erase("pbrMetallicRoughness");
   scene = load();
   EXPECT_EQ(scene.materials[0].texture, CLPV_NO_TEXTURE);
-  EXPECT_EQ(uv(scene, 1), glm::vec2(1, 0)) << "without a base-colour texture its own coordinates serve";
+  EXPECT_EQ(uv(scene, 1), glm::vec2(1, 0))
+      << "without a base-colour texture its own coordinates serve";
 }
 
 }  // namespace

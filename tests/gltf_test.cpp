@@ -57,7 +57,8 @@ TEST_F(GltfTest, EachNodePlacesItsMesh) {
   ASSERT_EQ(scene.triangles.size(), 3u);
   EXPECT_EQ(scene.vertices.size(), 9u);
   for (int i = 0; i < 3; ++i) {
-    EXPECT_THAT(position(scene, static_cast<std::size_t>(i), 0), IsNear(glm::vec3(i, 0, 0), kClose));
+    EXPECT_THAT(position(scene, static_cast<std::size_t>(i), 0),
+                IsNear(glm::vec3(i, 0, 0), kClose));
   }
 }
 
@@ -124,7 +125,8 @@ TEST_F(GltfTest, StripsAndFansFaceOneWay) {
   const std::vector<float> fan = {0, 0, 0, 2, 0, 0, 1, 1, 0, 0, 1, 0};
   for (const int mode : {5, 6}) {
     GltfBuilder made;
-    made.mesh({{"POSITION", made.accessor<float>("VEC3", mode == 5 ? strip : fan)}}, {{"mode", mode}});
+    made.mesh({{"POSITION", made.accessor<float>("VEC3", mode == 5 ? strip : fan)}},
+              {{"mode", mode}});
     const SceneData scene = load_scene(made.write(folder));
     ASSERT_EQ(scene.triangles.size(), mode == 5 ? 3u : 2u);
     const glm::vec3 first = face_normal(scene, 0);
@@ -141,7 +143,8 @@ TEST_F(GltfTest, StripsAndFansFaceOneWay) {
 
 TEST_F(GltfTest, InterleavedAttributes) {
   std::vector<float> rows;  // position, normal, of 24 bytes
-  for (const glm::vec3 p : {glm::vec3(0), kX, kY}) rows.insert(rows.end(), {p.x, p.y, p.z, 0, 0, -1});
+  for (const glm::vec3 p : {glm::vec3(0), kX, kY})
+    rows.insert(rows.end(), {p.x, p.y, p.z, 0, 0, -1});
   const int view = model.view(bytes_of(rows), 24);
   const json base = {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}};
   json normals = base;
@@ -158,7 +161,8 @@ TEST_F(GltfTest, SparseAccessorsReplaceElementsOfAViewOrOfZeros) {
   model.make_sparse(0, {0, 2}, {0, 0, 7, 0, 5, 7});
   EXPECT_THAT(corners(load(), 0), ElementsAre(glm::vec3(0, 0, 7), kX, glm::vec3(0, 5, 7)));
   model.document["accessors"][0].erase("bufferView");
-  EXPECT_THAT(corners(load(), 0), ElementsAre(glm::vec3(0, 0, 7), glm::vec3(0), glm::vec3(0, 5, 7)));
+  EXPECT_THAT(corners(load(), 0),
+              ElementsAre(glm::vec3(0, 0, 7), glm::vec3(0), glm::vec3(0, 5, 7)));
 }
 
 TEST_F(GltfTest, GlbAndBase64HoldTheSame) {
@@ -184,19 +188,23 @@ TEST_F(GltfTest, MissingNormalsAreFlatAndSplitVertices) {
   const SceneData scene = load();
   EXPECT_EQ(scene.vertices.size(), 6u);
   for (std::size_t t = 0; t < 2; ++t) {
-    for (int k = 0; k < 3; ++k) EXPECT_THAT(normal(scene, t, k), IsNear(face_normal(scene, t), kClose));
+    for (int k = 0; k < 3; ++k)
+      EXPECT_THAT(normal(scene, t, k), IsNear(face_normal(scene, t), kClose));
   }
   EXPECT_GT(normal(scene, 0, 0).x, 0.5f);
   EXPECT_LT(normal(scene, 1, 0).x, -0.5f);
 }
 
 TEST_F(GltfTest, ZeroNormalsTakeTheirTriangles) {
-  const int position = model.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 2, 0, 0, 2, 0, 0});
-  const int normals = model.accessor<float>("VEC3", {0, 0, 5, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  const int position =
+      model.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 2, 0, 0, 2, 0, 0});
+  const int normals =
+      model.accessor<float>("VEC3", {0, 0, 5, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   model.mesh({{"POSITION", position}, {"NORMAL", normals}});
   const SceneData scene = load();
   for (int k = 0; k < 3; ++k) EXPECT_THAT(normal(scene, 0, k), IsNear(kZ, kClose));
-  EXPECT_NEAR(glm::length(normal(scene, 1, 0)), 1, kClose) << "a degenerate triangle has a finite normal too";
+  EXPECT_NEAR(glm::length(normal(scene, 1, 0)), 1, kClose)
+      << "a degenerate triangle has a finite normal too";
 }
 
 TEST_F(GltfTest, VertexColoursOfEveryFormat) {
@@ -214,20 +222,26 @@ TEST_F(GltfTest, VertexColoursOfEveryFormat) {
   using Words = std::vector<std::uint16_t>;
   EXPECT_THAT(colour(std::vector<float>{0, 0, 0, 0.2f, 0.4f, 0.6f, 0, 0, 0}, "VEC3", false),
               IsNear(opaque, kClose));
-  EXPECT_THAT(colour(std::vector<float>{0, 0, 0, 0, 0.2f, 0.4f, 0.6f, 0.8f, 0, 0, 0, 0}, "VEC4", false),
+  EXPECT_THAT(
+      colour(std::vector<float>{0, 0, 0, 0, 0.2f, 0.4f, 0.6f, 0.8f, 0, 0, 0, 0}, "VEC4", false),
+      IsNear(wanted, kClose));
+  EXPECT_THAT(colour(Bytes{0, 0, 0, 0, 51, 102, 153, 204, 0, 0, 0, 0}, "VEC4", true),
               IsNear(wanted, kClose));
-  EXPECT_THAT(colour(Bytes{0, 0, 0, 0, 51, 102, 153, 204, 0, 0, 0, 0}, "VEC4", true), IsNear(wanted, kClose));
   EXPECT_THAT(colour(Words{0, 0, 0, 0, 13107, 26214, 39321, 52428, 0, 0, 0, 0}, "VEC4", true),
               IsNear(wanted, kClose));
 }
 
 TEST_F(GltfTest, QuantizedAttributes) {
   model.document["extensionsRequired"] = {"KHR_mesh_quantization"};
-  const int view = model.view(bytes_of<std::int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0}), 8);
-  const int position = model.add(
-      "accessors",
-      {{"bufferView", view}, {"componentType", 5122}, {"count", 3}, {"type", "VEC3"}, {"normalized", true}});
-  const int normal_view = model.view(bytes_of<std::int8_t>({0, 0, -127, 0, 0, 0, -127, 0, 0, 0, -127, 0}), 4);
+  const int view =
+      model.view(bytes_of<std::int16_t>({0, 0, 0, 0, 32767, 0, 0, 0, 0, -32768, 0, 0}), 8);
+  const int position = model.add("accessors", {{"bufferView", view},
+                                               {"componentType", 5122},
+                                               {"count", 3},
+                                               {"type", "VEC3"},
+                                               {"normalized", true}});
+  const int normal_view =
+      model.view(bytes_of<std::int8_t>({0, 0, -127, 0, 0, 0, -127, 0, 0, 0, -127, 0}), 4);
   const int normals = model.add("accessors", {{"bufferView", normal_view},
                                               {"componentType", 5120},
                                               {"count", 3},
@@ -235,10 +249,12 @@ TEST_F(GltfTest, QuantizedAttributes) {
                                               {"normalized", true}});
   const int uv_index = model.accessor<std::uint16_t>("VEC2", {0, 0, 2, 0, 0, 3});
   textured(kPngGrey);
-  model.mesh({{"POSITION", position}, {"NORMAL", normals}, {"TEXCOORD_0", uv_index}}, {{"material", 0}});
+  model.mesh({{"POSITION", position}, {"NORMAL", normals}, {"TEXCOORD_0", uv_index}},
+             {{"material", 0}});
   model.document["nodes"][0]["scale"] = {10, 10, 10};
   const SceneData scene = load();
-  EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), glm::vec3(10, 0, 0), glm::vec3(0, -10, 0)));
+  EXPECT_THAT(corners(scene, 0),
+              ElementsAre(glm::vec3(0), glm::vec3(10, 0, 0), glm::vec3(0, -10, 0)));
   EXPECT_THAT(normal(scene, 0, 0), IsNear(-kZ, kClose));
   EXPECT_EQ(uv(scene, 2), glm::vec2(0, 3));
 }
@@ -249,7 +265,8 @@ TEST_F(GltfTest, PointsAndLinesGetANote) {
   model.triangle({{"mode", 3}});
   const SceneData scene = load();
   EXPECT_EQ(scene.triangles.size(), 1u);
-  EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/meshes/1/primitives/0: made of points")));
+  EXPECT_THAT(scene.notes,
+              ::testing::Contains(HasSubstr("/meshes/1/primitives/0: made of points")));
   EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/meshes/2/primitives/0: made of lines")));
 }
 
@@ -282,9 +299,10 @@ TEST_F(GltfTest, PunctualLights) {
     {"name": "torch", "type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}}])");
   model.document["extensionsRequired"] = {"KHR_lights_punctual"};
   for (int i = 0; i < 3; ++i) {
-    model.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}},
-                        {"translation", {0, i, 0}},
-                        {"rotation", {-0.7071067811865476, 0, 0, 0.7071067811865476}}});  // -z turns to -y
+    model.add("nodes",
+              {{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}},
+               {"translation", {0, i, 0}},
+               {"rotation", {-0.7071067811865476, 0, 0, 0.7071067811865476}}});  // -z turns to -y
   }
   const SceneData scene = load();
   ASSERT_EQ(scene.lights.size(), 3u);
@@ -310,7 +328,8 @@ TEST_F(GltfTest, ExtensionsThatAreNotReadGetANote) {
   model.triangle();
   model.document["extensionsUsed"] = {"KHR_materials_unlit", "KHR_mesh_quantization"};
   const SceneData scene = load();
-  EXPECT_THAT(scene.notes, ::testing::Contains("extensions that are not read: KHR_materials_unlit"));
+  EXPECT_THAT(scene.notes,
+              ::testing::Contains("extensions that are not read: KHR_materials_unlit"));
 }
 
 }  // namespace

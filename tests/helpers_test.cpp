@@ -55,19 +55,21 @@ TEST(Helpers, ALibraryHasNone) {
 }
 
 const std::string kFrame = " -v render " CLPV_SOURCE_DIR
-                           "/tests/oclgrind/tiny.gltf --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 "
-                           "--shadow-size 8 --width 24 --height 18 -o ";
+                           "/tests/oclgrind/tiny.gltf --grid 5 --cascades 1 --cascade-size 5 "
+                           "--rsm-size 8 --shadow-size 8 --width 24 --height 18 -o ";
 
 /// The variables of empty caches in that folder.
 std::string caches(const fs::path& folder) {
   fs::create_directories(folder / "pocl");
-  return "XDG_CACHE_HOME=" + folder.string() + " POCL_CACHE_DIR=" + (folder / "pocl").string() + " ";
+  return "XDG_CACHE_HOME=" + folder.string() + " POCL_CACHE_DIR=" + (folder / "pocl").string() +
+         " ";
 }
 
 TEST(FirstRun, HelpersCompileForTheSameImage) {
   if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "helpers need a second core";
   const test::TemporaryFolder folder;
-  const std::string first = (folder / "first.exr").string(), second = (folder / "second.exr").string(),
+  const std::string first = (folder / "first.exr").string(),
+                    second = (folder / "second.exr").string(),
                     alone = (folder / "alone.exr").string();
   const std::string here = caches(folder / "cache");
   const test::Outcome helped = test::run(here + CLPV_PROGRAM + kFrame + first);
@@ -107,8 +109,8 @@ TEST(Check, HelpersFindWhatOneProcessFinds) {
 test::Outcome check_with_sizes(const std::string& text, const std::string& arguments) {
   const test::TemporaryFolder folder;
   folder.write("sizes.cl", text);
-  return test::run("CLPV_KERNEL_DIR=" + folder.path().string() + " " CLPV_PROGRAM " check --format json " +
-                   arguments);
+  return test::run("CLPV_KERNEL_DIR=" + folder.path().string() +
+                   " " CLPV_PROGRAM " check --format json " + arguments);
 }
 
 /// Status of each result, and the reason of stage `sizes`.
@@ -126,8 +128,10 @@ std::map<std::string, std::string> statuses(const test::Outcome& outcome) {
 }
 
 TEST(Check, AKernelThatDoesNotCompileFailsOnlyItsRow) {
-  for (const std::string stages : {"sizes,emit", "sizes"}) {  // in helpers, and in the process itself
-    const test::Outcome outcome = check_with_sizes("#error broken for a test\n", "--stage " + stages);
+  for (const std::string stages :
+       {"sizes,emit", "sizes"}) {  // in helpers, and in the process itself
+    const test::Outcome outcome =
+        check_with_sizes("#error broken for a test\n", "--stage " + stages);
     EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
     auto all = statuses(outcome);
     EXPECT_EQ(all["shared structs"], "failed");
@@ -139,7 +143,8 @@ TEST(Check, AKernelThatDoesNotCompileFailsOnlyItsRow) {
 
 TEST(Check, AKernelThatCrashesFailsOnlyItsRow) {
   const test::Outcome outcome = check_with_sizes(
-      "__kernel void sizes(__global uint* bytes) { *(volatile __global uint*)(size_t)16 = *bytes; }\n",
+      "__kernel void sizes(__global uint* bytes) { *(volatile __global uint*)(size_t)16 = *bytes; "
+      "}\n",
       "--stage sizes,emit");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
   auto all = statuses(outcome);
@@ -151,7 +156,8 @@ TEST(Check, AKernelThatCrashesFailsOnlyItsRow) {
 
 TEST(Check, AKernelThatDoesNotEndExceedsTheLimit) {
   const test::Outcome outcome = check_with_sizes(
-      "__kernel void sizes(volatile __global uint* bytes) { while (*bytes < 1u << 31) *bytes = 0; }\n",
+      "__kernel void sizes(volatile __global uint* bytes) { while (*bytes < 1u << 31) *bytes = 0; "
+      "}\n",
       "--stage sizes,emit --limit 3");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
   auto all = statuses(outcome);
@@ -172,7 +178,8 @@ TEST(Check, UnsupportedComparisonsAreNoPass) {
   EXPECT_EQ(results[0].status, Status::unsupported);
   EXPECT_EQ(results[0].reason, "no images");
   EXPECT_FALSE(verify::passed(results));
-  EXPECT_TRUE(verify::passed({results[0], CheckResult{"gather", "plain"}})) << "if another one is ok";
+  EXPECT_TRUE(verify::passed({results[0], CheckResult{"gather", "plain"}}))
+      << "if another one is ok";
   EXPECT_FALSE(verify::passed({{"gather", "plain"}, {"gather", "half", {1, 0.1}, Status::wrong}}));
 }
 
@@ -182,19 +189,21 @@ TEST(Check, APresetsCombination) {
   std::vector<std::string> rows;
   const nlohmann::json report = nlohmann::json::parse(outcome.out);
   for (const nlohmann::json& check : report.at("checks"))
-    rows.push_back(check.at("stage").get<std::string>() + " " + check.at("variant").get<std::string>());
-  EXPECT_THAT(rows, ::testing::ElementsAre(
-                        "inject paper/srbf8v2/image/half/light", "inject paper/srbf8v2/image/half/geometry",
-                        "propagate paper/srbf8v2/image/half", "gather paper/srbf8v2/image/half"));
+    rows.push_back(check.at("stage").get<std::string>() + " " +
+                   check.at("variant").get<std::string>());
+  EXPECT_THAT(rows, ::testing::ElementsAre("inject paper/srbf8v2/image/half/light",
+                                           "inject paper/srbf8v2/image/half/geometry",
+                                           "propagate paper/srbf8v2/image/half",
+                                           "gather paper/srbf8v2/image/half"));
 }
 
 TEST(Check, ListsAndSelects) {
   const test::Outcome all = test::run(CLPV_PROGRAM " -q check --list --stage propagate,gather"),
-                      some =
-                          test::run(CLPV_PROGRAM
-                                    " -q check --list --stage propagate,gather --match tiled --match half"),
-                      thorough =
-                          test::run(CLPV_PROGRAM " -q check --list --thorough --stage propagate,gather"),
+                      some = test::run(
+                          CLPV_PROGRAM
+                          " -q check --list --stage propagate,gather --match tiled --match half"),
+                      thorough = test::run(CLPV_PROGRAM
+                                           " -q check --list --thorough --stage propagate,gather"),
                       none = test::run(CLPV_PROGRAM " -q check --stage shade --match srbf99");
   EXPECT_THAT(all.out, HasSubstr("propagate  sh2/sampled/"));
   EXPECT_THAT(some.out, HasSubstr("tiled/half"));

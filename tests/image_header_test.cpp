@@ -33,7 +33,8 @@ constexpr std::size_t kHeaderEnd = 33;  // of the signature and IHDR
 TEST(ImageHeader, ReturnsSizes) {
   const std::string png = test::decode_base64(test::kPngRgba2x2),
                     jpeg = test::decode_base64(test::kJpegRed8x8);
-  const auto png_header = read_image_header(bytes_in(png)), jpeg_header = read_image_header(bytes_in(jpeg));
+  const auto png_header = read_image_header(bytes_in(png)),
+             jpeg_header = read_image_header(bytes_in(jpeg));
   ASSERT_TRUE(png_header && jpeg_header);
   EXPECT_EQ(png_header->format, ImageFormat::png);
   EXPECT_EQ(png_header->width, 2u);
@@ -65,10 +66,11 @@ TEST(ImageHeader, APngWithAChunkLongerThanItselfIsNotComplete) {
 }
 
 TEST(ImageHeader, APngIsLeftWithWhatItsPixelsNeedAndPlainTexts) {
-  const std::string png = test::decode_base64(test::kPngRgba2x2), text = chunk("tEXt", "clpv:basis sh2");
+  const std::string png = test::decode_base64(test::kPngRgba2x2),
+                    text = chunk("tEXt", "clpv:basis sh2");
   std::string more = png, kept = png;
-  more.insert(kHeaderEnd, chunk("zTXt", "packed") + text + chunk("iCCP", "packed") + chunk("iTXt", "") +
-                              chunk("eXIf", "?"));
+  more.insert(kHeaderEnd, chunk("zTXt", "packed") + text + chunk("iCCP", "packed") +
+                              chunk("iTXt", "") + chunk("eXIf", "?"));
   kept.insert(kHeaderEnd, text);
   EXPECT_EQ(bare(more), kept);
   EXPECT_EQ(bare(png + "after its end"), png);

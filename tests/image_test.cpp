@@ -26,7 +26,8 @@ class ImageFiles : public testing::Test {
     return rejection(name);
   }
   std::string rejection(const std::string& name) {
-    const std::string message = test::error_of(ExitCode::bad_input, [&] { read_image(folder_ / name); });
+    const std::string message =
+        test::error_of(ExitCode::bad_input, [&] { read_image(folder_ / name); });
     EXPECT_NE(message.find(name), std::string::npos) << message;
     return message;
   }
@@ -72,7 +73,8 @@ TEST_F(ImageFiles, ExrKeepsFloatsLayersAndOptions) {
   EXPECT_EQ(back.metadata, image.metadata);
   EXPECT_EQ(layers(back).size(), 3u);
   for (const std::string layer : {"", "indirect", "depth"}) {
-    const Image expected = extract_layer(image, layer, "memory"), found = extract_layer(back, layer, "a.exr");
+    const Image expected = extract_layer(image, layer, "memory"),
+                found = extract_layer(back, layer, "a.exr");
     EXPECT_EQ(found.channels, expected.channels) << layer;
     EXPECT_EQ(found.pixels, expected.pixels) << layer;
   }
@@ -147,7 +149,8 @@ TEST_F(ImageFiles, HdrIsRead) {
 }
 
 /// `bytes` put over what follows that text, so many bytes after it.
-std::string with(std::string image, const std::string& after, std::size_t skip, const std::string& bytes) {
+std::string with(std::string image, const std::string& after, std::size_t skip,
+                 const std::string& bytes) {
   const std::size_t at = image.find(after);
   EXPECT_NE(at, std::string::npos) << after;
   return image.replace(at + after.size() + skip, bytes.size(), bytes);
@@ -164,7 +167,8 @@ TEST_F(ImageFiles, RejectsWhatIsNoImageOrTooLarge) {
   EXPECT_NE(rejection("folder.exr").find("a folder"), std::string::npos);
 
   const std::string exr = read_file(folder_ / "good.exr"), png = read_file(folder_ / "good.png");
-  const std::string window("dataWindow\0box2i\0", 17), compression("compression\0compression\0", 24);
+  const std::string window("dataWindow\0box2i\0", 17),
+      compression("compression\0compression\0", 24);
   std::string huge = png, broken = png, text = png, tiles = exr;
   set_big_endian(huge, 16, 60000);
   set_big_endian(huge, 20, 60000);
@@ -207,15 +211,17 @@ TEST_F(ImageFiles, RejectsWhatIsNoImageOrTooLarge) {
   }
   for (const auto& [name, whole] : {std::pair("cut.exr", exr), {"cut.png", png}}) {
     for (const double share : {0.02, 0.1, 0.5, 0.9, 0.98})
-      rejection(name, whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
+      rejection(name, whole.substr(
+                          0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
   }
   const std::size_t table =
       exr.find("screenWindowWidth") + std::string("screenWindowWidth.float.size1234.").size();
-  for (const std::uint64_t place :
-       {0xffffffffffffffffull, 0x8000000000000000ull, 0xffffffff00000000ull, 1ull << 40, exr.size() - 1ull}) {
+  for (const std::uint64_t place : {0xffffffffffffffffull, 0x8000000000000000ull,
+                                    0xffffffff00000000ull, 1ull << 40, exr.size() - 1ull}) {
     std::string moved = exr;
     std::memcpy(moved.data() + table, &place, sizeof place);
-    EXPECT_NE(rejection("moved.exr", moved).find("damaged or truncated"), std::string::npos) << place;
+    EXPECT_NE(rejection("moved.exr", moved).find("damaged or truncated"), std::string::npos)
+        << place;
   }
   for (const ImageLimits& limits :
        {ImageLimits{.pixel_bytes = 100}, ImageLimits{.channels = 2}, ImageLimits{.file_bytes = 20}})

@@ -41,7 +41,11 @@ ClpvView from_above(unsigned width, unsigned height, float edge) {
 
 SurfaceImage empty_surface(const ClpvView& view) {
   const std::size_t count = std::size_t{view.width} * view.height;
-  return {view, std::vector<float>(count), std::vector<glm::vec4>(count), std::vector<glm::vec4>(count), {}};
+  return {view,
+          std::vector<float>(count),
+          std::vector<glm::vec4>(count),
+          std::vector<glm::vec4>(count),
+          {}};
 }
 
 /// A horizontal plane at `height` [m] seen from above, its normal up, `flux` [W] a texel.
@@ -107,7 +111,8 @@ Injection geometry_of(const Basis& basis, const std::vector<SurfaceImage>& image
 }
 
 bool all_zero(const Injection& injection) {
-  return std::all_of(injection.values.begin(), injection.values.end(), [](float v) { return v == 0.0f; });
+  return std::all_of(injection.values.begin(), injection.values.end(),
+                     [](float v) { return v == 0.0f; });
 }
 
 class EachBasis : public testing::TestWithParam<const char*> {
@@ -125,8 +130,9 @@ TEST_P(EachBasis, OneTexelIsALobeHalfACellOffItsSurface) {
   const Injection light = light_of(*basis, texel);
   const std::vector<double> lobe = basis->clamped_cosine(glm::dvec3(normal));
   for (int channel = 0; channel < 3; ++channel) {
-    EXPECT_THAT(light.cell(channel, 3, 5, 3),
-                testing::Pointwise(testing::DoubleNear(1e-5), test::times(flux[channel] / kPi, lobe)));
+    EXPECT_THAT(
+        light.cell(channel, 3, 5, 3),
+        testing::Pointwise(testing::DoubleNear(1e-5), test::times(flux[channel] / kPi, lobe)));
   }
   const std::vector<double> all = light.total(0), there = light.cell(0, 3, 5, 3);
   EXPECT_EQ(all, there) << "other cells are not empty";
@@ -154,7 +160,8 @@ TEST_P(EachBasis, UnitFluxLobesCarryExactlyTheFlux) {
 
 TEST_P(EachBasis, ACellDependsOnItsOwnTexelsAlone) {
   const SurfaceImage floor = plane(from_above(64, 64, 1.0f / 32), 0.3f, {1.0f / 3, 0.1f, 0.7f});
-  SurfaceImage part = floor;  // without the left half, and so with other texels in every chunk and segment
+  // Without the left half, and so with other texels in every chunk and segment.
+  SurfaceImage part = floor;
   for (std::size_t i = 0; i < part.depth.size(); ++i) {
     if (i % 64 < 32) part.depth[i] = 0;
   }
@@ -171,8 +178,8 @@ TEST_P(EachBasis, ACellDependsOnItsOwnTexelsAlone) {
 
 TEST(Inject, WhatIsOutsideTheGridIsDropped) {
   const auto basis = make_basis("sh2");
-  for (const glm::vec3 p :
-       {glm::vec3(2.01f, 0, 0), glm::vec3(0, -2.3f, 0), glm::vec3(0, 0, -2.01f), glm::vec3(0, 9, 0)}) {
+  for (const glm::vec3 p : {glm::vec3(2.01f, 0, 0), glm::vec3(0, -2.3f, 0), glm::vec3(0, 0, -2.01f),
+                            glm::vec3(0, 9, 0)}) {
     const SurfaceImage texel = one_texel(p, {0, 1, 0}, glm::vec3(1));
     EXPECT_TRUE(all_zero(light_of(*basis, texel))) << p.x << " " << p.y << " " << p.z;
   }
@@ -193,10 +200,11 @@ TEST(Inject, ValuesThatAreNotFiniteAreSkipped) {
   row.normal[2].x = nan;
   row.normal[3] = glm::vec4(0);
   row.colour[4].y = infinity;
-  EXPECT_NEAR(basis->energy(light_of(*basis, row).total(0)), 1, kRounding) << "the sixth texel's flux";
+  EXPECT_NEAR(basis->energy(light_of(*basis, row).total(0)), 1, kRounding)
+      << "the sixth texel's flux";
   const Injection blocked = geometry_of(*basis, {row});
-  EXPECT_TRUE(
-      std::all_of(blocked.values.begin(), blocked.values.end(), [](float v) { return std::isfinite(v); }));
+  EXPECT_TRUE(std::all_of(blocked.values.begin(), blocked.values.end(),
+                          [](float v) { return std::isfinite(v); }));
 }
 
 TEST(Inject, AWallThatFillsItsCellsBlocksThreeQuartersHeadOn) {
@@ -209,7 +217,8 @@ TEST(Inject, AWallThatFillsItsCellsBlocksThreeQuartersHeadOn) {
     EXPECT_NEAR(basis->value(blocked.cell(0, x, 5, 4), {0, 1, 0}), 0.75, kRounding);
     EXPECT_NEAR(basis->value(blocked.cell(0, x, 5, 4), {0, -1, 0}), -0.25, kRounding);
   }
-  EXPECT_NEAR(basis->value(blocked.cell(0, 2, 5, 4), {0, 1, 0}), 0.75 / 2, kRounding) << "half a square";
+  EXPECT_NEAR(basis->value(blocked.cell(0, 2, 5, 4), {0, 1, 0}), 0.75 / 2, kRounding)
+      << "half a square";
 }
 
 TEST(Inject, AreasAreTheCoveredShareOfEachFace) {
@@ -217,11 +226,15 @@ TEST(Inject, AreasAreTheCoveredShareOfEachFace) {
   const InjectOptions areas{.blocking = Blocking::areas};
   const Injection wall = geometry_of(*basis, {plane(from_above(32, 32, 1.0f / 16), 0.55f)}, areas);
   for (const int x : {3, 4, 5})
-    EXPECT_THAT(wall.cell(0, x, 5, 4), testing::Pointwise(testing::DoubleNear(kRounding), {0.0, 1.0, 0.0}));
+    EXPECT_THAT(wall.cell(0, x, 5, 4),
+                testing::Pointwise(testing::DoubleNear(kRounding), {0.0, 1.0, 0.0}));
   // Two surfaces that cross in a cell: each blocks what it covers.
-  const glm::vec3 normal = glm::normalize(glm::vec3(1, 2, 2)), other = glm::normalize(glm::vec3(4, 4, 2));
+  const glm::vec3 normal = glm::normalize(glm::vec3(1, 2, 2)),
+                  other = glm::normalize(glm::vec3(4, 4, 2));
   const Injection crossed = geometry_of(
-      *basis, {one_texel({0, 0, 0}, normal, glm::vec3(1)), one_texel({0, 0, 0}, other, glm::vec3(1))}, areas);
+      *basis,
+      {one_texel({0, 0, 0}, normal, glm::vec3(1)), one_texel({0, 0, 0}, other, glm::vec3(1))},
+      areas);
   const double across = 0.01 * 0.01 / (kCell * kCell);
   EXPECT_THAT(crossed.cell(0, 4, 4, 4),
               testing::Pointwise(testing::DoubleNear(across * 1e-5), {across, across, across}));

@@ -39,7 +39,8 @@ class Child {
     pid_ = ::fork();
     if (pid_ != 0) return;
     ::setpgid(0, 0);
-    ::execl("/bin/sh", "sh", "-c", ("exec " + command + " >/dev/null 2>" + said.string()).c_str(), nullptr);
+    ::execl("/bin/sh", "sh", "-c", ("exec " + command + " >/dev/null 2>" + said.string()).c_str(),
+            nullptr);
     ::_exit(127);
   }
   ~Child() {
@@ -115,21 +116,21 @@ const std::string kSmall = " --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8
 TEST_F(Killed, WhileItRenders) {
   const fs::path image = folder_ / "a.exr";
   std::string wanted;
-  kill_at_moments(
-      "render " + kTiny + kSmall +
-          "--basis sh2 --transport sampled --gather all --blockers seen --width 96 --height 72 -o " +
-          image.string(),
-      [&] {
-        if (wanted.empty()) wanted = read_file(image);
-        EXPECT_TRUE(read_file(image) == wanted) << "half an image, or another";
-      });
+  kill_at_moments("render " + kTiny + kSmall +
+                      "--basis sh2 --transport sampled --gather all --blockers seen --width 96 "
+                      "--height 72 -o " +
+                      image.string(),
+                  [&] {
+                    if (wanted.empty()) wanted = read_file(image);
+                    EXPECT_TRUE(read_file(image) == wanted) << "half an image, or another";
+                  });
 }
 
 TEST_F(Killed, WhileQualityMeasures) {
   const fs::path json = folder_ / "q.json";
   kill_at_moments("quality " + kTiny + kSmall +
-                      "--basis sh2 --gather all --blockers seen --vary transport=sampled,exact --width 24 "
-                      "--height 18 --spp 4 --frames 1 --cache " +
+                      "--basis sh2 --gather all --blockers seen --vary transport=sampled,exact "
+                      "--width 24 --height 18 --spp 4 --frames 1 --cache " +
                       (folder_ / "kept").string() + " --output " + json.string(),
                   [&] {
                     expect_whole_json(folder_ / "kept");
@@ -146,19 +147,21 @@ TEST_F(Killed, WhileQualityMeasures) {
 std::string sequence(const fs::path& folder) {
   return "sequence " CLPV_SOURCE_DIR
          "/scenes/atrium_living.json --frames 1000 --fps 24 --width 16 --height 9" +
-         kSmall + "--basis sh2 --transport sampled --gather all --blockers seen -o " + folder.string();
+         kSmall + "--basis sh2 --transport sampled --gather all --blockers seen -o " +
+         folder.string();
 }
 
 TEST_F(Killed, AnInterruptIsReported) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const fs::path film = folder_ / ("film" + std::to_string(signal)), said = folder_ / "said";
     Child child(CLPV_PROGRAM " " + sequence(film), said);
-    for (int i = 0; i < 600 && !fs::exists(film / "frame-0001.exr"); ++i) std::this_thread::sleep_for(100ms);
+    for (int i = 0; i < 600 && !fs::exists(film / "frame-0001.exr"); ++i)
+      std::this_thread::sleep_for(100ms);
     ASSERT_TRUE(child.running()) << read_file(said);
     EXPECT_EQ(child.end(signal), 128 + signal);
     EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; "));
-    EXPECT_THAT(read_file(said),
-                HasSubstr(" of 1000 frames are in " + film.string() + "; the same command resumes"));
+    EXPECT_THAT(read_file(said), HasSubstr(" of 1000 frames are in " + film.string() +
+                                           "; the same command resumes"));
     EXPECT_TRUE(nlohmann::json::accept(read_file(film / "times.json")));
     for (const auto& entry : fs::directory_iterator(film)) {
       EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
@@ -171,9 +174,9 @@ TEST_F(Killed, AnInterruptIsReported) {
 
 TEST_F(Killed, AnInterruptedTruthIsNotWritten) {
   const fs::path image = folder_ / "truth.exr", said = folder_ / "said";
-  Child child(
-      CLPV_PROGRAM " pathtrace " CLPV_SOURCE_DIR "/scenes/cornell.json --spp 65536 -o " + image.string(),
-      said);
+  Child child(CLPV_PROGRAM " pathtrace " CLPV_SOURCE_DIR "/scenes/cornell.json --spp 65536 -o " +
+                  image.string(),
+              said);
   for (int i = 0; i < 600 && !child.listens(); ++i) std::this_thread::sleep_for(100ms);
   std::this_thread::sleep_for(500ms);
   ASSERT_TRUE(child.running()) << read_file(said);
@@ -215,7 +218,8 @@ TEST_F(Killed, AnInterruptWhileCompilingIsAnsweredAtOnce) {
               said);  // one core: no helpers
   ASSERT_TRUE(wait_for(said, "compiled in")) << read_file(said);
   EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
-  EXPECT_THAT(read_file(said), HasSubstr("clpv: stopping after this kernel; once more to stop now"));
+  EXPECT_THAT(read_file(said),
+              HasSubstr("clpv: stopping after this kernel; once more to stop now"));
   EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; kernels were being compiled"));
   EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
 }

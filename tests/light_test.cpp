@@ -22,7 +22,9 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
                 kInfinity = std::numeric_limits<float>::infinity();
 
 Options small(int width = 48, int height = 27) {
-  return test::small_options().set("width", std::to_string(width)).set("height", std::to_string(height));
+  return test::small_options()
+      .set("width", std::to_string(width))
+      .set("height", std::to_string(height));
 }
 
 Camera camera_of(const Scene& scene) {
@@ -49,12 +51,15 @@ struct Seen {
     normals = colours(renderer.show(View::normal));
     for (const auto& depth : colours(renderer.show(View::depth))) depths.push_back(depth[0]);
   }
-  GBuffer buffer() const { return {.width = width, .height = height, .normals = normals, .depths = depths}; }
+  GBuffer buffer() const {
+    return {.width = width, .height = height, .normals = normals, .depths = depths};
+  }
   /// Positions of the depths, in double.
   Vectors positions(const Camera& camera) const {
     using Vector = std::array<double, 3>;
     const auto cross = [](const Vector& a, const Vector& b) {
-      return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+      return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                    a[0] * b[1] - a[1] * b[0]};
     };
     const auto unit = [](const Vector& v) {
       const double length = std::hypot(v[0], v[1], v[2]);
@@ -62,7 +67,8 @@ struct Seen {
     };
     Vector along;
     for (int i = 0; i < 3; ++i) along[i] = camera.target[i] - camera.eye[i];
-    const Vector forward = unit(along), right = unit(cross(forward, camera.up)), up = cross(right, forward);
+    const Vector forward = unit(along), right = unit(cross(forward, camera.up)),
+                 up = cross(right, forward);
     const double tangent = std::tan(camera.vertical_fov_degrees * M_PI / 360);
     Vectors all;
     for (std::size_t pixel = 0; pixel < depths.size(); ++pixel) {
@@ -70,7 +76,8 @@ struct Seen {
                    sy = (1 - 2 * (pixel / width + 0.5) / height) * tangent;
       auto& p = all.emplace_back();
       for (int i = 0; i < 3; ++i)
-        p[i] = static_cast<float>(camera.eye[i] + depths[pixel] * (forward[i] + sx * right[i] + sy * up[i]));
+        p[i] = static_cast<float>(camera.eye[i] +
+                                  depths[pixel] * (forward[i] + sx * right[i] + sy * up[i]));
     }
     return all;
   }
@@ -91,11 +98,13 @@ double greatest(const Vectors& a) {
 TEST(Light, OfAFramesDepthsIsItsIrradianceToTheByte) {
   const Scene scene(kCornell);
   for (const char* size : {"full", "half"}) {
-    Renderer renderer(scene, small().set("near-size", size)), other(scene, small().set("near-size", size));
+    Renderer renderer(scene, small().set("near-size", size)),
+        other(scene, small().set("near-size", size));
     const Camera camera = camera_of(scene);
     const Seen seen(renderer, camera);
     EXPECT_GT(greatest(seen.irradiance), 0);
-    EXPECT_EQ(other.light(seen.buffer(), camera), seen.irradiance) << size << ", without a frame before";
+    EXPECT_EQ(other.light(seen.buffer(), camera), seen.irradiance)
+        << size << ", without a frame before";
     EXPECT_GT(other.stats().stages.at("near-trace"), 0);
     other.light(seen.buffer(), camera);
     EXPECT_EQ(other.stats().stages.at("propagate"), 0) << "cached";
@@ -110,7 +119,8 @@ TEST(Light, OfPositionsIsThatOfDepths) {
     const Seen seen(renderer, camera);
     const Vectors positions = seen.positions(camera);
     const GBuffer points{seen.width, seen.height, seen.normals, positions};
-    EXPECT_LT(greatest(renderer.light(points, camera.eye), seen.irradiance), 1e-3 * greatest(seen.irradiance))
+    EXPECT_LT(greatest(renderer.light(points, camera.eye), seen.irradiance),
+              1e-3 * greatest(seen.irradiance))
         << size;
   }
 }
@@ -148,9 +158,11 @@ TEST(Light, OfAPanoramaWithoutTheNearFieldIsTheIrradianceOfItsPoints) {
   const Panorama seen(eye, scene.bounds());
   const Vectors light = renderer.light(seen.buffer(), eye);
   EXPECT_GT(greatest(light), 0);
-  EXPECT_EQ(light, renderer.irradiance(seen.positions, seen.normals)) << "of the cascades about the eye";
+  EXPECT_EQ(light, renderer.irradiance(seen.positions, seen.normals))
+      << "of the cascades about the eye";
   Renderer traced(scene, small());
-  EXPECT_GT(greatest(traced.light(seen.buffer(), eye), light), 0.01 * greatest(light)) << "the near field";
+  EXPECT_GT(greatest(traced.light(seen.buffer(), eye), light), 0.01 * greatest(light))
+      << "the near field";
 }
 
 TEST(Light, PixelsWithoutASurfaceAreDarkAndChangeNoOther) {
@@ -171,11 +183,13 @@ TEST(Light, PixelsWithoutASurfaceAreDarkAndChangeNoOther) {
     expected[200 + i] = {};
   }
   EXPECT_EQ(renderer.light(seen.buffer(), camera), expected);
-  const Vectors of_points = renderer.light({seen.width, seen.height, seen.normals, positions}, camera.eye);
+  const Vectors of_points =
+      renderer.light({seen.width, seen.height, seen.normals, positions}, camera.eye);
   EXPECT_LT(greatest(of_points, expected), 1e-4 * greatest(expected));
   for (const int dark : {100, 101, 102, 200, 201, 202, 203})
     EXPECT_EQ(of_points[dark], (std::array<float, 3>{}));
-  seen.normals[0] = {1e-30f * seen.normals[0][0], 1e-30f * seen.normals[0][1], 1e-30f * seen.normals[0][2]};
+  seen.normals[0] = {1e-30f * seen.normals[0][0], 1e-30f * seen.normals[0][1],
+                     1e-30f * seen.normals[0][2]};
   EXPECT_NEAR(renderer.light(seen.buffer(), camera)[0][1], expected[0][1], 1e-4 * expected[0][1])
       << "of any length";
 }
@@ -191,7 +205,8 @@ TEST(Light, FramesAndOtherSizesBetweenDoNotChangeIt) {
   // As many near pixels in other rows: the empty borders lie elsewhere.
   const GBuffer upright{Panorama::kHeight, Panorama::kWidth, around.normals, around.positions};
   const Vectors turned = renderer.light(upright, eye);
-  EXPECT_EQ(renderer.show(View::irradiance).pixels, renderer.render(View::irradiance, camera).pixels)
+  EXPECT_EQ(renderer.show(View::irradiance).pixels,
+            renderer.render(View::irradiance, camera).pixels)
       << "still shown";
   EXPECT_EQ(renderer.light(seen.buffer(), camera), seen.irradiance);
   EXPECT_EQ(renderer.light(upright, eye), turned);
@@ -213,7 +228,8 @@ TEST(Light, RejectsBadSizesAndCameras) {
   Renderer renderer(scene, small());
   const Vectors four(4, {0, 1, 0}), three(3, {0, 1, 0});
   const std::vector<float> depths(4, 1.0f);
-  const auto rejected = [&](const std::string& part, const GBuffer& surfaces, const Vec3& eye = {}) {
+  const auto rejected = [&](const std::string& part, const GBuffer& surfaces,
+                            const Vec3& eye = {}) {
     EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.light(surfaces, eye); }),
                 ::testing::AllOf(HasSubstr("light: "), HasSubstr(part), HasSubstr("allowed")));
   };

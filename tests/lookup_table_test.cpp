@@ -26,8 +26,8 @@ TEST(LookupTable, RejectsImagesThatTheDeviceLacks) {
   const auto basis = make_basis("srbf4");
   EXPECT_THAT(test::error_of(ExitCode::device,
                              [&] {
-                               LookupTable(other, *basis, {.kind = LobeKind::rotate}, TableStorage::image,
-                                           TableUse::lobes);
+                               LookupTable(other, *basis, {.kind = LobeKind::rotate},
+                                           TableStorage::image, TableUse::lobes);
                              }),
               HasSubstr("no images"));
 }
@@ -37,9 +37,10 @@ std::vector<float> entries(const LookupTable& table, int size) {
   Session& session = test_session();
   // A program needs a file; this one has only definitions.
   ProgramSource source{"shared/sort.h", {}, {}};
-  source.generated = table.macros() +
-                     "__kernel void entries(__global float* out CLPV_AND_TABLE) {\n"
-                     "  const int i = (int)get_global_id(0);\n  out[i] = CLPV_TABLE_READ(table, i);\n}\n";
+  source.generated =
+      table.macros() +
+      "__kernel void entries(__global float* out CLPV_AND_TABLE) {\n"
+      "  const int i = (int)get_global_id(0);\n  out[i] = CLPV_TABLE_READ(table, i);\n}\n";
   Kernel kernel(session, source, "entries");
   const Buffer out = session.buffer(static_cast<std::size_t>(size) * sizeof(float), "entries");
   table.add_to(kernel.set(out));
@@ -49,7 +50,8 @@ std::vector<float> entries(const LookupTable& table, int size) {
 
 class EachStorage : public ::testing::TestWithParam<TableStorage> {};
 INSTANTIATE_TEST_SUITE_P(LookupTable, EachStorage,
-                         ::testing::Values(TableStorage::buffer, TableStorage::image), [](const auto& info) {
+                         ::testing::Values(TableStorage::buffer, TableStorage::image),
+                         [](const auto& info) {
                            return info.param == TableStorage::buffer ? "Buffer" : "Image";
                          });
 
@@ -63,12 +65,13 @@ TEST_P(EachStorage, TablesKeepTheirEntriesWhileOthersAreFreed) {
   for (int round = 0; round < 3; ++round) {
     for (int i = 0; i < kSizes; ++i) {
       const LobeOptions options{.kind = LobeKind::rotate, .table_size = 200 + i};
-      const auto gone =
-          std::make_unique<LookupTable>(test_session(), *basis, options, GetParam(), TableUse::lobes);
+      const auto gone = std::make_unique<LookupTable>(test_session(), *basis, options, GetParam(),
+                                                      TableUse::lobes);
       const std::vector<float> rubbish(static_cast<std::size_t>(options.table_size), 1e15f);
       const LookupTable table(test_session(), *basis, options, GetParam(), TableUse::lobes);
       test_session().upload(rubbish, "what takes a freed table's place");
-      EXPECT_EQ(entries(table, options.table_size), gram_tables(*basis, options.table_size).values())
+      EXPECT_EQ(entries(table, options.table_size),
+                gram_tables(*basis, options.table_size).values())
           << "round " << round << ", " << options.table_size << " entries";
     }
   }
@@ -86,7 +89,8 @@ std::vector<float> accumulated(const Basis& basis, const Transport& transport,
   const std::vector<double> lobe = basis.clamped_cosine(glm::normalize(glm::dvec3(3, 2, 1)));
   for (std::size_t row = 0; row < 3 * lobe.size(); ++row) {
     light[row * plane + 31] = static_cast<float>(lobe[row % lobe.size()]);
-    light[row * plane + 62] = 0.5f * light[row * plane + 31] * static_cast<float>(row / lobe.size());
+    light[row * plane + 62] =
+        0.5f * light[row * plane + 31] * static_cast<float>(row / lobe.size());
   }
   injected.write(test_session(), light);
   Propagator(test_session(), basis, transport, options).propagate({injected, nullptr, sum}, kSteps);

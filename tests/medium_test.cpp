@@ -42,7 +42,8 @@ ClpvMedium medium_of(const glm::vec3& scattering, const glm::vec3& absorption, f
   return medium;
 }
 
-TracedImage traced(const SceneData& scene, const ClpvView& view, int bounces, std::uint32_t samples) {
+TracedImage traced(const SceneData& scene, const ClpvView& view, int bounces,
+                   std::uint32_t samples) {
   PathTracerOptions options;
   options.bounces = bounces;
   options.samples = samples;
@@ -54,7 +55,8 @@ TEST(Medium, PhaseFunctionIntegratesToOneAndHasTheMeanCosineOfItsAnisotropy) {
     double integral = 0, mean_cosine = 0;
     constexpr int kSteps = 200000;
     for (int i = 0; i < kSteps; ++i) {
-      const double cosine = -1 + 2 * (i + 0.5) / kSteps, weight = 4 * pi / kSteps * phase(g, cosine);
+      const double cosine = -1 + 2 * (i + 0.5) / kSteps,
+                   weight = 4 * pi / kSteps * phase(g, cosine);
       integral += weight;
       mean_cosine += cosine * weight;
     }
@@ -118,7 +120,8 @@ TEST(Medium, SceneFilesHaveOneInABoxOrInTheirBounds) {
        "/medium/box: found 0,0,0 to 1,0,1; allowed: an upper corner above the lower one"},
       {R"({"absorption": [1, 1, 1], "colour": [1, 1, 1]})", "colour"}};
   for (const auto& [medium, message] : bad)
-    EXPECT_THAT(error_of(ExitCode::bad_input, [&] { loaded(medium); }), HasSubstr(message)) << medium;
+    EXPECT_THAT(error_of(ExitCode::bad_input, [&] { loaded(medium); }), HasSubstr(message))
+        << medium;
 }
 
 /// A room of 2 m, faces inwards, whose walls emit and do not reflect.
@@ -139,7 +142,8 @@ TEST(Medium, AbsorptionFollowsBeersLaw) {
   scene.medium = medium_of({}, absorption, 0, glm::vec3(-1), {1, 1, 0});
   const ClpvView view = view_of({0, 0, 0.5}, {0, 0, -1}, {0, 1, 0}, 1e-3f, 1, 1);
   const Image seen = pathtracer::traced_view(traced(scene, view, 1, 16), Show::full);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean(seen.pixels, c), 3 * std::exp(-double{absorption[c]}), 1e-5);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(mean(seen.pixels, c), 3 * std::exp(-double{absorption[c]}), 1e-5);
 }
 
 // Uniform light stays uniform in a medium that only scatters, for every density and phase function.
@@ -149,7 +153,8 @@ TEST(Medium, WhiteFurnaceIsUniform) {
     scene.medium = medium_of({0.3, 1, 3}, {}, anisotropy, {-0.8, -1, -1}, {1, 0.7, 1});
     const TracedImage image = traced(scene, kInRoom, PathTracerOptions::kAllBounces, 16384);
     const Image seen = pathtracer::traced_view(image, Show::full);
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean(seen.pixels, c), 1, 0.01) << "anisotropy " << anisotropy;
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(mean(seen.pixels, c), 1, 0.01) << "anisotropy " << anisotropy;
   }
 }
 
@@ -160,7 +165,8 @@ TEST(Medium, LightScatteredOnceFollowsItsIntegral) {
   SceneData scene = floor_scene(0);
   scene.lights = {sun({0, -1, 0}, 5)};
   const float scattering = 1e-3f, absorption = 0.5f;
-  scene.medium = medium_of(glm::vec3(scattering), glm::vec3(absorption), 0.4f, {1, 0.5, -2}, {4, 2, 2});
+  scene.medium =
+      medium_of(glm::vec3(scattering), glm::vec3(absorption), 0.4f, {1, 0.5, -2}, {4, 2, 2});
   const ClpvView view = view_of({0, 1.2, 0}, {1, 0, 0}, {0, 1, 0}, 1e-3f, 1, 1);
   const double extinction = scattering + absorption;
   const double expected = scattering * phase(0.4, 0) * 5 * std::exp(-extinction * 0.8) *
@@ -176,7 +182,8 @@ TEST(Medium, LightOfALampScatteredOnceFollowsItsIntegral) {
   const glm::vec3 at(2, 1.5f, 0);
   scene.lights = {lamp(at, 5)};
   const float scattering = 1e-3f, absorption = 0.5f;
-  scene.medium = medium_of(glm::vec3(scattering), glm::vec3(absorption), 0.4f, {0, 0.5, -2}, {4, 2, 2});
+  scene.medium =
+      medium_of(glm::vec3(scattering), glm::vec3(absorption), 0.4f, {0, 0.5, -2}, {4, 2, 2});
   const ClpvView view = view_of({0, 1.2, 0}, {1, 0, 0}, {0, 1, 0}, 1e-3f, 1, 1);
   const double extinction = scattering + absorption;
   double expected = 0;
@@ -185,8 +192,8 @@ TEST(Medium, LightOfALampScatteredOnceFollowsItsIntegral) {
     const double t = 4 * (i + 0.5) / kSteps;
     const glm::dvec3 offset = glm::dvec3(at) - glm::dvec3(t, 1.2, 0);
     const double r = glm::length(offset);
-    expected +=
-        4.0 / kSteps * scattering * phase(0.4, offset.x / r) * 5 / (r * r) * std::exp(-extinction * (t + r));
+    expected += 4.0 / kSteps * scattering * phase(0.4, offset.x / r) * 5 / (r * r) *
+                std::exp(-extinction * (t + r));
   }
   const Image seen = pathtracer::traced_view(traced(scene, view, 1, 256), Show::medium);
   EXPECT_NEAR(mean(seen.pixels, 0), expected, 2e-3 * expected);
@@ -198,7 +205,8 @@ TEST(Medium, SweptLightOfASkyIsAttenuatedOnItsWay) {
   constexpr int kGrid = 16;
   constexpr float kCell = 0.25f, kSide = 3;
   const ClpvGrid grid = cascade_grids(glm::vec3(0), 1, kGrid * kCell, kGrid).front();
-  const glm::vec3 middle = glm::vec3(grid.origin[0], grid.origin[1], grid.origin[2]) + kGrid * kCell / 2;
+  const glm::vec3 middle =
+      glm::vec3(grid.origin[0], grid.origin[1], grid.origin[2]) + kGrid * kCell / 2;
   const ClpvMedium medium = medium_of({}, {0.2, 0.5, 1}, 0, middle - kSide / 2, middle + kSide / 2);
   const std::unique_ptr<Basis> basis = swept_basis();
   const reference::Volume dark(kGrid, basis->size(), 3);
@@ -212,13 +220,14 @@ TEST(Medium, SweptLightOfASkyIsAttenuatedOnItsWay) {
     constexpr std::uint32_t kDirections = 1u << 14;
     for (std::uint32_t i = 0; i < kDirections; ++i) {
       const glm::dvec3 w = phase_direction({0, 0, 1}, 0, sobol_point(i, 3));
-      expected +=
-          4 * pi / kDirections * transmittance(medium, medium_part(medium, glm::dvec3(middle), w, 100))[c];
+      expected += 4 * pi / kDirections *
+                  transmittance(medium, medium_part(medium, glm::dvec3(middle), w, 100))[c];
     }
     double found = 0;  // mean of the eight cells around the middle
     for (int i = 0; i < 8; ++i) {
-      found += swept.value(c, 0, kGrid / 2 - (i & 1), kGrid / 2 - (i >> 1 & 1), kGrid / 2 - (i >> 2)) / 8 *
-               std::sqrt(4 * pi) / (kCell * kCell);
+      found +=
+          swept.value(c, 0, kGrid / 2 - (i & 1), kGrid / 2 - (i >> 1 & 1), kGrid / 2 - (i >> 2)) /
+          8 * std::sqrt(4 * pi) / (kCell * kCell);
     }
     // Four taps spread a direction's light, and its ways with it: 4.6 % for the densest, 1 % for
     // the thinnest.
@@ -235,8 +244,8 @@ TEST(Medium, ScatteringBetweenBinsKeepsUniformLightEnergyAndMeanCosine) {
       double to = 0, from = 0, cosine = 0;
       for (int other = 0; other < kSweepBins; ++other) {
         to += scattering(b, other), from += scattering(other, b);
-        cosine +=
-            scattering(other, b) * glm::dot(bins[b].directions.front().w, bins[other].directions.front().w);
+        cosine += scattering(other, b) *
+                  glm::dot(bins[b].directions.front().w, bins[other].directions.front().w);
       }
       EXPECT_NEAR(to, 1, 1e-12);
       EXPECT_NEAR(from, 1, 1e-12);
@@ -258,7 +267,8 @@ struct Furnace {
   reference::Volume dark{kGrid, basis->size(), 3}, scattered{kGrid, kSweepBins, 3};
 
   reference::Volume swept(const ClpvMedium& medium) const {
-    return reference::sweep(*basis, transport, {{grid, &dark, nullptr, 2, &medium, &scattered}}, &sky)
+    return reference::sweep(*basis, transport, {{grid, &dark, nullptr, 2, &medium, &scattered}},
+                            &sky)
         .front();
   }
 };
@@ -292,7 +302,8 @@ SceneData shafts() {
   add_quad(scene, {-10, 3, -10}, {10, 0, 0}, {0, 0, 20}, 0);
   scene.lower = glm::vec3(-10, 0, -10), scene.upper = glm::vec3(10, 3, 10);
   scene.lights = {sun({0.3f, -1, 0.1f}, 5)};
-  scene.medium = medium_of({0.002f, 0.003f, 0.004f}, {0.05f, 0.1f, 0.2f}, 0.3f, {-9, 0.2f, -9}, {9, 2.8f, 9});
+  scene.medium =
+      medium_of({0.002f, 0.003f, 0.004f}, {0.05f, 0.1f, 0.2f}, 0.3f, {-9, 0.2f, -9}, {9, 2.8f, 9});
   SceneCamera camera;
   camera.eye = {0.5f, 1.3f, 8};
   camera.forward = {0, 0, -1};
@@ -330,7 +341,8 @@ TEST(Medium, ScatteredLightFallsOnSurfaces) {
   scene.lower = glm::vec3(-10, 0, -10), scene.upper = glm::vec3(10, 3, 10);
   scene.lights = {sun({0.3f, -1, 0.1f}, 5)};
   SceneCamera camera;
-  camera.eye = {0, 2.5f, 6}, camera.forward = glm::normalize(glm::vec3(0, -1, -2)), camera.vertical_fov = 1;
+  camera.eye = {0, 2.5f, 6}, camera.forward = glm::normalize(glm::vec3(0, -1, -2)),
+  camera.vertical_fov = 1;
   scene.cameras = {camera};
   const glm::vec3 lower(-4, 0.5f, -4), upper(4, 2.5f, 4);
   const auto expect_near = [&](const ClpvMedium& medium, Bounces bounces, int traced_bounces) {

@@ -23,7 +23,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const std::string kSmall =
-    " --basis sh2 --gather all --blockers seen --grid 8 --cascades 1 --rsm-size 16 --shadow-size 16 ";
+    " --basis sh2 --gather all --blockers seen --grid 8 --cascades 1 --rsm-size 16 --shadow-size "
+    "16 ";
 
 class Mpi : public ::testing::Test {
  protected:
@@ -34,28 +35,36 @@ class Mpi : public ::testing::Test {
     write_moving_scene(folder);
   }
 
-  static std::string mpirun() { return CLPV_MPIEXEC " --allow-run-as-root --oversubscribe --bind-to none "; }
+  static std::string mpirun() {
+    return CLPV_MPIEXEC " --allow-run-as-root --oversubscribe --bind-to none ";
+  }
   std::string here() const { return "cd " + folder.path().string() + " && "; }
-  Outcome plain(const std::string& arguments) const { return run(here() + CLPV_PROGRAM " " + arguments); }
+  Outcome plain(const std::string& arguments) const {
+    return run(here() + CLPV_PROGRAM " " + arguments);
+  }
   Outcome by(int ranks, const std::string& arguments) const {
     return run(here() + mpirun() + fmt::format("-n {} " CLPV_PROGRAM " ", ranks) + arguments);
   }
   /// Two ranks, the second started by a shell line that may do something besides.
   std::string second_as(const std::string& line, const std::string& arguments) const {
-    const fs::path script = folder.write("second", "#!/bin/sh\n" + line + " " CLPV_PROGRAM " \"$@\"\n");
+    const fs::path script =
+        folder.write("second", "#!/bin/sh\n" + line + " " CLPV_PROGRAM " \"$@\"\n");
     fs::permissions(script, fs::perms::owner_all);
-    return here() + mpirun() + "-n 1 " CLPV_PROGRAM " " + arguments + " : -n 1 " + script.string() + " " +
-           arguments;
+    return here() + mpirun() + "-n 1 " CLPV_PROGRAM " " + arguments + " : -n 1 " + script.string() +
+           " " + arguments;
   }
   std::string bytes(const std::string& file) const { return read_file(folder / file); }
 
   static std::string film(const std::string& to, int frames) {
     return fmt::format(
-               "sequence moving.json -o {} --frames {} --fps 24 --width 96 --height 72 --transport sampled",
+               "sequence moving.json -o {} --frames {} --fps 24 --width 96 --height 72 --transport "
+               "sampled",
                to, frames) +
            kSmall;
   }
-  static std::string frame(const std::string& of, int i) { return fmt::format("{}/frame-{:04}.exr", of, i); }
+  static std::string frame(const std::string& of, int i) {
+    return fmt::format("{}/frame-{:04}.exr", of, i);
+  }
   int there(const std::string& of, int frames) const {
     int count = 0;
     for (int i = 0; i < frames; ++i) count += fs::exists(folder / frame(of, i));
@@ -85,9 +94,8 @@ json without_times(const std::string& text) {
 
 TEST_F(Mpi, QualityEqualsASingleProcess) {
   const std::string matrix =
-      "quality moving.json --vary transport=sampled,exact --vary iterations=2,4 --width 24 --height 18 "
-      "--spp 16 "
-      "--frames 1 --format json" +
+      "quality moving.json --vary transport=sampled,exact --vary iterations=2,4 --width 24 "
+      "--height 18 --spp 16 --frames 1 --format json" +
       kSmall;
   const Outcome alone = plain(matrix + "--cache plain");
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
@@ -96,7 +104,8 @@ TEST_F(Mpi, QualityEqualsASingleProcess) {
   EXPECT_THAT(many.err, HasSubstr(" of 3: ")) << "which device rank 0 has";
   EXPECT_EQ(without_times(many.out), without_times(alone.out));
   for (const auto& entry : fs::directory_iterator(folder / "plain/references"))
-    EXPECT_TRUE(read_file(entry.path()) == bytes("of3/references/" + entry.path().filename().string()));
+    EXPECT_TRUE(read_file(entry.path()) ==
+                bytes("of3/references/" + entry.path().filename().string()));
   // Either reads the other's cache, times included.
   EXPECT_EQ(plain(matrix + "--cache of3").out, many.out);
   EXPECT_EQ(by(2, matrix + "--cache plain").out, alone.out);
@@ -112,7 +121,8 @@ TEST_F(Mpi, SequenceEqualsASingleProcess) {
 
 TEST_F(Mpi, PathtraceEqualsASingleProcess) {
   const std::string truth =
-      "pathtrace moving.json --width 40 --height 30 --bounces all --view indirect,direct --noise 0.2";
+      "pathtrace moving.json --width 40 --height 30 --bounces all --view indirect,direct --noise "
+      "0.2";
   ASSERT_EQ(plain(truth + " -o plain.exr --stats plain.json").exit_code, 0);
   const Outcome many = by(3, truth + " -o many.exr --stats many.json");
   ASSERT_EQ(many.exit_code, 0) << many.err;
@@ -143,15 +153,16 @@ TEST_F(Mpi, AKilledRankEndsTheJobAndTheSameCommandResumes) {
 
 TEST_F(Mpi, AFailingRankReportsAndEndsTheJob) {
   constexpr int kEndless = 20000, kFrames = 6;
-  const Outcome outcome =
-      run(second_as("CLPV_SHIM=memory:5:-4 LD_PRELOAD=" CLPV_OPENCL_SHIM " exec", film("failed", kEndless)));
+  const Outcome outcome = run(second_as(
+      "CLPV_SHIM=memory:5:-4 LD_PRELOAD=" CLPV_OPENCL_SHIM " exec", film("failed", kEndless)));
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err,
               AllOf(HasSubstr("clpv: rank 1 on "), HasSubstr("CL_MEM_OBJECT_ALLOCATION_FAILURE")));
   EXPECT_LT(there("failed", kEndless), kEndless) << "it went on";
   ASSERT_EQ(plain(film("plain", kFrames)).exit_code, 0);
   ASSERT_EQ(plain(film("failed", kFrames)).exit_code, 0);
-  for (int i = 0; i < kFrames; ++i) EXPECT_TRUE(bytes(frame("failed", i)) == bytes(frame("plain", i))) << i;
+  for (int i = 0; i < kFrames; ++i)
+    EXPECT_TRUE(bytes(frame("failed", i)) == bytes(frame("plain", i))) << i;
 }
 
 TEST_F(Mpi, ExitCodesComeThrough) {
@@ -163,8 +174,8 @@ TEST_F(Mpi, ExitCodesComeThrough) {
   EXPECT_THAT(usage.err, HasSubstr("--output is required"));
   const Outcome other = by(2, "render moving.json -o a.exr");
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_THAT(other.err,
-              AllOf(HasSubstr("render: not for several processes (found: rank "), HasSubstr(" of 2)")));
+  EXPECT_THAT(other.err, AllOf(HasSubstr("render: not for several processes (found: rank "),
+                               HasSubstr(" of 2)")));
   EXPECT_FALSE(fs::exists(folder / "a.exr"));
 }
 

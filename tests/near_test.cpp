@@ -77,8 +77,10 @@ struct EvenLight {
 };
 
 /// Irradiance of the floor [W/m^2] by the CPU reference.
-std::vector<glm::dvec3> near(const SceneData& scene, const EvenLight& light, const NearOptions& options,
-                             const std::vector<reference::MappedLight>& lights = {}, float edge = 1e-3f) {
+std::vector<glm::dvec3> near(const SceneData& scene, const EvenLight& light,
+                             const NearOptions& options,
+                             const std::vector<reference::MappedLight>& lights = {},
+                             float edge = 1e-3f) {
   const std::unique_ptr<Basis> basis = swept_basis();
   const SurfaceImage image = floor_image(edge);
   const reference::Materials materials(scene);
@@ -117,8 +119,10 @@ TEST(Near, InsideAnEmissiveBoxIsPiL) {
   SceneData scene;
   const unsigned emitter = add_emitter(scene, CLPV_MATERIAL_DOUBLE_SIDED);
   add_quad(scene, {-0.5f, 0.5f, -0.5f}, {1, 0, 0}, {0, 0, 1}, emitter);
-  for (const float x : {-0.5f, 0.5f}) add_quad(scene, {x, -1, -0.5f}, {0, 1.5f, 0}, {0, 0, 1}, emitter);
-  for (const float z : {-0.5f, 0.5f}) add_quad(scene, {-0.5f, -1, z}, {1, 0, 0}, {0, 1.5f, 0}, emitter);
+  for (const float x : {-0.5f, 0.5f})
+    add_quad(scene, {x, -1, -0.5f}, {0, 1.5f, 0}, {0, 0, 1}, emitter);
+  for (const float z : {-0.5f, 0.5f})
+    add_quad(scene, {-0.5f, -1, z}, {1, 0, 0}, {0, 1.5f, 0}, emitter);
   // Every ray hits, so the volumes' light does not matter.
   const std::vector<glm::dvec3> found = near(scene, EvenLight(0.7), options_for(4));
   for (const glm::dvec3& e : found) ASSERT_NEAR(e.x, pi * kRadiance, 0.02 * kRadiance);
@@ -134,7 +138,8 @@ double form_factor(double distance, double width, double height) {
 TEST(Near, FloorBesideALitWall) {
   SceneData scene;  // the wall's front faces the origin
   const double albedo = 0.6, distance = 0.3, width = 0.5, height = 0.8;
-  add_quad(scene, {0.3f, 0, -0.5f}, {0, 0, 1}, {0, 0.8f, 0}, add_material(scene, glm::vec3(albedo)));
+  add_quad(scene, {0.3f, 0, -0.5f}, {0, 0, 1}, {0, 0.8f, 0},
+           add_material(scene, glm::vec3(albedo)));
   const ClpvLight sun = directional_light({1, -1, 0}, glm::vec3(5));
   const double radiance = albedo / pi * 5 / std::sqrt(2.0);
   const std::vector<glm::dvec3> found = near(scene, EvenLight(0), options_for(64), {{sun, {}}});
@@ -144,7 +149,8 @@ TEST(Near, FloorBesideALitWall) {
 
 TEST(Near, SingleSidedEmittersAreDarkFromBehind) {
   SceneData scene;
-  add_quad(scene, {0.3f, 0, -0.5f}, {0, 0.8f, 0}, {0, 0, 1}, add_emitter(scene));  // the front faces +x
+  add_quad(scene, {0.3f, 0, -0.5f}, {0, 0.8f, 0}, {0, 0, 1},
+           add_emitter(scene));  // the front faces +x
   EXPECT_NEAR(mean(near(scene, EvenLight(0), options_for(4))), 0, 1e-9);
 }
 
@@ -170,7 +176,8 @@ TEST(Radiance, EvenLightHasItsRadiance) {
   for (const glm::dvec3& at : {glm::dvec3(0), glm::dvec3(5, 1, -2), glm::dvec3(-6.5, 0, 0)}) {
     const reference::RadianceField field =
         reference::radiance_field(options, light.cascades, basis->size(), at);
-    EXPECT_NEAR(reference::radiance(*basis, field, glm::normalize(glm::dvec3(1, 2, -2))).y, kRadiance, 1e-6);
+    EXPECT_NEAR(reference::radiance(*basis, field, glm::normalize(glm::dvec3(1, 2, -2))).y,
+                kRadiance, 1e-6);
     EXPECT_NEAR(reference::field_irradiance(*basis, field, {0, 0, 1}).z, pi * kRadiance, 1e-5);
   }
 }
@@ -222,7 +229,8 @@ TEST(Near, FramesAreEqualToTheBit) {
   options.near = Near::off;
   const std::vector<float> off = irradiance_of(scene, options);
   options.near = Near::traced;
-  for (const NearSize size : {NearSize::full, NearSize::half, NearSize::quarter, NearSize::eighth}) {
+  for (const NearSize size :
+       {NearSize::full, NearSize::half, NearSize::quarter, NearSize::eighth}) {
     options.near_size = size;
     const std::vector<float> on = irradiance_of(scene, options);
     EXPECT_EQ(on, irradiance_of(scene, options));

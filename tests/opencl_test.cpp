@@ -37,13 +37,15 @@ struct Owned {
   opencl::Queue given() const { return {context(), queue()}; }
   std::vector<float> read(cl_mem memory, std::size_t numbers) const {
     std::vector<float> values(numbers);
-    queue.enqueueReadBuffer(cl::Buffer(memory, true), CL_TRUE, 0, numbers * sizeof(float), values.data());
+    queue.enqueueReadBuffer(cl::Buffer(memory, true), CL_TRUE, 0, numbers * sizeof(float),
+                            values.data());
     return values;
   }
   cl::Buffer buffer(const Vectors& vectors) const {
     std::vector<float> wide;
     for (const auto& v : vectors) wide.insert(wide.end(), {v[0], v[1], v[2], NAN});
-    return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, wide.size() * sizeof(float), wide.data()};
+    return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, wide.size() * sizeof(float),
+            wide.data()};
   }
 };
 
@@ -65,7 +67,8 @@ TEST(OpenCl, FramesInACallersQueueAreThoseOfItsOwn) {
   const std::size_t pixels = 48 * 27;
   EXPECT_EQ(own.read(frame.image, 4 * pixels), other.show(View::albedo).pixels);
   cl_int status = CL_QUEUED;
-  clGetEventInfo(frame.done.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
+  clGetEventInfo(frame.done.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status,
+                 nullptr);
   EXPECT_EQ(status, CL_COMPLETE) << "after a read in the same queue";
   EXPECT_EQ(three_of_four(own.read(frame.irradiance, 4 * pixels)),
             three_of_four(other.show(View::irradiance).pixels));
@@ -159,15 +162,17 @@ TEST(OpenCl, LightFromAndToBuffersIsThatOfTheHost) {
 
   Vectors positions, normals;
   for (int i = 0; i < 48 * 27; ++i) {
-    positions.push_back({0.01f * static_cast<float>(i % 48), 0.27f, 0.02f * static_cast<float>(i / 48)});
+    positions.push_back(
+        {0.01f * static_cast<float>(i % 48), 0.27f, 0.02f * static_cast<float>(i / 48)});
     normals.push_back({0, i % 2 == 0 ? -1.0f : 3.0f, 0});
   }
   const Vec3 eye{0.278, 0.273, 0.2};
   const cl::Buffer p = own.buffer(positions), n = own.buffer(normals);
   const opencl::Event done = renderer.enqueue_light({48, 27, n(), p(), nullptr, light()}, eye);
   EXPECT_EQ(done.wait(), CL_SUCCESS);
-  EXPECT_EQ(three_of_four(own.read(light(), 48 * 27 * 4)),
-            renderer.light({.width = 48, .height = 27, .normals = normals, .positions = positions}, eye));
+  EXPECT_EQ(
+      three_of_four(own.read(light(), 48 * 27 * 4)),
+      renderer.light({.width = 48, .height = 27, .normals = normals, .positions = positions}, eye));
 }
 
 TEST(OpenCl, ACallersKernelLooksLightUp) {
@@ -205,14 +210,16 @@ TEST(OpenCl, ACallersKernelLooksLightUp) {
                   radiance = renderer.radiance(points, along);
     for (std::size_t i = 0; i < 50; ++i) {
       for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(values[2 * i][c], irradiance[i][c], 1e-5 + 1e-4 * irradiance[i][c]) << gather << i;
+        EXPECT_NEAR(values[2 * i][c], irradiance[i][c], 1e-5 + 1e-4 * irradiance[i][c])
+            << gather << i;
         EXPECT_NEAR(values[2 * i + 1][c], radiance[i][c], 1e-5 + 1e-4 * std::abs(radiance[i][c]))
             << gather << i;
       }
     }
     EXPECT_GT(irradiance[0][0], 0);
   }
-  Renderer steps(Scene(kCornell), test::small_options().set("transport", "exact").set("near", "off"));
+  Renderer steps(Scene(kCornell),
+                 test::small_options().set("transport", "exact").set("near", "off"));
   EXPECT_THAT(test::error_of(ExitCode::usage, [&] { steps.lookup_source(); }),
               HasSubstr("transport 'exact'"));
 }
@@ -245,8 +252,9 @@ TEST(OpenCl, WrongObjectsAreNamed) {
   const Owned own, other;
   const Scene scene(kCornell);
   const auto rejected = [&](const std::string& part, const opencl::Queue& queue) {
-    EXPECT_THAT(test::error_of(ExitCode::usage, [&] { Renderer(scene, test::small_options(), queue); }),
-                AllOf(HasSubstr(part), HasSubstr("allowed")));
+    EXPECT_THAT(
+        test::error_of(ExitCode::usage, [&] { Renderer(scene, test::small_options(), queue); }),
+        AllOf(HasSubstr(part), HasSubstr("allowed")));
   };
   rejected("context and queue: found neither", {});
   rejected("queue: found one of another context", {own.context(), other.queue()});
@@ -254,30 +262,35 @@ TEST(OpenCl, WrongObjectsAreNamed) {
   rejected("queue: found an out-of-order one", {nullptr, unordered()});
   Renderer renderer(scene, test::small_options(), {own.context(), nullptr});
   const cl::Buffer good(own.context, CL_MEM_READ_WRITE, 2 * 2 * 16),
-      short_(own.context, CL_MEM_READ_WRITE, 63), foreign(other.context, CL_MEM_READ_WRITE, 2 * 2 * 16);
+      short_(own.context, CL_MEM_READ_WRITE, 63),
+      foreign(other.context, CL_MEM_READ_WRITE, 2 * 2 * 16);
   const auto refused = [&](const std::string& part, const opencl::GBuffer& surfaces) {
     EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.enqueue_light(surfaces, Vec3{}); }),
                 AllOf(HasSubstr("light: "), HasSubstr(part), HasSubstr("allowed")));
   };
   refused("normals: found none", {2, 2, nullptr, good(), nullptr, good()});
-  refused("positions: found 63 bytes, allowed: at least 64", {2, 2, good(), short_(), nullptr, good()});
-  refused("irradiance: found a buffer of another context", {2, 2, good(), good(), nullptr, foreign()});
+  refused("positions: found 63 bytes, allowed: at least 64",
+          {2, 2, good(), short_(), nullptr, good()});
+  refused("irradiance: found a buffer of another context",
+          {2, 2, good(), good(), nullptr, foreign()});
   refused("no positions for an eye", {2, 2, good(), nullptr, good(), good()});
   refused("positions and depths", {2, 2, good(), good(), good(), good()});
   refused("found 0 x 2", {0, 2, good(), good(), nullptr, good()});
   if (own.device.getInfo<CL_DEVICE_IMAGE_SUPPORT>() == CL_TRUE) {
-    const cl::Image2D image(own.context, CL_MEM_READ_WRITE, cl::ImageFormat(CL_RGBA, CL_FLOAT), 4, 4);
+    const cl::Image2D image(own.context, CL_MEM_READ_WRITE, cl::ImageFormat(CL_RGBA, CL_FLOAT), 4,
+                            4);
     refused("normals: found an image", {2, 2, image(), good(), nullptr, good()});
   }
 }
 
-/// Runs the test that calls it again, in a process with other devices. Returns false in that process.
+/// Runs the test that calls it again, in a process with other devices. Returns false in that
+/// process.
 bool passes_with(const std::string& variables) {
   if (std::getenv("CLPV_TEST_AGAIN") != nullptr) return false;
   const ::testing::TestInfo& test = *::testing::UnitTest::GetInstance()->current_test_info();
-  const test::Outcome outcome =
-      test::run(variables + " CLPV_TEST_AGAIN=1 " + std::filesystem::read_symlink("/proc/self/exe").string() +
-                " --gtest_filter=" + test.test_suite_name() + "." + test.name());
+  const test::Outcome outcome = test::run(
+      variables + " CLPV_TEST_AGAIN=1 " + std::filesystem::read_symlink("/proc/self/exe").string() +
+      " --gtest_filter=" + test.test_suite_name() + "." + test.name());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("[  PASSED  ] 1 test")) << outcome.err;
   return true;
@@ -305,11 +318,13 @@ TEST(OpenCl, EitherOfTwoDevicesInOneContext) {
   const cl::Context both({devices[0].handle, devices[1].handle}), one(devices[0].handle);
   const Scene scene(kCornell);
   const std::vector<float> expected = Renderer(scene, test::small_options()).render().pixels;
-  EXPECT_THAT(test::error_of(ExitCode::usage,
-                             [&] {
-                               Renderer(scene, test::small_options(), {both(), nullptr});
-                             }),
-              HasSubstr("context: found 2 devices and no queue, allowed: one device, or a queue for one of"));
+  EXPECT_THAT(
+      test::error_of(ExitCode::usage,
+                     [&] {
+                       Renderer(scene, test::small_options(), {both(), nullptr});
+                     }),
+      HasSubstr(
+          "context: found 2 devices and no queue, allowed: one device, or a queue for one of"));
   std::vector<cl::CommandQueue> queues;
   std::vector<Renderer> renderers;
   for (const Device& device : devices) {
@@ -338,9 +353,10 @@ TEST(OpenCl, EitherOfTwoDevicesInOneContext) {
   EXPECT_EQ(three_of_four(light), three_of_four(renderers[0].show(View::irradiance).pixels));
   opencl::GBuffer elsewhere = seen;
   elsewhere.irradiance = foreign();
-  EXPECT_THAT(test::error_of(ExitCode::usage,
-                             [&] { renderers[1].enqueue_light(elsewhere, scene.cameras().front()); }),
-              HasSubstr("irradiance: found a buffer of another context"));
+  EXPECT_THAT(
+      test::error_of(ExitCode::usage,
+                     [&] { renderers[1].enqueue_light(elsewhere, scene.cameras().front()); }),
+      HasSubstr("irradiance: found a buffer of another context"));
 }
 
 TEST(OpenCl, AContextWithoutAUsableDeviceIsNamed) {
@@ -350,9 +366,11 @@ TEST(OpenCl, AContextWithoutAUsableDeviceIsNamed) {
   ASSERT_FALSE(useless.supported());
   const cl::Context context(useless.handle);
   const cl::CommandQueue queue(context, useless.handle);
-  for (const opencl::Queue& given : {opencl::Queue{context(), nullptr}, opencl::Queue{nullptr, queue()}}) {
+  for (const opencl::Queue& given :
+       {opencl::Queue{context(), nullptr}, opencl::Queue{nullptr, queue()}}) {
     EXPECT_THAT(
-        test::error_of(ExitCode::device, [&] { Renderer(Scene(kCornell), test::small_options(), given); }),
+        test::error_of(ExitCode::device,
+                       [&] { Renderer(Scene(kCornell), test::small_options(), given); }),
         AllOf(HasSubstr("queue: found one of " + useless.name), HasSubstr("lacks: compiler")));
   }
 }
@@ -361,7 +379,8 @@ TEST(OpenCl, ObjectsOfAFrameInFlightMayGo) {
   const Owned own;
   Scene scene(kCornell);
   const Triangles square{{0, 1, 2}, {0, 2, 3}};
-  const Vectors screen{{0.1f, 0.1f, 0.2f}, {0.4f, 0.1f, 0.2f}, {0.4f, 0.4f, 0.2f}, {0.1f, 0.4f, 0.2f}};
+  const Vectors screen{
+      {0.1f, 0.1f, 0.2f}, {0.4f, 0.1f, 0.2f}, {0.4f, 0.4f, 0.2f}, {0.1f, 0.4f, 0.2f}};
   const std::vector<float> without = Renderer(scene, test::small_options()).render().pixels;
   const int mesh = scene.add_mesh({.positions = screen, .triangles = square});
   const std::vector<float> with = Renderer(scene, test::small_options()).render().pixels;

@@ -54,11 +54,13 @@ TEST(Options, EachConvertsFromTextToValueAndBack) {
     const bool choice = info.allowed.find('|') != std::string::npos;
     std::set<std::string> seen;
     for (const std::string& text :
-         choice ? choices_in(info.allowed) : std::vector<std::string>{numbers_and_files.at(info.name)}) {
+         choice ? choices_in(info.allowed)
+                : std::vector<std::string>{numbers_and_files.at(info.name)}) {
       RenderOptions options;
       set_option(options, info.name, text);
       EXPECT_EQ(value_of(options, info.name), text);
-      EXPECT_TRUE(seen.insert(to_json(options).at(info.name).dump()).second) << text << " is like another";
+      EXPECT_TRUE(seen.insert(to_json(options).at(info.name).dump()).second)
+          << text << " is like another";
     }
     EXPECT_GE(seen.size(), choice ? 2u : 1u);
   }
@@ -105,7 +107,8 @@ TEST(Options, ContradictionsAreRejectedByTheFirstOption) {
                 ::testing::StartsWith(option + ": found"));
   };
   const auto steps = [](RenderOptions& o) { o.transport = TransportKind::sampled; };
-  for (const SceneData* scene : {&plain, &under_a_sky, &in_fog}) EXPECT_NO_THROW(validate({}, *scene));
+  for (const SceneData* scene : {&plain, &under_a_sky, &in_fog})
+    EXPECT_NO_THROW(validate({}, *scene));
   rejected("blocking", plain, [](RenderOptions& o) { o.blocking = Blocking::one_sided; });
   rejected("lobe-time", plain, [](RenderOptions& o) { o.lobe_time = LobeTime::kernel; });
   rejected("bounces", plain, [&](RenderOptions& o) { steps(o), o.bounces = Bounces::two; });
@@ -147,14 +150,18 @@ TEST(Presets, PaperIsThePublishedScheme) {
   options.rsm_size = 64, options.width = 77, options.height = 33;
   set_option(options, "preset", "paper");
   const nlohmann::json found = to_json(options),
-                       published = {{"preset", "paper"},  {"basis", "srbf8v2"},     {"lambda", 0.25},
-                                    {"lobe", "rotate"},   {"lobe-time", "kernel"},  {"evaluate", "image"},
-                                    {"table-size", 256},  {"transport", "sampled"}, {"layout", "image"},
-                                    {"storage", "half"},  {"rsm-format", "paper"},  {"blocking", "one-sided"},
-                                    {"blockers", "seen"}, {"gather", "all"},        {"gather-offset", 0.5},
-                                    {"grid", 32},         {"cascades", 3},          {"cascade-size", 12.5},
-                                    {"rsm-size", 256},    {"iterations", 8},        {"near", "off"},
-                                    {"width", 960},       {"height", 540}};
+                       published = {{"preset", "paper"},     {"basis", "srbf8v2"},
+                                    {"lambda", 0.25},        {"lobe", "rotate"},
+                                    {"lobe-time", "kernel"}, {"evaluate", "image"},
+                                    {"table-size", 256},     {"transport", "sampled"},
+                                    {"layout", "image"},     {"storage", "half"},
+                                    {"rsm-format", "paper"}, {"blocking", "one-sided"},
+                                    {"blockers", "seen"},    {"gather", "all"},
+                                    {"gather-offset", 0.5},  {"grid", 32},
+                                    {"cascades", 3},         {"cascade-size", 12.5},
+                                    {"rsm-size", 256},       {"iterations", 8},
+                                    {"near", "off"},         {"width", 960},
+                                    {"height", 540}};
   for (const auto& [name, value] : published.items()) EXPECT_EQ(found[name], value) << name;
 }
 
@@ -182,9 +189,9 @@ TEST(Presets, FastHasNoNearFieldAndFineMoreRays) {
 
 TEST(Options, NearPixelsAreAboutAsManyAtEachSizeOfImage) {
   RenderOptions options;
-  const std::map<std::pair<int, int>, int> steps = {{{16, 9}, 1},     {{240, 135}, 1},  {{480, 270}, 2},
-                                                    {{960, 540}, 4},  {{1280, 720}, 4}, {{1920, 1080}, 8},
-                                                    {{3840, 2160}, 8}};
+  const std::map<std::pair<int, int>, int> steps = {
+      {{16, 9}, 1},     {{240, 135}, 1},   {{480, 270}, 2},  {{960, 540}, 4},
+      {{1280, 720}, 4}, {{1920, 1080}, 8}, {{3840, 2160}, 8}};
   for (const auto& [size, step] : steps) {
     std::tie(options.width, options.height) = size;
     options.near_size = NearSize::automatic;
@@ -196,11 +203,12 @@ TEST(Options, NearPixelsAreAboutAsManyAtEachSizeOfImage) {
 
 TEST(Presets, RenderRecordsWhatWasResolved) {
   const test::TemporaryFolder folder;
-  const std::string image = (folder.path() / "a.exr").string(), stats = (folder.path() / "a.json").string();
+  const std::string image = (folder.path() / "a.exr").string(),
+                    stats = (folder.path() / "a.json").string();
   // Options override the preset wherever it stands; the scene's cascades override its sizes.
   const test::Outcome outcome =
-      test::run_here("render " CLPV_SOURCE_DIR "/scenes/cornell.json -o " + image + " --stats " + stats +
-                     " --basis sh2 --width 16 --height 9 --grid 8 --preset paper");
+      test::run_here("render " CLPV_SOURCE_DIR "/scenes/cornell.json -o " + image + " --stats " +
+                     stats + " --basis sh2 --width 16 --height 9 --grid 8 --preset paper");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json report = nlohmann::json::parse(test::read_file(stats));
   const nlohmann::json& options = report.at("options");
@@ -221,11 +229,11 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
 
 TEST(Presets, QualityTakesAPresetsTransport) {
   const test::TemporaryFolder folder;
-  const test::Outcome outcome = test::run_here(
-      "quality " CLPV_SOURCE_DIR
-      "/scenes/cornell.json --camera red --vary preset=paper,best --basis sh2 --width 16 --height 9 --grid 8 "
-      "--spp 1 --frames 1 --format json --cache " +
-      folder.path().string());
+  const test::Outcome outcome =
+      test::run_here("quality " CLPV_SOURCE_DIR
+                     "/scenes/cornell.json --camera red --vary preset=paper,best --basis sh2 "
+                     "--width 16 --height 9 --grid 8 --spp 1 --frames 1 --format json --cache " +
+                     folder.path().string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json cells = nlohmann::json::parse(outcome.out).at("cells");
   ASSERT_EQ(cells.size(), 2u);

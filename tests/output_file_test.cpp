@@ -110,8 +110,9 @@ TEST_F(OutputFile, OneFileHasOneUse) {
   fs::create_symlink("new.exr", folder_ / "link.exr");
   fs::create_directory(folder_ / "below");
   const std::vector<NamedFile> inputs{{"SCENE", folder_ / "scene.json"}, {"--model", ""}};
-  check_outputs({{"--output", folder_ / "new.exr"}, {"--stats", folder_ / "new.json"}, {"--log", ""}},
-                inputs);
+  check_outputs(
+      {{"--output", folder_ / "new.exr"}, {"--stats", folder_ / "new.json"}, {"--log", ""}},
+      inputs);
   for (const char* same : {"scene.json", "below/../scene.json", "link.json", "hard.json"}) {
     const std::string message = error_of(ExitCode::usage, [&] {
       check_outputs({{"--stats", folder_ / same}}, inputs);
@@ -139,7 +140,8 @@ TEST_F(OutputFile, OneOfSeveralWritersWinsWhole) {
     writers.push_back(child);
   }
   for (bool running = true; running;) {
-    running = std::ranges::any_of(writers, [](pid_t id) { return ::waitpid(id, nullptr, WNOHANG) == 0; });
+    running =
+        std::ranges::any_of(writers, [](pid_t id) { return ::waitpid(id, nullptr, WNOHANG) == 0; });
     const std::string found = read_file(path);
     if (found.empty()) continue;  // before the first
     ASSERT_EQ(found, std::string(200000, found.front()));
@@ -157,13 +159,15 @@ TEST_F(OutputFile, NpyHasNumPysHeaderAndTheValues) {
   EXPECT_EQ(std::memcmp(file.data() + header, values.data(), values.size() * 4), 0);
   EXPECT_TRUE(file.starts_with(std::string("\x93NUMPY\x01\x00", 8)));
   EXPECT_EQ(file.find("{'descr': '<f4', 'fortran_order': False, 'shape': (3, 1, 2), }"), 10u);
-  EXPECT_EQ(static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]), header - 10);
+  EXPECT_EQ(static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]),
+            header - 10);
   write_npy(folder_ / "b.npy", values, line);
   EXPECT_NE(read_file(folder_ / "b.npy").find("'shape': (6,), }"), std::string::npos);
 }
 
 TEST(ProgressLine, ShowsShareAndTimeLeft) {
-  EXPECT_EQ(progress_line("tracing", 0, 10, 1, 200), "tracing [..............................]   0 % ");
+  EXPECT_EQ(progress_line("tracing", 0, 10, 1, 200),
+            "tracing [..............................]   0 % ");
   EXPECT_EQ(progress_line("tracing", 5, 10, 90, 200),
             "tracing [###############...............]  50 % 1:30 left");
   EXPECT_NE(progress_line("tracing", 1, 101, 60, 200).find("1:40:00 left"), std::string::npos);

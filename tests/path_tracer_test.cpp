@@ -87,16 +87,19 @@ void add_wall(SceneData& scene, unsigned material) {
 // Form factors by Howell's catalogue: C-11, C-14, and B-4 four times.
 TEST(PathTracer, EmissiveSquaresLightByTheirFormFactors) {
   const double parallel =
-      2 / pi * (std::log(std::sqrt(4.0 / 3)) + 2 * std::sqrt(2.0) * std::atan(std::sqrt(0.5)) - pi / 2);
+      2 / pi *
+      (std::log(std::sqrt(4.0 / 3)) + 2 * std::sqrt(2.0) * std::atan(std::sqrt(0.5)) - pi / 2);
   EXPECT_NEAR(parallel, 0.1998, 1e-4);
   EXPECT_NEAR(received(add_ceiling, 3, 0, 256), 3 * pi * parallel, 0.002 * 3 * pi * parallel);
   const double root = std::sqrt(2.0);
   const double perpendicular =
       (pi / 2 - root * std::atan(1 / root) + std::log(4.0 / 3 * 0.75 * 0.75) / 4) / pi;
   EXPECT_NEAR(perpendicular, 0.2000, 1e-4);
-  EXPECT_NEAR(received(add_wall, 3, 0, 1024), 3 * pi * perpendicular, 0.004 * 3 * pi * perpendicular);
+  EXPECT_NEAR(received(add_wall, 3, 0, 1024), 3 * pi * perpendicular,
+              0.004 * 3 * pi * perpendicular);
   const double patch = 4 * corner_factor(0.5, 0.5);
-  EXPECT_NEAR(received(add_ceiling, 3, 0, 256, {0, 0.5f, 0}, 1e-3f), 3 * pi * patch, 0.002 * 3 * pi * patch);
+  EXPECT_NEAR(received(add_ceiling, 3, 0, 256, {0, 0.5f, 0}, 1e-3f), 3 * pi * patch,
+              0.002 * 3 * pi * patch);
 }
 
 // Few samples, many runs: no light is counted twice by direct sampling and by hits.
@@ -126,7 +129,8 @@ TEST(PathTracer, AnEmissiveTextureLightsByItsTexels) {
   for (const unsigned lit : {0u, 1u}) {
     found[lit] = received(
         [&](SceneData& scene, unsigned material) {
-          Texture half{.width = 2, .height = 1, .rgba = {0, 0, 0, 255, 0, 0, 0, 255}, .name = "half"};
+          Texture half{
+              .width = 2, .height = 1, .rgba = {0, 0, 0, 255, 0, 0, 0, 255}, .name = "half"};
           half.wrap_u = half.wrap_v = CLPV_WRAP_CLAMP;
           for (int i = 0; i < 3; ++i) half.rgba[4 * lit + i] = 255;
           scene.textures.push_back(half);
@@ -177,14 +181,16 @@ const ClpvView kUnderTile = view_of({0, 0.5f, 0}, {0, 1, 0}, {0, 0, 1}, 0.0015f,
 double plates_expected() {
   const double lit = 5 * 0.3 / std::hypot(1.0, 0.3);
   return 0.6 * lit *
-         (corner_factor(1, 0.5) + corner_factor(1, 1.5) + corner_factor(2, 0.5) + corner_factor(2, 1.5));
+         (corner_factor(1, 0.5) + corner_factor(1, 1.5) + corner_factor(2, 0.5) +
+          corner_factor(2, 1.5));
 }
 
 TEST(PathTracer, ParallelPlatesExchangeTheAnalyticFormFactor) {
   PathTracerOptions options;
   options.samples = 1 << 14;
   const TracedImage image = trace_paths(plates(), kUnderTile, options);
-  for (const glm::vec3& e : image.irradiance) EXPECT_NEAR(e.x, plates_expected(), 2e-3 * plates_expected());
+  for (const glm::vec3& e : image.irradiance)
+    EXPECT_NEAR(e.x, plates_expected(), 2e-3 * plates_expected());
   EXPECT_EQ(mean(image.direct), 0) << "the sun is behind the tile";
   EXPECT_LT(image.noise, 2e-3);
 }
@@ -248,7 +254,8 @@ TEST(PathTracer, BackgroundIsZero) {
   scene.lights = {sun({0, -1, 0}, 1)};
   PathTracerOptions options;
   options.samples = 2;
-  const TracedImage image = trace_paths(scene, view_of({0, 1, 0}, {0, 1, 0}, {0, 0, 1}, 1, 3, 3), options);
+  const TracedImage image =
+      trace_paths(scene, view_of({0, 1, 0}, {0, 1, 0}, {0, 0, 1}, 1, 3, 3), options);
   for (std::size_t i = 0; i < 9; ++i) {
     EXPECT_EQ(image.depth[i], 0);
     EXPECT_EQ(image.normal[i], glm::vec3(0));

@@ -23,9 +23,15 @@ namespace fs = std::filesystem;
 nlohmann::json floor_scene() {
   return {{"model", "model.gltf"},
           {"cameras",
-           {{{"name", "down"}, {"eye", {0, 1, 0}}, {"target", {0.01, 0, 0}}, {"vertical_fov_degrees", 90}}}},
+           {{{"name", "down"},
+             {"eye", {0, 1, 0}},
+             {"target", {0.01, 0, 0}},
+             {"vertical_fov_degrees", 90}}}},
           {"lights",
-           {{{"name", "sun"}, {"kind", "directional"}, {"direction", {0, -1, 0}}, {"illuminance_lux", 2}}}}};
+           {{{"name", "sun"},
+             {"kind", "directional"},
+             {"direction", {0, -1, 0}},
+             {"illuminance_lux", 2}}}}};
 }
 
 class PathtraceCommand : public ::testing::Test {
@@ -46,13 +52,14 @@ class PathtraceCommand : public ::testing::Test {
 };
 
 TEST_F(PathtraceCommand, WritesLayersMetadataAndStats) {
-  const test::Outcome outcome =
-      reference("floor.json", "--camera down --width 9 --height 5 --spp 4 --seed 7 --view full,depth -o " +
-                                  file("a.exr") + " --stats " + file("a.json"));
+  const test::Outcome outcome = reference(
+      "floor.json", "--camera down --width 9 --height 5 --spp 4 --seed 7 --view full,depth -o " +
+                        file("a.exr") + " --stats " + file("a.json"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "") << "stdout is for data";
   const Image image = read_image(file("a.exr"));
-  const Image full = extract_layer(image, "full", "a.exr"), depth = extract_layer(image, "depth", "a.exr");
+  const Image full = extract_layer(image, "full", "a.exr"),
+              depth = extract_layer(image, "depth", "a.exr");
   const float albedo = 1;
   EXPECT_NEAR(full.at(4, 2, 0), albedo * 2 / 3.14159265f, 1e-5);
   EXPECT_NEAR(depth.at(4, 2, 0), 1, 1e-4);
@@ -70,7 +77,8 @@ TEST_F(PathtraceCommand, WritesLayersMetadataAndStats) {
 
 TEST_F(PathtraceCommand, ViewsWithoutRandomPathsTakeOne) {
   const test::Outcome outcome = reference(
-      "floor.json", "--width 9 --height 5 --noise 0.001 --view albedo,normal,depth,direct -o " + file("a.exr"));
+      "floor.json",
+      "--width 9 --height 5 --noise 0.001 --view albedo,normal,depth,direct -o " + file("a.exr"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(read_image(file("a.exr")).metadata.at("spp_traced"), "1");
 }
@@ -109,7 +117,8 @@ TEST_F(CachedReference, IsTracedOnce) {
   EXPECT_EQ(first.samples, second.samples);
   EXPECT_EQ(first.noise, second.noise);
   for (const char* view : {"full", "indirect", "depth"}) {
-    EXPECT_EQ(extract_layer(first.image, view, "a").pixels, extract_layer(second.image, view, "b").pixels)
+    EXPECT_EQ(extract_layer(first.image, view, "a").pixels,
+              extract_layer(second.image, view, "b").pixels)
         << view;
   }
   EXPECT_EQ(first.file.parent_path(), folder_) << "a slash in a scene's name leads nowhere";

@@ -25,7 +25,8 @@ void write_file(const fs::path& path, const std::string& bytes) {
 }
 
 std::size_t file_count(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
 class ProgramCacheTest : public ::testing::Test {
@@ -52,8 +53,8 @@ TEST_F(ProgramCacheTest, KeyDependsOnEveryInput) {
   const std::string key = ProgramCache::key(device, "options", "text");
   EXPECT_NE(ProgramCache::key(device, "options2", "text"), key);
   EXPECT_NE(ProgramCache::key(device, "options", "text2"), key);
-  for (auto field :
-       {&Device::platform, &Device::platform_version, &Device::name, &Device::driver, &Device::version}) {
+  for (auto field : {&Device::platform, &Device::platform_version, &Device::name, &Device::driver,
+                     &Device::version}) {
     Device other = device;
     other.*field += "2";
     EXPECT_NE(ProgramCache::key(other, "options", "text"), key);
@@ -117,7 +118,8 @@ class CachedSession : public ProgramCacheTest {
   CachedSession() {
     setenv("CLPV_KERNEL_DIR", folder_.path().c_str(), 1);
     write_file(folder_.path() / "answer.cl",
-               "__kernel void answer(__global int* a) { if (get_global_id(0) == 0) a[0] = CLPV_ANSWER; }\n");
+               "__kernel void answer(__global int* a) { if (get_global_id(0) == 0) a[0] = "
+               "CLPV_ANSWER; }\n");
   }
   ~CachedSession() override { unsetenv("CLPV_KERNEL_DIR"); }
 

@@ -46,29 +46,31 @@ TEST(KernelFiles, IncludesAreReplacedAndMarked) {
   folder.write("a.cl", "a1\n#include \"b.h\"\n  #include \"shared/b.h\"\na4\n");
   folder.write("b.h", "b1\n");
   folder.write("shared/b.h", "#include \"b.h\"\ns2");
-  EXPECT_EQ(assemble_kernel_source("a.cl"),
-            "#line 1 \"a.cl\"\na1\n"
-            "#line 1 \"b.h\"\nb1\n#line 3 \"a.cl\"\n"
-            "#line 1 \"shared/b.h\"\n#line 1 \"b.h\"\nb1\n#line 2 \"shared/b.h\"\ns2\n#line 4 \"a.cl\"\n"
-            "a4\n");
+  EXPECT_EQ(
+      assemble_kernel_source("a.cl"),
+      "#line 1 \"a.cl\"\na1\n"
+      "#line 1 \"b.h\"\nb1\n#line 3 \"a.cl\"\n"
+      "#line 1 \"shared/b.h\"\n#line 1 \"b.h\"\nb1\n#line 2 \"shared/b.h\"\ns2\n#line 4 \"a.cl\"\n"
+      "a4\n");
 }
 
 TEST(KernelFiles, GuardReplacesPragmaOnce) {
   KernelFolder folder;
   folder.write("a.cl", "#include \"v/b.h\"\na2\n");
   folder.write("v/b.h", "#pragma once\nb2\n");
-  EXPECT_EQ(
-      assemble_kernel_source("a.cl"),
-      "#line 1 \"a.cl\"\n"
-      "#ifndef CLPV_ONCE_v_b_h\n#define CLPV_ONCE_v_b_h\n#line 1 \"v/b.h\"\n\nb2\n#endif\n#line 2 \"a.cl\"\n"
-      "a2\n");
+  EXPECT_EQ(assemble_kernel_source("a.cl"),
+            "#line 1 \"a.cl\"\n"
+            "#ifndef CLPV_ONCE_v_b_h\n#define CLPV_ONCE_v_b_h\n#line 1 "
+            "\"v/b.h\"\n\nb2\n#endif\n#line 2 \"a.cl\"\n"
+            "a2\n");
 }
 
 TEST(KernelFiles, FolderOverridesFileByFile) {
   KernelFolder folder;
   folder.write("sizes.cl", "// mine\n#include \"shared/grid.h\"\n");
   EXPECT_EQ(kernel_file("sizes.cl"), "// mine\n#include \"shared/grid.h\"\n");
-  EXPECT_THAT(assemble_kernel_source("sizes.cl"), HasSubstr("} ClpvGrid;")) << "the rest stays embedded";
+  EXPECT_THAT(assemble_kernel_source("sizes.cl"), HasSubstr("} ClpvGrid;"))
+      << "the rest stays embedded";
 }
 
 TEST(KernelFiles, UnknownAndEndlessOnesAreRejected) {
@@ -82,9 +84,10 @@ TEST(ProgramText, LiteralsThenLanesAndGeneratedThenFile) {
   KernelFolder folder;
   folder.write("lanes.h", "typedef float realW;\n");
   folder.write("a.cl", "int a;\n");
-  const std::string text = program_text({.file = "a.cl",
-                                         .literals = Literals().flag("CLPV_B", true).number("CLPV_A", 3),
-                                         .generated = "int g;"});
+  const std::string text =
+      program_text({.file = "a.cl",
+                    .literals = Literals().flag("CLPV_B", true).number("CLPV_A", 3),
+                    .generated = "int g;"});
   EXPECT_EQ(text,
             "#line 1 \"literals\"\n#define CLPV_A 3u\n#define CLPV_B 1\n"
             "#line 1 \"lanes.h\"\ntypedef float realW;\n"
@@ -101,8 +104,9 @@ TEST(Literals, OneNameHasOneValue) {
 TEST(ProgramErrors, BuildFailureShowsLogOptionsAndTheLine) {
   KernelFolder folder;
   folder.write("broken.h", "// one\nint half_done(int a) {\n  return a + no_such_name;\n}\n");
-  folder.write("broken.cl",
-               "#include \"broken.h\"\n__kernel void k(__global int* a) { a[0] = half_done(CLPV_X); }\n");
+  folder.write(
+      "broken.cl",
+      "#include \"broken.h\"\n__kernel void k(__global int* a) { a[0] = half_done(CLPV_X); }\n");
   Session session(choose_device());
   const std::string message = test::error_of(ExitCode::run_time, [&] {
     const Kernel kernel(session, {"broken.cl", Literals().integer("CLPV_X", 1), {}}, "k");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Programs that clpv starts: none comes from the current folder, and file names are no options of theirs (docs/security.md).
+// Programs that clpv starts: none comes from the current folder, and file names are no options of
+// theirs (docs/security.md).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -17,15 +18,17 @@ using test::read_file;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// A folder with a trap of every name that Python or a program search could take from it. Each writes a file "sprung".
+/// A folder with a trap of every name that Python or a program search could take from it. Each
+/// writes a file "sprung".
 class Traps {
  public:
   Traps() {
     const std::string sprung = (folder_ / "sprung").string();
-    for (const char* file :
-         {"clpv/__init__.py", "clpv/draw/__init__.py", "clpv/draw/__main__.py", "jinja2.py", "markupsafe.py",
-          "matplotlib.py", "numpy.py", "json.py", "sitecustomize.py", "usercustomize.py"}) {
-      folder_.write(file, "open('" + sprung + "', 'a').write('" + file + "\\n')\nraise SystemExit(0)\n");
+    for (const char* file : {"clpv/__init__.py", "clpv/draw/__init__.py", "clpv/draw/__main__.py",
+                             "jinja2.py", "markupsafe.py", "matplotlib.py", "numpy.py", "json.py",
+                             "sitecustomize.py", "usercustomize.py"}) {
+      folder_.write(file,
+                    "open('" + sprung + "', 'a').write('" + file + "\\n')\nraise SystemExit(0)\n");
     }
     for (const char* file :
          {"python3", "python", "env", "sh", "ffmpeg", "ld", "cc", "clang", "mpirun", "clpv"}) {
@@ -36,8 +39,8 @@ class Traps {
   }
   /// `clpv arguments` in the folder, with the current folder in PATH in all its spellings.
   test::Outcome run(const std::string& arguments, const std::string& variables = "") const {
-    return test::run("cd " + folder_.path().string() + " && PYTHONPATH=. PATH=.::./:\"$PATH\": " + variables +
-                     " " CLPV_PROGRAM " " + arguments);
+    return test::run("cd " + folder_.path().string() + " && PYTHONPATH=. PATH=.::./:\"$PATH\": " +
+                     variables + " " CLPV_PROGRAM " " + arguments);
   }
   std::string sprung() const { return read_file(folder_ / "sprung"); }
   const test::TemporaryFolder& folder() const { return folder_; }
@@ -79,10 +82,12 @@ TEST(Programs, APythonThatLacksModulesIsPassedOver) {
   const std::string figures = CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string();
   const test::Outcome passed = test::run("PATH=" + (folder / "bin").string() + ":$PATH " + figures);
   EXPECT_EQ(passed.exit_code, 0) << passed.err;
-  const test::Outcome named = test::run("CLPV_PYTHON=" + (folder / "bin/python3").string() + " " + figures);
+  const test::Outcome named =
+      test::run("CLPV_PYTHON=" + (folder / "bin/python3").string() + " " + figures);
   EXPECT_EQ(named.exit_code, 1);
-  EXPECT_THAT(named.err, AllOf(HasSubstr("CLPV_PYTHON"), HasSubstr("python3-matplotlib"),
-                               HasSubstr((folder / "bin/python3").string() + ": No module named numpy")));
+  EXPECT_THAT(named.err,
+              AllOf(HasSubstr("CLPV_PYTHON"), HasSubstr("python3-matplotlib"),
+                    HasSubstr((folder / "bin/python3").string() + ": No module named numpy")));
 }
 
 TEST(Programs, ANameWithAColonOrADashIsAFileToFfmpeg) {
@@ -93,9 +98,10 @@ TEST(Programs, ANameWithAColonOrADashIsAFileToFfmpeg) {
   ::chmod((folder / "bin/ffmpeg").c_str(), 0755);
   for (const std::string& name :
        {std::string("tcp:x.mp4"), std::string("-y.mp4"), std::string(251, 'a') + ".mp4"}) {
-    const test::Outcome outcome = test::run(
-        "cd " + folder.path().string() + " && PATH=" + (folder / "bin").string() + ":$PATH " +
-        CLPV_PROGRAM " sequence " + kTiny + kSmallSteps + "--frames 1 --fps 1 -o film --video=" + name);
+    const test::Outcome outcome =
+        test::run("cd " + folder.path().string() + " && PATH=" + (folder / "bin").string() +
+                  ":$PATH " + CLPV_PROGRAM " sequence " + kTiny + kSmallSteps +
+                  "--frames 1 --fps 1 -o film --video=" + name);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(read_file(folder / name), HasSubstr(" file:/")) << name;
   }

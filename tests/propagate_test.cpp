@@ -11,7 +11,8 @@
 namespace clpv::propagate_test {
 namespace {
 
-reference::Volume one_source(const Basis& basis, int n, const std::vector<double>& c, glm::ivec3 at) {
+reference::Volume one_source(const Basis& basis, int n, const std::vector<double>& c,
+                             glm::ivec3 at) {
   reference::Volume volume(n, basis.size());
   for (int channel = 0; channel < 3; ++channel) {
     for (int i = 0; i < basis.size(); ++i)
@@ -29,7 +30,8 @@ std::vector<double> axis_lobe(const Basis& basis) {
 }
 
 /// Energy before the first step and after each, red channel, by the CPU reference.
-std::vector<double> energies(const Basis& basis, TransportKind kind, reference::Volume light, int steps) {
+std::vector<double> energies(const Basis& basis, TransportKind kind, reference::Volume light,
+                             int steps) {
   const Transport transport = make_transport(kind, basis);
   std::vector<double> all{reference::energy(basis, light)[0]};
   for (int step = 0; step < steps; ++step) {
@@ -42,7 +44,8 @@ std::vector<double> energies(const Basis& basis, TransportKind kind, reference::
 TEST(Propagate, IsotropicSourceKeepsItsEnergy) {
   const auto basis = make_basis("sh2");
   for (const TransportKind kind : {TransportKind::sampled, TransportKind::exact}) {
-    for (const double e : energies(*basis, kind, one_source(*basis, 19, isotropic(*basis), {9, 9, 9}), 8))
+    for (const double e :
+         energies(*basis, kind, one_source(*basis, 19, isotropic(*basis), {9, 9, 9}), 8))
       EXPECT_NEAR(e, 1.0, 1e-5) << name_of(kind);
   }
 }
@@ -64,8 +67,8 @@ TEST(Propagate, UnclampedExactTransportConservesEnergyOfEveryBasis) {
     const Transport transport = make_transport(TransportKind::exact, *basis);
     const auto light = one_source(*basis, 9, isotropic(*basis), {4, 4, 4});
     const auto end = reference::propagate(transport, light, nullptr, 3, false);
-    EXPECT_NEAR(reference::energy(*basis, end.travelling)[0] / reference::energy(*basis, light)[0], 1.0,
-                1e-13)
+    EXPECT_NEAR(reference::energy(*basis, end.travelling)[0] / reference::energy(*basis, light)[0],
+                1.0, 1e-13)
         << name;
   }
 }
@@ -90,7 +93,8 @@ TEST(Propagate, LittleLightArrivesBehindAWallOfFullBlockers) {
   const auto one = basis->constant();
   for (int corner = 0; corner < (n + 1) * (n + 1); ++corner) {
     for (int i = 0; i < basis->size(); ++i)
-      blockers.at(0, i, corner % (n + 1), corner / (n + 1), wall) = one[static_cast<std::size_t>(i)];
+      blockers.at(0, i, corner % (n + 1), corner / (n + 1), wall) =
+          one[static_cast<std::size_t>(i)];
   }
   const auto behind = [&](const reference::Volume* geometry) {
     const auto end = reference::propagate(transport, light, geometry, 12).accumulated;
@@ -108,8 +112,9 @@ TEST(Propagate, OnlyLightThatLeavesTheGridIsLost) {
   // Isotropic light is never clamped: before = after + lost.
   const auto light = one_source(*basis, 3, isotropic(*basis), {0, 1, 1});
   const auto next = reference::propagate_step(transport, light, nullptr);
-  EXPECT_NEAR(reference::energy(*basis, next)[0] + reference::escaping_energy(*basis, transport, light)[0],
-              1.0, 2e-5);
+  EXPECT_NEAR(
+      reference::energy(*basis, next)[0] + reference::escaping_energy(*basis, transport, light)[0],
+      1.0, 2e-5);
   EXPECT_GT(reference::escaping_energy(*basis, transport, light)[0], 0.1);
 }
 

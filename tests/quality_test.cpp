@@ -63,7 +63,8 @@ QualityCell cell(const std::string& basis, const std::string& camera, double nrm
 
 QualityCell rejected(const std::string& basis, const std::string& camera) {
   QualityCell c = cell(basis, camera, 0, 0);
-  c.nrmse.reset(), c.best_gain.reset(), c.nrmse_best_gain.reset(), c.energy_ratio.reset(), c.flip.reset();
+  c.nrmse.reset(), c.best_gain.reset(), c.nrmse_best_gain.reset(), c.energy_ratio.reset(),
+      c.flip.reset();
   c.stage_ms.clear();
   c.rejected = "a \"quoted\" reason, with a comma";
   return c;
@@ -80,12 +81,13 @@ TEST(QualityReport, SummariesAreMeansBestFirst) {
   EXPECT_DOUBLE_EQ(sums[0].frame_ms, 30);
   EXPECT_DOUBLE_EQ(sums[0].stage_ms.at("propagate"), 15);
   EXPECT_DOUBLE_EQ(sums[1].nrmse_best_gain, 0.35);
-  EXPECT_EQ(sums[2].rejected, 1) << "a low error on one view does not make up for one that is missing";
+  EXPECT_EQ(sums[2].rejected, 1)
+      << "a low error on one view does not make up for one that is missing";
 }
 
 TEST(QualityReport, TableHasALineAVariant) {
-  const std::string table = quality_table(
-      {cell("sh2", "a", 0.9, 10), cell("sh2", "b", 0.5, 30), rejected("sh4", "a"), rejected("sh4", "b")});
+  const std::string table = quality_table({cell("sh2", "a", 0.9, 10), cell("sh2", "b", 0.5, 30),
+                                           rejected("sh4", "a"), rejected("sh4", "b")});
   EXPECT_THAT(table, HasSubstr("room:a"));
   EXPECT_THAT(table, HasSubstr("90.0"));
   EXPECT_THAT(table, HasSubstr("70.0"));
@@ -109,7 +111,9 @@ TEST(QualityStore, ReturnsStoredCells) {
 void write_room(const test::TemporaryFolder& folder) {
   test::GltfBuilder room;
   room.square(2);
-  room.add("nodes", {{"mesh", 0}, {"rotation", {0.70710678, 0, 0, 0.70710678}}, {"translation", {0, 0, -2}}});
+  room.add(
+      "nodes",
+      {{"mesh", 0}, {"rotation", {0.70710678, 0, 0, 0.70710678}}, {"translation", {0, 0, -2}}});
   room.write(folder);
   folder.write("room.json", R"({"model": "model.gltf", "cascades": {"count": 1, "size_metres": 20},
     "cameras": [{"name": "left", "eye": [-1, 1.5, 3], "target": [0, 0.5, -1]},
@@ -124,7 +128,8 @@ class QualityCommand : public ::testing::Test {
   test::Outcome quality(const std::string& arguments) const {
     return test::run_here(
         "quality " + file("room.json") + " --cache " + file("cache") +
-        " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --blockers none --rsm-size 64 " + arguments);
+        " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --blockers none --rsm-size 64 " +
+        arguments);
   }
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   std::size_t kept() const {

@@ -51,11 +51,13 @@ std::vector<PixelOfFrame> pixels_of(Frame& frame, const SceneCamera& camera) {
     return glm::dvec3(image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]);
   };
   std::vector<PixelOfFrame> pixels;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(height); i += 7) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+       i += 7) {
     if (depth[4 * i] <= 0) continue;
     const auto x = static_cast<double>(i % static_cast<std::size_t>(width)),
                y = static_cast<double>(i / static_cast<std::size_t>(width));
-    pixels.push_back({reference::surface_position(view, x, y, depth[4 * i]), rgb(normal, i), rgb(light, i)});
+    pixels.push_back(
+        {reference::surface_position(view, x, y, depth[4 * i]), rgb(normal, i), rgb(light, i)});
   }
   return pixels;
 }
@@ -119,7 +121,8 @@ TEST(RadianceAtPoints, IsThatOfTheReference) {
     if (light.occluded.exists()) occluded = session.read<std::uint8_t>(light.occluded, 2 * bytes);
     std::vector<reference::Cascade> cascades;
     for (std::size_t c = 0; c < 2; ++c)
-      cascades.push_back({light.grids[c], &volumes[c], occluded.empty() ? nullptr : &occluded[c * bytes]});
+      cascades.push_back(
+          {light.grids[c], &volumes[c], occluded.empty() ? nullptr : &occluded[c * bytes]});
 
     std::vector<glm::vec4> positions, directions;
     for (std::uint32_t i = 0; i < 2100; ++i) {  // more than two rows of the points' image
@@ -134,12 +137,14 @@ TEST(RadianceAtPoints, IsThatOfTheReference) {
     for (std::size_t i = 0; i < found.size(); ++i) {
       const auto field =
           reference::radiance_field(gather_options(options), cascades, 9, glm::dvec3(positions[i]));
-      const glm::dvec3 expected = reference::radiance(frame.gathered(), field, glm::dvec3(directions[i]));
+      const glm::dvec3 expected =
+          reference::radiance(frame.gathered(), field, glm::dvec3(directions[i]));
       brightest = std::max(brightest, expected.x);
       worst = std::max(worst, glm::length(glm::dvec3(found[i]) - expected));
     }
     EXPECT_GT(brightest, 0.05) << name_of(gather);
-    EXPECT_LT(worst, 1e-4 * brightest) << name_of(gather);  // sums of floats; half volumes are exact
+    EXPECT_LT(worst, 1e-4 * brightest)
+        << name_of(gather);  // sums of floats; half volumes are exact
   }
 }
 
@@ -154,7 +159,8 @@ TEST(RadianceAtPoints, NeedsPackedVolumesOfASweep) {
   RenderOptions options = small_options(scene);
   EXPECT_THAT(rejected(options, false), HasSubstr("radiance: no frame was rendered"));
   options.transport = TransportKind::sampled;
-  EXPECT_THAT(rejected(options, true), AllOf(HasSubstr("transport 'sampled'"), HasSubstr("allowed: sweep")));
+  EXPECT_THAT(rejected(options, true),
+              AllOf(HasSubstr("transport 'sampled'"), HasSubstr("allowed: sweep")));
   options.transport = TransportKind::sweep;
   options.layout = Layout::image, options.gather = Gathering::all;
   EXPECT_THAT(rejected(options, true), AllOf(HasSubstr("layout 'image'"), HasSubstr("'visible'")));
@@ -162,7 +168,9 @@ TEST(RadianceAtPoints, NeedsPackedVolumesOfASweep) {
 
 struct PointsFile : ::testing::Test {
   TemporaryFolder folder;
-  std::vector<SurfacePoint> read(const std::string& text) { return read_points(folder.write("p.csv", text)); }
+  std::vector<SurfacePoint> read(const std::string& text) {
+    return read_points(folder.write("p.csv", text));
+  }
   std::string rejected(const std::string& text) {
     const std::string message = error_of(ExitCode::bad_input, [&] { read(text); });
     EXPECT_THAT(message, HasSubstr("p.csv"));
@@ -171,7 +179,8 @@ struct PointsFile : ::testing::Test {
 };
 
 TEST_F(PointsFile, LinesOfSixNumbers) {
-  const auto points = read("x,y,z,nx,ny,nz\r\n1,2,3,0,0,2\r\n\n# a remark\n -1.5e1 , .5 ,0,\t-1,0,0");
+  const auto points =
+      read("x,y,z,nx,ny,nz\r\n1,2,3,0,0,2\r\n\n# a remark\n -1.5e1 , .5 ,0,\t-1,0,0");
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[0].position, glm::dvec3(1, 2, 3));
   EXPECT_EQ(points[0].normal, glm::dvec3(0, 0, 1)) << "made unit";
@@ -181,17 +190,19 @@ TEST_F(PointsFile, LinesOfSixNumbers) {
 }
 
 TEST_F(PointsFile, BadLinesAreNamed) {
-  for (const std::string bad : {"1,2,3,0,0", "1,2,3,0,0,1,7", "1,2,3,0,0,", "1,2,three,0,0,1", "1 2 3 0 0 1",
-                                "nan,2,3,0,0,1", "inf,2,3,0,0,1", "1,2,3,0,nan,1", "1,2,3,0,0,1e999", ","}) {
+  for (const std::string bad :
+       {"1,2,3,0,0", "1,2,3,0,0,1,7", "1,2,3,0,0,", "1,2,three,0,0,1", "1 2 3 0 0 1",
+        "nan,2,3,0,0,1", "inf,2,3,0,0,1", "1,2,3,0,nan,1", "1,2,3,0,0,1e999", ","}) {
     EXPECT_THAT(rejected("0,0,0,0,0,1\n" + bad + "\n"),
                 AllOf(HasSubstr("line 2"), HasSubstr("six finite numbers")))
         << bad;
   }
   EXPECT_THAT(rejected("nan,2,3,0,0,1"), HasSubstr("line 1"));
   EXPECT_THAT(rejected("x,y,z,nx,ny,nz\nx,y,z,nx,ny,nz\n"), HasSubstr("line 2"));
-  EXPECT_THAT(rejected("1,2,3,0,0,0"),
-              AllOf(HasSubstr("line 1"), HasSubstr("normal of length 0"), HasSubstr("a direction")));
-  EXPECT_THAT(rejected("1e8,2,3,0,0,1"), AllOf(HasSubstr("line 1"), HasSubstr("within +-10000000 m")));
+  EXPECT_THAT(rejected("1,2,3,0,0,0"), AllOf(HasSubstr("line 1"), HasSubstr("normal of length 0"),
+                                             HasSubstr("a direction")));
+  EXPECT_THAT(rejected("1e8,2,3,0,0,1"),
+              AllOf(HasSubstr("line 1"), HasSubstr("within +-10000000 m")));
   EXPECT_THAT(rejected(std::string("1,2,3,0,0,1\n\0\0", 14)), HasSubstr("line 2"));
   EXPECT_THROW(read_points(folder / "none.csv"), Error);
   EXPECT_THROW(read_points(folder.path()), Error);
@@ -199,23 +210,24 @@ TEST_F(PointsFile, BadLinesAreNamed) {
 
 TEST(UnreachedSurfaces, AreReported) {
   const test::TemporaryFolder images;
-  const std::string render = "render " + kCornell + " --width 48 --height 27 --grid 16 --rsm-size 64 -o " +
+  const std::string render = "render " + kCornell +
+                             " --width 48 --height 27 --grid 16 --rsm-size 64 -o " +
                              (images / "a.exr").string();
   const Outcome all = run_here(render);
   ASSERT_EQ(all.exit_code, 0) << all.err;
   EXPECT_THAT(all.err, ::testing::Not(HasSubstr("outside the cascades")));
   const Outcome few = run_here(render + " --cascades 1 --cascade-size 1");
   ASSERT_EQ(few.exit_code, 0) << few.err;
-  EXPECT_THAT(few.err,
-              ::testing::ContainsRegex("[0-9.]+ % of the visible surface lies outside the cascades"));
+  EXPECT_THAT(few.err, ::testing::ContainsRegex(
+                           "[0-9.]+ % of the visible surface lies outside the cascades"));
 }
 
 TEST_F(PointsFile, QueryAddsLightToEachPoint) {
   folder.write("p.csv", "0.28,0.27,0.3,0,-1,0\n900,0,0,0,1,0\n");
   const auto query = [&](const std::string& more) {
-    return run_here(
-        "query " + kCornell + " --points p.csv --width 48 --height 27 --grid 16 --rsm-size 64" + more,
-        folder.path());
+    return run_here("query " + kCornell +
+                        " --points p.csv --width 48 --height 27 --grid 16 --rsm-size 64" + more,
+                    folder.path());
   };
   const Outcome outcome = query("");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

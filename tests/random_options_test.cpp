@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Random values and combinations of every option of `clpv render`, on scenes at the limits of sizes and lights. Each run writes
-// finite pixels, or ends with code 2 to 5 and a message that names an option or the scene file, within a
-// minute of processor time.
+// Random values and combinations of every option of `clpv render`, on scenes at the limits of sizes
+// and lights. Each run writes finite pixels, or ends with code 2 to 5 and a message that names an
+// option or the scene file, within a minute of processor time.
 #include "tests/support/random_options.hpp"
 
 #include <fmt/ranges.h>
@@ -42,8 +42,10 @@ int number_from(const char* variable, int usual) {
 
 /// Options whose values change kernels' text, which then compile anew.
 bool changes_kernels(const OptionDescription& option) {
-  static const std::vector<std::string> kNumbers{"lambda", "grid", "table-size", "gather-offset", "cascades"};
-  return option.allowed.find('|') != std::string::npos || std::ranges::count(kNumbers, option.name) > 0;
+  static const std::vector<std::string> kNumbers{"lambda", "grid", "table-size", "gather-offset",
+                                                 "cascades"};
+  return option.allowed.find('|') != std::string::npos ||
+         std::ranges::count(kNumbers, option.name) > 0;
 }
 
 std::string words_of_options(const OptionValues& given) {
@@ -65,9 +67,12 @@ class RandomOptions : public ::testing::Test {
     for (const auto& [x, y, z] : std::initializer_list<std::array<double, 3>>{
              {-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 1, -1}, {1, 1, -1}, {0, 1e-7, 0}})
       for (const double value : {x, y, z}) positions.push_back(static_cast<float>(value * size));
-    const std::vector<std::uint16_t> indices{0, 1, 2, 0, 2, 3, 0, 3, 5, 0, 5, 4, 6, 6, 6, 0, 0, 2, 0, 2, 6};
-    const int position = model.accessor("VEC3", positions), index = model.accessor("SCALAR", indices);
-    model.add("meshes", {{"primitives", {{{"attributes", {{"POSITION", position}}}, {"indices", index}}}}});
+    const std::vector<std::uint16_t> indices{0, 1, 2, 0, 2, 3, 0, 3, 5, 0, 5,
+                                             4, 6, 6, 6, 0, 0, 2, 0, 2, 6};
+    const int position = model.accessor("VEC3", positions),
+              index = model.accessor("SCALAR", indices);
+    model.add("meshes",
+              {{"primitives", {{{"attributes", {{"POSITION", position}}}, {"indices", index}}}}});
     model.add("nodes", {{"mesh", 0}});
     model.add("nodes", {{"name", "empty"}});
     model.finish(name + ".bin");
@@ -78,7 +83,9 @@ class RandomOptions : public ::testing::Test {
   void write_scenes(double size) {
     const std::string name = fmt::format("size{}", size);
     write_model(name, size);
-    const auto point = [&](double x, double y, double z) { return json{x * size, y * size, z * size}; };
+    const auto point = [&](double x, double y, double z) {
+      return json{x * size, y * size, z * size};
+    };
     for (const std::size_t lights : {0, 1, 64}) {
       json scene{{"model", name + ".gltf"}};
       const json target = point(0.1, 0.4, -1);
@@ -96,7 +103,8 @@ class RandomOptions : public ::testing::Test {
         const std::string kind = choices_.of(kinds);
         json light{{"kind", kind}};
         light[kind == "directional" ? "illuminance_lux" : "intensity_candela"] = brightness;
-        if (kind != "point") light["direction"] = {choices_.between(-1, 1), -1, choices_.between(-1, 1)};
+        if (kind != "point")
+          light["direction"] = {choices_.between(-1, 1), -1, choices_.between(-1, 1)};
         if (kind != "directional") light["position"] = point(choices_.between(-1, 1), 0.9, 0.1);
         scene["lights"].push_back(light);
       }
@@ -121,37 +129,44 @@ class RandomOptions : public ::testing::Test {
     std::string words;
     const double size = choices_.scale_between(1e-6, 1e7);
     if (choices_.one_in(4)) {
-      words += fmt::format(" --eye {},{},{} --target 0,0,0", size, choices_.between(-1, 1) * size, size / 3);
+      words += fmt::format(" --eye {},{},{} --target 0,0,0", size, choices_.between(-1, 1) * size,
+                           size / 3);
       if (choices_.one_in(2)) words += fmt::format(" --fov {}", choices_.between(0.01, 179.9));
-      if (choices_.one_in(2)) words += fmt::format(" --near-plane {}", choices_.scale_between(1e-6, 1e7));
+      if (choices_.one_in(2))
+        words += fmt::format(" --near-plane {}", choices_.scale_between(1e-6, 1e7));
     } else {
       const char* const cameras[] = {"outside", "in-floor", "upwards"};
       words += fmt::format(" --camera {}", choices_.of(cameras));
     }
-    if (choices_.one_in(4)) words += fmt::format(" --sun 0.2,-1,0.1,{}", choices_.scale_between(1e-30, 1e15));
+    if (choices_.one_in(4))
+      words += fmt::format(" --sun 0.2,-1,0.1,{}", choices_.scale_between(1e-30, 1e15));
     if (choices_.one_in(6)) {
-      const char* const media[] = {"0", "1e6", "1e6,1e6,0.9", "1e-6,0,-0.9", "0,1e6", "0.3,0.1,0.5"};
+      const char* const media[] = {"0",           "1e6",   "1e6,1e6,0.9",
+                                   "1e-6,0,-0.9", "0,1e6", "0.3,0.1,0.5"};
       words += fmt::format(" --medium {}", choices_.of(media));
     }
     words += fmt::format(" --view {}", choices_.of(names_of<Show>()));
     if (choices_.one_in(12)) {
-      const std::pair<const char*, const char*> sizes[] = {{"1", "1"}, {"16384", "1"}, {"1", "16384"}};
+      const std::pair<const char*, const char*> sizes[] = {
+          {"1", "1"}, {"16384", "1"}, {"1", "16384"}};
       std::tie(given["width"], given["height"]) = choices_.of(sizes);
     }
     return words;
   }
 
-  /// Renders a random scene. An option that has no effect with `compiled`, or contradicts it, is left out in further runs,
-  /// until there is an image or another reason; returns true for an image.
+  /// Renders a random scene. An option that has no effect with `compiled`, or contradicts it, is
+  /// left out in further runs, until there is an image or another reason; returns true for an
+  /// image.
   bool expect_image_or_reason(const OptionValues& compiled, OptionValues given) {
-    for (const char* small : {"width", "height", "rsm-size", "shadow-size"}) given.try_emplace(small, "16");
+    for (const char* small : {"width", "height", "rsm-size", "shadow-size"})
+      given.try_emplace(small, "16");
     const std::string scene = choices_.of(scenes_), surroundings = drawn_surroundings(given);
     for (;;) {
       const Outcome outcome =
           render(scene + surroundings + words_of_options(compiled) + words_of_options(given));
       if (outcome.exit_code == 0) return true;
-      const auto named =
-          std::ranges::find_if(given, [&](const auto& option) { return names(outcome.err, option.first); });
+      const auto named = std::ranges::find_if(
+          given, [&](const auto& option) { return names(outcome.err, option.first); });
       if (named == given.end()) return false;
       given.erase(named);
     }
@@ -164,13 +179,15 @@ class RandomOptions : public ::testing::Test {
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, kPatience);
     ++codes_[outcome.exit_code];
     if (outcome.exit_code != 0) {
-      EXPECT_THAT(outcome.exit_code, ::testing::AllOf(::testing::Ge(2), ::testing::Le(5))) << outcome.err;
+      EXPECT_THAT(outcome.exit_code, ::testing::AllOf(::testing::Ge(2), ::testing::Le(5)))
+          << outcome.err;
       EXPECT_TRUE(names_an_option(outcome.err) || outcome.err.find(".json") != std::string::npos)
           << outcome.err;
       return outcome;
     }
     const Image image = read_image(folder_ / "out.exr");
-    EXPECT_EQ(std::ranges::count_if(image.pixels, [](float value) { return !std::isfinite(value); }), 0)
+    EXPECT_EQ(
+        std::ranges::count_if(image.pixels, [](float value) { return !std::isfinite(value); }), 0)
         << "of " << image.pixels.size();
     std::filesystem::remove(folder_ / "out.exr");
     return outcome;
@@ -182,9 +199,12 @@ class RandomOptions : public ::testing::Test {
   }
 
   static bool names_an_option(const std::string& message) {
-    std::vector<std::string> options{"view", "sun", "medium", "eye", "target", "fov", "near-plane", "camera"};
-    for (const OptionDescription& option : list_options(RenderOptions{})) options.push_back(option.name);
-    return std::ranges::any_of(options, [&](const std::string& option) { return names(message, option); });
+    std::vector<std::string> options{"view",   "sun", "medium",     "eye",
+                                     "target", "fov", "near-plane", "camera"};
+    for (const OptionDescription& option : list_options(RenderOptions{}))
+      options.push_back(option.name);
+    return std::ranges::any_of(options,
+                               [&](const std::string& option) { return names(message, option); });
   }
 
   std::mt19937_64 random_{static_cast<std::uint64_t>(number_from("CLPV_RANDOM_SEED", 1))};
@@ -201,7 +221,8 @@ TEST_F(RandomOptions, GiveAnImageOrAReason) {
   for (int k = 0; k < kernels;) {
     OptionValues compiled = drawn(true, 4);
     compiled.try_emplace("grid", "6");
-    if (!expect_image_or_reason(compiled, {})) continue;  // they contradict each other, or the scene
+    if (!expect_image_or_reason(compiled, {}))
+      continue;  // they contradict each other, or the scene
     ++k;
     for (int n = 1; n < numbers; ++n) expect_image_or_reason(compiled, drawn(false, 2));
   }

@@ -57,13 +57,15 @@ std::vector<float> shadow_depth(const SceneData& scene, const ClpvView& view) {
 }
 
 std::size_t covered(const std::vector<float>& depth) {
-  return static_cast<std::size_t>(std::count_if(depth.begin(), depth.end(), [](float d) { return d != 0; }));
+  return static_cast<std::size_t>(
+      std::count_if(depth.begin(), depth.end(), [](float d) { return d != 0; }));
 }
 
 /// A wall 4 m before the camera, larger than its view.
 SceneData wall(float distance = 4) {
   SceneData scene;
-  add_quad(scene, {-20, -20, -distance}, {40, 0, 0}, {0, 40, 0}, add_material(scene, {0.25f, 0.5f, 0.75f}));
+  add_quad(scene, {-20, -20, -distance}, {40, 0, 0}, {0, 40, 0},
+           add_material(scene, {0.25f, 0.5f, 0.75f}));
   return scene;
 }
 
@@ -141,7 +143,8 @@ SceneData jittered_plane(int cells, float extent, float depth, float step) {
   for (int j = 0; j <= cells; ++j) {
     for (int i = 0; i <= cells; ++i) {
       const glm::vec3 p(-extent + edge * static_cast<float>(i) + jitter(),
-                        -extent + edge * static_cast<float>(j) + jitter(), -depth + 0.3f * uniform(random));
+                        -extent + edge * static_cast<float>(j) + jitter(),
+                        -depth + 0.3f * uniform(random));
       add_vertex(scene, p, {0, 0, 1});
     }
   }
@@ -204,10 +207,10 @@ TEST(Rasterize, NearPlaneCutsWithoutHoles) {
   const SurfaceImage image = camera_image(scene, view);
   for (unsigned y = 0; y < 36; ++y) {
     for (unsigned x = 0; x < 36; ++x) {
-      const glm::vec3 ray =
-          glm::vec3(view.forward[0], view.forward[1], view.forward[2]) +
-          (2 * (x + 0.5f) / 36 - 1) * view.half_width * glm::vec3(1, 0, 0) +
-          (1 - 2 * (y + 0.5f) / 36) * view.half_height * glm::vec3(view.up[0], view.up[1], view.up[2]);
+      const glm::vec3 ray = glm::vec3(view.forward[0], view.forward[1], view.forward[2]) +
+                            (2 * (x + 0.5f) / 36 - 1) * view.half_width * glm::vec3(1, 0, 0) +
+                            (1 - 2 * (y + 0.5f) / 36) * view.half_height *
+                                glm::vec3(view.up[0], view.up[1], view.up[2]);
       const float depth = ray.y < 0 ? -0.3f / ray.y : 1e9f;
       const glm::vec3 hit = depth * ray;
       if (depth > view.near_depth * 1.01f && std::abs(hit.x) < 2.3f && std::abs(hit.z) < 2.3f) {
@@ -223,7 +226,8 @@ TEST(Rasterize, FarawayCornersAreClippedToTheGuardBand) {
   SceneData scene;
   add_quad(scene, {-4e7f, -4e7f, -4}, {8e7f, 0, 0}, {0, 8e7f, 0}, add_material(scene));
   for (const float depth : camera_image(scene, small_camera()).depth) EXPECT_NEAR(depth, 4, 1e-4);
-  for (const float depth : shadow_depth(scene, orthographic_square(1, 16))) EXPECT_NEAR(depth, 4, 1e-4);
+  for (const float depth : shadow_depth(scene, orthographic_square(1, 16)))
+    EXPECT_NEAR(depth, 4, 1e-4);
 }
 
 TEST(Rasterize, NearerSurfaceWinsAndTiesGoToTheFirst) {
@@ -231,9 +235,11 @@ TEST(Rasterize, NearerSurfaceWinsAndTiesGoToTheFirst) {
   const unsigned red = add_material(scene, {1, 0, 0}), green = add_material(scene, {0, 1, 0});
   add_quad(scene, {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, red);
   add_quad(scene, {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, green);
-  for (const glm::vec4& colour : camera_image(scene, small_camera()).colour) EXPECT_FLOAT_EQ(colour.x, 1);
+  for (const glm::vec4& colour : camera_image(scene, small_camera()).colour)
+    EXPECT_FLOAT_EQ(colour.x, 1);
   add_quad(scene, {-9, -9, -3.99f}, {18, 0, 0}, {0, 18, 0}, green);
-  for (const glm::vec4& colour : camera_image(scene, small_camera()).colour) EXPECT_FLOAT_EQ(colour.y, 1);
+  for (const glm::vec4& colour : camera_image(scene, small_camera()).colour)
+    EXPECT_FLOAT_EQ(colour.y, 1);
 }
 
 TEST(Rasterize, ATileOfMoreTrianglesThanOneLoopCanDraw) {
@@ -244,7 +250,8 @@ TEST(Rasterize, ATileOfMoreTrianglesThanOneLoopCanDraw) {
   };
   for (unsigned i = 0; i < CLPV_LONGEST_LOOP; ++i) wall_at(5);  // two triangles each
   wall_at(4.9995f);  // of the same slice; work-items enter it in any order, but late
-  for (const float depth : camera_image(scene, small_camera(8, 8)).depth) EXPECT_FLOAT_EQ(depth, 4.9995f);
+  for (const float depth : camera_image(scene, small_camera(8, 8)).depth)
+    EXPECT_FLOAT_EQ(depth, 4.9995f);
 }
 
 TEST(Rasterize, OrthographicDepthsBeforeTheNearOneClampToItAndFarOnesDrop) {
@@ -352,7 +359,9 @@ TEST(Rasterize, InconsistentScenesAreRejected) {
       [](SceneData& scene) { scene.triangles[1].vertex[2] = 4; },
       [](SceneData& scene) { scene.triangles[0].material = 1; },
       [](SceneData& scene) { scene.materials[0].texture = 0; },
-      [](SceneData& scene) { scene.materials[0].texture = 0, scene.textures.resize(1); },  // no texels
+      [](SceneData& scene) {
+        scene.materials[0].texture = 0, scene.textures.resize(1);
+      },  // no texels
   };
   for (const auto& fault : faults) {
     SceneData scene = wall();

@@ -28,8 +28,8 @@ Texture checker() {
 TEST(RayScene, MaskedHolesAreTransparent) {
   SceneData scene = floor_scene(0.5);
   scene.textures = {checker()};
-  ClpvMaterial& masked =
-      scene.materials[add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED)];
+  ClpvMaterial& masked = scene.materials[add_material(
+      scene, glm::vec3(1), CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED)];
   masked.texture = 0;
   masked.alpha_cutoff = 0.5f;
   add_quad(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, 1);  // u along x, v along z, facing down
@@ -79,7 +79,8 @@ SceneData clutter() {
   Texture texture;
   texture.width = 64, texture.height = 32;
   texture.wrap_v = CLPV_WRAP_MIRROR;
-  for (unsigned i = 0; i < 4 * 64 * 32; ++i) texture.rgba.push_back(static_cast<std::uint8_t>(random()));
+  for (unsigned i = 0; i < 4 * 64 * 32; ++i)
+    texture.rgba.push_back(static_cast<std::uint8_t>(random()));
   scene.textures = {texture};
   for (const unsigned flags :
        {0u, CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED, CLPV_MATERIAL_DOUBLE_SIDED}) {

@@ -26,8 +26,8 @@ const ClpvGrid kGridCells = {{0, 0, 0}, 1, kGrid, {}};
 struct Areas {
   std::vector<float> values;
   float at(int side, int x, int y, int z, int channel = 0) const {
-    return values[static_cast<std::size_t>((channel * kCellFaces + side) * kCells + (z * kGrid + y) * kGrid +
-                                           x)];
+    return values[static_cast<std::size_t>((channel * kCellFaces + side) * kCells +
+                                           (z * kGrid + y) * kGrid + x)];
   }
   float sum(int side, int channel = 0) const {
     float total = 0;
@@ -40,7 +40,8 @@ struct Areas {
 Areas reflected(const SceneData& scene) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   Volume reflectors(test_session(), {kGrid, kCellFaces, 3}, "test: reflectors");
-  VoxelField(test_session(), buffers, reflector_masks(buffers, kGrid, {})).update(0, kGridCells, reflectors);
+  VoxelField(test_session(), buffers, reflector_masks(buffers, kGrid, {}))
+      .update(0, kGridCells, reflectors);
   return {reflectors.read(test_session())};
 }
 
@@ -88,8 +89,10 @@ TEST(Reflectors, ASlantedWallSplitsIntoAreasPerAxis) {
 
 TEST(Reflectors, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
   SceneData scene;
-  scene.textures.push_back(
-      {.width = 2, .height = 1, .rgba = {255, 255, 255, 255, 0, 0, 0, 0}, .name = "white, and a black hole"});
+  scene.textures.push_back({.width = 2,
+                            .height = 1,
+                            .rgba = {255, 255, 255, 255, 0, 0, 0, 0},
+                            .name = "white, and a black hole"});
   const unsigned material = add_material(scene, glm::vec3(0.5f));
   scene.materials[material].texture = 0;
   add_quad(scene, {1, 2.2f, 1}, {0, 0, 1}, {1, 0, 0}, material);  // up

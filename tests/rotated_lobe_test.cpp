@@ -39,20 +39,21 @@ struct LobeErrors {
 };
 class LobeTable : public ::testing::TestWithParam<LobeErrors> {};
 // By quadrature, and by 2000 random axes, which give means to +-0.0014.
-INSTANTIATE_TEST_SUITE_P(Names, LobeTable,
-                         ::testing::Values(LobeErrors{"sh2", {.354, .354, .354}, {.354, .354, .354}},
-                                           LobeErrors{"sh3", {.088, .088, .088}, {.088, .088, .088}},
-                                           LobeErrors{"sh4", {.088, .088, .088}, {.088, .088, .088}},
-                                           LobeErrors{"sh5", {.044, .044, .044}, {.044, .044, .044}},
-                                           LobeErrors{"srbf4", {.158, .430, .399}, {.158, .432, .401}},
-                                           LobeErrors{"srbf6", {.123, .316, .280}, {.123, .316, .280}},
-                                           LobeErrors{"srbf8v1", {.118, .248, .231}, {.118, .248, .231}},
-                                           LobeErrors{"srbf8v2", {.356, .200, .231}, {.356, .357, .357}},
-                                           LobeErrors{"srbf8v3", {.117, .313, .231}, {.117, .313, .233}},
-                                           LobeErrors{"srbf14", {.080, .089, .087}, {.080, .090, .089}},
-                                           LobeErrors{"bins24", {.293, .274, .276}, {.293, .274, .276}},
-                                           LobeErrors{"bins96", {.150, .140, .145}, {.150, .140, .145}}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Names, LobeTable,
+    ::testing::Values(LobeErrors{"sh2", {.354, .354, .354}, {.354, .354, .354}},
+                      LobeErrors{"sh3", {.088, .088, .088}, {.088, .088, .088}},
+                      LobeErrors{"sh4", {.088, .088, .088}, {.088, .088, .088}},
+                      LobeErrors{"sh5", {.044, .044, .044}, {.044, .044, .044}},
+                      LobeErrors{"srbf4", {.158, .430, .399}, {.158, .432, .401}},
+                      LobeErrors{"srbf6", {.123, .316, .280}, {.123, .316, .280}},
+                      LobeErrors{"srbf8v1", {.118, .248, .231}, {.118, .248, .231}},
+                      LobeErrors{"srbf8v2", {.356, .200, .231}, {.356, .357, .357}},
+                      LobeErrors{"srbf8v3", {.117, .313, .231}, {.117, .313, .233}},
+                      LobeErrors{"srbf14", {.080, .089, .087}, {.080, .090, .089}},
+                      LobeErrors{"bins24", {.293, .274, .276}, {.293, .274, .276}},
+                      LobeErrors{"bins96", {.150, .140, .145}, {.150, .140, .145}}),
+    [](const auto& info) { return info.param.name; });
 
 TEST_P(LobeTable, ErrorsOfExactAndOfRotatedLobes) {
   constexpr double kTolerance = .003;
@@ -91,8 +92,8 @@ TEST(RotatedLobes, EqualTheRotatedLobeTowardsZ) {
        {make_basis("srbf8v1"), make_basis_from_centres("uneven", even_directions(6), lambdas)}) {
     const std::vector<double> up = basis->clamped_cosine(kUp),
                               turned = basis->gram() * Lobes(*basis, kRotated)(kOblique),
-                              looked_up =
-                                  basis->gram() * Lobes(*basis, {LobeKind::rotate, 1 << 16})(kOblique);
+                              looked_up = basis->gram() *
+                                          Lobes(*basis, {LobeKind::rotate, 1 << 16})(kOblique);
     for (std::size_t i = 0; i < up.size(); ++i) {
       const double expected = test::integral(test::sphere(kUp, 40), [&](const glm::dvec3& w) {
         return basis->evaluate(w)[i] * basis->value(up, back * w);
@@ -153,7 +154,8 @@ std::vector<double> bin_integrals(const Basis& bins, const glm::dvec3& d) {
     if (glm::dot(middle, d) < 0) continue;
     const std::vector<double> b = bins.evaluate(glm::normalize(middle));
     const auto bin = static_cast<std::size_t>(std::ranges::max_element(b) - b.begin());
-    for (const QuadratureNode& node : nodes_of(part)) alpha[bin] += node.weight * glm::dot(node.w, d);
+    for (const QuadratureNode& node : nodes_of(part))
+      alpha[bin] += node.weight * glm::dot(node.w, d);
   }
   return alpha;
 }
@@ -164,8 +166,9 @@ TEST(DirectionBins, CosineIntegralsAreNearTheIntegrals) {
     const auto bins = make_basis(name);
     double worst = 0, squares = 0;
     std::vector<glm::dvec3> directions = test::spread_axes(100);
-    directions.insert(directions.end(),
-                      {kUp, {1, 0, 0}, glm::normalize(glm::dvec3(1, 1, 0)), glm::normalize(glm::dvec3(1))});
+    directions.insert(
+        directions.end(),
+        {kUp, {1, 0, 0}, glm::normalize(glm::dvec3(1, 1, 0)), glm::normalize(glm::dvec3(1))});
     for (const glm::dvec3& d : directions) {
       const std::vector<double> expected = bin_integrals(*bins, d);
       std::vector<double> alpha(expected.size());

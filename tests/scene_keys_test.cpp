@@ -31,7 +31,8 @@ struct SceneKeysTest : BadInputTest {
 };
 
 TEST_F(SceneKeysTest, ACameraWalks) {
-  MovingScene moving(file(R"("metres_per_unit": 0.5, )" + camera(R"("target": [0, 0, -100], "keys": [
+  MovingScene moving(
+      file(R"("metres_per_unit": 0.5, )" + camera(R"("target": [0, 0, -100], "keys": [
                                    {"time": 1, "eye": [0, 0, 0], "vertical_fov_degrees": 60},
                                    {"time": 3, "eye": [4, 0, 0]},
                                    {"time": 5, "eye": [4, 8, 0], "vertical_fov_degrees": 90}])")));
@@ -42,7 +43,8 @@ TEST_F(SceneKeysTest, ACameraWalks) {
   moving.pose(4);
   const SceneCamera& camera = moving.scene().cameras[0];
   EXPECT_THAT(camera.eye, IsNear(glm::vec3(2, 2, 0), kClose));
-  EXPECT_THAT(camera.forward, IsNear(glm::normalize(glm::vec3(-4, -4, -100)), kClose)) << "the target stands";
+  EXPECT_THAT(camera.forward, IsNear(glm::normalize(glm::vec3(-4, -4, -100)), kClose))
+      << "the target stands";
   EXPECT_NEAR(camera.vertical_fov, glm::radians(82.5), kClose)
       << "by the keys that name it, three quarters of the way";
   moving.pose(50);
@@ -70,24 +72,27 @@ TEST_F(SceneKeysTest, ASunCrossesTheSkyAlongAGreatCircle) {
       {"time": 0, "direction": [1, 0, 0], "colour": [1, 0, 0]}, {"time": 6, "direction": [0, -3, 0], "colour": [1, 1, 0]}])")));
   moving.pose(2);
   const ClpvLight& light = moving.scene().lights[0].data;
-  EXPECT_THAT(light.direction, ElementsAre(FloatNear(std::sqrt(0.75f), kClose), FloatNear(-0.5f, kClose), 0));
+  EXPECT_THAT(light.direction,
+              ElementsAre(FloatNear(std::sqrt(0.75f), kClose), FloatNear(-0.5f, kClose), 0));
   EXPECT_THAT(light.intensity, ElementsAre(5, FloatNear(5.0f / 3, kClose), 0));
 }
 
 TEST_F(SceneKeysTest, CurvesThatLeaveTheAllowedRange) {
   MovingScene through(file(camera(R"("target": [0, 0, 0], "keys": [
       {"time": 0, "eye": [0, 0, 1]}, {"time": 2, "eye": [0, 0, -1]}])")));
-  MovingScene over(file(camera(R"("eye": [0, 0, 0], "target": [0, 0, 1], "interpolation": "smooth", "keys": [
+  MovingScene over(
+      file(camera(R"("eye": [0, 0, 0], "target": [0, 0, 1], "interpolation": "smooth", "keys": [
       {"time": 0, "vertical_fov_degrees": 10}, {"time": 1, "vertical_fov_degrees": 179},
       {"time": 5, "vertical_fov_degrees": 179}])")));
   const auto message = [](MovingScene& moving, double seconds) {
     return error_of(ExitCode::bad_input, [&] { moving.pose(seconds); });
   };
-  EXPECT_THAT(message(through, 1),
-              AllOf(HasSubstr("scene.json at 1 s: /cameras/0/target"), HasSubstr("the eye itself")));
+  EXPECT_THAT(message(through, 1), AllOf(HasSubstr("scene.json at 1 s: /cameras/0/target"),
+                                         HasSubstr("the eye itself")));
   EXPECT_NO_THROW(through.pose(1.5));
-  EXPECT_THAT(message(over, 2),
-              AllOf(HasSubstr("scene.json at 2 s: /cameras/0/vertical_fov_degrees"), HasSubstr("179.9")));
+  EXPECT_THAT(
+      message(over, 2),
+      AllOf(HasSubstr("scene.json at 2 s: /cameras/0/vertical_fov_degrees"), HasSubstr("179.9")));
 }
 
 }  // namespace

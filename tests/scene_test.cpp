@@ -88,7 +88,8 @@ TEST_F(SceneTest, CamerasAreScaledToMetres) {
 TEST_F(SceneTest, LightsAreScaledButNotTheirIntensities) {
   const SceneData scene = load(kFull);
   ASSERT_EQ(scene.lights.size(), 3u);
-  const ClpvLight &sun = scene.lights[0].data, &lamp = scene.lights[1].data, &torch = scene.lights[2].data;
+  const ClpvLight &sun = scene.lights[0].data, &lamp = scene.lights[1].data,
+                  &torch = scene.lights[2].data;
   EXPECT_THAT(sun.direction, ElementsAre(0, -1, 0));
   EXPECT_THAT(sun.intensity, ElementsAre(10, 5, 0));
   EXPECT_THAT(lamp.position, ElementsAre(1, 0, 0));
@@ -139,7 +140,8 @@ TEST_F(SceneTest, TheModelCanBeReplaced) {
   const SceneData scene = load(kFull, {other.write(folder, "other.gltf")});
   EXPECT_EQ(scene.triangles.size(), 2u);
   EXPECT_EQ(scene.cameras.size(), 2u);
-  EXPECT_EQ(load("{}", {folder / "other.gltf"}).triangles.size(), 2u) << "and need not be given at all";
+  EXPECT_EQ(load("{}", {folder / "other.gltf"}).triangles.size(), 2u)
+      << "and need not be given at all";
 }
 
 TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
@@ -153,7 +155,8 @@ TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
   EXPECT_THAT(scene.notes, ElementsAre(HasSubstr("no camera"), HasSubstr("no light")));
   const SceneCamera& camera = scene.cameras[0];
   for (const Vertex& vertex : scene.vertices) {  // every corner is in view, in a square image
-    const glm::vec3 d = glm::vec3(vertex.position[0], vertex.position[1], vertex.position[2]) - camera.eye;
+    const glm::vec3 d =
+        glm::vec3(vertex.position[0], vertex.position[1], vertex.position[2]) - camera.eye;
     EXPECT_GT(glm::dot(d, camera.forward), camera.near_depth);
     EXPECT_GT(glm::dot(glm::normalize(d), camera.forward), std::cos(camera.vertical_fov / 2));
   }

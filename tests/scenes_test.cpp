@@ -24,8 +24,8 @@ TEST_P(Generator, ReproducesTheCommittedFiles) {
   const std::string name = GetParam();
   const test::TemporaryFolder folder;
   const test::Outcome outcome =
-      test::run("PYTHONDONTWRITEBYTECODE=1 python3 " + (kScenes / ("generate_" + name + ".py")).string() +
-                " " + folder.path().string());
+      test::run("PYTHONDONTWRITEBYTECODE=1 python3 " +
+                (kScenes / ("generate_" + name + ".py")).string() + " " + folder.path().string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   int files = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.path())) {
@@ -52,7 +52,11 @@ TEST(Scenes, MatchTheirDescriptions) {
       {"atrium.json", 266672, 1, {30, 10, 14.15f}, {"nave", "curtains", "gallery"}},
       {"cornell.json", 48, 2, {0.716f, 0.7088f, 0.6392f}, {"front", "published", "red", "green"}},
       {"cornell_lamp.json", 56, 0, {0.716f, 0.7088f, 0.6392f}, {"front", "published"}},
-      {"empty_room.json", 28, 2, {0.7128f, 0.7088f, 0.6392f}, {"front", "published", "red", "green"}}};
+      {"empty_room.json",
+       28,
+       2,
+       {0.7128f, 0.7088f, 0.6392f},
+       {"front", "published", "red", "green"}}};
   for (const Card& card : cards) {
     SCOPED_TRACE(card.file);
     const SceneData scene = load_scene(kScenes / card.file);
@@ -65,7 +69,8 @@ TEST(Scenes, MatchTheirDescriptions) {
     EXPECT_THAT(scene.notes, ::testing::IsEmpty());
   }
   const SceneData lamp = load_scene(kScenes / "cornell_lamp.json");
-  EXPECT_NEAR(max_emitted_flux(lamp, emissive_triangles(lamp), 1000), M_PI * 17.2 * 0.130 * 0.105, 1e-4);
+  EXPECT_NEAR(max_emitted_flux(lamp, emissive_triangles(lamp), 1000), M_PI * 17.2 * 0.130 * 0.105,
+              1e-4);
 }
 
 TEST(Scenes, TheLivingAtriumIsTheAtriumWithABallAndACurtainThatMove) {

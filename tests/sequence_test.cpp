@@ -24,7 +24,9 @@ constexpr const char* kSmall =
 /// PATH while this lives.
 class Path {
  public:
-  explicit Path(const std::string& path) : before_(std::getenv("PATH")) { ::setenv("PATH", path.c_str(), 1); }
+  explicit Path(const std::string& path) : before_(std::getenv("PATH")) {
+    ::setenv("PATH", path.c_str(), 1);
+  }
   ~Path() { ::setenv("PATH", before_.c_str(), 1); }
 
  private:
@@ -38,11 +40,15 @@ struct SequenceTest : ::testing::Test {
   fs::path frame(int i, const std::string& extension = "exr") const {
     return folder / fmt::format("out/frame-{:04}.{}", i, extension);
   }
-  Outcome clpv(const std::string& arguments) const { return run_here(arguments + kSmall, folder.path()); }
+  Outcome clpv(const std::string& arguments) const {
+    return run_here(arguments + kSmall, folder.path());
+  }
   Outcome sequence(const std::string& arguments) const {
     return clpv("sequence moving.json -o out " + arguments);
   }
-  json written(const std::string& file) const { return json::parse(read_file(folder / ("out/" + file))); }
+  json written(const std::string& file) const {
+    return json::parse(read_file(folder / ("out/" + file)));
+  }
 
   /// A folder with an ffmpeg that copies its input and arguments to its output.
   std::string fake_ffmpeg(const std::string& script) const {
@@ -57,7 +63,8 @@ TEST_F(SequenceTest, EveryFrameIsTheOneRenderedAlone) {
   const Outcome outcome = sequence("--frames 3 --fps 3 --from 0.1");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (int i = 0; i < 3; ++i) {
-    ASSERT_EQ(clpv(fmt::format("render moving.json -o alone.exr --time {}", 0.1 + i / 3.0)).exit_code, 0);
+    ASSERT_EQ(
+        clpv(fmt::format("render moving.json -o alone.exr --time {}", 0.1 + i / 3.0)).exit_code, 0);
     const Image image = read_image(folder / "alone.exr"), of_sequence = read_image(frame(i));
     EXPECT_EQ(of_sequence.pixels, image.pixels) << i;
     EXPECT_EQ(of_sequence.metadata.at("time"), image.metadata.at("time"));
@@ -85,7 +92,8 @@ TEST_F(SequenceTest, ARunResumesWhereAnotherEnded) {
   folder.write("out/times.json", "{\"frames\": [3]}");
   const Outcome damaged = sequence("--frames 4 --fps 10");
   EXPECT_EQ(damaged.exit_code, 0);
-  EXPECT_THAT(damaged.err, AllOf(HasSubstr("4 of 4 frames existed"), HasSubstr("times.json: times of")));
+  EXPECT_THAT(damaged.err,
+              AllOf(HasSubstr("4 of 4 frames existed"), HasSubstr("times.json: times of")));
 }
 
 TEST_F(SequenceTest, FramesOfOtherInputsAreRenderedAgain) {
@@ -101,7 +109,8 @@ TEST_F(SequenceTest, FramesOfOtherInputsAreRenderedAgain) {
   std::string text = read_file(scene);
   text.replace(text.find("\"illuminance_lux\": 10"), 21, "\"illuminance_lux\": 11");
   folder.write("moving.json", text);
-  EXPECT_THAT(sequence("--frames 2 --fps 10 --format png --view albedo").err, Not(HasSubstr("there already")))
+  EXPECT_THAT(sequence("--frames 2 --fps 10 --format png --view albedo").err,
+              Not(HasSubstr("there already")))
       << "the scene file says something else";
 }
 
@@ -127,7 +136,8 @@ TEST_F(SequenceTest, TimesOfEveryStageAreSummedUp) {
 
 TEST_F(SequenceTest, AFilmHasEveryFrame) {
   {
-    const Path path(fake_ffmpeg("for last; do :; done; { echo \"$@\"; wc -c; } > \"${last#file:}\"\n"));
+    const Path path(
+        fake_ffmpeg("for last; do :; done; { echo \"$@\"; wc -c; } > \"${last#file:}\"\n"));
     ASSERT_EQ(sequence("--frames 3 --fps 12.5 --video film.mp4").exit_code, 0);
   }
   EXPECT_THAT(read_file(folder / "film.mp4"), AllOf(HasSubstr("-video_size 48x27 -framerate 12.5"),
@@ -135,7 +145,8 @@ TEST_F(SequenceTest, AFilmHasEveryFrame) {
   const Path path(fake_ffmpeg("[ $1 = -version ] || { echo no codec >&2; exit 9; }\n"));
   const Outcome failing = sequence("--frames 3 --fps 12.5 --video other.mp4");
   EXPECT_EQ(failing.exit_code, 1);
-  EXPECT_THAT(failing.err, AllOf(HasSubstr("other.mp4"), HasSubstr("ended with 9"), HasSubstr("no codec")));
+  EXPECT_THAT(failing.err,
+              AllOf(HasSubstr("other.mp4"), HasSubstr("ended with 9"), HasSubstr("no codec")));
   EXPECT_FALSE(fs::exists(folder / "other.mp4"));
 }
 
@@ -143,7 +154,8 @@ TEST_F(SequenceTest, AMissingFfmpegIsReportedBeforeTheWork) {
   const Path path("/nowhere");
   const Outcome outcome = sequence("--frames 3 --fps 25 --video film.mp4");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)"));
   EXPECT_FALSE(fs::exists(frame(0)));
 }
 

@@ -35,7 +35,8 @@ TEST(Session, WhatWasEnqueuedIsDoneWhenItEnds) {
     Session session(choose_device());
     const Buffer buffer = session.buffer(64u << 20, "filled again and again");
     for (cl::Event& event : events)
-      session.queue().enqueueFillBuffer(buffer.handle(), cl_uint{7}, 0, buffer.bytes(), nullptr, &event);
+      session.queue().enqueueFillBuffer(buffer.handle(), cl_uint{7}, 0, buffer.bytes(), nullptr,
+                                        &event);
   }
   for (const cl::Event& event : events)
     EXPECT_EQ(event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>(), CL_COMPLETE);
@@ -106,8 +107,10 @@ TEST(Session, ImpossibleLaunchNamesKernelAndCode) {
   const Buffer bytes = session.buffer(1024, "sizes");
   Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
   const std::size_t too_large = 1u << 20;
-  EXPECT_THAT(test::error_of(ExitCode::run_time, [&] { kernel.set(bytes).launch(too_large, too_large); }),
-              AllOf(HasSubstr("kernel 'sizes' on " + session.device().name), HasSubstr("CL_INVALID_WORK_")));
+  EXPECT_THAT(
+      test::error_of(ExitCode::run_time, [&] { kernel.set(bytes).launch(too_large, too_large); }),
+      AllOf(HasSubstr("kernel 'sizes' on " + session.device().name),
+            HasSubstr("CL_INVALID_WORK_")));
 }
 
 TEST(Session, StagesAreTimedAndAddUpByMark) {

@@ -97,7 +97,8 @@ TEST(Shade, EachViewShowsItsShare) {
     indirect.emplace_back(1 + f, 2, 3);
     if (pixel % 5 == 0) image.depth[pixel] = 0;
   }
-  const std::vector<glm::dvec3> direct_light = reference::direct_irradiance({sun({0, -1, 0}, 7)}, image);
+  const std::vector<glm::dvec3> direct_light =
+      reference::direct_irradiance({sun({0, -1, 0}, 7)}, image);
   std::vector<std::vector<glm::dvec4>> shown;
   for (const Show view : kSurfaceViews)
     shown.push_back(reference::shade(view, image, direct_light, indirect));
@@ -135,9 +136,9 @@ TEST(Shadow, ShadowLiesBelowTheRoof) {
       return nearer(plane_at(o, d, kUp, 0), roof(o, d));
     };
     const std::vector<double> e = lit(image, {sun(direction, 7, casting)});
-    const double full = -7 * direction.y,
-                 edge = 2 * slant;  // light travels 2 m down on its way past the edge
-    // Two texels of filter on either side, as the floor is cut by the map's slanted texels.
+    // Light travels 2 m down on its way past the edge Two texels of filter on either side, as the
+    // floor is cut by the map's slanted texels.
+    const double full = -7 * direction.y, edge = 2 * slant;
     const double penumbra = 2 * kTexel / -direction.y;
     double narrowest = 1e9, widest = -1e9;
     for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
@@ -177,10 +178,12 @@ TEST(Shadow, RoundSurfacesDoNotShadowThemselves) {
                    direction = glm::normalize(glm::dvec3(0.9, -1, 0));
   const double radius = 4;
   const Geometry sphere = [&](const glm::dvec3& o, const glm::dvec3& d) {
-    const double b = glm::dot(o, d) / glm::dot(d, d), c = (glm::dot(o, o) - radius * radius) / glm::dot(d, d);
+    const double b = glm::dot(o, d) / glm::dot(d, d),
+                 c = (glm::dot(o, o) - radius * radius) / glm::dot(d, d);
     return b * b > c ? std::max(0.0, -b - std::sqrt(b * b - c)) : 0.0;
   };
-  const SurfaceImage image = look(forward, sphere, [](const glm::dvec3& p) { return glm::normalize(p); });
+  const SurfaceImage image =
+      look(forward, sphere, [](const glm::dvec3& p) { return glm::normalize(p); });
   const std::vector<double> e = lit(image, {sun(direction, 7, sphere)});
   for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
     if (image.depth[pixel] <= 0) continue;
@@ -198,7 +201,8 @@ TEST(Shadow, ShadowsKeepTouchingWhatCastsThem) {
   // A wall x = 0 of 3 m on the floor; the light comes over it at 45 degrees. Light may leak at its
   // foot by half the filter and by the part of the wall below the lift.
   const double foot =
-      (2 * std::sqrt(2.0) + CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * std::sqrt(0.5)) * kTexel;
+      (2 * std::sqrt(2.0) + CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * std::sqrt(0.5)) *
+      kTexel;
   const Geometry casting = [](const glm::dvec3& o, const glm::dvec3& d) {
     const double t = plane_at(o, d, {1, 0, 0}, 0);
     const double y = (o + t * d).y;
@@ -231,7 +235,8 @@ TEST(Shadow, SixViewsOfAPointLightShowNoSeamsAndDoNotShadowTheirReceiver) {
     glm::dvec3 at;
     Geometry casting;
   };
-  for (const auto& [at, casting] : {Case{{-4, 0.6, 1}, floor_at(0)}, Case{{0.7, 2.5, -1.1}, room}}) {
+  for (const auto& [at, casting] :
+       {Case{{-4, 0.6, 1}, floor_at(0)}, Case{{0.7, 2.5, -1.1}, room}}) {
     MappedLight light = bulb(at, 40);
     for (const glm::dvec3& direction : kDirections)
       light.maps.push_back(cast(view_of(at, direction, false, 1, kTexels), casting));

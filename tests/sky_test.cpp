@@ -39,7 +39,8 @@ Sky map_of(int width, int height, const std::function<float(int x, int y)>& radi
   sky.width = width, sky.height = height;
   sky.texels.clear();
   for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) sky.texels.emplace_back(radiance(x, y), 0.5f * radiance(x, y), 0);
+    for (int x = 0; x < width; ++x)
+      sky.texels.emplace_back(radiance(x, y), 0.5f * radiance(x, y), 0);
   }
   return sky;
 }
@@ -88,7 +89,8 @@ TEST(SkyLight, MeansKeepTheFluxOfAMap) {
   glm::dvec3 wanted(0);
   for (int y = 0; y < sky.height; ++y) {
     for (int x = 0; x < sky.width; ++x)
-      wanted += sky.solid_angle(y) * glm::dvec3(sky.texels[static_cast<std::size_t>(y * sky.width + x)]);
+      wanted +=
+          sky.solid_angle(y) * glm::dvec3(sky.texels[static_cast<std::size_t>(y * sky.width + x)]);
   }
   for (const int parts : {1, 2, 3}) {
     const std::vector<glm::dvec3> means = sky_means(sky, parts);
@@ -148,7 +150,8 @@ double lit(const SceneData& scene, const RenderOptions& options = small_frame())
 double traced(const SceneData& scene, int bounces = 1, std::uint32_t samples = 1024) {
   PathTracerOptions options;
   options.samples = samples, options.bounces = bounces;
-  return mean(pathtracer::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options).irradiance);
+  return mean(pathtracer::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options)
+                  .irradiance);
 }
 
 TEST(SkyFrame, AnOpenPlaneGetsPiTimesTheRadiance) {
@@ -181,7 +184,8 @@ TEST(SkyFrame, AWallBlocksItsShareOfTheSky) {
 // A small, very bright texel: direct sampling finds it.
 TEST(PathTracer, ASmallSunInAMapLightsByItsSolidAngle) {
   constexpr int kWidth = 512, kHeight = 256, kX = 300, kY = 60;
-  const Sky sky = map_of(kWidth, kHeight, [](int x, int y) { return x == kX && y == kY ? 1e5f : 0.1f; });
+  const Sky sky =
+      map_of(kWidth, kHeight, [](int x, int y) { return x == kX && y == kY ? 1e5f : 0.1f; });
   const double cosine = std::cos(pi * (kY + 0.5) / kHeight);
   const double wanted = 0.1 * pi + 1e5 * sky.solid_angle(kY) * cosine;
   EXPECT_NEAR(traced(under(sky), 1, 256), wanted, 0.003 * wanted);
@@ -213,7 +217,8 @@ TEST(SkyFrame, TheSkyCountsAsTheFirstBounce) {
   for (int i = 0; i < 3; ++i) scene.materials[0].base_colour[i] = 0.8f;
   add_black_wall(scene, 1, 1.5f);
   RenderOptions options = small_frame();
-  const double one = lit(scene, options), truth_one = traced(scene, 1), truth_two = traced(scene, 2);
+  const double one = lit(scene, options), truth_one = traced(scene, 1),
+               truth_two = traced(scene, 2);
   options.bounces = Bounces::two;
   const double two = lit(scene, options);
   EXPECT_GT(truth_two, 1.1 * truth_one);
@@ -224,7 +229,8 @@ TEST(SkyFrame, TheSkyCountsAsTheFirstBounce) {
 TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
   const Sky sky = map_of(16, 8, [](int x, int y) { return static_cast<float>(x + y); });
   SceneData scene = under(sky);
-  scene.cameras[0].forward = {0, 0, -1}, scene.cameras[0].up = {0, 1, 0}, scene.cameras[0].vertical_fov = 1;
+  scene.cameras[0].forward = {0, 0, -1}, scene.cameras[0].up = {0, 1, 0},
+  scene.cameras[0].vertical_fov = 1;
   Frame frame(test_session(), scene, small_frame());
   frame.render(scene.cameras[0]);
   const std::vector<float> full = frame.read(Show::full), indirect = frame.read(Show::indirect);
@@ -233,7 +239,8 @@ TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
   const TracedImage image =
       pathtracer::trace_paths(scene, {}, camera_view(scene.cameras[0], 16, 16), options);
   const Image truth = pathtracer::traced_view(image, Show::full);
-  for (std::size_t i = 0; i < 4 * 16; ++i) EXPECT_NEAR(full[i], truth.pixels[i], 1e-4) << i;  // the top row
+  for (std::size_t i = 0; i < 4 * 16; ++i)
+    EXPECT_NEAR(full[i], truth.pixels[i], 1e-4) << i;  // the top row
   EXPECT_EQ(full[3], 1);
   EXPECT_GT(full[0], 0);
   EXPECT_EQ(indirect[0] + indirect[3], 0);
@@ -300,7 +307,8 @@ TEST_F(SkyFile, RejectsInvalidSkies) {
       {R"({"map": "scene.json"})", "extension"}};
   for (const auto& [sky, words] : members) EXPECT_THAT(rejection(sky), HasSubstr(words));
   const std::string map = R"({"map": "map.exr", "scale": 2})";
-  EXPECT_THAT(rejection(map, -0.5f), HasSubstr("pixel 1,0 channel R: found -0.5, times 2; allowed: 0 to"));
+  EXPECT_THAT(rejection(map, -0.5f),
+              HasSubstr("pixel 1,0 channel R: found -0.5, times 2; allowed: 0 to"));
   EXPECT_THAT(rejection(map, std::numeric_limits<float>::quiet_NaN()),
               HasSubstr("pixel 1,0 channel R: found nan"));
   EXPECT_THAT(rejection(map, std::numeric_limits<float>::infinity()), HasSubstr("found inf"));

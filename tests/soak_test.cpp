@@ -31,7 +31,8 @@ double resident_bytes() {
 
 RenderOptions small(TransportKind transport, Layout layout, int grid) {
   RenderOptions options;
-  options.basis = "sh2", options.transport = transport, options.layout = layout, options.grid = grid;
+  options.basis = "sh2", options.transport = transport, options.layout = layout,
+  options.grid = grid;
   options.width = 24, options.height = 18;
   options.cascades = 2, options.cascade_size = 5;
   options.rsm_size = 16, options.shadow_size = 16;
@@ -57,7 +58,8 @@ TEST(Soak, MemoryStaysFlatOverFramesOfChangingOptions) {
   render_some();
   constexpr int kMaxRounds = 6;
   std::vector<double> resident{resident_bytes()};
-  const std::size_t device_before = session.device_bytes(), most_before = session.peak_device_bytes();
+  const std::size_t device_before = session.device_bytes(),
+                    most_before = session.peak_device_bytes();
   do {
     render_some();
     resident.push_back(resident_bytes());

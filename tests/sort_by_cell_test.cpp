@@ -42,7 +42,8 @@ std::vector<Entry> sorted_there(CellSorter& sorter, const Keys& keys, std::size_
 
 void expect_sorted(const Keys& keys, std::size_t cells) {
   CellSorter sorter(test_session());
-  EXPECT_EQ(sorted_there(sorter, keys, cells), sorted_here(keys)) << keys.size() << " texels, " << cells;
+  EXPECT_EQ(sorted_there(sorter, keys, cells), sorted_here(keys))
+      << keys.size() << " texels, " << cells;
 }
 
 /// Runs of up to `longest` neighbours in one cell, as surfaces have; one texel in eight has no
@@ -61,7 +62,8 @@ Keys in_runs(std::size_t texels, cl_uint cells, unsigned longest, unsigned seed 
 TEST(SortByCell, CellsOfNoOneAndManyTexels) {
   expect_sorted(Keys(1000, CLPV_NO_CELL), 512);
   expect_sorted({32767}, 32768);
-  for (const std::size_t texels : {15u, 16u, 17u, 255u, 257u, 5000u}) expect_sorted(Keys(texels, 4912), 4913);
+  for (const std::size_t texels : {15u, 16u, 17u, 255u, 257u, 5000u})
+    expect_sorted(Keys(texels, 4912), 4913);
   Keys each_its_own(4096);
   std::iota(each_its_own.rbegin(), each_its_own.rend(), 0);
   expect_sorted(each_its_own, 4096);
@@ -83,7 +85,8 @@ TEST(SortByCell, OneSorterTakesSurfacesOfAllSizes) {
   for (const auto& [texels, cells] :
        {std::pair{100u, 64u}, {20'000u, 32768u}, {7u, 2u}, {3000u, 1u}, {20'000u, 35937u}}) {
     const Keys keys = in_runs(texels, cells, 30, texels);
-    EXPECT_EQ(sorted_there(sorter, keys, cells), sorted_here(keys)) << texels << " texels, " << cells;
+    EXPECT_EQ(sorted_there(sorter, keys, cells), sorted_here(keys))
+        << texels << " texels, " << cells;
   }
 }
 

@@ -61,8 +61,9 @@ TEST(Stability, MovedAndHiddenSurfacesAreNotCompared) {
   const std::vector<bool> seen = still_seen(with, without);
   std::size_t on_box = 0;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const glm::dvec3 p = reference::surface_position(with.view, static_cast<double>(i % kWidth),
-                                                     static_cast<double>(i / kWidth), double{with.depth[i]});
+    const glm::dvec3 p =
+        reference::surface_position(with.view, static_cast<double>(i % kWidth),
+                                    static_cast<double>(i / kWidth), double{with.depth[i]});
     on_box += p.y > 0.1;
     EXPECT_FALSE(seen[i] && p.y > 0.1) << i;
   }
@@ -86,7 +87,8 @@ TEST(Stability, ClosedCases) {
   // A camera that moves over a floor under even light.
   const std::vector<float> even(light.size(), 0.75f);
   EXPECT_EQ(
-      change_of_light(still_seen(view_of_floor({0, 2, 3}), view_of_floor({0.2f, 2, 3})), even, even).mean,
+      change_of_light(still_seen(view_of_floor({0, 2, 3}), view_of_floor({0.2f, 2, 3})), even, even)
+          .mean,
       0.0);
   // 4 of 100 points change by 100 %: 4 % of the light, and too few for the 95th percentile.
   std::vector<float> few(400, 1.0f), flashed = few;

@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kAnyGrid = " render " CLPV_SOURCE_DIR
-                             "/tests/oclgrind/tiny.gltf --cascades 1 --cascade-size 5 --rsm-size 8 "
-                             "--shadow-size 8 --basis sh2 "
-                             "--transport sampled --gather all --blockers seen ";
+const std::string kAnyGrid =
+    " render " CLPV_SOURCE_DIR
+    "/tests/oclgrind/tiny.gltf --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis "
+    "sh2 --transport sampled --gather all --blockers seen ";
 const std::string kFrame = kAnyGrid + "--grid 5 ";
 const std::string kTiny = kFrame + "--width 12 --height 9 ";
 
@@ -57,11 +57,12 @@ class Starved : public ::testing::Test {
   }
 
   /// A frame whose n-th call fails with a code, whose name must be said.
-  void expect_reported(const std::string& call, long n, const std::string& code, const std::string& name) {
+  void expect_reported(const std::string& call, long n, const std::string& code,
+                       const std::string& name) {
     SCOPED_TRACE(call + " " + std::to_string(n));
     const fs::path image = folder_ / "a.exr";
-    const Outcome outcome = run("CLPV_SHIM=" + call + ":" + std::to_string(n) + ":" + code + " " + program() +
-                                kTiny + "-o " + image.string());
+    const Outcome outcome = run("CLPV_SHIM=" + call + ":" + std::to_string(n) + ":" + code + " " +
+                                program() + kTiny + "-o " + image.string());
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(name));
     EXPECT_THAT(outcome.err, Not(HasSubstr("terminate")));
@@ -121,25 +122,28 @@ TEST_F(Starved, OfACompiler) {
 
 /// A disk of 64 KiB, where one may be mounted: neither the image nor the compiled programs fit.
 TEST_F(Starved, OfASmallDisk) {
-  const std::string disk = folder_.path().string(), mount = "mount -t tmpfs -o size=64k none " + disk;
+  const std::string disk = folder_.path().string(),
+                    mount = "mount -t tmpfs -o size=64k none " + disk;
   if (run("unshare -rm " + mount).exit_code != 0) GTEST_SKIP() << "no tmpfs may be mounted here";
   const Outcome outcome =
       run("unshare -rm sh -c '" + mount + " && POCL_CACHE_DIR=" + (compiled() / "pocl").string() +
           " CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + disk + " " CLPV_PROGRAM + kFrame +
-          "--width 400 --height 300 -o " + disk + "/a.exr; code=$?; ls -A " + disk + " >&2; exit $code'");
+          "--width 400 --height 300 -o " + disk + "/a.exr; code=$?; ls -A " + disk +
+          " >&2; exit $code'");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("a.exr: cannot be written: No space left on device"));
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
 }
 
-/// A command under `ulimit`, without descriptor 3 that it may inherit; then its folder's files on stderr.
+/// A command under `ulimit`, without descriptor 3 that it may inherit; then its folder's files on
+/// stderr.
 class Limited : public Starved {
  protected:
   Outcome limited(const std::string& limit, const std::string& command) {
     const std::string folder = folder_.path().string();
     return run("exec 3<&-; ulimit -c 0; " + limit + " && timeout 600 env " + usual_kernels() +
-               "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() + " " CLPV_PROGRAM + command +
-               "-o " + folder + "/a.exr; code=$?; ls -A " + folder + " >&2; exit $code");
+               "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + compiled().string() + " " CLPV_PROGRAM +
+               command + "-o " + folder + "/a.exr; code=$?; ls -A " + folder + " >&2; exit $code");
   }
 };
 
@@ -147,8 +151,8 @@ class Limited : public Starved {
 TEST_F(Limited, FileSizes) {
   folder_.write("a.exr", "old");
   const Outcome outcome =
-      limited("ulimit -f 16",
-              " pathtrace " CLPV_SOURCE_DIR "/tests/oclgrind/tiny.gltf --width 120 --height 90 --spp 1 ");
+      limited("ulimit -f 16", " pathtrace " CLPV_SOURCE_DIR
+                              "/tests/oclgrind/tiny.gltf --width 120 --height 90 --spp 1 ");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("a.exr: cannot be written: File too large"));
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
@@ -165,8 +169,8 @@ TEST_F(Limited, AddressSpaceAndFilesOfADriver) {
     EXPECT_THAT(outcome.err, Not(HasSubstr("apt install")));
     EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
   };
-  for (const char* limit : {"ulimit -v 64000", "ulimit -v 300000", "ulimit -v 1000000", "ulimit -n 4",
-                            "ulimit -n 20", "ulimit -f 16"})
+  for (const char* limit : {"ulimit -v 64000", "ulimit -v 300000", "ulimit -v 1000000",
+                            "ulimit -n 4", "ulimit -n 20", "ulimit -f 16"})
     expect_reported(limit, kTiny);
   expect_reported("ulimit -v 2500000", kAnyGrid + "--width 12 --height 9 --grid 300 ");
 }

@@ -20,12 +20,13 @@ TEST(Version, HasAnEntryInTheCitationAndTheChanges) {
   const std::string source = CLPV_SOURCE_DIR;
   EXPECT_THAT(test::read_file(source + "/CITATION.cff"),
               ::testing::HasSubstr("\nversion: " + version() + "\n"));
-  EXPECT_THAT(test::read_file(source + "/CHANGELOG.md"), ::testing::HasSubstr("\n## " + version() + " ("));
+  EXPECT_THAT(test::read_file(source + "/CHANGELOG.md"),
+              ::testing::HasSubstr("\n## " + version() + " ("));
 }
 
 TEST(Printable, TextStaysAsItIs) {
-  for (const std::string text :
-       {"", "a b~", "two\nlines\tand a tab", "\u00e9\u20ac\U0001F4A1", "\u00a0", "\xc2", "\xff\x9b"})
+  for (const std::string text : {"", "a b~", "two\nlines\tand a tab", "\u00e9\u20ac\U0001F4A1",
+                                 "\u00a0", "\xc2", "\xff\x9b"})
     EXPECT_EQ(printable(text), text);
 }
 
@@ -49,8 +50,9 @@ std::string of(const std::vector<std::string>& pieces) {
 
 TEST(Fingerprint, DependsOnTheBoundariesOfItsInputs) {
   EXPECT_EQ(of({"ab", "c"}), of({"ab", "c"}));
-  const std::set<std::string> names = {of({}),          of({""}),        of({"", ""}),    of({"abc"}),
-                                       of({"ab", "c"}), of({"a", "bc"}), of({"abc", ""}), of({"acb"})};
+  const std::set<std::string> names = {of({}),          of({""}),        of({"", ""}),
+                                       of({"abc"}),     of({"ab", "c"}), of({"a", "bc"}),
+                                       of({"abc", ""}), of({"acb"})};
   EXPECT_EQ(names.size(), 8u);
   for (const std::string& name : names) EXPECT_EQ(name.size(), 16u);
 }
@@ -84,7 +86,8 @@ TEST(Process, ReadsWhatItIsFed) {
   const std::string many(1 << 20, 'x');
   EXPECT_TRUE(counter.feed(std::as_bytes(std::span(many))));
   EXPECT_THAT(counter.end().output, HasSubstr("1048576"));
-  EXPECT_EQ(Process("/bin/cat", {}).end().output, "") << "there is nothing to read, and no waiting for it";
+  EXPECT_EQ(Process("/bin/cat", {}).end().output, "")
+      << "there is nothing to read, and no waiting for it";
 }
 
 TEST(Process, OneThatReadsNoMoreIsNoSignal) {

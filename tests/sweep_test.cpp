@@ -84,7 +84,9 @@ TEST(Sweep, MeansKeepTheEnergyOfEveryBasis) {
     for (int i = 0; i < basis->size(); ++i) {
       double sum = 0;
       for (int d = 0; d < means.rows(); ++d)
-        sum += bins[static_cast<std::size_t>(d / 4)].directions[static_cast<std::size_t>(d % 4)].solid_angle *
+        sum += bins[static_cast<std::size_t>(d / 4)]
+                   .directions[static_cast<std::size_t>(d % 4)]
+                   .solid_angle *
                means(d, i);
       EXPECT_NEAR(sum, basis->integrals()[static_cast<std::size_t>(i)], 1e-9) << name << ' ' << i;
     }
@@ -120,13 +122,15 @@ ClpvGrid grid_of(int n) {
 }
 
 /// Light of one cascade, by the CPU reference: `inject(bin, cell)` is the same in all channels.
-reference::Volume swept(int n, int parts, const std::function<double(int bin, const glm::ivec3&)>& inject,
+reference::Volume swept(int n, int parts,
+                        const std::function<double(int bin, const glm::ivec3&)>& inject,
                         const reference::Volume* geometry = nullptr) {
   const auto basis = make_basis("bins24");
   reference::Volume light(n, kSweepBins);
   reference::for_each_cell(n, [&](const glm::ivec3& p) {
     for (int bin = 0; bin < kSweepBins; ++bin) {
-      for (int channel = 0; channel < 3; ++channel) light.at(channel, bin, p.x, p.y, p.z) = inject(bin, p);
+      for (int channel = 0; channel < 3; ++channel)
+        light.at(channel, bin, p.x, p.y, p.z) = inject(bin, p);
     }
   });
   const SweptCascade cascade{grid_of(n), &light, geometry, parts};
@@ -135,7 +139,8 @@ reference::Volume swept(int n, int parts, const std::function<double(int bin, co
 
 double fluence(const reference::Volume& light, const glm::ivec3& p) {
   double sum = 0;
-  for (int bin = 0; bin < kSweepBins; ++bin) sum += std::numbers::pi / 6 * light.value(0, bin, p.x, p.y, p.z);
+  for (int bin = 0; bin < kSweepBins; ++bin)
+    sum += std::numbers::pi / 6 * light.value(0, bin, p.x, p.y, p.z);
   return sum;
 }
 
@@ -156,7 +161,9 @@ std::pair<double, double> halo(const reference::Volume& light, double r) {
 
 TEST(Sweep, APointSourceFallsOffWithTheSquareOfItsDistance) {
   constexpr int kGrid = 31;
-  const auto point = [](int, const glm::ivec3& p) { return p == glm::ivec3(kGrid / 2) ? 1.0 : 0.0; };
+  const auto point = [](int, const glm::ivec3& p) {
+    return p == glm::ivec3(kGrid / 2) ? 1.0 : 0.0;
+  };
   double unevenness = 1e9;
   for (const int parts : {1, 2}) {
     const reference::Volume light = swept(kGrid, parts, point);
@@ -272,9 +279,9 @@ TEST(Sweep, UniformLightStaysSoThroughAllCascades) {
   }
 }
 
-/// A square of 0.3 m on the floor emits 1 W/m^2 by a clamped cosine, held in harmonics. Fluence [W/m^2] on a
-/// ceiling 0.56 m above and on a wall 0.34 m beside its middle, against the integral over the
-/// square.
+/// A square of 0.3 m on the floor emits 1 W/m^2 by a clamped cosine, held in harmonics. Fluence
+/// [W/m^2] on a ceiling 0.56 m above and on a wall 0.34 m beside its middle, against the integral
+/// over the square.
 struct SquareErrors {
   double ceiling, wall;  ///< root mean square, relative
   double energy;         ///< on the ceiling, relative
@@ -298,7 +305,8 @@ SquareErrors square_errors(const char* name, int parts, int cells_across) {
     double sum = 0;
     for (int j = 0; j < kSamples * kSamples; ++j) {
       const glm::dvec3 from((first.x - 0.5 + (j % kSamples + 0.5) * cells_across / kSamples) * s,
-                            (first.y - 0.5 + (j / kSamples + 0.5) * cells_across / kSamples) * s, 0);
+                            (first.y - 0.5 + (j / kSamples + 0.5) * cells_across / kSamples) * s,
+                            0);
       const glm::dvec3 way = glm::dvec3(p) * s - from;
       sum += std::max(0.0, glm::normalize(way).z) / std::numbers::pi / glm::dot(way, way);
     }
@@ -315,7 +323,8 @@ SquareErrors square_errors(const char* name, int parts, int cells_across) {
       if (side == 0) energy += found, exact_energy += wanted;
     }
   }
-  return {std::sqrt(errors[0] / squares[0]), std::sqrt(errors[1] / squares[1]), energy / exact_energy};
+  return {std::sqrt(errors[0] / squares[0]), std::sqrt(errors[1] / squares[1]),
+          energy / exact_energy};
 }
 
 TEST_P(EachPartition, WhatHarmonicsLackMakesAClampedCosine) {
@@ -331,7 +340,8 @@ TEST_P(EachPartition, WhatHarmonicsLackMakesAClampedCosine) {
     for (int d = 0; d < means.rows(); ++d) {
       const glm::dvec3 w = glm::dvec3(directions(d, 3), directions(d, 1), directions(d, 2)) /
                            std::sqrt(3 / (4 * std::numbers::pi));
-      const double z = glm::dot(w, n), rest = std::abs(z) / 2 - e0 - e2 * z * z - e4 * z * z * z * z;
+      const double z = glm::dot(w, n),
+                   rest = std::abs(z) / 2 - e0 - e2 * z * z - e4 * z * z * z * z;
       double light = rest;
       for (int i = 0; i < basis->size(); ++i) light += c[i] * means(d, i);
       const int parts = GetParam() * GetParam();
@@ -365,13 +375,15 @@ TEST(Sweep, PlansHaveTheSweepsOfTheMethod) {
   EXPECT_EQ(few(Bounces::two, false, false), 1);
   EXPECT_EQ(few(Bounces::two, true, false), 1);
   EXPECT_EQ(few(Bounces::all, false, true), 2);
-  EXPECT_EQ(few(Bounces::all, false, false), 0) << "interpolates the incident flux of the coarser cascade";
+  EXPECT_EQ(few(Bounces::all, false, false), 0)
+      << "interpolates the incident flux of the coarser cascade";
   EXPECT_EQ(few(Bounces::all, true, false), 8);
 }
 
 TEST(Sweep, RejectsGridsThatAreNotNested) {
   const auto basis = make_basis("bins24");
-  Sweeper sweeper(test_session(), *basis, swept_by(*basis), {.grid = 6, .parts = {1, 1}, .blocking = false});
+  Sweeper sweeper(test_session(), *basis, swept_by(*basis),
+                  {.grid = 6, .parts = {1, 1}, .blocking = false});
   Volume light(test_session(), {6, kSweepBins, 3}, "test: light");
   const auto grids = cascade_grids(glm::vec3(0), 3, 3, 6);
   EXPECT_THROW(sweeper.sweep({1, {grids[0], grids[2]}, light}, light), Error);

@@ -55,7 +55,8 @@ TEST(MipChain, HolesDoNotTintOpaqueTexels) {
 }
 
 TEST(MipChain, EverySrgbByteComesBack) {
-  for (unsigned byte = 0; byte < 256; ++byte) EXPECT_EQ(srgb_from_linear(linear_from_srgb(byte)), byte);
+  for (unsigned byte = 0; byte < 256; ++byte)
+    EXPECT_EQ(srgb_from_linear(linear_from_srgb(byte)), byte);
 }
 
 /// An orthographic camera looking down -z at the square (0..1)^2 at z = -1, whose uv runs from
@@ -103,7 +104,8 @@ TEST(Texture, TexelsSitWhereTheyShould) {
   const auto close = [](std::vector<float> values) {
     return ::testing::Pointwise(::testing::FloatNear(1e-5f), values);
   };
-  EXPECT_THAT(reds(image_of(textured(stripes(CLPV_WRAP_CLAMP)), 4, {0, 0}, {1, 1})), close({0, 1, 0, 1}));
+  EXPECT_THAT(reds(image_of(textured(stripes(CLPV_WRAP_CLAMP)), 4, {0, 0}, {1, 1})),
+              close({0, 1, 0, 1}));
   // Halfway between texel centres: the mean of both.
   EXPECT_THAT(reds(image_of(textured(stripes(CLPV_WRAP_CLAMP)), 4, {0.0625f, 0}, {1.0625f, 1})),
               close({0.25f, 0.75f, 0.25f, 1}));
@@ -132,7 +134,8 @@ TEST(Texture, EveryByteIsDecoded) {
   const SurfaceImage image = image_of(textured(texture(kTexels, 1, rgba)), kTexels, {0, 0}, {1, 1});
   for (unsigned i = 0; i < kTexels; ++i) {
     for (unsigned c = 0; c < 3; ++c)
-      EXPECT_NEAR(image.colour[i][static_cast<int>(c)], linear_from_srgb(std::min(3 * i + c, 255u)), 1e-6)
+      EXPECT_NEAR(image.colour[i][static_cast<int>(c)], linear_from_srgb(std::min(3 * i + c, 255u)),
+                  1e-6)
           << 3 * i + c;
   }
 }

@@ -30,7 +30,8 @@ struct Link {
 std::vector<Link> links(const Transport& transport) {
   std::vector<Link> result;
   if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
-    for (const Face& face : faces->faces) result.push_back({face.normal, face.direction, face.blocked_by});
+    for (const Face& face : faces->faces)
+      result.push_back({face.normal, face.direction, face.blocked_by});
     return result;
   }
   for (const SweepLink& link : std::get<std::vector<SweepLink>>(transport.scheme))
@@ -45,7 +46,8 @@ reference::Volume geometry_of(int numbers, const Blockers& blockers) {
   reference::Volume volume(kGrid + 1, numbers, 1);
   reference::for_each_cell(kGrid + 1, [&](const glm::ivec3& p) {
     const std::vector<double> c = blockers(p);
-    for (int i = 0; i < numbers; ++i) volume.at(0, i, p.x, p.y, p.z) = c[static_cast<std::size_t>(i)];
+    for (int i = 0; i < numbers; ++i)
+      volume.at(0, i, p.x, p.y, p.z) = c[static_cast<std::size_t>(i)];
   });
   return volume;
 }
@@ -56,10 +58,10 @@ void expect_all(const Transport& transport, const reference::Volume& geometry,
                 double allowed = kFloat) {
   for (const Link& link : links(transport)) {
     reference::for_each_cell(kGrid, [&](const glm::ivec3& cell) {
-      ASSERT_NEAR(reference::transmittance(geometry, cell, link.side, link.blocked_by), expected(cell, link),
-                  allowed)
-          << "link to " << link.side.x << link.side.y << link.side.z << " of cell " << cell.x << cell.y
-          << cell.z;
+      ASSERT_NEAR(reference::transmittance(geometry, cell, link.side, link.blocked_by),
+                  expected(cell, link), allowed)
+          << "link to " << link.side.x << link.side.y << link.side.z << " of cell " << cell.x
+          << cell.y << cell.z;
     });
   }
 }
@@ -106,10 +108,11 @@ TEST_P(EachTransport, SurfelsBlockWhatTravelsAgainstTheirNormal) {
   const auto basis = make_basis("sh2");
   const glm::dvec3 normal = glm::normalize(glm::dvec3(2, -1, 3));
   const std::vector<double> front = times(0.9, basis->clamped_cosine(normal));
-  expect_all(transport(*basis), geometry_of(basis->size(), [&](const glm::ivec3&) { return front; }),
-             [&](const glm::ivec3&, const Link& link) {
-               return 1 - std::clamp(0.9 * (0.25 - 0.5 * glm::dot(normal, link.direction)), 0.0, 1.0);
-             });
+  expect_all(
+      transport(*basis), geometry_of(basis->size(), [&](const glm::ivec3&) { return front; }),
+      [&](const glm::ivec3&, const Link& link) {
+        return 1 - std::clamp(0.9 * (0.25 - 0.5 * glm::dot(normal, link.direction)), 0.0, 1.0);
+      });
 }
 
 // A surfel across an axis blocks |n.w| of the light along every w. An oblique surfel transmits the

@@ -34,7 +34,8 @@ TEST(SolidAngles, AreThoseOfTheFacesAndSumToTheSphere) {
   double sum = 0;
   for (const Face& face : faces(transport).faces) {
     const glm::dvec3 normal(face.normal), centre = glm::dvec3(face.travel) + 0.5 * normal;
-    EXPECT_NEAR(face.solid_angle, integral(test::square(centre, normal), [](auto) { return 1.0; }), 1e-12);
+    EXPECT_NEAR(face.solid_angle, integral(test::square(centre, normal), [](auto) { return 1.0; }),
+                1e-12);
     EXPECT_NEAR(glm::length(face.direction - glm::normalize(centre)), 0, 1e-15);
     sum += face.solid_angle;
   }
@@ -81,8 +82,8 @@ TEST_P(TransportOf, LobesAreClampedCosinesAlongTheAxes) {
     EXPECT_NEAR(basis_->energy(lobe) / kPi, 1, 1.4e-3);
     std::vector<double> unit;
     for (int i = 0; i < basis_->size(); ++i) {
-      EXPECT_NEAR(faces(sampled).lobes(i, static_cast<int>(a)), lobe[static_cast<std::size_t>(i)] / kPi,
-                  1e-12);
+      EXPECT_NEAR(faces(sampled).lobes(i, static_cast<int>(a)),
+                  lobe[static_cast<std::size_t>(i)] / kPi, 1e-12);
       unit.push_back(faces(exact).lobes(i, static_cast<int>(a)));
     }
     EXPECT_NEAR(basis_->energy(unit), 1, 1e-12);
@@ -96,8 +97,10 @@ struct Energies {
 class SampledEnergy : public ::testing::TestWithParam<Energies> {};
 INSTANTIATE_TEST_SUITE_P(Names, SampledEnergy,
                          ::testing::Values(Energies{"sh2", 1, 1}, Energies{"srbf4", 1.004, 1.012},
-                                           Energies{"srbf8v1", 1.011, 1.032}, Energies{"srbf8v2", .964, .897},
-                                           Energies{"srbf8v3", 1.043, 1.134}, Energies{"srbf14", .565, .153}),
+                                           Energies{"srbf8v1", 1.011, 1.032},
+                                           Energies{"srbf8v2", .964, .897},
+                                           Energies{"srbf8v3", 1.043, 1.134},
+                                           Energies{"srbf14", .565, .153}),
                          [](const auto& info) { return info.param.name; });
 
 TEST_P(SampledEnergy, DriftsAsTabled) {
@@ -110,7 +113,8 @@ TEST_P(SampledEnergy, DriftsAsTabled) {
 TEST(Clamping, GainsEnergyFromAnAxisLobe) {
   const auto basis = make_basis("sh2");
   const std::vector<double> lobe = basis->clamped_cosine({0, 0, 1});
-  for (const auto& [kind, gain] : {std::pair{TransportKind::sampled, .138}, {TransportKind::exact, .115}}) {
+  for (const auto& [kind, gain] :
+       {std::pair{TransportKind::sampled, .138}, {TransportKind::exact, .115}}) {
     const Transport transport = make_transport(kind, *basis);
     double flux = 0;
     for (const Face& face : faces(transport).faces) flux += std::max(0.0, dot(face.flux, lobe));

@@ -83,8 +83,8 @@ bool is_held(const TreeWalk& walk, unsigned triangle, const glm::vec3& p) {
 TEST(TriangleTree, HoldsEachPointOfEachTriangle) {
   constexpr int kSteps = 20;
   const TreeLimits usual, areas{.parts = 0}, morton{.parts = 0, .areas = 0};
-  for (const auto& [moving, limits] :
-       {std::pair(false, usual), std::pair(true, usual), std::pair(false, areas), std::pair(true, morton)}) {
+  for (const auto& [moving, limits] : {std::pair(false, usual), std::pair(true, usual),
+                                       std::pair(false, areas), std::pair(true, morton)}) {
     const SceneData scene = many_triangles(moving);
     const TriangleTree tree(scene, limits);
     TreeWalk walk{tree, {}};
@@ -116,7 +116,8 @@ bool equal_bytes(const std::vector<TreeRow>& a, const std::vector<TreeRow>& b) {
 TEST(TriangleTree, MovesToWhatItWouldBeFromScratch) {
   SceneData scene = many_triangles(true);
   TriangleTree tree(scene);
-  for (unsigned v = 3000; v < 4500; ++v) scene.vertices[v].position[1] += 0.01f * static_cast<float>(v % 300);
+  for (unsigned v = 3000; v < 4500; ++v)
+    scene.vertices[v].position[1] += 0.01f * static_cast<float>(v % 300);
   tree.move(scene);
   const TriangleTree fresh(scene);
   EXPECT_TRUE(equal_bytes(tree.nodes(), fresh.nodes()));  // integers in rows may read as NaN

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Promises of docs/security.md: caches trust only what this user wrote and never end a run; outputs spare inputs; images
-// tell nothing about the machine; clpv opens no connections.
+// Promises of docs/security.md: caches trust only what this user wrote and never end a run; outputs
+// spare inputs; images tell nothing about the machine; clpv opens no connections.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// --------------------------------------------------------------------------------------------------- caches
+// ---------------------------------------------------------------------------------------------------
+// caches
 
 /// Mode bits of a file.
 mode_t mode_of(const fs::path& path) {
@@ -185,7 +186,8 @@ TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
 
 /// `clpv quality` of one cell.
 std::string quality(const fs::path& cache) {
-  return " quality " + kTiny + kSmallSteps + "--spp 1 --frames 1 --format json --cache " + cache.string();
+  return " quality " + kTiny + kSmallSteps + "--spp 1 --frames 1 --format json --cache " +
+         cache.string();
 }
 
 TEST_F(CacheTest, AFifoInPlaceOfACellOrTruthDoesNotEndQuality) {
@@ -208,9 +210,9 @@ TEST_F(CacheTest, AFullDiskDoesNotEndQuality) {
   if (test::run("unshare -rm mount -t tmpfs none " + disk).exit_code != 0)
     GTEST_SKIP() << "no tmpfs may be mounted here";
   for (const char* size : {"4k", "16k"}) {
-    const test::Outcome outcome =
-        test::run("unshare -rm sh -c 'mount -t tmpfs -o size=" + std::string(size) + " none " + disk +
-                  " && " CLPV_PROGRAM + quality(folder.path()) + " --vary gather-offset=0,1,2,3,4'");
+    const test::Outcome outcome = test::run(
+        "unshare -rm sh -c 'mount -t tmpfs -o size=" + std::string(size) + " none " + disk +
+        " && " CLPV_PROGRAM + quality(folder.path()) + " --vary gather-offset=0,1,2,3,4'");
     EXPECT_EQ(outcome.exit_code, 0) << size << outcome.err;
     EXPECT_EQ(nlohmann::json::parse(outcome.out).at("cells").size(), 5u) << size << outcome.out;
     EXPECT_THAT(outcome.err, HasSubstr("not cached")) << size;
@@ -218,8 +220,8 @@ TEST_F(CacheTest, AFullDiskDoesNotEndQuality) {
 }
 
 TEST_F(CacheTest, TwoProcessesShareOneQualityCacheAndOutput) {
-  const std::string command = CLPV_PROGRAM + quality(folder / "kept") + " --vary gather-offset=0,1 -o " +
-                              (folder / "a.json").string();
+  const std::string command = CLPV_PROGRAM + quality(folder / "kept") +
+                              " --vary gather-offset=0,1 -o " + (folder / "a.json").string();
   const test::Outcome both =
       test::run("( " + command + " ) & " + command + "; code=$?; wait $! && exit $code");
   EXPECT_EQ(both.exit_code, 0) << both.err;
@@ -229,7 +231,8 @@ TEST_F(CacheTest, TwoProcessesShareOneQualityCacheAndOutput) {
   EXPECT_THAT(third.err, Not(HasSubstr("again")));
 }
 
-// -------------------------------------------------------------------------------------- temporary folders
+// -------------------------------------------------------------------------------------- temporary
+// folders
 
 TEST(ScratchFolders, OfKilledRunsAreRemovedByTheNext) {
   const test::TemporaryFolder folder;
@@ -276,8 +279,8 @@ TEST(ScratchFolders, AKilledProcessLosesItsLock) {
 
 TEST(ScratchFolders, AMissingTmpdirIsNamed) {
   const test::TemporaryFolder folder;
-  const test::Outcome drawing =
-      test::run("TMPDIR=/nonexistent " CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string());
+  const test::Outcome drawing = test::run(
+      "TMPDIR=/nonexistent " CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string());
   const test::Outcome cold =
       test::run("TMPDIR=/nonexistent POCL_CACHE_DIR=" + folder.path().string() +
                 " XDG_CACHE_HOME=" + folder.path().string() + " " CLPV_PROGRAM " render " + kTiny +
@@ -290,7 +293,8 @@ TEST(ScratchFolders, AMissingTmpdirIsNamed) {
   EXPECT_EQ(drawing.exit_code, 1);
 }
 
-// -------------------------------------------------------------------------------------------------- outputs
+// --------------------------------------------------------------------------------------------------
+// outputs
 
 TEST(Outputs, SpareInputsAndEachOther) {
   const test::TemporaryFolder folder;
@@ -305,7 +309,8 @@ TEST(Outputs, SpareInputsAndEachOther) {
         "render" + scene + "-o o.exr --dump-normals ./o.exr",
         "render" + scene + "-o o.exr --stats tiny.gltf",  // not named on the command line
         std::string("pathtrace my.json -o o.exr --stats my.json"),
-        "query" + scene + "--points points.csv -o points.csv", "quality" + scene + "--cache cache -o my.json",
+        "query" + scene + "--points points.csv -o points.csv",
+        "quality" + scene + "--cache cache -o my.json",
         std::string("bench regression --scene my.json -o my.json"),
         "sequence times.json" + kSmallSteps + "--frames 1 --fps 1 -o ."}) {
     const test::Outcome outcome = run_here(command, folder.path());
@@ -315,7 +320,8 @@ TEST(Outputs, SpareInputsAndEachOther) {
     EXPECT_FALSE(fs::exists(folder / "o.exr")) << command;
   }
   fs::copy(folder / "my.json", folder / "again.json");
-  EXPECT_EQ(run_here("render again.json" + kSmallSteps + "-o o.exr --stats s.json", folder.path()).exit_code,
+  EXPECT_EQ(run_here("render again.json" + kSmallSteps + "-o o.exr --stats s.json", folder.path())
+                .exit_code,
             0);
   EXPECT_EQ(run_here("compare o.exr o.exr -o o.exr", folder.path()).exit_code, 2);
 }
@@ -325,9 +331,11 @@ TEST(Outputs, DevicesAndFifosAreRejectedBeforeTheWork) {
   ASSERT_EQ(::mkfifo((folder / "fifo.exr").c_str(), 0666), 0);
   fs::create_symlink("/dev/full", folder / "full.exr");
   for (const char* name : {"fifo.exr", "full.exr"}) {
-    const test::Outcome outcome = run_here("render " + kTiny + kSmallSteps + "-o " + name, folder.path());
+    const test::Outcome outcome =
+        run_here("render " + kTiny + kSmallSteps + "-o " + name, folder.path());
     EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_THAT(outcome.err, HasSubstr(std::string(name) + ": cannot be written: it is not a regular file"));
+    EXPECT_THAT(outcome.err,
+                HasSubstr(std::string(name) + ": cannot be written: it is not a regular file"));
   }
 }
 
@@ -344,15 +352,18 @@ TEST(Outputs, MetadataHoldsNoFolderUserOrHost) {
         "pathtrace " + scene + " --model " + kTiny + " --width 8 --height 6 --spp 1 -o a.exr"}) {
     const test::Outcome outcome = run_here(command, folder.path());
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    const std::string file = command.substr(command.rfind(' ') + 1), bytes = read_file(folder / file);
+    const std::string file = command.substr(command.rfind(' ') + 1),
+                      bytes = read_file(folder / file);
     EXPECT_EQ(read_metadata(folder / file).at("scene"), "my.json");
     EXPECT_EQ(read_metadata(folder / file).at("model"), "tiny.gltf");
-    for (const std::string& told : {folder.path().string(), std::string(CLPV_SOURCE_DIR), std::string(host)})
+    for (const std::string& told :
+         {folder.path().string(), std::string(CLPV_SOURCE_DIR), std::string(host)})
       EXPECT_EQ(bytes.find(told), std::string::npos) << told << " in " << file;
   }
 }
 
-// ------------------------------------------------------------------------------------------------- network
+// -------------------------------------------------------------------------------------------------
+// network
 
 TEST(Network, ClpvOpensNoConnections) {
   std::vector<std::string> openers;

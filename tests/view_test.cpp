@@ -40,7 +40,8 @@ std::vector<glm::vec3> directions(int count) {
 std::vector<glm::dvec3> corners(const glm::dvec3& lower, const glm::dvec3& upper) {
   std::vector<glm::dvec3> all;
   for (int i = 0; i < 8; ++i) {
-    all.emplace_back(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y, i & 4 ? upper.z : lower.z);
+    all.emplace_back(i & 1 ? upper.x : lower.x, i & 2 ? upper.y : lower.y,
+                     i & 4 ? upper.z : lower.z);
   }
   return all;
 }
@@ -48,8 +49,9 @@ std::vector<glm::dvec3> corners(const glm::dvec3& lower, const glm::dvec3& upper
 /// Whether a point falls on the view, `spare` pixels inside its border.
 bool on_screen(const ClpvView& view, const glm::dvec3& point, double spare = 0) {
   const reference::ProjectedPoint p = project(view, point);
-  return p.pixel.x >= spare - 0.5 && p.pixel.y >= spare - 0.5 && p.pixel.x <= view.width - 0.5 - spare &&
-         p.pixel.y <= view.height - 0.5 - spare && (view.orthographic != 0 || p.depth > 0);
+  return p.pixel.x >= spare - 0.5 && p.pixel.y >= spare - 0.5 &&
+         p.pixel.x <= view.width - 0.5 - spare && p.pixel.y <= view.height - 0.5 - spare &&
+         (view.orthographic != 0 || p.depth > 0);
 }
 
 void expect_orthonormal(const ClpvView& view) {
@@ -73,12 +75,15 @@ TEST(View, CameraSeesItsFieldOfView) {
 TEST(View, DirectionalRsmCoversTheCascadeAndStartsBeforeTheScene) {
   for (const glm::vec3& direction : directions(60)) {
     for (const ClpvGrid& grid : cascade_grids({-9.5f, 1.6f, -1.1f}, 3, 12.5, 32)) {
-      const ClpvView view = directional_rsm_view(directional_light(direction), grid, kBounds, kSize);
+      const ClpvView view =
+          directional_rsm_view(directional_light(direction), grid, kBounds, kSize);
       expect_orthonormal(view);
       const glm::dvec3 lower = vector(grid.origin) - 0.5 * grid.cell;
       const glm::dvec3 upper = lower + (grid.n + 1.0) * grid.cell;
-      for (const glm::dvec3& corner : corners(lower, upper)) EXPECT_TRUE(on_screen(view, corner, -1e-3));
-      for (const glm::dvec3& corner : corners(glm::dvec3(kBounds.lower), glm::dvec3(kBounds.upper))) {
+      for (const glm::dvec3& corner : corners(lower, upper))
+        EXPECT_TRUE(on_screen(view, corner, -1e-3));
+      for (const glm::dvec3& corner :
+           corners(glm::dvec3(kBounds.lower), glm::dvec3(kBounds.upper))) {
         const double depth = project(view, corner).depth;
         EXPECT_GT(depth, view.near_depth);
         EXPECT_LT(depth, view.far_depth);
@@ -107,14 +112,16 @@ TEST(View, DirectionalRsmMovesByWholeTexels) {
     const ClpvView first = directional_rsm_view(light, {{0, 0, 0}, 0.25f, 32, {}}, kBounds, kSize);
     for (int step = 1; step < 40; ++step) {
       const float by = 0.25f * static_cast<float>(step);
-      const ClpvView moved = directional_rsm_view(light, {{by, -by, 2 * by}, 0.25f, 32, {}}, kBounds, kSize);
+      const ClpvView moved =
+          directional_rsm_view(light, {{by, -by, 2 * by}, 0.25f, 32, {}}, kBounds, kSize);
       ASSERT_EQ(moved.half_width, first.half_width);
       ASSERT_EQ(moved.half_height, first.half_height);
       const glm::dvec2 texels =
           project(first, vector(moved.eye)).pixel - project(first, vector(first.eye)).pixel;
       EXPECT_NEAR(texels.x, std::round(texels.x), 1e-4);
       EXPECT_NEAR(texels.y, std::round(texels.y), 1e-4);
-      EXPECT_NEAR(project(first, vector(moved.eye)).depth, 0, 1e-5);  // in the same plane across the light
+      EXPECT_NEAR(project(first, vector(moved.eye)).depth, 0,
+                  1e-5);  // in the same plane across the light
     }
   }
 }
@@ -130,7 +137,8 @@ TEST(View, SpotSeesItsConeAndNotMuchMore) {
     for (int turn = 0; turn < 12; ++turn) {
       const double angle = turn * glm::two_pi<double>() / 12;
       const glm::dvec3 side = std::cos(angle) * across + std::sin(angle) * vector(view.up);
-      EXPECT_TRUE(on_screen(view, vector(view.eye) + along + 0.999 * std::tan(double{outer}) * side));
+      EXPECT_TRUE(
+          on_screen(view, vector(view.eye) + along + 0.999 * std::tan(double{outer}) * side));
     }
   }
 }
@@ -185,7 +193,8 @@ TEST(View, BoxesOutsideTheScreenAreNotVisible) {
 
 TEST(View, RangeLimitsHowFarALightLooks) {
   ClpvLight light = point_light({1, 2, 3});
-  EXPECT_GT(point_views(light, kSize, kBounds)[0].far_depth, 20);  // the farthest corner of the scene
+  EXPECT_GT(point_views(light, kSize, kBounds)[0].far_depth,
+            20);  // the farthest corner of the scene
   light.range = 5;
   EXPECT_NEAR(point_views(light, kSize, kBounds)[0].far_depth, 5, 0.01);
 }

@@ -36,11 +36,14 @@ TEST_F(CameraByNumbers, RendersAndTraces) {
   for (std::size_t i = 0; i < named.pixels.size(); ++i)
     difference = std::max(difference, std::abs(double{named.pixels[i]} - given.pixels[i]));
   EXPECT_LT(difference, 1e-4);
-  EXPECT_THAT(given.metadata.at("camera"), HasSubstr("eye 0.278,0.273,-0.18 target 0.278,0.273,0.28"));
+  EXPECT_THAT(given.metadata.at("camera"),
+              HasSubstr("eye 0.278,0.273,-0.18 target 0.278,0.273,0.28"));
   const Image traced =
       image("pathtrace " + kCornell + kFront + " --spp 1 --width 32 --height 18 --view depth");
-  EXPECT_NEAR(traced.pixels[4 * (9 * 32 + 3)],
-              image("render " + kCornell + kFront + kSmall + " --view depth").pixels[4 * (9 * 32 + 3)], 1e-4);
+  EXPECT_NEAR(
+      traced.pixels[4 * (9 * 32 + 3)],
+      image("render " + kCornell + kFront + kSmall + " --view depth").pixels[4 * (9 * 32 + 3)],
+      1e-4);
 }
 
 TEST_F(CameraByNumbers, WorksInEveryCommandWithACamera) {
@@ -48,8 +51,8 @@ TEST_F(CameraByNumbers, WorksInEveryCommandWithACamera) {
   for (const std::string& command : std::vector<std::string>{
            "query " + kCornell + " --points p.csv" + kFront + kSmall,
            "sequence " + kCornell + " -o frames --frames 1 --fps 1" + kFront + kSmall,
-           "quality " + kCornell + " --basis sh2 --width 16 --height 9 --grid 8 --noise 0.5 --cache cache" +
-               kFront}) {
+           "quality " + kCornell +
+               " --basis sh2 --width 16 --height 9 --grid 8 --noise 0.5 --cache cache" + kFront}) {
     const Outcome outcome = run(command);
     EXPECT_EQ(outcome.exit_code, 0) << command << outcome.err;
   }

@@ -24,7 +24,8 @@ std::vector<std::uint8_t> occluded(const SceneData& scene, const ClpvGrid& grid 
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   VoxelField visibility(test_session(), buffers, visibility_masks(static_cast<int>(grid.n), 1));
   visibility.update(0, grid);
-  return test_session().read<std::uint8_t>(visibility.masks(), visibility_bytes(static_cast<int>(grid.n)));
+  return test_session().read<std::uint8_t>(visibility.masks(),
+                                           visibility_bytes(static_cast<int>(grid.n)));
 }
 
 /// Cube and point of a byte.

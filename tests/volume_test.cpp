@@ -43,18 +43,22 @@ std::vector<VolumeFormat> formats(const VolumeShape& shape) {
   return found;
 }
 
-void expect_near(const std::vector<float>& found, const std::vector<float>& wanted, double allowed) {
+void expect_near(const std::vector<float>& found, const std::vector<float>& wanted,
+                 double allowed) {
   ASSERT_EQ(found.size(), wanted.size());
   double largest = 0;
-  for (const float value : wanted) largest = std::max(largest, std::abs(static_cast<double>(value)));
+  for (const float value : wanted)
+    largest = std::max(largest, std::abs(static_cast<double>(value)));
   ASSERT_GT(largest, 0);
-  for (std::size_t i = 0; i < found.size(); ++i) ASSERT_NEAR(found[i], wanted[i], allowed * largest) << i;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    ASSERT_NEAR(found[i], wanted[i], allowed * largest) << i;
 }
 
 TEST(Volume, ReadsBackWhatWasWritten) {
   // Coefficients that fill texels of four, and such that do not; blocks of eight samples, and one
   // more.
-  for (const VolumeShape& shape : {VolumeShape{17, 4, 3}, {33, 1, 1}, {8, 9, 3}, {5, 14, 1}, {1, 25, 3}}) {
+  for (const VolumeShape& shape :
+       {VolumeShape{17, 4, 3}, {33, 1, 1}, {8, 9, 3}, {5, 14, 1}, {1, 25, 3}}) {
     const std::vector<float> values = random_values(shape);
     for (const VolumeFormat& format : formats(shape)) {
       SCOPED_TRACE(format_name(format) + " n " + std::to_string(shape.n));
@@ -79,7 +83,8 @@ TEST(Volume, MissingDeviceFeaturesAreReported) {
   Device device = test_session().device();
   const VolumeFormat image{Layout::image, Storage::float16};
   device.image3d_writes = false;
-  EXPECT_EQ(unsupported(device, image).value_or(""), "no 3-D image writes (cl_khr_3d_image_writes)");
+  EXPECT_EQ(unsupported(device, image).value_or(""),
+            "no 3-D image writes (cl_khr_3d_image_writes)");
   EXPECT_FALSE(unsupported(device, VolumeFormat{}));
   device.images = false;
   EXPECT_EQ(unsupported(device, image).value_or(""), "no images");
@@ -108,7 +113,8 @@ TEST(Accumulator, UsesTheReportedMemory) {
       Accumulator accumulator(session);
       for (Volume* sum : {&one, &other, &one}) {
         accumulator.add(*sum, [](const Volume&, const Volume&) {});
-        EXPECT_EQ(session.device_bytes() - before, format.layout == Layout::image ? one.bytes() : 0);
+        EXPECT_EQ(session.device_bytes() - before,
+                  format.layout == Layout::image ? one.bytes() : 0);
       }
     }
     EXPECT_EQ(session.device_bytes(), before) << "given back";
@@ -116,7 +122,9 @@ TEST(Accumulator, UsesTheReportedMemory) {
     for (Volume* sum : {&one, &other}) {
       accumulator.add_to_cells(*sum, [](const Volume&) {});
       EXPECT_EQ(session.device_bytes() - before,
-                format.layout == Layout::image ? stored_bytes(Accumulator::cells_format(format), kShape) : 0);
+                format.layout == Layout::image
+                    ? stored_bytes(Accumulator::cells_format(format), kShape)
+                    : 0);
     }
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Propagation of sh2 by vectors of eight cells. A cell takes from each of its 6 neighbours the flux through the
-// neighbour's far face and 4 side faces, and reprojects it as a lobe. Kaplanyan and Dachsbacher, 'Cascaded Light
-// Propagation Volumes for Real-Time Indirect Illumination' (I3D 2010).
+// Propagation of sh2 by vectors of eight cells. A cell takes from each of its 6 neighbours the flux
+// through the neighbour's far face and 4 side faces, and reprojects it as a lobe. Kaplanyan and
+// Dachsbacher, 'Cascaded Light Propagation Volumes for Real-Time Indirect Illumination' (I3D 2010).
 #include "bench/native/propagate_avx2.hpp"
 
 #include <algorithm>
@@ -53,17 +53,20 @@ Plane make_plane(std::size_t count) {
 
 constexpr int kN = 4, kChannels = 3, kLinks = 30, kCorners = 8;
 
-/// Layout of a plane of n^3 cells with a border of zeros: kLane cells before and after a row, one row, one slice.
+/// Layout of a plane of n^3 cells with a border of zeros: kLane cells before and after a row, one
+/// row, one slice.
 struct PlaneLayout {
   int n;
   std::ptrdiff_t row() const { return n + 2 * kLane; }
   std::ptrdiff_t slice() const { return row() * (n + 2); }
   std::ptrdiff_t plane() const { return slice() * (n + 2); }
-  std::ptrdiff_t at(int x, int y, int z) const { return (z + 1) * slice() + (y + 1) * row() + x + kLane; }
+  std::ptrdiff_t at(int x, int y, int z) const {
+    return (z + 1) * slice() + (y + 1) * row() + x + kLane;
+  }
 };
 
-/// Constants of a step in sh2. From a neighbour along axis a, far0 c0 + far1 c_a travels through its far face, and
-/// side0 c0 + side1 c_a +- across c_b through its side faces of normal +-b.
+/// Constants of a step in sh2. From a neighbour along axis a, far0 c0 + far1 c_a travels through
+/// its far face, and side0 c0 + side1 c_a +- across c_b through its side faces of normal +-b.
 struct Constants {
   int coefficient[3];  // index of the coefficient along x, y, z
   struct {
@@ -101,7 +104,8 @@ Constants constants_of(const FaceTransport& faces) {
 const FaceTransport& faces_of(const Basis& basis, const Transport& transport) {
   const auto* faces = std::get_if<FaceTransport>(&transport.scheme);
   if (faces == nullptr || basis.size() != kN)
-    throw Error(ExitCode::run_time, "native: unsupported basis or transport; allowed: sh2, face transport");
+    throw Error(ExitCode::run_time,
+                "native: unsupported basis or transport; allowed: sh2, face transport");
   return *faces;
 }
 
@@ -110,15 +114,17 @@ const FaceTransport& faces_of(const Basis& basis, const Transport& transport) {
 struct PropagateAvx2::Impl {
   PlaneLayout layout;
   Constants constants;
-  int link[6][6];             // index of FaceTransport::faces by neighbour and face: 2 axis + (normal < 0)
-  int side[kLinks];           // the face that a link passes
-  float blocker[kLinks][kN];  // basis functions against the light, over the number of corners of a face
+  int link[6][6];    // index of FaceTransport::faces by neighbour and face: 2 axis + (normal < 0)
+  int side[kLinks];  // the face that a link passes
+  float blocker[kLinks]
+               [kN];  // basis functions against the light, over the number of corners of a face
   bool occlusion = false;
   std::size_t planes = static_cast<std::size_t>(layout.plane()) * kChannels * kN;
   std::ptrdiff_t cells = std::ptrdiff_t{layout.n} * layout.n * layout.n;
   Plane injected = make_plane(planes), first = make_plane(planes), second = make_plane(planes),
         sum = make_plane(planes);
-  Plane corners = make_plane(static_cast<std::size_t>(layout.plane()) * kN);  // (n + 1)^3 samples, as cells
+  // (n + 1)^3 samples, as cells.
+  Plane corners = make_plane(static_cast<std::size_t>(layout.plane()) * kN);
   Plane transmittance = make_plane(static_cast<std::size_t>(cells) * kLinks);
 
   Impl(const Basis& basis, const FaceTransport& faces, int grid)
@@ -163,8 +169,8 @@ CLPV_AVX2 inline void receive(const Impl& p, const int k, const float* from, std
 
 /// A step of one row and channel: `to` = light propagated from `from`, and `sum` = `so_far` + `to`.
 template <bool kOcclusion>
-CLPV_AVX2 void step_row(const Impl& p, const float* from, float* to, const float* so_far, float* sum, int y,
-                        int z) {
+CLPV_AVX2 void step_row(const Impl& p, const float* from, float* to, const float* so_far,
+                        float* sum, int y, int z) {
   const PlaneLayout& s = p.layout;
   for (int x = 0; x < s.n; x += kLane) {
     const std::ptrdiff_t at = s.at(x, y, z);
@@ -189,7 +195,8 @@ void step(const Impl& p, const float* from, float* to, const float* so_far) {
 #pragma omp parallel for schedule(static)
   for (int z = 0; z < n; ++z) {
     for (int y = 0; y < n; ++y) {
-      for (int channel = 0; channel < kChannels; ++channel) {  // innermost: channels share transmittances
+      for (int channel = 0; channel < kChannels;
+           ++channel) {  // innermost: channels share transmittances
         const std::ptrdiff_t at = channel * kN * p.layout.plane();
         step_row<kOcclusion>(p, from + at, to + at, so_far + at, p.sum.get() + at, y, z);
       }
@@ -197,16 +204,16 @@ void step(const Impl& p, const float* from, float* to, const float* so_far) {
   }
 }
 
-/// Transmittance 1 - B of every link into the cells of a row; B is the mean of the geometry volume over the face's four
-/// corners, evaluated in the blocker's direction and clamped to [0, 1].
+/// Transmittance 1 - B of every link into the cells of a row; B is the mean of the geometry volume
+/// over the face's four corners, evaluated in the blocker's direction and clamped to [0, 1].
 CLPV_AVX2 void transmittance_row(const Impl& p, int y, int z) {
   const PlaneLayout& s = p.layout;
   for (int x = 0; x < s.n; x += kLane) {
     Lanes sums[6][kN] = {};  // over the four corners of faces +x -x +y -y +z -z
     for (int i = 0; i < kN; ++i) {
       for (int c = 0; c < kCorners; ++c) {
-        const Lanes corner =
-            load(p.corners.get() + i * s.plane() + s.at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)));
+        const Lanes corner = load(p.corners.get() + i * s.plane() +
+                                  s.at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)));
         for (int a = 0; a < 3; ++a) sums[2 * a + (c >> a & 1 ? 0 : 1)][i] += corner;
       }
     }
@@ -225,7 +232,8 @@ constexpr double kFluxFlops = 6 * (3 + 3 + 4 * 2 + 5), kSumFlops = 24, kLobeFlop
                  kAddFlops = 4;
 constexpr double kTransmittanceFlops = kN * 6 * 3 + kLinks * (1 + 3 * 2 + 3);
 
-/// Calls visit(plane, y, z) for each row of `side` rows and planes, in the order of Volume's host values.
+/// Calls visit(plane, y, z) for each row of `side` rows and planes, in the order of Volume's host
+/// values.
 template <typename Visit>
 void for_each_row(int planes, int side, Visit visit) {
   for (int plane = 0; plane < planes; ++plane)
@@ -233,7 +241,8 @@ void for_each_row(int planes, int side, Visit visit) {
       for (int y = 0; y < side; ++y) visit(plane, y, z);
 }
 
-void copy(const std::vector<double>& values, const PlaneLayout& layout, float* to, int planes, int side) {
+void copy(const std::vector<double>& values, const PlaneLayout& layout, float* to, int planes,
+          int side) {
   auto from = values.begin();
   for_each_row(planes, side, [&](int plane, int y, int z) {
     std::copy_n(from, side, to + plane * layout.plane() + layout.at(0, y, z));
@@ -303,8 +312,8 @@ double PropagateAvx2::flops(int iterations) const {
 
 double PropagateAvx2::bytes(int iterations) const {
   const double step = kChannels * 4.0 * kN,
-               transmittances =
-                   impl_->occlusion ? kLinks * iterations : 0;  // written once, read after the first step
+               // Written once, read after the first step.
+      transmittances = impl_->occlusion ? kLinks * iterations : 0;
   return sizeof(float) * static_cast<double>(impl_->cells) *
          (iterations * step - kChannels * kN + transmittances + (impl_->occlusion ? kN : 0));
 }

@@ -81,17 +81,19 @@ void main() {
 })";
 
 [[noreturn]] void fail(const char* call) {
-  throw Error(ExitCode::run_time, "OpenGL ES: {} failed (EGL 0x{:x}, GL 0x{:x})", call, eglGetError(),
-              glGetError());
+  throw Error(ExitCode::run_time, "OpenGL ES: {} failed (EGL 0x{:x}, GL 0x{:x})", call,
+              eglGetError(), glGetError());
 }
 
 EGLDisplay open_display() {
-  const auto get =
-      reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
-  const EGLDisplay display =
-      get == nullptr ? EGL_NO_DISPLAY : get(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  const auto get = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
+      eglGetProcAddress("eglGetPlatformDisplayEXT"));
+  const EGLDisplay display = get == nullptr
+                                 ? EGL_NO_DISPLAY
+                                 : get(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   EGLint major = 0, minor = 0;
-  if (display == EGL_NO_DISPLAY || eglInitialize(display, &major, &minor) == EGL_FALSE) return EGL_NO_DISPLAY;
+  if (display == EGL_NO_DISPLAY || eglInitialize(display, &major, &minor) == EGL_FALSE)
+    return EGL_NO_DISPLAY;
   return display;
 }
 
@@ -112,7 +114,8 @@ GLuint make_texture(const Texture& texture) {
   glGenTextures(1, &name);
   glBindTexture(GL_TEXTURE_2D, name);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, static_cast<GLsizei>(texture.width),
-               static_cast<GLsizei>(texture.height), 0, GL_RGBA, GL_UNSIGNED_BYTE, texture.rgba.data());
+               static_cast<GLsizei>(texture.height), 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               texture.rgba.data());
   glGenerateMipmap(GL_TEXTURE_2D);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, static_cast<GLint>(wrapped(texture.wrap_u)));
@@ -163,7 +166,8 @@ GLuint make_target(GLenum format, const ClpvView& view) {
   return name;
 }
 
-/// Makes a framebuffer for a view: a depth attachment and, apart from shadow maps, depth, normal and colour.
+/// Makes a framebuffer for a view: a depth attachment and, apart from shadow maps, depth, normal
+/// and colour.
 GLuint make_framebuffer(Pass pass, const ClpvView& view) {
   GLuint frame = 0;
   glGenFramebuffers(1, &frame);
@@ -172,12 +176,15 @@ GLuint make_framebuffer(Pass pass, const ClpvView& view) {
                          make_target(GL_DEPTH_COMPONENT32F, view), 0);
   if (pass != Pass::rasterize_shadow) {
     const std::array<GLenum, 3> formats = {GL_R32F, GL_RGBA32F, GL_RGBA32F};
-    const std::array<GLenum, 3> buffers = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+    const std::array<GLenum, 3> buffers = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1,
+                                           GL_COLOR_ATTACHMENT2};
     for (std::size_t i = 0; i < formats.size(); ++i)
-      glFramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, make_target(formats[i], view), 0);
+      glFramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D,
+                             make_target(formats[i], view), 0);
     glDrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
   }
-  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) fail("creating a framebuffer");
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    fail("creating a framebuffer");
   return frame;
 }
 
@@ -199,7 +206,8 @@ struct GlRasterizer::Impl {
   GLuint program = 0;
   std::vector<Batch> batches;
 
-  Impl(const SceneData& scene, Pass drawn_pass, std::vector<ClpvView> drawn_views, const ClpvLight& lit_by)
+  Impl(const SceneData& scene, Pass drawn_pass, std::vector<ClpvView> drawn_views,
+       const ClpvLight& lit_by)
       : pass(drawn_pass), views(std::move(drawn_views)), light(lit_by) {
     open();
     upload(scene);
@@ -224,7 +232,8 @@ struct GlRasterizer::Impl {
 
   void open() {
     eglBindAPI(EGL_OPENGL_ES_API);
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 2, EGL_NONE};
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 2,
+                                 EGL_NONE};
     context = eglCreateContext(display(), EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
     if (context == EGL_NO_CONTEXT) fail("creating a context of OpenGL ES 3.2");
     make_current();
@@ -269,7 +278,8 @@ struct GlRasterizer::Impl {
       const ClpvMaterial& material = scene.materials[number];
       const std::size_t texture =
           material.texture == CLPV_NO_TEXTURE ? textures.size() - 1 : std::size_t{material.texture};
-      batches.push_back({material, textures[texture], static_cast<GLsizei>(corners.size()), indices.size()});
+      batches.push_back(
+          {material, textures[texture], static_cast<GLsizei>(corners.size()), indices.size()});
       indices.insert(indices.end(), corners.begin(), corners.end());
     }
   }
@@ -299,9 +309,10 @@ struct GlRasterizer::Impl {
       glUniform4fv(colour, 1, batch.material.base_colour);
       glUniform1f(cutoff, masked ? batch.material.alpha_cutoff : 0.0f);
       glBindTexture(GL_TEXTURE_2D, batch.texture);
-      glDrawElements(GL_TRIANGLES, batch.count, GL_UNSIGNED_INT,
-                     reinterpret_cast<const void*>(
-                         batch.first * sizeof(GLuint)));  // NOLINT: OpenGL passes offsets as pointers
+      glDrawElements(
+          GL_TRIANGLES, batch.count, GL_UNSIGNED_INT,
+          reinterpret_cast<const void*>(
+              batch.first * sizeof(GLuint)));  // NOLINT: OpenGL passes offsets as pointers
     }
   }
 
@@ -325,8 +336,8 @@ struct GlRasterizer::Impl {
     std::vector<float> depth(pixels), read(4 * pixels);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffers[v]);
     glReadBuffer(GL_COLOR_ATTACHMENT0);
-    glReadPixels(0, 0, static_cast<GLsizei>(view.width), static_cast<GLsizei>(view.height), GL_RGBA, GL_FLOAT,
-                 read.data());
+    glReadPixels(0, 0, static_cast<GLsizei>(view.width), static_cast<GLsizei>(view.height), GL_RGBA,
+                 GL_FLOAT, read.data());
     for (std::size_t i = 0; i < pixels; ++i) depth[i] = read[4 * i];
     return depth;
   }
@@ -367,7 +378,8 @@ namespace clpv::bench {
 struct GlRasterizer::Impl {};
 
 std::string gl_missing() {
-  return "built without EGL and OpenGL ES (CLPV_BENCH_GL; Debian: libegl-dev libgles-dev libgl1-mesa-dri)";
+  return "built without EGL and OpenGL ES (CLPV_BENCH_GL; Debian: libegl-dev libgles-dev "
+         "libgl1-mesa-dri)";
 }
 
 GlRasterizer::GlRasterizer(const SceneData&, Pass, std::vector<ClpvView>, const ClpvLight&) {

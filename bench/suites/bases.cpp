@@ -32,9 +32,10 @@ Suite bases_suite() {
           "every basis with both lobes: injection, propagation, sweep, gathering",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
-            return groups_by_basis(
-                options.bases.empty() ? basis_names() : options.bases,
-                [bench, options](const std::string& basis) { return cases_of(bench, options, basis); });
+            return groups_by_basis(options.bases.empty() ? basis_names() : options.bases,
+                                   [bench, options](const std::string& basis) {
+                                     return cases_of(bench, options, basis);
+                                   });
           },
           {}};
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Suite `factors`: from `--preset paper` to its scheme in buffers of floats with constant lobes, one
-// option at a time: each option alone, and one after another. Rows are passes of whole frames with
-// indirect shadows, and their sum as in the paper's Table 1, which leaves out the geometry volume.
+// Suite `factors`: from `--preset paper` to its scheme in buffers of floats with constant lobes,
+// one option at a time: each option alone, and one after another. Rows are passes of whole frames
+// with indirect shadows, and their sum as in the paper's Table 1, which leaves out the geometry
+// volume.
 #include <fmt/format.h>
 
 #include <array>
@@ -86,7 +87,8 @@ std::vector<Row> rows_of(Shared& shared, TimedFrame& timed, const Row& frame) {
   std::vector<Row> rows = pass_rows(passes, frame);
   for (Row& row : rows) {
     row.difference = difference;
-    row.volume_bytes = stored_bytes(options.format(), {options.grid, timed.frame.basis().size(), 3});
+    row.volume_bytes =
+        stored_bytes(options.format(), {options.grid, timed.frame.basis().size(), 3});
   }
   return rows;
 }
@@ -128,12 +130,13 @@ std::vector<Case> cases(const std::shared_ptr<Shared>& shared, const std::string
 }
 
 std::string factors_table(const std::vector<Row>& rows) {
-  std::string text = fmt::format("{:<8} {:>10} {:>8} {:>9} {:>7}  {}\n", "basis", "median ms", "mad", "MiB",
-                                 "NRMSE", "changed from --preset paper");
+  std::string text = fmt::format("{:<8} {:>10} {:>8} {:>9} {:>7}  {}\n", "basis", "median ms",
+                                 "mad", "MiB", "NRMSE", "changed from --preset paper");
   for (const Row& row : rows) {
     if (row.stage != kSum) continue;
-    text += fmt::format("{:<8} {:>10.2f} {:>8.2f} {:>9.2f} {:>7.4f}  {}\n", row.problem->options.basis,
-                        row.times.median, row.times.mad, static_cast<double>(row.volume_bytes) / (1 << 20),
+    text += fmt::format("{:<8} {:>10.2f} {:>8.2f} {:>9.2f} {:>7.4f}  {}\n",
+                        row.problem->options.basis, row.times.median, row.times.mad,
+                        static_cast<double>(row.volume_bytes) / (1 << 20),
                         row.difference.value_or(0), row.changed.empty() ? "-" : row.changed);
   }
   return text +
@@ -144,16 +147,17 @@ std::string factors_table(const std::vector<Row>& rows) {
 }  // namespace
 
 Suite factors_suite() {
-  return {
-      "factors",
-      "from --preset paper to buffers and constant lobes, one option at a time: time, bytes, difference",
-      [](Session& session, const SuiteOptions& options) {
-        const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
-        return groups_by_basis(bases, [&session, options](const std::string& basis) {
-          return cases(std::make_shared<Shared>(Shared{session, options}), basis);
-        });
-      },
-      factors_table};
+  return {"factors",
+          "from --preset paper to buffers and constant lobes, one option at a time: time, bytes, "
+          "difference",
+          [](Session& session, const SuiteOptions& options) {
+            const auto bases =
+                options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
+            return groups_by_basis(bases, [&session, options](const std::string& basis) {
+              return cases(std::make_shared<Shared>(Shared{session, options}), basis);
+            });
+          },
+          factors_table};
 }
 
 }  // namespace clpv::bench

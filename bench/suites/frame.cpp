@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Suite `frame`: whole frames along a camera path, and the time of each stage, with and without cached results.
+// Suite `frame`: whole frames along a camera path, and the time of each stage, with and without
+// cached results.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,7 +17,8 @@ namespace bench {
 
 /// Results that each repetition recomputes besides the camera's view.
 enum class Recompute {
-  light,       ///< all lighting, as if the lights had changed; blockers and visibility only of moved cascades
+  light,  ///< all lighting, as if the lights had changed; blockers and visibility only of moved
+          ///< cascades
   everything,  ///< no cached results
   nothing,     ///< no lighting: the camera turns in a static scene with static lights
 };
@@ -32,7 +34,8 @@ namespace clpv::bench {
 namespace {
 
 constexpr int kPathFrames = 24;
-constexpr double kTurn = 0.6, kSway = 0.5;  // amplitudes of turn [rad] and sway [m], one period per path
+// Amplitudes of turn [rad] and sway [m], one period per path.
+constexpr double kTurn = 0.6, kSway = 0.5;
 
 /// The camera of a frame on a closed path of kPathFrames: it turns and sways left and right.
 SceneCamera path_camera(SceneCamera camera, int frame, double sway) {
@@ -56,14 +59,15 @@ struct FrameSequence {
   bool warm = false;
   FrameTimes times;
 
-  FrameSequence(Session& session, std::shared_ptr<const SceneData> rendered, const std::string& camera,
-                const RenderOptions& options, Recompute recomputed)
+  FrameSequence(Session& session, std::shared_ptr<const SceneData> rendered,
+                const std::string& camera, const RenderOptions& options, Recompute recomputed)
       : scene(std::move(rendered)),
         start(scene->camera(camera)),
         recompute(recomputed),
         frame(session, *scene, options) {}
 
-  /// The camera of frame `number`. With Recompute::nothing it does not sway, so that cascades do not move.
+  /// The camera of frame `number`. With Recompute::nothing it does not sway, so that cascades do
+  /// not move.
   SceneCamera camera(int number) const {
     return path_camera(start, number, recompute == Recompute::nothing ? 0 : kSway);
   }
@@ -85,7 +89,8 @@ struct FrameSequence {
   }
 };
 
-/// Renders the last frame again after another one, without cached results. Its pixels must be identical.
+/// Renders the last frame again after another one, without cached results. Its pixels must be
+/// identical.
 Deviation compare_uncached(FrameSequence& sequence, Session& session) {
   const std::vector<float> timed = sequence.frame.read(Show::full);
   sequence.frame.render(sequence.camera(sequence.next + kPathFrames / 2));
@@ -104,8 +109,8 @@ Deviation compare_uncached(FrameSequence& sequence, Session& session) {
 
 Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions& render,
               Recompute recompute) {
-  const auto sequence =
-      std::make_shared<FrameSequence>(session, scene_of(options), options.camera, render, recompute);
+  const auto sequence = std::make_shared<FrameSequence>(session, scene_of(options), options.camera,
+                                                        render, recompute);
   Job job;
   job.own_stages = true;
   job.reset = [sequence] { sequence->invalidate(); };
@@ -116,8 +121,8 @@ Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions
   return job;
 }
 
-Case frame_case(Session& session, const SuiteOptions& options, PresetName preset, const std::string& basis,
-                Recompute recompute) {
+Case frame_case(Session& session, const SuiteOptions& options, PresetName preset,
+                const std::string& basis, Recompute recompute) {
   RenderOptions render;
   apply_preset(render, preset);
   render.basis = basis;
@@ -138,11 +143,11 @@ Case frame_case(Session& session, const SuiteOptions& options, PresetName preset
 }
 
 std::string frame_table(const std::vector<Row>& rows) {
-  std::string text =
-      fmt::format("{:<67} {:>10} {:>9} {:>9} {:>9} {:>7}\n", "row", "median ms", "p95", "max", "mad", "fps");
+  std::string text = fmt::format("{:<67} {:>10} {:>9} {:>9} {:>9} {:>7}\n", "row", "median ms",
+                                 "p95", "max", "mad", "fps");
   for (const Row& row : rows) {
-    text += fmt::format("{:<67} {:>10.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>7}{}\n", row.name, row.times.median,
-                        row.times.p95, row.times.max, row.times.mad,
+    text += fmt::format("{:<67} {:>10.2f} {:>9.2f} {:>9.2f} {:>9.2f} {:>7}{}\n", row.name,
+                        row.times.median, row.times.p95, row.times.max, row.times.mad,
                         row.stage == "frame" ? fmt::format("{:.1f}", 1e3 / row.times.median) : "",
                         row.status == Status::wrong ? "  WRONG" : "");
   }
@@ -153,9 +158,11 @@ std::string frame_table(const std::vector<Row>& rows) {
 
 Suite frame_suite() {
   return {
-      "frame", "whole frames along a camera path: frames per second, median, 95th percentile, stage times",
+      "frame",
+      "whole frames along a camera path: frames per second, median, 95th percentile, stage times",
       [](Session& session, const SuiteOptions& options) {
-        const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
+        const auto bases =
+            options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
         std::vector<Group> groups;
         for (const PresetName preset : {PresetName::best, PresetName::paper}) {
           groups.push_back({[&session, options, bases, preset] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Suite `layouts`: every stage with every layout and storage of its volumes, and its numbers of reads and writes, by
-// which the paper explains its times.
+// Suite `layouts`: every stage with every layout and storage of its volumes, and its numbers of
+// reads and writes, by which the paper explains its times.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,9 +48,9 @@ const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
 
 std::string layouts_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
-  const std::string text =
-      fmt::format("{:<{}} {:>10} {:>9} {:>12} {:>12} {:>8} {:>16} {:>16} {:>9}\n", "row", width, "median ms",
-                  "mad", "reads/cell", "writes/cell", "GB/s", "of ceiling", "vs image/half", "error");
+  const std::string text = fmt::format(
+      "{:<{}} {:>10} {:>9} {:>12} {:>12} {:>8} {:>16} {:>16} {:>9}\n", "row", width, "median ms",
+      "mad", "reads/cell", "writes/cell", "GB/s", "of ceiling", "vs image/half", "error");
   const auto columns = [&](const Row& row) {
     const Row* paper = paper_row(rows, row);
     return fmt::format(
@@ -61,37 +61,41 @@ std::string layouts_table(const std::vector<Row>& rows) {
         row.max_rel_error.value_or(0));
   };
   return text + row_lines(rows, width, columns) +
-         "\nreads, writes: numbers, or texels of 4 numbers, per cell and step over all channels, after the "
-         "first step; "
-         "sweep: per cell in total; gather: per pixel in one cascade.\nvs image/half: speed-up over "
-         "half-float images.\n";
+         "\nreads, writes: numbers, or texels of 4 numbers, per cell and step over all channels, "
+         "after the first step; sweep: per cell in total; gather: per pixel in one cascade.\nvs "
+         "image/half: speed-up over half-float images.\n";
 }
 
 }  // namespace
 
 Suite layouts_suite() {
-  return {
-      "layouts",
-      "each stage with each layout and storage of volumes: reads, writes, speed-up over half-float images",
-      [](Session& session, const SuiteOptions& options) {
-        const auto bench = make_bench(session, options, options.settings);
-        const auto bases = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
-        std::vector<Group> groups;
-        const auto add = [&](const StageSetup& setup, const std::vector<std::string>& names) {
-          std::ranges::move(
-              groups_by_basis(names,
-                              [=](const std::string& basis) { return cases(*bench, options, basis, setup); }),
-              std::back_inserter(groups));
-        };
-        for (const StageSetup& setup : {StageSetup{kInject, false}, {kPropagate, false}, {kPropagate, true}})
-          add(setup, bases);
-        // The sweep stores light in its own layout and reads the basis once: by default, one basis is enough.
-        for (const bool occlusion : {false, true})
-          add({kSweep, occlusion}, options.bases.empty() ? std::vector{RenderOptions{}.basis} : bases);
-        add({kGather, false}, bases);
-        return groups;
-      },
-      layouts_table};
+  return {"layouts",
+          "each stage with each layout and storage of volumes: reads, writes, speed-up over "
+          "half-float images",
+          [](Session& session, const SuiteOptions& options) {
+            const auto bench = make_bench(session, options, options.settings);
+            const auto bases =
+                options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
+            std::vector<Group> groups;
+            const auto add = [&](const StageSetup& setup, const std::vector<std::string>& names) {
+              std::ranges::move(groups_by_basis(names,
+                                                [=](const std::string& basis) {
+                                                  return cases(*bench, options, basis, setup);
+                                                }),
+                                std::back_inserter(groups));
+            };
+            for (const StageSetup& setup :
+                 {StageSetup{kInject, false}, {kPropagate, false}, {kPropagate, true}})
+              add(setup, bases);
+            // The sweep stores light in its own layout and reads the basis once: by default, one
+            // basis is enough.
+            for (const bool occlusion : {false, true})
+              add({kSweep, occlusion},
+                  options.bases.empty() ? std::vector{RenderOptions{}.basis} : bases);
+            add({kGather, false}, bases);
+            return groups;
+          },
+          layouts_table};
 }
 
 }  // namespace clpv::bench

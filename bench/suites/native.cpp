@@ -25,7 +25,9 @@ struct NativePropagation {
   Transport transport;
   PropagateAvx2 propagation;
   explicit NativePropagation(const RenderOptions& o)
-      : basis(make_basis(o)), transport(make_transport(o, *basis)), propagation(*basis, transport, o.grid) {}
+      : basis(make_basis(o)),
+        transport(make_transport(o, *basis)),
+        propagation(*basis, transport, o.grid) {}
 };
 
 Job native_job(Bench& bench, const Problem& problem) {
@@ -33,7 +35,8 @@ Job native_job(Bench& bench, const Problem& problem) {
   const RenderOptions& o = problem.options;
   const auto p = std::make_shared<NativePropagation>(o);
   const verify::SharedVolume light = bench.inputs().light(*p->basis, 0),
-                             geometry = o.blocked() ? bench.inputs().geometry(*p->basis, 0) : nullptr;
+                             geometry =
+                                 o.blocked() ? bench.inputs().geometry(*p->basis, 0) : nullptr;
   p->propagation.set(light->values, geometry ? &geometry->values : nullptr);
   Job job;
   job.own_stages = true;  // runs on the host: wall time
@@ -41,8 +44,8 @@ Job native_job(Bench& bench, const Problem& problem) {
   job.compare = [p, o, light, geometry] {
     return verify::compare_volumes(
         p->propagation.accumulated(),
-        reference::propagate(p->transport, *light, geometry.get(), o.iterations).accumulated.values, o.grid,
-        verify::tolerance("propagate", o.format().storage));
+        reference::propagate(p->transport, *light, geometry.get(), o.iterations).accumulated.values,
+        o.grid, verify::tolerance("propagate", o.format().storage));
   };
   job.cost.flops = p->propagation.flops(o.iterations);
   job.cost.bytes = p->propagation.bytes(o.iterations);
@@ -57,13 +60,14 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options) {
     Problem problem = basis_problem(options, kBasis);
     problem.options.blockers = blockers_if(occlusion);
     cases.push_back(stage_case(bench, "native", kPropagate, problem));
-    cases.push_back(
-        {make_row("native", kNative, problem), [&bench, problem] { return native_job(bench, problem); }});
+    cases.push_back({make_row("native", kNative, problem),
+                     [&bench, problem] { return native_job(bench, problem); }});
   }
   return cases;
 }
 
-/// The row of the hand-written code with the same occlusion; null if there is none, or for such a row itself.
+/// The row of the hand-written code with the same occlusion; null if there is none, or for such a
+/// row itself.
 const Row* native_row(const std::vector<Row>& rows, const Row& row) {
   const auto native = std::ranges::find_if(rows, [&](const Row& other) {
     return other.stage == kNative && other.status == Status::ok &&
@@ -74,24 +78,25 @@ const Row* native_row(const std::vector<Row>& rows, const Row& row) {
 
 std::string native_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
-  const std::string head = fmt::format(
-      "{:<{}} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>15} {:>9} {:>10} {:>9}\n", "row", width, "median ms",
-      "min ms", "mad", "wall ms", "GFLOP/s", "GB/s", "of ceiling", "/ C++", "/ C++ wall", "error");
+  const std::string head =
+      fmt::format("{:<{}} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>15} {:>9} {:>10} {:>9}\n", "row",
+                  width, "median ms", "min ms", "mad", "wall ms", "GFLOP/s", "GB/s", "of ceiling",
+                  "/ C++", "/ C++ wall", "error");
   const auto columns = [&](const Row& row) {
     const Row* native = native_row(rows, row);
     const auto ratio = [&](double opencl_ms, double native_ms) {
       return native != nullptr ? fmt::format("{:.2f}", opencl_ms / native_ms) : "-";
     };
-    return fmt::format("{:>10.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.1f} {:>8.1f} {:>15} {:>9} {:>10} {:>9.1e}",
-                       row.times.median, row.times.min, row.times.mad, row.wall_ms, row.gflops(), row.gbps(),
-                       fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
-                       ratio(row.times.median, native != nullptr ? native->times.median : 0),
-                       ratio(row.wall_ms, native != nullptr ? native->wall_ms : 0),
-                       row.max_rel_error.value_or(0));
+    return fmt::format(
+        "{:>10.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.1f} {:>8.1f} {:>15} {:>9} {:>10} {:>9.1e}",
+        row.times.median, row.times.min, row.times.mad, row.wall_ms, row.gflops(), row.gbps(),
+        fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
+        ratio(row.times.median, native != nullptr ? native->times.median : 0),
+        ratio(row.wall_ms, native != nullptr ? native->wall_ms : 0), row.max_rel_error.value_or(0));
   };
   return head + row_lines(rows, width, columns) +
-         "\n/ C++: median over that of the hand-written code (native), which the host's clock times. "
-         "/ C++ wall: the host's clock for both.\n";
+         "\n/ C++: median over that of the hand-written code (native), which the host's clock "
+         "times. / C++ wall: the host's clock for both.\n";
 }
 
 }  // namespace

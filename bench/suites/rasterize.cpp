@@ -41,13 +41,14 @@ double wall_ms_of(const std::vector<Row>& rows, const std::string& name) {
 std::string rasterize_table(const std::vector<Row>& rows) {
   constexpr std::size_t kWidth = 28;
   const std::string text =
-      fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>12} {:>9} {:>14}\n", "row", kWidth, "wall ms", "mad",
-                  "M triangles/s", "ns/triangle", "ns/pixel", "opengl / clpv");
+      fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>12} {:>9} {:>14}\n", "row", kWidth, "wall ms",
+                  "mad", "M triangles/s", "ns/triangle", "ns/pixel", "opengl / clpv");
   return text + row_lines(rows, kWidth, [&](const Row& row) {
            const double opengl_ms = wall_ms_of(rows, row.name + kOpenGl);
            return fmt::format("{:>10.2f} {:>9.2f} {:>14.1f} {:>12.1f} {:>9.1f} {:>14}", row.wall_ms,
                               row.times.mad, row.cost.triangles / row.wall_ms * 1e-3,
-                              row.wall_ms * 1e6 / row.cost.triangles, row.wall_ms * 1e6 / row.cost.pixels,
+                              row.wall_ms * 1e6 / row.cost.triangles,
+                              row.wall_ms * 1e6 / row.cost.pixels,
                               opengl_ms > 0 ? fmt::format("{:.2f}", opengl_ms / row.wall_ms) : "-");
          });
 }
@@ -55,12 +56,13 @@ std::string rasterize_table(const std::vector<Row>& rows) {
 }  // namespace
 
 Suite rasterize_suite() {
-  return {"rasterize",
-          "G-buffer, shadow maps and RSMs: time per triangle and per pixel, compared with OpenGL ES",
-          [](Session& session, const SuiteOptions& options) {
-            return std::vector<Group>{{[&session, options] { return cases(session, options); }}};
-          },
-          rasterize_table};
+  return {
+      "rasterize",
+      "G-buffer, shadow maps and RSMs: time per triangle and per pixel, compared with OpenGL ES",
+      [](Session& session, const SuiteOptions& options) {
+        return std::vector<Group>{{[&session, options] { return cases(session, options); }}};
+      },
+      rasterize_table};
 }
 
 }  // namespace clpv::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Suite `regression`: every kind of kernel once, on small fixed inputs, with rows for the build time of its programs. For
-// authors of OpenCL implementations.
+// Suite `regression`: every kind of kernel once, on small fixed inputs, with rows for the build
+// time of its programs. For authors of OpenCL implementations.
 #include "basis/basis.hpp"
 #include "bench/suites.hpp"
 #include "support/named_enum.hpp"
@@ -76,20 +76,22 @@ std::vector<Case> layouts_of(const std::shared_ptr<Bench>& bench, const SuiteOpt
 }  // namespace
 
 Suite regression_suite() {
-  return {"regression",
-          "every kind of kernel on small fixed inputs, and build times; for authors of OpenCL drivers",
-          [](Session& session, const SuiteOptions& suite_options) {
-            const SuiteOptions options = small(suite_options);
-            const auto bench = make_bench(session, options, options.settings);
-            const auto names =
-                options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2", "sh3"} : options.bases;
-            std::vector<Group> groups = groups_by_basis(names, [bench, options](const std::string& basis) {
+  return {
+      "regression",
+      "every kind of kernel on small fixed inputs, and build times; for authors of OpenCL drivers",
+      [](Session& session, const SuiteOptions& suite_options) {
+        const SuiteOptions options = small(suite_options);
+        const auto bench = make_bench(session, options, options.settings);
+        const auto names = options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2", "sh3"}
+                                                 : options.bases;
+        std::vector<Group> groups =
+            groups_by_basis(names, [bench, options](const std::string& basis) {
               return stages_of(bench, options, basis);
             });
-            groups.push_back({[bench, options] { return layouts_of(bench, options); }});
-            return groups;
-          },
-          {}};
+        groups.push_back({[bench, options] { return layouts_of(bench, options); }});
+        return groups;
+      },
+      {}};
 }
 
 }  // namespace clpv::bench

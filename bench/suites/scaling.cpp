@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Suite `scaling`: growth of times with grid, coefficients, steps, RSM, triangles and compute units.
+// Suite `scaling`: growth of times with grid, coefficients, steps, RSM, triangles and compute
+// units.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -36,7 +37,9 @@ std::vector<Case> grids(Session& session, const SuiteOptions& options, const std
     problem.options.grid = grid;
     for (const StageJob& job : {kPropagate, kInject}) {
       Case added = scaling_case(bench, job, problem, "grid", grid);
-      added.make = [bench, make = std::move(added.make)] { return make(); };  // keeps the bench alive
+      added.make = [bench, make = std::move(added.make)] {
+        return make();
+      };  // keeps the bench alive
       cases.push_back(std::move(added));
     }
   }
@@ -48,7 +51,8 @@ std::vector<Case> coefficients(const std::shared_ptr<Bench>& bench, const SuiteO
   for (const std::string basis : {"sh2", "srbf6", "srbf8v2", "sh3", "srbf14", "sh4", "sh5"}) {
     const Problem problem = basis_problem(options, basis);
     const int n = make_basis(basis)->size();
-    for (const StageJob& job : kStageJobs) cases.push_back(scaling_case(bench, job, problem, "n", n));
+    for (const StageJob& job : kStageJobs)
+      cases.push_back(scaling_case(bench, job, problem, "n", n));
   }
   return cases;
 }
@@ -99,15 +103,17 @@ std::vector<Case> triangles(Session& session, const SuiteOptions& options) {
   for (const int count : {1000, 4000, 16000, 64000, 256000}) {
     const auto hall = std::make_shared<const SceneData>(make_hall(count));
     for (const Pass pass : {Pass::rasterize_rsm, Pass::rasterize_camera}) {
-      cases.push_back(
-          raster_case(session, hall, pass, settings, "triangles", static_cast<int>(hall->triangles.size())));
+      cases.push_back(raster_case(session, hall, pass, settings, "triangles",
+                                  static_cast<int>(hall->triangles.size())));
     }
   }
   return cases;
 }
 
-/// Propagation on a sub-device of `units` compute units, in a separate session and therefore with wall times.
-Case units_case(Session& session, const SuiteOptions& options, const std::string& basis, unsigned units) {
+/// Propagation on a sub-device of `units` compute units, in a separate session and therefore with
+/// wall times.
+Case units_case(Session& session, const SuiteOptions& options, const std::string& basis,
+                unsigned units) {
   Case result;
   const Problem problem = basis_problem(options, basis);
   result.row = make_row("scaling", name_of(Stage::propagate), problem);
@@ -133,7 +139,8 @@ Case units_case(Session& session, const SuiteOptions& options, const std::string
   return result;
 }
 
-/// Least-squares slope of log y over log x: y grows as x to this power. Needs two different x; all values positive.
+/// Least-squares slope of log y over log x: y grows as x to this power. Needs two different x; all
+/// values positive.
 double growth_exponent(const std::vector<double>& x, const std::vector<double>& y) {
   double mean_x = 0, mean_y = 0, covariance = 0, variance = 0;
   const auto count = static_cast<double>(x.size());
@@ -157,10 +164,11 @@ std::string ns_per_cell_step(const Row& row) {
 }
 
 std::string scaling_table(const std::vector<Row>& rows) {
-  std::map<std::pair<std::string, std::string>, std::pair<std::vector<double>, std::vector<double>>> series;
+  std::map<std::pair<std::string, std::string>, std::pair<std::vector<double>, std::vector<double>>>
+      series;
   constexpr std::size_t kWidth = 44;
-  std::string text = fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>14}\n", "row", kWidth, "median ms", "mad",
-                                 "ns/cell/step", "of ceiling");
+  std::string text = fmt::format("{:<{}} {:>10} {:>9} {:>14} {:>14}\n", "row", kWidth, "median ms",
+                                 "mad", "ns/cell/step", "of ceiling");
   text += row_lines(rows, kWidth, [](const Row& row) {
     return fmt::format("{:>10.3f} {:>9.3f} {:>14} {:>14}", row.times.median, row.times.mad,
                        ns_per_cell_step(row),
@@ -169,7 +177,8 @@ std::string scaling_table(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     if (row.status == Status::unsupported) continue;
     const bool one_basis = row.axis != "n" && row.problem;
-    auto& [x, y] = series[{row.axis, row.stage + (one_basis ? "/" + row.problem->options.basis : "")}];
+    auto& [x, y] =
+        series[{row.axis, row.stage + (one_basis ? "/" + row.problem->options.basis : "")}];
     x.push_back(row.value), y.push_back(row.times.median);
   }
   text += "\nexponents of growth: time ~ value^exponent\n";
@@ -184,19 +193,21 @@ std::string scaling_table(const std::vector<Row>& rows) {
 }  // namespace
 
 Suite scaling_suite() {
-  return {"scaling", "growth with grid, coefficients, steps, RSM, triangles and compute units: exponents",
+  return {"scaling",
+          "growth with grid, coefficients, steps, RSM, triangles and compute units: exponents",
           [](Session& session, const SuiteOptions& options) {
             const std::string basis = options.bases.empty() ? "sh2" : options.bases.front();
             const auto bench = make_bench(session, options, options.settings);
-            return std::vector<Group>{{[&session, options, basis] { return grids(session, options, basis); }},
-                                      {[bench, options] { return coefficients(bench, options); }},
-                                      {[bench, options, basis] { return steps(bench, options, basis); }},
-                                      {[&session, options, basis] { return rsms(session, options, basis); }},
-                                      {[&session, options] { return triangles(session, options); }},
-                                      {[&session, options, basis] {
-                                        return std::vector<Case>{units_case(session, options, basis, 1),
-                                                                 units_case(session, options, basis, 2)};
-                                      }}};
+            return std::vector<Group>{
+                {[&session, options, basis] { return grids(session, options, basis); }},
+                {[bench, options] { return coefficients(bench, options); }},
+                {[bench, options, basis] { return steps(bench, options, basis); }},
+                {[&session, options, basis] { return rsms(session, options, basis); }},
+                {[&session, options] { return triangles(session, options); }},
+                {[&session, options, basis] {
+                  return std::vector<Case>{units_case(session, options, basis, 1),
+                                           units_case(session, options, basis, 2)};
+                }}};
           },
           scaling_table};
 }

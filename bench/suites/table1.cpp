@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Suite `table1`: Table 1 of the paper (Silvestre and Pereira, 'Cascaded Light Propagation Volumes using Spherical Radial
-// Basis Functions') with published and measured times. Rows are injection and propagation of each cascade and the light
-// buffer, with and without indirect shadows; columns are bases. Injection of the geometry volume has separate rows:
-// published times of injection differ by at most 0.033 ms with indirect shadows, and thus do not include it.
+// Suite `table1`: Table 1 of the paper (Silvestre and Pereira, 'Cascaded Light Propagation Volumes
+// using Spherical Radial Basis Functions') with published and measured times. Rows are injection
+// and propagation of each cascade and the light buffer, with and without indirect shadows; columns
+// are bases. Injection of the geometry volume has separate rows: published times of injection
+// differ by at most 0.033 ms with indirect shadows, and thus do not include it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +26,8 @@ std::vector<std::string> bases_of(const SuiteOptions& options) {
   return bases;
 }
 
-/// Settings of a part of the table: the paper's, or the paper's scheme with float buffers and constant lobes.
+/// Settings of a part of the table: the paper's, or the paper's scheme with float buffers and
+/// constant lobes.
 enum class Settings { published, constant_lobes };
 
 const char* title(Settings settings) {
@@ -72,7 +74,8 @@ class TimeTable {
       const RenderOptions& o = row.problem->options;
       for (const TablePass& pass : kTablePasses) {
         if (row.stage != name_of(pass.pass)) continue;
-        const TimeKey key{settings_of(o), o.blocked(), pass.pass, row.problem->cascade.value_or(-1), o.basis};
+        const TimeKey key{settings_of(o), o.blocked(), pass.pass, row.problem->cascade.value_or(-1),
+                          o.basis};
         const bool timed = row.status == Status::ok;
         times_[key] = {row.published_ms, timed ? std::optional(row.times.median) : std::nullopt,
                        std::string(name_of(row.status))};
@@ -101,7 +104,8 @@ class TimeTable {
   int cascades_ = 0;
 };
 
-std::string cell(const std::optional<double>& value, int digits, const std::string& otherwise = "-") {
+std::string cell(const std::optional<double>& value, int digits,
+                 const std::string& otherwise = "-") {
   constexpr int kWidth = 9;
   return value ? fmt::format("{:>{}.{}f}", *value, kWidth, digits)
                : fmt::format("{:>{}.8}", otherwise, kWidth);
@@ -114,7 +118,8 @@ std::optional<double> ratio(const std::optional<double>& a, const std::optional<
 /// A line of the table: times of each basis, then their ratios to the first basis.
 std::string line_text(const std::string& title, const std::vector<Times>& columns) {
   std::string text = fmt::format("{:<24}", title);
-  for (const Times& times : columns) text += cell(times.published, 3) + cell(times.measured, 2, times.status);
+  for (const Times& times : columns)
+    text += cell(times.published, 3) + cell(times.measured, 2, times.status);
   for (std::size_t b = 1; b < columns.size(); ++b) {
     text += cell(ratio(columns[b].published, columns[0].published), 2) +
             cell(ratio(columns[b].measured, columns[0].measured), 2);
@@ -125,8 +130,10 @@ std::string line_text(const std::string& title, const std::vector<Times>& column
 std::string head(const std::vector<std::string>& bases) {
   std::string first = fmt::format("{:<24}", "[ms]"), second = fmt::format("{:<24}", "");
   for (const std::string& basis : bases) first += fmt::format("{:>18}", basis);
-  for (std::size_t b = 1; b < bases.size(); ++b) first += fmt::format("{:>18}", bases[b] + "/" + bases[0]);
-  for (std::size_t b = 1; b < 2 * bases.size(); ++b) second += fmt::format("{:>9}{:>9}", "paper", "clpv");
+  for (std::size_t b = 1; b < bases.size(); ++b)
+    first += fmt::format("{:>18}", bases[b] + "/" + bases[0]);
+  for (std::size_t b = 1; b < 2 * bases.size(); ++b)
+    second += fmt::format("{:>9}{:>9}", "paper", "clpv");
   return first + "\n" + second + "\n";
 }
 
@@ -148,13 +155,14 @@ std::string section_text(const TimeTable& table, Settings settings, bool shadows
     for (int cascade = 0; cascade < (pass.per_cascade ? table.cascades() : 1); ++cascade) {
       std::vector<Times> columns;
       for (std::size_t b = 0; b < table.bases().size(); ++b) {
-        columns.push_back(
-            table.at({settings, shadows, pass.pass, pass.per_cascade ? cascade : -1, table.bases()[b]}));
+        columns.push_back(table.at(
+            {settings, shadows, pass.pass, pass.per_cascade ? cascade : -1, table.bases()[b]}));
         add(with_geometry[b], columns.back());
         if (pass.pass != Pass::inject_geometry) add(sums[b], columns.back());
       }
       const bool named = pass.per_cascade && cascade < static_cast<int>(std::size(kSizes));
-      text += line_text(named ? fmt::format("{}, {}", pass.title, kSizes[cascade]) : pass.title, columns);
+      text += line_text(named ? fmt::format("{}, {}", pass.title, kSizes[cascade]) : pass.title,
+                        columns);
     }
   }
   text += line_text("sum", sums);
@@ -178,7 +186,8 @@ Problem problem_of(const SuiteOptions& options, Settings settings, const std::st
   return problem;
 }
 
-std::vector<Case> cases(Bench& bench, const SuiteOptions& options, Settings settings, bool shadows) {
+std::vector<Case> cases(Bench& bench, const SuiteOptions& options, Settings settings,
+                        bool shadows) {
   std::vector<Case> cases;
   for (const StageJob& job : {kInjectLight, kInjectGeometry, kPropagate, kGather}) {
     if (job.pass == Pass::inject_geometry && !shadows) continue;
@@ -200,21 +209,22 @@ std::vector<Case> cases(Bench& bench, const SuiteOptions& options, Settings sett
 }  // namespace
 
 Suite table1_suite() {
-  return {
-      "table1",
-      "the paper's Table 1, published and measured: injection and propagation of each cascade, light "
-      "buffer, ratios to sh2",
-      [](Session& session, const SuiteOptions& options) {
-        std::vector<Group> groups;
-        for (const Settings settings : {Settings::published, Settings::constant_lobes}) {
-          const auto bench = make_bench(session, options, problem_of(options, settings, kFirstBasis).options);
-          for (const bool shadows : {true, false})
-            groups.push_back(
-                {[bench, options, settings, shadows] { return cases(*bench, options, settings, shadows); }});
-        }
-        return groups;
-      },
-      table1_table, "scenes/atrium.json"};
+  return {"table1",
+          "the paper's Table 1, published and measured: injection and propagation of each cascade, "
+          "light buffer, ratios to sh2",
+          [](Session& session, const SuiteOptions& options) {
+            std::vector<Group> groups;
+            for (const Settings settings : {Settings::published, Settings::constant_lobes}) {
+              const auto bench =
+                  make_bench(session, options, problem_of(options, settings, kFirstBasis).options);
+              for (const bool shadows : {true, false})
+                groups.push_back({[bench, options, settings, shadows] {
+                  return cases(*bench, options, settings, shadows);
+                }});
+            }
+            return groups;
+          },
+          table1_table, "scenes/atrium.json"};
 }
 
 }  // namespace clpv::bench

@@ -15,7 +15,8 @@ namespace clpv {
 std::vector<DeviceDescription> all_devices() {
   std::vector<DeviceDescription> all;
   for (const Device& device : list_devices().devices)
-    all.push_back({device.index, device.name, device.platform, device.driver, device.type, device.missing});
+    all.push_back(
+        {device.index, device.name, device.platform, device.driver, device.type, device.missing});
   return all;
 }
 
@@ -23,7 +24,8 @@ void save_image(const std::filesystem::path& path, const Image& image, float exp
   const std::string extension = path.extension().string();
   if (extension == ".exr") return write_exr(path, image);
   if (extension == ".png") return write_png(path, display_image(image, exposure, ToneMap::aces));
-  throw Error(ExitCode::usage, "{}: found extension '{}', allowed: .exr, .png", path.string(), extension);
+  throw Error(ExitCode::usage, "{}: found extension '{}', allowed: .exr, .png", path.string(),
+              extension);
 }
 
 Options& Options::set(std::string_view name, std::string_view value) {

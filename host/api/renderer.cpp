@@ -25,11 +25,13 @@ struct Points {
   std::vector<glm::vec4> positions, vectors;
 };
 
-/// Checks points and a vector of any length for each. Messages name the function and the vectors: "irradiance", "normal".
-Points checked_points(const char* function, const char* vector, Vectors positions, Vectors vectors) {
+/// Checks points and a vector of any length for each. Messages name the function and the vectors:
+/// "irradiance", "normal".
+Points checked_points(const char* function, const char* vector, Vectors positions,
+                      Vectors vectors) {
   if (positions.size() != vectors.size()) {
-    throw Error(ExitCode::usage, "{}: found {} positions and {} {}s, allowed: equal numbers", function,
-                positions.size(), vectors.size(), vector);
+    throw Error(ExitCode::usage, "{}: found {} positions and {} {}s, allowed: equal numbers",
+                function, positions.size(), vectors.size(), vector);
   }
   Points points;
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -38,8 +40,8 @@ Points checked_points(const char* function, const char* vector, Vectors position
     const double length = glm::length(along);
     if (!(length > 0 && std::isfinite(length) && std::isfinite(p[0] + p[1] + p[2]))) {
       throw Error(ExitCode::usage,
-                  "{}: point {}: found position ({}, {}, {}) and {} ({}, {}, {}), allowed: finite numbers, a "
-                  "nonzero {}",
+                  "{}: point {}: found position ({}, {}, {}) and {} ({}, {}, {}), allowed: finite "
+                  "numbers, a nonzero {}",
                   function, i, p[0], p[1], p[2], vector, v[0], v[1], v[2], vector);
     }
     points.positions.emplace_back(p[0], p[1], p[2], 0);
@@ -59,8 +61,8 @@ void check(const GBuffer& surfaces) {
   const std::size_t pixels = std::size_t(surfaces.width) * std::size_t(surfaces.height);
   const auto require = [&](const char* what, std::size_t found, const char* more) {
     if (found == pixels) return;
-    throw Error(ExitCode::usage, "light: found {} {} for {} x {} pixels, allowed: one for each{}", found,
-                what, surfaces.width, surfaces.height, more);
+    throw Error(ExitCode::usage, "light: found {} {} for {} x {} pixels, allowed: one for each{}",
+                found, what, surfaces.width, surfaces.height, more);
   };
   require("normals", surfaces.normals.size(), "");
   if (surfaces.positions.empty()) {
@@ -80,11 +82,12 @@ std::vector<glm::vec4> four_wide(Vectors vectors) {
 }
 
 GivenPixels uploaded(Session& session, const GBuffer& surfaces) {
-  GivenPixels pixels{.width = static_cast<unsigned>(surfaces.width),
-                     .height = static_cast<unsigned>(surfaces.height),
-                     .points = !surfaces.positions.empty(),
-                     .places = {},
-                     .normals = session.upload(four_wide(surfaces.normals), "normals of a G-buffer")};
+  GivenPixels pixels{
+      .width = static_cast<unsigned>(surfaces.width),
+      .height = static_cast<unsigned>(surfaces.height),
+      .points = !surfaces.positions.empty(),
+      .places = {},
+      .normals = session.upload(four_wide(surfaces.normals), "normals of a G-buffer")};
   if (pixels.points) {
     pixels.places = session.upload(four_wide(surfaces.positions), "positions of a G-buffer");
   } else {
@@ -109,10 +112,12 @@ void check_sides(const char* what, int width, int height) {
 }
 
 SceneCamera camera_at(const Vec3& eye) {
-  return scene_camera(Camera{.eye = eye, .target = {eye[0], eye[1], eye[2] - 1}}, rejected_in("light"));
+  return scene_camera(Camera{.eye = eye, .target = {eye[0], eye[1], eye[2] - 1}},
+                      rejected_in("light"));
 }
 
-std::vector<std::array<float, 3>> Renderer::State::light(const SceneCamera& camera, const GBuffer& surfaces) {
+std::vector<std::array<float, 3>> Renderer::State::light(const SceneCamera& camera,
+                                                         const GBuffer& surfaces) {
   frame->draw_ahead(false);
   const Buffer& irradiance = light(camera, uploaded(session, surfaces));
   return without_alpha(session.read<glm::vec4>(irradiance, surfaces.normals.size()));
@@ -153,8 +158,8 @@ Image Renderer::show(View view) {
   return state_->image(view);
 }
 
-std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const CameraChoice& camera,
-                                                  double seconds) {
+std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces,
+                                                  const CameraChoice& camera, double seconds) {
   check(surfaces);
   const std::lock_guard lock(state_->mutex);
   const std::shared_lock scene_stays(state_->file.contents().mutex);
@@ -162,7 +167,8 @@ std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const
   return state_->light(state_->posed.camera(camera), surfaces);
 }
 
-std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const Vec3& eye, double seconds) {
+std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const Vec3& eye,
+                                                  double seconds) {
   check(surfaces);
   if (surfaces.positions.empty())
     throw Error(ExitCode::usage,
@@ -181,20 +187,24 @@ std::array<double, 3> Renderer::irradiance(const Vec3& position, const Vec3& nor
   return {e[0], e[1], e[2]};
 }
 
-std::vector<std::array<float, 3>> Renderer::irradiance(std::span<const std::array<float, 3>> positions,
-                                                       std::span<const std::array<float, 3>> normals) {
+std::vector<std::array<float, 3>> Renderer::irradiance(
+    std::span<const std::array<float, 3>> positions,
+    std::span<const std::array<float, 3>> normals) {
   Points points = checked_points("irradiance", "normal", positions, normals);
   const std::lock_guard lock(state_->mutex);
   state_->require_light("irradiance");
-  return without_alpha(state_->frame->irradiance_at(std::move(points.positions), std::move(points.vectors)));
+  return without_alpha(
+      state_->frame->irradiance_at(std::move(points.positions), std::move(points.vectors)));
 }
 
-std::vector<std::array<float, 3>> Renderer::radiance(std::span<const std::array<float, 3>> positions,
-                                                     std::span<const std::array<float, 3>> directions) {
+std::vector<std::array<float, 3>> Renderer::radiance(
+    std::span<const std::array<float, 3>> positions,
+    std::span<const std::array<float, 3>> directions) {
   Points points = checked_points("radiance", "direction", positions, directions);
   const std::lock_guard lock(state_->mutex);
   state_->require_light("radiance");
-  return without_alpha(state_->frame->radiance_at(std::move(points.positions), std::move(points.vectors)));
+  return without_alpha(
+      state_->frame->radiance_at(std::move(points.positions), std::move(points.vectors)));
 }
 
 std::vector<LightVolume> Renderer::volumes() {
@@ -219,8 +229,8 @@ std::vector<LightVolume> Renderer::volumes() {
 
 std::string Renderer::description() const {
   const RenderOptions& options = state_->options;  // which never change
-  return fmt::format("{} x {}, basis {}, transport {}, on {}", options.width, options.height, options.basis,
-                     name_of(options.transport), state_->session.device().name);
+  return fmt::format("{} x {}, basis {}, transport {}, on {}", options.width, options.height,
+                     options.basis, name_of(options.transport), state_->session.device().name);
 }
 
 Stats Renderer::stats() const {
@@ -241,7 +251,8 @@ Stats Renderer::stats() const {
   return stats;
 }
 
-Image pathtrace(const Scene& scene, View view, const CameraChoice& camera, const TraceOptions& options) {
+Image pathtrace(const Scene& scene, View view, const CameraChoice& camera,
+                const TraceOptions& options) {
   check_view(view);
   require_traceable(view);
   check_sides("width and height", options.width, options.height);
@@ -251,7 +262,8 @@ Image pathtrace(const Scene& scene, View view, const CameraChoice& camera, const
   const SceneCamera chosen = posed.camera(camera);
   const std::uint32_t samples = needs_paths(view) ? options.samples : 1;
   const pathtracer::TracedImage traced = pathtracer::trace_paths(
-      posed.scene(), posed.scene().lights_for(chosen), camera_view(chosen, options.width, options.height),
+      posed.scene(), posed.scene().lights_for(chosen),
+      camera_view(chosen, options.width, options.height),
       {options.bounces, samples, options.noise, options.seed, options.threads}, options.progress);
   Image image = pathtracer::traced_view(traced, view);
   image.metadata = {{"camera", chosen.name},

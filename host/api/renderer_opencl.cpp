@@ -23,8 +23,9 @@ struct GivenLight {
 GivenLight checked(const Session& session, const opencl::GBuffer& surfaces) {
   check_sides("light: width and height", surfaces.width, surfaces.height);
   if ((surfaces.positions == nullptr) == (surfaces.depths == nullptr)) {
-    throw Error(ExitCode::usage, "light: found {}, allowed: positions or depths",
-                surfaces.depths == nullptr ? "neither positions nor depths" : "positions and depths");
+    throw Error(
+        ExitCode::usage, "light: found {}, allowed: positions or depths",
+        surfaces.depths == nullptr ? "neither positions nor depths" : "positions and depths");
   }
   const std::size_t count = std::size_t(surfaces.width) * std::size_t(surfaces.height),
                     vectors = count * sizeof(cl_float4);
@@ -33,8 +34,9 @@ GivenLight checked(const Session& session, const opencl::GBuffer& surfaces) {
                      .points = surfaces.positions != nullptr,
                      .places = {},
                      .normals = session.given(surfaces.normals, vectors, "light: normals")};
-  pixels.places = pixels.points ? session.given(surfaces.positions, vectors, "light: positions")
-                                : session.given(surfaces.depths, count * sizeof(cl_float), "light: depths");
+  pixels.places = pixels.points
+                      ? session.given(surfaces.positions, vectors, "light: positions")
+                      : session.given(surfaces.depths, count * sizeof(cl_float), "light: depths");
   return {pixels, session.given(surfaces.irradiance, vectors, "light: irradiance")};
 }
 
@@ -46,7 +48,8 @@ Renderer::Renderer(const Scene& scene, const Options& options, const opencl::Que
 opencl::Frame Renderer::enqueue(View view, const CameraChoice& camera, double seconds) {
   check_view(view);
   if (view == View::cells)
-    throw Error(ExitCode::usage, "enqueue: found view 'cells', which the host paints, allowed: the others");
+    throw Error(ExitCode::usage,
+                "enqueue: found view 'cells', which the host paints, allowed: the others");
   State& state = *state_;
   const std::lock_guard lock(state.mutex);
   const std::shared_lock scene_stays(state.file.contents().mutex);
@@ -78,7 +81,8 @@ opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Cam
   return state_->enqueue_light(state_->posed.camera(camera), given.pixels, given.irradiance);
 }
 
-opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Vec3& eye, double seconds) {
+opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Vec3& eye,
+                                      double seconds) {
   if (surfaces.positions == nullptr)
     throw Error(ExitCode::usage,
                 "light: found no positions for an eye, allowed: positions, or depths and a camera");

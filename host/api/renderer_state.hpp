@@ -51,7 +51,8 @@ struct Renderer::State {
   }
 
   void require(bool made, const char* what) const {
-    if (!made) throw Error(ExitCode::usage, "{}: no frame was rendered; allowed: after a render", what);
+    if (!made)
+      throw Error(ExitCode::usage, "{}: no frame was rendered; allowed: after a render", what);
   }
   void require_image(const char* what) const { require(!metadata.empty(), what); }
   void require_light(const char* what) const { require(lit, what); }
@@ -79,7 +80,8 @@ struct Renderer::State {
   }
 
   /// Enqueues the light of pixels on the device (host/api/renderer_opencl.cpp).
-  opencl::Event enqueue_light(const SceneCamera& camera, const GivenPixels& pixels, const Buffer& receives);
+  opencl::Event enqueue_light(const SceneCamera& camera, const GivenPixels& pixels,
+                              const Buffer& receives);
 
   /// Renders a frame without an image. Sets the metadata of its images.
   /// `ahead`: does not wait for the device (Rasterizer::draw_ahead).
@@ -90,7 +92,8 @@ struct Renderer::State {
     const SceneCamera chosen = posed.camera(camera);
     frame->render(chosen);
     lit = true;
-    for (const OptionDescription& option : list_options(options)) metadata[option.name] = option.value;
+    for (const OptionDescription& option : list_options(options))
+      metadata[option.name] = option.value;
     metadata["centres"] = std::filesystem::path(options.centres).filename().string();
     metadata["camera"] = chosen.name;
     metadata["time"] = fmt::format("{}", seconds);

@@ -17,7 +17,8 @@ template <typename To, typename From, typename Convert>
 std::vector<To> converted(const char* list, const std::vector<From>& given, std::size_t maximum,
                           const Convert& convert) {
   if (given.size() > maximum)
-    throw Error(ExitCode::usage, "{}: found {} of them, allowed: at most {}", list, given.size(), maximum);
+    throw Error(ExitCode::usage, "{}: found {} of them, allowed: at most {}", list, given.size(),
+                maximum);
   std::vector<To> made;
   std::set<std::string> names;
   for (std::size_t i = 0; i < given.size(); ++i) {
@@ -40,7 +41,8 @@ Scene::Scene(const std::filesystem::path& path, const std::filesystem::path& mod
 std::vector<Camera> Scene::cameras() const {
   const std::shared_lock lock(contents_->mutex);
   std::vector<Camera> all;
-  for (const SceneCamera& camera : contents_->moving.scene().cameras) all.push_back(camera_of(camera));
+  for (const SceneCamera& camera : contents_->moving.scene().cameras)
+    all.push_back(camera_of(camera));
   return all;
 }
 
@@ -53,14 +55,16 @@ std::vector<Light> Scene::lights() const {
 
 void Scene::set_cameras(const std::vector<Camera>& cameras) {
   if (cameras.empty()) throw Error(ExitCode::usage, "cameras: found none, allowed: at least one");
-  std::vector<SceneCamera> made = converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
+  std::vector<SceneCamera> made =
+      converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
   const std::lock_guard lock(contents_->mutex);
   contents_->cameras = made;
   contents_->moving.set_cameras(std::move(made));
 }
 
 void Scene::set_lights(const std::vector<Light>& lights) {
-  std::vector<SceneLight> made = converted<SceneLight>("lights", lights, bounds::kLights, scene_light);
+  std::vector<SceneLight> made =
+      converted<SceneLight>("lights", lights, bounds::kLights, scene_light);
   const std::lock_guard lock(contents_->mutex);
   contents_->lights = made;
   contents_->moving.set_lights(std::move(made));
@@ -123,7 +127,8 @@ std::vector<std::string> Scene::notes() const {
 
 std::array<Vec3, 2> Scene::bounds() const {
   const std::shared_lock lock(contents_->mutex);
-  const glm::vec3 &lower = contents_->moving.scene().lower, &upper = contents_->moving.scene().upper;
+  const glm::vec3 &lower = contents_->moving.scene().lower,
+                  &upper = contents_->moving.scene().upper;
   return {{{lower.x, lower.y, lower.z}, {upper.x, upper.y, upper.z}}};
 }
 
@@ -158,7 +163,8 @@ SceneCamera PosedScene::camera(const CameraChoice& choice) const {
   SceneCamera made = scene_camera(given, rejected_in("camera"));
   made.name = text_of(given);
   if (scene().lights_for(made).empty() && !made.light.empty()) {
-    throw Error(ExitCode::usage, "camera: light: found '{}', allowed: a light of the scene", made.light);
+    throw Error(ExitCode::usage, "camera: light: found '{}', allowed: a light of the scene",
+                made.light);
   }
   return made;
 }

@@ -28,19 +28,22 @@ struct Scene::Contents {
   }
 
   Contents() = default;
-  Contents(const std::filesystem::path& path, const std::filesystem::path& model) : moving(path, model) {}
+  Contents(const std::filesystem::path& path, const std::filesystem::path& model)
+      : moving(path, model) {}
 };
 
-/// A scene that a frame or the path tracer reads, at any time: the shared one, or a copy if it is animated. Hold
-/// Contents::mutex while it is used.
+/// A scene that a frame or the path tracer reads, at any time: the shared one, or a copy if it is
+/// animated. Hold Contents::mutex while it is used.
 class PosedScene {
  public:
   explicit PosedScene(const Scene& file);
 
-  const SceneData& scene() const { return posed_ ? posed_->scene() : file_.contents().moving.scene(); }
+  const SceneData& scene() const {
+    return posed_ ? posed_->scene() : file_.contents().moving.scene();
+  }
 
-  /// Poses the scene and applies changes of the shared one. Returns true if the scene may have moved.
-  /// Throws Error(usage) for a time out of range.
+  /// Poses the scene and applies changes of the shared one. Returns true if the scene may have
+  /// moved. Throws Error(usage) for a time out of range.
   bool pose(double seconds);
 
   /// The camera chosen. One by value has its numbers as name. Throws Error(usage).

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
-// Compile a function for the processor's widest vectors, as OpenCL drivers do with kernels, and a loop whose iterations do not
-// depend on each other. Sanitizers do not support it.
+// Compile a function for the processor's widest vectors, as OpenCL drivers do with kernels, and a
+// loop whose iterations do not depend on each other. Sanitizers do not support it.
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define CLPV_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
@@ -19,8 +19,9 @@
 namespace clpv::baselines {
 namespace {
 
-// Distance of planes at which a tap's weight is 0, in pixel edges per pixel of distance. Tuned, like the power of the
-// normals' cosine, on Sponza, the atrium and the Cornell box with two paths per pixel.
+// Distance of planes at which a tap's weight is 0, in pixel edges per pixel of distance. Tuned,
+// like the power of the normals' cosine, on Sponza, the atrium and the Cornell box with two paths
+// per pixel.
 constexpr float kThickness = 2;
 
 /// A range of a row's pixels.
@@ -43,8 +44,9 @@ Row row_at(const Planes& surfaces, const Irradiance& image, std::size_t i) {
           image[3] + i};
 }
 
-/// Adds the weighted irradiance of `count` pixels `b` to the sums of pixels `a`, and the weights to the fourth. A weight is
-/// `share` cos^4 (1 - d^2), cos of the normals, d the distance from a's plane [thickness].
+/// Adds the weighted irradiance of `count` pixels `b` to the sums of pixels `a`, and the weights to
+/// the fourth. A weight is `share` cos^4 (1 - d^2), cos of the normals, d the distance from a's
+/// plane [thickness].
 CLPV_WIDE void add_tap(Row a, Row b, std::size_t count, float share, float inverse_thickness,
                        float* __restrict red, float* __restrict green, float* __restrict blue,
                        float* __restrict sum) {
@@ -52,8 +54,8 @@ CLPV_WIDE void add_tap(Row a, Row b, std::size_t count, float share, float inver
   for (std::size_t i = 0; i < count; ++i) {
     const float dot = a.nx[i] * b.nx[i] + a.ny[i] * b.ny[i] + a.nz[i] * b.nz[i];
     const float cosine = dot > 0 ? dot : 0, square = cosine * cosine;
-    const float off_plane =
-        a.nx[i] * (b.px[i] - a.px[i]) + a.ny[i] * (b.py[i] - a.py[i]) + a.nz[i] * (b.pz[i] - a.pz[i]);
+    const float off_plane = a.nx[i] * (b.px[i] - a.px[i]) + a.ny[i] * (b.py[i] - a.py[i]) +
+                            a.nz[i] * (b.pz[i] - a.pz[i]);
     const float d = off_plane * a.density[i] * inverse_thickness, rest = 1 - d * d;
     const float weight = share * b.computed[i] * square * square * (rest > 0 ? rest : 0);
     red[i] += weight * b.red[i];
@@ -72,7 +74,8 @@ void normalise(Irradiance& sums, std::size_t first, std::size_t last) {
   }
 }
 
-/// Maps a row of the full view to a thinned one: for each pixel, the thinned pixels before and after it.
+/// Maps a row of the full view to a thinned one: for each pixel, the thinned pixels before and
+/// after it.
 struct SpreadRow {
   Planes surfaces;
   Irradiance image;
@@ -85,7 +88,8 @@ struct SpreadRow {
     for (int x = 0; x < static_cast<int>(image.size()); ++x) {
       const float at = static_cast<float>(x - stride / 2) / static_cast<float>(stride),
                   before = std::floor(at);
-      const std::size_t i = row * thin.width() + std::clamp(static_cast<int>(before) + neighbour, 0, last);
+      const std::size_t i =
+          row * thin.width() + std::clamp(static_cast<int>(before) + neighbour, 0, last);
       for (std::size_t plane = 0; plane < kSurfacePlanes; ++plane)
         surfaces[plane][x] = thin.surfaces()[plane][i];
       for (int c = 0; c < 3; ++c) image[c][x] = from[c][i];
@@ -107,8 +111,8 @@ Irradiance joint_bilateral(const View& view, const Irradiance& image, std::span<
       const std::size_t a = row * width + first, b = (row + tap.y) * width + first + tap.x;
       const auto reach = static_cast<float>(std::max({1, std::abs(tap.x), std::abs(tap.y)}));
       add_tap(row_at(view.surfaces(), image, a), row_at(view.surfaces(), image, b),
-              static_cast<std::size_t>(last - first), tap.weight, 1 / (kThickness * reach), &sums[0][a],
-              &sums[1][a], &sums[2][a], &sums[3][a]);
+              static_cast<std::size_t>(last - first), tap.weight, 1 / (kThickness * reach),
+              &sums[0][a], &sums[1][a], &sums[2][a], &sums[3][a]);
     }
     normalise(sums, row * width, (row + 1) * width);
   });
@@ -134,7 +138,8 @@ std::vector<Tap> wavelet_taps(int step) {
 
 Irradiance wavelet_filter(const View& view, const Irradiance& image, int passes) {
   Irradiance result = joint_bilateral(view, image, wavelet_taps(1));
-  for (int pass = 1; pass < passes; ++pass) result = joint_bilateral(view, result, wavelet_taps(1 << pass));
+  for (int pass = 1; pass < passes; ++pass)
+    result = joint_bilateral(view, result, wavelet_taps(1 << pass));
   return result;
 }
 
@@ -143,26 +148,28 @@ Irradiance upsampled(const View& full, const View& thin, const Irradiance& image
   const auto last = static_cast<int>(thin.height()) - 1;
   Irradiance sums(width * height);
   // Bands of rows between the same two thinned rows: the first one starts above the image.
-  full.parallel_for(thin.height() + 1, 1, [&](pathtracer::PathSampler&, std::size_t band, std::size_t) {
-    SpreadRow spread(width);
-    const int above = static_cast<int>(band) - 1,
-              start = above * static_cast<int>(stride) + static_cast<int>(stride) / 2;
-    const std::size_t first = static_cast<std::size_t>(std::max(0, start)),
-                      end = std::min<std::size_t>(height,
-                                                  static_cast<std::size_t>(start + static_cast<int>(stride)));
-    for (int i = 0; i < 4 && first < end; ++i) {
-      const int row = std::clamp(above + i / 2, 0, last);
-      spread.set(thin, image, static_cast<std::size_t>(row), i % 2);
-      for (std::size_t y = first; y < end; ++y) {
-        const float below = static_cast<float>(static_cast<int>(y) - start) / static_cast<float>(stride);
-        const std::size_t at = y * width;
-        add_tap(row_at(full.surfaces(), sums, at), row_at(spread.surfaces, spread.image, 0), width,
-                i < 2 ? 1 - below : below, 1 / (kThickness * static_cast<float>(stride)), &sums[0][at],
-                &sums[1][at], &sums[2][at], &sums[3][at]);
-      }
-    }
-    for (std::size_t y = first; y < end; ++y) normalise(sums, y * width, (y + 1) * width);
-  });
+  full.parallel_for(
+      thin.height() + 1, 1, [&](pathtracer::PathSampler&, std::size_t band, std::size_t) {
+        SpreadRow spread(width);
+        const int above = static_cast<int>(band) - 1,
+                  start = above * static_cast<int>(stride) + static_cast<int>(stride) / 2;
+        const std::size_t first = static_cast<std::size_t>(std::max(0, start)),
+                          end = std::min<std::size_t>(
+                              height, static_cast<std::size_t>(start + static_cast<int>(stride)));
+        for (int i = 0; i < 4 && first < end; ++i) {
+          const int row = std::clamp(above + i / 2, 0, last);
+          spread.set(thin, image, static_cast<std::size_t>(row), i % 2);
+          for (std::size_t y = first; y < end; ++y) {
+            const float below =
+                static_cast<float>(static_cast<int>(y) - start) / static_cast<float>(stride);
+            const std::size_t at = y * width;
+            add_tap(row_at(full.surfaces(), sums, at), row_at(spread.surfaces, spread.image, 0),
+                    width, i < 2 ? 1 - below : below, 1 / (kThickness * static_cast<float>(stride)),
+                    &sums[0][at], &sums[1][at], &sums[2][at], &sums[3][at]);
+          }
+        }
+        for (std::size_t y = first; y < end; ++y) normalise(sums, y * width, (y + 1) * width);
+      });
   full.for_each_pixel([&](pathtracer::PathSampler&, std::size_t pixel) {
     const std::size_t x = pixel % width / stride, y = pixel / width / stride;
     if (!sums.computed(pixel)) sums.set(pixel, image.at(y * thin.width() + x));

@@ -12,12 +12,14 @@
 namespace clpv::baselines {
 namespace {
 
-/// Lift of a light off its surface [texels of the RSM]: the rasteriser's vertices lie on a lattice of 1/256 texel.
+/// Lift of a light off its surface [texels of the RSM]: the rasteriser's vertices lie on a lattice
+/// of 1/256 texel.
 constexpr double kLift = 1.0 / 32;
 constexpr double kGrazing = 0.05;  // smallest cosine that divides an area
 
 double brightness(const glm::vec4& flux) {
-  return double{std::max(flux.x, 0.0f)} + double{std::max(flux.y, 0.0f)} + double{std::max(flux.z, 0.0f)};
+  return double{std::max(flux.x, 0.0f)} + double{std::max(flux.y, 0.0f)} +
+         double{std::max(flux.z, 0.0f)};
 }
 
 /// Every second bit, from the lowest: a coordinate of Morton's curve.
@@ -33,14 +35,15 @@ std::uint32_t even_bits(std::uint32_t x) {
 PointLight light_of(const SurfaceImage& rsm, std::size_t texel, double share) {
   const glm::dvec3 normal(rsm.normal[texel]),
       position = reference::surface_position(rsm.view, texel, rsm.depth[texel]);
-  const auto x = static_cast<double>(texel % rsm.view.width), y = static_cast<double>(texel / rsm.view.width);
+  const auto x = static_cast<double>(texel % rsm.view.width),
+             y = static_cast<double>(texel / rsm.view.width);
   const glm::dvec3 ray = glm::normalize(reference::surface_position(rsm.view, x, y, 2) -
                                         reference::surface_position(rsm.view, x, y, 1));
   const double area = reference::footprint(rsm.view, x, y, double{rsm.depth[texel]}) /
                       std::max(kGrazing, -glm::dot(ray, normal));
   const double lift = kLift * reference::pixel_edge(rsm.view, double{rsm.depth[texel]});
-  return {glm::vec3(position + lift * normal), glm::vec3(normal), glm::vec3(rsm.colour[texel]) / float(share),
-          static_cast<float>(area / share)};
+  return {glm::vec3(position + lift * normal), glm::vec3(normal),
+          glm::vec3(rsm.colour[texel]) / float(share), static_cast<float>(area / share)};
 }
 
 }  // namespace
@@ -66,8 +69,8 @@ std::vector<PointLight> draw_lights(std::span<const SurfaceImage> rsms, unsigned
   }
   std::vector<PointLight> lights;
   for (std::size_t i = 0, at = 0; !lit.empty() && i < count; ++i) {
-    const double drawn =
-        (static_cast<double>(i) + uniform(mix(1, i))) / count * total;  // one in each interval
+    // One in each interval.
+    const double drawn = (static_cast<double>(i) + uniform(mix(1, i))) / count * total;
     while (at + 1 < lit.size() && lit[at].end <= drawn) ++at;
     lights.push_back(light_of(*lit[at].rsm, lit[at].index, count * lit[at].flux / total));
   }
@@ -82,14 +85,17 @@ Irradiance light_by(const View& view, std::span<const PointLight> lights, unsign
     const glm::vec3 origin = view.rays().offset_origin(hit);
     const auto x = static_cast<unsigned>(pixel % width), y = static_cast<unsigned>(pixel / width);
     glm::vec3 sum(0);
-    for (std::size_t i = x % interleave + interleave * (y % interleave); i < lights.size(); i += sets) {
+    for (std::size_t i = x % interleave + interleave * (y % interleave); i < lights.size();
+         i += sets) {
       const PointLight& light = lights[i];
       const glm::vec3 to_light = light.position - origin;
-      const float sent = -glm::dot(light.normal, to_light), received = glm::dot(hit.normal, to_light);
+      const float sent = -glm::dot(light.normal, to_light),
+                  received = glm::dot(hit.normal, to_light);
       if (sent <= 0 || received <= 0 || glm::dot(hit.geometric, to_light) <= 0) continue;
       const float square = glm::dot(to_light, to_light);
       if (view.rays().occluded(origin, to_light, 1)) continue;
-      sum += light.flux * (sent * received / (square * (std::numbers::pi_v<float> * square + light.area)));
+      sum += light.flux *
+             (sent * received / (square * (std::numbers::pi_v<float> * square + light.area)));
     }
     image.set(pixel, float(sets) * sum);
   });

@@ -13,20 +13,20 @@ namespace {
 
 constexpr int kLightTexels = 8, kDistanceTexels = 16;  // along each edge of an octahedral map
 constexpr int kDistancePower = 50;                     // of the cosine that weights distances
-constexpr float kHysteresis = 0.97f;                   // share of earlier frames, once as many are blended
-constexpr float kReach = 1.5f;                         // distances count up to so many diagonals of a cell
-constexpr float kBias = 0.3f * 0.75f;                  // lift of a point before visibility [cells]
-constexpr float kBehind = 0.2f;                        // minimum weight of a probe by its direction
-constexpr float kCrushed = 0.2f;                       // smaller weights fall with their third power
+constexpr float kHysteresis = 0.97f;   // share of earlier frames, once as many are blended
+constexpr float kReach = 1.5f;         // distances count up to so many diagonals of a cell
+constexpr float kBias = 0.3f * 0.75f;  // lift of a point before visibility [cells]
+constexpr float kBehind = 0.2f;        // minimum weight of a probe by its direction
+constexpr float kCrushed = 0.2f;       // smaller weights fall with their third power
 constexpr std::uint64_t kSeed = 3;
 
-/// Unit vector at a point of [-1, 1]^2 (Cigolle et al., 'A Survey of Efficient Representations for Independent Unit Vectors',
-/// JCGT 3(2), 2014).
+/// Unit vector at a point of [-1, 1]^2 (Cigolle et al., 'A Survey of Efficient Representations for
+/// Independent Unit Vectors', JCGT 3(2), 2014).
 glm::vec3 octahedral_direction(glm::vec2 at) {
   glm::vec3 v(at.x, at.y, 1 - std::abs(at.x) - std::abs(at.y));
   if (v.z < 0) {
-    v = {(1 - std::abs(at.y)) * std::copysign(1.0f, at.x), (1 - std::abs(at.x)) * std::copysign(1.0f, at.y),
-         v.z};
+    v = {(1 - std::abs(at.y)) * std::copysign(1.0f, at.x),
+         (1 - std::abs(at.x)) * std::copysign(1.0f, at.y), v.z};
   }
   return glm::normalize(v);
 }
@@ -34,10 +34,12 @@ glm::vec3 octahedral_direction(glm::vec2 at) {
 glm::vec2 octahedral_point(const glm::vec3& v) {
   const glm::vec2 at = glm::vec2(v) / (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
   if (v.z >= 0) return at;
-  return {(1 - std::abs(at.y)) * std::copysign(1.0f, at.x), (1 - std::abs(at.x)) * std::copysign(1.0f, at.y)};
+  return {(1 - std::abs(at.y)) * std::copysign(1.0f, at.x),
+          (1 - std::abs(at.x)) * std::copysign(1.0f, at.y)};
 }
 
-/// Index of a texel of a map with `edge` texels along each edge, from -1 to `edge`: coordinates beyond an edge are mirrored.
+/// Index of a texel of a map with `edge` texels along each edge, from -1 to `edge`: coordinates
+/// beyond an edge are mirrored.
 std::size_t folded(int x, int y, int edge) {
   if (x < 0 || x >= edge) x = std::clamp(x, 0, edge - 1), y = edge - 1 - y;
   if (y < 0 || y >= edge) y = std::clamp(y, 0, edge - 1), x = edge - 1 - x;
@@ -57,10 +59,11 @@ struct Texels {
 };
 
 Texels texels_about(const glm::vec3& direction, int edge) {
-  const glm::vec2 at = (octahedral_point(direction) + 1.0f) * 0.5f * float(edge) - 0.5f, low = glm::floor(at),
-                  f = at - low;
+  const glm::vec2 at = (octahedral_point(direction) + 1.0f) * 0.5f * float(edge) - 0.5f,
+                  low = glm::floor(at), f = at - low;
   const int x = static_cast<int>(low.x), y = static_cast<int>(low.y);
-  return {{folded(x, y, edge), folded(x + 1, y, edge), folded(x, y + 1, edge), folded(x + 1, y + 1, edge)},
+  return {{folded(x, y, edge), folded(x + 1, y, edge), folded(x, y + 1, edge),
+           folded(x + 1, y + 1, edge)},
           {(1 - f.x) * (1 - f.y), f.x * (1 - f.y), (1 - f.x) * f.y, f.x * f.y}};
 }
 
@@ -98,14 +101,16 @@ std::vector<float> texel_weights(const std::vector<glm::vec3>& directions, int e
   return weights;
 }
 
-/// Blends the weighted means of a probe's rays into its map. Texels that no ray counts for keep their value.
+/// Blends the weighted means of a probe's rays into its map. Texels that no ray counts for keep
+/// their value.
 template <typename T>
 void blend(T* map, const std::vector<float>& weights, const std::vector<T>& rays, float share) {
   for (std::size_t texel = 0; texel * rays.size() < weights.size(); ++texel) {
     const float* weight = &weights[texel * rays.size()];
     T mean(0);
     float sum = 0;
-    for (std::size_t ray = 0; ray < rays.size(); ++ray) mean += weight[ray] * rays[ray], sum += weight[ray];
+    for (std::size_t ray = 0; ray < rays.size(); ++ray)
+      mean += weight[ray] * rays[ray], sum += weight[ray];
     if (sum > 0) map[texel] += share * (mean - map[texel]);
   }
 }
@@ -116,12 +121,12 @@ glm::vec3 origin_of(const ClpvGrid& grid) {
 
 }  // namespace
 
-/// Finds the probe cubes that contain pixels, and numbers their corners. Probes lie at the cells' centres. Keeps results of
-/// earlier frames if the numbers do not change (static camera).
+/// Finds the probe cubes that contain pixels, and numbers their corners. Probes lie at the cells'
+/// centres. Keeps results of earlier frames if the numbers do not change (static camera).
 void Probes::find_probes() {
   corners_.resize(view_.hits().size());
-  std::vector<std::vector<char>>
-      used;  // the cubes by their first cell, by grid; threads write the same value
+  // The cubes by their first cell, by grid; threads write the same value.
+  std::vector<std::vector<char>> used;
   for (const ClpvGrid& grid : grids_) used.emplace_back(std::size_t{grid.n} * grid.n * grid.n, 0);
   view_.for_each_pixel([&](pathtracer::PathSampler&, std::size_t pixel) {
     corners_[pixel] = {};
@@ -130,10 +135,12 @@ void Probes::find_probes() {
       const glm::vec3 at = (view_.hits()[pixel]->position - origin_of(grid)) / grid.cell - 0.5f,
                       low = glm::floor(at);
       const auto last = static_cast<float>(grid.n - 1);
-      if (glm::any(glm::lessThan(low, glm::vec3(0))) || glm::any(glm::greaterThanEqual(low, glm::vec3(last))))
+      if (glm::any(glm::lessThan(low, glm::vec3(0))) ||
+          glm::any(glm::greaterThanEqual(low, glm::vec3(last))))
         continue;
       const glm::uvec3 cell(low);
-      corners_[pixel] = {cell.x + grid.n * (cell.y + grid.n * cell.z), at - low, static_cast<int>(g)};
+      corners_[pixel] = {cell.x + grid.n * (cell.y + grid.n * cell.z), at - low,
+                         static_cast<int>(g)};
       std::atomic_ref(used[g][corners_[pixel].first]).store(1, std::memory_order_relaxed);
       break;
     }
@@ -167,11 +174,13 @@ void Probes::find_probes() {
 void Probes::trace(unsigned rays) {
   const std::vector<glm::vec3> directions = ray_directions(rays, frame_);
   const std::vector<float> light_weights = texel_weights(directions, kLightTexels, 1),
-                           distance_weights = texel_weights(directions, kDistanceTexels, kDistancePower);
+                           distance_weights =
+                               texel_weights(directions, kDistanceTexels, kDistancePower);
   const float share = std::max(1 / (frame_ + 1.0f), 1 - kHysteresis);
   constexpr std::size_t kGrain = 8;
   view_.parallel_for(
-      positions_.size(), kGrain, [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
+      positions_.size(), kGrain,
+      [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
         std::vector<glm::vec3> radiance(rays);
         std::vector<glm::vec2> distance(rays);
         for (std::size_t probe = first; probe < last; ++probe) {
@@ -183,12 +192,14 @@ void Probes::trace(unsigned rays) {
             radiance[i] = hit ? hit->radiance : view_.sky_radiance(directions[i]);
           }
           blend(&radiance_[probe * kLightTexels * kLightTexels], light_weights, radiance, share);
-          blend(&distance_[probe * kDistanceTexels * kDistanceTexels], distance_weights, distance, share);
+          blend(&distance_[probe * kDistanceTexels * kDistanceTexels], distance_weights, distance,
+                share);
         }
       });
 }
 
-/// Irradiance at a pixel: mean of the eight surrounding probes, weighted trilinearly, by direction and by visibility.
+/// Irradiance at a pixel: mean of the eight surrounding probes, weighted trilinearly, by direction
+/// and by visibility.
 glm::vec3 Probes::sample(std::size_t pixel) const {
   const Corner& corner = corners_[pixel];
   if (corner.grid < 0) return glm::vec3(0);
@@ -205,8 +216,8 @@ glm::vec3 Probes::sample(std::size_t pixel) const {
         slots_[corner.grid][corner.first + offset.x + grid.n * (offset.y + grid.n * offset.z)];
     const glm::vec3 f = glm::mix(1.0f - corner.fraction, corner.fraction, glm::vec3(offset));
     const glm::vec3 to_probe = positions_[probe] - hit.position;
-    const float distance =
-        std::max(glm::length(to_probe), 1e-6f * grid.cell);  // a probe may lie on the surface
+    // A probe may lie on the surface.
+    const float distance = std::max(glm::length(to_probe), 1e-6f * grid.cell);
     const float facing = 0.5f * (glm::dot(to_probe, hit.normal) / distance + 1);
     float weight = facing * facing + kBehind;
     const glm::vec3 from_probe = lifted - positions_[probe];
@@ -224,7 +235,8 @@ glm::vec3 Probes::sample(std::size_t pixel) const {
     weight = std::max(weight, 1e-6f);  // defines the mean of pixels that no probe sees
     if (weight < kCrushed) weight *= weight * weight / (kCrushed * kCrushed);
     weight *= std::max(0.001f, f.x * f.y * f.z);
-    sum += weight * glm::vec4(along_normal.mean(&radiance_[probe * kLightTexels * kLightTexels]), 1);
+    sum +=
+        weight * glm::vec4(along_normal.mean(&radiance_[probe * kLightTexels * kLightTexels]), 1);
   }
   return std::numbers::pi_v<float> * glm::vec3(sum) / sum.w;
 }
@@ -234,7 +246,8 @@ Irradiance Probes::render(unsigned rays) {
   trace(rays);
   ++frame_;
   Irradiance image(view_.hits().size());
-  view_.for_each_pixel([&](pathtracer::PathSampler&, std::size_t pixel) { image.set(pixel, sample(pixel)); });
+  view_.for_each_pixel(
+      [&](pathtracer::PathSampler&, std::size_t pixel) { image.set(pixel, sample(pixel)); });
   return image;
 }
 

@@ -37,8 +37,8 @@ struct Cascade {
   std::unordered_map<std::uint64_t, std::size_t> index;  ///< probe by key_of() its cell
   std::vector<glm::vec4> radiance;  ///< of each probe, by direction; w 0: blocked before `from`
 
-  /// Returns the eight probes around a position given in cells from the first cell's centre. Adds those
-  /// that are missing.
+  /// Returns the eight probes around a position given in cells from the first cell's centre. Adds
+  /// those that are missing.
   Corners around(const glm::vec3& at) {
     const glm::vec3 low = glm::floor(at), f = at - low;
     Corners corners;
@@ -56,8 +56,8 @@ struct Cascade {
 /// Cascades over one grid, for the pixels that are not 0 in `pixels`.
 class RadianceCascades {
  public:
-  RadianceCascades(const View& view, const glm::vec3& origin, float spacing, const std::vector<char>& pixels,
-                   const RadianceCascadeSettings& settings);
+  RadianceCascades(const View& view, const glm::vec3& origin, float spacing,
+                   const std::vector<char>& pixels, const RadianceCascadeSettings& settings);
 
   void render(Irradiance& image);
   std::size_t bytes() const {
@@ -73,10 +73,12 @@ class RadianceCascades {
   }
   void trace(Cascade& cascade, const Cascade* next);
   Corners seen_from(const Cascade& cascade, std::size_t probe, const Cascade& next) const;
-  std::optional<glm::vec3> merged(const Cascade& next, const Corners& corners, std::size_t direction) const;
-  glm::vec3 merged_by_fix(pathtracer::PathSampler& sampler, const glm::vec3& start, const Cascade& next,
-                          const Corners& corners, std::size_t direction) const;
-  glm::vec3 sample(pathtracer::PathSampler& sampler, std::size_t pixel, const Corners& corners) const;
+  std::optional<glm::vec3> merged(const Cascade& next, const Corners& corners,
+                                  std::size_t direction) const;
+  glm::vec3 merged_by_fix(pathtracer::PathSampler& sampler, const glm::vec3& start,
+                          const Cascade& next, const Corners& corners, std::size_t direction) const;
+  glm::vec3 sample(pathtracer::PathSampler& sampler, std::size_t pixel,
+                   const Corners& corners) const;
 
   const View& view_;
   glm::vec3 origin_;
@@ -87,11 +89,13 @@ class RadianceCascades {
 };
 
 RadianceCascades::RadianceCascades(const View& view, const glm::vec3& origin, float spacing,
-                                   const std::vector<char>& pixels, const RadianceCascadeSettings& settings)
+                                   const std::vector<char>& pixels,
+                                   const RadianceCascadeSettings& settings)
     : view_(view), origin_(origin), settings_(settings) {
   float from = 0, length = settings.first * spacing;
   for (unsigned i = 0; i < settings.cascades; ++i, from += length, length *= settings.ratio) {
-    Cascade cascade{.spacing = std::ldexp(spacing, static_cast<int>(i)), .side = settings.side << i};
+    Cascade cascade{.spacing = std::ldexp(spacing, static_cast<int>(i)),
+                    .side = settings.side << i};
     const bool last = i + 1 == settings.cascades;
     cascade.from = from, cascade.to = last ? kInfinity : from + length;
     cascades_.push_back(std::move(cascade));
@@ -111,7 +115,8 @@ RadianceCascades::RadianceCascades(const View& view, const glm::vec3& origin, fl
 }
 
 /// The probes of the next cascade around a probe, with weight 0 for those that it does not see.
-Corners RadianceCascades::seen_from(const Cascade& cascade, std::size_t probe, const Cascade& next) const {
+Corners RadianceCascades::seen_from(const Cascade& cascade, std::size_t probe,
+                                    const Cascade& next) const {
   Corners corners = cascade.above[probe];
   const glm::vec3 at = position(cascade, probe);
   for (int i = 0; i < 8; ++i) {
@@ -120,8 +125,8 @@ Corners RadianceCascades::seen_from(const Cascade& cascade, std::size_t probe, c
   return corners;
 }
 
-/// Mean radiance of the finer directions in one direction, between probes, without rays that a surface
-/// blocks before their interval. Empty if none is left.
+/// Mean radiance of the finer directions in one direction, between probes, without rays that a
+/// surface blocks before their interval. Empty if none is left.
 std::optional<glm::vec3> RadianceCascades::merged(const Cascade& next, const Corners& corners,
                                                   std::size_t direction) const {
   glm::vec4 sum(0);
@@ -148,8 +153,9 @@ glm::vec3 RadianceCascades::merged_by_fix(pathtracer::PathSampler& sampler, cons
       const glm::vec3 way = position(next, corners.probe[i]) + next.from * finer[child] - start;
       const float length = glm::length(way);
       const auto hit = view_.radiance(sampler, start, way / length, (1 + kOverlap) * length);
-      sum += corners.weight[i] *
-             (hit ? hit->radiance : glm::vec3(next.radiance[corners.probe[i] * finer.size() + child]));
+      sum +=
+          corners.weight[i] *
+          (hit ? hit->radiance : glm::vec3(next.radiance[corners.probe[i] * finer.size() + child]));
     }
   }
   return sum / float(kChildren);
@@ -160,38 +166,39 @@ void RadianceCascades::trace(Cascade& cascade, const Cascade* next) {
   const std::vector<glm::vec3>& directions = directions_[&cascade - cascades_.data()];
   cascade.radiance.resize(cascade.cells.size() * directions.size());
   constexpr std::size_t kGrain = 4;
-  view_.parallel_for(cascade.cells.size(), kGrain,
-                     [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
-                       for (std::size_t probe = first; probe < last; ++probe) {
-                         const glm::vec3 at = position(cascade, probe);
-                         const Corners corners = !next                    ? Corners()
-                                                 : settings_.bilinear_fix ? cascade.above[probe]
-                                                                          : seen_from(cascade, probe, *next);
-                         for (std::size_t d = 0; d < directions.size(); ++d) {
-                           glm::vec4& radiance = cascade.radiance[probe * directions.size() + d];
-                           const float start = settings_.bilinear_fix ? cascade.from : 0;
-                           const glm::vec3 from = at + start * directions[d];
-                           if (settings_.bilinear_fix && next) {
-                             radiance = glm::vec4(merged_by_fix(sampler, from, *next, corners, d), 1);
-                             continue;
-                           }
-                           auto hit = view_.radiance(sampler, from, directions[d], cascade.to - start);
-                           if (!hit && next) {
-                             if (const auto far = merged(*next, corners, d)) {
-                               radiance = glm::vec4(*far, 1);
-                               continue;
-                             }
-                             hit = view_.radiance(sampler, from, directions[d], kInfinity);
-                           }
-                           radiance = glm::vec4(hit ? hit->radiance : view_.sky_radiance(directions[d]),
-                                                !hit || start + hit->distance >= cascade.from ? 1 : 0);
-                         }
-                       }
-                     });
+  view_.parallel_for(
+      cascade.cells.size(), kGrain,
+      [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
+        for (std::size_t probe = first; probe < last; ++probe) {
+          const glm::vec3 at = position(cascade, probe);
+          const Corners corners = !next                    ? Corners()
+                                  : settings_.bilinear_fix ? cascade.above[probe]
+                                                           : seen_from(cascade, probe, *next);
+          for (std::size_t d = 0; d < directions.size(); ++d) {
+            glm::vec4& radiance = cascade.radiance[probe * directions.size() + d];
+            const float start = settings_.bilinear_fix ? cascade.from : 0;
+            const glm::vec3 from = at + start * directions[d];
+            if (settings_.bilinear_fix && next) {
+              radiance = glm::vec4(merged_by_fix(sampler, from, *next, corners, d), 1);
+              continue;
+            }
+            auto hit = view_.radiance(sampler, from, directions[d], cascade.to - start);
+            if (!hit && next) {
+              if (const auto far = merged(*next, corners, d)) {
+                radiance = glm::vec4(*far, 1);
+                continue;
+              }
+              hit = view_.radiance(sampler, from, directions[d], kInfinity);
+            }
+            radiance = glm::vec4(hit ? hit->radiance : view_.sky_radiance(directions[d]),
+                                 !hit || start + hit->distance >= cascade.from ? 1 : 0);
+          }
+        }
+      });
 }
 
-/// Irradiance at a pixel: cosine-weighted mean over the directions of the probes around it that see it,
-/// or of rays from the pixel where none does.
+/// Irradiance at a pixel: cosine-weighted mean over the directions of the probes around it that see
+/// it, or of rays from the pixel where none does.
 glm::vec3 RadianceCascades::sample(pathtracer::PathSampler& sampler, std::size_t pixel,
                                    const Corners& corners) const {
   const Cascade& cascade = cascades_[0];
@@ -201,7 +208,8 @@ glm::vec3 RadianceCascades::sample(pathtracer::PathSampler& sampler, std::size_t
   float total = 0;
   for (int i = 0; i < 8; ++i) {
     const glm::vec3 to = position(cascade, corners.probe[i]) - from;
-    if (glm::dot(to, hit.normal) <= -kVisibleFrom * cascade.spacing || view_.rays().occluded(from, to, 1))
+    if (glm::dot(to, hit.normal) <= -kVisibleFrom * cascade.spacing ||
+        view_.rays().occluded(from, to, 1))
       used.weight[i] = 0;
     total += used.weight[i];
   }
@@ -253,11 +261,12 @@ std::vector<glm::vec3> healpix_directions(unsigned side) {
       for (int x = 0; x < n; ++x) {
         const int ring = static_cast<int>(kRing[face]) * n - x - y - 1;
         const bool cap = ring < n || ring > 3 * n;
-        const int length = ring < n       ? ring
-                           : ring > 3 * n ? 4 * n - ring
-                                          : n;  // a quarter of the ring's pixels
+        // A quarter of the ring's pixels.
+        const int length = ring < n ? ring : ring > 3 * n ? 4 * n - ring : n;
         const double from_pole = double(length) * length / (3.0 * n * n);
-        const double z = !cap ? (2.0 * n - ring) * 2 / (3.0 * n) : ring < n ? 1 - from_pole : from_pole - 1;
+        const double z = !cap       ? (2.0 * n - ring) * 2 / (3.0 * n)
+                         : ring < n ? 1 - from_pole
+                                    : from_pole - 1;
         const int shift = cap ? 0 : (ring - n) & 1;
         const double place = (static_cast<int>(kMeridian[face]) * length + x - y + 1 + shift) / 2;
         const double angle = (place - (shift + 1) * 0.5) * std::numbers::pi / (2 * length),
@@ -270,7 +279,8 @@ std::vector<glm::vec3> healpix_directions(unsigned side) {
 }
 
 std::size_t healpix_child(std::size_t direction, unsigned side, unsigned which) {
-  const std::size_t face = direction / (side * side), x = direction % side, y = direction / side % side;
+  const std::size_t face = direction / (side * side), x = direction % side,
+                    y = direction / side % side;
   return face * kChildren * side * side + (2 * y + (which >> 1)) * 2 * side + 2 * x + (which & 1);
 }
 

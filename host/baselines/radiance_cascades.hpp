@@ -46,8 +46,8 @@ struct CascadedImage {
   std::size_t bytes = 0, probes = 0;  ///< of radiance; of cascade 0
 };
 
-/// Irradiance by radiance cascades over the finest grid that encloses each pixel; 0 beyond all grids.
-/// Only probes that pixels need are traced.
+/// Irradiance by radiance cascades over the finest grid that encloses each pixel; 0 beyond all
+/// grids. Only probes that pixels need are traced.
 CascadedImage radiance_cascades(const View& view, const std::vector<ClpvGrid>& grids,
                                 const RadianceCascadeSettings& settings);
 

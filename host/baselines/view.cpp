@@ -19,7 +19,8 @@ View::Shared::Shared(const SceneData& of, const SceneCamera& camera, int bounces
   options.bounces = bounces;
 }
 
-View::View(const SceneData& scene, const SceneCamera& camera, int width, int height, int bounces, int threads)
+View::View(const SceneData& scene, const SceneCamera& camera, int width, int height, int bounces,
+           int threads)
     : shared_(std::make_shared<Shared>(scene, camera, bounces, threads)),
       width_(static_cast<unsigned>(width)),
       height_(static_cast<unsigned>(height)),
@@ -28,26 +29,28 @@ View::View(const SceneData& scene, const SceneCamera& camera, int width, int hei
   pathtracer::TracedImage& image = shared_->image;
   image.view = camera_view(camera, width, height);
   image.depth.assign(hits_.size(), 0);
-  for (auto* layer : {&image.normal, &image.albedo, &image.emissive, &image.direct, &image.irradiance})
+  for (auto* layer :
+       {&image.normal, &image.albedo, &image.emissive, &image.direct, &image.irradiance})
     layer->assign(hits_.size(), glm::vec3(0));
-  parallel_for(hits_.size(), width_,
-               [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
-                 for (std::size_t i = first; i < last; ++i) {
-                   const auto x = static_cast<unsigned>(i % width_), y = static_cast<unsigned>(i / width_);
-                   hits_[i] = sampler.primary_hit(image.view, x, y);
-                   if (!hits_[i]) continue;
-                   const pathtracer::Hit& hit = *hits_[i];
-                   image.depth[i] = hit.distance;
-                   image.normal[i] = hit.normal;
-                   image.albedo[i] = rays().materials().albedo(hit.point, footprint(image.view, x, y, hit));
-                   for (int c = 0; c < 3; ++c) {
-                     surfaces_[kPosition + c][i] = hit.position[c];
-                     surfaces_[kNormal + c][i] = hit.normal[c];
-                   }
-                   surfaces_[kDensity][i] =
-                       static_cast<float>(1 / reference::pixel_edge(image.view, double{hit.distance}));
-                 }
-               });
+  parallel_for(
+      hits_.size(), width_,
+      [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+          const auto x = static_cast<unsigned>(i % width_), y = static_cast<unsigned>(i / width_);
+          hits_[i] = sampler.primary_hit(image.view, x, y);
+          if (!hits_[i]) continue;
+          const pathtracer::Hit& hit = *hits_[i];
+          image.depth[i] = hit.distance;
+          image.normal[i] = hit.normal;
+          image.albedo[i] = rays().materials().albedo(hit.point, footprint(image.view, x, y, hit));
+          for (int c = 0; c < 3; ++c) {
+            surfaces_[kPosition + c][i] = hit.position[c];
+            surfaces_[kNormal + c][i] = hit.normal[c];
+          }
+          surfaces_[kDensity][i] =
+              static_cast<float>(1 / reference::pixel_edge(image.view, double{hit.distance}));
+        }
+      });
 }
 
 View::View(const View& full, unsigned stride)
@@ -58,8 +61,10 @@ View::View(const View& full, unsigned stride)
       hits_(std::size_t{width_} * height_),
       surfaces_(kSurfacePlanes, hits_.size()) {
   for (std::size_t i = 0; i < hits_.size(); ++i) {
-    const unsigned x = std::min(static_cast<unsigned>(i % width_) * stride + stride / 2, full.width_ - 1),
-                   y = std::min(static_cast<unsigned>(i / width_) * stride + stride / 2, full.height_ - 1);
+    const unsigned x = std::min(static_cast<unsigned>(i % width_) * stride + stride / 2,
+                                full.width_ - 1),
+                   y = std::min(static_cast<unsigned>(i / width_) * stride + stride / 2,
+                                full.height_ - 1);
     const std::size_t from = std::size_t{y} * full.width_ + x;
     hits_[i] = full.hits_[from];
     for (std::size_t plane = 0; plane < kSurfacePlanes; ++plane)
@@ -72,8 +77,9 @@ View View::thinned(unsigned stride) const {
   return {*this, stride};
 }
 
-std::optional<View::Arriving> View::radiance(pathtracer::PathSampler& sampler, const glm::vec3& origin,
-                                             const glm::vec3& direction, float furthest) const {
+std::optional<View::Arriving> View::radiance(pathtracer::PathSampler& sampler,
+                                             const glm::vec3& origin, const glm::vec3& direction,
+                                             float furthest) const {
   const auto hit = rays().intersect(origin, direction, 0, furthest, pathtracer::Faces::all);
   if (!hit) return std::nullopt;
   glm::dvec3 sum = sampler.direct({*hit}) * std::numbers::inv_pi;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Data that all baselines share: a scene for ray queries, its lights, and the surfaces that a camera sees.
+// Data that all baselines share: a scene for ray queries, its lights, and the surfaces that a
+// camera sees.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +19,14 @@
 
 namespace clpv::baselines {
 
-/// Numbers of pixels, one plane for each coordinate. Planes start in different sets of the cache, so that reading the same pixel
-/// of all of them is fast.
+/// Numbers of pixels, one plane for each coordinate. Planes start in different sets of the cache,
+/// so that reading the same pixel of all of them is fast.
 class Planes {
  public:
   Planes(std::size_t count, std::size_t pixels)
-      : pixels_(pixels), stride_((pixels / kPage + 1) * kPage + kShift), numbers_(count * stride_, 0) {}
+      : pixels_(pixels),
+        stride_((pixels / kPage + 1) * kPage + kShift),
+        numbers_(count * stride_, 0) {}
 
   float* operator[](std::size_t plane) { return &numbers_[plane * stride_]; }
   const float* operator[](std::size_t plane) const { return &numbers_[plane * stride_]; }
@@ -36,7 +39,8 @@ class Planes {
   std::vector<float> numbers_;
 };
 
-/// Irradiance per pixel, row 0 first. Planes: red, green, blue [W/m^2], and 1 where it was computed, 0 elsewhere.
+/// Irradiance per pixel, row 0 first. Planes: red, green, blue [W/m^2], and 1 where it was
+/// computed, 0 elsewhere.
 struct Irradiance : Planes {
   explicit Irradiance(std::size_t pixels = 0) : Planes(4, pixels) {}
   glm::vec3 at(std::size_t i) const { return {(*this)[0][i], (*this)[1][i], (*this)[2][i]}; }
@@ -47,16 +51,18 @@ struct Irradiance : Planes {
   }
 };
 
-/// Planes of the pixels' surfaces, as the joint bilateral filter compares them: position [m], normal, and pixels per metre on a
-/// plane across the view. Normals are 0 without a surface.
+/// Planes of the pixels' surfaces, as the joint bilateral filter compares them: position [m],
+/// normal, and pixels per metre on a plane across the view. Normals are 0 without a surface.
 inline constexpr std::size_t kPosition = 0, kNormal = 3, kDensity = 6, kSurfacePlanes = 7;
 
-/// A camera's view of a scene, which it borrows; a medium is ignored. Baselines do not count the time of its construction: clpv
-/// has the G-buffer too, and caches blockers as these methods may cache the tree of triangles.
+/// A camera's view of a scene, which it borrows; a medium is ignored. Baselines do not count the
+/// time of its construction: clpv has the G-buffer too, and caches blockers as these methods may
+/// cache the tree of triangles.
 class View {
  public:
   /// `bounces` as in PathTracerOptions. Throws as RayScene.
-  View(const SceneData& scene, const SceneCamera& camera, int width, int height, int bounces, int threads);
+  View(const SceneData& scene, const SceneCamera& camera, int width, int height, int bounces,
+       int threads);
 
   /// View of one in `stride` x `stride` pixels, the middle ones.
   View thinned(unsigned stride) const;
@@ -80,8 +86,8 @@ class View {
     glm::vec3 radiance;  ///< [W/m^2/sr]
     float distance;      ///< [m]
   };
-  /// Radiance that arrives from the nearest surface at origin + t direction, t in (0, furthest), and its
-  /// distance t: emitted, and one reflection of the lights. Empty without a surface.
+  /// Radiance that arrives from the nearest surface at origin + t direction, t in (0, furthest),
+  /// and its distance t: emitted, and one reflection of the lights. Empty without a surface.
   std::optional<Arriving> radiance(pathtracer::PathSampler& sampler, const glm::vec3& origin,
                                    const glm::vec3& direction, float furthest) const;
   /// Radiance of the sky; 0 without one.
@@ -90,7 +96,8 @@ class View {
   /// G-buffer of all pixels with this irradiance.
   pathtracer::TracedImage with(const Irradiance& irradiance) const;
 
-  /// Calls action(sampler, first, last) for ranges of up to `grain` items that cover [0, count), on all threads.
+  /// Calls action(sampler, first, last) for ranges of up to `grain` items that cover [0, count), on
+  /// all threads.
   template <typename Action>
   void parallel_for(std::size_t count, std::size_t grain, const Action& action) const {
     std::atomic<std::size_t> next{0};

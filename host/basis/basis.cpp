@@ -24,8 +24,8 @@ void Basis::set_gram(Matrix gram, std::vector<double> integrals) {
   condition_ = condition_number(gram);
   if (!(condition_ <= kMaxCondition)) {
     throw Error(ExitCode::usage,
-                "lambda: found {} with basis {}, whose Gram matrix then has a condition number of {:.3g}; "
-                "allowed: a larger one, with which it is at most {:.0e}",
+                "lambda: found {} with basis {}, whose Gram matrix then has a condition number of "
+                "{:.3g}; allowed: a larger one, with which it is at most {:.0e}",
                 lambda_text(), name_, condition_, kMaxCondition);
   }
   gram_inverse_ = inverse(gram);
@@ -34,8 +34,8 @@ void Basis::set_gram(Matrix gram, std::vector<double> integrals) {
 }
 
 double Basis::lambda() const {
-  const bool one =
-      !lambdas_.empty() && std::ranges::adjacent_find(lambdas_, std::not_equal_to()) == lambdas_.end();
+  const bool one = !lambdas_.empty() &&
+                   std::ranges::adjacent_find(lambdas_, std::not_equal_to()) == lambdas_.end();
   return one ? lambdas_.front() : 0;
 }
 
@@ -77,13 +77,16 @@ std::unique_ptr<Basis> make_basis(const std::string& name, double lambda) {
     if (name == set.name) return make_basis_from_centres(name, set.centres, lambda);
   }
   for (const int side : kBinSides) {
-    if (name == fmt::format("bins{}", 6 * side * side)) return std::make_unique<DirectionBins>(side);
+    if (name == fmt::format("bins{}", 6 * side * side))
+      return std::make_unique<DirectionBins>(side);
   }
-  throw Error(ExitCode::usage, "basis: found '{}', allowed: {}", name, fmt::join(basis_names(), ", "));
+  throw Error(ExitCode::usage, "basis: found '{}', allowed: {}", name,
+              fmt::join(basis_names(), ", "));
 }
 
 std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
-                                               const std::vector<glm::dvec3>& centres, double lambda) {
+                                               const std::vector<glm::dvec3>& centres,
+                                               double lambda) {
   return make_basis_from_centres(name, centres, std::vector<double>(centres.size(), lambda));
 }
 
@@ -95,7 +98,8 @@ std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
 
 std::vector<std::string> basis_names() {
   std::vector<std::string> names;
-  for (int bands = kMinBands; bands <= kMaxBands; ++bands) names.push_back(fmt::format("sh{}", bands));
+  for (int bands = kMinBands; bands <= kMaxBands; ++bands)
+    names.push_back(fmt::format("sh{}", bands));
   for (const SrbfSet& set : srbf_sets()) names.push_back(set.name);
   for (const int side : kBinSides) names.push_back(fmt::format("bins{}", 6 * side * side));
   return names;

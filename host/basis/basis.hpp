@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Basis of functions on the sphere: f(w) = sum_i c_i b_i(w) (docs/bases.md). In double, without OpenCL.
+// Basis of functions on the sphere: f(w) = sum_i c_i b_i(w) (docs/bases.md). In double, without
+// OpenCL.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,8 +13,8 @@
 
 namespace clpv {
 
-/// N functions b_i on the unit sphere, with the integrals and kernel code that stages need. Immutable.
-/// Stages use any basis through this interface and never depend on its name.
+/// N functions b_i on the unit sphere, with the integrals and kernel code that stages need.
+/// Immutable. Stages use any basis through this interface and never depend on its name.
 class Basis {
  public:
   virtual ~Basis() = default;
@@ -30,7 +31,8 @@ class Basis {
 
   /// Computes b_i(w) of a unit w. b: N values.
   virtual void evaluate(const glm::dvec3& w, std::span<double> b) const = 0;
-  /// Computes alpha_i(d) = Int b_i(w) max(0, w . d) dw of a unit d. alpha: N values (docs/bases.md, 'The clamped cosine').
+  /// Computes alpha_i(d) = Int b_i(w) max(0, w . d) dw of a unit d. alpha: N values (docs/bases.md,
+  /// 'The clamped cosine').
   virtual void cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const = 0;
 
   /// Returns OpenCL C for the struct `Coefficients` with an array c of N floats, which defines:
@@ -41,7 +43,8 @@ class Basis {
   /// Number of bands of spherical harmonics, in the order of SphericalHarmonics; 0: another basis.
   virtual int bands() const { return 0; }
 
-  /// Unit normals of planes through the origin where functions are discontinuous: quadrature splits there.
+  /// Unit normals of planes through the origin where functions are discontinuous: quadrature splits
+  /// there.
   virtual std::vector<glm::dvec3> creases() const { return {}; }
 
   const Matrix& gram() const { return gram_; }  ///< N x N: A_ij = Int b_i b_j dw
@@ -77,17 +80,18 @@ class Basis {
 inline constexpr double kDefaultLambda = 0.25;
 inline constexpr double kMaxCondition = 1e7;  ///< beyond it float coefficients lose precision
 
-/// Returns the basis `name` ("sh2", "srbf8v2", ...; see basis_names()). Only SRBF bases use `lambda`.
-/// Throws Error(usage) for an unknown name (the message lists all names), lambda outside (0, 1), or a Gram
-/// matrix with a condition number above kMaxCondition.
+/// Returns the basis `name` ("sh2", "srbf8v2", ...; see basis_names()). Only SRBF bases use
+/// `lambda`. Throws Error(usage) for an unknown name (the message lists all names), lambda outside
+/// (0, 1), or a Gram matrix with a condition number above kMaxCondition.
 std::unique_ptr<Basis> make_basis(const std::string& name, double lambda = kDefaultLambda);
 std::vector<std::string> basis_names();
 
-inline constexpr std::size_t kMaxCentres = 64;      ///< kernels have unrolled code for each function
-inline constexpr double kMinCentreDistance = 1e-3;  ///< closer centres make the Gram matrix singular
+inline constexpr std::size_t kMaxCentres = 64;  ///< kernels have unrolled code for each function
+/// Closer centres make the Gram matrix singular.
+inline constexpr double kMinCentreDistance = 1e-3;
 
-/// Returns an SRBF basis of 1 to kMaxCentres unit centres, at least kMinCentreDistance apart, with one lambda or one per
-/// centre. Throws Error(usage) like make_basis(), and for invalid centres.
+/// Returns an SRBF basis of 1 to kMaxCentres unit centres, at least kMinCentreDistance apart, with
+/// one lambda or one per centre. Throws Error(usage) like make_basis(), and for invalid centres.
 std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
                                                const std::vector<glm::dvec3>& centres,
                                                double lambda = kDefaultLambda);
@@ -95,9 +99,10 @@ std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
                                                const std::vector<glm::dvec3>& centres,
                                                const std::vector<double>& lambdas);
 
-/// Loads an SRBF basis from a JSON file {"name": "mine", "lambda": 0.3, "centres": [[x, y, z], ...]}. Directions may have
-/// any length. The default name is the file's stem. "lambda", a number or a list of one per centre, overrides the
-/// argument. Throws Error(bad_input) with the JSON pointer of the invalid value, and Error(usage) like make_basis().
+/// Loads an SRBF basis from a JSON file {"name": "mine", "lambda": 0.3, "centres": [[x, y, z],
+/// ...]}. Directions may have any length. The default name is the file's stem. "lambda", a number
+/// or a list of one per centre, overrides the argument. Throws Error(bad_input) with the JSON
+/// pointer of the invalid value, and Error(usage) like make_basis().
 std::unique_ptr<Basis> load_basis(const std::string& path, double lambda = kDefaultLambda);
 
 }  // namespace clpv

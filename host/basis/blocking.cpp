@@ -25,8 +25,8 @@ int blocking_size(Blocking blocking, const Basis& basis) {
   return basis.size();
 }
 
-std::vector<double> blocking_weights(Blocking blocking, const Basis& basis, const LobeOptions& lobes,
-                                     const glm::dvec3& direction) {
+std::vector<double> blocking_weights(Blocking blocking, const Basis& basis,
+                                     const LobeOptions& lobes, const glm::dvec3& direction) {
   switch (blocking) {
     case Blocking::areas:
       return {std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)};

@@ -9,7 +9,8 @@
 namespace clpv {
 namespace {
 
-/// Cosine between a face's normal and a bin's direction; 0 if light of the bin does not leave the face.
+/// Cosine between a face's normal and a bin's direction; 0 if light of the bin does not leave the
+/// face.
 double cosine(const SweepBin& bin, int side) {
   const int axis = side / 2;
   return std::max(0.0, (side % 2 == 0 ? 1 : -1) * bin.directions.front().w[axis]);
@@ -31,8 +32,8 @@ Matrix incident_flux() {
   const std::vector<SweepBin> bins = sweep_bins(1);
   Matrix flux(kCellFaces, kSweepBins);
   for (int side = 0; side < kCellFaces; ++side) {
-    const int opposite =
-        side ^ 1;  // light arrives here in the directions in which it leaves the opposite face
+    // Light arrives here in the directions in which it leaves the opposite face.
+    const int opposite = side ^ 1;
     for (int b = 0; b < kSweepBins; ++b) {
       const SweepBin& bin = bins[b];
       flux(side, b) = bin.solid_angle * cosine(bin, opposite);
@@ -52,7 +53,8 @@ Matrix reflected_intensity(const Basis& basis) {
 }
 
 double edge_loss() {
-  static const double loss = compute_edge_loss();  // cached: the CPU reference calls this for every cell
+  // Cached: the CPU reference calls this for every cell.
+  static const double loss = compute_edge_loss();
   return loss;
 }
 

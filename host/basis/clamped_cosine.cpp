@@ -12,7 +12,7 @@ using std::numbers::pi;
 constexpr double kSeriesTail = 1e-17;  // below double's resolution of the sum
 constexpr int kSeriesTerms = 1 << 14;  // 2^15 degrees
 constexpr double kKernelTail = 1e-9;   // well below a float's resolution
-constexpr int kKernelTerms = 256;      // straight-line code of this length compiles in reasonable time
+constexpr int kKernelTerms = 256;  // straight-line code of this length compiles in reasonable time
 
 // b_k = Int_0^1 t P_2k(t) dt, k >= 1.
 double next_moment(double b, int k) {

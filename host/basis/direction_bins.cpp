@@ -13,7 +13,8 @@
 namespace clpv {
 namespace {
 
-// Boundary between the inner and outer bins of a face of bins96. Equal angles minimise the mean lobe error.
+// Boundary between the inner and outer bins of a face of bins96. Equal angles minimise the mean
+// lobe error.
 const double kLine = std::tan(std::numbers::pi / 8);
 constexpr int kPatchesAlongFace = 4;
 
@@ -78,8 +79,8 @@ void DirectionBins::add_patch(int bin, const SphericalPolygon& polygon) {
     total += node.weight;
     area += node.weight * node.w;
   }
-  // Variance along one axis: half the mean square distance from the patch's middle. A uniform distribution of
-  // that variance has a width of sqrt(12 variance).
+  // Variance along one axis: half the mean square distance from the patch's middle. A uniform
+  // distribution of that variance has a width of sqrt(12 variance).
   const glm::dvec3 middle = glm::normalize(area);
   double across = 0;
   for (const QuadratureNode& node : nodes_of(polygon)) {
@@ -137,7 +138,8 @@ void DirectionBins::cosine_integrals(const glm::dvec3& d, std::span<double> alph
   for (const Patch& patch : patches_) {
     const double t = glm::dot(patch.area, d);
     const double above = std::clamp(t / patch.width + 0.5, 0.0, 1.0);  // share above the horizon
-    const double integral = 0.5 * patch.width * above * above + std::max(0.0, t - 0.5 * patch.width);
+    const double integral =
+        0.5 * patch.width * above * above + std::max(0.0, t - 0.5 * patch.width);
     alpha[patch.bin] += integral;
     sum += integral;
   }
@@ -148,16 +150,16 @@ std::string DirectionBins::kernel_basis() const {
   static const char* const kNames[] = {"x", "y", "z"};
   std::string text =
       "static inline float unit_step(const float s) { return fma(0.5f, sign(s), 0.5f); }\n"
-      "static inline Coefficients basis_functions(const float x, const float y, const float z) {\n  "
-      "Coefficients "
-      "r;\n";
+      "static inline Coefficients basis_functions(const float x, const float y, const float z) {\n "
+      " Coefficients r;\n";
   std::string sum;
   for (int face = 0; face < 6; ++face) {
     const FaceAxes axes = axes_of(face);
     const std::string n = fmt::format("n{}", face);
     text += fmt::format("  const float {} = {}{};\n", n, axes.sign < 0 ? "-" : "", kNames[axes.n]);
-    text += fmt::format("  const float f{0} = unit_step({1} - fabs({2})) * unit_step({1} - fabs({3}));\n",
-                        face, n, kNames[axes.u], kNames[axes.v]);
+    text += fmt::format(
+        "  const float f{0} = unit_step({1} - fabs({2})) * unit_step({1} - fabs({3}));\n", face, n,
+        kNames[axes.u], kNames[axes.v]);
     sum += fmt::format("{}f{}", face == 0 ? "" : " + ", face);
   }
   text += fmt::format("  const float whole = 1.0f / ({});\n", sum);
@@ -165,8 +167,8 @@ std::string DirectionBins::kernel_basis() const {
     const FaceAxes axes = axes_of(face);
     for (const auto& [letter, axis] : {std::pair{'u', axes.u}, {'v', axes.v}}) {
       for (int i = 0; i + 1 < side_; ++i) {
-        text += fmt::format("  const float {}{}_{} = unit_step(fma({}, n{}, {}));\n", letter, face, i,
-                            float_literal(-lines_[i]), face, kNames[axis]);
+        text += fmt::format("  const float {}{}_{} = unit_step(fma({}, n{}, {}));\n", letter, face,
+                            i, float_literal(-lines_[i]), face, kNames[axis]);
       }
     }
     const auto share = [&](char letter, int i) {
@@ -205,17 +207,21 @@ std::string DirectionBins::kernel_cosine() const {
         return "(float8)(" + numbers + ")";
       };
       const std::string half = lanes([](const Patch& p) { return 0.5 * p.width; });
-      text += fmt::format("  t = {} * x + {} * y + {} * z;\n", lanes([](const Patch& p) { return p.area.x; }),
+      text += fmt::format("  t = {} * x + {} * y + {} * z;\n",
+                          lanes([](const Patch& p) { return p.area.x; }),
                           lanes([](const Patch& p) { return p.area.y; }),
                           lanes([](const Patch& p) { return p.area.z; }));
       text += fmt::format("  lit = clamp(t * {} + 0.5f, none, whole);\n",
                           lanes([](const Patch& p) { return 1 / p.width; }));
-      text += fmt::format("  part{0} += {1} * lit * lit + fmax(none, t - {1});\n", first / kLanes, half);
+      text += fmt::format("  part{0} += {1} * lit * lit + fmax(none, t - {1});\n", first / kLanes,
+                          half);
     }
   }
-  text += fmt::format("  const float8 all = {};\n  const float4 half_all = all.lo + all.hi;\n", all);
+  text +=
+      fmt::format("  const float8 all = {};\n  const float4 half_all = all.lo + all.hi;\n", all);
   text += fmt::format(
-      "  const float scale = {} / (half_all.x + half_all.y + half_all.z + half_all.w);\n  Coefficients r;\n",
+      "  const float scale = {} / (half_all.x + half_all.y + half_all.z + half_all.w);\n  "
+      "Coefficients r;\n",
       float_literal(std::numbers::pi));
   for (int i = 0; i < size_; ++i)
     text += fmt::format("  r.c[{}] = part{}.s{} * scale;\n", i, i / kLanes, i % kLanes);

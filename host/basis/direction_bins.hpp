@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Direction bins: one indicator function for each of m x m regions on each of a cube's six faces (docs/bases.md,
-// 'The sets'). f is constant in each bin, so coefficients of light are never negative.
+// Direction bins: one indicator function for each of m x m regions on each of a cube's six faces
+// (docs/bases.md, 'The sets'). f is constant in each bin, so coefficients of light are never
+// negative.
 //
-// A face's region is bounded by planes through the origin, u = l_j n and v = l_j n, n the coordinate along
-// the face's normal. bins24: m = 2, l = 0. bins96: m = 4, l = -c, 0, c with c = tan(22.5 degrees).
+// A face's region is bounded by planes through the origin, u = l_j n and v = l_j n, n the
+// coordinate along the face's normal. bins24: m = 2, l = 0. bins96: m = 4, l = -c, 0, c with c =
+// tan(22.5 degrees).
 #pragma once
 
 #include <array>
@@ -32,9 +34,9 @@ class DirectionBins : public Basis {
   using Basis::evaluate;
   /// On a boundary all adjacent bins have equal shares that sum to 1, so that no axis is preferred.
   void evaluate(const glm::dvec3& w, std::span<double> b) const override;
-  /// Sums 96 patches: exact for patches that the horizon of d does not cross; for others w . d is taken as
-  /// uniform over the patch's width. Scaled to the exact sum pi. The error is at most 1 % (bins24) or 3.3 %
-  /// (bins96) of the mean pi / N.
+  /// Sums 96 patches: exact for patches that the horizon of d does not cross; for others w . d is
+  /// taken as uniform over the patch's width. Scaled to the exact sum pi. The error is at most 1 %
+  /// (bins24) or 3.3 % (bins96) of the mean pi / N.
   void cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const override;
   std::string kernel_source() const override;
   std::vector<glm::dvec3> creases() const override;
@@ -43,7 +45,8 @@ class DirectionBins : public Basis {
   struct Patch {
     int bin;
     glm::dvec3 area;  ///< Int w dw
-    double width;     ///< width times solid angle; the horizon crosses the patch if |area . d| < width / 2
+    double width;  ///< width times solid angle; the horizon crosses the patch if |area . d| < width
+                   ///< / 2
   };
   void add_patch(int bin, const SphericalPolygon& polygon);
   std::string kernel_basis() const;

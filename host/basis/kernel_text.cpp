@@ -36,12 +36,13 @@ std::string dot_product(const glm::dvec3& centre, const std::vector<std::string>
   return text;
 }
 
-/// Expression that reads table number `table` at the expression `t`. Halving is exact, so half of size - 1 is one factor.
+/// Expression that reads table number `table` at the expression `t`. Halving is exact, so half of
+/// size - 1 is one factor.
 std::string entry(const std::string& t, std::size_t table, int table_size, const TableName& name) {
   const std::size_t first = table * static_cast<std::size_t>(table_size);
   return fmt::format("CLPV_TABLE_READ({}, {}clamp((int)(({} + 1.0f) * {}), 0, {}))", name.argument,
-                     first == 0 ? "" : fmt::format("{} + ", first), t, float_literal((table_size - 1) / 2.0),
-                     table_size - 1);
+                     first == 0 ? "" : fmt::format("{} + ", first), t,
+                     float_literal((table_size - 1) / 2.0), table_size - 1);
 }
 
 /// Statements of rotation_to(): the rotation of +z to (x, y, z).
@@ -54,7 +55,8 @@ constexpr const char* kRotation = R"(  const float square = fma(x, x, y * y);
 
 }  // namespace
 
-std::string sum_of_products(std::span<const double> factors, const std::vector<std::string>& names) {
+std::string sum_of_products(std::span<const double> factors,
+                            const std::vector<std::string>& names) {
   double largest = 0;
   for (const double factor : factors) largest = std::max(largest, std::abs(factor));
   std::string text;
@@ -70,8 +72,9 @@ std::string sum_of_products(std::span<const double> factors, const std::vector<s
 std::string horner(std::span<const double> coefficients, const std::string& x) {
   std::string text = float_literal(coefficients.back());
   for (std::size_t i = coefficients.size() - 1; i-- > 0;) {
-    text = coefficients[i] == 0 ? fmt::format("{} * {}", x, text)
-                                : fmt::format("fma({}, {}, {})", x, text, float_literal(coefficients[i]));
+    text = coefficients[i] == 0
+               ? fmt::format("{} * {}", x, text)
+               : fmt::format("fma({}, {}, {})", x, text, float_literal(coefficients[i]));
   }
   return text;
 }
@@ -82,14 +85,16 @@ std::string rotated_integrals_source(const Basis& basis, int table_size) {
   std::string text = opening("rotated_integrals", {}) + kRotation;
   for (int j = 0; j < basis.size(); ++j) {
     const glm::dvec3& c = basis.centres()[j];
-    text += fmt::format("  const float x{0} = {1};\n  const float y{0} = {2};\n  const float z{0} = {3};\n",
-                        j, height(c, {"xx", "xy", "x"}), height(c, {"xy", "yy", "y"}),
-                        height(c, {"(-x)", "(-y)", "z"}));
+    text += fmt::format(
+        "  const float x{0} = {1};\n  const float y{0} = {2};\n  const float z{0} = {3};\n", j,
+        height(c, {"xx", "xy", "x"}), height(c, {"xy", "yy", "y"}),
+        height(c, {"(-x)", "(-y)", "z"}));
   }
   for (int i = 0; i < basis.size(); ++i) {
     for (int j = 0; j < basis.size(); ++j) {
-      const std::string t = dot_product(
-          basis.centres()[i], {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
+      const std::string t =
+          dot_product(basis.centres()[i],
+                      {fmt::format("x{}", j), fmt::format("y{}", j), fmt::format("z{}", j)});
       const std::size_t table = products.index[i * basis.size() + j];
       const std::string weight = float_literal(up_lobe[j]), value = entry(t, table, table_size, {});
       text += j == 0 ? fmt::format("  r.c[{}] = {} * {};\n", i, weight, value)

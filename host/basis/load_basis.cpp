@@ -18,8 +18,9 @@ constexpr std::uintmax_t kMaxBytes = 1 << 20;
 
 glm::dvec3 unit_vector(const json& value, const std::string& path, std::size_t index) {
   const auto reject = [&](const std::string& place, const json& found) {
-    return Error(ExitCode::bad_input, "{}: /centres/{}{} is {}; allowed: three finite numbers, not all 0",
-                 path, index, place, quoted(found));
+    return Error(ExitCode::bad_input,
+                 "{}: /centres/{}{} is {}; allowed: three finite numbers, not all 0", path, index,
+                 place, quoted(found));
   };
   if (!value.is_array() || value.size() != 3) throw reject("", value);
   glm::dvec3 v;
@@ -36,8 +37,9 @@ glm::dvec3 unit_vector(const json& value, const std::string& path, std::size_t i
 
 std::vector<glm::dvec3> centres_of(const json& value, const std::string& path) {
   if (!value.is_array() || value.empty() || value.size() > kMaxCentres) {
-    throw Error(ExitCode::bad_input, "{}: /centres is {}; allowed: an array of 1 to {} directions [x, y, z]",
-                path, quoted(value), kMaxCentres);
+    throw Error(ExitCode::bad_input,
+                "{}: /centres is {}; allowed: an array of 1 to {} directions [x, y, z]", path,
+                quoted(value), kMaxCentres);
   }
   std::vector<glm::dvec3> centres;
   for (const json& entry : value) {
@@ -57,8 +59,8 @@ std::vector<glm::dvec3> centres_of(const json& value, const std::string& path) {
 double lambda_of(const json& value, const std::string& path, const std::string& place) {
   const double lambda = value.is_number() ? value.get<double>() : 0;
   if (lambda > 0 && lambda < 1) return lambda;
-  throw Error(ExitCode::bad_input, "{}: {} is {}; allowed: a number greater than 0 and less than 1", path,
-              place, quoted(value));
+  throw Error(ExitCode::bad_input, "{}: {} is {}; allowed: a number greater than 0 and less than 1",
+              path, place, quoted(value));
 }
 
 // One lambda for each of `count` centres.
@@ -94,7 +96,8 @@ std::unique_ptr<Basis> load_basis(const std::string& path, double lambda) {
   }
   for (const auto& [key, value] : file.items()) {
     if (key != "name" && key != "lambda" && key != "centres") {
-      throw Error(ExitCode::bad_input, "{}: unknown key {}; allowed: \"name\", \"lambda\", \"centres\"", path,
+      throw Error(ExitCode::bad_input,
+                  "{}: unknown key {}; allowed: \"name\", \"lambda\", \"centres\"", path,
                   quoted(json(key)));
     }
   }

@@ -16,7 +16,8 @@ constexpr int kEvenDirections = 2000;       // give means to three digits
 constexpr double kSpacing = pi / 90;        // between start points: finer than any lobe's features
 constexpr double kResolution = 1e-7;        // [rad] of the maximum's direction
 
-// Unit direction of f's maximum: the best of a grid of directions, refined by pattern search with shrinking steps.
+// Unit direction of f's maximum: the best of a grid of directions, refined by pattern search with
+// shrinking steps.
 glm::dvec3 argmax(const std::function<double(const glm::dvec3&)>& f) {
   glm::dvec3 best(0, 0, 1);
   double value = f(best);
@@ -34,7 +35,8 @@ glm::dvec3 argmax(const std::function<double(const glm::dvec3&)>& f) {
   }
   for (double step = kSpacing; step > kResolution;) {
     bool moved = false;
-    for (const glm::ivec3& axis : kAxes) moved |= improve(glm::normalize(best + step * glm::dvec3(axis)));
+    for (const glm::ivec3& axis : kAxes)
+      moved |= improve(glm::normalize(best + step * glm::dvec3(axis)));
     if (!moved) step /= 2;
   }
   return best;
@@ -45,7 +47,8 @@ glm::dvec3 argmax(const std::function<double(const glm::dvec3&)>& f) {
 double relative_l2(const Basis& basis, std::span<const double> c, const glm::dvec3& d) {
   std::vector<double> alpha(c.size());
   basis.cosine_integrals(d, alpha);
-  return std::sqrt(std::max(0.0, kCosineNorm + dot(c, basis.gram() * c) - 2 * dot(c, alpha)) / kCosineNorm);
+  return std::sqrt(std::max(0.0, kCosineNorm + dot(c, basis.gram() * c) - 2 * dot(c, alpha)) /
+                   kCosineNorm);
 }
 
 std::vector<glm::dvec3> even_directions(int count) {
@@ -64,14 +67,16 @@ LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const gl
     basis.evaluate(w, b);
     return dot(c, b);
   };
-  const glm::dvec3 peak = argmax(value), minimum = argmax([&](const glm::dvec3&w) { return -value(w); });
+  const glm::dvec3 peak = argmax(value),
+                   minimum = argmax([&](const glm::dvec3&w) { return -value(w); });
   return {relative_l2(basis, c, d), value(minimum), basis.energy(c),
           std::atan2(glm::length(glm::cross(peak, d)), glm::dot(peak, d)) * 180 / pi};
 }
 
 double mean_relative_l2(const Basis& basis, const Lobes& lobes) {
   double sum = 0;
-  for (const glm::dvec3& d : even_directions(kEvenDirections)) sum += relative_l2(basis, lobes(d), d);
+  for (const glm::dvec3& d : even_directions(kEvenDirections))
+    sum += relative_l2(basis, lobes(d), d);
   return sum / kEvenDirections;
 }
 

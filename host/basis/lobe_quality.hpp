@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Error of a lobe against the clamped cosine, and energy conservation of a basis, as `clpv basis` reports them.
+// Error of a lobe against the clamped cosine, and energy conservation of a basis, as `clpv basis`
+// reports them.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -19,7 +20,8 @@ struct LobeQuality {
   double peak_error_degrees;  ///< angle between the maximum of f and d
 };
 
-/// Returns |f - max(0, w . d)| / |max(0, w . d)|, L2 norms over the sphere, for f with coefficients c (N).
+/// Returns |f - max(0, w . d)| / |max(0, w . d)|, L2 norms over the sphere, for f with coefficients
+/// c (N).
 double relative_l2(const Basis& basis, std::span<const double> c, const glm::dvec3& d);
 
 /// Returns `count` evenly distributed unit directions on a golden spiral.
@@ -31,8 +33,9 @@ LobeQuality lobe_quality(const Basis& basis, std::span<const double> c, const gl
 /// Returns the mean relative_l2 over 2000 evenly distributed axes.
 double mean_relative_l2(const Basis& basis, const Lobes& lobes);
 
-/// Returns the energy after `steps` steps of an isotropic source in free space, relative to its initial energy. Nothing
-/// is clamped and there is no border, so the coefficients summed over all cells obey a linear map without a grid.
+/// Returns the energy after `steps` steps of an isotropic source in free space, relative to its
+/// initial energy. Nothing is clamped and there is no border, so the coefficients summed over all
+/// cells obey a linear map without a grid.
 double energy_after(const Basis& basis, const FaceTransport& transport, int steps);
 
 }  // namespace clpv

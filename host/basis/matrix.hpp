@@ -25,7 +25,9 @@ class Matrix {
   std::span<const double> row(int r) const {
     return {values_.data() + index(r, 0), static_cast<std::size_t>(columns_)};
   }
-  std::span<double> row(int r) { return {values_.data() + index(r, 0), static_cast<std::size_t>(columns_)}; }
+  std::span<double> row(int r) {
+    return {values_.data() + index(r, 0), static_cast<std::size_t>(columns_)};
+  }
 
   Matrix operator*(const Matrix& other) const;  ///< requires columns() == other.rows()
   std::vector<double> operator*(std::span<const double> vector) const;
@@ -42,10 +44,11 @@ class Matrix {
 /// Returns sum_i a_i b_i over the elements of `a`; `b` has at least as many.
 double dot(std::span<const double> a, std::span<const double> b);
 
-/// Returns the inverse of a symmetric positive definite matrix, computed in extended precision. Throws Error(run_time) if
-/// `a` is not positive definite.
+/// Returns the inverse of a symmetric positive definite matrix, computed in extended precision.
+/// Throws Error(run_time) if `a` is not positive definite.
 Matrix inverse(const Matrix& a);
-/// Returns the ratio of the largest to the smallest eigenvalue of a symmetric positive definite matrix.
+/// Returns the ratio of the largest to the smallest eigenvalue of a symmetric positive definite
+/// matrix.
 double condition_number(const Matrix& a);
 
 }  // namespace clpv

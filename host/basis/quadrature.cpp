@@ -12,8 +12,9 @@ namespace {
 
 constexpr int kOrder = 12;                // Gauss points along each side of a triangle
 constexpr double kRelativeError = 4e-15;  // relative to a test function's integral over the sphere
-constexpr int kMaxRefinements = 14;       // bisections of a triangle's edges: resolves peaks 1e-4 rad wide
-constexpr double kOnPlane = 1e-12;        // a corner closer than this lies on a plane
+// Bisections of a triangle's edges: resolves peaks 1e-4 rad wide.
+constexpr int kMaxRefinements = 14;
+constexpr double kOnPlane = 1e-12;  // a corner closer than this lies on a plane
 
 using Triangle = std::array<glm::dvec3, 3>;
 
@@ -110,8 +111,9 @@ class Refinement {
   bool agree(const std::vector<double>& coarse, const std::vector<double>& fine) const {
     const std::size_t n = basis_.size();
     for (std::size_t i = 0; i < coarse.size(); ++i) {
-      const double size =
-          i < 2 * n ? basis_.gram()(static_cast<int>(i % n), static_cast<int>(i % n)) : 4 * std::numbers::pi;
+      const double size = i < 2 * n
+                              ? basis_.gram()(static_cast<int>(i % n), static_cast<int>(i % n))
+                              : 4 * std::numbers::pi;
       if (!(std::abs(coarse[i] - fine[i]) <= kRelativeError * size)) return false;
     }
     return true;
@@ -171,7 +173,8 @@ std::vector<SphericalPolygon> split(std::vector<SphericalPolygon> polygons,
 std::vector<QuadratureNode> nodes_of(const SphericalPolygon& polygon) {
   std::vector<QuadratureNode> nodes;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    const std::vector<QuadratureNode> more = triangle_nodes(Triangle{polygon[0], polygon[i], polygon[i + 1]});
+    const std::vector<QuadratureNode> more =
+        triangle_nodes(Triangle{polygon[0], polygon[i], polygon[i + 1]});
     nodes.insert(nodes.end(), more.begin(), more.end());
   }
   return nodes;
@@ -188,7 +191,8 @@ double solid_angle(const SphericalPolygon& polygon) {
   return sum;
 }
 
-std::vector<QuadratureNode> quadrature(const Basis& basis, const std::vector<SphericalPolygon>& polygons) {
+std::vector<QuadratureNode> quadrature(const Basis& basis,
+                                       const std::vector<SphericalPolygon>& polygons) {
   Refinement refinement(basis);
   std::vector<glm::dvec3> planes = basis.creases();
   planes.insert(planes.end(), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});  // kinks of |w|_1

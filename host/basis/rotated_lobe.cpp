@@ -32,8 +32,8 @@ ZonalTables tables_of(const Parameters& parameters, int size,
                       double (*function)(double t, double parameter)) {
   if (static_cast<std::size_t>(std::max(0, size)) * parameters.values.size() > kMaxEntries) {
     throw Error(ExitCode::usage,
-                "table size: found {}, with which {} tables have more than {} entries in total", size,
-                parameters.values.size(), kMaxEntries);
+                "table size: found {}, with which {} tables have more than {} entries in total",
+                size, parameters.values.size(), kMaxEntries);
   }
   ZonalTables tables{{}, parameters.index};
   for (const double value : parameters.values)
@@ -100,7 +100,8 @@ ZonalTables function_tables(const Basis& basis, int size) {
 std::vector<double> evaluate(const Basis& basis, const ZonalTables& tables, const glm::dvec3& w) {
   if (basis.centres().empty()) return basis.evaluate(w);
   std::vector<double> b;
-  for (const glm::dvec3& centre : basis.centres()) b.push_back(tables(b.size(), dot_in_float(centre, w)));
+  for (const glm::dvec3& centre : basis.centres())
+    b.push_back(tables(b.size(), dot_in_float(centre, w)));
   return b;
 }
 

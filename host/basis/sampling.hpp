@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Counter-based random numbers and low-discrepancy points: a sample depends on its index and stream, not on the thread.
-// Owen-scrambled Sobol points: Burley, 'Practical Hash-based Owen Scrambling' (JCGT 9(4), 2020).
+// Counter-based random numbers and low-discrepancy points: a sample depends on its index and
+// stream, not on the thread. Owen-scrambled Sobol points: Burley, 'Practical Hash-based Owen
+// Scrambling' (JCGT 9(4), 2020).
 #pragma once
 
 #include <algorithm>
@@ -39,7 +40,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return (x << 16) | (x >> 16);
 }
 
-/// Owen's nested uniform scramble by the Laine-Karras hash: the bits above a bit and the seed decide whether it flips.
+/// Owen's nested uniform scramble by the Laine-Karras hash: the bits above a bit and the seed
+/// decide whether it flips.
 constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
   x = reverse_bits(x);
   x += seed;
@@ -59,18 +61,19 @@ constexpr std::uint32_t sobol_second(std::uint32_t index) {
   return result;
 }
 
-/// Point `index` of the scrambled and shuffled (0,2)-sequence of `stream`, in [0,1)^2. Sequences of different streams are
-/// independent; each bounce of a path has one.
+/// Point `index` of the scrambled and shuffled (0,2)-sequence of `stream`, in [0,1)^2. Sequences of
+/// different streams are independent; each bounce of a path has one.
 inline glm::dvec2 sobol_point(std::uint32_t index, std::uint64_t stream) {
   const std::uint64_t second = mix(stream);
   const std::uint32_t shuffled = owen_scramble(index, static_cast<std::uint32_t>(stream >> 32));
   const std::uint32_t x = owen_scramble(reverse_bits(shuffled), static_cast<std::uint32_t>(second));
-  const std::uint32_t y = owen_scramble(sobol_second(shuffled), static_cast<std::uint32_t>(second >> 32));
+  const std::uint32_t y =
+      owen_scramble(sobol_second(shuffled), static_cast<std::uint32_t>(second >> 32));
   return {x * 0x1p-32, y * 0x1p-32};
 }
 
-/// Two unit vectors across a unit vector and each other, without a branch: Duff et al., 'Building an Orthonormal Basis,
-/// Revisited' (JCGT 6(1), 2017).
+/// Two unit vectors across a unit vector and each other, without a branch: Duff et al., 'Building
+/// an Orthonormal Basis, Revisited' (JCGT 6(1), 2017).
 inline std::array<glm::dvec3, 2> tangents_of(const glm::dvec3& normal) {
   const double sign = std::copysign(1.0, normal.z);
   const double a = -1.0 / (sign + normal.z), b = normal.x * normal.y * a;
@@ -78,28 +81,30 @@ inline std::array<glm::dvec3, 2> tangents_of(const glm::dvec3& normal) {
           glm::dvec3{b, sign + normal.y * normal.y * a, -normal.y}};
 }
 
-/// Unit direction about `normal` with density cos / pi, by the concentric map of the square (Shirley and Chiu, 'A Low
-/// Distortion Map Between Disk and Square', JGT 2(3), 1997).
+/// Unit direction about `normal` with density cos / pi, by the concentric map of the square
+/// (Shirley and Chiu, 'A Low Distortion Map Between Disk and Square', JGT 2(3), 1997).
 inline glm::dvec3 cosine_direction(const glm::dvec3& normal, const glm::dvec2& point) {
   const glm::dvec2 square = 2.0 * point - 1.0;
   const bool wide = std::abs(square.x) > std::abs(square.y);
   const double radius = wide ? square.x : square.y;
   if (radius == 0.0) return normal;
   const double quarter = std::numbers::pi / 4;
-  const double angle = wide ? quarter * square.y / square.x : 2 * quarter - quarter * square.x / square.y;
+  const double angle =
+      wide ? quarter * square.y / square.x : 2 * quarter - quarter * square.x / square.y;
   const double up = std::sqrt(std::max(0.0, 1.0 - radius * radius));
   const auto [tangent, bitangent] = tangents_of(normal);
   return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + up * normal;
 }
 
-/// Phase function of Henyey and Greenstein (1941) [1/sr]. `cosine`: between the directions of travel before and after.
+/// Phase function of Henyey and Greenstein (1941) [1/sr]. `cosine`: between the directions of
+/// travel before and after.
 inline double phase(double g, double cosine) {
   const double d = 1 + g * g - 2 * g * cosine;
   return (1 - g * g) / (4 * std::numbers::pi * d * std::sqrt(d));
 }
 
-/// Unit direction with the density of Henyey and Greenstein's phase function about `along`, by inversion of its cumulative
-/// distribution over the cosine.
+/// Unit direction with the density of Henyey and Greenstein's phase function about `along`, by
+/// inversion of its cumulative distribution over the cosine.
 inline glm::dvec3 phase_direction(const glm::dvec3& along, double g, const glm::dvec2& point) {
   const double u = 2 * point.x - 1;
   double cosine = u;
@@ -118,7 +123,8 @@ struct CdfSample {
   double fraction;  ///< position within the interval, in [0, 1]
 };
 
-/// Samples the distribution with cumulative probabilities `cdf` (rising to 1) by inversion of `random` in [0, 1).
+/// Samples the distribution with cumulative probabilities `cdf` (rising to 1) by inversion of
+/// `random` in [0, 1).
 inline CdfSample sample_cdf(std::span<const double> cdf, double random) {
   const auto at = std::min(std::upper_bound(cdf.begin(), cdf.end(), random), cdf.end() - 1);
   const double before = at == cdf.begin() ? 0 : *(at - 1);

@@ -23,7 +23,8 @@ std::vector<glm::dvec3> sky_means(const Sky& sky, int parts) {
   const std::size_t count = kSweepBins * parts * parts;
   std::vector<glm::dvec3> sums(count, glm::dvec3(0));
   std::vector<double> angles(count, 0);
-  const int across = points_per_texel(sky.width, kPoints), down = points_per_texel(sky.height, kPoints / 2);
+  const int across = points_per_texel(sky.width, kPoints),
+            down = points_per_texel(sky.height, kPoints / 2);
   const int columns = sky.width * across, rows = sky.height * down;
   std::vector<glm::dvec2> horizontal;  // unit (x, z) of each column
   for (int x = 0; x < columns; ++x) {
@@ -44,14 +45,15 @@ std::vector<glm::dvec3> sky_means(const Sky& sky, int parts) {
       angles[i] += angle;
     }
   }
-  // Sampled solid angles differ slightly from exact ones. The sky's mean fills the difference: this keeps the sky's flux, and
-  // a uniform sky stays uniform.
+  // Sampled solid angles differ slightly from exact ones. The sky's mean fills the difference: this
+  // keeps the sky's flux, and a uniform sky stays uniform.
   glm::dvec3 mean(0);
   for (const glm::dvec3& sum : sums) mean += sum / (4 * std::numbers::pi);
   const std::vector<SweepBin> bins = sweep_bins(parts);
   const std::size_t of_bin = parts * parts;
   for (std::size_t i = 0; i < count; ++i)
-    sums[i] = mean + (sums[i] - angles[i] * mean) / bins[i / of_bin].directions[i % of_bin].solid_angle;
+    sums[i] =
+        mean + (sums[i] - angles[i] * mean) / bins[i / of_bin].directions[i % of_bin].solid_angle;
   return sums;
 }
 

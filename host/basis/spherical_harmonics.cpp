@@ -14,13 +14,15 @@ namespace {
 
 using std::numbers::pi;
 
-// Coefficients of the Legendre polynomial P_l, [i] for z^i: (n+1) P_{n+1} = (2n+1) z P_n - n P_{n-1}.
+// Coefficients of the Legendre polynomial P_l, [i] for z^i: (n+1) P_{n+1} = (2n+1) z P_n - n
+// P_{n-1}.
 std::vector<double> legendre(int l) {
   std::vector<double> before{0}, now{1};
   for (int n = 0; n < l; ++n) {
     std::vector<double> next(static_cast<std::size_t>(n) + 2, 0.0);
     for (std::size_t i = 0; i < now.size(); ++i) next[i + 1] += (2.0 * n + 1) / (n + 1) * now[i];
-    for (std::size_t i = 0; i < before.size(); ++i) next[i] -= static_cast<double>(n) / (n + 1) * before[i];
+    for (std::size_t i = 0; i < before.size(); ++i)
+      next[i] -= static_cast<double>(n) / (n + 1) * before[i];
     before = now;
     now = next;
   }
@@ -83,15 +85,15 @@ void SphericalHarmonics::cosine_integrals(const glm::dvec3& d, std::span<double>
 }
 
 std::string SphericalHarmonics::kernel_function(const std::string& name, bool cosine) const {
-  std::string text =
-      fmt::format("static inline Coefficients {}(const float x, const float y, const float z) {{\n", name);
+  std::string text = fmt::format(
+      "static inline Coefficients {}(const float x, const float y, const float z) {{\n", name);
   text += "  Coefficients r;\n";
   if (bands_ > 2) text += "  const float zz = z * z;\n";
   for (int m = 2; m < bands_; ++m) {  // re1 = x, im1 = y
     const std::string re = m == 2 ? "x" : fmt::format("re{}", m - 1),
                       im = m == 2 ? "y" : fmt::format("im{}", m - 1);
-    text += fmt::format("  const float re{} = fma(x, {}, -(y * {})), im{} = fma(x, {}, y * {});\n", m, re, im,
-                        m, im, re);
+    text += fmt::format("  const float re{} = fma(x, {}, -(y * {})), im{} = fma(x, {}, y * {});\n",
+                        m, re, im, m, im, re);
   }
   for (int i = 0; i < size_; ++i) {
     const Function& f = functions_[i];
@@ -100,7 +102,8 @@ std::string SphericalHarmonics::kernel_function(const std::string& name, bool co
     // Q_lm is even or odd in z: a polynomial in z^2, times z if odd.
     const std::size_t odd = (f.polynomial.size() - 1) % 2;
     std::vector<double> even;
-    for (std::size_t k = odd; k < f.polynomial.size(); k += 2) even.push_back(factor * f.polynomial[k]);
+    for (std::size_t k = odd; k < f.polynomial.size(); k += 2)
+      even.push_back(factor * f.polynomial[k]);
     if (factor == 0) even.assign(1, 0.0);
     std::string value = horner(even, "zz");
     if (factor != 0 && odd == 1) value = "z * " + value;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Real spherical harmonics of bands 0 .. L-1, N = L^2, in the order l^2 + l + m; orthonormal, A = 1.
-// Y_lm = K_lm (m < 0: Im, else Re) (x + iy)^|m| Q_lm(z), Q_lm = d^|m| P_l / dz^|m|; signs as in
+// Real spherical harmonics of bands 0 .. L-1, N = L^2, in the order l^2 + l + m; orthonormal, A =
+// 1. Y_lm = K_lm (m < 0: Im, else Re) (x + iy)^|m| Q_lm(z), Q_lm = d^|m| P_l / dz^|m|; signs as in
 // Y_1m = 0.4886 (y, z, x).
 #pragma once
 

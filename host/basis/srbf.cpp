@@ -35,7 +35,8 @@ void add_ring(std::vector<glm::dvec3>& centres, double z, double first_degrees) 
   }
 }
 
-// The rings are 60 degrees apart: a relative rotation changes the lobe error between 0.196 and 0.308.
+// The rings are 60 degrees apart: a relative rotation changes the lobe error between 0.196 and
+// 0.308.
 std::vector<glm::dvec3> two_rings() {
   std::vector<glm::dvec3> centres{{0, 0, 1}, {0, 0, -1}};
   add_ring(centres, 1.0 / 3, 0);
@@ -57,12 +58,13 @@ std::vector<glm::dvec3> joined(std::vector<glm::dvec3> a, const std::vector<glm:
 void require_usable(const std::string& name, const std::vector<glm::dvec3>& centres,
                     const std::vector<double>& lambdas) {
   if (centres.empty() || centres.size() > kMaxCentres) {
-    throw Error(ExitCode::usage, "{}: found {} centres, allowed: 1 to {}", name, centres.size(), kMaxCentres);
+    throw Error(ExitCode::usage, "{}: found {} centres, allowed: 1 to {}", name, centres.size(),
+                kMaxCentres);
   }
   for (const double lambda : lambdas) {
     if (!(lambda > 0 && lambda < 1)) {
-      throw Error(ExitCode::usage, "{}: lambda: found {}, allowed: greater than 0 and less than 1", name,
-                  lambda);
+      throw Error(ExitCode::usage, "{}: lambda: found {}, allowed: greater than 0 and less than 1",
+                  name, lambda);
     }
   }
   for (std::size_t i = 0; i < centres.size(); ++i) {
@@ -70,8 +72,8 @@ void require_usable(const std::string& name, const std::vector<glm::dvec3>& cent
       const double distance = glm::length(centres[i] - centres[j]);
       if (!(distance >= kMinCentreDistance)) {
         throw Error(ExitCode::usage,
-                    "{}: centres {} and {}: found a distance of {:.2g}, allowed: at least {}", name, j, i,
-                    distance, kMinCentreDistance);
+                    "{}: centres {} and {}: found a distance of {:.2g}, allowed: at least {}", name,
+                    j, i, distance, kMinCentreDistance);
       }
     }
   }
@@ -90,7 +92,8 @@ const std::vector<SrbfSet>& srbf_sets() {
       {"srbf6", axes()},
       {"srbf8v1", two_rings()},
       {"srbf8v2", cube()},
-      {"srbf8v3", joined(axes(), {glm::dvec3(1) / std::sqrt(3.0), glm::dvec3(-1) / std::sqrt(3.0)})},
+      {"srbf8v3",
+       joined(axes(), {glm::dvec3(1) / std::sqrt(3.0), glm::dvec3(-1) / std::sqrt(3.0)})},
       {"srbf14", joined(cube(), axes())},
   };
   return sets;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Spherical radial basis functions (SRBF): Abel-Poisson kernels G at fixed centres xi_i with bandwidths lambda_i.
+// Spherical radial basis functions (SRBF): Abel-Poisson kernels G at fixed centres xi_i with
+// bandwidths lambda_i.
 //   G(t; lambda) = (1 - lambda^2) / (1 - 2 lambda t + lambda^2)^(3/2)
 //   b_i(w) = G(w . xi_i; lambda_i),  Int b_i dw = 4 pi
 //   A_ij = Int b_i b_j dw = 4 pi G(xi_i . xi_j; lambda_i lambda_j)
@@ -19,7 +20,8 @@ double abel_poisson(double t, double lambda);
 class Srbf : public Basis {
  public:
   /// Unit centres and one lambda per centre. Throws like make_basis_from_centres().
-  Srbf(const std::string& name, const std::vector<glm::dvec3>& centres, const std::vector<double>& lambdas);
+  Srbf(const std::string& name, const std::vector<glm::dvec3>& centres,
+       const std::vector<double>& lambdas);
 
   using Basis::evaluate;
   void evaluate(const glm::dvec3& w, std::span<double> b) const override;

@@ -11,7 +11,8 @@
 namespace clpv {
 namespace {
 
-constexpr const char* kSignature = "(const float x, const float y, const float z) {\n  Coefficients r;\n";
+constexpr const char* kSignature =
+    "(const float x, const float y, const float z) {\n  Coefficients r;\n";
 
 // A centre, and its antipode of equal lambda if the set has one.
 struct Pair {
@@ -46,8 +47,9 @@ std::string evaluate_function(const Basis& basis, const std::vector<Pair>& pairs
   const auto value = [&](int i, int of, double sign) {
     const double lambda = basis.lambdas()[i];
     return fmt::format(
-        "  const float d{0} = rsqrt(fma({1}, t{2}, {3}));\n  r.c[{0}] = {4} * d{0} * d{0} * d{0};\n", i,
-        float_literal(-2 * sign * lambda), of, float_literal(1 + lambda * lambda),
+        "  const float d{0} = rsqrt(fma({1}, t{2}, {3}));\n  r.c[{0}] = {4} * d{0} * d{0} * "
+        "d{0};\n",
+        i, float_literal(-2 * sign * lambda), of, float_literal(1 + lambda * lambda),
         float_literal(1 - lambda * lambda));
   };
   std::string text = std::string("static inline Coefficients basis_functions") + kSignature;
@@ -79,8 +81,8 @@ std::vector<double> monomials(const std::vector<double>& chebyshev) {
   return sum;
 }
 
-// Statements that set `even` to g's even part at `t`. Horner's form in t^2 if its terms do not cancel (lambda up
-// to about 0.5), else Clenshaw's recurrence, which is stable for any lambda.
+// Statements that set `even` to g's even part at `t`. Horner's form in t^2 if its terms do not
+// cancel (lambda up to about 0.5), else Clenshaw's recurrence, which is stable for any lambda.
 std::string even_part(const std::vector<double>& chebyshev, int i) {
   const std::vector<double> c = monomials(chebyshev);
   double size = 0;
@@ -114,7 +116,8 @@ std::string cosine_function(const Basis& basis, const std::vector<Pair>& pairs,
     text += height_statement(basis, i) + even_part(chebyshev[lambda], i);
     text += fmt::format("  r.c[{0}] = fma({1}, t{0}, even{0});\n", i, float_literal(slope));
     if (pair.opposite >= 0) {
-      text += fmt::format("  r.c[{0}] = fma({2}, t{1}, even{1});\n", pair.opposite, i, float_literal(-slope));
+      text += fmt::format("  r.c[{0}] = fma({2}, t{1}, even{1});\n", pair.opposite, i,
+                          float_literal(-slope));
     }
   }
   return text + "  return r;\n}\n";
@@ -122,7 +125,8 @@ std::string cosine_function(const Basis& basis, const std::vector<Pair>& pairs,
 
 }  // namespace
 
-std::string srbf_kernel_source(const Basis& basis, const std::map<double, CosineOfPoisson>& cosines) {
+std::string srbf_kernel_source(const Basis& basis,
+                               const std::map<double, CosineOfPoisson>& cosines) {
   const std::vector<Pair> pairs = antipodal_pairs(basis);
   return evaluate_function(basis, pairs) + cosine_function(basis, pairs, cosines);
 }

@@ -17,7 +17,8 @@ namespace {
 constexpr int kSide = 2;  // bins along each edge of a cube's face
 constexpr int kSweptBands = 3;
 
-/// Part (i, j) of a bin: divided at equal angles between axis and diagonal, as bins96 divides bins24.
+/// Part (i, j) of a bin: divided at equal angles between axis and diagonal, as bins96 divides
+/// bins24.
 SphericalPolygon part_polygon(int bin, int parts, int i, int j) {
   const auto lines = [&](int side, int step) -> std::array<double, 2> {
     const double sign = side == 0 ? -1 : 1, angle = std::numbers::pi / 4;
@@ -124,10 +125,10 @@ std::optional<CosineRest> cosine_rest(const Basis& basis, const Matrix& means, i
   for (int d = 0; d < means.rows(); ++d) {
     const glm::dvec3 mean = glm::dvec3(means(d, 3), means(d, 1), means(d, 2)) / y1;
     const double square = glm::dot(mean, mean);
-    const double share =
-        bins[d / (parts * parts)].directions[d % (parts * parts)].solid_angle / (4 * std::numbers::pi);
-    rest.even[0] +=
-        share * (std::sqrt(square) / 4 - rest.even[1] * square / 3 - rest.even[2] * square * square / 5);
+    const double share = bins[d / (parts * parts)].directions[d % (parts * parts)].solid_angle /
+                         (4 * std::numbers::pi);
+    rest.even[0] += share * (std::sqrt(square) / 4 - rest.even[1] * square / 3 -
+                             rest.even[2] * square * square / 5);
   }
   return rest;
 }
@@ -192,8 +193,8 @@ static int link_number(const glm::ivec3& offset) {
 int LinkVolumes::volume(int axis, const glm::ivec3& offset) const {
   int before = 0;
   for (int i = 0; i < axis; ++i) before += static_cast<int>(across[i].size());
-  return before +
-         static_cast<int>(std::ranges::find(across[axis], link_number(offset)) - across[axis].begin());
+  return before + static_cast<int>(std::ranges::find(across[axis], link_number(offset)) -
+                                   across[axis].begin());
 }
 
 LinkVolumes link_volumes() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Directions, links and projections of the sweep (docs/method.md, 'The sweep'): discrete ordinates with short
-// characteristics. In double, without OpenCL.
+// Directions, links and projections of the sweep (docs/method.md, 'The sweep'): discrete ordinates
+// with short characteristics. In double, without OpenCL.
 #pragma once
 
 #include <array>
@@ -16,8 +16,9 @@ namespace clpv {
 
 /// One sweep direction: the mean direction of one of parts^2 parts of a bin of `bins24`.
 ///
-/// Light along w moves from plane to plane across the axis of its largest component. A cell draws from four upstream cells
-/// of the previous plane, offset by 0 or 1 along the other axes. All directions of a bin share these offsets.
+/// Light along w moves from plane to plane across the axis of its largest component. A cell draws
+/// from four upstream cells of the previous plane, offset by 0 or 1 along the other axes. All
+/// directions of a bin share these offsets.
 struct SweepDirection {
   glm::dvec3 w;                ///< unit
   double solid_angle;          ///< [sr]
@@ -37,7 +38,8 @@ struct SweepBin {
 inline constexpr int kSweepBins = 24;
 inline constexpr int kMaxSweepParts = 4;
 
-/// Returns all bins in the order of `bins24`. `parts`: 1 to kMaxSweepParts, for 24, 96, 216 or 384 directions.
+/// Returns all bins in the order of `bins24`. `parts`: 1 to kMaxSweepParts, for 24, 96, 216 or 384
+/// directions.
 std::vector<SweepBin> sweep_bins(int parts);
 
 /// A bin and one of its parts^2 parts.
@@ -47,12 +49,13 @@ struct SubBin {
 /// Returns the sub-bin that contains the unit vector w.
 SubBin sub_bin_along(const glm::dvec3& w, int parts);
 
-/// Returns the one of `coarser_parts`^2 parts of a bin that contains most of part `part` of `parts`^2.
+/// Returns the one of `coarser_parts`^2 parts of a bin that contains most of part `part` of
+/// `parts`^2.
 int coarser_part(int part, int parts, int coarser_parts);
 
-/// (24 parts^2) x N: mean of each basis function over each part of a bin, in the order of sweep_bins(). Light that a cell
-/// injects along a direction is this row times its coefficients, negative values included: the sum over all directions
-/// is then the exact energy.
+/// (24 parts^2) x N: mean of each basis function over each part of a bin, in the order of
+/// sweep_bins(). Light that a cell injects along a direction is this row times its coefficients,
+/// negative values included: the sum over all directions is then the exact energy.
 Matrix part_means(const Basis& basis, int parts);
 
 /// Difference between a clamped cosine about n and its bands of spherical harmonics, by z = w . n:
@@ -61,36 +64,40 @@ Matrix part_means(const Basis& basis, int parts);
 struct CosineRest {
   std::array<double, 3> even;
 };
-/// Returns the rest for a sweep along 24 parts^2 directions, where z is the mean over a part; `means`: part_means(). even[0] is
-/// such that the sum over all directions is 0 in the mean over n, so that cells keep their energy. Empty for bases that are no
-/// harmonics.
+/// Returns the rest for a sweep along 24 parts^2 directions, where z is the mean over a part;
+/// `means`: part_means(). even[0] is such that the sum over all directions is 0 in the mean over n,
+/// so that cells keep their energy. Empty for bases that are no harmonics.
 std::optional<CosineRest> cosine_rest(const Basis& basis, const Matrix& means, int parts);
 
-/// Returns the basis of swept light: the nine spherical harmonics of bands 0 to 2. Convolution with the clamped cosine leaves
-/// almost nothing beyond band 2 (Ramamoorthi and Hanrahan 2001, 'An efficient representation for irradiance environment
-/// maps').
+/// Returns the basis of swept light: the nine spherical harmonics of bands 0 to 2. Convolution with
+/// the clamped cosine leaves almost nothing beyond band 2 (Ramamoorthi and Hanrahan 2001, 'An
+/// efficient representation for irradiance environment maps').
 std::unique_ptr<Basis> swept_basis();
 
 /// 9 x 24: projection of light that is constant in each bin on swept_basis().
 Matrix swept_projection();
 
-/// 24 x 24: radiance in each bin, by radiance in each bin, of light that a medium scatters once: means of the phase function
-/// of Henyey and Greenstein (1941). Rows and columns sum to 1: uniform light stays uniform, and no energy is lost.
-/// `anisotropy`: g in (-1, 1).
+/// 24 x 24: radiance in each bin, by radiance in each bin, of light that a medium scatters once:
+/// means of the phase function of Henyey and Greenstein (1941). Rows and columns sum to 1: uniform
+/// light stays uniform, and no energy is lost. `anisotropy`: g in (-1, 1).
 Matrix scattering_matrix(double anisotropy);
 
-/// Multiplies the blocking weights of each link by the length of its offset to the power `power`. With power 1 a full wall is
-/// opaque along diagonals too.
+/// Multiplies the blocking weights of each link by the length of its offset to the power `power`.
+/// With power 1 a full wall is opaque along diagonals too.
 void close_diagonals(std::vector<SweepLink>& links, double power);
 
-/// Returns the links from a cell's 26 neighbours in the order of kernels/steps/transmittance.cl, without blocking weights.
+/// Returns the links from a cell's 26 neighbours in the order of kernels/steps/transmittance.cl,
+/// without blocking weights.
 std::vector<SweepLink> sweep_links();
 
-/// Transmittance volumes that sweep_links.cl writes: for each axis in order, the links that directions of that axis use.
+/// Transmittance volumes that sweep_links.cl writes: for each axis in order, the links that
+/// directions of that axis use.
 struct LinkVolumes {
   std::array<std::vector<int>, 3> across;  ///< for each axis, indices into sweep_links()
 
-  int count() const { return static_cast<int>(across[0].size() + across[1].size() + across[2].size()); }
+  int count() const {
+    return static_cast<int>(across[0].size() + across[1].size() + across[2].size());
+  }
   /// Returns the index of the volume of the link with `offset` for directions of `axis`.
   int volume(int axis, const glm::ivec3& offset) const;
 };

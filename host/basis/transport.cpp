@@ -21,7 +21,8 @@ Face face_of(const glm::ivec3& travel, const glm::ivec3& normal) {
   return face;
 }
 
-// Spherical polygon of the face from the source's centre; cells have edge 1, the neighbour's centre is `travel`.
+// Spherical polygon of the face from the source's centre; cells have edge 1, the neighbour's centre
+// is `travel`.
 SphericalPolygon cone_of(const Face& face) {
   const glm::dvec3 centre = glm::dvec3(face.travel) + 0.5 * glm::dvec3(face.normal);
   const glm::dvec3 u(face.normal.y, face.normal.z, face.normal.x),
@@ -62,8 +63,9 @@ void set_blocking_weights(Transport& transport, const Basis& basis) {
 
 }  // namespace
 
-const std::array<glm::ivec3, 6> kAxes{glm::ivec3(1, 0, 0),  glm::ivec3(-1, 0, 0), glm::ivec3(0, 1, 0),
-                                      glm::ivec3(0, -1, 0), glm::ivec3(0, 0, 1),  glm::ivec3(0, 0, -1)};
+const std::array<glm::ivec3, 6> kAxes{glm::ivec3(1, 0, 0), glm::ivec3(-1, 0, 0),
+                                      glm::ivec3(0, 1, 0), glm::ivec3(0, -1, 0),
+                                      glm::ivec3(0, 0, 1), glm::ivec3(0, 0, -1)};
 
 std::vector<TransportKind> stepped_transports() {
   std::vector<TransportKind> stepped;
@@ -112,7 +114,8 @@ FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeO
     }
   }
   for (Face& face : transport.faces) {
-    face.flux = flux == FaceFlux::exact ? integral_over(basis, cone_of(face)) : sample_of(basis, lobes, face);
+    face.flux = flux == FaceFlux::exact ? integral_over(basis, cone_of(face))
+                                        : sample_of(basis, lobes, face);
   }
   const Lobes lobe_about(basis, lobes);
   transport.lobes = Matrix(basis.size(), static_cast<int>(kAxes.size()));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Transports of light between cells: their coefficients for a basis, in double, without OpenCL (docs/method.md,
-// 'Propagation', 'The sweep'). A transport accesses any basis through the interface Basis.
+// Transports of light between cells: their coefficients for a basis, in double, without OpenCL
+// (docs/method.md, 'Propagation', 'The sweep'). A transport accesses any basis through the
+// interface Basis.
 #pragma once
 
 #include <array>
@@ -15,24 +16,29 @@
 
 namespace clpv {
 
-/// One of the 30 links from a source cell to a face of a neighbour (Kaplanyan and Dachsbacher 2010; docs/method.md,
-/// 'Propagation').
+/// One of the 30 links from a source cell to a face of a neighbour (Kaplanyan and Dachsbacher 2010;
+/// docs/method.md, 'Propagation').
 struct Face {
-  glm::ivec3 travel;         ///< k: from the source cell to its neighbour, a unit axis
-  glm::ivec3 normal;         ///< n_f: outward normal of the neighbour's face; equals travel for the far face
-  glm::dvec3 direction;      ///< w_f, unit: from the source's centre to the face's centre
-  double solid_angle;        ///< Omega_f, seen from the source's centre [sr]
-  std::vector<double> flux;  ///< N: flux through the face [W] is flux . c, before blocking and clamping
+  glm::ivec3 travel;  ///< k: from the source cell to its neighbour, a unit axis
+  /// n_f: outward normal of the neighbour's face; equals travel for the far face.
+  glm::ivec3 normal;
+  glm::dvec3 direction;  ///< w_f, unit: from the source's centre to the face's centre
+  double solid_angle;    ///< Omega_f, seen from the source's centre [sr]
+  /// N: flux through the face [W] is flux . c, before blocking and clamping.
+  std::vector<double> flux;
   std::vector<double> blocked_by;  ///< blocking_weights() of the link
 };
 
-/// Transport by fluxes through faces, clamped at 0 and re-emitted as lobes: `sampled` (the paper) and `exact`.
+/// Transport by fluxes through faces, clamped at 0 and re-emitted as lobes: `sampled` (the paper)
+/// and `exact`.
 struct FaceTransport {
-  std::vector<Face> faces;  ///< 30: six neighbours (+x -x +y -y +z -z), far face first, then four sides
-  Matrix lobes;             ///< N x 6: coefficients per 1 W through the face of normal +x -x +y -y +z -z
+  /// 30: six neighbours (+x -x +y -y +z -z), far face first, then four sides.
+  std::vector<Face> faces;
+  Matrix lobes;  ///< N x 6: coefficients per 1 W through the face of normal +x -x +y -y +z -z
 };
 
-/// One of a sweep's 26 links into a cell from a neighbour, through their common face, edge or corner.
+/// One of a sweep's 26 links into a cell from a neighbour, through their common face, edge or
+/// corner.
 struct SweepLink {
   glm::ivec3 offset;               ///< from the neighbour to the cell [cells]
   glm::dvec3 direction;            ///< unit
@@ -45,8 +51,9 @@ enum class TransportKind {
   sweep,    ///< one pass per direction through the grid (basis/sweep.hpp)
 };
 
-/// Returns true if the scheme is a FaceTransport. Irradiance is then E(n) = 4 b(-n) . c / s^2; for the sweep
-/// E(n) = alpha(-n) . c / s^2, alpha the clamped-cosine integrals (docs/method.md, 'Gathering').
+/// Returns true if the scheme is a FaceTransport. Irradiance is then E(n) = 4 b(-n) . c / s^2; for
+/// the sweep E(n) = alpha(-n) . c / s^2, alpha the clamped-cosine integrals (docs/method.md,
+/// 'Gathering').
 constexpr bool has_faces(TransportKind kind) {
   return kind == TransportKind::sampled || kind == TransportKind::exact;
 }
@@ -67,7 +74,8 @@ struct Transport {
 /// Returns the transports that move light in steps: all except the sweep.
 std::vector<TransportKind> stepped_transports();
 
-/// Builds a transport for `basis`. The sweep ignores `lobes`. `blocking`: representation of the geometry volume.
+/// Builds a transport for `basis`. The sweep ignores `lobes`. `blocking`: representation of the
+/// geometry volume.
 Transport make_transport(TransportKind kind, const Basis& basis, const LobeOptions& lobes = {},
                          Blocking blocking = Blocking::one_sided);
 
@@ -82,7 +90,8 @@ enum class FaceFlux {
 /// Builds the 30 faces and 6 lobes, without blocking weights.
 FaceTransport make_face_transport(const Basis& basis, FaceFlux flux, const LobeOptions& lobes);
 
-/// Solid angles [sr] of a neighbour's far face, and of each of its four side faces, from the source's centre.
+/// Solid angles [sr] of a neighbour's far face, and of each of its four side faces, from the
+/// source's centre.
 double far_solid_angle();
 double side_solid_angle();
 

@@ -28,7 +28,8 @@ glm::dvec3 unit_axis(const std::string& text) {
   const glm::dvec3 axis = parse_dvec3(text, "--axis");
   const double length = std::hypot(axis.x, axis.y, axis.z);
   if (!(length > 0) || !std::isfinite(length))
-    throw Error(ExitCode::usage, "--axis: '{}' has length {}; allowed: a vector other than 0", text, length);
+    throw Error(ExitCode::usage, "--axis: '{}' has length {}; allowed: a vector other than 0", text,
+                length);
   return axis / length;
 }
 
@@ -85,14 +86,15 @@ nlohmann::json describe(const Basis& basis, const BasisView& view) {
 /// Formats one line per object.
 std::string table_of(const nlohmann::json& bases) {
   std::string text =
-      fmt::format("{:10} {:>3} {:>6} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>9} {:>9} {:>8} {:>8}\n", "basis",
-                  "N", "lambda", "condition", "L2 error", "mean L2", "minimum", "flux", "peak", "sampled 8",
-                  "sampled24", "exact 8", "exact 24");
+      fmt::format("{:10} {:>3} {:>6} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>9} {:>9} {:>8} {:>8}\n",
+                  "basis", "N", "lambda", "condition", "L2 error", "mean L2", "minimum", "flux",
+                  "peak", "sampled 8", "sampled24", "exact 8", "exact 24");
   for (const nlohmann::json& b : bases) {
     const auto number = [&](const char* key) { return b.at(key).get<double>(); };
     const bool several = number("lambda") == 0 && !b.at("lambdas").empty();
     text += fmt::format(
-        "{:10} {:3} {:>6} {:9.4g} {:8.3f} {:8.3f} {:8.3f} {:7.4f} {:6.2f}d {:9.3f} {:9.3f} {:8.3f} {:8.3f}\n",
+        "{:10} {:3} {:>6} {:9.4g} {:8.3f} {:8.3f} {:8.3f} {:7.4f} {:6.2f}d {:9.3f} {:9.3f} {:8.3f} "
+        "{:8.3f}\n",
         b.at("name").get<std::string>(), b.at("n").get<int>(),
         several ? "each" : fmt::format("{:.4g}", number("lambda")), number("condition"),
         number("relative_l2"), number("mean_relative_l2"), number("minimum"), number("flux"),
@@ -125,22 +127,24 @@ void run(const Options& options) {
 void add_basis(CLI::App& app, Shared&) {
   using namespace basis_command;
   CLI::App* command = app.add_subcommand(
-      "basis", "Report on each basis: conditioning, clamped-cosine error, energy after 8 and 24 steps");
+      "basis",
+      "Report on each basis: conditioning, clamped-cosine error, energy after 8 and 24 steps");
   auto options = std::make_shared<basis_command::Options>();
-  CLI::Option* name = add(*command, "name", "NAME", options->name, "name of one basis (default: all)");
+  CLI::Option* name =
+      add(*command, "name", "NAME", options->name, "name of one basis (default: all)");
   add(*command, "--centres", "FILE", options->centres_file,
-      "custom SRBF set: JSON {\"name\": ..., \"lambda\": ..., \"centres\": [[x, y, z], ...]}; "
-      "name and lambda (one number, or one per centre) are optional")
+      "custom SRBF set: JSON {\"name\": ..., \"lambda\": ..., \"centres\": [[x, y, z], ...]}; name "
+      "and lambda (one number, or one per centre) are optional")
       ->excludes(name);
   command
       ->add_option("--lambda", options->lambda,
-                   "parameter of the SRBF kernels, between 0 and 1, narrower with larger values; a lambda in "
-                   "--centres overrides it")
+                   "parameter of the SRBF kernels, between 0 and 1, narrower with larger values; a "
+                   "lambda in --centres overrides it")
       ->capture_default_str();
   add(*command, "--axis", "X,Y,Z", options->axis, "axis of the clamped cosine, any length");
-  add_choice(
-      *command, "--lobe", options->lobes.kind,
-      "method of the clamped cosine: exact projection, or projection along +z and rotation by a table");
+  add_choice(*command, "--lobe", options->lobes.kind,
+             "method of the clamped cosine: exact projection, or projection along +z and rotation "
+             "by a table");
   command
       ->add_option("--table-size", options->lobes.table_size,
                    "number of entries in the table of rotated lobes")

@@ -24,19 +24,23 @@ constexpr const char* kPaperBases[] = {"sh2",     "sh3",     "sh4",     "sh5",  
                                        "srbf8v1", "srbf8v2", "srbf8v3", "srbf14"};
 constexpr double kFigure2Lambda = 0.4;
 const std::array<glm::dvec3, 7> kAxes{
-    {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {-2, 1, -3}}};  // of any length
+    {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {-2, 1, -3}}};  // of any
+                                                                                          // length
 
-/// Functions on the sphere, sampled on a grid: rows from +z to -z including poles, columns around z from +x.
+/// Functions on the sphere, sampled on a grid: rows from +z to -z including poles, columns around z
+/// from +x.
 class Surfaces {
  public:
-  static constexpr std::size_t kRows = 121, kColumns = 240;  // 1.5 degrees: finer details appear smooth
+  // 1.5 degrees: finer details appear smooth.
+  static constexpr std::size_t kRows = 121, kColumns = 240;
 
   void add(const std::function<double(const glm::dvec3&)>& f) {
     for (std::size_t i = 0; i < kRows; ++i) {
       const double theta = std::numbers::pi * static_cast<double>(i) / (kRows - 1);
       for (std::size_t j = 0; j < kColumns; ++j) {
         const double phi = 2 * std::numbers::pi * static_cast<double>(j) / kColumns;
-        const glm::dvec3 w(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+        const glm::dvec3 w(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                           std::cos(theta));
         values_.push_back(static_cast<float>(f(w)));
       }
     }
@@ -92,7 +96,8 @@ std::vector<fs::path> write_basis_figures(BasisFigures figures, const fs::path& 
   }
   const Drawing drawing("basis", "--figures");
   create_folder("--figures", folder);
-  const std::vector<fs::path> files{folder / "figure2.png", folder / "figure3.png", folder / "figure6.png"};
+  const std::vector<fs::path> files{folder / "figure2.png", folder / "figure3.png",
+                                    folder / "figure6.png"};
   for (const fs::path& file : files) check_writable(file);
   Surfaces surfaces;
   nlohmann::json document{{"lambda", figures.lambda},

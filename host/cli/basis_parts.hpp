@@ -16,7 +16,8 @@ struct BasisFigures {
   double lambda = kDefaultLambda;  ///< bandwidth of the eight functions in Figure 2
 };
 /// Draws with python/clpv/draw into `folder`, which is created if missing. Returns the paths of
-///   figure2.png  the Poisson kernel with lambda 0.4; the eight functions of srbf8v2, joint and one by one
+///   figure2.png  the Poisson kernel with lambda 0.4; the eight functions of srbf8v2, joint and one
+///                by one
 ///   figure3.png  the clamped cosine along +z and along (-2, 1, -3), and each basis's lobe for it
 ///   figure6.png  the same along the six main axes
 /// Throws Error(run_time) if a file is not writable, or Python or a module is missing.

@@ -40,8 +40,8 @@ std::regex parse_filter(const std::string& text) {
   try {
     return std::regex(text);
   } catch (const std::regex_error& error) {
-    throw Error(ExitCode::usage, "--filter '{}': {}; allowed: an ECMAScript regular expression", text,
-                error.what());
+    throw Error(ExitCode::usage, "--filter '{}': {}; allowed: an ECMAScript regular expression",
+                text, error.what());
   }
 }
 
@@ -51,7 +51,8 @@ std::string subject_of(const bench::SuiteOptions& options) {
   return fmt::format("{}, camera {}", scene->name, scene->camera(options.camera).name);
 }
 
-nlohmann::json report_of(const Options& options, const Session& session, const bench::Results& results) {
+nlohmann::json report_of(const Options& options, const Session& session,
+                         const bench::Results& results) {
   nlohmann::json context = bench::context_json(session);
   context["scene"] = subject_of(options.bench.suite);
   return bench::report_json(context, results.ceilings, results.rows);
@@ -75,9 +76,9 @@ nlohmann::json earlier_run(const Options& options) {
                 "--compare with --format {}: both would be on stdout; allowed: --format table",
                 options.format);
   nlohmann::json report = read_json(options.compare);
-  bench::compare_runs(report,
-                      nlohmann::json{{"context", {{"schema", 1}}}, {"benchmarks", nlohmann::json::array()}},
-                      options.compare);
+  bench::compare_runs(
+      report, nlohmann::json{{"context", {{"schema", 1}}}, {"benchmarks", nlohmann::json::array()}},
+      options.compare);
   return report;
 }
 
@@ -113,8 +114,9 @@ void require_right_results(const std::vector<bench::Row>& rows) {
   const auto wrong = std::ranges::count(rows, bench::Status::wrong, &bench::Row::status);
   if (wrong == 0) return;
   const auto& first = *std::ranges::find(rows, bench::Status::wrong, &bench::Row::status);
-  throw Error(ExitCode::validation, "{} of {} rows have wrong results; {}: {:.3g} > {:.0e} at {}", wrong,
-              rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance, first.reason);
+  throw Error(ExitCode::validation, "{} of {} rows have wrong results; {}: {:.3g} > {:.0e} at {}",
+              wrong, rows.size(), first.name, first.max_rel_error.value_or(0), first.tolerance,
+              first.reason);
 }
 
 void run(Options options, const Shared& shared) {
@@ -122,11 +124,13 @@ void run(Options options, const Shared& shared) {
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.log = options.log;
   if (!options.output.empty()) require_extension("--output", options.output, {".json"});
-  check_outputs({{"--output", options.output}, {"--log", options.log}},
-                {{"--scene", options.scene}, {"--model", options.model}, {"--compare", options.compare}});
+  check_outputs(
+      {{"--output", options.output}, {"--log", options.log}},
+      {{"--scene", options.scene}, {"--model", options.model}, {"--compare", options.compare}});
   const std::unique_ptr<const Drawing> plot = prepared_plot(options);
   const nlohmann::json before = earlier_run(options);
-  const bench::Suite& suite = *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
+  const bench::Suite& suite =
+      *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
   load_suite_scene(options, suite);
   // Cached programs have no build time.
   Session session(choose_device(shared.device),
@@ -162,8 +166,11 @@ void add_bench(CLI::App& app, Shared& shared) {
       app.add_subcommand("bench", "Time stages and frames on this device, and check their outputs");
   auto options = std::make_shared<bench_command::Options>();
   std::string suites = "suite to run:";
-  for (const bench::Suite& suite : bench::suites()) suites += fmt::format("\n{}: {}", suite.name, suite.help);
-  command->add_option("SUITE", options->suite, suites)->required()->check(CLI::IsMember(suite_names()));
+  for (const bench::Suite& suite : bench::suites())
+    suites += fmt::format("\n{}: {}", suite.name, suite.help);
+  command->add_option("SUITE", options->suite, suites)
+      ->required()
+      ->check(CLI::IsMember(suite_names()));
   add(*command, "--scene", "SCENE", options->scene,
       "scene file or model (default: a generated hall; for table1: scenes/atrium.json)");
   add(*command, "--model", "PATH", options->model, "model file instead of the scene file's");
@@ -185,7 +192,8 @@ void add_bench(CLI::App& app, Shared& shared) {
   add(*command, "--compare", "OLD.json", options->compare,
       "JSON of an earlier run, for a table of changes and their spread");
   add_fail_above(*command, options->fail_above);
-  add(*command, "--plot", "DIR", options->plot, "output folder for SVG and PNG charts; needs matplotlib");
+  add(*command, "--plot", "DIR", options->plot,
+      "output folder for SVG and PNG charts; needs matplotlib");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// clpv check: compares every stage's kernels with double-precision CPU references on the chosen device.
+// clpv check: compares every stage's kernels with double-precision CPU references on the chosen
+// device.
 #include "verify/check.hpp"
 
 #include <fmt/format.h>
@@ -41,13 +42,16 @@ std::size_t count(const CheckResults& results, Status status) {
 std::string counts_of(const CheckResults& results) {
   std::string text;
   for (const Status status : values_of<Status>())
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count(results, status), name_of(status));
+    text +=
+        fmt::format("{}{} {}", text.empty() ? "" : ", ", count(results, status), name_of(status));
   return text;
 }
 
-/// Prints a stage: how many results are ok, the largest error relative to its tolerance, and each other result.
+/// Prints a stage: how many results are ok, the largest error relative to its tolerance, and each
+/// other result.
 void print(std::string_view stage, const CheckResults& results) {
-  const std::size_t ok = count(results, Status::ok), unsupported = count(results, Status::unsupported);
+  const std::size_t ok = count(results, Status::ok),
+                    unsupported = count(results, Status::unsupported);
   fmt::print("{:<10} {:>4} of {:<4} {}", stage, ok, results.size(),
              ok + unsupported < results.size() ? "FAILED"
              : ok > 0                          ? "ok    "
@@ -57,16 +61,17 @@ void print(std::string_view stage, const CheckResults& results) {
   };
   if (ok > 0) {
     const CheckResult& worst = *std::ranges::max_element(results, {}, share);
-    fmt::print("  worst {:.2e} of {:.0e} allowed ({})", worst.deviation.worst, worst.deviation.allowed,
-               worst.variant);
+    fmt::print("  worst {:.2e} of {:.0e} allowed ({})", worst.deviation.worst,
+               worst.deviation.allowed, worst.variant);
   }
   fmt::print("\n");
   for (const CheckResult& r : results) {
     if (r.passed())
-      spdlog::debug("{} {}: {:.2e} of {:.0e}", stage, r.variant, r.deviation.worst, r.deviation.allowed);
+      spdlog::debug("{} {}: {:.2e} of {:.0e}", stage, r.variant, r.deviation.worst,
+                    r.deviation.allowed);
     else if (r.status == Status::wrong)
-      fmt::print("           {}: {:.3e} > {:.0e} at {}\n", r.variant, r.deviation.worst, r.deviation.allowed,
-                 r.deviation.place);
+      fmt::print("           {}: {:.3e} > {:.0e} at {}\n", r.variant, r.deviation.worst,
+                 r.deviation.allowed, r.deviation.place);
     else
       fmt::print("           {}: {}: {}\n", r.variant, name_of(r.status), r.reason);
   }
@@ -84,7 +89,8 @@ class Results {
     const Stage stage = cases_[done_++].stage;
     progress_.advance();
     if (done_ < cases_.size() && cases_[done_].stage == stage) return;
-    if (prints_) print(name_of(stage), {all_.begin() + static_cast<std::ptrdiff_t>(printed_), all_.end()});
+    if (prints_)
+      print(name_of(stage), {all_.begin() + static_cast<std::ptrdiff_t>(printed_), all_.end()});
     printed_ = all_.size();
   }
   const CheckResults& all() const { return all_; }
@@ -97,8 +103,8 @@ class Results {
   CheckResults all_;
 };
 
-/// Runs the cases in helpers. A single one runs in this process, which a debugger or an interpreter watches, and so do all
-/// where there is no program to start, as in tests.
+/// Runs the cases in helpers. A single one runs in this process, which a debugger or an interpreter
+/// watches, and so do all where there is no program to start, as in tests.
 CheckResults results_of(const verify::Cases& cases, const Options& options, const Shared& shared,
                         const Device& device, bool prints) {
   Results results(cases, prints);
@@ -140,8 +146,8 @@ void run(const Options& options, const Shared& shared) {
     Session session(device);
     return verify::help(cases, session, Claims(options.claims));
   }
-  spdlog::info("checking {} ({}), driver {}: {} comparisons", device.name, device.platform, device.driver,
-               cases.size());
+  spdlog::info("checking {} ({}), driver {}: {} comparisons", device.name, device.platform,
+               device.driver, cases.size());
   const bool json = options.format == "json";
   const CheckResults results = results_of(cases, options, shared, device, !json);
   if (json)
@@ -150,8 +156,9 @@ void run(const Options& options, const Shared& shared) {
     fmt::print("{}\n", counts_of(results));
   if (!options.junit.empty()) write_file(options.junit, verify::junit(results, device.name));
   if (verify::passed(results)) return;
-  throw Error(ExitCode::validation, "comparisons on {}: {}; allowed: none wrong or failed, at least one ok",
-              device.name, counts_of(results));
+  throw Error(ExitCode::validation,
+              "comparisons on {}: {}; allowed: none wrong or failed, at least one ok", device.name,
+              counts_of(results));
 }
 
 }  // namespace check_command
@@ -162,10 +169,11 @@ void add_check(CLI::App& app, Shared& shared) {
       "check", "Compare every stage's kernels with double-precision CPU references on this device");
   auto options = std::make_shared<check_command::Options>();
   add_choices(*command, "--stage", options->choice.stages, "stages to check (default: all)");
-  CLI::Option* thorough = command->add_flag(
-      "--thorough", options->choice.thorough,
-      "all combinations of bases, formats, lobes, tables, transports, states and directions; takes minutes. "
-      "Without it, each path of a kernel once: one basis of each kind, each layout and number format");
+  CLI::Option* thorough =
+      command->add_flag("--thorough", options->choice.thorough,
+                        "all combinations of bases, formats, lobes, tables, transports, states and "
+                        "directions; takes minutes. Without it, each path of a kernel once: one "
+                        "basis of each kind, each layout and number format");
   const auto take_preset = [options](const std::string& name) {
     options->choice.preset = named<PresetName>("--preset", name);
   };
@@ -176,11 +184,13 @@ void add_check(CLI::App& app, Shared& shared) {
       ->check(CLI::IsMember(names_of<PresetName>()))
       ->excludes(thorough);
   command
-      ->add_option("--match", options->choice.match,
-                   "only comparisons with this text in their name, such as a basis or layout; repeatable")
+      ->add_option(
+          "--match", options->choice.match,
+          "only comparisons with this text in their name, such as a basis or layout; repeatable")
       ->type_name("TEXT");
   add_number(*command, "--limit", options->limit,
-             "time after which one of several comparisons has failed [s]", {1e-3, 1e6, "0.001..1e6 s"})
+             "time after which one of several comparisons has failed [s]",
+             {1e-3, 1e6, "0.001..1e6 s"})
       ->type_name("SECONDS")
       ->default_str(fmt::format("{}", kUsualLimit));
   command->add_flag("--list", options->list, "print the names of the comparisons and end");
@@ -189,11 +199,10 @@ void add_check(CLI::App& app, Shared& shared) {
   add(*command, "--junit", "FILE.xml", options->junit,
       "output file in JUnit format, one test case per comparison");
   command->footer(
-      "A comparison is ok, wrong (beyond its tolerance), failed (the driver reported an error, crashed, or "
-      "took too "
-      "long)\n"
-      "or unsupported (the device lacks a capability). Exit code 5 if one is wrong or failed, or none is "
-      "ok.");
+      "A comparison is ok, wrong (beyond its tolerance), failed (the driver reported an error, "
+      "crashed, or took too long)\n"
+      "or unsupported (the device lacks a capability). Exit code 5 if one is wrong or failed, or "
+      "none is ok.");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

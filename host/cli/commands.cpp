@@ -23,14 +23,16 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kMaxEdits = 2;  // of a misspelt command: "rendr" and "qualtiy" have one and two
+// Of a misspelt command: "rendr" and "qualtiy" have one and two.
+constexpr std::size_t kMaxEdits = 2;
 
 /// Rank 0 logs at the requested level; other ranks log only problems unless --verbose is given.
 void set_log(const Shared& shared) {
   set_log_level(shared.quiet, shared.verbosity);
   const std::optional<LauncherRank> started = launcher_rank();
   if (!started) return;
-  if (started->rank > 0 && !shared.quiet && shared.verbosity == 0) spdlog::set_level(spdlog::level::warn);
+  if (started->rank > 0 && !shared.quiet && shared.verbosity == 0)
+    spdlog::set_level(spdlog::level::warn);
   set_progress_style(started->rank == 0 ? ProgressStyle::lines : ProgressStyle::none);
 }
 
@@ -42,7 +44,8 @@ void reject_ranks_except(CLI::App& app, const std::vector<std::string>& names) {
     command->parse_complete_callback([name, names] {
       const std::optional<LauncherRank> started = launcher_rank();
       if (!started) return;
-      throw Error(ExitCode::usage, "{}: not for several processes (found: rank {} of {}); allowed: {}", name,
+      throw Error(ExitCode::usage,
+                  "{}: not for several processes (found: rank {} of {}); allowed: {}", name,
                   started->rank, started->size ? std::to_string(*started->size) : "some",
                   fmt::join(names, ", "));
     });
@@ -68,7 +71,8 @@ std::size_t edits(const std::string& a, const std::string& b) {
 /// Throws Error(usage) that suggests the closest command for an unknown one.
 void reject_misspelt_command(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining();
-  const auto word = std::ranges::find_if(words, [](const std::string& w) { return !w.starts_with('-'); });
+  const auto word =
+      std::ranges::find_if(words, [](const std::string& w) { return !w.starts_with('-'); });
   if (word == words.end()) return;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -84,8 +88,9 @@ void reject_misspelt_command(const CLI::App& app) {
 /// Throws Error(usage) that suggests the closest option for an unknown one of the command.
 void reject_misspelt_option(const CLI::App& app) {
   const std::vector<const CLI::App*> commands =
-      app.get_subcommands().empty() ? std::vector<const CLI::App*>{&app}
-                                    : std::vector<const CLI::App*>{app.get_subcommands().front(), &app};
+      app.get_subcommands().empty()
+          ? std::vector<const CLI::App*>{&app}
+          : std::vector<const CLI::App*>{app.get_subcommands().front(), &app};
   for (const std::string& word : app.remaining(true)) {
     if (!word.starts_with("--")) continue;
     const std::string given = word.substr(0, word.find('='));
@@ -93,20 +98,22 @@ void reject_misspelt_option(const CLI::App& app) {
     for (const CLI::App* command : commands) {
       for (const CLI::Option* option : command->get_options()) {
         for (const std::string& name : option->get_lnames()) {
-          if (nearest.empty() || edits(given, "--" + name) < edits(given, nearest)) nearest = "--" + name;
+          if (nearest.empty() || edits(given, "--" + name) < edits(given, nearest))
+            nearest = "--" + name;
         }
       }
     }
     if (edits(given, nearest) > kMaxEdits) continue;
-    throw Error(ExitCode::usage, "{}: unknown option '{}'; did you mean {}?", commands.front()->get_name(),
-                given, nearest);
+    throw Error(ExitCode::usage, "{}: unknown option '{}'; did you mean {}?",
+                commands.front()->get_name(), given, nearest);
   }
 }
 
 /// Leaves the options of some groups to --help-all.
 class ShortHelp : public CLI::Formatter {
  public:
-  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
     short_ = mode == CLI::AppFormatMode::Normal;
     std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
     for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;)
@@ -146,9 +153,10 @@ std::string rank_prefix(const Shared& shared) {
 
 /// Logs the error, with limits that may explain it, and aborts the other ranks.
 int report_failure(const Shared& shared, ExitCode code, const std::string& message) {
-  const bool limited =
-      (code == ExitCode::run_time || code == ExitCode::device) && message.find("ulimit") == std::string::npos;
-  std::cerr << "clpv: " << rank_prefix(shared) << message << (limited ? limits_note() : "") << std::endl;
+  const bool limited = (code == ExitCode::run_time || code == ExitCode::device) &&
+                       message.find("ulimit") == std::string::npos;
+  std::cerr << "clpv: " << rank_prefix(shared) << message << (limited ? limits_note() : "")
+            << std::endl;
   if (shared.started && !shared.started->alone()) shared.started->abort(code);
   return static_cast<int>(code);
 }
@@ -156,7 +164,8 @@ int report_failure(const Shared& shared, ExitCode code, const std::string& messa
 }  // namespace
 
 Ranks& Shared::ranks() {
-  if (!started) started = launcher_rank() ? std::make_unique<Ranks>(start_mpi()) : std::make_unique<Ranks>();
+  if (!started)
+    started = launcher_rank() ? std::make_unique<Ranks>(start_mpi()) : std::make_unique<Ranks>();
   return *started;
 }
 
@@ -178,13 +187,15 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.set_help_flag("-h,--help", "this help");
   app.set_help_all_flag("--help-all", "help of all commands");
   add(app, "--device", "DEVICE", shared.device,
-      "OpenCL device: index, PLATFORM:DEVICE or part of a name (default: CLPV_DEVICE, else the first "
-      "supported)");
+      "OpenCL device: index, PLATFORM:DEVICE or part of a name (default: CLPV_DEVICE, else the "
+      "first supported)");
   app.add_option_function<std::string>(
          "--lanes",
-         [](const std::string& lanes) { ::setenv("CLPV_LANES", lanes.c_str(), 1); },  // helpers inherit it
-         "pixels, cells or rays that a work-item processes (default: CLPV_LANES, else auto: 8 on CPUs, 1 "
-         "elsewhere)")
+         [](const std::string& lanes) {
+           ::setenv("CLPV_LANES", lanes.c_str(), 1);
+         },  // helpers inherit it
+         "pixels, cells or rays that a work-item processes (default: CLPV_LANES, else auto: 8 on "
+         "CPUs, 1 elsewhere)")
       ->type_name("auto|1|8")
       ->check(CLI::IsMember({"auto", "1", "8"}))
       ->group(std::string(kMoreOptions) + "device");
@@ -209,10 +220,10 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   }
   reject_ranks_except(app, {"quality", "sequence", "pathtrace"});
   app.footer(
-      "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad scene or "
-      "image file;\n"
-      "4 no device, or one that lacks what was asked; 5 validation failed. Data goes to stdout, logs to "
-      "stderr.");
+      "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad "
+      "scene or image file;\n"
+      "4 no device, or one that lacks what was asked; 5 validation failed. Data goes to stdout, "
+      "logs to stderr.");
 }
 
 void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
@@ -244,7 +255,8 @@ int run_program(int argc, const char* const* argv) {
     app.exit(error, std::cout, std::cerr);
     return error.get_exit_code() == 0 ? 0 : static_cast<int>(ExitCode::usage);
   } catch (const Interrupted& interrupted) {
-    std::cerr << "clpv: " << rank_prefix(shared) << "interrupted; " << interrupted.what() << std::endl;
+    std::cerr << "clpv: " << rank_prefix(shared) << "interrupted; " << interrupted.what()
+              << std::endl;
     end_as_interrupted();
   } catch (const Error& error) {
     return report_failure(shared, error.code(), error.what());

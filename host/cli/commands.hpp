@@ -30,16 +30,19 @@ struct Command {
 std::span<const Command> all_commands();
 
 /// Adds the program's description, the shared options and the commands.
-void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands = all_commands());
+void add_commands(CLI::App& app, Shared& shared,
+                  std::span<const Command> commands = all_commands());
 
-/// Parses and runs the command. Throws CLI::Error, and Error(usage) that suggests the closest command.
+/// Parses and runs the command. Throws CLI::Error, and Error(usage) that suggests the closest
+/// command.
 void parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
-/// The program without signal handling: parses, runs the command and logs errors to stderr. Returns the exit code. A
-/// failing rank aborts all ranks.
+/// The program without signal handling: parses, runs the command and logs errors to stderr. Returns
+/// the exit code. A failing rank aborts all ranks.
 int run_program(int argc, const char* const* argv);
 
-// Each command is in cli/NAME.cpp. The callbacks throw clpv::Error; run_program turns it into an exit code.
+// Each command is in cli/NAME.cpp. The callbacks throw clpv::Error; run_program turns it into an
+// exit code.
 void add_devices(CLI::App& app, Shared& shared);
 void add_render(CLI::App& app, Shared& shared);
 void add_sequence(CLI::App& app, Shared& shared);

@@ -30,8 +30,10 @@ bool is_png(const std::filesystem::path& path) {
   return path.extension() == ".png";
 }
 
-/// Returns the file and the layer in "FILE:LAYER", or the layer `usual` of "FILE". A file may have a colon in its name.
-std::pair<std::string, std::string> file_and_layer(const std::string& text, const std::string& usual) {
+/// Returns the file and the layer in "FILE:LAYER", or the layer `usual` of "FILE". A file may have
+/// a colon in its name.
+std::pair<std::string, std::string> file_and_layer(const std::string& text,
+                                                   const std::string& usual) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos || std::filesystem::exists(text)) return {text, usual};
   return {text.substr(0, colon), text.substr(colon + 1)};
@@ -40,8 +42,8 @@ std::pair<std::string, std::string> file_and_layer(const std::string& text, cons
 void check_output(const CompareOptions& options) {
   if (options.output.empty()) return;
   require_extension("--output", options.output, {".png", ".exr"});
-  check_outputs({{"--output", options.output}},
-                {{"A", file_and_layer(options.a, "").first}, {"B", file_and_layer(options.b, "").first}});
+  check_outputs({{"--output", options.output}}, {{"A", file_and_layer(options.a, "").first},
+                                                 {"B", file_and_layer(options.b, "").first}});
 }
 
 void write_difference(const std::string& output, const Image& difference) {
@@ -73,8 +75,9 @@ void compare_reports(const CompareOptions& options) {
 
 void run(const CompareOptions& options) {
   if (!options.suite.empty()) {
-    const std::filesystem::path truths =
-        options.truths.empty() ? quality_cache({}) / "references" : std::filesystem::path(options.truths);
+    const std::filesystem::path truths = options.truths.empty()
+                                             ? quality_cache({}) / "references"
+                                             : std::filesystem::path(options.truths);
     fmt::print("{}\n", compare_suite(options.suite, truths, options.exposure).dump(2));
     return;
   }
@@ -82,13 +85,15 @@ void run(const CompareOptions& options) {
     if (value->empty()) throw Error(ExitCode::usage, "{} is required without --suite", name);
   if (is_report(options.a) && is_report(options.b)) return compare_reports(options);
   if (options.fail_above > 0)
-    throw Error(ExitCode::usage, "--fail-above {}: found {} and {}, allowed with two reports (.json)",
+    throw Error(ExitCode::usage,
+                "--fail-above {}: found {} and {}, allowed with two reports (.json)",
                 options.fail_above, options.a, options.b);
   check_output(options);
   const Image a = read_layer(options.a, options.layer);
   const Image b = read_layer(options.b, options.layer);
   const Comparison comparison = compare(a, options.a, b, options.b, options.exposure);
-  if (!options.output.empty()) write_difference(options.output, difference_image(a, b, options.amplify));
+  if (!options.output.empty())
+    write_difference(options.output, difference_image(a, b, options.amplify));
   fmt::print("{}\n", to_json(comparison).dump(2));
 }
 
@@ -99,12 +104,13 @@ void add_compare(CLI::App& app, Shared&) {
       "compare", "Errors of image A against ground truth B, or changes of report A against B");
   auto options = std::make_shared<CompareOptions>();
   CLI::Option* a = command->add_option("A", options->a,
-                                       "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer. Or a "
-                                       "report: JSON of bench, quality or --stats");
-  command->add_option(
-      "B", options->b,
-      "ground truth of the same size, with a layer likewise. Or the earlier report of the same command");
-  add(*command, "-o,--output", "FILE", options->output, "difference image |A-B| x amplify, .png or .exr");
+                                       "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer. "
+                                       "Or a report: JSON of bench, quality or --stats");
+  command->add_option("B", options->b,
+                      "ground truth of the same size, with a layer likewise. Or the earlier report "
+                      "of the same command");
+  add(*command, "-o,--output", "FILE", options->output,
+      "difference image |A-B| x amplify, .png or .exr");
   command->add_option("--amplify", options->amplify, "factor of the difference image")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
@@ -113,9 +119,9 @@ void add_compare(CLI::App& app, Shared&) {
       ->check(CLI::Range(-30.0, 30.0));
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
-  CLI::Option* suite =
-      add(*command, "--suite", "DIR", options->suite,
-          "folder of images SCENE-CAMERA.exr of indirect light, by any renderer, in place of A and B");
+  CLI::Option* suite = add(
+      *command, "--suite", "DIR", options->suite,
+      "folder of images SCENE-CAMERA.exr of indirect light, by any renderer, in place of A and B");
   suite->excludes(a)->excludes("--output")->excludes("--layer");
   add(*command, "--truths", "DIR", options->truths,
       "folder of their ground truths SCENE-CAMERA-HASH.exr (default: "
@@ -123,15 +129,14 @@ void add_compare(CLI::App& app, Shared&) {
       ->needs(suite);
   add_fail_above(*command, options->fail_above)->excludes("--output");
   command->footer(
-      "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as stored: "
-      "linear in EXR\n"
-      "and HDR, sRGB-encoded from 0 to 1 in PNG. psnr_db has its peak at 1 and is null without error; nrmse "
-      "is rmse over\n"
-      "the root mean square of B. nrmse_valid, best_gain, nrmse_best_gain, energy_ratio and "
-      "flip are over the\n"
-      "valid pixels: alpha above 0 in both, all where there is no alpha. flip (FLIP, Andersson et al. 2020) "
-      "is "
-      "the mean\n"
+      "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as "
+      "stored: linear in EXR\n"
+      "and HDR, sRGB-encoded from 0 to 1 in PNG. psnr_db has its peak at 1 and is null without "
+      "error; nrmse is rmse over\n"
+      "the root mean square of B. nrmse_valid, best_gain, nrmse_best_gain, energy_ratio and flip "
+      "are over the\n"
+      "valid pixels: alpha above 0 in both, all where there is no alpha. flip (FLIP, Andersson et "
+      "al. 2020) is the mean\n"
       "difference that an observer sees, from 0 to 1, of linear images after tone curve aces.\n"
       "Different sizes and values that are not finite exit with 3.");
   command->callback([options] { run(*options); });

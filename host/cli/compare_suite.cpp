@@ -54,8 +54,9 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
     }
     if (found.size() != 1) {
       throw Error(ExitCode::bad_input,
-                  "{}: found {} ground truths {}-HASH.exr of {}x{} pixels in {}; allowed: one", file.string(),
-                  found.size(), file.stem().string(), image.width, image.height, truths.string());
+                  "{}: found {} ground truths {}-HASH.exr of {}x{} pixels in {}; allowed: one",
+                  file.string(), found.size(), file.stem().string(), image.width, image.height,
+                  truths.string());
     }
     const auto& [path, truth] = found[0];
     const Comparison errors =

@@ -7,10 +7,11 @@
 
 namespace clpv {
 
-/// Compares each folder/SCENE-CAMERA.exr with the view `indirect` of the ground truth truths/SCENE-CAMERA-HASH.exr of the same
-/// size. Returns the errors of each view, sorted by name, and the mean NRMSE. Throws Error(bad_input) for a folder without an
-/// image, and for an image with no ground truth or several.
-nlohmann::json compare_suite(const std::filesystem::path& folder, const std::filesystem::path& truths,
-                             float exposure);
+/// Compares each folder/SCENE-CAMERA.exr with the view `indirect` of the ground truth
+/// truths/SCENE-CAMERA-HASH.exr of the same size. Returns the errors of each view, sorted by name,
+/// and the mean NRMSE. Throws Error(bad_input) for a folder without an image, and for an image with
+/// no ground truth or several.
+nlohmann::json compare_suite(const std::filesystem::path& folder,
+                             const std::filesystem::path& truths, float exposure);
 
 }  // namespace clpv

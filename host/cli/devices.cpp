@@ -10,9 +10,9 @@
 #include "support/error.hpp"
 
 namespace clpv {
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Device, index, platform_index, device_index, platform, name, driver,
-                                   version, type, compute_units, max_alloc_bytes, images, image3d_writes,
-                                   int64_atomics, fp64, profiling_valid, missing)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Device, index, platform_index, device_index, platform, name,
+                                   driver, version, type, compute_units, max_alloc_bytes, images,
+                                   image3d_writes, int64_atomics, fp64, profiling_valid, missing)
 
 namespace {
 
@@ -22,7 +22,9 @@ nlohmann::json to_json(const DeviceList& list) {
     devices.push_back(nlohmann::json(d));
     devices.back()["supported"] = d.supported();
   }
-  return {{"schema", 1}, {"devices", devices}, {"platforms_without_devices", list.platforms_without_devices}};
+  return {{"schema", 1},
+          {"devices", devices},
+          {"platforms_without_devices", list.platforms_without_devices}};
 }
 
 const char* yes_no(bool value) {
@@ -33,12 +35,14 @@ void print(const DeviceList& list) {
   for (const Device& d : list.devices) {
     fmt::print("{}  {}\n   {}, {}, driver {}\n", d.index, d.name, d.platform, d.version, d.driver);
     fmt::print("   {}, {} compute units, {} MiB a buffer; images {}, 3-D image writes {}\n", d.type,
-               d.compute_units, d.max_alloc_bytes >> 20, yes_no(d.images), yes_no(d.image3d_writes));
-    fmt::print("   64-bit atomics {}, fp64 {}, events {}\n", yes_no(d.int64_atomics), yes_no(d.fp64),
-               d.profiling_valid ? "valid" : "implausible: wall time instead");
+               d.compute_units, d.max_alloc_bytes >> 20, yes_no(d.images),
+               yes_no(d.image3d_writes));
+    fmt::print("   64-bit atomics {}, fp64 {}, events {}\n", yes_no(d.int64_atomics),
+               yes_no(d.fp64), d.profiling_valid ? "valid" : "implausible: wall time instead");
     if (!d.supported()) fmt::print("   unsupported, lacks: {}\n", fmt::join(d.missing, ", "));
   }
-  for (const std::string& name : list.platforms_without_devices) fmt::print("-  {}: no device\n", name);
+  for (const std::string& name : list.platforms_without_devices)
+    fmt::print("-  {}: no device\n", name);
 }
 
 }  // namespace
@@ -54,12 +58,14 @@ void add_devices(CLI::App& app, Shared& shared) {
       list = {{choose_device(list.devices, shared.device)}, {}};
     }
     if (*format == "json") {
-      fmt::print("{}\n", to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+      fmt::print("{}\n",
+                 to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     } else {
       print(list);
     }
     if (list.devices.empty())
-      throw Error(ExitCode::device, "no OpenCL device found; on Debian: apt install pocl-opencl-icd");
+      throw Error(ExitCode::device,
+                  "no OpenCL device found; on Debian: apt install pocl-opencl-icd");
   });
 }
 

@@ -14,8 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Python isolated from the current folder, the user's packages and PYTHON... variables (-I), without writing bytecode (-B). The
-// package's folder comes first only while the package is imported. matplotlib reads settings from the current folder, hence '/'.
+// Python isolated from the current folder, the user's packages and PYTHON... variables (-I),
+// without writing bytecode (-B). The package's folder comes first only while the package is
+// imported. matplotlib reads settings from the current folder, hence '/'.
 constexpr const char* kMain = R"(
 import os, sys
 sys.path.insert(0, sys.argv.pop(1))
@@ -26,7 +27,8 @@ from clpv.draw.__main__ import main
 sys.exit(main(sys.argv[1:]))
 )";
 
-/// Folder of the Python package clpv: under the prefix of the installed program, or in the source tree.
+/// Folder of the Python package clpv: under the prefix of the installed program, or in the source
+/// tree.
 fs::path package_folder() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
@@ -45,8 +47,9 @@ std::vector<fs::path> interpreters() {
   }
   std::vector<fs::path> all;
   std::error_code unknown;
-  for (const fs::path& file : {fs::path(CLPV_PYTHON_INSTALLED), find_program("python3").value_or(""),
-                               fs::path("/usr/bin/python3")}) {
+  for (const fs::path& file :
+       {fs::path(CLPV_PYTHON_INSTALLED), find_program("python3").value_or(""),
+        fs::path("/usr/bin/python3")}) {
     if (fs::exists(file, unknown) && std::ranges::count(all, file) == 0) all.push_back(file);
   }
   return all;
@@ -71,8 +74,8 @@ Drawing::Drawing(std::string kind, std::string asked_by)
     tried += fmt::format("\n  {}: {}", python.string(), first_line(ended.output));
   }
   throw Error(ExitCode::run_time,
-              "{}: no Python can draw; CLPV_PYTHON names one with matplotlib, NumPy and Jinja2 (Debian: "
-              "python3-matplotlib python3-numpy python3-jinja2). Tried:{}",
+              "{}: no Python can draw; CLPV_PYTHON names one with matplotlib, NumPy and Jinja2 "
+              "(Debian: python3-matplotlib python3-numpy python3-jinja2). Tried:{}",
               asked_by_, tried.empty() ? " none: there is no python3" : tried);
 }
 
@@ -85,11 +88,12 @@ void Drawing::draw(const fs::path& output) const {
   if (ended.code == 0) return;
   if (ended.code == static_cast<int>(ExitCode::bad_input))
     throw Error(ExitCode::bad_input, "{}: {}", asked_by_, ended.output);
-  throw Error(ExitCode::run_time, "{}: {} -m clpv.draw ended with {}: {}", asked_by_, python_.string(),
-              ended.code, ended.output);
+  throw Error(ExitCode::run_time, "{}: {} -m clpv.draw ended with {}: {}", asked_by_,
+              python_.string(), ended.code, ended.output);
 }
 
-Process::Result Drawing::run(const fs::path& python, const std::vector<std::string>& arguments) const {
+Process::Result Drawing::run(const fs::path& python,
+                             const std::vector<std::string>& arguments) const {
   std::vector<std::string> words{"-I", "-B", "-c", kMain, package_folder().string(), kind_};
   words.insert(words.end(), arguments.begin(), arguments.end());
   Process::Result ended = Process(python, words).end();

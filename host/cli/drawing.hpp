@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs the Python package python/clpv/draw, which draws images and pages from JSON, NPY and PNG files.
+// Runs the Python package python/clpv/draw, which draws images and pages from JSON, NPY and PNG
+// files.
 #pragma once
 
 #include <filesystem>
@@ -15,21 +16,23 @@ namespace clpv {
 /// One run of the package: checked before the work, run after it.
 class Drawing {
  public:
-  /// `kind`: "bench", "basis" or "report", the package's file of that name.
-  /// `asked_by`: the option or command, for messages.
-  /// Takes the first interpreter that has the package's modules: CLPV_PYTHON alone where it is set; else the one found at build
-  /// time, the first python3 in PATH, /usr/bin/python3. Throws Error(run_time) with the message of each if none has them.
+  /// `kind`: "bench", "basis" or "report", the package's file of that name. `asked_by`: the option
+  /// or command, for messages. Takes the first interpreter that has the package's modules:
+  /// CLPV_PYTHON alone where it is set; else the one found at build time, the first python3 in
+  /// PATH, /usr/bin/python3. Throws Error(run_time) with the message of each if none has them.
   Drawing(std::string kind, std::string asked_by);
 
   /// Temporary folder for the input; removed by the destructor.
   const std::filesystem::path& folder() const { return folder_.path(); }
   void add(const std::string& file, const nlohmann::json& document) const;
 
-  /// Throws Error(bad_input) for a malformed document, Error(run_time) with Python's message on failure.
+  /// Throws Error(bad_input) for a malformed document, Error(run_time) with Python's message on
+  /// failure.
   void draw(const std::filesystem::path& output) const;
 
  private:
-  Process::Result run(const std::filesystem::path& python, const std::vector<std::string>& arguments) const;
+  Process::Result run(const std::filesystem::path& python,
+                      const std::vector<std::string>& arguments) const;
 
   std::string kind_, asked_by_;
   std::filesystem::path python_;

@@ -42,7 +42,8 @@ Light parse_sun(const std::string& text) {
   const auto direction = parse_three<double>(has_lux ? text.substr(0, third) : text);
   if (!direction || !lux) {
     throw Error(ExitCode::usage,
-                "--sun: found '{}', allowed: a direction and an illuminance [lx] like 1,-3,0.5,10", text);
+                "--sun: found '{}', allowed: a direction and an illuminance [lx] like 1,-3,0.5,10",
+                text);
   }
   Light sun;
   sun.name = "sun";
@@ -58,11 +59,11 @@ ClpvMedium parse_medium(const std::string& text) {
   const auto coefficient = [](double value) { return value >= 0 && value <= bounds::kExtinction; };
   if (!numbers || !coefficient(numbers->x) || !coefficient(numbers->y) ||
       !(std::abs(numbers->z) <= bounds::kAnisotropy)) {
-    throw Error(ExitCode::usage,
-                "--medium: found '{}', allowed: scattering and absorption, 0..{:.0f} /m, and anisotropy, "
-                "-{}..{}, like "
-                "0.05,0.01,0.6",
-                text, bounds::kExtinction, bounds::kAnisotropy, bounds::kAnisotropy);
+    throw Error(
+        ExitCode::usage,
+        "--medium: found '{}', allowed: scattering and absorption, 0..{:.0f} /m, and anisotropy, "
+        "-{}..{}, like 0.05,0.01,0.6",
+        text, bounds::kExtinction, bounds::kAnisotropy, bounds::kAnisotropy);
   }
   Medium medium{.anisotropy = numbers->z};
   medium.scattering.fill(numbers->x), medium.absorption.fill(numbers->y);
@@ -88,15 +89,16 @@ std::string group_of(const std::string& name) {
       {"gathering", {"gather", "gather-offset", "near-size", "near-rays"}},
   };
   for (const auto& [stage, names] : kStages) {
-    if (std::ranges::find(names, name) != names.end()) return fmt::format("{}{}", kMoreOptions, stage);
+    if (std::ranges::find(names, name) != names.end())
+      return fmt::format("{}{}", kMoreOptions, stage);
   }
   return "Frame";
 }
 
 }  // namespace
 
-CLI::Option* add_number(CLI::App& command, const std::string& name, double& value, const std::string& help,
-                        const NumberRange& range) {
+CLI::Option* add_number(CLI::App& command, const std::string& name, double& value,
+                        const std::string& help, const NumberRange& range) {
   const auto take = [&value, name, range](const std::string& text) {
     const auto found = parse_number<double>(text);
     if (!found || !(*found >= range.minimum && *found <= range.maximum))  // NaN is in no range
@@ -118,8 +120,8 @@ CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& sec
 glm::dvec3 parse_dvec3(const std::string& text, const char* option) {
   const auto v = parse_three<double>(text);
   if (v && std::isfinite(v->x) && std::isfinite(v->y) && std::isfinite(v->z)) return *v;
-  throw Error(ExitCode::usage, "{}: '{}' is not three finite numbers between commas, like 0,0.5,-1", option,
-              text);
+  throw Error(ExitCode::usage, "{}: '{}' is not three finite numbers between commas, like 0,0.5,-1",
+              option, text);
 }
 
 void add_frame_options(CLI::App& command, OptionValues& given) {
@@ -138,7 +140,8 @@ void add_frame_options(CLI::App& command, OptionValues& given) {
   }
 }
 
-CLI::Option* add_format(CLI::App& command, std::string& format, const std::vector<std::string>& formats) {
+CLI::Option* add_format(CLI::App& command, std::string& format,
+                        const std::vector<std::string>& formats) {
   format = formats.front();
   return command.add_option("--format", format, "format of the results on stdout")
       ->check(CLI::IsMember(formats))
@@ -147,8 +150,8 @@ CLI::Option* add_format(CLI::App& command, std::string& format, const std::vecto
 
 CLI::Option* add_fail_above(CLI::App& command, double& ratio) {
   return add(command, "--fail-above", "RATIO", ratio,
-             "exit with 5 if a value of the new report is more than RATIO times the earlier one, beyond the "
-             "spread")
+             "exit with 5 if a value of the new report is more than RATIO times the earlier one, "
+             "beyond the spread")
       ->check(CLI::Range(1.0, 1e6));
 }
 
@@ -162,7 +165,8 @@ void require_extension(const std::string& option, const std::filesystem::path& f
 void create_folder(const std::string& option, const std::filesystem::path& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
-  if (failed) throw Error(ExitCode::run_time, "{} {}: {}", option, folder.string(), failed.message());
+  if (failed)
+    throw Error(ExitCode::run_time, "{} {}: {}", option, folder.string(), failed.message());
 }
 
 void SceneChanges::apply(MovingScene& scene) const {
@@ -180,8 +184,9 @@ void SceneChanges::apply(MovingScene& scene) const {
 void SceneChanges::describe(nlohmann::json& inputs) const {
   if (sun) inputs["sun"] = fmt::format("{},{}", fmt::join(sun->direction, ","), sun->intensity[0]);
   if (medium) {
-    inputs["medium"] = fmt::format("{},{},{}", medium->scattering[0],
-                                   medium->extinction[0] - medium->scattering[0], medium->anisotropy);
+    inputs["medium"] =
+        fmt::format("{},{},{}", medium->scattering[0],
+                    medium->extinction[0] - medium->scattering[0], medium->anisotropy);
   }
 }
 
@@ -199,9 +204,11 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
         ->type_name(type)
         ->group(kGroup);
   };
-  CLI::Option* eye = vector("--eye", "X,Y,Z", changes.eye, "position of a camera [m], in place of --camera");
+  CLI::Option* eye =
+      vector("--eye", "X,Y,Z", changes.eye, "position of a camera [m], in place of --camera");
   eye->excludes(&camera);
-  CLI::Option* target = vector("--target", "X,Y,Z", changes.target, "point that this camera looks at [m]");
+  CLI::Option* target =
+      vector("--target", "X,Y,Z", changes.target, "point that this camera looks at [m]");
   target->needs(eye);
   eye->needs(target);
   vector("--up", "X,Y,Z", changes.camera.up, "its upward direction (default: 0,1,0)")->needs(eye);
@@ -216,17 +223,19 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
   command
       .add_option_function<std::string>(
           "--sun", take_sun,
-          fmt::format(
-              "direction of a sun's light and its illuminance [lx] (default: {}), in place of all lights",
-              kSunIlluminance))
+          fmt::format("direction of a sun's light and its illuminance [lx] (default: {}), in place "
+                      "of all lights",
+                      kSunIlluminance))
       ->type_name("X,Y,Z[,LUX]")
       ->group(kGroup);
-  const auto take_medium = [&changes](const std::string& text) { changes.medium = parse_medium(text); };
+  const auto take_medium = [&changes](const std::string& text) {
+    changes.medium = parse_medium(text);
+  };
   command
-      .add_option_function<std::string>("--medium", take_medium,
-                                        "scattering and absorption of a medium in the scene's bounding box "
-                                        "[1/m], and the anisotropy of its phase "
-                                        "function (default: 0), in place of the scene's")
+      .add_option_function<std::string>(
+          "--medium", take_medium,
+          "scattering and absorption of a medium in the scene's bounding box [1/m], and the "
+          "anisotropy of its phase function (default: 0), in place of the scene's")
       ->type_name("S[,A[,G]]")
       ->group(kGroup);
 }
@@ -252,13 +261,15 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
                       ->check(CLI::Range(1u, pathtracer::PathTracerOptions::kMaxSamples))
                       ->group(kGroup);
   command
-      .add_option("--noise", options.values.noise,
-                  "relative standard error of the indirect light at which tracing stops (root mean square)")
+      .add_option(
+          "--noise", options.values.noise,
+          "relative standard error of the indirect light at which tracing stops (root mean square)")
       ->check(CLI::PositiveNumber)
       ->excludes(samples)
       ->capture_default_str()
       ->group(kGroup);
-  command.add_option("--seed", options.values.seed, "random seed; the same seed gives identical files")
+  command
+      .add_option("--seed", options.values.seed, "random seed; the same seed gives identical files")
       ->capture_default_str()
       ->group(kGroup);
   add(command, "--threads", "N", options.values.threads,
@@ -268,7 +279,9 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
 }
 
 pathtracer::TraceProgress trace_progress(Progress& progress) {
-  return [&progress](double share) { progress.reach(static_cast<std::uint64_t>(share * kTraceSteps)); };
+  return [&progress](double share) {
+    progress.reach(static_cast<std::uint64_t>(share * kTraceSteps));
+  };
 }
 
 }  // namespace clpv

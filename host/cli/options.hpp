@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Options of several commands, and structured values: named choices, numbers in a range, vectors, and the frame
-// options of options/render_options.hpp. The target variable of an option must outlive the parse.
+// Options of several commands, and structured values: named choices, numbers in a range, vectors,
+// and the frame options of options/render_options.hpp. The target variable of an option must
+// outlive the parse.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -25,7 +26,8 @@
 
 namespace clpv {
 
-/// Adds an option with the placeholder of its value in --help, and its default if `member` holds one.
+/// Adds an option with the placeholder of its value in --help, and its default if `member` holds
+/// one.
 template <typename T>
 CLI::Option* add(CLI::App& command, const std::string& name, const char* type, T& member,
                  const std::string& help) {
@@ -38,7 +40,8 @@ CLI::Option* add(CLI::App& command, const std::string& name, const char* type, T
 
 /// Adds an option that takes one value of an enumeration; the value of `member` is the default.
 template <NamedEnum E>
-CLI::Option* add_choice(CLI::App& command, const std::string& option, E& member, const std::string& help) {
+CLI::Option* add_choice(CLI::App& command, const std::string& option, E& member,
+                        const std::string& help) {
   const auto take = [&member, option](const std::string& name) { member = named<E>(option, name); };
   return command.add_option_function<std::string>(option, take, help)
       ->check(CLI::IsMember(names_of<E>()))
@@ -64,14 +67,15 @@ struct NumberRange {
 };
 
 /// Adds an option for a finite number within the range. A bad value throws Error(usage).
-CLI::Option* add_number(CLI::App& command, const std::string& name, double& value, const std::string& help,
-                        const NumberRange& range);
+CLI::Option* add_number(CLI::App& command, const std::string& name, double& value,
+                        const std::string& help, const NumberRange& range);
 
 /// Adds an option for a time [s] within the range of scenes; the value of `seconds` is the default.
 CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& seconds,
                          const std::string& help);
 
-/// Parses three comma-separated numbers. Throws Error(usage) with the option, the text and the allowed form.
+/// Parses three comma-separated numbers. Throws Error(usage) with the option, the text and the
+/// allowed form.
 glm::dvec3 parse_dvec3(const std::string& text, const char* option);
 
 /// Prefix of the groups of options that --help leaves to --help-all.
@@ -107,7 +111,8 @@ struct SceneChanges {
   void describe(nlohmann::json& inputs) const;
 };
 
-/// Adds --eye, --target, --up, --fov, --near-plane, --sun and --medium. `camera`: the option that excludes --eye.
+/// Adds --eye, --target, --up, --fov, --near-plane, --sun and --medium. `camera`: the option that
+/// excludes --eye.
 void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& camera);
 
 /// The options of path tracing, shared by `pathtrace`, `quality` and `report`.

@@ -53,14 +53,16 @@ nlohmann::json resolved(const Options& options, const SceneCamera& camera) {
 Image compose(const pathtracer::TracedImage& traced, const std::vector<Show>& views) {
   if (views.size() == 1) return traced_view(traced, views[0]);
   Image image;
-  for (const Show view : views) append_layer(image, traced_view(traced, view), std::string(name_of(view)));
+  for (const Show view : views)
+    append_layer(image, traced_view(traced, view), std::string(name_of(view)));
   return image;
 }
 
-void write_outputs(const Options& options, const SceneCamera& camera, const pathtracer::TracedImage& traced,
-                   double seconds) {
+void write_outputs(const Options& options, const SceneCamera& camera,
+                   const pathtracer::TracedImage& traced, double seconds) {
   const nlohmann::json asked = resolved(options, camera);
-  const nlohmann::json noise = std::isnan(traced.noise) ? nlohmann::json() : nlohmann::json(traced.noise);
+  const nlohmann::json noise =
+      std::isnan(traced.noise) ? nlohmann::json() : nlohmann::json(traced.noise);
   Image image = compose(traced, options.views);
   std::vector<std::string_view> views;
   for (const Show view : options.views) views.push_back(name_of(view));
@@ -96,13 +98,15 @@ void run(const Options& options, Shared& shared) {
       scene, scene.lights_for(camera), camera_view(camera, options.width, options.height), tracing,
       trace_progress(progress), ranks);
   if (!ranks.is_root()) return;
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
-    spdlog::warn("noise {:.4f} after the maximum of {} paths per pixel; requested: {}", traced.noise,
-                 traced.samples, options.tracing.values.noise);
+    spdlog::warn("noise {:.4f} after the maximum of {} paths per pixel; requested: {}",
+                 traced.noise, traced.samples, options.tracing.values.noise);
   }
   write_outputs(options, camera, traced, seconds);
-  const std::string noise = std::isnan(traced.noise) ? "" : fmt::format("noise {:.4f}, ", traced.noise);
+  const std::string noise =
+      std::isnan(traced.noise) ? "" : fmt::format("noise {:.4f}, ", traced.noise);
   spdlog::info("{} paths per pixel, {}{:.1f} s", traced.samples, noise, seconds);
 }
 
@@ -129,17 +133,18 @@ void add_options(CLI::App& command, Options& options) {
 
 void add_pathtrace(CLI::App& app, Shared& shared) {
   using namespace pathtrace_command;
-  CLI::App* command = app.add_subcommand("pathtrace", "Ground truth of a scene by path tracing on the CPU");
+  CLI::App* command =
+      app.add_subcommand("pathtrace", "Ground truth of a scene by path tracing on the CPU");
   auto options = std::make_shared<pathtrace_command::Options>();
   add_options(*command, *options);
   command->footer(
-      "Diffuse surfaces, hard shadows, one ray per pixel through its centre. `clpv compare` compares a "
-      "rendered\n"
-      "image with the result pixel by pixel. Emissive surfaces are light sources. Background pixels are 0 "
-      "with "
-      "alpha 0.\n"
+      "Diffuse surfaces, hard shadows, one ray per pixel through its centre. `clpv compare` "
+      "compares a rendered\n"
+      "image with the result pixel by pixel. Emissive surfaces are light sources. Background "
+      "pixels are 0 with alpha 0.\n"
       "Time is proportional to the number of pixels: 240 x 135 pixels suffice for measurements.\n"
-      "mpirun -n N clpv pathtrace ... traces with N ranks; the files are identical (docs/scale.md).");
+      "mpirun -n N clpv pathtrace ... traces with N ranks; the files are identical "
+      "(docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// clpv prepare: a helper process, which compiles kernels of a frame that another process is about to render.
+// clpv prepare: a helper process, which compiles kernels of a frame that another process is about
+// to render.
 #include <memory>
 
 #include "cli/commands.hpp"
@@ -33,7 +34,8 @@ void run(const Options& options, const Shared& shared) {
 
 void add_prepare(CLI::App& app, Shared& shared) {
   using namespace prepare_command;
-  CLI::App* command = app.add_subcommand("prepare", "Compile kernels, as a helper of another process");
+  CLI::App* command =
+      app.add_subcommand("prepare", "Compile kernels, as a helper of another process");
   command->group("");  // not for users
   auto options = std::make_shared<prepare_command::Options>();
   add_render_request(*command, options->request);

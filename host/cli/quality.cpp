@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// clpv quality: errors of many variants' frames against the path-traced ground truth, and their times.
+// clpv quality: errors of many variants' frames against the path-traced ground truth, and their
+// times.
 //
-//   scenes, --camera   ->  Subject: a scene, its cameras, their ground truths    quality_subjects.hpp
-//   --vary             ->  Variant: values of the options that vary             quality/quality.hpp
+//   scenes, --camera   ->  Subject: a scene, its cameras, their ground truths
+//   (quality_subjects.hpp)
+//   --vary             ->  Variant: values of the options that vary (quality/quality.hpp)
 //   subject x variant  ->  Group: the options of one frame, used for all cameras of the subject
-//   group x camera     ->  QualityCell: read from the cache, or rendered, compared and stored       QualityStore
-//   cells              ->  means of a variant; table and JSON               quality/quality.hpp
+//   group x camera     ->  QualityCell: read from the cache, or rendered, compared and stored
+//   cells              ->  means of a variant; table and JSON (quality/quality.hpp)
 //
 // Ranks take every N-th group, or every N-th cell where groups are fewer than ranks.
 #include "quality/quality.hpp"
@@ -46,20 +48,21 @@ struct Options {
 
   /// True if the command line names a frame option, apart from the size.
   bool named() const {
-    return std::ranges::any_of(
-        given, [](const auto& option) { return option.first != "width" && option.first != "height"; });
+    return std::ranges::any_of(given, [](const auto& option) {
+      return option.first != "width" && option.first != "height";
+    });
   }
 };
 
-/// All combinations of the values of --vary. Without it: the frame that the options name; without any option and baseline:
-/// all bases and transports.
+/// All combinations of the values of --vary. Without it: the frame that the options name; without
+/// any option and baseline: all bases and transports.
 std::vector<Variant> variants_of(const Options& options) {
   std::vector<VariedOption> varied;
   for (const std::string& text : options.varied) {
     varied.push_back(parse_varied(text));
     if (varied.back().name == "width" || varied.back().name == "height") {
-      throw Error(ExitCode::usage, "--vary {}: all variants have one size; allowed: --width and --height",
-                  text);
+      throw Error(ExitCode::usage,
+                  "--vary {}: all variants have one size; allowed: --width and --height", text);
     }
   }
   if (varied.empty() && !options.named() && options.baselines.names.empty()) {
@@ -99,8 +102,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 /// Measures the cell of that group and camera; creates the group's frame if it does not exist yet.
-QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera,
-                     const Options& options) {
+QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Group& group,
+                     std::size_t camera, const Options& options) {
   const auto started = std::chrono::steady_clock::now();
   QualityCell cell;
   try {
@@ -109,8 +112,8 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
       frame = std::make_unique<Frame>(session, group.subject.scene, group.options);
       setup_s = seconds_since(started);
     }
-    cell = measure(session, *frame, group.subject.cameras[camera], group.subject.truths[camera], options.view,
-                   options.frames);
+    cell = measure(session, *frame, group.subject.cameras[camera], group.subject.truths[camera],
+                   options.view, options.frames);
     cell.setup_s = setup_s;
   } catch (const Error& error) {
     // An incompatible basis and transport, or an unsuitable grid, is a valid result.
@@ -124,8 +127,9 @@ QualityCell rendered(Session& session, std::unique_ptr<Frame>& frame, const Grou
 }
 
 /// Returns all cells by group and camera at rank 0, and this rank's cells at other ranks.
-std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::vector<Group>& groups,
-                                     QualityStore& store, const Options& options) {
+std::vector<QualityCell> measure_all(Ranks& ranks, Session& session,
+                                     const std::vector<Group>& groups, QualityStore& store,
+                                     const Options& options) {
   const bool whole = groups.size() >= static_cast<std::size_t>(ranks.size());
   const auto each = [&](const auto& action) {
     std::size_t cell = 0;
@@ -140,11 +144,12 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session, const std::
   std::set<std::pair<std::string, std::string>> warned;  // scenes and cameras
   std::map<std::size_t, nlohmann::json> cells;           // cells of this rank, by number
   Progress progress("quality", mine);
-  each([&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera, std::size_t number) {
+  each([&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera,
+           std::size_t number) {
     stop_if_interrupted(
         fmt::format("{} of {} cells are finished; the same command resumes", cells.size(), mine));
-    const std::string key = quality_key(group.subject.truths[camera], session.device(), group.options,
-                                        options.view, options.frames);
+    const std::string key = quality_key(group.subject.truths[camera], session.device(),
+                                        group.options, options.view, options.frames);
     std::optional<QualityCell> cell;
     if (!options.fresh) cell = store.find(key);
     const bool kept = cell.has_value();
@@ -210,8 +215,8 @@ void run(const Options& options, Shared& shared) {
   if (!ranks.is_root()) return;
   if (!options.baselines.names.empty()) {
     const auto frame = [&](const SceneData& scene) { return with(options, {}, scene); };
-    std::ranges::move(measure_baselines(options.baselines, session, subjects, frame, tracing.bounces,
-                                        options.view, options.frames),
+    std::ranges::move(measure_baselines(options.baselines, session, subjects, frame,
+                                        tracing.bounces, options.view, options.frames),
                       std::back_inserter(cells));
   }
   const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
@@ -220,23 +225,28 @@ void run(const Options& options, Shared& shared) {
 }
 
 void add_options(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.subjects.scenes, "scene files (.json) or models (.gltf, .glb)")
+  command
+      .add_option("SCENE", options.subjects.scenes, "scene files (.json) or models (.gltf, .glb)")
       ->required();
   add_subject_options(command, options.subjects);
   add(command, "--vary", "OPTION=a,b,c", options.varied,
-      "render option and its values, repeatable; each combination is a variant. Without --vary: the frame\n"
-      "that the other options name, or all bases and transports if neither one nor --baseline is named");
+      "render option and its values, repeatable; each combination is a variant. Without --vary: "
+      "the frame\n"
+      "that the other options name, or all bases and transports if neither one nor --baseline is "
+      "named");
   add_baseline_options(command, options.baselines);
   add_choice(command, "--view", options.view, "view to compare");
   command
-      .add_option("--frames", options.frames,
-                  "number of timed frames per cell, after a warm-up frame; the results have their medians")
+      .add_option(
+          "--frames", options.frames,
+          "number of timed frames per cell, after a warm-up frame; the results have their medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add_tracing_options(command, options.tracing);
   add(command, "--cache", "DIR", options.cache,
       "folder for cached ground truths and cells (default: $XDG_CACHE_HOME/clpv/quality)");
-  command.add_flag("--fresh", options.fresh, "new measurement of all cells, against cached ground truths");
+  command.add_flag("--fresh", options.fresh,
+                   "new measurement of all cells, against cached ground truths");
   add_format(command, options.format);
   add(command, "-o,--output", "FILE.json", options.output, "output file for the results");
   add_frame_options(command, options.given);
@@ -255,12 +265,13 @@ void add_quality(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<quality_command::Options>();
   add_options(*command, *options);
   command->footer(
-      "nrmse: root mean square error over the ground truth's, over the valid pixels; best "
-      "gain: after the\n"
-      "single factor that minimises it; energy: ratio of sums; FLIP: mean visible difference, 0 to 1,\n"
+      "nrmse: root mean square error over the ground truth's, over the valid pixels; best gain: "
+      "after the\n"
+      "single factor that minimises it; energy: ratio of sums; FLIP: mean visible difference, 0 to "
+      "1,\n"
       "at the scene's exposure (Andersson et al. 2020).\n"
-      "An interrupted run resumes from its cached cells. A new build, device or kernel source invalidates "
-      "them.\n"
+      "An interrupted run resumes from its cached cells. A new build, device or kernel source "
+      "invalidates them.\n"
       "mpirun -n N clpv quality ... distributes the cells over N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }

@@ -10,23 +10,24 @@
 namespace clpv {
 
 void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
-  CLI::Option* names = add_choices(
-      command, "--baseline", baselines.names,
-      "other methods to compare with, repeatable; each takes the time of the frame without G-buffer, shadow\n"
-      "maps and shading");
+  CLI::Option* names = add_choices(command, "--baseline", baselines.names,
+                                   "other methods to compare with, repeatable; each takes the time "
+                                   "of the frame without G-buffer, shadow\n"
+                                   "maps and shading");
   const NumberRange range{1e-3, 1e7, "0.001..1e7 ms"};
-  add_number(command, "--baseline-time", baselines.time, "time of each baseline in place of the frame's [ms]",
-             range)
+  add_number(command, "--baseline-time", baselines.time,
+             "time of each baseline in place of the frame's [ms]", range)
       ->type_name("MS")
       ->needs(names);
-  add(command, "--images", "DIR", baselines.images, "folder for images: DIR/BASELINE/SCENE-CAMERA.exr")
+  add(command, "--images", "DIR", baselines.images,
+      "folder for images: DIR/BASELINE/SCENE-CAMERA.exr")
       ->needs(names);
 }
 
-std::vector<QualityCell> measure_baselines(const QualityBaselines& baselines, Session& session,
-                                           const std::vector<Subject>& subjects,
-                                           const std::function<RenderOptions(const SceneData&)>& options_of,
-                                           int bounces, Show show, int frames) {
+std::vector<QualityCell> measure_baselines(
+    const QualityBaselines& baselines, Session& session, const std::vector<Subject>& subjects,
+    const std::function<RenderOptions(const SceneData&)>& options_of, int bounces, Show show,
+    int frames) {
   std::size_t views = 0;
   for (const Subject& subject : subjects) views += subject.cameras.size();
   Progress progress("baselines", views * baselines.names.size());
@@ -47,9 +48,11 @@ std::vector<QualityCell> measure_baselines(const QualityBaselines& baselines, Se
               measure_baseline(baseline, view, budget, subject.truths[c], show, frames);
           cell = std::move(measured.cell);
           if (!baselines.images.empty()) {
-            const std::filesystem::path folder = std::filesystem::path(baselines.images) / name_of(baseline);
+            const std::filesystem::path folder =
+                std::filesystem::path(baselines.images) / name_of(baseline);
             create_folder("--images", folder);
-            write_exr(folder / fmt::format("{}-{}.exr", subject.scene.name, camera.name), measured.image);
+            write_exr(folder / fmt::format("{}-{}.exr", subject.scene.name, camera.name),
+                      measured.image);
           }
         } catch (const Error& error) {
           if (error.code() != ExitCode::usage) throw;

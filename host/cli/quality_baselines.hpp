@@ -23,11 +23,12 @@ struct QualityBaselines {
 /// Adds --baseline, --baseline-time and --images.
 void add_baseline_options(CLI::App& command, QualityBaselines& baselines);
 
-/// Measures each baseline in each view of the subjects, which have their ground truths. `options_of`: of the frame whose time
-/// they get. A baseline that does not have a scene's light is a rejected cell.
-std::vector<QualityCell> measure_baselines(const QualityBaselines& baselines, Session& session,
-                                           const std::vector<Subject>& subjects,
-                                           const std::function<RenderOptions(const SceneData&)>& options_of,
-                                           int bounces, Show show, int frames);
+/// Measures each baseline in each view of the subjects, which have their ground truths.
+/// `options_of`: of the frame whose time they get. A baseline that does not have a scene's light is
+/// a rejected cell.
+std::vector<QualityCell> measure_baselines(
+    const QualityBaselines& baselines, Session& session, const std::vector<Subject>& subjects,
+    const std::function<RenderOptions(const SceneData&)>& options_of, int bounces, Show show,
+    int frames);
 
 }  // namespace clpv

@@ -57,7 +57,8 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
     const auto meant = [&](const std::string& scene) { return !path_in(model, scene).empty(); };
     if (given.scenes.size() == 1 || std::ranges::any_of(given.scenes, meant)) continue;
     throw Error(ExitCode::usage,
-                "--model {}: allowed with several scenes: STEM=PATH, STEM that of a scene's file", model);
+                "--model {}: allowed with several scenes: STEM=PATH, STEM that of a scene's file",
+                model);
   }
   std::vector<Subject> subjects;
   for (const std::string& path : given.scenes) {
@@ -68,7 +69,8 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
     subject.scene = std::move(moving).take();
     for (const std::string& note : subject.scene.notes) spdlog::info("{}", note);
     for (const SceneCamera& camera : subject.scene.cameras) {
-      const bool chosen = given.cameras.empty() || std::ranges::count(given.cameras, camera.name) > 0;
+      const bool chosen =
+          given.cameras.empty() || std::ranges::count(given.cameras, camera.name) > 0;
       if (chosen) subject.cameras.push_back(camera);
     }
   }
@@ -82,14 +84,17 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
   return subjects;
 }
 
-void trace_truths(Subject& subject, int width, int height, const pathtracer::PathTracerOptions& options,
-                  const std::filesystem::path& folder, Ranks& ranks) {
+void trace_truths(Subject& subject, int width, int height,
+                  const pathtracer::PathTracerOptions& options, const std::filesystem::path& folder,
+                  Ranks& ranks) {
   for (const SceneCamera& camera : subject.cameras) {
-    Progress progress(fmt::format("ground truth {} {}", subject.scene.name, camera.name), kTraceSteps);
-    subject.truths.push_back(cached_ground_truth(folder, subject.scene, camera, width, height, options,
-                                                 trace_progress(progress), ranks));
+    Progress progress(fmt::format("ground truth {} {}", subject.scene.name, camera.name),
+                      kTraceSteps);
+    subject.truths.push_back(cached_ground_truth(folder, subject.scene, camera, width, height,
+                                                 options, trace_progress(progress), ranks));
     const GroundTruth& truth = subject.truths.back();
-    spdlog::debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples, truth.noise);
+    spdlog::debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples,
+                  truth.noise);
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Subjects of a quality run: scenes, their cameras, the ground truth of each view, and the cache folder.
+// Subjects of a quality run: scenes, their cameras, the ground truth of each view, and the cache
+// folder.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,8 +17,9 @@ namespace clpv {
 
 /// Command-line values.
 struct QualitySubjects {
-  std::vector<std::string> scenes;   ///< files
-  std::vector<std::string> models;   ///< "STEM=PATH", STEM of a scene file; for one scene also "PATH"
+  std::vector<std::string> scenes;  ///< files
+  /// "STEM=PATH", STEM of a scene file; for one scene also "PATH".
+  std::vector<std::string> models;
   std::vector<std::string> cameras;  ///< names; empty: all
   SceneChanges changes;              ///< of all scenes
   double time = 0;                   ///< time of the frame [s]
@@ -36,16 +38,18 @@ struct Subject {
 /// Returns the files that the command line names.
 std::vector<NamedFile> files_of(const QualitySubjects& given);
 
-/// Returns the cache folder of quality runs: `given` (--cache), or the user's cache if that is empty. Throws
-/// Error(usage) if neither exists.
+/// Returns the cache folder of quality runs: `given` (--cache), or the user's cache if that is
+/// empty. Throws Error(usage) if neither exists.
 std::filesystem::path quality_cache(const std::string& given);
 
-/// Loads the scenes at that time, without ground truths. Throws the errors of load_scene, and Error(usage) for a
-/// camera or model that matches no scene.
+/// Loads the scenes at that time, without ground truths. Throws the errors of load_scene, and
+/// Error(usage) for a camera or model that matches no scene.
 std::vector<Subject> load_subjects(const QualitySubjects& given);
 
-/// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar. Collective over all ranks.
-void trace_truths(Subject& subject, int width, int height, const pathtracer::PathTracerOptions& options,
-                  const std::filesystem::path& folder, Ranks& ranks = single_rank());
+/// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar. Collective
+/// over all ranks.
+void trace_truths(Subject& subject, int width, int height,
+                  const pathtracer::PathTracerOptions& options, const std::filesystem::path& folder,
+                  Ranks& ranks = single_rank());
 
 }  // namespace clpv

@@ -30,18 +30,20 @@ std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
     positions.emplace_back(glm::vec3(p), 0);
     normals.emplace_back(glm::vec3(n), 0);
   }
-  const std::vector<glm::vec4> light = frame.irradiance_at(std::move(positions), std::move(normals));
+  const std::vector<glm::vec4> light =
+      frame.irradiance_at(std::move(positions), std::move(normals));
   const ClpvGrid coarsest = frame.light().grids.back();
   std::string text = "x,y,z,nx,ny,nz,red,green,blue\n";
   std::size_t outside = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& [p, n] = points[i];
     outside += !reaches(coarsest, p);
-    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", p.x, p.y, p.z, n.x, n.y, n.z,
-                   light[i].x, light[i].y, light[i].z);
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", p.x, p.y, p.z, n.x,
+                   n.y, n.z, light[i].x, light[i].y, light[i].z);
   }
   if (outside > 0)
-    spdlog::warn("{} of {} points lie outside the cascades, where there is no light", outside, points.size());
+    spdlog::warn("{} of {} points lie outside the cascades, where there is no light", outside,
+                 points.size());
   return text;
 }
 
@@ -91,14 +93,15 @@ void add_query(CLI::App& app, Shared& shared) {
   add(*command, "--points", "FILE.csv", options->points,
       "input points, lines of x,y,z,nx,ny,nz: world position [m] and surface normal")
       ->required();
-  add(*command, "-o,--output", "FILE.csv", options->output, "output table, as CSV (default: stdout)");
+  add(*command, "-o,--output", "FILE.csv", options->output,
+      "output table, as CSV (default: stdout)");
   add_seconds(*command, "--time", options->time, "time in the scene's animation [s]");
   add_render_request(*command, options->request);
   command->footer(
-      "Adds red,green,blue to each point: the irradiance of indirect light on a surface there [W/m^2], like "
-      "--view\nirradiance with --near off. Outside the cascades, which surround the camera, it is 0. The "
-      "surface need "
-      "not be part of\nthe scene: it can be a moving object or mist.");
+      "Adds red,green,blue to each point: the irradiance of indirect light on a surface there "
+      "[W/m^2], like --view\nirradiance with --near off. Outside the cascades, which surround the "
+      "camera, it is 0. The surface need not be part of\nthe scene: it can be a moving object or "
+      "mist.");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -103,7 +103,8 @@ void run(const Options& options, const Shared& shared) {
   warn_of_unreached(session, frame, camera.name);
   stop_if_interrupted();
   progress.advance();
-  if (!options.stats.empty()) stats.set_times(measure_frames(session, frame, camera, options.frames, 0));
+  if (!options.stats.empty())
+    stats.set_times(measure_frames(session, frame, camera, options.frames, 0));
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
   write_images(frame, options, request.exposure_of(scene), metadata_of(described));
@@ -124,8 +125,8 @@ void run(const Options& options, const Shared& shared) {
 
 void add_render(CLI::App& app, Shared& shared) {
   using namespace render_command;
-  CLI::App* command =
-      app.add_subcommand("render", "Render a scene with indirect light from light propagation volumes");
+  CLI::App* command = app.add_subcommand(
+      "render", "Render a scene with indirect light from light propagation volumes");
   auto options = std::make_shared<render_command::Options>();
   add_render_request(*command, options->request);
   add_shown_options(*command, options->request);
@@ -137,11 +138,13 @@ void add_render(CLI::App& app, Shared& shared) {
               "views to write; several become layers of one EXR, or FILE.VIEW.png")
       ->default_str("full");
   add(*command, "--stats", "FILE.json", options->stats,
-      "output file (-: stdout) for stage times of frames that recompute all lighting, options and energies, "
+      "output file (-: stdout) for stage times of frames that recompute all lighting, options and "
+      "energies, "
       "as JSON");
   command
-      ->add_option("--frames", options->frames,
-                   "number of timed frames for --stats, after a warm-up frame; it has their medians")
+      ->add_option(
+          "--frames", options->frames,
+          "number of timed frames for --stats, after a warm-up frame; it has their medians")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add(*command, "--dump-normals", "FILE.json", options->normals,

@@ -39,11 +39,14 @@ MovingScene SceneRequest::open(const std::vector<NamedFile>& outputs) const {
 }
 
 void add_scene_request(CLI::App& command, SceneRequest& request) {
-  command.add_option("SCENE", request.scene, "scene file (.json) or model (.gltf, .glb)")->required();
+  command.add_option("SCENE", request.scene, "scene file (.json) or model (.gltf, .glb)")
+      ->required();
   add(command, "--model", "PATH", request.model, "model file instead of the scene file's");
-  CLI::Option* camera =
-      add(command, "--camera", "NAME", request.camera, "name of the camera (default: the scene's first)")
-          ->check([](const std::string& name) { return name.empty() ? "found '', allowed: a name" : ""; });
+  CLI::Option* camera = add(command, "--camera", "NAME", request.camera,
+                            "name of the camera (default: the scene's first)")
+                            ->check([](const std::string& name) {
+                              return name.empty() ? "found '', allowed: a name" : "";
+                            });
   add_scene_changes(command, request.changes, *camera);
 }
 
@@ -53,7 +56,8 @@ void add_render_request(CLI::App& command, RenderRequest& request) {
 }
 
 void add_shown_options(CLI::App& command, RenderRequest& request) {
-  add(command, "--exposure", "EV", request.exposure, "exposure of a PNG [EV] (default: the scene's)")
+  add(command, "--exposure", "EV", request.exposure,
+      "exposure of a PNG [EV] (default: the scene's)")
       ->check([](const std::string& text) {
         const auto found = parse_number<float>(text);  // NaN is in no range
         return found && std::abs(*found) <= kMaxExposure
@@ -90,7 +94,8 @@ Compilation compilation_of(const RenderRequest& request, const std::string& devi
 
 std::vector<NamedFile> files_of(const SceneData& scene) {
   std::vector<NamedFile> all;
-  for (const std::filesystem::path& file : scene.files) all.push_back({"scene " + scene.name, file});
+  for (const std::filesystem::path& file : scene.files)
+    all.push_back({"scene " + scene.name, file});
   return all;
 }
 
@@ -103,15 +108,14 @@ void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOp
   }
   if (!cascades_meet(scene, camera.eye, options.cascades, options.cascade_size, options.grid)) {
     spdlog::warn(
-        "nothing of the scene is in the cascades, which end {:.4g} m from camera '{}': no indirect light; a "
-        "larger "
-        "--cascade-size or more --cascades reach farther",
+        "nothing of the scene is in the cascades, which end {:.4g} m from camera '{}': no indirect "
+        "light; a larger --cascade-size or more --cascades reach farther",
         coarsest / 2, camera.name);
   }
 }
 
-nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const SceneData& shown,
-                        const SceneCamera& camera, double seconds) {
+nlohmann::json describe(const RenderRequest& request, const RenderOptions& options,
+                        const SceneData& shown, const SceneCamera& camera, double seconds) {
   nlohmann::json all = to_json(options);
   all.update({{"scene", request.scene},
               {"model", request.model},

@@ -26,12 +26,13 @@ struct SceneRequest {
   /// The files that the command line names.
   std::vector<NamedFile> files() const;
 
-  /// Loads the scene with these changes. A camera given by its numbers is then the only one. Throws Error(usage) if one of the
-  /// `outputs` is a file of the scene.
+  /// Loads the scene with these changes. A camera given by its numbers is then the only one. Throws
+  /// Error(usage) if one of the `outputs` is a file of the scene.
   MovingScene open(const std::vector<NamedFile>& outputs = {}) const;
 };
 
-/// Adds SCENE, --model, --camera and the options of add_scene_changes(); the request must outlive the parse, as below.
+/// Adds SCENE, --model, --camera and the options of add_scene_changes(); the request must outlive
+/// the parse, as below.
 void add_scene_request(CLI::App& command, SceneRequest& request);
 
 struct RenderRequest : SceneRequest {
@@ -49,11 +50,12 @@ void add_render_request(CLI::App& command, RenderRequest& request);
 /// Adds the options for image display.
 void add_shown_options(CLI::App& command, RenderRequest& request);
 
-/// Returns the frame options of the request for `scene`, as resolve_options. Throws Error(usage) if a given option would have
-/// no effect with the others; it names both.
+/// Returns the frame options of the request for `scene`, as resolve_options. Throws Error(usage) if
+/// a given option would have no effect with the others; it names both.
 RenderOptions resolve_request(const RenderRequest& request, const SceneData& scene);
 
-/// Returns who compiles the kernels of these frames: helper processes, unless a launcher started several ranks.
+/// Returns who compiles the kernels of these frames: helper processes, unless a launcher started
+/// several ranks.
 Compilation compilation_of(const RenderRequest& request, const std::string& device);
 
 /// Returns the files that the scene was read from.
@@ -63,7 +65,7 @@ std::vector<NamedFile> files_of(const SceneData& scene);
 void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOptions& options);
 
 /// Returns all inputs of an image of `shown` at a time [s], by name.
-nlohmann::json describe(const RenderRequest& request, const RenderOptions& options, const SceneData& shown,
-                        const SceneCamera& camera, double seconds);
+nlohmann::json describe(const RenderRequest& request, const RenderOptions& options,
+                        const SceneData& shown, const SceneCamera& camera, double seconds);
 
 }  // namespace clpv

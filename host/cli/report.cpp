@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// clpv report: HTML page with images and ground truth, errors over times, and benchmarks; uses python/clpv/draw.
+// clpv report: HTML page with images and ground truth, errors over times, and benchmarks; uses
+// python/clpv/draw.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,7 +38,8 @@ struct Options {
   TracingOptions tracing;
 };
 
-/// Render variants of the page. The most important comes last; only it has as many bounces as the ground truth.
+/// Render variants of the page. The most important comes last; only it has as many bounces as the
+/// ground truth.
 struct PageVariant {
   const char* title;
   OptionValues given;
@@ -61,8 +63,8 @@ nlohmann::json read_documents(const std::vector<std::string>& paths, const char*
   for (const std::string& path : paths) {
     const nlohmann::json document = read_json(path);
     if (!document.is_object() || !document.contains(wanted)) {
-      throw Error(ExitCode::bad_input, "{}: no '{}' in it; allowed: a file of clpv {} as JSON", path, wanted,
-                  command);
+      throw Error(ExitCode::bad_input, "{}: no '{}' in it; allowed: a file of clpv {} as JSON",
+                  path, wanted, command);
     }
     all.push_back({{"file", path}, {"document", document}});
   }
@@ -75,7 +77,8 @@ OptionValues sized(const Options& options, OptionValues given) {
   return given;
 }
 
-/// Exposure [EV] that raises the mean luminance of indirect light, dark at the image's exposure, to 20 % of white.
+/// Exposure [EV] that raises the mean luminance of indirect light, dark at the image's exposure, to
+/// 20 % of white.
 float exposure_of(const Image& truth) {
   double sum = 0, count = 0;
   for (int y = 0; y < truth.height; ++y) {
@@ -92,8 +95,8 @@ float exposure_of(const Image& truth) {
 std::string add_values(const Drawing& drawing, const std::string& stem, const Image& image) {
   const std::string name = stem + ".npy";
   write_npy(drawing.folder() / name, image.pixels,
-            std::array{static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width),
-                       image.channels.size()});
+            std::array{static_cast<std::size_t>(image.height),
+                       static_cast<std::size_t>(image.width), image.channels.size()});
   return name;
 }
 
@@ -107,23 +110,26 @@ Image read_image_of_method(const fs::path& path) {
   const std::array colours{"R", "G", "B"};
   if (image.channels.size() < colours.size() ||
       !std::equal(colours.begin(), colours.end(), image.channels.begin())) {
-    throw Error(ExitCode::bad_input, "{}: channels {}; allowed: R, G, B and perhaps A", path.string(),
-                fmt::join(image.channels, ", "));
+    throw Error(ExitCode::bad_input, "{}: channels {}; allowed: R, G, B and perhaps A",
+                path.string(), fmt::join(image.channels, ", "));
   }
   return image;
 }
 
 Image render_indirect(Session& session, const Subject& subject, const SceneCamera& camera,
                       const Options& options, const PageVariant& variant) {
-  Frame frame(session, subject.scene, resolve_options(sized(options, variant.given), subject.scene));
+  Frame frame(session, subject.scene,
+              resolve_options(sized(options, variant.given), subject.scene));
   frame.render(camera);
   warn_of_unreached(session, frame, fmt::format("{}, {}", camera.name, variant.title));
   return view_image(frame, Show::indirect);
 }
 
-/// View of one camera: the ground truth, and each image with its errors: of our variants, then of other methods.
-nlohmann::json view(Session& session, const Options& options, const Subject& subject, std::size_t index,
-                    const Drawing& drawing, const std::string& stem, Progress& progress) {
+/// View of one camera: the ground truth, and each image with its errors: of our variants, then of
+/// other methods.
+nlohmann::json view(Session& session, const Options& options, const Subject& subject,
+                    std::size_t index, const Drawing& drawing, const std::string& stem,
+                    Progress& progress) {
   const SceneCamera& camera = subject.cameras[index];
   const GroundTruth& traced = subject.truths[index];
   const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
@@ -138,14 +144,15 @@ nlohmann::json view(Session& session, const Options& options, const Subject& sub
     shots.push_back(std::move(shot));
   };
   for (const PageVariant& variant : page_variants(options)) {
-    add_shot(variant.title, variant.title, render_indirect(session, subject, camera, options, variant),
+    add_shot(variant.title, variant.title,
+             render_indirect(session, subject, camera, options, variant),
              as_arguments(variant.given));
     progress.advance();
   }
   for (const std::string& folder : options.images) {
     const fs::path file = file_of(folder, subject, camera);
-    add_shot(fs::weakly_canonical(folder).filename().string(), file.string(), read_image_of_method(file),
-             nullptr);
+    add_shot(fs::weakly_canonical(folder).filename().string(), file.string(),
+             read_image_of_method(file), nullptr);
   }
   return {{"scene", subject.scene.name},
           {"camera", camera.name},
@@ -159,14 +166,16 @@ nlohmann::json views(Session& session, const Options& options, const Drawing& dr
   std::vector<Subject> subjects = load_subjects(options.subjects);
   for (const Subject& subject : subjects)  // before minutes of tracing
     for (const SceneCamera& camera : subject.cameras)
-      for (const std::string& folder : options.images) read_image_of_method(file_of(folder, subject, camera));
+      for (const std::string& folder : options.images)
+        read_image_of_method(file_of(folder, subject, camera));
   for (Subject& subject : subjects) {
     const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
     trace_truths(subject, size.width, size.height, options.tracing.resolved(),
                  quality_cache(options.cache) / "references");
     Progress progress("report", subject.cameras.size() * page_variants(options).size());
     for (std::size_t i = 0; i < subject.cameras.size(); ++i)
-      all.push_back(view(session, options, subject, i, drawing, fmt::format("view{}", all.size()), progress));
+      all.push_back(
+          view(session, options, subject, i, drawing, fmt::format("view{}", all.size()), progress));
   }
   return all;
 }
@@ -192,9 +201,9 @@ void run(const Options& options, const Shared& shared) {
   report["marked"] = {{{"preset", "paper"}},
                       {{"preset", "best"}},
                       {{"basis", best.basis}, {"transport", name_of(best.transport)}}};
-  report["subtitle"] =
-      fmt::format("clpv {}, {} ({}), driver {}; views of {} x {} pixels", version(), session.device().name,
-                  session.device().platform, session.device().driver, options.width, options.height);
+  report["subtitle"] = fmt::format("clpv {}, {} ({}), driver {}; views of {} x {} pixels",
+                                   version(), session.device().name, session.device().platform,
+                                   session.device().driver, options.width, options.height);
   drawing.add("report.json", report);
   drawing.draw(output);
   fmt::print("{}\n", output.string());
@@ -208,7 +217,8 @@ void add_report(CLI::App& app, Shared& shared) {
       "report", "Write an HTML page: images and ground truth, errors over times, benchmarks");
   auto options = std::make_shared<report_command::Options>();
   command->add_option("DIR", options->folder, "output folder for index.html")->required();
-  command->add_option("SCENE", options->subjects.scenes, "scene files to compare with path tracing");
+  command->add_option("SCENE", options->subjects.scenes,
+                      "scene files to compare with path tracing");
   add_subject_options(*command, options->subjects);
   add(*command, "--quality", "FILE.json", options->quality,
       "results of clpv quality -o FILE.json, repeatable");
@@ -216,8 +226,10 @@ void add_report(CLI::App& app, Shared& shared) {
       "results of clpv bench table1 or layouts -o FILE.json, repeatable");
   add(*command, "--images", "DIR", options->images,
       "images of another method: DIR/SCENE-CAMERA.exr of indirect light, repeatable");
-  command->add_option("--width", options->width, "width of the images [pixels]")->capture_default_str();
-  command->add_option("--height", options->height, "height of the images [pixels]")->capture_default_str();
+  command->add_option("--width", options->width, "width of the images [pixels]")
+      ->capture_default_str();
+  command->add_option("--height", options->height, "height of the images [pixels]")
+      ->capture_default_str();
   add_tracing_options(*command, options->tracing);
   add(*command, "--cache", "DIR", options->cache,
       "folder for cached ground truths (default: $XDG_CACHE_HOME/clpv/quality)");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// clpv sequence: renders an animated scene frame by frame into a folder, and optionally into a video.
+// clpv sequence: renders an animated scene frame by frame into a folder, and optionally into a
+// video.
 #include "sequence/sequence.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +33,8 @@ struct Options : SequenceOptions {
 /// Checks the options before the scene is read. Returns the outputs.
 std::vector<NamedFile> prepare_outputs(const Options& options) {
   if (const double last = options.time_of(options.frames - 1); last > bounds::kSeconds) {
-    throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s", options.frames,
-                last, bounds::kSeconds);
+    throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s",
+                options.frames, last, bounds::kSeconds);
   }
   if (!options.video.empty()) require_extension("--video", options.video, {".mp4"});
   if (options.traced > 0 && !options.stability)
@@ -43,8 +44,9 @@ std::vector<NamedFile> prepare_outputs(const Options& options) {
   if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
     throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.folder);
   create_folder("--output", folder);
-  std::vector<NamedFile> outputs{
-      {"--output", options.file(0)}, {"--output", folder / "times.json"}, {"--video", options.video}};
+  std::vector<NamedFile> outputs{{"--output", options.file(0)},
+                                 {"--output", folder / "times.json"},
+                                 {"--video", options.video}};
   if (options.stability) outputs.push_back({"--stability", folder / "stability.json"});
   check_outputs(outputs, options.request.files());
   return outputs;
@@ -55,14 +57,16 @@ void warn_of_later_frames(const Options& options) {
   int last = options.frames;
   while (fs::exists(options.file(last))) ++last;
   if (last > options.frames)
-    spdlog::warn("{} also holds frames {} to {} of a longer run", options.folder, options.frames, last - 1);
+    spdlog::warn("{} also holds frames {} to {} of a longer run", options.folder, options.frames,
+                 last - 1);
 }
 
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
   const std::vector<NamedFile> outputs = prepare_outputs(options);
   std::optional<Video> video;
-  if (!options.video.empty() && ranks.is_root()) video.emplace(options.video, options.frames_per_second);
+  if (!options.video.empty() && ranks.is_root())
+    video.emplace(options.video, options.frames_per_second);
   const RenderRequest& request = options.request;
   MovingScene moving = request.open(outputs);
   const RenderOptions resolved = resolve_request(request, moving.scene());
@@ -73,15 +77,16 @@ void run(const Options& options, Shared& shared) {
   log_scene(moving.scene(), camera(moving.scene()), resolved);
   if (!moving.moves()) spdlog::warn("{}: nothing moves: all frames are equal", request.scene);
 
-  SequenceSubject subject{request.camera, request.exposure_of(moving.scene()), request.tonemap, {}, {}};
+  SequenceSubject subject{
+      request.camera, request.exposure_of(moving.scene()), request.tonemap, {}, {}};
   subject.describe = [&](const SceneData& posed, double seconds) {
     return describe(request, resolved, posed, camera(posed), seconds);
   };
   subject.first_frame = [&](Session& session, Frame& frame) {
     warn_of_unreached(session, frame, camera(moving.scene()).name);
   };
-  Sequence sequence(options, subject, moving, resolved, device, compilation_of(request, shared.device),
-                    ranks);
+  Sequence sequence(options, subject, moving, resolved, device,
+                    compilation_of(request, shared.device), ranks);
   sequence.render();
   if (!ranks.is_root()) return;
   warn_of_later_frames(options);
@@ -124,7 +129,8 @@ void add_sequence(CLI::App& app, Shared& shared) {
   command->footer(
       "Frame i shows FROM + i / RATE seconds, identical to `clpv render --time` of that time.\n"
       "An interrupted run resumes: frames whose file has the same inputs are not rendered again.\n"
-      "times.json has the times of all frames, and median, 95th percentile and maximum of each stage [ms].\n"
+      "times.json has the times of all frames, and median, 95th percentile and maximum of each "
+      "stage [ms].\n"
       "mpirun -n N clpv sequence ... distributes the frames over N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }

@@ -18,7 +18,8 @@ double unreached_share(Session& session, const Frame& frame) {
   const Surface& seen = frame.seen();
   const ClpvView& view = seen.view;
   const ClpvGrid coarsest = frame.light().grids.back();
-  const std::vector<float> depths = session.read<float>(seen.depth, std::size_t{view.width} * view.height);
+  const std::vector<float> depths =
+      session.read<float>(seen.depth, std::size_t{view.width} * view.height);
   std::size_t surfaces = 0, unreached = 0;
   for (std::size_t i = 0; i < depths.size(); ++i) {
     if (depths[i] == 0) continue;
@@ -32,9 +33,8 @@ void warn_of_unreached(Session& session, const Frame& frame, const std::string& 
   const double share = unreached_share(session, frame);
   if (share <= kFewUnreached) return;
   spdlog::warn(
-      "camera '{}': {:.1f} % of the visible surface lies outside the cascades and has no indirect light; a "
-      "larger "
-      "--cascade-size or more --cascades reach farther",
+      "camera '{}': {:.1f} % of the visible surface lies outside the cascades and has no indirect "
+      "light; a larger --cascade-size or more --cascades reach farther",
       camera, 100 * share);
 }
 

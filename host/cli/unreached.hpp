@@ -9,8 +9,8 @@
 
 namespace clpv {
 
-/// Returns the share of the visible surfaces' pixels that no cascade of the last render reaches: they have no indirect
-/// light. 0 without a surface.
+/// Returns the share of the visible surfaces' pixels that no cascade of the last render reaches:
+/// they have no indirect light. 0 without a surface.
 double unreached_share(Session& session, const Frame& frame);
 
 /// Warns above 0.1 %.

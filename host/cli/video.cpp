@@ -18,14 +18,16 @@ namespace fs = std::filesystem;
 
 // Players need even sizes and 4:2:0 chroma; x264's loss is hardly visible at CRF 18.
 constexpr const char* kEncoding =
-    "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart -f mp4 -y";
+    "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 18 -pix_fmt yuv420p -movflags +faststart "
+    "-f mp4 -y";
 
 std::vector<std::uint8_t> rgb_bytes(const Image& shown) {
   const std::size_t channels = shown.channels.size();
   std::vector<std::uint8_t> bytes(3 * shown.pixel_count());
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const float value = shown.pixels[i / 3 * channels + i % 3];
-    bytes[i] = static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0f) : 0.0f)));
+    bytes[i] =
+        static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0f) : 0.0f)));
   }
   return bytes;
 }
@@ -40,7 +42,8 @@ std::vector<std::string> words_of(const std::string& text) {
 Video::Video(fs::path file, double frames_per_second)
     : file_(std::move(file)), frames_per_second_(frames_per_second) {
   const auto found = find_program("ffmpeg");
-  if (!found) throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)");
+  if (!found)
+    throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)");
   ffmpeg_ = *found;
   check_writable(file_);
 }
@@ -50,18 +53,19 @@ Video::~Video() {
 }
 
 void Video::fail(const Process::Result& ended) const {
-  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(), ended.code,
-              ended.output);
+  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(),
+              ended.code, ended.output);
 }
 
 void Video::add(const Image& shown) {
   if (!process_) {
     std::vector<std::string> words =
-        words_of(fmt::format("-hide_banner -loglevel error -f rawvideo -pixel_format rgb24 -video_size {}x{} "
-                             "-framerate {} -i pipe:0 {}",
+        words_of(fmt::format("-hide_banner -loglevel error -f rawvideo -pixel_format rgb24 "
+                             "-video_size {}x{} -framerate {} -i pipe:0 {}",
                              shown.width, shown.height, frames_per_second_, kEncoding));
     part_.emplace(file_);
-    words.push_back("file:" + part_->temporary().string());  // a name with a colon would be a protocol
+    words.push_back("file:" +
+                    part_->temporary().string());  // a name with a colon would be a protocol
     process_ = std::make_unique<Process>(ffmpeg_, words, true);
   }
   const std::vector<std::uint8_t> bytes = rgb_bytes(shown);

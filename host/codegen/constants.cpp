@@ -12,7 +12,8 @@
 namespace clpv {
 namespace {
 
-constexpr double kZero = 1e-12;  // relative to the largest entry: rounding of double sums of order 1
+// Relative to the largest entry: rounding of double sums of order 1.
+constexpr double kZero = 1e-12;
 
 double negligible(std::span<const double> numbers) {
   double largest = 0;
@@ -28,7 +29,8 @@ double negligible(const Matrix& matrix) {
 
 std::string initialiser(std::span<const double> numbers, double least) {
   std::vector<std::string> texts;
-  for (const double number : numbers) texts.push_back(float_literal(std::abs(number) > least ? number : 0));
+  for (const double number : numbers)
+    texts.push_back(float_literal(std::abs(number) > least ? number : 0));
   return fmt::format("{{{}}}", fmt::join(texts, ", "));
 }
 

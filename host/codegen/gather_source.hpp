@@ -10,8 +10,8 @@
 
 namespace clpv {
 
-/// For gather.cl: Coefficients of floats, the basis's functions, CLPV_FACE_TRANSPORT (0: swept light) and
-/// CLPV_FROM_TABLE: functions come from the table that `lobes` describes.
+/// For gather.cl: Coefficients of floats, the basis's functions, CLPV_FACE_TRANSPORT (0: swept
+/// light) and CLPV_FROM_TABLE: functions come from the table that `lobes` describes.
 std::string gather_source(const Basis& basis, TransportKind transport, const LobeOptions& lobes,
                           bool from_table);
 

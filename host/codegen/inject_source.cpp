@@ -38,11 +38,13 @@ std::string gram_text(const Matrix& gram) {
 
 std::string lobe_source(const Basis& basis, const LobeOptions& lobes) {
   // The flux of c = A^-1 alpha is integrals . A^-1 alpha, and A is symmetric.
-  const std::vector<double> flux = basis.gram_inverse() * std::span<const double>(basis.integrals());
+  const std::vector<double> flux =
+      basis.gram_inverse() * std::span<const double>(basis.integrals());
   const bool rotated = lobes.kind == LobeKind::rotate && !basis.centres().empty();
-  return basis.kernel_source() + (rotated ? rotated_integrals_source(basis, lobes.table_size) : "") +
-         fmt::format("#define CLPV_ROTATED {}\n", rotated ? 1 : 0) + vector_macro("CLPV_FLUX_WEIGHTS", flux) +
-         gram_text(basis.gram());
+  return basis.kernel_source() +
+         (rotated ? rotated_integrals_source(basis, lobes.table_size) : "") +
+         fmt::format("#define CLPV_ROTATED {}\n", rotated ? 1 : 0) +
+         vector_macro("CLPV_FLUX_WEIGHTS", flux) + gram_text(basis.gram());
 }
 
 std::string inject_source(const Basis& basis, const LobeOptions& lobes) {
@@ -55,8 +57,8 @@ std::string blocker_source(const Basis& basis, const LobeOptions& lobes, Blockin
     case Blocking::areas:
       return text + "#define CLPV_BLOCKS_BY_AREA 1\n";
     case Blocking::one_sided:
-      return text + "#define CLPV_BLOCKS_BY_AREA 0\n" + vector_macro("CLPV_INTEGRALS", basis.integrals()) +
-             lobe_source(basis, lobes);
+      return text + "#define CLPV_BLOCKS_BY_AREA 0\n" +
+             vector_macro("CLPV_INTEGRALS", basis.integrals()) + lobe_source(basis, lobes);
   }
   return text;
 }

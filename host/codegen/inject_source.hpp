@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Generates the text of injection kernels for a basis (kernels/inject/inject.cl). Independent of OpenCL.
+// Generates the text of injection kernels for a basis (kernels/inject/inject.cl). Independent of
+// OpenCL.
 #pragma once
 
 #include <string>
@@ -13,8 +14,8 @@ namespace clpv {
 /// For inject.cl with light: Coefficients and lobe_source().
 std::string inject_source(const Basis& basis, const LobeOptions& lobes);
 
-/// For kernels/inject/lobe.h: the basis's functions and what that header names. Rotated lobes of a basis with centres
-/// follow the macros of their LookupTable.
+/// For kernels/inject/lobe.h: the basis's functions and what that header names. Rotated lobes of a
+/// basis with centres follow the macros of their LookupTable.
 std::string lobe_source(const Basis& basis, const LobeOptions& lobes);
 
 /// For inject.cl with blockers (kernels/inject/blocking.h). Lobes as above; areas need no table.

@@ -23,7 +23,8 @@ Matrix transposed(const Matrix& matrix) {
   return result;
 }
 
-/// The matrix by folded bins: `matrix` times bins is the result times fold_bins() of them (kernels/sweep/mirrored_bins.h).
+/// The matrix by folded bins: `matrix` times bins is the result times fold_bins() of them
+/// (kernels/sweep/mirrored_bins.h).
 Matrix folded(const Matrix& matrix) {
   Matrix result(matrix.rows(), matrix.columns());
   for (int r = 0; r < matrix.rows(); ++r) {
@@ -59,7 +60,8 @@ std::string sweep_links_text(const Basis& basis, const Transport& transport) {
 
 std::string sweep_collect_text() {
   const Matrix projection = folded(swept_projection());
-  return coefficient_text(projection.rows()) + matrix_macro("CLPV_PROJECTION", transposed(projection));
+  return coefficient_text(projection.rows()) +
+         matrix_macro("CLPV_PROJECTION", transposed(projection));
 }
 
 OperationCount sweep_collect_operations() {

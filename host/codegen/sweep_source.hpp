@@ -13,7 +13,8 @@ namespace clpv {
 /// For sweep_links.cl: the text of transmittance_source, CLPV_AXIS_LINKS and CLPV_VOLUME_LINKS.
 std::string sweep_links_text(const Basis& basis, const Transport& transport);
 
-/// For sweep_collect.cl: Coefficients of swept_basis(), and CLPV_PROJECTION, 24 x 9: swept_projection() by folded bins.
+/// For sweep_collect.cl: Coefficients of swept_basis(), and CLPV_PROJECTION, 24 x 9:
+/// swept_projection() by folded bins.
 std::string sweep_collect_text();
 /// Operations per cell and channel.
 OperationCount sweep_collect_operations();
@@ -23,7 +24,8 @@ std::string incident_flux_text();
 /// For bounce.cl: Coefficients of `basis`, incident_flux_text(), and CLPV_LOBES, 6 x N.
 std::string bounce_source_text(const Basis& basis);
 
-/// For sweep_medium.cl: CLPV_SCATTERING, 3 x 24: scattering_matrix(anisotropy) by folded bins, first bin of each axis.
+/// For sweep_medium.cl: CLPV_SCATTERING, 3 x 24: scattering_matrix(anisotropy) by folded bins,
+/// first bin of each axis.
 std::string scatter_source_text(double anisotropy);
 
 }  // namespace clpv

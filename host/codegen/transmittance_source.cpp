@@ -17,7 +17,8 @@ struct Link {
   int corners() const { return 1 << ((side.x == 0) + (side.y == 0) + (side.z == 0)); }
 };
 
-/// The 30 links to faces, or one link to each neighbour through the face, edge or corner that the cells share.
+/// The 30 links to faces, or one link to each neighbour through the face, edge or corner that the
+/// cells share.
 std::vector<Link> links_of(const Transport& transport) {
   std::vector<Link> links;
   if (const auto* scheme = std::get_if<FaceTransport>(&transport.scheme)) {
@@ -48,12 +49,14 @@ TransmittanceSource transmittance_source(const Basis& basis, const Transport& tr
   result.operations.additions += 3 * count;  // 1/2 + (|1/2 - h| - |h|)
   result.operations.fused = products(half_weights);
   result.text = coefficient_text(half_weights.columns()) + link_text(count) +
-                index_macro("CLPV_LINK_SIDES", sides) + matrix_macro("CLPV_LINK_BLOCKED", half_weights);
+                index_macro("CLPV_LINK_SIDES", sides) +
+                matrix_macro("CLPV_LINK_BLOCKED", half_weights);
   return result;
 }
 
 std::string link_text(int links) {
-  return fmt::format("#define CLPV_LINKS {}\ntypedef struct {{\n  realW c[CLPV_LINKS];\n}} Links;\n", links);
+  return fmt::format(
+      "#define CLPV_LINKS {}\ntypedef struct {{\n  realW c[CLPV_LINKS];\n}} Links;\n", links);
 }
 
 }  // namespace clpv

@@ -10,8 +10,9 @@
 
 namespace clpv {
 
-/// Text for one transport and blocking mode: the geometry volume's Coefficients, link_text(), CLPV_LINK_SIDES and
-/// CLPV_LINK_BLOCKED. Links are numbered like FaceTransport::faces or sweep_links().
+/// Text for one transport and blocking mode: the geometry volume's Coefficients, link_text(),
+/// CLPV_LINK_SIDES and CLPV_LINK_BLOCKED. Links are numbered like FaceTransport::faces or
+/// sweep_links().
 struct TransmittanceSource {
   std::string text;
   OperationCount operations;  ///< per cell, each sum over corners counted for each link

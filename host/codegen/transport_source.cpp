@@ -8,7 +8,8 @@ namespace {
 
 /// 30 x N: half the flux through each face by each function's coefficient.
 Matrix half_fluxes(const FaceTransport& scheme) {
-  Matrix rows(static_cast<int>(scheme.faces.size()), static_cast<int>(scheme.faces.front().flux.size()));
+  Matrix rows(static_cast<int>(scheme.faces.size()),
+              static_cast<int>(scheme.faces.front().flux.size()));
   for (int f = 0; f < rows.rows(); ++f) {
     for (int i = 0; i < rows.columns(); ++i) rows(f, i) = 0.5 * scheme.faces[f].flux[i];
   }
@@ -32,7 +33,8 @@ std::string transport_source(const Basis& basis, const Transport& transport) {
   for (const Face& face : scheme.faces)
     normals.push_back(static_cast<int>(std::ranges::find(kAxes, face.normal) - kAxes.begin()));
   return coefficient_text(basis.size()) + matrix_macro("CLPV_FACE_FLUX", half_fluxes(scheme)) +
-         index_macro("CLPV_FACE_NORMAL", normals) + matrix_macro("CLPV_LOBES", lobes_by_axis(scheme));
+         index_macro("CLPV_FACE_NORMAL", normals) +
+         matrix_macro("CLPV_LOBES", lobes_by_axis(scheme));
 }
 
 OperationCount step_operations(const Transport& transport, bool blocking) {

@@ -10,7 +10,8 @@
 
 namespace clpv {
 
-/// Text of the basis's Coefficients and of CLPV_FACE_FLUX, CLPV_FACE_NORMAL and CLPV_LOBES, for a transport with faces.
+/// Text of the basis's Coefficients and of CLPV_FACE_FLUX, CLPV_FACE_NORMAL and CLPV_LOBES, for a
+/// transport with faces.
 std::string transport_source(const Basis& basis, const Transport& transport);
 
 /// Operations per cell and channel of a step with constant lobes.

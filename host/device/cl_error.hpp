@@ -9,12 +9,13 @@
 
 namespace clpv {
 
-/// Returns "CL_OUT_OF_RESOURCES (-5)", or "code -9999" for a code that devices and drivers do not return.
+/// Returns "CL_OUT_OF_RESOURCES (-5)", or "code -9999" for a code that devices and drivers do not
+/// return.
 std::string cl_error_name(cl_int code);
 
-/// Converts `error` into an Error that names the failed call, the code and a remedy. `doing` names the
-/// purpose of the call and may be empty: "kernel 'gather' on NAME". Exit code: `device` if the device is
-/// missing or lacks a feature, else `run_time`.
+/// Converts `error` into an Error that names the failed call, the code and a remedy. `doing` names
+/// the purpose of the call and may be empty: "kernel 'gather' on NAME". Exit code: `device` if the
+/// device is missing or lacks a feature, else `run_time`.
 Error cl_error(const cl::Error& error, const std::string& doing = {});
 
 }  // namespace clpv

@@ -15,14 +15,16 @@ namespace clpv {
 namespace {
 
 std::string trimmed(std::string text) {
-  while (!text.empty() && (std::isspace(static_cast<unsigned char>(text.back())) || text.back() == '\0'))
+  while (!text.empty() &&
+         (std::isspace(static_cast<unsigned char>(text.back())) || text.back() == '\0'))
     text.pop_back();
   return text;
 }
 
 std::string lower(std::string_view text) {
   std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return out;
 }
 
@@ -85,12 +87,15 @@ void describe(Device& device) {
   device.int64_atomics = has("cl_khr_int64_base_atomics") && has("cl_khr_int64_extended_atomics");
   device.fp64 = has("cl_khr_fp64");
   if (handle.getInfo<CL_DEVICE_AVAILABLE>() != CL_TRUE) device.missing.push_back("available");
-  if (handle.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() != CL_TRUE) device.missing.push_back("compiler");
+  if (handle.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() != CL_TRUE)
+    device.missing.push_back("compiler");
   int major = 0, minor = 0;
-  if (std::sscanf(device.version.c_str(), "OpenCL %d.%d", &major, &minor) != 2 || major * 10 + minor < 12) {
+  if (std::sscanf(device.version.c_str(), "OpenCL %d.%d", &major, &minor) != 2 ||
+      major * 10 + minor < 12) {
     device.missing.push_back("OpenCL 1.2");
   }
-  if (handle.getInfo<CL_DEVICE_ENDIAN_LITTLE>() != CL_TRUE) device.missing.push_back("little endian");
+  if (handle.getInfo<CL_DEVICE_ENDIAN_LITTLE>() != CL_TRUE)
+    device.missing.push_back("little endian");
   device.profiling_valid = device.supported() && profiling_is_plausible(handle);
 }
 
@@ -146,7 +151,8 @@ DeviceList list_devices() {
       try {
         describe(device);
       } catch (const cl::Error& error) {  // a broken driver must not hide other devices
-        device.missing.push_back(fmt::format("a working {} ({})", error.what(), cl_error_name(error.err())));
+        device.missing.push_back(
+            fmt::format("a working {} ({})", error.what(), cl_error_name(error.err())));
       }
       list.devices.push_back(std::move(device));
     }
@@ -162,16 +168,17 @@ std::string_view choice_or_environment(std::string_view choice) {
   return choice.empty() && environment != nullptr ? environment : choice;
 }
 
-/// Lists all devices. Throws Error(device) if platforms exist but none has a device, and as require_limits().
+/// Lists all devices. Throws Error(device) if platforms exist but none has a device, and as
+/// require_limits().
 std::vector<Device> found_devices() {
   require_limits();
   DeviceList list = list_devices();
   if (list.devices.empty() && !list.platforms_without_devices.empty()) {
-    throw Error(
-        ExitCode::device,
-        "no OpenCL device found; platforms without one: {} (PoCL has no device if it cannot write its cache, "
-        "set by POCL_CACHE_DIR, XDG_CACHE_HOME or HOME)",
-        fmt::join(list.platforms_without_devices, ", "));
+    throw Error(ExitCode::device,
+                "no OpenCL device found; platforms without one: {} (PoCL has no device if it "
+                "cannot write its cache, "
+                "set by POCL_CACHE_DIR, XDG_CACHE_HOME or HOME)",
+                fmt::join(list.platforms_without_devices, ", "));
   }
   return std::move(list.devices);
 }
@@ -215,10 +222,12 @@ Device choose_device(const std::vector<Device>& devices, std::string_view choice
     if (matches(device, choice)) matching.push_back(device);
   }
   if (matching.empty()) {
-    throw Error(ExitCode::device, "no OpenCL device matches '{}'; available:{}", choice, summary(devices));
+    throw Error(ExitCode::device, "no OpenCL device matches '{}'; available:{}", choice,
+                summary(devices));
   }
   if (matching.size() > 1) {
-    throw Error(ExitCode::device, "several OpenCL devices match '{}':{}", choice, summary(matching));
+    throw Error(ExitCode::device, "several OpenCL devices match '{}':{}", choice,
+                summary(matching));
   }
   if (!matching[0].supported()) {
     throw Error(ExitCode::device, "device {} ({}) lacks: {}", matching[0].index, matching[0].name,

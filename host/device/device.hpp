@@ -19,7 +19,8 @@ struct Device {
   int device_index = 0;    ///< within its platform
   std::string platform, platform_version, name, driver, version, type;
   unsigned compute_units = 0;
-  /// Pixels, cells or rays that a work-item processes: CLPV_LANES (1 or 8), else 8 on CPUs, 1 elsewhere.
+  /// Pixels, cells or rays that a work-item processes: CLPV_LANES (1 or 8), else 8 on CPUs, 1
+  /// elsewhere.
   int lanes = 8;
   std::uint64_t max_alloc_bytes = 0;
   std::uint64_t memory_bytes = 0;
@@ -38,30 +39,32 @@ struct DeviceList {
   std::vector<std::string> platforms_without_devices;
 };
 
-/// Lists every device of every platform. Without OpenCL the list is empty; that is no error. Throws Error(usage) if
-/// CLPV_LANES is neither auto, 1 nor 8.
+/// Lists every device of every platform. Without OpenCL the list is empty; that is no error. Throws
+/// Error(usage) if CLPV_LANES is neither auto, 1 nor 8.
 DeviceList list_devices();
 
-/// Returns the device that matches `choice`: an index "N", "PLATFORM:DEVICE", or a substring of its name or
-/// platform (case-insensitive). Empty: CLPV_DEVICE, else the first supported device. Throws Error(device) if
-/// no device matches, several match, or the matching one lacks a feature (named).
+/// Returns the device that matches `choice`: an index "N", "PLATFORM:DEVICE", or a substring of its
+/// name or platform (case-insensitive). Empty: CLPV_DEVICE, else the first supported device. Throws
+/// Error(device) if no device matches, several match, or the matching one lacks a feature (named).
 Device choose_device(std::string_view choice = {});
 
 /// The same among `devices`; ignores CLPV_DEVICE.
 Device choose_device(const std::vector<Device>& devices, std::string_view choice);
 
-/// Returns all supported devices that match `choice` (or CLPV_DEVICE), in order. If both are empty: the first supported
-/// device and all with its name and platform. Throws Error(device) if there is none.
+/// Returns all supported devices that match `choice` (or CLPV_DEVICE), in order. If both are empty:
+/// the first supported device and all with its name and platform. Throws Error(device) if there is
+/// none.
 std::vector<Device> choose_devices(std::string_view choice = {});
 
-/// Describes a device that a caller has: as list_devices() does, or a sub-device as its parent's platform has it.
+/// Describes a device that a caller has: as list_devices() does, or a sub-device as its parent's
+/// platform has it.
 Device device_of(const cl::Device& handle);
 
 /// Returns the keys "platform", "name" and "driver".
 nlohmann::json to_json(const Device& device);
 
-/// Returns the `index`-th sub-device of `units` compute units, or the device itself if it has exactly `units`.
-/// Throws Error(device) if the device cannot be split.
+/// Returns the `index`-th sub-device of `units` compute units, or the device itself if it has
+/// exactly `units`. Throws Error(device) if the device cannot be split.
 Device sub_device(const Device& device, unsigned units, unsigned index = 0);
 
 }  // namespace clpv

@@ -17,8 +17,9 @@ std::optional<std::filesystem::path> driver_cache_folder();
 /// Returns true if the disk of that folder has no space left.
 bool driver_cache_is_full();
 
-/// Marks of programs whose kernels PoCL has compiled, in PoCL's cache folder: they disappear with it. Only PoCL compiles
-/// at the first launch and caches the result for all processes, so other drivers have no marks.
+/// Marks of programs whose kernels PoCL has compiled, in PoCL's cache folder: they disappear with
+/// it. Only PoCL compiles at the first launch and caches the result for all processes, so other
+/// drivers have no marks.
 class CompiledMarks {
  public:
   explicit CompiledMarks(const Device& device);

@@ -18,14 +18,17 @@ auto asked(const char* what, const char* wanted, const Query& query) {
 }
 
 cl::CommandQueue only_devices_queue(const cl::Context& context) {
-  const auto devices = asked("context", "a context", [&] { return context.getInfo<CL_CONTEXT_DEVICES>(); });
+  const auto devices =
+      asked("context", "a context", [&] { return context.getInfo<CL_CONTEXT_DEVICES>(); });
   if (devices.size() != 1) {
-    throw Error(ExitCode::usage,
-                "context: found {} devices and no queue, allowed: one device, or a queue for one of them",
-                devices.size());
+    throw Error(
+        ExitCode::usage,
+        "context: found {} devices and no queue, allowed: one device, or a queue for one of them",
+        devices.size());
   }
   const bool profiling = device_of(devices[0]).profiling_valid;
-  return {context, devices[0], cl_command_queue_properties{profiling ? CL_QUEUE_PROFILING_ENABLE : 0u}};
+  return {context, devices[0],
+          cl_command_queue_properties{profiling ? CL_QUEUE_PROFILING_ENABLE : 0u}};
 }
 
 }  // namespace
@@ -35,8 +38,8 @@ GivenQueue given_queue(cl_context context, cl_command_queue queue) {
     throw Error(ExitCode::usage, "context and queue: found neither, allowed: one of them or both");
   GivenQueue given;
   if (queue == nullptr) {
-    given.queue =
-        only_devices_queue(asked("context", "a context", [&] { return cl::Context(context, true); }));
+    given.queue = only_devices_queue(
+        asked("context", "a context", [&] { return cl::Context(context, true); }));
   } else {
     given.queue = asked("queue", "a command queue", [&] { return cl::CommandQueue(queue, true); });
   }
@@ -45,7 +48,8 @@ GivenQueue given_queue(cl_context context, cl_command_queue queue) {
   };
   given.context = of_queue.operator()<CL_QUEUE_CONTEXT>();
   if (context != nullptr && given.context() != context)
-    throw Error(ExitCode::usage, "queue: found one of another context, allowed: one of the context given");
+    throw Error(ExitCode::usage,
+                "queue: found one of another context, allowed: one of the context given");
   const auto properties = of_queue.operator()<CL_QUEUE_PROPERTIES>();
   if ((properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
     throw Error(ExitCode::usage, "queue: found an out-of-order one, allowed: an in-order queue");
@@ -59,7 +63,8 @@ GivenQueue given_queue(cl_context context, cl_command_queue queue) {
   return given;
 }
 
-cl::Buffer given_buffer(const cl::Context& context, cl_mem memory, std::size_t bytes, const char* what) {
+cl::Buffer given_buffer(const cl::Context& context, cl_mem memory, std::size_t bytes,
+                        const char* what) {
   if (memory == nullptr) throw Error(ExitCode::usage, "{}: found none, allowed: a buffer", what);
   const cl::Buffer buffer = asked(what, "a buffer", [&] { return cl::Buffer(memory, true); });
   const auto of_buffer = [&]<cl_mem_info info>() {
@@ -68,8 +73,8 @@ cl::Buffer given_buffer(const cl::Context& context, cl_mem memory, std::size_t b
   if (of_buffer.operator()<CL_MEM_TYPE>() != CL_MEM_OBJECT_BUFFER)
     throw Error(ExitCode::usage, "{}: found an image, allowed: a buffer", what);
   if (of_buffer.operator()<CL_MEM_CONTEXT>()() != context())
-    throw Error(ExitCode::usage, "{}: found a buffer of another context, allowed: one of the renderer's",
-                what);
+    throw Error(ExitCode::usage,
+                "{}: found a buffer of another context, allowed: one of the renderer's", what);
   if (const std::size_t found = of_buffer.operator()<CL_MEM_SIZE>(); found < bytes)
     throw Error(ExitCode::usage, "{}: found {} bytes, allowed: at least {}", what, found, bytes);
   return buffer;

@@ -26,8 +26,8 @@ cl::Kernel& Kernel::built() {
 void Kernel::launch(const cl::NDRange& global, const cl::NDRange& local) {
   if (!claimed()) return;
   if (argument_count_ != parameter_count_) {
-    throw Error(ExitCode::run_time, "kernel '{}' was given {} of its {} arguments", name_, argument_count_,
-                parameter_count_);
+    throw Error(ExitCode::run_time, "kernel '{}' was given {} of its {} arguments", name_,
+                argument_count_, parameter_count_);
   }
   session_->launch(built(), global, local);
   session_->finish_first_launch(*program_, name_);

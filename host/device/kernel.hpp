@@ -16,11 +16,12 @@ namespace clpv {
 class Session;
 struct Program;
 
-/// Kernel argument passed by value, in exactly the parameter's type. Kernels have no parameters of type bool, double or
-/// 64-bit integer.
+/// Kernel argument passed by value, in exactly the parameter's type. Kernels have no parameters of
+/// type bool, double or 64-bit integer.
 template <typename T>
-concept KernelValue = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !std::same_as<T, bool> &&
-                      !std::same_as<T, double> && !(std::integral<T> && sizeof(T) > sizeof(cl_uint));
+concept KernelValue =
+    std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !std::same_as<T, bool> &&
+    !std::same_as<T, double> && !(std::integral<T> && sizeof(T) > sizeof(cl_uint));
 
 /// Kernel argument for a parameter that is a pointer or an image.
 template <typename T>
@@ -50,8 +51,8 @@ class Kernel {
     return *this;
   }
 
-  /// Session::launch() with the arguments set so far. Throws Error(run_time) if arguments are missing. Waits for the
-  /// first launch, which compiles on some drivers.
+  /// Session::launch() with the arguments set so far. Throws Error(run_time) if arguments are
+  /// missing. Waits for the first launch, which compiles on some drivers.
   void launch(const cl::NDRange& global, const cl::NDRange& local);
 
  private:

@@ -14,7 +14,8 @@ namespace clpv {
 namespace {
 
 constexpr std::string_view kOnce = "#pragma once";
-constexpr int kMaxIncludeDepth = 8;  // deeper than any kernel nests; stops a file that includes itself
+// Deeper than any kernel nests; stops a file that includes itself.
+constexpr int kMaxIncludeDepth = 8;
 
 std::string_view trim(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
@@ -31,7 +32,8 @@ std::string included_name(std::string_view line) {
   return std::string(line.substr(open + 1, close - open - 1));
 }
 
-/// Macro that guards a file with `#pragma once`: the text of "volume/soa.h" is joined under CLPV_ONCE_volume_soa_h.
+/// Macro that guards a file with `#pragma once`: the text of "volume/soa.h" is joined under
+/// CLPV_ONCE_volume_soa_h.
 std::string guard_of(std::string name) {
   std::ranges::replace_if(
       name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
@@ -40,7 +42,8 @@ std::string guard_of(std::string name) {
 
 void append_file(std::string& out, const std::string& name, int depth) {
   if (depth > kMaxIncludeDepth) {
-    throw Error(ExitCode::run_time, "kernels/{}: includes nest deeper than {}", name, kMaxIncludeDepth);
+    throw Error(ExitCode::run_time, "kernels/{}: includes nest deeper than {}", name,
+                kMaxIncludeDepth);
   }
   const std::string text = kernel_file(name);
   const bool once = text.find(kOnce) != std::string::npos;
@@ -66,8 +69,8 @@ std::string kernel_file(const std::string& name) {
   if (const char* folder = std::getenv("CLPV_KERNEL_DIR"); folder != nullptr && *folder != '\0') {
     if (auto text = file_bytes(std::string(folder) + "/" + name)) return *text;
     if (!std::filesystem::is_directory(folder))
-      throw Error(ExitCode::usage, "CLPV_KERNEL_DIR: found '{}', allowed: a folder with kernel files",
-                  folder);
+      throw Error(ExitCode::usage,
+                  "CLPV_KERNEL_DIR: found '{}', allowed: a folder with kernel files", folder);
   }
   const auto& files = detail::embedded_kernel_files();
   const auto found = files.find(name);

@@ -8,14 +8,15 @@
 
 namespace clpv {
 
-/// Returns the text of kernels/NAME ("steps/propagate.cl", "volume/soa.h"): from CLPV_KERNEL_DIR if that folder
-/// has the file, else the embedded copy. Throws Error(run_time) for an unknown name.
+/// Returns the text of kernels/NAME ("steps/propagate.cl", "volume/soa.h"): from CLPV_KERNEL_DIR if
+/// that folder has the file, else the embedded copy. Throws Error(run_time) for an unknown name.
 std::string kernel_file(const std::string& name);
 
-/// Returns kernel_file(name) with each `#include "other"` replaced by that file's text (paths from kernels/), and
-/// `#pragma once` by a guard. `#line` directives make compiler messages name the original file and line. Drivers never
-/// see an include: several fail on paths with blanks, and their caches miss changed files. Throws Error(run_time) for an
-/// unknown name and for includes nested more than 8 deep.
+/// Returns kernel_file(name) with each `#include "other"` replaced by that file's text (paths from
+/// kernels/), and `#pragma once` by a guard. `#line` directives make compiler messages name the
+/// original file and line. Drivers never see an include: several fail on paths with blanks, and
+/// their caches miss changed files. Throws Error(run_time) for an unknown name and for includes
+/// nested more than 8 deep.
 std::string assemble_kernel_source(const std::string& name);
 
 namespace detail {

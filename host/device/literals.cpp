@@ -22,7 +22,8 @@ Literals& Literals::define(const std::string& name, std::string text) {
   if (!name.starts_with("CLPV_"))
     throw Error(ExitCode::run_time, "kernel literal {}: names start with CLPV_", name);
   const auto [found, made] = defined_.emplace(name, text);
-  if (!made) throw Error(ExitCode::run_time, "kernel literal {}: {} and {}", name, found->second, text);
+  if (!made)
+    throw Error(ExitCode::run_time, "kernel literal {}: {} and {}", name, found->second, text);
   return *this;
 }
 

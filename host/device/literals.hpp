@@ -8,17 +8,19 @@
 
 namespace clpv {
 
-/// Set of literals. Each name starts with CLPV_ and is defined once. Functions throw Error(run_time) for another name or a
-/// second definition.
+/// Set of literals. Each name starts with CLPV_ and is defined once. Functions throw
+/// Error(run_time) for another name or a second definition.
 class Literals {
  public:
   Literals& flag(const std::string& name, bool value);  ///< 1 or 0
   template <std::integral T>
-  requires(!std::same_as<T, bool>) Literals& integer(const std::string& name, T value) {  ///< int: "3"
+  requires(!std::same_as<T, bool>) Literals& integer(const std::string& name,
+                                                     T value) {  ///< int: "3"
     return define(name, std::to_string(value));
   }
   template <std::integral T>
-  requires(!std::same_as<T, bool>) Literals& number(const std::string& name, T value) {  ///< uint: "3u"
+  requires(!std::same_as<T, bool>) Literals& number(const std::string& name,
+                                                    T value) {  ///< uint: "3u"
     return define(name, std::to_string(value) + "u");
   }
   Literals& real(const std::string& name, double value);  ///< float: float_literal()

@@ -14,10 +14,12 @@ struct MemoryUse {
   std::size_t now = 0, peak = 0;
 };
 
-/// Counts `bytes` as in use during its lifetime. The counter is shared because memory may outlive its session.
+/// Counts `bytes` as in use during its lifetime. The counter is shared because memory may outlive
+/// its session.
 class MemoryShare {
  public:
-  MemoryShare(std::shared_ptr<MemoryUse> use, std::size_t bytes) : use_(std::move(use)), bytes_(bytes) {
+  MemoryShare(std::shared_ptr<MemoryUse> use, std::size_t bytes)
+      : use_(std::move(use)), bytes_(bytes) {
     use_->now += bytes_;
     if (use_->now > use_->peak) use_->peak = use_->now;
   }
@@ -32,8 +34,8 @@ class MemoryShare {
   std::size_t bytes_;
 };
 
-/// A buffer, an image, or empty. Copies share the memory; the last copy releases it. The device keeps it until
-/// enqueued commands that use it are done.
+/// A buffer, an image, or empty. Copies share the memory; the last copy releases it. The device
+/// keeps it until enqueued commands that use it are done.
 template <typename Handle>
 class DeviceMemory {
  public:

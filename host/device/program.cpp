@@ -15,8 +15,9 @@
 namespace clpv {
 namespace {
 
-/// Retries of a build that fails without an error in the text. PoCL 3.1 fails so occasionally while another process
-/// compiles the same text, because both write to PoCL's cache. Waits double from kRetryWait on.
+/// Retries of a build that fails without an error in the text. PoCL 3.1 fails so occasionally while
+/// another process compiles the same text, because both write to PoCL's cache. Waits double from
+/// kRetryWait on.
 constexpr int kRetries = 5;
 constexpr std::chrono::milliseconds kRetryWait{20};
 
@@ -26,8 +27,8 @@ constexpr const char* kImageProbe =
     "  texel[0] = read_imagef(image, (int4)(0));\n"
     "}\n";
 
-/// Returns true if the log blames a line of the text: "inject.cl:12:3: error:", or "error: inject.cl:12:3" of PoCL 6.
-/// Other errors are the driver's own.
+/// Returns true if the log blames a line of the text: "inject.cl:12:3: error:", or "error:
+/// inject.cl:12:3" of PoCL 6. Other errors are the driver's own.
 bool blames_text(const std::string& log) {
   static const std::regex place(":[0-9]+: (fatal )?error:|error: [^\n]*:[0-9]+:[0-9]+");
   return std::regex_search(log, place);
@@ -36,7 +37,8 @@ bool blames_text(const std::string& log) {
 /// A hint if the log shows that the driver cannot write its cache.
 std::string cache_advice(const std::string& log) {
   if (log.find("No space left") != std::string::npos || driver_cache_is_full())
-    return "\nthe disk of the driver's cache is full; POCL_CACHE_DIR names another folder for PoCL's";
+    return "\nthe disk of the driver's cache is full; POCL_CACHE_DIR names another folder for "
+           "PoCL's";
   return {};
 }
 
@@ -59,19 +61,20 @@ bool compiles(const cl::Context& context, const Device& device, const char* text
   }
 }
 
-/// Returns true if the driver compiles kernels with images only without -cl-std=CL1.2, as PoCL 7.1 does. Compiles a
-/// probe, once per driver.
+/// Returns true if the driver compiles kernels with images only without -cl-std=CL1.2, as PoCL 7.1
+/// does. Compiles a probe, once per driver.
 bool lacks_images_in_standard(const cl::Context& context, const Device& device) {
   static std::mutex mutex;
   static std::map<std::string, bool> known;
   const std::scoped_lock lock(mutex);
   const std::string driver = fmt::format("{} {}", device.platform_version, device.driver);
   if (const auto found = known.find(driver); found != known.end()) return found->second;
-  const bool lacks = device.images && !compiles(context, device, kImageProbe, std::string(kStandard)) &&
+  const bool lacks = device.images &&
+                     !compiles(context, device, kImageProbe, std::string(kStandard)) &&
                      compiles(context, device, kImageProbe, "");
   if (lacks)
-    spdlog::debug("driver {} has images only without {}: programs that need them are built so", device.driver,
-                  kStandard);
+    spdlog::debug("driver {} has images only without {}: programs that need them are built so",
+                  device.driver, kStandard);
   return known[driver] = lacks;
 }
 
@@ -89,8 +92,8 @@ std::string program_text(const ProgramSource& source) {
   return text + assemble_kernel_source(source.file);
 }
 
-cl::Program build_program(const cl::Context& context, const Device& device, const ProgramSource& source,
-                          const std::string& text) {
+cl::Program build_program(const cl::Context& context, const Device& device,
+                          const ProgramSource& source, const std::string& text) {
   std::string options = source.options;
   for (int left = kRetries;;) {
     cl::Program program(context, text);
@@ -104,8 +107,9 @@ cl::Program build_program(const cl::Context& context, const Device& device, cons
       } else if (options.starts_with(kStandard) && lacks_images_in_standard(context, device)) {
         options.erase(0, kStandard.size());
       } else {
-        throw Error(ExitCode::run_time, "kernels/{} does not build on {} (driver {}) with '{}': {}\n{}{}",
-                    source.file, device.name, device.driver, options, cl_error_name(error.err()), log,
+        throw Error(ExitCode::run_time,
+                    "kernels/{} does not build on {} (driver {}) with '{}': {}\n{}{}", source.file,
+                    device.name, device.driver, options, cl_error_name(error.err()), log,
                     cache_advice(log));
       }
     }

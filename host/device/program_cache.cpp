@@ -62,7 +62,8 @@ std::optional<ProgramCache::Binary> unpack(std::string_view bytes, const std::st
   if (hash_of(bytes) != hash) return std::nullopt;
   bytes.remove_prefix(kMagic.size());
   std::string_view stored_key, binary;
-  if (!take_sized(bytes, stored_key) || !take_sized(bytes, binary) || stored_key != key) return std::nullopt;
+  if (!take_sized(bytes, stored_key) || !take_sized(bytes, binary) || stored_key != key)
+    return std::nullopt;
   return ProgramCache::Binary(binary.begin(), binary.end());
 }
 
@@ -82,9 +83,10 @@ std::optional<ProgramCache> ProgramCache::of_user() {
   return std::nullopt;
 }
 
-std::string ProgramCache::key(const Device& device, const std::string& options, const std::string& text) {
-  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", device.platform, device.platform_version, device.name,
-                     device.version, device.driver, options, text);
+std::string ProgramCache::key(const Device& device, const std::string& options,
+                              const std::string& text) {
+  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", device.platform, device.platform_version,
+                     device.name, device.version, device.driver, options, text);
 }
 
 fs::path ProgramCache::file_of(const std::string& key) const {
@@ -116,7 +118,8 @@ bool ProgramCache::store(const std::string& key, const Binary& binary) const {
 }
 
 void ProgramCache::remove(const std::string& key) const {
-  std::error_code ignored;  // missing or not removable: the next store() replaces it or reports why not
+  // Missing or not removable: the next store() replaces it or reports why not.
+  std::error_code ignored;
   fs::remove(file_of(key), ignored);
 }
 
@@ -128,7 +131,8 @@ void ProgramCache::evict_oldest() const {
   };
   std::vector<File> files;
   std::uint64_t total = 0;
-  std::error_code error;  // other processes may evict files meanwhile: missing files are not counted
+  // Other processes may evict files meanwhile: missing files are not counted.
+  std::error_code error;
   for (fs::directory_iterator it(folder(), error), end; !error && it != end; it.increment(error)) {
     std::error_code gone;
     File file{it->last_write_time(gone), 0, it->path()};
@@ -137,7 +141,8 @@ void ProgramCache::evict_oldest() const {
     total += file.bytes;
     files.push_back(std::move(file));
   }
-  std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.used < b.used; });
+  std::sort(files.begin(), files.end(),
+            [](const File& a, const File& b) { return a.used < b.used; });
   for (auto file = files.begin(); file != files.end() && total > max_bytes_; ++file) {
     if (fs::remove(file->path, error)) total -= file->bytes;
   }

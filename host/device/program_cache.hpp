@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // On-disk cache of compiled programs: later runs compile nothing.
 //
-// One file per program. The file holds the full key (device, driver, options, source text), which load()
-// compares: sources whose file names collide never share a program. Files appear by rename, so several
-// processes may read and write one folder at once.
+// One file per program. The file holds the full key (device, driver, options, source text), which
+// load() compares: sources whose file names collide never share a program. Files appear by rename,
+// so several processes may read and write one folder at once.
 #pragma once
 
 #include <cstdint>
@@ -25,18 +25,19 @@ class ProgramCache {
   /// Cache of about `max_bytes` at most in `folder`; store() evicts the least recently used files.
   explicit ProgramCache(std::filesystem::path folder, std::uint64_t max_bytes = kDefaultMaxBytes);
 
-  /// The user's cache: $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv. None if neither variable is set or
-  /// CLPV_PROGRAM_CACHE is "off".
+  /// The user's cache: $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv. None if neither variable is
+  /// set or CLPV_PROGRAM_CACHE is "off".
   static std::optional<ProgramCache> of_user();
 
   /// Cache key of a program: device, driver, build options and text, in full.
   static std::string key(const Device& device, const std::string& options, const std::string& text);
 
-  /// Returns the binary stored under `key`; nothing if the file is missing, damaged or has another key.
+  /// Returns the binary stored under `key`; nothing if the file is missing, damaged or has another
+  /// key.
   std::optional<Binary> load(const std::string& key) const;
 
-  /// Stores `binary` under `key`, replacing any other. On failure (folder not writable, disk full) warns
-  /// with the reason and returns false: a cache never makes the program fail.
+  /// Stores `binary` under `key`, replacing any other. On failure (folder not writable, disk full)
+  /// warns with the reason and returns false: a cache never makes the program fail.
   bool store(const std::string& key, const Binary& binary) const;
 
   /// Removes a binary that the driver rejected, if it exists.

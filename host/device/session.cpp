@@ -41,7 +41,8 @@ double mib(std::size_t bytes) {
 
 /// Builds a program from a cached binary; returns nothing if the driver rejects it.
 std::optional<cl::Program> load_program(const cl::Context& context, const Device& device,
-                                        const std::string& options, const ProgramCache::Binary& binary) {
+                                        const std::string& options,
+                                        const ProgramCache::Binary& binary) {
   try {
     cl::Program program(context, {device.handle}, {binary});
     program.build(device.handle, options.c_str());
@@ -53,12 +54,14 @@ std::optional<cl::Program> load_program(const cl::Context& context, const Device
   }
 }
 
-/// Name of the file that a helper writes when it has compiled a kernel of the program with that key.
+/// Name of the file that a helper writes when it has compiled a kernel of the program with that
+/// key.
 std::string name_of_claim(const std::string& key, const std::string& kernel) {
   return fmt::format("{}.{}", Fingerprint().add(key).hex(), kernel);
 }
 
-/// Writes a program's text to the folder CLPV_PROGRAM_DUMP, for other compilers and for bug reports.
+/// Writes a program's text to the folder CLPV_PROGRAM_DUMP, for other compilers and for bug
+/// reports.
 void dump(const ProgramSource& source, const std::string& text) {
   const char* folder = std::getenv("CLPV_PROGRAM_DUMP");
   if (folder == nullptr || *folder == '\0') return;
@@ -91,8 +94,8 @@ Session::Session(GivenQueue given, std::optional<ProgramCache> cache)
       cache_(std::move(cache)),
       marks_(device_) {}
 
-// After an error, commands may be unfinished. Without this wait PoCL's threads continue to run and compile them while the
-// process ends, which crashed 1 of 8 such runs.
+// After an error, commands may be unfinished. Without this wait PoCL's threads continue to run and
+// compile them while the process ends, which crashed 1 of 8 such runs.
 Session::~Session() {
   try {
     queue_.finish();
@@ -103,12 +106,14 @@ Session::~Session() {
 
 std::shared_ptr<Program> Session::describe(const ProgramSource& source) {
   ProgramSource specialised = source;
-  if (!source.literals.defined().contains("CLPV_W")) specialised.literals.integer("CLPV_W", device_.lanes);
+  if (!source.literals.defined().contains("CLPV_W"))
+    specialised.literals.integer("CLPV_W", device_.lanes);
   std::string text = program_text(specialised);
   std::string key = ProgramCache::key(device_, source.options, text);
   std::shared_ptr<Program>& program = programs_[key];
   if (!program)
-    program = std::make_shared<Program>(Program{std::move(specialised), std::move(text), std::move(key), {}});
+    program = std::make_shared<Program>(
+        Program{std::move(specialised), std::move(text), std::move(key), {}});
   return program;
 }
 
@@ -122,7 +127,8 @@ void Session::build_described() {
   for (auto& [key, program] : programs_) build(*program);
 }
 
-/// Lets helpers compile all kernels that this session will launch, if the driver's cache has not got them.
+/// Lets helpers compile all kernels that this session will launch, if the driver's cache has not
+/// got them.
 void Session::compile_with_helpers() {
   if (compilation_.helpers.empty() || helper_count() == 0 || !marks_.available()) return;
   std::size_t programs = 0, kernels = 0;
@@ -140,7 +146,8 @@ void Session::compile_with_helpers() {
   while (helpers.wait()) {
     stop_if_interrupted("kernels were being compiled");
     build_one_compiled(helpers.claims());
-    progress.reach(std::min(helpers.claims().finished_count(), kernels));  // some are described later
+    // Some are described later.
+    progress.reach(std::min(helpers.claims().finished_count(), kernels));
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   spdlog::debug("{} helpers compiled {} kernels in {:.1f} s", helper_count(),
@@ -175,8 +182,10 @@ void Session::finish_first_launch(Program& program, const std::string& name) {
   const auto start = std::chrono::steady_clock::now();
   const Uninterruptible compiling("this kernel");
   timeline_.wait([&] { queue_.finish(); });
-  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-  spdlog::debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name, elapsed.count());
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - start;
+  spdlog::debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name,
+                elapsed.count());
   if (compilation_.claims) compilation_.claims->finish(name_of_claim(program.key, name));
   stop_if_interrupted("kernels were being compiled");
 }
@@ -201,8 +210,10 @@ void Session::build(Program& program) {
   const Uninterruptible compiling("this kernel");
   const auto start = std::chrono::steady_clock::now();
   program.stored = load(program);
-  if (!program.stored) program.built = build_program(context_, device_, program.source, program.text);
-  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  if (!program.stored)
+    program.built = build_program(context_, device_, program.source, program.text);
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - start;
   const double before_ms = std::exchange(build_ms_, build_ms_ + elapsed.count());
   const bool slow = before_ms <= kNoticeMs && build_ms_ > kNoticeMs;
   if (slow && !program.stored && !helped_ && !marks_.has(program.key))
@@ -225,7 +236,8 @@ bool Session::load(Program& program) {
 }
 
 void Session::store_programs() {
-  if (!cache_ || helped_) return;  // after a first run the driver's own cache suffices; later runs store
+  if (!cache_ || helped_)
+    return;  // after a first run the driver's own cache suffices; later runs store
   bool logged = false;
   const auto start = std::chrono::steady_clock::now();
   const auto limit = (start - kProcessStart) / kStoreShare;
@@ -236,20 +248,24 @@ void Session::store_programs() {
     if (!std::exchange(logged, true) && build_ms_ > kNoticeMs)
       spdlog::info("caching the compiled kernels for later runs");
     const auto binaries = program->built.getInfo<CL_PROGRAM_BINARIES>();
-    const auto devices = program->built.getInfo<CL_PROGRAM_DEVICES>();  // a caller's context may have several
+    // A caller's context may have several.
+    const auto devices = program->built.getInfo<CL_PROGRAM_DEVICES>();
     const std::size_t ours =
-        std::ranges::find(devices, device_.handle(), [](const auto& d) { return d(); }) - devices.begin();
+        std::ranges::find(devices, device_.handle(), [](const auto& d) { return d(); }) -
+        devices.begin();
     if (ours >= binaries.size() || binaries[ours].empty()) {
       spdlog::debug("{} returns no program binaries to cache", device_.name);
       return;
     }
-    if (!cache_->store(key, binaries[ours])) return;  // it logged why; the next program would fail too
+    if (!cache_->store(key, binaries[ours]))
+      return;  // it logged why; the next program would fail too
     program->stored = true;
   }
 }
 
 std::size_t Session::largest_buffer() const {
-  const std::uint64_t left = device_.memory_bytes > use_->now ? device_.memory_bytes - use_->now : 0;
+  const std::uint64_t left =
+      device_.memory_bytes > use_->now ? device_.memory_bytes - use_->now : 0;
   return std::min<std::uint64_t>(device_.max_alloc_bytes, left);
 }
 
@@ -258,14 +274,14 @@ void Session::require_room(std::size_t bytes, const std::string& what) const {
   const auto share = [](std::uint64_t allowed, std::size_t needed) {
     return static_cast<double>(allowed) / static_cast<double>(needed);
   };
-  throw TooLarge(
-      Error(ExitCode::run_time,
-            "{} needs {:.1f} MiB, but a buffer on {} can have at most {:.1f} MiB "
-            "(limit of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use): try a smaller "
-            "grid, rsm-size or image",
-            what, mib(bytes), device_.name, mib(largest_buffer()), mib(device_.max_alloc_bytes),
-            mib(device_.memory_bytes), mib(use_->now)),
-      std::min(share(device_.max_alloc_bytes, bytes), share(device_.memory_bytes, use_->now + bytes)));
+  throw TooLarge(Error(ExitCode::run_time,
+                       "{} needs {:.1f} MiB, but a buffer on {} can have at most {:.1f} MiB (limit "
+                       "of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use): "
+                       "try a smaller grid, rsm-size or image",
+                       what, mib(bytes), device_.name, mib(largest_buffer()),
+                       mib(device_.max_alloc_bytes), mib(device_.memory_bytes), mib(use_->now)),
+                 std::min(share(device_.max_alloc_bytes, bytes),
+                          share(device_.memory_bytes, use_->now + bytes)));
 }
 
 Buffer Session::buffer(std::size_t bytes, const std::string& what) {
@@ -275,7 +291,8 @@ Buffer Session::buffer(std::size_t bytes, const std::string& what) {
     const Buffer made(cl::Buffer(context_, CL_MEM_READ_WRITE, bytes),
                       std::make_shared<MemoryShare>(use_, bytes));
     if (compilation_.claims) queue_.enqueueFillBuffer(made.handle(), cl_uchar{0}, 0, bytes);
-    // Oclgrind 21.10's memory checker confuses a new buffer at a freed address with the old one and its size.
+    // Oclgrind 21.10's memory checker confuses a new buffer at a freed address with the old one and
+    // its size.
     if (oclgrind()) retained_.push_back(made);
     return made;
   } catch (const cl::Error& error) {
@@ -296,14 +313,15 @@ Image3D Session::image(const cl::ImageFormat& texel, const std::array<std::size_
     return {cl::Image3D(context_, CL_MEM_READ_WRITE, texel, extent[0], extent[1], extent[2]),
             std::make_shared<MemoryShare>(use_, bytes)};
   } catch (const cl::Error& error) {
-    throw cl_error(
-        error, fmt::format("{} (an image of {} texels) on {}", what, fmt::join(extent, " x "), device_.name));
+    throw cl_error(error, fmt::format("{} (an image of {} texels) on {}", what,
+                                      fmt::join(extent, " x "), device_.name));
   }
 }
 
-const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, const std::string& what) {
-  // PoCL 3.1 frees the buffer's memory when the image is released, even if the buffer is still in use. The session
-  // therefore keeps every image of a buffer until its end.
+const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values,
+                                              const std::string& what) {
+  // PoCL 3.1 frees the buffer's memory when the image is released, even if the buffer is still in
+  // use. The session therefore keeps every image of a buffer until its end.
   TableImage& table = table_images_[values];
   if (table.image() == nullptr) {
     table.values = upload(values, what);
@@ -315,8 +333,8 @@ const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, 
       if (error.err() != CL_INVALID_OPERATION)
         throw cl_error(error, fmt::format("{} on {}", what, device_.name));
       throw Error(ExitCode::device,  // PoCL 7.1
-                  "evaluate image: the driver of {} makes no 1-D images of buffers: {} failed with {}; "
-                  "allowed: exact, buffer",
+                  "evaluate image: the driver of {} makes no 1-D images of buffers: {} failed with "
+                  "{}; allowed: exact, buffer",
                   device_.name, error.what(), cl_error_name(error.err()));
     }
   }
@@ -326,29 +344,32 @@ const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values, 
 void Session::write_bytes(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t at) {
   if (bytes.empty()) return;
   if (bytes.size() > kCopiedBytes) {
-    timeline_.wait(
-        [&] { queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, at, bytes.size(), bytes.data()); });
+    timeline_.wait([&] {
+      queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, at, bytes.size(), bytes.data());
+    });
     return;
   }
   std::erase_if(writes_, [](const Write& write) {
     return write.done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE;
   });
   Write write{{bytes.begin(), bytes.end()}, {}};
-  queue_.enqueueWriteBuffer(buffer.handle(), CL_FALSE, at, bytes.size(), write.bytes.data(), nullptr,
-                            &write.done);
+  queue_.enqueueWriteBuffer(buffer.handle(), CL_FALSE, at, bytes.size(), write.bytes.data(),
+                            nullptr, &write.done);
   writes_.push_back(std::move(write));
 }
 
-std::shared_ptr<const Session::Arriving> Session::read_later(const Buffer& buffer, std::size_t count) {
+std::shared_ptr<const Session::Arriving> Session::read_later(const Buffer& buffer,
+                                                             std::size_t count) {
   std::erase_if(reads_, [](const auto& read) { return read->arrived(); });
   const auto read = std::make_shared<Arriving>(Arriving{std::vector<cl_uint>(count), {}});
-  queue_.enqueueReadBuffer(buffer.handle(), CL_FALSE, 0, count * sizeof(cl_uint), read->values.data(),
-                           nullptr, &read->done);
+  queue_.enqueueReadBuffer(buffer.handle(), CL_FALSE, 0, count * sizeof(cl_uint),
+                           read->values.data(), nullptr, &read->done);
   reads_.push_back(read);
   return read;
 }
 
-void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local) {
+void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global,
+                     const cl::NDRange& local) {
   const std::size_t* g = global.get();
   const std::size_t* l = local.get();
   cl::NDRange rounded = global;
@@ -361,14 +382,15 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const 
   try {
     queue_.enqueueNDRangeKernel(kernel, cl::NullRange, rounded, local, nullptr, &event);
   } catch (const cl::Error& error) {
-    throw cl_error(error,
-                   fmt::format("kernel '{}' on {}", kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(), device_.name));
+    throw cl_error(error, fmt::format("kernel '{}' on {}",
+                                      kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(), device_.name));
   }
   timeline_.add(event);
 }
 
-// Oclgrind 21.10's memory checker does not count a fill as initialisation. After a write or copy to a part of a buffer it
-// also loses track of the rest. Either would make it report valid reads, so kernels fill and copy there.
+// Oclgrind 21.10's memory checker does not count a fill as initialisation. After a write or copy to
+// a part of a buffer it also loses track of the rest. Either would make it report valid reads, so
+// kernels fill and copy there.
 void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from) {
   if (oclgrind()) {
     const cl_uint words = words_of(bytes), first = words_of(from);

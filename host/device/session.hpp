@@ -37,11 +37,11 @@ struct Program {
 
 /// Who compiles a session's kernels.
 struct Compilation {
-  /// Arguments of clpv for helper processes that do what this session is about to do. Empty: the session itself
-  /// compiles.
+  /// Arguments of clpv for helper processes that do what this session is about to do. Empty: the
+  /// session itself compiles.
   std::vector<std::string> helpers;
-  /// In such a helper: claims of programs. The session builds and launches only the kernels of programs that it claims,
-  /// and all its buffers start with zeros.
+  /// In such a helper: claims of programs. The session builds and launches only the kernels of
+  /// programs that it claims, and all its buffers start with zeros.
   std::optional<Claims> claims;
 };
 
@@ -52,11 +52,12 @@ class TooLarge : public Error {
   double share;  ///< what the device allows over what the session has and needs; less than 1
 };
 
-/// One open device. All commands go to one in-order queue. Not thread safe: use one session per thread.
+/// One open device. All commands go to one in-order queue. Not thread safe: use one session per
+/// thread.
 class Session {
  public:
-  /// `cache`: source of compiled programs and target of store_programs(). Without one every program is
-  /// compiled.
+  /// `cache`: source of compiled programs and target of store_programs(). Without one every program
+  /// is compiled.
   explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt,
                    Compilation compilation = {});
   /// In a caller's context and queue. Stages have times only if the queue has profiling.
@@ -75,31 +76,34 @@ class Session {
   /// build_described() or the first kernel() of it builds it, once per session.
   std::shared_ptr<Program> describe(const ProgramSource& source);
 
-  /// Builds all described programs that have an owner and are not built yet, with helpers if they are many.
-  /// Throws Error(run_time) with the compiler's log, as does kernel(). Throws Interrupted after a signal.
+  /// Builds all described programs that have an owner and are not built yet, with helpers if they
+  /// are many. Throws Error(run_time) with the compiler's log, as does kernel(). Throws Interrupted
+  /// after a signal.
   void build_described();
 
   /// Returns the kernel `name` of a program of describe(), which it builds if needed.
   cl::Kernel kernel(Program& program, const std::string& name);
 
-  /// In a helper: returns true if it builds and launches this program's kernels. Elsewhere always true.
+  /// In a helper: returns true if it builds and launches this program's kernels. Elsewhere always
+  /// true.
   bool claims(Program& program);
 
-  /// Waits for the first launch of a kernel, which compiles it on some drivers, so that a signal can end the process
-  /// there. Logs (debug) the time.
+  /// Waits for the first launch of a kernel, which compiles it on some drivers, so that a signal
+  /// can end the process there. Logs (debug) the time.
   void finish_first_launch(Program& program, const std::string& name);
 
-  /// In a helper: marks the claimed programs as compiled, after the frame. First builds those whose kernels it did not
-  /// launch.
+  /// In a helper: marks the claimed programs as compiled, after the frame. First builds those whose
+  /// kernels it did not launch.
   void mark_compiled();
 
-  /// Stores compiled programs in the cache, for at most 1/10 of the process's run time; later runs store the rest.
-  /// Call it last, after results are written: on PoCL, reading a program's binary takes about as long as its first
-  /// launches.
+  /// Stores compiled programs in the cache, for at most 1/10 of the process's run time; later runs
+  /// store the rest. Call it last, after results are written: on PoCL, reading a program's binary
+  /// takes about as long as its first launches.
   void store_programs();
 
   /// Allocates a buffer of max(bytes, 4) bytes with undefined contents. `what` names it in errors.
-  /// Throws Error(run_time), before allocating, if the device's memory does not suffice; it states the limit.
+  /// Throws Error(run_time), before allocating, if the device's memory does not suffice; it states
+  /// the limit.
   Buffer buffer(std::size_t bytes, const std::string& what);
   /// A caller's buffer, whose memory does not count as the session's. Throws as given_buffer().
   Buffer given(cl_mem memory, std::size_t bytes, const char* what) const {
@@ -107,12 +111,14 @@ class Session {
   }
   /// Replaces `buffer` by a new one with undefined contents if it has fewer than `bytes` bytes.
   void reserve(Buffer& buffer, std::size_t bytes, const std::string& what);
-  /// Allocates an image of `extent` texels and `bytes` bytes with undefined contents. Throws like buffer().
-  Image3D image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent, std::size_t bytes,
-                const std::string& what);
+  /// Allocates an image of `extent` texels and `bytes` bytes with undefined contents. Throws like
+  /// buffer().
+  Image3D image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
+                std::size_t bytes, const std::string& what);
 
-  /// Runs `kernel` over `global` work-items, rounded up to whole work-groups of `local` in each dimension
-  /// (OpenCL 1.2 has no non-uniform work-groups; kernels guard their range). Timed under the current stage.
+  /// Runs `kernel` over `global` work-items, rounded up to whole work-groups of `local` in each
+  /// dimension (OpenCL 1.2 has no non-uniform work-groups; kernels guard their range). Timed under
+  /// the current stage.
   void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local);
   /// Zeroes `bytes` bytes from byte `from` on; both are multiples of 4.
   void fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from = 0);
@@ -140,8 +146,9 @@ class Session {
   std::vector<T> read(const Buffer& buffer, std::size_t count) {
     std::vector<T> values(count);
     if (count == 0) return values;
-    timeline_.wait(
-        [&] { queue_.enqueueReadBuffer(buffer.handle(), CL_TRUE, 0, count * sizeof(T), values.data()); });
+    timeline_.wait([&] {
+      queue_.enqueueReadBuffer(buffer.handle(), CL_TRUE, 0, count * sizeof(T), values.data());
+    });
     return values;
   }
 
@@ -149,13 +156,15 @@ class Session {
   struct Arriving {
     std::vector<cl_uint> values;
     cl::Event done;
-    bool arrived() const { return done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE; }
+    bool arrived() const {
+      return done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE;
+    }
   };
   /// Reads without waiting.
   std::shared_ptr<const Arriving> read_later(const Buffer& buffer, std::size_t count);
 
-  /// Returns a read-only 1-D image of `values` (one channel of float) that lives as long as the session. Equal values
-  /// share one image. `what` names it in errors. Requires Device::images.
+  /// Returns a read-only 1-D image of `values` (one channel of float) that lives as long as the
+  /// session. Equal values share one image. `what` names it in errors. Requires Device::images.
   const cl::Image1DBuffer& table_image(const std::vector<float>& values, const std::string& what);
 
   /// Size of the largest buffer that can be allocated now [bytes].
@@ -163,7 +172,9 @@ class Session {
 
   std::size_t device_bytes() const { return use_->now; }        ///< device memory in use
   std::size_t peak_device_bytes() const { return use_->peak; }  ///< maximum so far
-  double build_ms() const { return build_ms_; }  ///< time spent compiling programs or loading them [ms]
+  double build_ms() const {
+    return build_ms_;
+  }  ///< time spent compiling programs or loading them [ms]
 
  private:
   Device device_;

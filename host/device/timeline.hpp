@@ -11,7 +11,8 @@
 
 namespace clpv {
 
-/// Stage that a launch belongs to. `cascade` counts from 0 (finest); `light` indexes SceneData::lights.
+/// Stage that a launch belongs to. `cascade` counts from 0 (finest); `light` indexes
+/// SceneData::lights.
 struct StageMark {
   Pass pass;
   std::optional<int> cascade = std::nullopt;
@@ -37,9 +38,10 @@ struct HostWork {
 /// Collects the events of launches, by stage, and counts launches and waits.
 class Timeline {
  public:
-  /// `events_valid`: true if profiling events report plausible times (Device::profiling_valid). `waits`: without them, end() waits
-  /// for the queue to measure wall time; else times are 0.
-  explicit Timeline(bool events_valid, bool waits = true) : events_valid_(events_valid), waits_(waits) {}
+  /// `events_valid`: true if profiling events report plausible times (Device::profiling_valid).
+  /// `waits`: without them, end() waits for the queue to measure wall time; else times are 0.
+  explicit Timeline(bool events_valid, bool waits = true)
+      : events_valid_(events_valid), waits_(waits) {}
 
   void begin(StageMark mark);  ///< starts a stage; times of repeated stages add up
   void end(cl::CommandQueue& queue);

@@ -22,22 +22,26 @@ std::string first_line(const std::string& message) {
   return line.empty() ? "no reason given" : line;
 }
 
-/// Rejects offsets outside the bytes. OpenImageIO 2.4's reader copies from before the bytes for negative offsets, which the
-/// chunk tables of an EXR may contain.
+/// Rejects offsets outside the bytes. OpenImageIO 2.4's reader copies from before the bytes for
+/// negative offsets, which the chunk tables of an EXR may contain.
 class MemoryReader : public OIIO::Filesystem::IOMemReader {
  public:
   /// Borrows the bytes.
-  explicit MemoryReader(std::span<const std::uint8_t> bytes) : IOMemReader(bytes.data(), bytes.size()) {}
+  explicit MemoryReader(std::span<const std::uint8_t> bytes)
+      : IOMemReader(bytes.data(), bytes.size()) {}
 
   bool seek(std::int64_t offset) override { return holds(offset) && IOMemReader::seek(offset); }
 
   std::size_t pread(void* to, std::size_t count, std::int64_t offset) override {
     if (!holds(offset)) return 0;
-    return IOMemReader::pread(to, std::min(count, size() - static_cast<std::size_t>(offset)), offset);
+    return IOMemReader::pread(to, std::min(count, size() - static_cast<std::size_t>(offset)),
+                              offset);
   }
 
  private:
-  bool holds(std::int64_t offset) const { return offset >= 0 && static_cast<std::size_t>(offset) <= size(); }
+  bool holds(std::int64_t offset) const {
+    return offset >= 0 && static_cast<std::size_t>(offset) <= size();
+  }
 };
 
 CodedImage description_of(const OIIO::ImageSpec& spec) {
@@ -79,7 +83,8 @@ class Decoder : public ImageDecoder {
  private:
   std::string read(OIIO::TypeDesc type, void* pixels) {
     const int channels = static_cast<int>(described_.channels.size());
-    return input_->read_image(0, 0, 0, channels, type, pixels) ? "" : first_line(input_->geterror());
+    return input_->read_image(0, 0, 0, channels, type, pixels) ? ""
+                                                               : first_line(input_->geterror());
   }
 
   MemoryReader memory_;
@@ -90,7 +95,8 @@ class Decoder : public ImageDecoder {
 OIIO::ImageSpec spec_of(const CodedImage& image, OIIO::TypeDesc type) {
   OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), type);
   spec.channelnames = image.channels;
-  for (const auto& [name, value] : image.metadata) spec.attribute(std::string(kMetadataPrefix) + name, value);
+  for (const auto& [name, value] : image.metadata)
+    spec.attribute(std::string(kMetadataPrefix) + name, value);
   return spec;
 }
 
@@ -108,7 +114,8 @@ std::string encode(const char* format, const OIIO::ImageSpec& spec, const void* 
 class Codec : public ImageCodec {
  public:
   std::unique_ptr<ImageDecoder> open(const std::string& format, const std::string& name,
-                                     std::span<const std::uint8_t> bytes, std::string& error) const override {
+                                     std::span<const std::uint8_t> bytes,
+                                     std::string& error) const override {
     auto decoder = std::make_unique<Decoder>(bytes);
     error = decoder->open(format, name);
     if (!error.empty()) return nullptr;

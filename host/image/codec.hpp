@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Interface to the image codecs of OpenImageIO, whose 260 shared libraries take 0.3 s to load. The library links them
-// (linked_codec.cpp). The program loads them as a module with its first image (host/loaded_codec.cpp).
+// Interface to the image codecs of OpenImageIO, whose 260 shared libraries take 0.3 s to load. The
+// library links them (linked_codec.cpp). The program loads them as a module with its first image
+// (host/loaded_codec.cpp).
 #pragma once
 
 #include <cstdint>
@@ -34,8 +35,8 @@ class ImageDecoder {
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  /// Opens an image of format "openexr", "png", "jpeg" or "hdr"; the bytes must outlive it. Colours are not multiplied by
-  /// alpha. Returns null and sets `error` on failure. `name`: for errors.
+  /// Opens an image of format "openexr", "png", "jpeg" or "hdr"; the bytes must outlive it. Colours
+  /// are not multiplied by alpha. Returns null and sets `error` on failure. `name`: for errors.
   virtual std::unique_ptr<ImageDecoder> open(const std::string& format, const std::string& name,
                                              std::span<const std::uint8_t> bytes,
                                              std::string& error) const = 0;

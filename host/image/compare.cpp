@@ -14,7 +14,8 @@
 namespace clpv {
 namespace {
 
-constexpr double kRelativeFloor = 0.01;  // keeps the relative error of black pixels finite, as is usual
+// Keeps the relative error of black pixels finite, as is usual.
+constexpr double kRelativeFloor = 0.01;
 
 std::vector<std::size_t> colour_channels(const Image& image) {
   const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B");
@@ -34,21 +35,23 @@ void check_finite(const Image& image, const std::string& name) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     if (std::isfinite(image.pixels[i])) continue;
     const std::size_t p = i / image.channels.size(), c = i % image.channels.size();
-    throw Error(ExitCode::bad_input, "{}: pixel ({}, {}), channel {}: found {}; allowed: finite values", name,
+    throw Error(ExitCode::bad_input,
+                "{}: pixel ({}, {}), channel {}: found {}; allowed: finite values", name,
                 p % image.width, p / image.width, image.channels[c], image.pixels[i]);
   }
 }
 
-void check_comparable(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name) {
+void check_comparable(const Image& a, const std::string& a_name, const Image& b,
+                      const std::string& b_name) {
   if (a.width != b.width || a.height != b.height) {
-    throw Error(ExitCode::bad_input, "{} has {} x {} pixels, {} has {} x {}; allowed: equal sizes", a_name,
-                a.width, a.height, b_name, b.width, b.height);
+    throw Error(ExitCode::bad_input, "{} has {} x {} pixels, {} has {} x {}; allowed: equal sizes",
+                a_name, a.width, a.height, b_name, b.width, b.height);
   }
   const std::size_t in_a = colour_channels(a).size(), in_b = colour_channels(b).size();
   if (in_a != in_b || in_a == 0) {
     throw Error(ExitCode::bad_input,
-                "{} has {} colour channels, {} has {}; allowed: equal numbers, at least 1", a_name, in_a,
-                b_name, in_b);
+                "{} has {} colour channels, {} has {}; allowed: equal numbers, at least 1", a_name,
+                in_a, b_name, in_b);
   }
   if (a.encoding != b.encoding) {
     const bool a_linear = a.encoding == Encoding::linear;
@@ -79,7 +82,8 @@ Image shown(const Image& image, const std::vector<bool>& valid, float exposure) 
 
 std::optional<double> mean_flip(const Image& a, const Image& b, const std::vector<bool>& valid,
                                 float exposure) {
-  const std::vector<double> differences = flip(shown(a, valid, exposure), shown(b, valid, exposure));
+  const std::vector<double> differences =
+      flip(shown(a, valid, exposure), shown(b, valid, exposure));
   double sum = 0;
   for (std::size_t p = 0; p < valid.size(); ++p) sum += valid[p] ? differences[p] : 0;
   return ratio(sum, static_cast<double>(std::ranges::count(valid, true)));
@@ -111,8 +115,8 @@ void set_valid_errors(Comparison& result, const Sums& valid) {
   result.best_gain = ratio(valid.ab, valid.aa);
   // At the best gain g = AB / AA, |gA - B|^2 = BB - AB^2 / AA; a black A has no gain.
   const double explained = valid.aa > 0 ? valid.ab * valid.ab / valid.aa : 0.0;
-  result.nrmse_best_gain =
-      valid.squared_error == 0 ? normalised(0, valid.bb) : normalised(valid.bb - explained, valid.bb);
+  result.nrmse_best_gain = valid.squared_error == 0 ? normalised(0, valid.bb)
+                                                    : normalised(valid.bb - explained, valid.bb);
   result.energy_ratio = ratio(valid.a, valid.b);
 }
 
@@ -123,8 +127,8 @@ double pixel_luminance(const float* values, const std::vector<std::size_t>& chan
 
 }  // namespace
 
-Comparison compare(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name,
-                   float exposure) {
+Comparison compare(const Image& a, const std::string& a_name, const Image& b,
+                   const std::string& b_name, float exposure) {
   check_comparable(a, a_name, b, b_name);
   const std::vector<std::size_t> in_a = colour_channels(a), in_b = colour_channels(b);
   const auto alpha_a = a.channel("A"), alpha_b = b.channel("A");
@@ -167,9 +171,9 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b, co
   return result;
 }
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, width, height, channels, rmse, nrmse, relative_mse, psnr_db,
-                                   max_error, identical, valid_pixels, nrmse_valid, best_gain,
-                                   nrmse_best_gain, energy_ratio, flip)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, width, height, channels, rmse, nrmse, relative_mse,
+                                   psnr_db, max_error, identical, valid_pixels, nrmse_valid,
+                                   best_gain, nrmse_best_gain, energy_ratio, flip)
 
 nlohmann::json to_json(const Comparison& c) {
   nlohmann::json json = c;
@@ -187,7 +191,8 @@ Image difference_image(const Image& a, const Image& b, float amplify) {
   for (std::size_t p = 0; p < a.pixel_count(); ++p) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t channel = in_a.size() < 3 ? 0 : c;
-      result.pixels[3 * p + c] = amplify * std::abs(pixel(a, p)[in_a[channel]] - pixel(b, p)[in_b[channel]]);
+      result.pixels[3 * p + c] =
+          amplify * std::abs(pixel(a, p)[in_a[channel]] - pixel(b, p)[in_b[channel]]);
     }
   }
   return result;

@@ -10,16 +10,16 @@
 
 namespace clpv {
 
-/// Compares A with the reference B; messages contain `a_name` and `b_name`. Throws Error(bad_input) for different sizes,
-/// numbers of colour channels or encodings, and for values that are not finite.
-/// Linear images are tone-mapped for FLIP: ToneMap::aces at `exposure` [EV].
-Comparison compare(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name,
-                   float exposure = 0);
+/// Compares A with the reference B; messages contain `a_name` and `b_name`. Throws Error(bad_input)
+/// for different sizes, numbers of colour channels or encodings, and for values that are not
+/// finite. Linear images are tone-mapped for FLIP: ToneMap::aces at `exposure` [EV].
+Comparison compare(const Image& a, const std::string& a_name, const Image& b,
+                   const std::string& b_name, float exposure = 0);
 
 nlohmann::json to_json(const Comparison& comparison);
 
-/// Difference image amplify * |A - B| over the colour channels, as R, G, B, in the encoding of A and B. The images must be
-/// ones that compare() accepts.
+/// Difference image amplify * |A - B| over the colour channels, as R, G, B, in the encoding of A
+/// and B. The images must be ones that compare() accepts.
 Image difference_image(const Image& a, const Image& b, float amplify);
 
 }  // namespace clpv

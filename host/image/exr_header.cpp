@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Walks through the headers of an OpenEXR file: magic number, version and flags, then per part a list of attributes.
+// Walks through the headers of an OpenEXR file: magic number, version and flags, then per part a
+// list of attributes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,11 +17,12 @@
 namespace clpv {
 namespace {
 
-constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;  // in the version
+// In the version.
+constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 0x1000;
 constexpr std::size_t kFlagsAt = 4;
 constexpr std::size_t kNameBytes = 255;
 constexpr std::size_t kMaxParts = 1024, kMaxAttributes = 1024;  // bound the time of the walk
-constexpr std::int64_t kOffsetBytes = 8;                        // of a chunk, in the table of chunks
+constexpr std::int64_t kOffsetBytes = 8;  // of a chunk, in the table of chunks
 constexpr std::array<std::string_view, 4> kPartTypes = {
     {"scanlineimage", "tiledimage", "deepscanline", "deeptile"}};
 
@@ -29,7 +31,8 @@ struct FixedSize {
   std::size_t bytes;
 };
 
-/// Types with fixed sizes. OpenEXR ignores the size in the file: with another size it would read on from another offset.
+/// Types with fixed sizes. OpenEXR ignores the size in the file: with another size it would read on
+/// from another offset.
 constexpr std::array<FixedSize, 24> kFixedSizes = {{
     {"box2f", 16},
     {"box2i", 16},
@@ -67,7 +70,8 @@ std::int32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
 /// Reader of bytes that rejects reads beyond their end.
 class Cursor {
  public:
-  Cursor(std::string file, std::span<const unsigned char> bytes) : file_(std::move(file)), left_(bytes) {}
+  Cursor(std::string file, std::span<const unsigned char> bytes)
+      : file_(std::move(file)), left_(bytes) {}
 
   std::size_t left() const { return left_.size(); }
   const std::string& file() const { return file_; }
@@ -75,7 +79,8 @@ class Cursor {
   /// Returns the next `count` bytes and advances.
   std::span<const unsigned char> take(std::size_t count, std::string_view place) {
     if (count > left_.size()) {
-      reject(file_, place, fmt::format("{} bytes", count), fmt::format("the {} bytes left", left_.size()));
+      reject(file_, place, fmt::format("{} bytes", count),
+             fmt::format("the {} bytes left", left_.size()));
     }
     const auto taken = left_.first(count);
     left_ = left_.subspan(count);
@@ -110,8 +115,8 @@ struct ExrPart : DeclaredImage {
   bool empty = true;  ///< true without attributes
 };
 
-/// Counts the entries of a channel list: names, each followed by 16 bytes of type and sampling, ended by an empty name.
-/// Rejects bytes after the end.
+/// Counts the entries of a channel list: names, each followed by 16 bytes of type and sampling,
+/// ended by an empty name. Rejects bytes after the end.
 std::int64_t count_channels(Cursor list, std::string_view place) {
   constexpr std::size_t kChannelBytes = 16;
   std::int64_t count = 0;
@@ -123,7 +128,8 @@ std::int64_t count_channels(Cursor list, std::string_view place) {
 }
 
 /// Rejects a preview whose width and height do not match its size: OpenEXR trusts width and height.
-void check_preview(const Cursor& file, std::string_view place, std::span<const unsigned char> bytes) {
+void check_preview(const Cursor& file, std::string_view place,
+                   std::span<const unsigned char> bytes) {
   constexpr std::size_t kPixelsAt = 8, kPixelBytes = 4;
   if (bytes.size() < kPixelsAt)
     reject(file.file(), place, fmt::format("{} bytes", bytes.size()), "width, height and pixels");
@@ -147,7 +153,8 @@ void check_value(const Cursor& file, std::string_view place, std::string_view ty
                  std::span<const unsigned char> bytes) {
   const auto fixed = std::ranges::find(kFixedSizes, type, &FixedSize::type);
   if (fixed != kFixedSizes.end() && fixed->bytes != bytes.size()) {
-    reject(file.file(), place, fmt::format("{} bytes", bytes.size()), fmt::format("{}", fixed->bytes));
+    reject(file.file(), place, fmt::format("{} bytes", bytes.size()),
+           fmt::format("{}", fixed->bytes));
   }
   if (type == "preview") check_preview(file, place, bytes);
   if (type == "stringvector") check_texts(Cursor(file.file(), bytes), place);
@@ -194,7 +201,8 @@ ExrPart read_part(Cursor& file, std::size_t index) {
              fmt::format("up to {}", kMaxAttributes));
     }
     // OpenEXR would add a second list of channels to the first.
-    if (!names.insert(name).second) reject(file.file(), place, "a duplicate attribute", "unique names");
+    if (!names.insert(name).second)
+      reject(file.file(), place, "a duplicate attribute", "unique names");
     check_value(file, place, type, bytes);
     store_value(part, file, place, name, type, bytes);
   }
@@ -212,8 +220,8 @@ std::int64_t min_chunks(const ExrPart& part) {
   return std::max(part.chunks, std::min(rows, kMax) * std::min(columns, kMax));
 }
 
-/// Rejects a part of unknown type. Files with several or deep parts declare types; OpenEXR does not check parts of other
-/// types, and OpenImageIO 2.4 crashes on their headers.
+/// Rejects a part of unknown type. Files with several or deep parts declare types; OpenEXR does not
+/// check parts of other types, and OpenImageIO 2.4 crashes on their headers.
 void check_type(const Cursor& file, const std::string& place, const ExrPart& part) {
   if (std::ranges::count(kPartTypes, part.type) > 0) return;
   reject(file.file(), place, fmt::format("type '{}'", part.type),
@@ -223,14 +231,16 @@ void check_type(const Cursor& file, const std::string& place, const ExrPart& par
 /// Sets the size of a part's chunks, once all its attributes are known.
 void set_chunk_size(ExrPart& part, std::uint32_t flags, bool typed) {
   part.deep = typed && part.type.starts_with("deep");
-  part.tiled = typed ? part.type == "deeptile" || part.type == "tiledimage" : (flags & kTiledFlag) != 0;
+  part.tiled =
+      typed ? part.type == "deeptile" || part.type == "tiledimage" : (flags & kTiledFlag) != 0;
   part.chunk_width = part.tiled ? part.tile_width : part.width;
   part.chunk_height = part.tiled ? part.tile_height : part.rows;
 }
 
 }  // namespace
 
-DeclaredImage read_exr_header(const std::filesystem::path& path, std::span<const unsigned char> bytes) {
+DeclaredImage read_exr_header(const std::filesystem::path& path,
+                              std::span<const unsigned char> bytes) {
   Cursor file(path.string(), bytes);
   file.take(kFlagsAt, "the header");
   const std::uint32_t flags = file.number("the header");
@@ -251,7 +261,8 @@ DeclaredImage read_exr_header(const std::filesystem::path& path, std::span<const
     set_chunk_size(part, flags, typed);
     if (index == 0) first = part;
     if (index == kMaxParts)
-      reject(file.file(), {}, fmt::format("over {} parts", index), fmt::format("up to {}", kMaxParts));
+      reject(file.file(), {}, fmt::format("over {} parts", index),
+             fmt::format("up to {}", kMaxParts));
     check_tables(fmt::format("part {}", index), min_chunks(part));
     chunks += min_chunks(part);
     if (!several) break;

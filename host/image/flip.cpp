@@ -75,7 +75,8 @@ double total(const std::vector<double>& row) {
   return sum;
 }
 
-/// Filters rows by `along_x` and columns by `along_y`. Pixels beyond the image equal the nearest one in it.
+/// Filters rows by `along_x` and columns by `along_y`. Pixels beyond the image equal the nearest
+/// one in it.
 Plane filtered(const Plane& plane, int width, int height, const std::vector<double>& along_x,
                const std::vector<double>& along_y) {
   const int radius = static_cast<int>(along_x.size()) / 2;
@@ -83,27 +84,32 @@ Plane filtered(const Plane& plane, int width, int height, const std::vector<doub
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       for (int i = -radius; i <= radius; ++i)
-        rows[y * width + x] += along_x[i + radius] * plane[y * width + std::clamp(x + i, 0, width - 1)];
+        rows[y * width + x] +=
+            along_x[i + radius] * plane[y * width + std::clamp(x + i, 0, width - 1)];
     }
   }
   for (int y = 0; y < height; ++y) {
     for (int i = -radius; i <= radius; ++i) {
       const int from = std::clamp(y + i, 0, height - 1);
-      for (int x = 0; x < width; ++x) result[y * width + x] += along_y[i + radius] * rows[from * width + x];
+      for (int x = 0; x < width; ++x)
+        result[y * width + x] += along_y[i + radius] * rows[from * width + x];
     }
   }
   return result;
 }
 
 /// A channel without the detail that is too fine for an observer.
-Plane seen(const Plane& plane, int width, int height, const Sensitivity& channel, double pixels_per_degree) {
-  const int radius = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * pi * pi)) * pixels_per_degree));
+Plane seen(const Plane& plane, int width, int height, const Sensitivity& channel,
+           double pixels_per_degree) {
+  const int radius =
+      static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * pi * pi)) * pixels_per_degree));
   Plane result(plane.size(), 0.0);
   double all = 0;
   for (int k = 0; k < 2; ++k) {
     if (channel.height[k] == 0) continue;
     const auto row = taps(radius, [&](double i) {
-      return std::exp(-pi * pi * i * i / (pixels_per_degree * pixels_per_degree * channel.width[k]));
+      return std::exp(-pi * pi * i * i /
+                      (pixels_per_degree * pixels_per_degree * channel.width[k]));
     });
     const double height_of_it = channel.height[k] * std::sqrt(pi / channel.width[k]);
     const Plane part = filtered(plane, width, height, row, row);
@@ -125,7 +131,8 @@ Features features(const Plane& lightness, int width, int height, double pixels_p
   const auto smooth = taps(radius, [&](double i) { return std::exp(-i * i / (2 * variance)); });
   // Positive weights add up to 1 and negative ones to -1.
   const auto derivative = [&](const std::function<double(double)>& factor) {
-    auto row = taps(radius, [&](double i) { return factor(i) * std::exp(-i * i / (2 * variance)); });
+    auto row =
+        taps(radius, [&](double i) { return factor(i) * std::exp(-i * i / (2 * variance)); });
     double above = 0, below = 0;
     for (const double value : row) (value > 0 ? above : below) += std::abs(value);
     for (double& value : row) value /= (value > 0 ? above : below) * total(smooth);
@@ -135,7 +142,8 @@ Features features(const Plane& lightness, int width, int height, double pixels_p
     const Plane along_x = filtered(lightness, width, height, row, smooth),
                 along_y = filtered(lightness, width, height, smooth, row);
     Plane both;
-    for (std::size_t p = 0; p < along_x.size(); ++p) both.push_back(std::hypot(along_x[p], along_y[p]));
+    for (std::size_t p = 0; p < along_x.size(); ++p)
+      both.push_back(std::hypot(along_x[p], along_y[p]));
     return both;
   };
   return {strength(derivative([](double i) { return -i; })),
@@ -160,7 +168,8 @@ View view_of(const Image& image, double pixels_per_degree) {
     lightness[p] = (value.x + 16) / 116;
   }
   for (int c = 0; c < 3; ++c)
-    channels[c] = seen(channels[c], image.width, image.height, kSensitivities[c], pixels_per_degree);
+    channels[c] =
+        seen(channels[c], image.width, image.height, kSensitivities[c], pixels_per_degree);
   View view;
   for (std::size_t p = 0; p < image.pixel_count(); ++p) {
     const glm::dvec3 linear = linear_of({channels[0][p], channels[1][p], channels[2][p]});
@@ -185,10 +194,12 @@ std::vector<double> flip(const Image& a, const Image& b, double pixels_per_degre
   const double largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kColourExponent);
   std::vector<double> result;
   for (std::size_t p = 0; p < a.pixel_count(); ++p) {
-    const double colour = spread(std::pow(hyab(in_a.colours[p], in_b.colours[p]), kColourExponent), largest);
+    const double colour =
+        spread(std::pow(hyab(in_a.colours[p], in_b.colours[p]), kColourExponent), largest);
     const double feature = std::max(std::abs(in_a.features.edges[p] - in_b.features.edges[p]),
                                     std::abs(in_a.features.points[p] - in_b.features.points[p]));
-    result.push_back(std::pow(colour, 1 - std::pow(feature / std::numbers::sqrt2, kFeatureExponent)));
+    result.push_back(
+        std::pow(colour, 1 - std::pow(feature / std::numbers::sqrt2, kFeatureExponent)));
   }
   return result;
 }

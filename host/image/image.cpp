@@ -64,7 +64,8 @@ Image extract_layer(const Image& image, const std::string& layer, const std::str
   result.encoding = image.encoding;
   for (std::size_t p = 0; p < image.pixel_count(); ++p) {
     for (std::size_t c = 0; c < selected.size(); ++c) {
-      result.pixels[p * selected.size() + c] = image.pixels[p * image.channels.size() + selected[c]];
+      result.pixels[p * selected.size() + c] =
+          image.pixels[p * image.channels.size() + selected[c]];
     }
   }
   return result;
@@ -83,8 +84,8 @@ void append_layer(Image& image, const Image& addition, const std::string& layer)
   const std::size_t before = image.channels.size(), added = addition.channels.size();
   std::vector<float> pixels(image.pixel_count() * (before + added));
   for (std::size_t p = 0; p < image.pixel_count(); ++p) {
-    const auto out =
-        std::copy_n(image.pixels.begin() + p * before, before, pixels.begin() + p * (before + added));
+    const auto out = std::copy_n(image.pixels.begin() + p * before, before,
+                                 pixels.begin() + p * (before + added));
     std::copy_n(addition.pixels.begin() + p * added, added, out);
   }
   image.pixels = std::move(pixels);

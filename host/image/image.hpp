@@ -15,11 +15,13 @@ Image make_image(int width, int height, std::vector<std::string> channels);
 /// Names of the layers, in order of first appearance. The unnamed layer is "".
 std::vector<std::string> layers(const Image& image);
 
-/// Image with the channels of one layer, named without the layer, and with the metadata. Throws Error(bad_input) that lists
-/// the layers if there is no such layer; `source` is the file in the message.
+/// Image with the channels of one layer, named without the layer, and with the metadata. Throws
+/// Error(bad_input) that lists the layers if there is no such layer; `source` is the file in the
+/// message.
 Image extract_layer(const Image& image, const std::string& layer, const std::string& source);
 
-/// Appends the channels of `addition` to `image` as `layer`. Sizes and encodings must be equal, unless `image` has no channels.
+/// Appends the channels of `addition` to `image` as `layer`. Sizes and encodings must be equal,
+/// unless `image` has no channels.
 void append_layer(Image& image, const Image& addition, const std::string& layer);
 
 }  // namespace clpv

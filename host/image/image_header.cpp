@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads the headers of PNG (ISO 15948, section 11.2.2) and JPEG files (ITU T.81, annex B). Decoders allocate by the
-// header's size before the caller can check it: libjpeg for progressive images, OpenImageIO for interlaced ones.
+// Reads the headers of PNG (ISO 15948, section 11.2.2) and JPEG files (ITU T.81, annex B). Decoders
+// allocate by the header's size before the caller can check it: libjpeg for progressive images,
+// OpenImageIO for interlaced ones.
 #include "image/image_header.hpp"
 
 #include <algorithm>
@@ -28,10 +29,12 @@ bool contains(Data bytes, Data sequence) {
 
 constexpr std::size_t kPngSignature = 8;
 
-/// Calls `visit(type, chunk)` for each chunk of a PNG up to IEND. Returns false if a chunk exceeds the bytes.
+/// Calls `visit(type, chunk)` for each chunk of a PNG up to IEND. Returns false if a chunk exceeds
+/// the bytes.
 template <typename Visit>
 bool visit_chunks(Data bytes, const Visit& visit) {
-  constexpr std::size_t kOverhead = 12;  // length and type before a chunk's data, checksum after them
+  // Length and type before a chunk's data, checksum after them.
+  constexpr std::size_t kOverhead = 12;
   for (std::size_t at = kPngSignature; bytes.size() - at >= kOverhead;) {
     const std::size_t length = big_endian(bytes, at, 4);
     if (length > bytes.size() - at - kOverhead) return false;
@@ -45,9 +48,11 @@ bool visit_chunks(Data bytes, const Visit& visit) {
 }
 
 std::optional<ImageHeader> png_header(Data bytes) {
-  constexpr std::size_t kWidth = 16, kHeight = 20, kHeaderEnd = 33;  // signature, then the IHDR chunk
+  // Signature, then the IHDR chunk.
+  constexpr std::size_t kWidth = 16, kHeight = 20, kHeaderEnd = 33;
   constexpr std::array<std::uint8_t, 4> kHeaderType = {'I', 'H', 'D', 'R'};
-  if (bytes.size() < kHeaderEnd || !starts_with(bytes.subspan(12), kHeaderType)) return std::nullopt;
+  if (bytes.size() < kHeaderEnd || !starts_with(bytes.subspan(12), kHeaderType))
+    return std::nullopt;
   return ImageHeader{ImageFormat::png, big_endian(bytes, kWidth, 4), big_endian(bytes, kHeight, 4),
                      visit_chunks(bytes, [](std::string_view, Data) {})};
 }
@@ -61,10 +66,11 @@ std::optional<ImageHeader> jpeg_header(Data bytes) {
       continue;
     }
     // Frame headers are SOF0 to SOF15. The markers DHT, JPG and DAC lie in the same range.
-    const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    const bool frame =
+        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
     if (frame) {
-      return ImageHeader{ImageFormat::jpeg, big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2),
-                         contains(bytes.subspan(at), kEnd)};
+      return ImageHeader{ImageFormat::jpeg, big_endian(bytes, at + 7, 2),
+                         big_endian(bytes, at + 5, 2), contains(bytes.subspan(at), kEnd)};
     }
     at += 2 + big_endian(bytes, at + 2, 2);
   }
@@ -82,10 +88,12 @@ std::optional<ImageHeader> read_image_header(Data bytes) {
 }
 
 std::vector<std::uint8_t> strip_png(Data bytes) {
-  constexpr std::array<std::string_view, 6> kKept = {"IHDR", "PLTE", "tRNS", "tEXt", "IDAT", "IEND"};
+  constexpr std::array<std::string_view, 6> kKept = {"IHDR", "PLTE", "tRNS",
+                                                     "tEXt", "IDAT", "IEND"};
   std::vector<std::uint8_t> kept(bytes.begin(), bytes.begin() + kPngSignature);
   visit_chunks(bytes, [&](std::string_view type, Data chunk) {
-    if (std::ranges::find(kKept, type) != kKept.end()) kept.insert(kept.end(), chunk.begin(), chunk.end());
+    if (std::ranges::find(kKept, type) != kKept.end())
+      kept.insert(kept.end(), chunk.begin(), chunk.end());
   });
   return kept;
 }

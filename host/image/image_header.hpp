@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Size of an encoded image by its header, read without decoding, and removal of unneeded PNG chunks.
+// Size of an encoded image by its header, read without decoding, and removal of unneeded PNG
+// chunks.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +13,10 @@ namespace clpv {
 
 /// Size of an image as its file declares it, unchecked.
 struct DeclaredImage {
-  std::int64_t width = 0, height = 0;              ///< of the data window [pixels]
-  std::int64_t chunk_width = 0, chunk_height = 0;  ///< of a tile, or of the rows decoded at once [pixels]
-  std::int64_t channels = 0;                       ///< upper bound: duplicate names count once in the image
+  std::int64_t width = 0, height = 0;  ///< of the data window [pixels]
+  /// Of a tile, or of the rows decoded at once [pixels].
+  std::int64_t chunk_width = 0, chunk_height = 0;
+  std::int64_t channels = 0;  ///< upper bound: duplicate names count once in the image
   bool tiled = false;
   bool deep = false;  ///< deep image or volume
 };
@@ -30,15 +32,17 @@ struct ImageHeader {
 /// Reads the header of a PNG or JPEG; empty for other or truncated bytes.
 std::optional<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes);
 
-/// Copies a complete PNG with only those chunks that its pixels need, and uncompressed texts. libpng would allocate memory
-/// for the declared size of compressed ones.
+/// Copies a complete PNG with only those chunks that its pixels need, and uncompressed texts.
+/// libpng would allocate memory for the declared size of compressed ones.
 std::vector<std::uint8_t> strip_png(std::span<const std::uint8_t> bytes);
 
-/// Validates all part headers of an OpenEXR file; returns the first part's size (OpenEXR's documentation,
-/// "File Layout"). Each attribute must have its type's size, and it and each part's table of chunks must fit into
-/// the file, so headers and tables take no more memory than the file has bytes. Each of several parts must be of a
-/// type that OpenEXR checks. OpenEXR itself rejects missing attributes and meaningless values. Throws
-/// Error(bad_input) that names the file, part, attribute, value found and value allowed.
-DeclaredImage read_exr_header(const std::filesystem::path& path, std::span<const unsigned char> bytes);
+/// Validates all part headers of an OpenEXR file; returns the first part's size (OpenEXR's
+/// documentation, "File Layout"). Each attribute must have its type's size, and it and each part's
+/// table of chunks must fit into the file, so headers and tables take no more memory than the file
+/// has bytes. Each of several parts must be of a type that OpenEXR checks. OpenEXR itself rejects
+/// missing attributes and meaningless values. Throws Error(bad_input) that names the file, part,
+/// attribute, value found and value allowed.
+DeclaredImage read_exr_header(const std::filesystem::path& path,
+                              std::span<const unsigned char> bytes);
 
 }  // namespace clpv

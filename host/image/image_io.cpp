@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Maximum edge of a tile in a smaller image. Tiles are decoded whole: 65535 x 65535 pixels would take 20 s.
+// Maximum edge of a tile in a smaller image. Tiles are decoded whole: 65535 x 65535 pixels would
+// take 20 s.
 constexpr std::int64_t kMaxTile = 1024;
 
 [[noreturn]] void reject(const fs::path& path, const std::string& reason) {
@@ -51,7 +52,8 @@ std::string checked_format(const fs::path& path, const std::vector<unsigned char
   std::string by_name = format_of_name(path);
   const std::string by_content = format_of_content(bytes);
   if (by_name.empty()) {
-    reject(path, fmt::format("extension '{}'; allowed: .exr, .png, .hdr", path.extension().string()));
+    reject(path,
+           fmt::format("extension '{}'; allowed: .exr, .png, .hdr", path.extension().string()));
   }
   if (by_content != by_name) {
     reject(path, fmt::format("content is {}; allowed: {}, as the extension says",
@@ -62,24 +64,27 @@ std::string checked_format(const fs::path& path, const std::vector<unsigned char
 
 /// Rejects an image, or its chunks, beyond the limits.
 void check_size(const fs::path& path, const DeclaredImage& image, const ImageLimits& limits) {
-  if (image.width < 1 || image.height < 1 || image.width > limits.side || image.height > limits.side) {
-    reject(path,
-           fmt::format("{} x {} pixels; allowed: 1 to {} per side", image.width, image.height, limits.side));
+  if (image.width < 1 || image.height < 1 || image.width > limits.side ||
+      image.height > limits.side) {
+    reject(path, fmt::format("{} x {} pixels; allowed: 1 to {} per side", image.width, image.height,
+                             limits.side));
   }
   if (image.channels < 1 || image.channels > limits.channels) {
     reject(path, fmt::format("{} channels; allowed: 1 to {}", image.channels, limits.channels));
   }
   const std::int64_t max_tile = std::max({image.width, image.height, kMaxTile});
   if (image.tiled && (image.chunk_width > max_tile || image.chunk_height > max_tile)) {
-    reject(path, fmt::format("tiles of {} x {} pixels in an image of {} x {}; allowed: up to {} per side",
-                             image.chunk_width, image.chunk_height, image.width, image.height, max_tile));
+    reject(path,
+           fmt::format("tiles of {} x {} pixels in an image of {} x {}; allowed: up to {} per side",
+                       image.chunk_width, image.chunk_height, image.width, image.height, max_tile));
   }
   if (image.deep) reject(path, "deep image or volume; allowed: flat images");
   const auto check_bytes = [&](const char* prefix, std::int64_t width, std::int64_t height) {
     const auto bytes = static_cast<std::size_t>(width * height * image.channels) * sizeof(float);
     if (bytes <= limits.pixel_bytes) return;
-    reject(path, fmt::format("{}{} x {} pixels with {} channels, {} MiB; allowed: up to {} MiB", prefix,
-                             width, height, image.channels, bytes >> 20, limits.pixel_bytes >> 20));
+    reject(path,
+           fmt::format("{}{} x {} pixels with {} channels, {} MiB; allowed: up to {} MiB", prefix,
+                       width, height, image.channels, bytes >> 20, limits.pixel_bytes >> 20));
   };
   check_bytes("", image.width, image.height);
   check_bytes(image.tiled ? "tiles of " : "chunks of ", image.chunk_width, image.chunk_height);
@@ -97,12 +102,13 @@ DeclaredImage declared_by(const CodedImage& image) {
 }
 
 /// Checks sizes that decoders allocate by, and strips unneeded chunks from a PNG.
-void prepare_for_decoding(const fs::path& path, const std::string& format, std::vector<unsigned char>& bytes,
-                          const ImageLimits& limits) {
+void prepare_for_decoding(const fs::path& path, const std::string& format,
+                          std::vector<unsigned char>& bytes, const ImageLimits& limits) {
   if (format == "openexr") check_size(path, read_exr_header(path, bytes), limits);
   if (format != "png") return;
   const auto header = read_image_header(bytes);
-  if (!header || !header->complete) reject(path, "damaged or truncated: a PNG chunk exceeds the file");
+  if (!header || !header->complete)
+    reject(path, "damaged or truncated: a PNG chunk exceeds the file");
   check_size(path, {.width = header->width, .height = header->height, .channels = 1}, limits);
   bytes = strip_png(bytes);
 }
@@ -126,8 +132,10 @@ struct OpenImage {
 };
 
 CodedImage coded(const Image& image) {
-  return {
-      .width = image.width, .height = image.height, .channels = image.channels, .metadata = image.metadata};
+  return {.width = image.width,
+          .height = image.height,
+          .channels = image.channels,
+          .metadata = image.metadata};
 }
 
 /// Throws Error(run_time) if there is an error of encoding `name`.

@@ -23,9 +23,9 @@ struct ImageLimits {
   std::size_t pixel_bytes = std::size_t{1} << 30;  ///< of the decoded pixels, as float
 };
 
-/// Reads all channels of an EXR, PNG or HDR file, of the finest level of the first part. PNG: sRGB-encoded values in [0, 1]
-/// (Encoding::srgb) with unassociated alpha. Extension and content must agree. Throws Error(bad_input) that names the file,
-/// the value found and the values allowed.
+/// Reads all channels of an EXR, PNG or HDR file, of the finest level of the first part. PNG:
+/// sRGB-encoded values in [0, 1] (Encoding::srgb) with unassociated alpha. Extension and content
+/// must agree. Throws Error(bad_input) that names the file, the value found and the values allowed.
 Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
 
 /// Decodes the bytes of such a file; `path` is its name. Throws as read_image.
@@ -35,18 +35,19 @@ Image decode_image(const std::filesystem::path& path, std::string_view bytes);
 std::map<std::string, std::string> read_metadata(const std::filesystem::path& path,
                                                  const ImageLimits& limits = {});
 
-/// Returns the members of a JSON object as metadata: texts as they are, others as JSON, and the files `scene`, `model`
-/// and `centres` without their folders.
+/// Returns the members of a JSON object as metadata: texts as they are, others as JSON, and the
+/// files `scene`, `model` and `centres` without their folders.
 std::map<std::string, std::string> metadata_of(const nlohmann::json& described);
 
-/// Encodes an image as EXR of 32-bit floats with its channel names. Metadata become string attributes "clpv:NAME".
-/// Equal images give equal bytes. Throws Error(run_time).
+/// Encodes an image as EXR of 32-bit floats with its channel names. Metadata become string
+/// attributes "clpv:NAME". Equal images give equal bytes. Throws Error(run_time).
 std::vector<unsigned char> exr_bytes(const Image& image);
 
 /// Writes exr_bytes() to a file. Throws Error(run_time).
 void write_exr(const std::filesystem::path& path, const Image& image);
 
-/// Encodes an sRGB-encoded image (display_image) with R, G, B and optionally A in [0, 1] as 8-bit PNG, with metadata as text.
+/// Encodes an sRGB-encoded image (display_image) with R, G, B and optionally A in [0, 1] as 8-bit
+/// PNG, with metadata as text.
 std::vector<unsigned char> png_bytes(const Image& image);
 
 /// Writes png_bytes() to a file. Throws Error(run_time).

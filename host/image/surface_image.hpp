@@ -9,13 +9,14 @@
 
 namespace clpv {
 
-/// Host copy of a Surface (pipeline/raster/surface.hpp), input of the CPU reference. One value per pixel, row 0 first. Depth [m] is
-/// along the view's forward axis, 0 without a surface; normals and colours are as in Surface.
+/// Host copy of a Surface (pipeline/raster/surface.hpp), input of the CPU reference. One value per
+/// pixel, row 0 first. Depth [m] is along the view's forward axis, 0 without a surface; normals and
+/// colours are as in Surface.
 struct SurfaceImage {
   ClpvView view{};
   std::vector<float> depth;
   std::vector<glm::vec4> normal, colour, emissive;  ///< xyz; w unused
-  std::vector<glm::vec4> position = {};             ///< [m], in place of depth for points without a view
+  std::vector<glm::vec4> position = {};  ///< [m], in place of depth for points without a view
 };
 
 }  // namespace clpv

@@ -39,7 +39,8 @@ float srgb_decode(float encoded) {
 }
 
 Image display_image(const Image& image, float exposure, ToneMap curve) {
-  const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"), a = image.channel("A");
+  const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
+             a = image.channel("A");
   if (!r || !g || !b || image.encoding != Encoding::linear) {
     throw std::logic_error("display_image: needs linear R, G and B");
   }

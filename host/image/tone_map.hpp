@@ -14,9 +14,9 @@ enum class ToneMap { none, reinhard, aces };
 template <>
 inline constexpr auto kNames<ToneMap> = name_list("none", "reinhard", "aces");
 
-/// Applies a tone curve to a linear colour; the result is clamped to [0, 1].
-/// none: identity. reinhard: L / (1 + L) on the luminance (Reinhard et al. 2002, eq. 3).
-/// aces: fit of the ACES RRT and ODT per channel, (x (2.51 x + 0.03)) / (x (2.43 x + 0.59) + 0.14) (Narkowicz 2015).
+/// Applies a tone curve to a linear colour; the result is clamped to [0, 1]. none: identity.
+/// reinhard: L / (1 + L) on the luminance (Reinhard et al. 2002, eq. 3). aces: fit of the ACES RRT
+/// and ODT per channel, (x (2.51 x + 0.03)) / (x (2.43 x + 0.59) + 0.14) (Narkowicz 2015).
 glm::vec3 tone_curve(ToneMap curve, const glm::vec3& linear);
 
 /// sRGB transfer function (IEC 61966-2-1) and its inverse, for values in [0, 1].
@@ -26,8 +26,8 @@ float srgb_decode(float encoded);
 /// Rec. 709 luminance.
 float luminance(const glm::vec3& linear);
 
-/// Display image of a linear image with R, G, B and optionally A: tone_curve(2^exposure * colour), sRGB-encoded. Alpha is
-/// clamped to [0, 1]; colour is 0 where alpha is 0.
+/// Display image of a linear image with R, G, B and optionally A: tone_curve(2^exposure * colour),
+/// sRGB-encoded. Alpha is clamped to [0, 1]; colour is 0 where alpha is 0.
 Image display_image(const Image& image, float exposure, ToneMap curve);
 
 }  // namespace clpv

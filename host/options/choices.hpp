@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Enumerations of render options, with their names on the command line and in files. TransportKind, Blocking and LobeKind
-// are in basis/. Independent of OpenCL.
+// Enumerations of render options, with their names on the command line and in files. TransportKind,
+// Blocking and LobeKind are in basis/. Independent of OpenCL.
 #pragma once
 
 #include "support/named_enum.hpp"
@@ -12,9 +12,9 @@ enum class PresetName { best, fast, fine, paper };
 template <>
 inline constexpr auto kNames<PresetName> = name_list("best", "fast", "fine", "paper");
 
-/// Memory layout of volumes (kernels/volume/). `image`: 3-D image of RGBA texels, four coefficients per texel. `aos`: all
-/// coefficients of a sample are adjacent. `soa`: one array of samples per channel and coefficient. `tiled`: blocks of 8
-/// samples along x times all coefficients.
+/// Memory layout of volumes (kernels/volume/). `image`: 3-D image of RGBA texels, four coefficients
+/// per texel. `aos`: all coefficients of a sample are adjacent. `soa`: one array of samples per
+/// channel and coefficient. `tiled`: blocks of 8 samples along x times all coefficients.
 enum class Layout { image, aos, soa, tiled };
 
 template <>
@@ -71,8 +71,8 @@ enum class Gathering {
 template <>
 inline constexpr auto kNames<Gathering> = name_list("all", "visible");
 
-/// Default distance of the look-up from the surface [cells]. Half a cell avoids light from behind the surface; hidden cells
-/// have no weight with `visible`, so the look-up can be closer.
+/// Default distance of the look-up from the surface [cells]. Half a cell avoids light from behind
+/// the surface; hidden cells have no weight with `visible`, so the look-up can be closer.
 constexpr double usual_gather_offset(Gathering gathering) {
   switch (gathering) {
     case Gathering::all:
@@ -93,8 +93,8 @@ enum class Near {
 template <>
 inline constexpr auto kNames<Near> = name_list("auto", "off", "traced");
 
-/// Pixels whose near field is traced: one of 1 x 1, 2 x 2, 4 x 4 or 8 x 8. `automatic`: about as many as an image of 240 x 135
-/// pixels has.
+/// Pixels whose near field is traced: one of 1 x 1, 2 x 2, 4 x 4 or 8 x 8. `automatic`: about as
+/// many as an image of 240 x 135 pixels has.
 enum class NearSize { automatic, full, half, quarter, eighth };
 
 template <>

@@ -17,8 +17,8 @@ namespace {
 
 // Upper limits, beyond any practical use: a mistyped value fails before memory is allocated.
 constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxTexels = 8192, kMaxPixels = 16384;
-// Edge of a cascade [m]. With 512 cells of the smallest, products of a cell's edges are far from a float's limits; the largest
-// holds every scene (bounds::kCoordinate).
+// Edge of a cascade [m]. With 512 cells of the smallest, products of a cell's edges are far from a
+// float's limits; the largest holds every scene (bounds::kCoordinate).
 constexpr double kMinMetres = 1e-6, kMaxMetres = 1e7;
 constexpr int kMinRsm = 2, kMinShadow = 4;  // texels: fewer have no interior, and no filter
 constexpr int kMaxCascades = 8;
@@ -44,15 +44,22 @@ struct Named {};  ///< names of the member's enumeration
 using PresetOptions = std::vector<std::pair<std::string_view, std::string_view>>;
 
 const PresetOptions& options_of(PresetName preset) {
-  static const PresetOptions best, fast{{"near", "off"}}, fine{{"near-size", "half"}, {"near-rays", "16"}};
+  static const PresetOptions best, fast{{"near", "off"}},
+      fine{{"near-size", "half"}, {"near-rays", "16"}};
   // The published scheme: that of Kaplanyan and Dachsbacher with the paper's basis and sizes.
   static const PresetOptions paper{
-      {"basis", "srbf8v2"},     {"lambda", "0.25"},        {"lobe", "rotate"},       {"lobe-time", "kernel"},
-      {"evaluate", "image"},    {"table-size", "256"},     {"transport", "sampled"}, {"rsm-format", "paper"},
-      {"blockers", "seen"},     {"blocking", "one-sided"}, {"blocker-stride", "1"},  {"gather", "all"},
-      {"gather-offset", "0.5"}, {"layout", "image"},       {"storage", "half"},      {"grid", "32"},
-      {"cascades", "3"},        {"cascade-size", "12.5"},  {"rsm-size", "256"},      {"iterations", "8"},
-      {"near", "off"},          {"width", "960"},          {"height", "540"},
+      {"basis", "srbf8v2"},     {"lambda", "0.25"},
+      {"lobe", "rotate"},       {"lobe-time", "kernel"},
+      {"evaluate", "image"},    {"table-size", "256"},
+      {"transport", "sampled"}, {"rsm-format", "paper"},
+      {"blockers", "seen"},     {"blocking", "one-sided"},
+      {"blocker-stride", "1"},  {"gather", "all"},
+      {"gather-offset", "0.5"}, {"layout", "image"},
+      {"storage", "half"},      {"grid", "32"},
+      {"cascades", "3"},        {"cascade-size", "12.5"},
+      {"rsm-size", "256"},      {"iterations", "8"},
+      {"near", "off"},          {"width", "960"},
+      {"height", "540"},
   };
   switch (preset) {
     case PresetName::best:
@@ -74,7 +81,8 @@ std::string preset_help() {
       "best: the defaults, closest to path tracing at about the cost of the published scheme";
   const auto add = [&](PresetName preset, const char* what) {
     text += fmt::format("\n{}: {}:", name_of(preset), what);
-    for (const auto& [name, value] : options_of(preset)) text += fmt::format(" --{} {}", name, value);
+    for (const auto& [name, value] : options_of(preset))
+      text += fmt::format(" --{} {}", name, value);
   };
   add(PresetName::fast, "less time");
   add(PresetName::fine, "less error, more time");
@@ -82,28 +90,35 @@ std::string preset_help() {
   return text;
 }
 
-/// Calls visit(name, member, help, allowed) for every option. This is the only list of render options.
+/// Calls visit(name, member, help, allowed) for every option. This is the only list of render
+/// options.
 template <typename Options, typename Visit>
 void for_each_option(Options& o, Visit&& visit) {
   visit("preset", o.preset, preset_help(), Named{});
-  visit("basis", o.basis, "basis of spherical functions (clpv basis describes each)", OneOf{basis_names()});
+  visit("basis", o.basis, "basis of spherical functions (clpv basis describes each)",
+        OneOf{basis_names()});
   visit("centres", o.centres, "custom SRBF set, replaces --basis", Path{"centres as JSON"});
-  visit("lambda", o.lambda, "parameter of the SRBF kernels, narrower with larger values", Range{0, 1, true});
-  visit("lobe", o.lobe, "cosine lobes: each projected exactly, or the lobe along +z rotated through a table",
+  visit("lambda", o.lambda, "parameter of the SRBF kernels, narrower with larger values",
+        Range{0, 1, true});
+  visit("lobe", o.lobe,
+        "cosine lobes: each projected exactly, or the lobe along +z rotated through a table",
         Named{});
   visit("lobe-time", o.lobe_time,
         "lobes of propagation: host constants, or computed in the kernel as in the paper", Named{});
-  visit("evaluate", o.evaluate, "SRBF evaluation: exact, or from tables in a buffer or a 1-D image buffer",
-        Named{});
+  visit("evaluate", o.evaluate,
+        "SRBF evaluation: exact, or from tables in a buffer or a 1-D image buffer", Named{});
   visit("table-size", o.table_size, "entries of lobe and SRBF tables", Range{2, kMaxEntries});
   visit("transport", o.transport,
-        "propagation: steps with sampled or exact face fluxes, or one sweep along directions", Named{});
-  visit("directions", o.directions, "number of sweep directions in the finest cascade", Named{});
-  visit("coarser-directions", o.coarser_directions, "number of sweep directions in all other cascades",
+        "propagation: steps with sampled or exact face fluxes, or one sweep along directions",
         Named{});
-  visit("bounces", o.bounces, "number of diffuse bounces; more than 1 needs --transport sweep", Named{});
+  visit("directions", o.directions, "number of sweep directions in the finest cascade", Named{});
+  visit("coarser-directions", o.coarser_directions,
+        "number of sweep directions in all other cascades", Named{});
+  visit("bounces", o.bounces, "number of diffuse bounces; more than 1 needs --transport sweep",
+        Named{});
   visit("layout", o.layout,
-        "memory layout of volumes: 3-D images, or buffers ordered by cell, by coefficient or by block",
+        "memory layout of volumes: 3-D images, or buffers ordered by cell, by coefficient or by "
+        "block",
         Named{});
   visit("storage", o.storage, "number format of volumes; arithmetic is float", Named{});
   visit("iterations", o.iterations, "propagation steps per cascade; ignored by --transport sweep",
@@ -111,36 +126,39 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("grid", o.grid, "cells along each axis of a cascade", Range{1, kMaxCells});
   visit("cascades", o.cascades, "number of cascades, each twice as large as the previous one",
         Range{1, kMaxCascades});
-  visit("cascade-size", o.cascade_size, "edge of the finest cascade [m]; default: from the scene, else 12.5",
+  visit("cascade-size", o.cascade_size,
+        "edge of the finest cascade [m]; default: from the scene, else 12.5",
         Range{kMinMetres, kMaxMetres});
   visit("rsm-size", o.rsm_size, "texels along each side of a reflective shadow map (RSM)",
         Range{kMinRsm, kMaxTexels});
-  visit("rsm-format", o.rsm_format, "RSM format; paper: 32-bit depth, 8-bit normal and flux", Named{});
+  visit("rsm-format", o.rsm_format, "RSM format; paper: 32-bit depth, 8-bit normal and flux",
+        Named{});
   visit("shadow-size", o.shadow_size, "texels along each side of a shadow map for direct light",
         Range{kMinShadow, kMaxTexels});
   visit("blockers", o.blockers,
-        "source of indirect shadows: all triangles of the scene, surfels of RSM and G-buffer, or none",
+        "source of indirect shadows: all triangles of the scene, surfels of RSM and G-buffer, or "
+        "none",
         Named{});
   visit("blocking", o.blocking,
-        "blocking model: projected area per axis, or a cosine lobe that blocks light on the lit side (the "
-        "paper)",
+        "blocking model: projected area per axis, or a cosine lobe that blocks light on the lit "
+        "side (the paper)",
         Named{});
   visit("blocker-stride", o.blocker_stride,
         "distance of the G-buffer's blockers along x and y [pixels], with --blockers seen",
         Range{1, kMaxStride});
-  visit("gather", o.gather,
-        "cells that light a surface, of the eight nearest: all, or only those that no triangle hides",
-        Named{});
-  visit("gather-offset", o.gather_offset, "distance from the surface at which light is gathered [cells]",
-        Range{0, 4});
+  visit(
+      "gather", o.gather,
+      "cells that light a surface, of the eight nearest: all, or only those that no triangle hides",
+      Named{});
+  visit("gather-offset", o.gather_offset,
+        "distance from the surface at which light is gathered [cells]", Range{0, 4});
   visit("near", o.near,
-        "light from surfaces nearer than a cell: from the volumes (off), or by rays (traced), which needs "
-        "--transport "
-        "sweep; auto: traced with a sweep, else off",
+        "light from surfaces nearer than a cell: from the volumes (off), or by rays (traced), "
+        "which needs --transport sweep; auto: traced with a sweep, else off",
         Named{});
   visit("near-size", o.near_size,
-        "pixels that have rays of --near: all, or one of 2 x 2, 4 x 4 or 8 x 8; auto: about as many as 240 x "
-        "135",
+        "pixels that have rays of --near: all, or one of 2 x 2, 4 x 4 or 8 x 8; auto: about as "
+        "many as 240 x 135",
         Named{});
   visit("near-rays", o.near_rays, "rays of each of these pixels", Named{});
   visit("width", o.width, "image width [pixels]", Range{1, kMaxPixels});
@@ -213,22 +231,24 @@ Transport make_transport(const RenderOptions& options, const Basis& basis) {
 
 std::vector<OptionDescription> list_options(const RenderOptions& options) {
   std::vector<OptionDescription> list;
-  for_each_option(options,
-                  [&](const char* name, const auto& member, const std::string& help, const auto& allowed) {
-                    list.push_back({name, help, allowed_text(member, allowed), text_of(member)});
-                  });
+  for_each_option(options, [&](const char* name, const auto& member, const std::string& help,
+                               const auto& allowed) {
+    list.push_back({name, help, allowed_text(member, allowed), text_of(member)});
+  });
   return list;
 }
 
 void set_option(RenderOptions& options, std::string_view name, std::string_view value) {
   bool known = false;
-  for_each_option(options, [&](const char* candidate, auto& member, const std::string&, const auto& allowed) {
-    if (name != candidate) return;
-    known = true;
-    if (!parse(value, allowed, member)) {
-      throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", name, value, allowed_text(member, allowed));
-    }
-  });
+  for_each_option(
+      options, [&](const char* candidate, auto& member, const std::string&, const auto& allowed) {
+        if (name != candidate) return;
+        known = true;
+        if (!parse(value, allowed, member)) {
+          throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", name, value,
+                      allowed_text(member, allowed));
+        }
+      });
   if (name == "basis") options.centres.clear();
   if (!known) throw Error(ExitCode::usage, "unknown option '{}'", name);
   if (name == "preset") apply_preset(options, options.preset);
@@ -236,13 +256,14 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
 
 nlohmann::json to_json(const RenderOptions& options) {
   nlohmann::json json;
-  for_each_option(options, [&](const char* name, const auto& member, const std::string&, const auto&) {
-    if constexpr (NamedEnum<std::remove_cvref_t<decltype(member)>>) {
-      json[name] = text_of(member);
-    } else {
-      json[name] = member;
-    }
-  });
+  for_each_option(options,
+                  [&](const char* name, const auto& member, const std::string&, const auto&) {
+                    if constexpr (NamedEnum<std::remove_cvref_t<decltype(member)>>) {
+                      json[name] = text_of(member);
+                    } else {
+                      json[name] = member;
+                    }
+                  });
   return json;
 }
 
@@ -264,7 +285,8 @@ void apply_preset(RenderOptions& options, PresetName name) {
   const std::vector<OptionDescription> defaults = list_options(RenderOptions{});
   for (const PresetName preset : values_of<PresetName>()) {
     for (const auto& [option, value] : options_of(preset))
-      set_option(options, option, std::ranges::find(defaults, option, &OptionDescription::name)->value);
+      set_option(options, option,
+                 std::ranges::find(defaults, option, &OptionDescription::name)->value);
   }
   for (const auto& [option, value] : options_of(name)) set_option(options, option, value);
   options.preset = name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Render options as one typed value, and the table of their names, help texts and limits. The command line, --stats,
-// image metadata and presets use this table. Independent of OpenCL.
+// Render options as one typed value, and the table of their names, help texts and limits. The
+// command line, --stats, image metadata and presets use this table. Independent of OpenCL.
 #pragma once
 
 #include <map>
@@ -19,12 +19,12 @@
 
 namespace clpv {
 
-/// Options of a frame. The defaults are the preset `best`: closest to path tracing at about the cost of the published
-/// scheme (docs/method.md).
+/// Options of a frame. The defaults are the preset `best`: closest to path tracing at about the
+/// cost of the published scheme (docs/method.md).
 struct RenderOptions {
   PresetName preset = PresetName::best;  ///< the last preset set; later options may override it
-  std::string basis = "sh2";             ///< one of basis_names(), or the name in the file `centres`
-  std::string centres;                   ///< file of an SRBF set that replaces `basis`; empty: none
+  std::string basis = "sh2";  ///< one of basis_names(), or the name in the file `centres`
+  std::string centres;        ///< file of an SRBF set that replaces `basis`; empty: none
   double lambda = 0.25;
   LobeKind lobe = LobeKind::exact;
   LobeTime lobe_time = LobeTime::host;
@@ -75,18 +75,20 @@ Transport make_transport(const RenderOptions& options, const Basis& basis);
 /// Returns all options with their current values, in the order of --help.
 std::vector<OptionDescription> list_options(const RenderOptions& options);
 
-/// Sets one option from text. `preset` sets every option that any preset names, so set it before options that override it.
-/// `basis` clears `centres`. Throws Error(usage) with option, value found and values allowed, for example
-/// "layout: found 'planes', allowed: image|aos|soa|tiled".
+/// Sets one option from text. `preset` sets every option that any preset names, so set it before
+/// options that override it. `basis` clears `centres`. Throws Error(usage) with option, value found
+/// and values allowed, for example "layout: found 'planes', allowed: image|aos|soa|tiled".
 void set_option(RenderOptions& options, std::string_view name, std::string_view value);
 
 /// Returns every option by name, as a number, string or boolean.
 nlohmann::json to_json(const RenderOptions& options);
 
-/// Returns " (set by --preset NAME)" if the option has the value that the preset gave it, else "". For errors.
+/// Returns " (set by --preset NAME)" if the option has the value that the preset gave it, else "".
+/// For errors.
 std::string preset_note(const RenderOptions& options, std::string_view name);
 
-/// Sets these options to their values in the preset, those of other presets to their defaults. Other options do not change.
+/// Sets these options to their values in the preset, those of other presets to their defaults.
+/// Other options do not change.
 void apply_preset(RenderOptions& options, PresetName name);
 
 }  // namespace clpv

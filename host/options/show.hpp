@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Quantities that an image can show: View with its names. kernels/shared/shade.h has meaning and units.
+// Quantities that an image can show: View with its names. kernels/shared/shade.h has meaning and
+// units.
 #pragma once
 
 #include <array>
@@ -27,16 +28,20 @@ constexpr bool shows_medium(Show show) {
 }
 
 template <>
-inline constexpr auto kNames<Show> = name_list("full", "direct", "indirect", "irradiance", "albedo", "normal",
-                                               "depth", "medium", "cells");
+inline constexpr auto kNames<Show> = name_list("full", "direct", "indirect", "irradiance", "albedo",
+                                               "normal", "depth", "medium", "cells");
 
-/// Views of surfaces, which kernels shade. `medium` is computed by pipeline/medium, `cells` drawn by pipeline/cells.
-inline constexpr std::array kSurfaceViews{Show::full,   Show::direct, Show::indirect, Show::irradiance,
-                                          Show::albedo, Show::normal, Show::depth};
+/// Views of surfaces, which kernels shade. `medium` is computed by pipeline/medium, `cells` drawn
+/// by pipeline/cells.
+inline constexpr std::array kSurfaceViews{Show::full,       Show::direct, Show::indirect,
+                                          Show::irradiance, Show::albedo, Show::normal,
+                                          Show::depth};
 
-/// Returns true if path tracing estimates the view by random paths. The others follow from primary and shadow rays.
+/// Returns true if path tracing estimates the view by random paths. The others follow from primary
+/// and shadow rays.
 constexpr bool needs_paths(Show show) {
-  return show == Show::full || show == Show::indirect || show == Show::irradiance || show == Show::medium;
+  return show == Show::full || show == Show::indirect || show == Show::irradiance ||
+         show == Show::medium;
 }
 
 /// Throws Error(usage) for a view that the path tracer does not have.

@@ -22,7 +22,8 @@ PropagateOptions propagate_options(const RenderOptions& options) {
 }
 
 SweepOptions sweep_options(const RenderOptions& options) {
-  std::vector<int> parts(static_cast<std::size_t>(options.cascades), parts_of(options.coarser_directions));
+  std::vector<int> parts(static_cast<std::size_t>(options.cascades),
+                         parts_of(options.coarser_directions));
   parts.front() = parts_of(options.directions);
   return {.grid = options.grid,
           .parts = parts,
@@ -49,7 +50,8 @@ int near_step(const RenderOptions& options) {
   int step = 1;
   switch (options.near_size) {
     case NearSize::automatic:  // between half and twice as many
-      while (step < 8 && double{1} * options.width * options.height > 2 * kWanted * step * step) step *= 2;
+      while (step < 8 && double{1} * options.width * options.height > 2 * kWanted * step * step)
+        step *= 2;
       return step;
     case NearSize::full:
       return 1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Options of each stage, derived from RenderOptions. Independent of OpenCL: stages and their CPU references share them.
+// Options of each stage, derived from RenderOptions. Independent of OpenCL: stages and their CPU
+// references share them.
 #pragma once
 
 #include <optional>
@@ -46,15 +47,17 @@ struct SweepOptions {
   VolumeFormat format = {};        ///< of all volumes; internal buffers use its storage
   SweepForm form = SweepForm::suited;
   std::optional<ClpvMedium> medium = {};
-  const Sky* sky = nullptr;  ///< lights the coarsest cascade at its border; used by the constructor alone
+  /// Lights the coarsest cascade at its border; used by the constructor alone.
+  const Sky* sky = nullptr;
 };
 
 struct GatherOptions {
   int grid = 32;  ///< cells along each axis of every cascade
   Gathering gather = Gathering::all;
-  double gather_offset = 0.5;  ///< distance of the look-up from the surface along its normal [cells]
-  double blend_cells = 2;      ///< width of the blend to the next coarser cascade [cells], > 0
-  LobeOptions lobes = {};      ///< b(-n) may be read from a table; alpha(-n) is always exact
+  /// Distance of the look-up from the surface along its normal [cells].
+  double gather_offset = 0.5;
+  double blend_cells = 2;  ///< width of the blend to the next coarser cascade [cells], > 0
+  LobeOptions lobes = {};  ///< b(-n) may be read from a table; alpha(-n) is always exact
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};  ///< of the cascades' volumes
   bool filtered = true;      ///< images: filtered by the sampler; false: from texels in float

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Stages and timed passes: the list that `clpv check`, frame times and benchmarks share. Switches over these enumerations
-// have no default, so that a new stage does not compile until every switch handles it.
+// Stages and timed passes: the list that `clpv check`, frame times and benchmarks share. Switches
+// over these enumerations have no default, so that a new stage does not compile until every switch
+// handles it.
 #pragma once
 
 #include "support/named_enum.hpp"
 
 namespace clpv {
 
-/// A stage has one file stem in kernels/, pipeline/, reference/, verify/ and tests/. `sizes` checks the layout of structs
-/// that host and kernels share; it is not part of a frame and is checked first.
+/// A stage has one file stem in kernels/, pipeline/, reference/, verify/ and tests/. `sizes` checks
+/// the layout of structs that host and kernels share; it is not part of a frame and is checked
+/// first.
 enum class Stage {
   sizes,
   rasterize,
@@ -28,10 +30,11 @@ enum class Stage {
 
 template <>
 inline constexpr auto kNames<Stage> = name_list("sizes", "rasterize", "emit", "inject", "blockers",
-                                                "reflectors", "propagate", "sweep", "bounce", "visibility",
-                                                "gather", "near", "medium", "shade");
+                                                "reflectors", "propagate", "sweep", "bounce",
+                                                "visibility", "gather", "near", "medium", "shade");
 
-/// A part of a frame that is timed separately: a stage, or one use of it. `whole`: everything that a benchmark launches.
+/// A part of a frame that is timed separately: a stage, or one use of it. `whole`: everything that
+/// a benchmark launches.
 enum class Pass {
   rasterize_camera,
   rasterize_shadow,  ///< per light
@@ -52,9 +55,10 @@ enum class Pass {
 };
 
 template <>
-inline constexpr auto kNames<Pass> = name_list("rasterize-camera", "rasterize-shadow", "rasterize-rsm",
-                                               "emit", "inject-light", "inject-geometry", "blockers",
-                                               "reflectors", "propagate", "visibility", "gather",
-                                               "near-trace", "near", "medium", "shade", "whole");
+inline constexpr auto kNames<Pass> = name_list("rasterize-camera", "rasterize-shadow",
+                                               "rasterize-rsm", "emit", "inject-light",
+                                               "inject-geometry", "blockers", "reflectors",
+                                               "propagate", "visibility", "gather", "near-trace",
+                                               "near", "medium", "shade", "whole");
 
 }  // namespace clpv

@@ -26,11 +26,12 @@ std::vector<Contradiction> contradictions_of(const RenderOptions& o, const Scene
   const bool sweeps = o.transport == TransportKind::sweep;
   const std::string transport = fmt::format("transport '{}'", name_of(o.transport));
   return {
-      {o.blockers == Blockers::scene && o.blocking != Blocking::areas, "blocking", name_of(o.blocking),
-       "blockers 'scene'", "areas (or blockers 'seen')"},
+      {o.blockers == Blockers::scene && o.blocking != Blocking::areas, "blocking",
+       name_of(o.blocking), "blockers 'scene'", "areas (or blockers 'seen')"},
       {!sweeps && o.bounces != Bounces::one, "bounces", name_of(o.bounces), transport,
        "1 (or transport 'sweep')"},
-      {!sweeps && o.near == Near::traced, "near", name_of(o.near), transport, "off (or transport 'sweep')"},
+      {!sweeps && o.near == Near::traced, "near", name_of(o.near), transport,
+       "off (or transport 'sweep')"},
       {sweeps && o.lobe_time != LobeTime::host, "lobe-time", name_of(o.lobe_time),
        transport + ", which has no lobes", "host"},
       // Steps take no light at the border of the cascades, and attenuate none.
@@ -52,7 +53,9 @@ struct Effect {
 std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& options) {
   const auto found = [&](const char* name, std::string_view value) {
     const std::string preset = preset_note(options, name);
-    const std::string source = given.contains(name) ? "" : preset.empty() ? " (the default)" : preset;
+    const std::string source = given.contains(name) ? ""
+                               : preset.empty()     ? " (the default)"
+                                                    : preset;
     return fmt::format("{} {}{}", name, value, source);
   };
   const bool sweeps = options.transport == TransportKind::sweep;
@@ -99,8 +102,8 @@ void reject_without_effect(const OptionValues& given, const RenderOptions& optio
     if (effect.exists) continue;
     for (const char* name : effect.options) {
       if (const auto found = given.find(name); found != given.end())
-        throw Error(ExitCode::usage, "{} {} has no effect with {}; allowed with {}", name, found->second,
-                    effect.without, effect.with);
+        throw Error(ExitCode::usage, "{} {} has no effect with {}; allowed with {}", name,
+                    found->second, effect.without, effect.with);
     }
   }
 }

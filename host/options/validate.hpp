@@ -7,8 +7,8 @@
 
 namespace clpv {
 
-/// Throws Error(usage) if options contradict each other or the scene: names one, its value, the other, and the values
-/// allowed with it.
+/// Throws Error(usage) if options contradict each other or the scene: names one, its value, the
+/// other, and the values allowed with it.
 void validate(const RenderOptions& options, const SceneData& scene);
 
 /// Throws Error(usage) if an option that the user gave has no effect with the others; names both.

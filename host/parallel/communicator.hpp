@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Interface to MPI: the operations that clpv uses. Everything in this header is inline or virtual, so that the MPI module
-// (mpi_communicator.cpp), which the program loads at run time, links without the program.
+// Interface to MPI: the operations that clpv uses. Everything in this header is inline or virtual,
+// so that the MPI module (mpi_communicator.cpp), which the program loads at run time, links without
+// the program.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,8 @@
 
 namespace clpv {
 
-/// One rank of a communicator. All ranks call the collective functions in the same order, each from one thread.
+/// One rank of a communicator. All ranks call the collective functions in the same order, each from
+/// one thread.
 class Communicator {
  public:
   virtual ~Communicator() = default;  ///< collective
@@ -20,7 +22,8 @@ class Communicator {
   virtual int local_size() const = 0;
   virtual std::string host() const = 0;  ///< name of this machine
 
-  /// Sums `values` over all ranks, element by element, in place. Collective, like gather() and broadcast().
+  /// Sums `values` over all ranks, element by element, in place. Collective, like gather() and
+  /// broadcast().
   virtual void sum(double* values, std::size_t count) = 0;
   /// Returns every rank's `text`, indexed by rank, at rank 0; empty elsewhere.
   virtual std::vector<std::string> gather(const std::string& text) = 0;

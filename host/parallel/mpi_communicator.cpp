@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Communicator on MPI: a module that the program loads only if a launcher (mpirun, srun) started it.
+// Communicator on MPI: a module that the program loads only if a launcher (mpirun, srun) started
+// it.
 #include <mpi.h>
 
 #include <algorithm>
@@ -12,7 +13,8 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 24;  // elements per reduction, whose count is an int
+constexpr std::size_t kChunk = std::size_t{1}
+                               << 24;  // elements per reduction, whose count is an int
 
 int length_of(const std::string& text) {
   if (text.size() > std::numeric_limits<int>::max())
@@ -66,11 +68,12 @@ class MpiCommunicator : public Communicator {
       all.resize(all.size() + static_cast<std::size_t>(each));
     }
     length_of(all);  // throws if MPI's int counts overflow
-    MPI_Gatherv(text.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR, 0,
-                MPI_COMM_WORLD);
+    MPI_Gatherv(text.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR,
+                0, MPI_COMM_WORLD);
     std::vector<std::string> texts;
     for (std::size_t r = 0; r < lengths.size(); ++r)
-      texts.push_back(all.substr(static_cast<std::size_t>(starts[r]), static_cast<std::size_t>(lengths[r])));
+      texts.push_back(
+          all.substr(static_cast<std::size_t>(starts[r]), static_cast<std::size_t>(lengths[r])));
     return texts;
   }
 

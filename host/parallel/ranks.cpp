@@ -38,10 +38,12 @@ int bound_processors() {
   return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-/// Sub-device for the `index`-th of `ranks` ranks that share a device; the whole device if it cannot be split.
+/// Sub-device for the `index`-th of `ranks` ranks that share a device; the whole device if it
+/// cannot be split.
 Device share_of(const Device& device, unsigned ranks, unsigned index) {
   const unsigned units = std::max(1u, device.compute_units / ranks);
-  const unsigned count = std::max(1u, device.compute_units / units);  // if fewer than ranks, some share one
+  // If fewer than ranks, some share one.
+  const unsigned count = std::max(1u, device.compute_units / units);
   try {
     return sub_device(device, units, index % count);
   } catch (const Error& error) {
@@ -67,16 +69,19 @@ Device Ranks::device(const std::string& choice) const {
   if (alone()) return choose_device(choice);
   const std::vector<Device> devices = choose_devices(choice);
   const auto local_rank = static_cast<std::size_t>(communicator_->local_rank()),
-             local_size = static_cast<std::size_t>(communicator_->local_size()), count = devices.size();
+             local_size = static_cast<std::size_t>(communicator_->local_size()),
+             count = devices.size();
   const std::size_t sharing = (local_size - local_rank % count + count - 1) / count;
   Device device = devices[local_rank % count];
   if (sharing > 1)
-    device = share_of(device, static_cast<unsigned>(sharing), static_cast<unsigned>(local_rank / count));
+    device =
+        share_of(device, static_cast<unsigned>(sharing), static_cast<unsigned>(local_rank / count));
   spdlog::info("{} of {}: {} ({}), compute units: {}", name(), size(), device.name, device.platform,
                device.compute_units);
   if (device.type == "cpu" && bound_processors() < static_cast<int>(device.compute_units)) {
     spdlog::warn(
-        "{} is bound to fewer processors than its device has: mpirun --bind-to none allows it all of them",
+        "{} is bound to fewer processors than its device has: mpirun --bind-to none allows it all "
+        "of them",
         name());
   }
   return device;
@@ -112,8 +117,8 @@ std::unique_ptr<Communicator> start_mpi() {
   void* module = ::dlopen(kModule, RTLD_NOW | RTLD_GLOBAL);
   if (module == nullptr) {
     throw Error(ExitCode::run_time,
-                "started as one of several processes, but built without MPI: {}; install MPI (Debian: "
-                "libopenmpi-dev) and build with CLPV_MPI",
+                "started as one of several processes, but built without MPI: {}; install MPI "
+                "(Debian: libopenmpi-dev) and build with CLPV_MPI",
                 ::dlerror());
   }
   const auto make = reinterpret_cast<MakeCommunicator*>(::dlsym(module, kMakeCommunicator));

@@ -15,20 +15,23 @@ namespace clpv::pathtracer {
 namespace {
 
 constexpr int kEdgeSamples = 4;  // texture samples along a triangle's edge
-constexpr double kWhiteShare =
-    0.1;  // share of the weight that ignores the texture, so that no texel has density 0
+// Share of the weight that ignores the texture, so that no texel has density 0.
+constexpr double kWhiteShare = 0.1;
 
 double brightest(const glm::dvec3& colour) {
   return std::max({colour.x, colour.y, colour.z, 0.0});
 }
 
 /// Approximate mean radiance of a triangle's front, in the brightest channel [W/m^2/sr].
-double mean_radiance(const SceneData& scene, const reference::Materials& materials, std::uint32_t triangle) {
+double mean_radiance(const SceneData& scene, const reference::Materials& materials,
+                     std::uint32_t triangle) {
   const ClpvMaterial& material = scene.materials[scene.triangles[triangle].material];
-  const double white = brightest({material.emissive[0], material.emissive[1], material.emissive[2]});
+  const double white =
+      brightest({material.emissive[0], material.emissive[1], material.emissive[2]});
   if (material.emissive_texture == CLPV_NO_TEXTURE) return white;
   const auto [a, b, c] = corners_of(scene, scene.triangles[triangle]);
-  const reference::Footprint footprint{(b - a) / double{kEdgeSamples}, (c - a) / double{kEdgeSamples}};
+  const reference::Footprint footprint{(b - a) / double{kEdgeSamples},
+                                       (c - a) / double{kEdgeSamples}};
   double sum = 0;
   int samples = 0;
   for (int row = 0; row < kEdgeSamples; ++row) {
@@ -78,9 +81,11 @@ glm::dvec3 Emitters::front_normal(std::uint32_t triangle) const {
   return glm::normalize(glm::cross(b - a, c - a));
 }
 
-glm::dvec3 Emitters::radiance(const reference::SurfacePoint& point, const glm::dvec3& towards) const {
+glm::dvec3 Emitters::radiance(const reference::SurfacePoint& point,
+                              const glm::dvec3& towards) const {
   const ClpvMaterial& material = scene_.materials[scene_.triangles[point.triangle].material];
-  if (!emits(material) || (!double_sided(material) && glm::dot(front_normal(point.triangle), towards) <= 0))
+  if (!emits(material) ||
+      (!double_sided(material) && glm::dot(front_normal(point.triangle), towards) <= 0))
     return glm::dvec3(0);
   return glm::dvec3(materials_.emissive(point));
 }
@@ -120,9 +125,11 @@ SkySampler::SkySampler(const Sky* sky) : sky_(sky) {
 SkySample SkySampler::sample(const glm::dvec2& random) const {
   const auto width = static_cast<std::size_t>(sky_->width);
   const CdfSample row = sample_cdf(row_cdf_, random.y);
-  const CdfSample column = sample_cdf(std::span(column_cdfs_).subspan(row.index * width, width), random.x);
+  const CdfSample column =
+      sample_cdf(std::span(column_cdfs_).subspan(row.index * width, width), random.x);
   const double top = std::cos(std::numbers::pi * static_cast<double>(row.index) / sky_->height),
-               bottom = std::cos(std::numbers::pi * static_cast<double>(row.index + 1) / sky_->height);
+               bottom =
+                   std::cos(std::numbers::pi * static_cast<double>(row.index + 1) / sky_->height);
   const double up = top + row.fraction * (bottom - top);  // uniform over the texel's solid angle
   const double y = std::acos(std::clamp(up, -1.0, 1.0)) / std::numbers::pi * sky_->height;
   const std::size_t texel = row.index * width + column.index;

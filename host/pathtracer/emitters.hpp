@@ -19,8 +19,9 @@ struct EmitterSample {
   double density = 0;     ///< probability density over area [1/m^2]
 };
 
-/// Distribution over the emissive triangles of a scene: a triangle's probability is proportional to its approximate power,
-/// and its points have constant density over area. Borrows the scene and the materials.
+/// Distribution over the emissive triangles of a scene: a triangle's probability is proportional to
+/// its approximate power, and its points have constant density over area. Borrows the scene and the
+/// materials.
 class Emitters {
  public:
   Emitters(const SceneData& scene, const reference::Materials& materials);
@@ -54,13 +55,15 @@ struct SkySample {
   double density = 0;                    ///< probability density over solid angle [1/sr]
 };
 
-/// Distribution over a sky's texels: density proportional to the radiance of the brightest channel. Borrows the sky.
+/// Distribution over a sky's texels: density proportional to the radiance of the brightest channel.
+/// Borrows the sky.
 class SkySampler {
  public:
   /// `sky` may be null.
   explicit SkySampler(const Sky* sky);
 
-  /// Returns true without a sky, or for a black one. Then sample(), density() and radiance() must not be called.
+  /// Returns true without a sky, or for a black one. Then sample(), density() and radiance() must
+  /// not be called.
   bool empty() const { return row_cdf_.empty(); }
 
   /// Maps a point of [0, 1)^2 to a direction.
@@ -68,9 +71,13 @@ class SkySampler {
   /// Density of sample() in a unit direction [1/sr].
   double density(const glm::dvec3& direction) const;
   /// Radiance of the texel in a direction [W/m^2/sr].
-  glm::dvec3 radiance(const glm::dvec3& direction) const { return glm::dvec3(sky_->radiance(direction)); }
+  glm::dvec3 radiance(const glm::dvec3& direction) const {
+    return glm::dvec3(sky_->radiance(direction));
+  }
   /// Radiance interpolated between texels, as cameras show it [W/m^2/sr]. Needs a sky.
-  glm::vec3 interpolated(const glm::dvec3& direction) const { return sky_->interpolated(direction); }
+  glm::vec3 interpolated(const glm::dvec3& direction) const {
+    return sky_->interpolated(direction);
+  }
 
  private:
   double weight(std::size_t texel) const;

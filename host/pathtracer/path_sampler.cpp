@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Paths with next event estimation. Emitters and sky are sampled directly with density p_light, and hit by
-// cosine-distributed directions with density p_cosine. The balance heuristic weights both (Veach and Guibas, 'Optimally
-// combining sampling techniques for Monte Carlo rendering', SIGGRAPH 1995): each estimate is f / (p_light + p_cosine).
+// Paths with next event estimation. Emitters and sky are sampled directly with density p_light, and
+// hit by cosine-distributed directions with density p_cosine. The balance heuristic weights both
+// (Veach and Guibas, 'Optimally combining sampling techniques for Monte Carlo rendering', SIGGRAPH
+// 1995): each estimate is f / (p_light + p_cosine).
 //
-// A vertex in a medium has pi p, p the phase function, in place of a surface's cosine, and directions of density p in place of
-// p_cosine. All free flights of a path are sampled for one channel, drawn at random, and weighted by the mean density of the
-// three (Wilkie et al., 'Hero Wavelength Spectral Sampling', EGSR 2014). Suns light these vertices. For spots and points,
-// a ray has a second sample, equiangular as seen from the light (Kulla and Fajardo, 'Importance Sampling Techniques for Path
-// Tracing in Participating Media', EGSR 2012).
+// A vertex in a medium has pi p, p the phase function, in place of a surface's cosine, and
+// directions of density p in place of p_cosine. All free flights of a path are sampled for one
+// channel, drawn at random, and weighted by the mean density of the three (Wilkie et al., 'Hero
+// Wavelength Spectral Sampling', EGSR 2014). Suns light these vertices. For spots and points, a ray
+// has a second sample, equiangular as seen from the light (Kulla and Fajardo, 'Importance Sampling
+// Techniques for Path Tracing in Participating Media', EGSR 2012).
 #include "pathtracer/path_sampler.hpp"
 
 #include <algorithm>
@@ -25,14 +27,15 @@ namespace clpv::pathtracer {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2, kFlightStream = 3,
-                        kBeamStream = 4;  // of a bounce, besides its direction
+// Of a bounce, besides its direction.
+constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2, kFlightStream = 3, kBeamStream = 4;
 constexpr std::uint64_t kAirStream = 1ull << 32, kChannelStream = kAirStream + 1,
                         kEyeBeamStream = kAirStream + 2;  // of a path, besides its bounces
 constexpr int kCertainBounces = 3;                        // Russian roulette starts at this bounce
 constexpr double kMaxSurvival = 0.95;                     // so that paths end between white walls
 
-/// Russian roulette. Returns false to end the path; else divides the throughput by the probability of survival.
+/// Russian roulette. Returns false to end the path; else divides the throughput by the probability
+/// of survival.
 bool survives(glm::dvec3& throughput, int bounce, std::uint64_t bits) {
   const double largest = std::max({throughput.x, throughput.y, throughput.z});
   if (bounce < kCertainBounces) return largest > 0;
@@ -55,7 +58,8 @@ void PathSampler::Flights::take(const glm::dvec3& more, glm::dvec3& throughput) 
   density /= std::max({density.x, density.y, density.z});
 }
 
-std::optional<Hit> PathSampler::primary_hit(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
+std::optional<Hit> PathSampler::primary_hit(const ClpvView& view, std::uint32_t px,
+                                            std::uint32_t py) {
   ++ray_count_;
   const glm::dvec3 origin = reference::surface_position(view, px, py, 0),
                    at_unit_depth = reference::surface_position(view, px, py, 1);
@@ -63,9 +67,12 @@ std::optional<Hit> PathSampler::primary_hit(const ClpvView& view, std::uint32_t 
                          view.far_depth, Faces::culled);
 }
 
-bool PathSampler::shadowed(const ClpvLight& light, const glm::vec3& origin, const glm::dvec3& towards) const {
-  if (kind_of(light) == LightKind::directional) return rays_.occluded(origin, glm::vec3(towards), kInfinity);
-  const glm::vec3 to_light = glm::vec3(light.position[0], light.position[1], light.position[2]) - origin;
+bool PathSampler::shadowed(const ClpvLight& light, const glm::vec3& origin,
+                           const glm::dvec3& towards) const {
+  if (kind_of(light) == LightKind::directional)
+    return rays_.occluded(origin, glm::vec3(towards), kInfinity);
+  const glm::vec3 to_light =
+      glm::vec3(light.position[0], light.position[1], light.position[2]) - origin;
   return rays_.occluded(origin, to_light, 1);
 }
 
@@ -101,11 +108,12 @@ glm::dvec3 PathSampler::direct(const Vertex& at) {
   return sum;
 }
 
-/// Radiance towards `origin` of light from spots and points, scattered once in a ray's first `distance` [m].
-/// Equi-angular sampling (Kulla and Fajardo 2012): points have the density D / (angle (D^2 + (t - t_0)^2)), where D is
-/// the light's distance from the ray, t_0 its foot and `angle` the angle subtended by the ray at the light.
-glm::dvec3 PathSampler::from_beams(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                                   double random) {
+/// Radiance towards `origin` of light from spots and points, scattered once in a ray's first
+/// `distance` [m]. Equi-angular sampling (Kulla and Fajardo 2012): points have the density D /
+/// (angle (D^2 + (t - t_0)^2)), where D is the light's distance from the ray, t_0 its foot and
+/// `angle` the angle subtended by the ray at the light.
+glm::dvec3 PathSampler::from_beams(const glm::dvec3& origin, const glm::dvec3& direction,
+                                   double distance, double random) {
   glm::dvec3 sum(0);
   if (medium_ == nullptr) return sum;
   const MediumPart part = medium_part(*medium_, origin, direction, distance);
@@ -115,7 +123,8 @@ glm::dvec3 PathSampler::from_beams(const glm::dvec3& origin, const glm::dvec3& d
     const glm::dvec3 offset = vector(light.data.position) - origin;
     const double foot = glm::dot(offset, direction);
     const double away = std::max(glm::length(offset - foot * direction), 1e-6);
-    const double first = std::atan((part.start - foot) / away), last = std::atan((part.end - foot) / away);
+    const double first = std::atan((part.start - foot) / away),
+                 last = std::atan((part.end - foot) / away);
     const double beside = away * std::tan(glm::mix(first, last, random)),
                  t = std::clamp(foot + beside, part.start, part.end);
     const glm::dvec3 at = origin + t * direction;
@@ -130,7 +139,8 @@ glm::dvec3 PathSampler::from_beams(const glm::dvec3& origin, const glm::dvec3& d
   return vector(medium_->scattering) * sum;
 }
 
-/// Irradiance at `at` from a sampled emitter: L cos cos' / d^2 / (p_light + p_cosine), with densities over area.
+/// Irradiance at `at` from a sampled emitter: L cos cos' / d^2 / (p_light + p_cosine), with
+/// densities over area.
 glm::dvec3 PathSampler::sample_emitter(const Vertex& at, const glm::dvec2& random) {
   const EmitterSample light = emitters_.sample(random);
   const glm::dvec3 to_light = glm::dvec3(light.position) - glm::dvec3(at.hit.position);
@@ -152,9 +162,10 @@ glm::dvec3 PathSampler::sample_emitter(const Vertex& at, const glm::dvec2& rando
          (light.density + share / std::numbers::pi);
 }
 
-/// Irradiance at `at` from the emissive surface `next` that a sampled direction hits: pi L p_cosine / (p_light + p_cosine),
-/// with densities over area.
-glm::dvec3 PathSampler::emission_of(const Vertex& at, const glm::dvec3& direction, const Hit& next) const {
+/// Irradiance at `at` from the emissive surface `next` that a sampled direction hits: pi L p_cosine
+/// / (p_light + p_cosine), with densities over area.
+glm::dvec3 PathSampler::emission_of(const Vertex& at, const glm::dvec3& direction,
+                                    const Hit& next) const {
   const glm::dvec3 radiance = emitters_.radiance(next.point, -direction);
   if (radiance == glm::dvec3(0)) return radiance;
   const double distance = double{next.distance},
@@ -165,7 +176,8 @@ glm::dvec3 PathSampler::emission_of(const Vertex& at, const glm::dvec3& directio
          (emitters_.density(next.point.triangle) + cosine_density);
 }
 
-/// Irradiance at `at` from a sampled direction of the sky: L cos / (p_light + p_cosine), with densities over solid angle.
+/// Irradiance at `at` from a sampled direction of the sky: L cos / (p_light + p_cosine), with
+/// densities over solid angle.
 glm::dvec3 PathSampler::sample_sky(const Vertex& at, const glm::dvec2& random) {
   const SkySample sample = sky_.sample(random);
   const double cosine = factor(at, sample.direction);
@@ -184,10 +196,12 @@ glm::dvec3 PathSampler::sky_along(const Vertex& at, const glm::dvec3& direction)
   return sky_.radiance(direction) * cosine / (sky_.density(direction) + cosine / std::numbers::pi);
 }
 
-/// A free flight along a ray that meets a surface after `distance` [m]. Returns where the medium scatters, or nothing if it
-/// does not before. Multiplies the throughput by transmittance, and sigma_s of a scattering, over their probability.
-std::optional<double> PathSampler::fly(const glm::vec3& origin, const glm::dvec3& direction, double distance,
-                                       double random, Flights& flights, glm::dvec3& throughput) const {
+/// A free flight along a ray that meets a surface after `distance` [m]. Returns where the medium
+/// scatters, or nothing if it does not before. Multiplies the throughput by transmittance, and
+/// sigma_s of a scattering, over their probability.
+std::optional<double> PathSampler::fly(const glm::vec3& origin, const glm::dvec3& direction,
+                                       double distance, double random, Flights& flights,
+                                       glm::dvec3& throughput) const {
   if (medium_ == nullptr) return std::nullopt;
   const MediumPart part = medium_part(*medium_, glm::dvec3(origin), direction, distance);
   if (part.length() == 0) return std::nullopt;
@@ -203,8 +217,10 @@ std::optional<double> PathSampler::fly(const glm::vec3& origin, const glm::dvec3
 }
 
 /// Direction of density factor() / pi; empty below the surface.
-std::optional<glm::vec3> PathSampler::sample_direction(const Vertex& at, const glm::dvec2& random) const {
-  if (at.in_medium) return glm::vec3(phase_direction(at.arrived, double{medium_->anisotropy}, random));
+std::optional<glm::vec3> PathSampler::sample_direction(const Vertex& at,
+                                                       const glm::dvec2& random) const {
+  if (at.in_medium)
+    return glm::vec3(phase_direction(at.arrived, double{medium_->anisotropy}, random));
   const glm::vec3 direction(cosine_direction(glm::dvec3(at.hit.normal), random));
   // Below the triangle's plane, as the interpolated normal differs from the triangle's.
   if (glm::dot(direction, at.hit.geometric) <= 0) return std::nullopt;
@@ -224,7 +240,8 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
     const std::uint64_t dimensions = mix(stream, static_cast<std::uint64_t>(bounce));
     if (!emitters_.empty())
       sum += throughput * sample_emitter(at, sobol_point(path, mix(dimensions, kEmitterStream)));
-    if (!sky_.empty()) sum += throughput * sample_sky(at, sobol_point(path, mix(dimensions, kSkyStream)));
+    if (!sky_.empty())
+      sum += throughput * sample_sky(at, sobol_point(path, mix(dimensions, kSkyStream)));
     const std::optional<glm::vec3> direction = sample_direction(at, sobol_point(path, dimensions));
     if (!direction) break;
     ++ray_count_;
@@ -235,15 +252,17 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
            from_beams(glm::dvec3(origin), glm::dvec3(*direction), distance,
                       sobol_point(path, mix(dimensions, kBeamStream)).x);
     const std::optional<double> scattered =
-        fly(origin, glm::dvec3(*direction), distance, sobol_point(path, mix(dimensions, kFlightStream)).x,
-            flights, throughput);
+        fly(origin, glm::dvec3(*direction), distance,
+            sobol_point(path, mix(dimensions, kFlightStream)).x, flights, throughput);
     if (!hit && !scattered) {
       if (!sky_.empty()) sum += throughput * sky_along(at, glm::dvec3(*direction));
       break;
     }
-    const Vertex next = scattered ? in_medium(glm::dvec3(origin), glm::dvec3(*direction), *scattered)
-                                  : Vertex{*hit, false, {}};
-    if (!scattered && !emitters_.empty()) sum += throughput * emission_of(at, glm::dvec3(*direction), *hit);
+    const Vertex next = scattered
+                            ? in_medium(glm::dvec3(origin), glm::dvec3(*direction), *scattered)
+                            : Vertex{*hit, false, {}};
+    if (!scattered && !emitters_.empty())
+      sum += throughput * emission_of(at, glm::dvec3(*direction), *hit);
     const glm::dvec3 irradiance = direct(next);
     const bool last = bounce == options_.bounces;
     if (last && irradiance == glm::dvec3(0)) break;  // frequent: saves the texture access
@@ -256,22 +275,26 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
 }
 
 glm::dvec3 PathSampler::scattered_towards(const glm::dvec3& origin, const glm::dvec3& direction,
-                                          double distance, std::uint32_t path, std::uint64_t stream) {
+                                          double distance, std::uint32_t path,
+                                          std::uint64_t stream) {
   const MediumPart part = medium_part(*medium_, origin, direction, distance);
   const glm::dvec3 extinction = vector(medium_->extinction);
   if (part.length() == 0) return glm::dvec3(0);
-  // Density sigma exp(-sigma t) / (1 - exp(-sigma l)) of each channel: every point of the ray can be drawn.
+  // Density sigma exp(-sigma t) / (1 - exp(-sigma l)) of each channel: every point of the ray can
+  // be drawn.
   const std::uint64_t own = mix(stream, kAirStream);
   Flights flights{channel_of(path, own), glm::dvec3(1)};
   const double chosen = extinction[flights.channel], random = sobol_point(path, own).x;
   const double t =
-      chosen > 0 ? std::min(-std::log1p(random * std::expm1(-chosen * part.length())) / chosen, part.length())
+      chosen > 0 ? std::min(-std::log1p(random * std::expm1(-chosen * part.length())) / chosen,
+                            part.length())
                  : random * part.length();
   const glm::dvec3 left = glm::exp(-t * extinction);
   glm::dvec3 density, throughput = left * vector(medium_->scattering);
   for (int c = 0; c < 3; ++c)
-    density[c] = extinction[c] > 0 ? extinction[c] * left[c] / -std::expm1(-extinction[c] * part.length())
-                                   : 1 / part.length();
+    density[c] = extinction[c] > 0
+                     ? extinction[c] * left[c] / -std::expm1(-extinction[c] * part.length())
+                     : 1 / part.length();
   flights.take(density, throughput);
   const Vertex at = in_medium(origin, direction, part.start + t);
   return from_beams(origin, direction, distance, sobol_point(path, mix(stream, kEyeBeamStream)).x) +

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sampling of one pixel: primary hit, direct irradiance, and single paths of indirect irradiance and of scattered light.
+// Sampling of one pixel: primary hit, direct irradiance, and single paths of indirect irradiance
+// and of scattered light.
 #pragma once
 
 #include <cstdint>
@@ -27,27 +28,35 @@ class PathSampler {
   /// `medium`: null without one.
   PathSampler(const RayScene& rays, const std::vector<SceneLight>& lights, const Emitters& emitters,
               const SkySampler& sky, const ClpvMedium* medium, const PathTracerOptions& options)
-      : rays_(rays), lights_(lights), emitters_(emitters), sky_(sky), medium_(medium), options_(options) {}
+      : rays_(rays),
+        lights_(lights),
+        emitters_(emitters),
+        sky_(sky),
+        medium_(medium),
+        options_(options) {}
 
   /// The surface at a pixel's centre; `distance` is its depth. Empty without a surface.
   std::optional<Hit> primary_hit(const ClpvView& view, std::uint32_t px, std::uint32_t py);
 
-  /// Irradiance from the scene's lights [W/m^2]; in the medium pi times the integral of phase function and radiance.
+  /// Irradiance from the scene's lights [W/m^2]; in the medium pi times the integral of phase
+  /// function and radiance.
   glm::dvec3 direct(const Vertex& at);
 
-  /// One path's estimate of the irradiance at `start` from surfaces, emission included, from the medium and from the sky
-  /// [W/m^2]. Paths 0, 1, 2... of a stream are a low-discrepancy sequence; streams are independent of each other.
+  /// One path's estimate of the irradiance at `start` from surfaces, emission included, from the
+  /// medium and from the sky [W/m^2]. Paths 0, 1, 2... of a stream are a low-discrepancy sequence;
+  /// streams are independent of each other.
   glm::dvec3 indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream);
 
-  /// One path's estimate of the radiance [W/m^2/sr] that the medium scatters towards `origin` along the first `distance` [m]
-  /// of a ray. Needs a medium.
-  glm::dvec3 scattered_towards(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                               std::uint32_t path, std::uint64_t stream);
+  /// One path's estimate of the radiance [W/m^2/sr] that the medium scatters towards `origin` along
+  /// the first `distance` [m] of a ray. Needs a medium.
+  glm::dvec3 scattered_towards(const glm::dvec3& origin, const glm::dvec3& direction,
+                               double distance, std::uint32_t path, std::uint64_t stream);
 
   std::uint64_t ray_count() const { return ray_count_; }
 
  private:
-  /// The channel for which free flights of a path are sampled, and their density for each channel up to a factor.
+  /// The channel for which free flights of a path are sampled, and their density for each channel
+  /// up to a factor.
   struct Flights {
     int channel;
     glm::dvec3 density;
@@ -57,11 +66,13 @@ class PathSampler {
   };
 
   static int channel_of(std::uint32_t path, std::uint64_t stream);
-  glm::dvec3 indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream, Flights flights);
+  glm::dvec3 indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream,
+                      Flights flights);
   static Vertex in_medium(const glm::dvec3& origin, const glm::dvec3& direction, double distance);
   glm::vec3 origin_of(const Vertex& at) const;
   double factor(const Vertex& at, const glm::dvec3& direction) const;
-  glm::dvec3 transmitted(const glm::vec3& origin, const glm::dvec3& direction, double distance) const;
+  glm::dvec3 transmitted(const glm::vec3& origin, const glm::dvec3& direction,
+                         double distance) const;
   std::optional<glm::vec3> sample_direction(const Vertex& at, const glm::dvec2& random) const;
   std::optional<double> fly(const glm::vec3& origin, const glm::dvec3& direction, double distance,
                             double random, Flights& flights, glm::dvec3& throughput) const;

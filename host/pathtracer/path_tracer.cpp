@@ -23,8 +23,9 @@
 namespace clpv::pathtracer {
 namespace {
 
-constexpr std::uint32_t kTile = 16;          // edge of a tile [pixels], the unit of work of a thread
-constexpr std::uint32_t kFirstSamples = 64;  // paths per pixel before the first estimate of the noise
+constexpr std::uint32_t kTile = 16;  // edge of a tile [pixels], the unit of work of a thread
+// Paths per pixel before the first estimate of the noise.
+constexpr std::uint32_t kFirstSamples = 64;
 constexpr std::uint32_t kMaxSamples = PathTracerOptions::kMaxSamples;
 
 /// Unit direction of the ray through a pixel's centre.
@@ -54,8 +55,8 @@ PrimaryRay primary_ray(const ClpvView& view, std::size_t pixel, float depth) {
 glm::vec3 seen_through(const TracedImage& traced, std::size_t pixel) {
   if (!traced.medium) return glm::vec3(1);
   const PrimaryRay ray = primary_ray(traced.view, pixel, traced.depth[pixel]);
-  return glm::vec3(
-      transmittance(*traced.medium, medium_part(*traced.medium, ray.origin, ray.direction, ray.length)));
+  return glm::vec3(transmittance(
+      *traced.medium, medium_part(*traced.medium, ray.origin, ray.direction, ray.length)));
 }
 
 /// Traces one image, tile by tile.
@@ -79,11 +80,12 @@ class ImageTracer {
     threads_ = options.threads > 0 ? options.threads : ranks.processors();
   }
 
-  /// Traces primary rays and computes direct light, one pixel at a time. Every rank does so for the whole image.
+  /// Traces primary rays and computes direct light, one pixel at a time. Every rank does so for the
+  /// whole image.
   void trace_primary_rays() {
     image_.depth.assign(hits_.size(), 0);
-    for (auto* layer : {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct, &image_.irradiance,
-                        &image_.scattered}) {
+    for (auto* layer : {&image_.normal, &image_.albedo, &image_.emissive, &image_.direct,
+                        &image_.irradiance, &image_.scattered}) {
       layer->assign(hits_.size(), glm::vec3(0));
     }
     parallel_for({0, 1, tiles()}, [&](PathSampler& sampler, std::size_t tile) {
@@ -94,7 +96,8 @@ class ImageTracer {
     if (!ranks_.is_root()) image_.rays = 0;  // finish() sums the counts of all ranks
   }
 
-  /// Adds paths up to `samples` per pixel. The two halves get equal numbers; the first gets an odd path.
+  /// Adds paths up to `samples` per pixel. The two halves get equal numbers; the first gets an odd
+  /// path.
   void trace(std::uint32_t samples) {
     const auto rank = static_cast<std::size_t>(ranks_.rank()),
                count = static_cast<std::size_t>(ranks_.size());
@@ -106,12 +109,13 @@ class ImageTracer {
         const std::uint64_t stream = mix(mix(options_.seed), 2 * i + half);
         const auto add = [&](std::size_t pixel, const auto& path_of) {
           glm::dvec3 sum = rank_sums_[2 * pixel + half];
-          for (std::uint32_t s = half_of(image_.samples, half); s < half_of(samples, half) && !interrupted();
-               ++s)
+          for (std::uint32_t s = half_of(image_.samples, half);
+               s < half_of(samples, half) && !interrupted(); ++s)
             sum += path_of(s);
           rank_sums_[2 * pixel + half] = sum;
         };
-        if (hits_[i]) add(i, [&](std::uint32_t s) { return sampler.indirect({*hits_[i]}, s, stream); });
+        if (hits_[i])
+          add(i, [&](std::uint32_t s) { return sampler.indirect({*hits_[i]}, s, stream); });
         if (layers_ == 1) return;
         const PrimaryRay ray = primary_ray(image_.view, i, image_.depth[i]);
         add(hits_.size() + i, [&](std::uint32_t s) {
@@ -121,8 +125,8 @@ class ImageTracer {
       const std::lock_guard lock(mutex_);
       done += count;
       if (progress_ && ranks_.is_root())
-        progress_(progress_start_ +
-                  (progress_end_ - progress_start_) * std::min(1.0, static_cast<double>(done) / items.end));
+        progress_(progress_start_ + (progress_end_ - progress_start_) *
+                                        std::min(1.0, static_cast<double>(done) / items.end));
     });
     sums_ = rank_sums_;  // one rank has each sum; the others add 0
     ranks_.sum({&sums_[0].x, 3 * sums_.size()});
@@ -132,7 +136,8 @@ class ImageTracer {
 
   TracedImage finish() {
     for (std::size_t i = 0; i < layers_ * hits_.size(); ++i)
-      layer_number(image_, i) = glm::vec3((sums_[2 * i] + sums_[2 * i + 1]) / double(image_.samples));
+      layer_number(image_, i) =
+          glm::vec3((sums_[2 * i] + sums_[2 * i + 1]) / double(image_.samples));
     auto rays = static_cast<double>(image_.rays);
     ranks_.sum({&rays, 1});
     image_.rays = static_cast<std::uint64_t>(rays);
@@ -141,7 +146,9 @@ class ImageTracer {
 
   double current_noise() const { return image_.noise; }
   /// Sets the range of progress that the next trace() reports.
-  void set_progress_range(double start, double end) { progress_start_ = start, progress_end_ = end; }
+  void set_progress_range(double start, double end) {
+    progress_start_ = start, progress_end_ = end;
+  }
 
  private:
   /// The range first, first + step, ... below end.
@@ -149,7 +156,9 @@ class ImageTracer {
     std::size_t first, step, end;
   };
 
-  static std::uint32_t half_of(std::uint32_t samples, std::uint32_t half) { return (samples + 1 - half) / 2; }
+  static std::uint32_t half_of(std::uint32_t samples, std::uint32_t half) {
+    return (samples + 1 - half) / 2;
+  }
 
   std::uint32_t columns() const { return (image_.view.width + kTile - 1) / kTile; }
   std::uint32_t tiles() const { return columns() * ((image_.view.height + kTile - 1) / kTile); }
@@ -191,8 +200,8 @@ class ImageTracer {
   void parallel_for(const Items& items, const Action& action) {
     std::atomic<std::size_t> next{items.first};
     const auto run = [&] {
-      PathSampler sampler(rays_, lights_, emitters_, sky_, image_.medium ? &*image_.medium : nullptr,
-                          options_);
+      PathSampler sampler(rays_, lights_, emitters_, sky_,
+                          image_.medium ? &*image_.medium : nullptr, options_);
       for (std::size_t item; !interrupted() && (item = next.fetch_add(items.step)) < items.end;)
         action(sampler, item);
       const std::lock_guard lock(mutex_);
@@ -206,7 +215,8 @@ class ImageTracer {
     stop_if_interrupted();
   }
 
-  /// TracedImage::noise of the paths so far: half the difference of the two halves estimates the error of their mean.
+  /// TracedImage::noise of the paths so far: half the difference of the two halves estimates the
+  /// error of their mean.
   double noise() const {
     const std::uint32_t counts[2] = {half_of(image_.samples, 0), half_of(image_.samples, 1)};
     if (counts[1] == 0) return std::numeric_limits<double>::quiet_NaN();
@@ -235,8 +245,8 @@ class ImageTracer {
   Ranks& ranks_;
   std::vector<std::optional<Hit>> hits_;  // primary hits, one per pixel
   std::size_t layers_;                    // 2 with a medium
-  // Irradiance [W/m^2], and with a medium scattered radiance [W/m^2/sr], summed over paths, of this rank and of all ranks: two
-  // independent halves per pixel.
+  // Irradiance [W/m^2], and with a medium scattered radiance [W/m^2/sr], summed over paths, of this
+  // rank and of all ranks: two independent halves per pixel.
   std::vector<glm::dvec3> rank_sums_, sums_;
   TracedImage image_;
   std::mutex mutex_;
@@ -244,32 +254,37 @@ class ImageTracer {
   double progress_start_ = 0, progress_end_ = 0;
 };
 
-void check(const SceneData& scene, const std::vector<SceneLight>& lights, const PathTracerOptions& options) {
+void check(const SceneData& scene, const std::vector<SceneLight>& lights,
+           const PathTracerOptions& options) {
   if (options.bounces < 0)
     throw Error(ExitCode::usage, "bounces: found {}; allowed: 1 or more, or all", options.bounces);
   if (options.samples > kMaxSamples)
-    throw Error(ExitCode::usage, "samples: found {}; allowed: 0 to {}", options.samples, kMaxSamples);
+    throw Error(ExitCode::usage, "samples: found {}; allowed: 0 to {}", options.samples,
+                kMaxSamples);
   if (options.samples == 0 && !(options.noise > 0))
     throw Error(ExitCode::usage, "noise: found {}; allowed: above 0", options.noise);
   if (lights.empty() && !emits(scene) && !scene.sky)
     throw Error(ExitCode::bad_input, "{}: no light, no emissive surface and no sky", scene.path);
 }
 
-/// The next number of paths, of the sequence 2^k, 3 * 2^(k-1), 2^(k+1), where Sobol points have the lowest discrepancy.
+/// The next number of paths, of the sequence 2^k, 3 * 2^(k-1), 2^(k+1), where Sobol points have the
+/// lowest discrepancy.
 std::uint32_t next_count(std::uint32_t samples) {
   const bool power = (samples & (samples - 1)) == 0;
   return power ? samples + samples / 2 : samples / 3 * 4;
 }
 
-/// Expected number of paths for the target noise, as the error of scrambled Sobol points falls with n^(-3/4).
+/// Expected number of paths for the target noise, as the error of scrambled Sobol points falls with
+/// n^(-3/4).
 double expected_count(std::uint32_t samples, double noise, double target) {
   return samples * std::pow(std::max(1.0, noise / target), 4.0 / 3.0);
 }
 
 }  // namespace
 
-TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
-                        const PathTracerOptions& options, const TraceProgress& progress, Ranks& ranks) {
+TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& lights,
+                        const ClpvView& view, const PathTracerOptions& options,
+                        const TraceProgress& progress, Ranks& ranks) {
   check(scene, lights, options);
   ImageTracer tracer(scene, lights, view, options, progress, ranks);
   tracer.trace_primary_rays();
@@ -281,8 +296,9 @@ TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& l
   std::uint32_t done = 0;
   for (std::uint32_t count = kFirstSamples; count <= kMaxSamples; count = next_count(count)) {
     const double goal =
-        done == 0 ? count
-                  : std::max<double>(count, expected_count(done, tracer.current_noise(), options.noise));
+        done == 0
+            ? count
+            : std::max<double>(count, expected_count(done, tracer.current_noise(), options.noise));
     tracer.set_progress_range(done / goal, count / goal);
     tracer.trace(count);
     done = count;
@@ -322,8 +338,8 @@ glm::vec3 shown(const TracedImage& t, std::size_t i, Show show) {
 }  // namespace
 
 Image traced_view(const TracedImage& traced, Show show) {
-  Image image = make_image(static_cast<int>(traced.view.width), static_cast<int>(traced.view.height),
-                           {"R", "G", "B", "A"});
+  Image image = make_image(static_cast<int>(traced.view.width),
+                           static_cast<int>(traced.view.height), {"R", "G", "B", "A"});
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
     const bool surface = traced.depth[i] > 0;
     const bool air = traced.medium && shows_medium(show);

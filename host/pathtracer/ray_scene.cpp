@@ -27,13 +27,15 @@ using RtcContext = RTCRayQueryContext;
 inline constexpr RTCSceneFlags kRtcQueryFilters = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 
 /// Finds the nearest hit. `filter` runs besides the geometries' own filters; null: only those.
-inline void rtc_intersect(RTCScene scene, RtcContext& context, RTCFilterFunctionN filter, RTCRayHit& query) {
+inline void rtc_intersect(RTCScene scene, RtcContext& context, RTCFilterFunctionN filter,
+                          RTCRayHit& query) {
   rtcInitRayQueryContext(&context);
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.context = &context;
   arguments.filter = filter;
-  if (filter != nullptr) arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;  // for all geometries
+  if (filter != nullptr)
+    arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;  // for all geometries
   rtcIntersect1(scene, &query, &arguments);
 }
 
@@ -47,7 +49,8 @@ inline void rtc_occluded(RTCScene scene, RTCRay& ray) {
 using RtcContext = RTCIntersectContext;
 inline constexpr RTCSceneFlags kRtcQueryFilters = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 
-inline void rtc_intersect(RTCScene scene, RtcContext& context, RTCFilterFunctionN filter, RTCRayHit& query) {
+inline void rtc_intersect(RTCScene scene, RtcContext& context, RTCFilterFunctionN filter,
+                          RTCRayHit& query) {
   rtcInitIntersectContext(&context);
   context.filter = filter;
   rtcIntersect1(scene, &context, &query);
@@ -74,7 +77,8 @@ using RtcScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, RtcRelease>;
 void check(RTCDevice device) {
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error(ExitCode::run_time, "Embree: out of memory");
-  if (error != RTC_ERROR_NONE) throw Error(ExitCode::run_time, "Embree: error {}", static_cast<int>(error));
+  if (error != RTC_ERROR_NONE)
+    throw Error(ExitCode::run_time, "Embree: error {}", static_cast<int>(error));
 }
 
 }  // namespace
@@ -106,18 +110,20 @@ void filter_mask(const RTCFilterFunctionNArguments* args) {
   if (impl.materials->hole({impl.triangle(*hit), {hit->u, hit->v}})) args->valid[0] = 0;
 }
 
-/// Rejects hits on back faces of single-sided triangles. Embree's normal is cross(v1 - v0, v2 - v0), which points to glTF's
-/// front: the side with counter-clockwise vertices.
+/// Rejects hits on back faces of single-sided triangles. Embree's normal is cross(v1 - v0, v2 -
+/// v0), which points to glTF's front: the side with counter-clockwise vertices.
 void filter_back_faces(const RTCFilterFunctionNArguments* args) {
   const auto& impl = *reinterpret_cast<const QueryContext*>(args->context)->impl;
   const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
   const auto* ray = reinterpret_cast<const RTCRay*>(args->ray);
   const Triangle& triangle = impl.scene->triangles[impl.triangle(*hit)];
   if (impl.scene->materials[triangle.material].flags & CLPV_MATERIAL_DOUBLE_SIDED) return;
-  if (hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z >= 0) args->valid[0] = 0;
+  if (hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z >= 0)
+    args->valid[0] = 0;
 }
 
-RTCRay make_ray(const glm::vec3& origin, const glm::vec3& direction, float nearest, float furthest) {
+RTCRay make_ray(const glm::vec3& origin, const glm::vec3& direction, float nearest,
+                float furthest) {
   RTCRay ray{};
   ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
   ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
@@ -132,10 +138,11 @@ void RayScene::Impl::attach(unsigned id) {
   const std::vector<std::uint32_t>& indices = triangles[id];
   if (indices.empty()) return;
   const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene->vertices.data(),
-                             0, sizeof(Vertex), scene->vertices.size());
-  auto* out = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), indices.size()));
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             scene->vertices.data(), 0, sizeof(Vertex), scene->vertices.size());
+  auto* out = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(std::uint32_t), indices.size()));
   check(device.get());
   for (const std::uint32_t i : indices) out = std::copy_n(scene->triangles[i].vertex, 3, out);
   rtcSetGeometryUserData(geometry, this);
@@ -150,13 +157,15 @@ void RayScene::Impl::attach(unsigned id) {
 }
 
 reference::Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit) {
-  const glm::dvec3 normal(hit.geometric), here = reference::surface_position(view, px, py, hit.distance);
+  const glm::dvec3 normal(hit.geometric),
+      here = reference::surface_position(view, px, py, hit.distance);
   const glm::dvec3 ray =
       reference::surface_position(view, px, py, 1) - reference::surface_position(view, px, py, 0);
   const auto step = [&](double x, double y) {
-    const glm::dvec3 offset =
-        reference::surface_position(view, x, y, hit.distance) - here;        // at the same depth
-    return offset - ray * glm::dot(normal, offset) / glm::dot(normal, ray);  // onto the triangle's plane
+    // At the same depth.
+    const glm::dvec3 offset = reference::surface_position(view, x, y, hit.distance) - here;
+    return offset -
+           ray * glm::dot(normal, offset) / glm::dot(normal, ray);  // onto the triangle's plane
   };
   return {step(px + 1.0, py), step(px, py + 1.0)};
 }
@@ -168,14 +177,15 @@ RayScene::RayScene(const SceneData& scene) : impl_(std::make_unique<Impl>()) {
   impl_->scene = &scene;
   impl_->materials.emplace(scene);
   for (const Vertex& v : scene.vertices) {
-    impl_->extent =
-        std::max({impl_->extent, std::abs(v.position[0]), std::abs(v.position[1]), std::abs(v.position[2])});
+    impl_->extent = std::max(
+        {impl_->extent, std::abs(v.position[0]), std::abs(v.position[1]), std::abs(v.position[2])});
   }
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     const bool masked = scene.materials[scene.triangles[i].material].flags & CLPV_MATERIAL_MASKED;
     impl_->triangles[masked ? kMasked : kOpaque].push_back(i);
   }
-  // One thread builds, so that the tree, and the choice between coincident triangles, do not depend on scheduling.
+  // One thread builds, so that the tree, and the choice between coincident triangles, do not depend
+  // on scheduling.
   impl_->device.reset(rtcNewDevice("threads=1,set_affinity=0"));
   if (!impl_->device) check(nullptr);
   impl_->rtc.reset(rtcNewScene(impl_->device.get()));
@@ -195,13 +205,14 @@ const reference::Materials& RayScene::materials() const {
   return *impl_->materials;
 }
 
-std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest,
-                                       float furthest, Faces faces) const {
+std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3& direction,
+                                       float nearest, float furthest, Faces faces) const {
   QueryContext context{{}, impl_.get()};
   RTCRayHit query{};
   query.ray = make_ray(origin, direction, nearest, furthest);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtc_intersect(impl_->rtc.get(), context.base, faces == Faces::culled ? filter_back_faces : nullptr, query);
+  rtc_intersect(impl_->rtc.get(), context.base,
+                faces == Faces::culled ? filter_back_faces : nullptr, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   const SceneData& scene = *impl_->scene;
@@ -214,7 +225,8 @@ std::optional<Hit> RayScene::intersect(const glm::vec3& origin, const glm::vec3&
   if (glm::dot(hit.geometric, direction) > 0) hit.geometric = -hit.geometric;
   hit.normal = reference::interpolate(scene, triangle, hit.point.weights, reference::normal);
   const float length = glm::length(hit.normal);
-  hit.normal = length > 0 ? hit.normal / length : hit.geometric;  // 0 if opposite normals cancel out
+  // 0 if opposite normals cancel out.
+  hit.normal = length > 0 ? hit.normal / length : hit.geometric;
   if (glm::dot(hit.normal, hit.geometric) < 0) hit.normal = -hit.normal;
   return hit;
 }
@@ -226,10 +238,12 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, flo
 }
 
 glm::vec3 RayScene::offset_origin(const Hit& hit) const {
-  // Embree's robust intersection is exact to a few ulp of the triangle's coordinates; these offsets are tens of ulp.
+  // Embree's robust intersection is exact to a few ulp of the triangle's coordinates; these offsets
+  // are tens of ulp.
   constexpr float kPerPosition = 1e-5f, kPerExtent = 1e-6f;
   const glm::vec3 size = glm::abs(hit.position);
-  const float offset = kPerPosition * std::max({size.x, size.y, size.z}) + kPerExtent * impl_->extent;
+  const float offset =
+      kPerPosition * std::max({size.x, size.y, size.z}) + kPerExtent * impl_->extent;
   return hit.position + offset * hit.geometric;
 }
 

@@ -17,12 +17,13 @@ struct Hit {
   float distance = 0;  ///< in lengths of the ray's direction
   glm::vec3 position{
       0};  ///< [m], interpolated from the vertices: more precise than origin + distance * direction
-  glm::vec3 geometric{0};         ///< unit normal of the triangle, on the side of the ray's origin
-  glm::vec3 normal{0};            ///< unit normal interpolated from the vertices, on the side of `geometric`
+  glm::vec3 geometric{0};  ///< unit normal of the triangle, on the side of the ray's origin
+  glm::vec3 normal{0};  ///< unit normal interpolated from the vertices, on the side of `geometric`
   reference::SurfacePoint point;  ///< the position in barycentric coordinates
 };
 
-/// Footprint on the surface of the pixel (px, py) with primary hit `hit`, whose `distance` is the depth.
+/// Footprint on the surface of the pixel (px, py) with primary hit `hit`, whose `distance` is the
+/// depth.
 reference::Footprint footprint(const ClpvView& view, unsigned px, unsigned py, const Hit& hit);
 
 /// Faces that a ray can hit.
@@ -34,7 +35,8 @@ enum class Faces {
 /// Acceleration structure of a scene. Borrows the scene. Queries are thread-safe.
 class RayScene {
  public:
-  /// Throws Error(bad_input) for a scene without triangles, Error(run_time) if Embree fails (out of memory).
+  /// Throws Error(bad_input) for a scene without triangles, Error(run_time) if Embree fails (out of
+  /// memory).
   explicit RayScene(const SceneData& scene);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
@@ -42,14 +44,16 @@ class RayScene {
 
   const reference::Materials& materials() const;
 
-  /// The nearest surface at origin + t direction, t in (nearest, furthest), without holes of masked materials.
+  /// The nearest surface at origin + t direction, t in (nearest, furthest), without holes of masked
+  /// materials.
   std::optional<Hit> intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest,
                                float furthest, Faces faces) const;
 
   /// Returns true if a surface, front or back, lies at origin + t direction, t in (0, furthest).
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float furthest) const;
 
-  /// Origin for rays that leave the surface on the side of `geometric`, offset so that they do not hit it again.
+  /// Origin for rays that leave the surface on the side of `geometric`, offset so that they do not
+  /// hit it again.
   glm::vec3 offset_origin(const Hit& hit) const;
 
   struct Impl;  ///< Embree's objects; public for the filter functions in the .cpp

@@ -18,7 +18,8 @@ namespace clpv {
 namespace {
 
 constexpr unsigned kMaxSamples = 1u << 16, kMaxStride = 4;
-constexpr int kPasses = 4;  // of the filter: its last taps are 8 pixels away; more blur Cornell's corners
+// Of the filter: its last taps are 8 pixels away; more blur Cornell's corners.
+constexpr int kPasses = 4;
 constexpr unsigned kInterleave = 4;
 constexpr double kFarthest = 2;      // extrapolation of samples
 constexpr int kCorrections = 3;      // of the number of samples
@@ -38,8 +39,8 @@ bool has_cascades(Baseline baseline) {
   return baseline == Baseline::radiance_cascades || baseline == Baseline::radiance_cascades_fine;
 }
 
-/// Settings of radiance cascades by the number of samples, 12 directions each, and the stride of pixels,
-/// which is that of probes too. Searched: docs/lab/experiments.md.
+/// Settings of radiance cascades by the number of samples, 12 directions each, and the stride of
+/// pixels, which is that of probes too. Searched: docs/lab/experiments.md.
 baselines::RadianceCascadeSettings cascade_settings(unsigned samples, unsigned stride) {
   return {.side = static_cast<unsigned>(std::sqrt(double(samples))),
           .spacing = static_cast<float>(stride),
@@ -50,8 +51,8 @@ baselines::RadianceCascadeSettings cascade_settings(unsigned samples, unsigned s
 constexpr baselines::RadianceCascadeSettings kFineCascades{
     .side = 4, .spacing = 0.5f, .first = 8, .cascades = 2};
 
-/// The fewest samples that a method gets before it leaves out pixels. Below them its errors are larger than those of
-/// interpolation.
+/// The fewest samples that a method gets before it leaves out pixels. Below them its errors are
+/// larger than those of interpolation.
 unsigned fewest_samples(Baseline baseline) {
   return lights_by_rsm(baseline)                   ? 16
          : has_probes(baseline)                    ? 8
@@ -65,21 +66,24 @@ struct Timed {
   double ms;
 };
 
-/// Runs a method with a number of samples, in one of `stride` x `stride` pixels. The time is that of one frame, with the RSMs
-/// that it needs.
+/// Runs a method with a number of samples, in one of `stride` x `stride` pixels. The time is that
+/// of one frame, with the RSMs that it needs.
 class Runner {
  public:
   Runner(Baseline baseline, const baselines::View& view, const BaselineBudget& budget)
       : baseline_(baseline), budget_(budget) {
-    for (unsigned stride = 1; stride <= kMaxStride; stride *= 2) views_.emplace(stride, view.thinned(stride));
+    for (unsigned stride = 1; stride <= kMaxStride; stride *= 2)
+      views_.emplace(stride, view.thinned(stride));
   }
 
   Timed operator()(unsigned samples, unsigned stride, unsigned frames = 1) {
     const auto start = std::chrono::steady_clock::now();
-    baselines::Irradiance image =
-        run_baseline(baseline_, views_.at(1), views_.at(stride), budget_, samples, frames, settings_);
-    const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
-    return {std::move(image), taken.count() / frames + (lights_by_rsm(baseline_) ? budget_.rsm_ms : 0)};
+    baselines::Irradiance image = run_baseline(baseline_, views_.at(1), views_.at(stride), budget_,
+                                               samples, frames, settings_);
+    const std::chrono::duration<double, std::milli> taken =
+        std::chrono::steady_clock::now() - start;
+    return {std::move(image),
+            taken.count() / frames + (lights_by_rsm(baseline_) ? budget_.rsm_ms : 0)};
   }
   Baseline baseline() const { return baseline_; }
   const std::map<std::string, double>& settings() const { return settings_; }  ///< of the last run
@@ -95,8 +99,8 @@ struct Plan {
   unsigned samples, stride;
 };
 
-/// Leaves out pixels until the fewest samples fit. Then doubles the samples up to half of the budget and extrapolates, up to
-/// kFarthest times as many since times are noisy.
+/// Leaves out pixels until the fewest samples fit. Then doubles the samples up to half of the
+/// budget and extrapolates, up to kFarthest times as many since times are noisy.
 Plan plan_for(Runner& run, double budget_ms) {
   const unsigned fewest = fewest_samples(run.baseline());
   Plan plan{fewest, 1};
@@ -114,13 +118,15 @@ Plan plan_for(Runner& run, double budget_ms) {
   if (plan.samples == 1) ms = run(plan.samples = 2, plan.stride).ms;
   const double each = (ms - one) / (plan.samples - 1), most = kFarthest * plan.samples;
   const double fitting = each > 0 ? 1 + (budget_ms - one) / each : most;
-  plan.samples = static_cast<unsigned>(std::clamp(fitting, 1.0, std::min(most, double{kMaxSamples})));
+  plan.samples =
+      static_cast<unsigned>(std::clamp(fitting, 1.0, std::min(most, double{kMaxSamples})));
   return plan;
 }
 
 }  // namespace
 
-BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera& camera, int frames) {
+BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera& camera,
+                               int frames) {
   const int coarsest = frame.options().cascades - 1;
   const auto shared = [](const StageMark& mark) {
     return mark.pass == Pass::rasterize_camera || mark.pass == Pass::rasterize_shadow ||
@@ -129,8 +135,9 @@ BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera
   const FrameTimes times = measure_frames(session, frame, camera, frames, 1);
   BaselineBudget budget;
   budget.budget_ms = median(times.sums([&](const StageMark& mark) { return !shared(mark); }));
-  budget.rsm_ms = median(times.sums(
-      [&](const StageMark& mark) { return mark.pass == Pass::rasterize_rsm && mark.cascade == coarsest; }));
+  budget.rsm_ms = median(times.sums([&](const StageMark& mark) {
+    return mark.pass == Pass::rasterize_rsm && mark.cascade == coarsest;
+  }));
   for (const auto& [pass, ms] : times.pass_medians())
     if (shared({named<Pass>("pass", pass)})) budget.shared_ms[pass] = ms;
   budget.rsms = frame.read_rsms(coarsest);
@@ -141,16 +148,19 @@ BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera
 void require_baseline(Baseline baseline, const SceneData& scene, int bounces, Show show) {
   const std::string_view name = name_of(baseline);
   if (scene.medium)
-    throw Error(ExitCode::usage, "baseline {}: found a scene with a medium; allowed: without", name);
+    throw Error(ExitCode::usage, "baseline {}: found a scene with a medium; allowed: without",
+                name);
   if (show != Show::indirect && show != Show::irradiance)
-    throw Error(ExitCode::usage, "baseline {}: found view '{}'; allowed: indirect, irradiance", name,
-                name_of(show));
+    throw Error(ExitCode::usage, "baseline {}: found view '{}'; allowed: indirect, irradiance",
+                name, name_of(show));
   if (lights_by_rsm(baseline) && (scene.sky || emits(scene))) {
     throw Error(ExitCode::usage,
-                "baseline {}: found a sky or emissive surfaces, which no RSM has; allowed: lights", name);
+                "baseline {}: found a sky or emissive surfaces, which no RSM has; allowed: lights",
+                name);
   }
   if ((lights_by_rsm(baseline) || has_probes(baseline) || has_cascades(baseline)) && bounces != 1)
-    throw Error(ExitCode::usage, "baseline {}: found more than one bounce; allowed: bounces 1", name);
+    throw Error(ExitCode::usage, "baseline {}: found more than one bounce; allowed: bounces 1",
+                name);
 }
 
 baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& full,
@@ -166,9 +176,11 @@ baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& ful
     settings["vpls"] = count, settings["vpls_per_pixel"] = samples;
     return baselines::light_by(thin, baselines::draw_lights(budget.rsms, count), interleave);
   };
-  const auto cascades = [&](const baselines::View& view, const baselines::RadianceCascadeSettings& chosen) {
+  const auto cascades = [&](const baselines::View& view,
+                            const baselines::RadianceCascadeSettings& chosen) {
     baselines::CascadedImage image = baselines::radiance_cascades(view, budget.grids, chosen);
-    settings["directions"] = 12 * chosen.side * chosen.side, settings["spacing"] = double{chosen.spacing};
+    settings["directions"] = 12 * chosen.side * chosen.side,
+    settings["spacing"] = double{chosen.spacing};
     settings["probes"] = static_cast<double>(image.probes);
     settings["megabytes"] = static_cast<double>(image.bytes) / 1e6;
     return std::move(image.irradiance);
@@ -179,11 +191,13 @@ baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& ful
       return all_pixels(baselines::trace_paths(thin, samples));
     case Baseline::paths_filtered:
       settings["paths_per_pixel"] = samples;
-      return all_pixels(baselines::wavelet_filter(thin, baselines::trace_paths(thin, samples), kPasses));
+      return all_pixels(
+          baselines::wavelet_filter(thin, baselines::trace_paths(thin, samples), kPasses));
     case Baseline::vpl:
       return all_pixels(vpls(1));
     case Baseline::vpl_interleaved:
-      return all_pixels(baselines::joint_bilateral(thin, vpls(kInterleave), baselines::block_taps()));
+      return all_pixels(
+          baselines::joint_bilateral(thin, vpls(kInterleave), baselines::block_taps()));
     case Baseline::ddgi_first:
     case Baseline::ddgi_converged: {
       baselines::Probes probes(thin, budget.grids);
@@ -192,7 +206,8 @@ baselines::Irradiance run_baseline(Baseline baseline, const baselines::View& ful
         stop_if_interrupted();
         image = all_pixels(probes.render(samples));
       }
-      settings["rays_per_probe"] = samples, settings["probes"] = static_cast<double>(probes.count());
+      settings["rays_per_probe"] = samples,
+      settings["probes"] = static_cast<double>(probes.count());
       return image;
     }
     case Baseline::radiance_cascades:
@@ -220,8 +235,10 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
     taken = median(times);
     if (any_time) break;
     const double ratio = budget.budget_ms / taken;
-    const auto better = static_cast<unsigned>(std::clamp(plan.samples * ratio, 1.0, double{kMaxSamples}));
-    if (std::abs(ratio - 1) <= kTolerance || better == plan.samples || correction == kCorrections) break;
+    const auto better =
+        static_cast<unsigned>(std::clamp(plan.samples * ratio, 1.0, double{kMaxSamples}));
+    if (std::abs(ratio - 1) <= kTolerance || better == plan.samples || correction == kCorrections)
+      break;
     plan.samples = better;
   }
   if (baseline == Baseline::ddgi_converged) {
@@ -234,7 +251,8 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
   cell.settings.insert(
       {{"budget_ms", budget.budget_ms}, {"stride", plan.stride}, {"threads", view.threads()}});
   if (baseline == Baseline::ddgi_converged) cell.settings["frames"] = kConvergedFrames;
-  if (filters(baseline)) cell.settings["filter_passes"] = baseline == Baseline::paths_filtered ? kPasses : 1;
+  if (filters(baseline))
+    cell.settings["filter_passes"] = baseline == Baseline::paths_filtered ? kPasses : 1;
   cell.from_events = false;
   cell.compute_units = static_cast<unsigned>(view.threads());
   cell.stage_ms = budget.shared_ms;

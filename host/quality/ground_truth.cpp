@@ -61,8 +61,9 @@ void describe(Image& image, const SceneData& scene, const SceneCamera& camera,
   image.metadata["version"] = version();
   image.metadata["scene"] = scene.name;
   image.metadata["camera"] = camera.name;
-  image.metadata["bounces"] =
-      options.bounces == pathtracer::PathTracerOptions::kAllBounces ? "all" : std::to_string(options.bounces);
+  image.metadata["bounces"] = options.bounces == pathtracer::PathTracerOptions::kAllBounces
+                                  ? "all"
+                                  : std::to_string(options.bounces);
   image.metadata["seed"] = std::to_string(options.seed);
   image.metadata["spp_traced"] = std::to_string(traced.samples);
   image.metadata["noise_reached"] = fmt::format("{}", traced.noise);
@@ -82,12 +83,14 @@ std::string fingerprint_of(const Image& image) {
     print.add(name).add(values);
   }
   for (const auto& [name, value] : image.metadata)
-    if (name != kCacheFingerprint && !value.empty()) print.add(name).add(value);  // files lack empty values
+    if (name != kCacheFingerprint && !value.empty())
+      print.add(name).add(value);  // files lack empty values
   return print.hex();
 }
 
 /// Returns the ground truth in an entry's bytes. Throws if they are damaged.
-GroundTruth decode(const std::filesystem::path& file, const std::string& bytes, const SceneData& scene) {
+GroundTruth decode(const std::filesystem::path& file, const std::string& bytes,
+                   const SceneData& scene) {
   GroundTruth truth;
   truth.image = decode_image(file, bytes);
   truth.file = file;
@@ -107,7 +110,11 @@ std::string scene_fingerprint(const SceneData& scene) {
   Fingerprint print;
   print.add(scene.vertices).add(scene.triangles).add(scene.materials);
   for (const Texture& texture : scene.textures) {
-    print.add(texture.width).add(texture.height).add(texture.wrap_u).add(texture.wrap_v).add(texture.rgba);
+    print.add(texture.width)
+        .add(texture.height)
+        .add(texture.wrap_u)
+        .add(texture.wrap_v)
+        .add(texture.rgba);
   }
   if (scene.sky) add_sky(print, *scene.sky);
   if (scene.medium) print.add(*scene.medium);
@@ -145,8 +152,9 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
                                 const pathtracer::TraceProgress& progress, Ranks& ranks) {
   const ClpvView view = camera_view(camera, width, height);
   const CacheFolder cache(folder);
-  const std::string name = fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
-                                       key(scene, camera, view, options));
+  const std::string name =
+      fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
+                  key(scene, camera, view, options));
   std::optional<GroundTruth> kept;
   bool cached = false;
   const std::string found = ranks.from_root([&] {
@@ -164,7 +172,8 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
   }
   const pathtracer::TracedImage traced =
       pathtracer::trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);
-  GroundTruth truth{all_views(traced), folder / name, true, traced.samples, traced.noise, scene.exposure};
+  GroundTruth truth{all_views(traced), folder / name, true,
+                    traced.samples,    traced.noise,  scene.exposure};
   describe(truth.image, scene, camera, traced, options);
   if (cached) {  // at rank 0
     truth.image.metadata[kCacheFingerprint] = fingerprint_of(truth.image);

@@ -10,7 +10,8 @@
 
 namespace clpv {
 
-/// Ground truth of one camera: an image with one layer per view of a frame ("indirect", ...; pathtracer::traced_view).
+/// Ground truth of one camera: an image with one layer per view of a frame ("indirect", ...;
+/// pathtracer::traced_view).
 struct GroundTruth {
   Image image;
   std::filesystem::path file;  ///< cache file
@@ -20,15 +21,17 @@ struct GroundTruth {
   float exposure = 0;  ///< the scene's [EV]
 };
 
-/// Returns the ground truth of `camera` from the cache in `folder`; traces and stores it if it is missing.
-/// The file name contains a key over scene content, camera, size, options and program version, but no file paths.
-/// A damaged file is traced again, with a warning; one that CacheFolder does not trust is ignored.
-/// Collective over all `ranks`; each rank receives the result. Rank 0 reads and writes the cache.
-/// A folder that cannot be written is a warning before tracing, and a failure to write one after it. Throws like pathtracer::trace_paths.
+/// Returns the ground truth of `camera` from the cache in `folder`; traces and stores it if it is
+/// missing. The file name contains a key over scene content, camera, size, options and program
+/// version, but no file paths. A damaged file is traced again, with a warning; one that CacheFolder
+/// does not trust is ignored. Collective over all `ranks`; each rank receives the result. Rank 0
+/// reads and writes the cache. A folder that cannot be written is a warning before tracing, and a
+/// failure to write one after it. Throws like pathtracer::trace_paths.
 GroundTruth cached_ground_truth(const std::filesystem::path& folder, const SceneData& scene,
                                 const SceneCamera& camera, int width, int height,
                                 const pathtracer::PathTracerOptions& options,
-                                const pathtracer::TraceProgress& progress = {}, Ranks& ranks = single_rank());
+                                const pathtracer::TraceProgress& progress = {},
+                                Ranks& ranks = single_rank());
 
 /// Hash of all scene content that affects light: geometry, materials, textures.
 std::string scene_fingerprint(const SceneData& scene);

@@ -66,7 +66,8 @@ class Patches {
 }  // namespace
 
 std::vector<WeightedDirection> normal_weights(Session& session, const SceneData& scene,
-                                              const SceneCamera& camera, const RenderOptions& options) {
+                                              const SceneCamera& camera,
+                                              const RenderOptions& options) {
   const SceneBuffers buffers = upload_scene(session, scene);
   Rasterizer rasterizer(session, buffers);
   Patches patches;
@@ -76,7 +77,8 @@ std::vector<WeightedDirection> normal_weights(Session& session, const SceneData&
     // All cascades share the maps of a light that is not a sun.
     const std::size_t cascades = light.data.kind == CLPV_LIGHT_DIRECTIONAL ? grids.size() : 1;
     for (std::size_t cascade = 0; cascade < cascades; ++cascade) {
-      for (const ClpvView& view : rsm_views(light.data, grids[cascade], buffers.bounds, options.rsm_size)) {
+      for (const ClpvView& view :
+           rsm_views(light.data, grids[cascade], buffers.bounds, options.rsm_size)) {
         Surface rsm = make_surface(session, view, RsmFormat::float32, false);
         rasterizer.rasterize_rsm(light.data, rsm);
         patches.add(read_surface(session, rsm));
@@ -86,7 +88,8 @@ std::vector<WeightedDirection> normal_weights(Session& session, const SceneData&
   return patches.weights();
 }
 
-void write_normal_weights(const std::filesystem::path& path, const std::vector<WeightedDirection>& weights) {
+void write_normal_weights(const std::filesystem::path& path,
+                          const std::vector<WeightedDirection>& weights) {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [n, weight] : weights) list.push_back({n.x, n.y, n.z, weight});
   write_file(path, nlohmann::json{{"weights", list}}.dump(1) + "\n");

@@ -18,12 +18,15 @@ struct WeightedDirection {
   double weight;         ///< above 0
 };
 
-/// Groups the normals of all texels that injection reads for this camera, in all cascades, by patches of the sphere.
-/// Returns each patch's mean normal, weighted by its share of the flux. Empty if no surface is lit.
+/// Groups the normals of all texels that injection reads for this camera, in all cascades, by
+/// patches of the sphere. Returns each patch's mean normal, weighted by its share of the flux.
+/// Empty if no surface is lit.
 std::vector<WeightedDirection> normal_weights(Session& session, const SceneData& scene,
-                                              const SceneCamera& camera, const RenderOptions& options);
+                                              const SceneCamera& camera,
+                                              const RenderOptions& options);
 
 /// Writes a JSON file {"weights": [[x, y, z, weight], ...]}, which clpv.search reads.
-void write_normal_weights(const std::filesystem::path& path, const std::vector<WeightedDirection>& weights);
+void write_normal_weights(const std::filesystem::path& path,
+                          const std::vector<WeightedDirection>& weights);
 
 }  // namespace clpv

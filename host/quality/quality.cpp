@@ -34,7 +34,8 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 void fill_errors(QualityCell& cell, const Image& image, const GroundTruth& truth, Show show) {
   const Image layer = extract_layer(truth.image, std::string(name_of(show)), truth.file.string());
-  const Comparison c = compare(image, "the rendered frame", layer, truth.file.string(), truth.exposure);
+  const Comparison c =
+      compare(image, "the rendered frame", layer, truth.file.string(), truth.exposure);
   cell.nrmse = c.nrmse_valid;
   cell.best_gain = c.best_gain;
   cell.nrmse_best_gain = c.nrmse_best_gain;
@@ -44,7 +45,8 @@ void fill_errors(QualityCell& cell, const Image& image, const GroundTruth& truth
 
 VariedOption parse_varied(const std::string& text) {
   const auto equals = text.find('=');
-  if (equals == std::string::npos) throw Error(ExitCode::usage, "vary {}: allowed: OPTION=a,b,c", text);
+  if (equals == std::string::npos)
+    throw Error(ExitCode::usage, "vary {}: allowed: OPTION=a,b,c", text);
   VariedOption varied{text.substr(0, equals), {}};
   for (const std::string& value : split(text.substr(equals + 1), ',')) {
     RenderOptions probe;
@@ -83,8 +85,8 @@ std::string describe(const Variant& variant) {
   return text;
 }
 
-QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera, const GroundTruth& truth,
-                    Show show, int frames) {
+QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
+                    const GroundTruth& truth, Show show, int frames) {
   Image image;
   const FrameTimes times =
       measure_frames(session, frame, camera, frames, 1, [&] { image = view_image(frame, show); });
@@ -97,15 +99,16 @@ QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera, c
   return cell;
 }
 
-std::string quality_key(const GroundTruth& truth, const Device& device, const RenderOptions& options,
-                        Show show, int frames) {
+std::string quality_key(const GroundTruth& truth, const Device& device,
+                        const RenderOptions& options, Show show, int frames) {
   static const std::string program = program_fingerprint();
   Fingerprint print;
   print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);
   print.add(to_json(options).dump()).add(name_of(show)).add(frames).add(truth.exposure);
   if (!options.centres.empty()) {
     const auto basis = make_basis(options);
-    for (const glm::dvec3& centre : basis->centres()) print.add(centre.x).add(centre.y).add(centre.z);
+    for (const glm::dvec3& centre : basis->centres())
+      print.add(centre.x).add(centre.y).add(centre.z);
     for (const double lambda : basis->lambdas()) print.add(lambda);
   }
   for (const auto& [name, embedded] : detail::embedded_kernel_files()) print.add(kernel_file(name));
@@ -176,7 +179,8 @@ void add(QualitySummary& sum, const QualityCell& cell) {
 void divide(QualitySummary& sum) {
   const int rendered = sum.views - sum.rejected;
   if (rendered == 0) return;
-  for (double* value : {&sum.nrmse, &sum.nrmse_best_gain, &sum.energy_ratio, &sum.flip, &sum.frame_ms}) {
+  for (double* value :
+       {&sum.nrmse, &sum.nrmse_best_gain, &sum.energy_ratio, &sum.flip, &sum.frame_ms}) {
     *value /= rendered;
   }
   for (auto& [stage, ms] : sum.stage_ms) ms /= rendered;

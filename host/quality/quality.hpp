@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Errors of frames against the path-traced ground truth, and their times: one cell per variant and view.
+// Errors of frames against the path-traced ground truth, and their times: one cell per variant and
+// view.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +23,8 @@ struct VariedOption {
   std::vector<std::string> values;
 };
 
-/// Parses "OPTION=a,b,c". Throws Error(usage) for a wrong form, an unknown option, and bad or duplicate values.
+/// Parses "OPTION=a,b,c". Throws Error(usage) for a wrong form, an unknown option, and bad or
+/// duplicate values.
 VariedOption parse_varied(const std::string& text);
 
 /// Values of the varied options, by name, in the order they were given.
@@ -42,30 +44,32 @@ struct QualityCell {
   std::string rejected;         ///< reason if this variant cannot be rendered; else empty
   std::optional<double> nrmse;  ///< RMSE / RMS of the ground truth, over the valid pixels
   std::optional<double> best_gain, nrmse_best_gain;
-  std::optional<double> energy_ratio;      ///< sum of the frame / sum of the ground truth
-  std::optional<double> flip;              ///< mean FLIP of the valid pixels, at the scene's exposure
-  double frame_ms = 0;                     ///< all stages
-  std::map<std::string, double> stage_ms;  ///< median over the timed frames; sum over cascades and lights
-  bool from_events = true;                 ///< times from device events; false: wall time
-  unsigned compute_units = 0;              ///< of the device or sub-device that was timed
-  std::map<std::string, double>
-      settings;           ///< of a baseline: samples, threads and times (quality/baseline.hpp)
+  std::optional<double> energy_ratio;  ///< sum of the frame / sum of the ground truth
+  std::optional<double> flip;          ///< mean FLIP of the valid pixels, at the scene's exposure
+  double frame_ms = 0;                 ///< all stages
+  /// Median over the timed frames; sum over cascades and lights.
+  std::map<std::string, double> stage_ms;
+  bool from_events = true;     ///< times from device events; false: wall time
+  unsigned compute_units = 0;  ///< of the device or sub-device that was timed
+  /// Of a baseline: samples, threads and times (quality/baseline.hpp).
+  std::map<std::string, double> settings;
   double setup_s = 0;     ///< time to create the frame; 0 if reused from another view
   double measured_s = 0;  ///< total time of the measurement
 };
 
-/// Renders a warm-up frame and `frames` timed ones, and compares the view `show` of the last with the ground truth.
-/// Sets all fields except names and variant. Throws the errors of Frame and compare.
-QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera, const GroundTruth& truth,
-                    Show show, int frames);
+/// Renders a warm-up frame and `frames` timed ones, and compares the view `show` of the last with
+/// the ground truth. Sets all fields except names and variant. Throws the errors of Frame and
+/// compare.
+QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
+                    const GroundTruth& truth, Show show, int frames);
 
 /// Sets the errors of an image of the view `show`. Throws the errors of compare.
 void fill_errors(QualityCell& cell, const Image& image, const GroundTruth& truth, Show show);
 
-/// Cache key over all inputs of a cell: ground truth, device (but not the number of its sub-devices), options, view,
-/// number of timed frames, kernels and program.
-std::string quality_key(const GroundTruth& truth, const Device& device, const RenderOptions& options,
-                        Show show, int frames);
+/// Cache key over all inputs of a cell: ground truth, device (but not the number of its
+/// sub-devices), options, view, number of timed frames, kernels and program.
+std::string quality_key(const GroundTruth& truth, const Device& device,
+                        const RenderOptions& options, Show show, int frames);
 
 /// Cells cached on disk, so that an interrupted run can resume.
 class QualityStore {
@@ -101,7 +105,8 @@ nlohmann::json to_json(const QualityCell& cell);
 QualityCell cell_from_json(const nlohmann::json& json);
 nlohmann::json to_json(const QualitySummary& summary);
 
-/// One line per variant, best first: NRMSE of each view, their mean, means of the other metrics, and stage times.
+/// One line per variant, best first: NRMSE of each view, their mean, means of the other metrics,
+/// and stage times.
 std::string quality_table(const std::vector<QualityCell>& cells);
 
 }  // namespace clpv

@@ -48,7 +48,8 @@ std::vector<std::string_view> timed_stages() {
   return timed;
 }
 
-/// Time [ms] of all passes of a stage: "rasterize" is rasterize-rsm, rasterize-camera and rasterize-shadow.
+/// Time [ms] of all passes of a stage: "rasterize" is rasterize-rsm, rasterize-camera and
+/// rasterize-shadow.
 double kind_ms(const QualitySummary& sum, std::string_view kind) {
   double ms = 0;
   for (const auto& [stage, value] : sum.stage_ms) ms += stage.starts_with(kind) ? value : 0;
@@ -57,11 +58,11 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 
 }  // namespace
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain, nrmse_best_gain,
-                                   energy_ratio, flip, frame_ms, stage_ms, compute_units, settings, setup_s,
-                                   measured_s)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, nrmse, worst_nrmse, nrmse_best_gain,
-                                   energy_ratio, flip, frame_ms, stage_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain,
+                                   nrmse_best_gain, energy_ratio, flip, frame_ms, stage_ms,
+                                   compute_units, settings, setup_s, measured_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, nrmse, worst_nrmse,
+                                   nrmse_best_gain, energy_ratio, flip, frame_ms, stage_ms)
 
 nlohmann::json to_json(const QualityCell& cell) {
   nlohmann::json json = cell, varied = nlohmann::json::array();  // an array: objects lose the order
@@ -89,7 +90,8 @@ std::string quality_table(const std::vector<QualityCell>& cells) {
   const std::vector<std::string_view> kinds = timed_stages();
   std::vector<std::pair<std::string, std::string>> views;  // scene, camera
   for (const QualityCell& cell : cells) {
-    if (std::pair view{cell.scene, cell.camera}; std::ranges::count(views, view) == 0) views.push_back(view);
+    if (std::pair view{cell.scene, cell.camera}; std::ranges::count(views, view) == 0)
+      views.push_back(view);
   }
   std::vector<std::vector<std::string>> rows(1);
   rows[0] = {"NRMSE %"};
@@ -105,7 +107,9 @@ std::string quality_table(const std::vector<QualityCell>& cells) {
         return cell.scene == s && cell.camera == c && cell.variant == sum.variant;
       };
       const auto cell = std::ranges::find_if(cells, here);
-      row.push_back(cell == cells.end() ? "-" : cell->rejected.empty() ? percent(cell->nrmse) : "rejected");
+      row.push_back(cell == cells.end()      ? "-"
+                    : cell->rejected.empty() ? percent(cell->nrmse)
+                                             : "rejected");
     }
     row.resize(rows[0].size(), "-");
     if (sum.rejected == sum.views) continue;

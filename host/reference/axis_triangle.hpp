@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A triangle projected along an axis of a grid and sampled, as in kernels/voxels/blockers.cl and kernels/voxels/reflectors.cl.
+// A triangle projected along an axis of a grid and sampled, as in kernels/voxels/blockers.cl and
+// kernels/voxels/reflectors.cl.
 #pragma once
 
 #include <algorithm>
@@ -13,32 +14,36 @@
 
 namespace clpv::reference {
 
-/// A triangle in cells of the grid, projected along `axis`. Samples lie in the plane of the next two axes u and v, kSamples per
-/// cell along each.
+/// A triangle in cells of the grid, projected along `axis`. Samples lie in the plane of the next
+/// two axes u and v, kSamples per cell along each.
 class AxisTriangle {
  public:
   /// `corners` in cells.
-  AxisTriangle(int axis, const std::array<glm::dvec3, 3>& corners) : axis_(axis), corners_(corners) {
+  AxisTriangle(int axis, const std::array<glm::dvec3, 3>& corners)
+      : axis_(axis), corners_(corners) {
     for (glm::dvec3& c : corners_) c = {c[(axis + 1) % 3], c[(axis + 2) % 3], c[axis]};
     const glm::dvec3 across = glm::cross(corners_[1] - corners_[0], corners_[2] - corners_[0]);
     area_ = across.z;
     if (area_ != 0) normal_ = glm::normalize(across);
   }
 
-  /// Selects the side that faces up or down the axis, and moves the triangle half a cell to that side.
+  /// Selects the side that faces up or down the axis, and moves the triangle half a cell to that
+  /// side.
   void lift(bool up) {
     if (up != this->up()) normal_ = -normal_;
     const glm::dvec3 aside = normal_ / 2.0;
     for (glm::dvec3& c : corners_)
-      c += glm::dvec3(std::rint(kSamples * aside.x) / kSamples, std::rint(kSamples * aside.y) / kSamples,
-                      aside.z);
+      c += glm::dvec3(std::rint(kSamples * aside.x) / kSamples,
+                      std::rint(kSamples * aside.y) / kSamples, aside.z);
   }
 
   bool has_area() const { return area_ != 0; }  ///< projected area, not 0
   int axis() const { return axis_; }
   bool up() const { return normal_.z > 0; }
   /// Weight of a sample: the weights of a triangle's three axes together count its area once.
-  double weight() const { return 1 / (std::abs(normal_.x) + std::abs(normal_.y) + std::abs(normal_.z)); }
+  double weight() const {
+    return 1 / (std::abs(normal_.x) + std::abs(normal_.y) + std::abs(normal_.z));
+  }
   /// Barycentric coordinates of the second and third corner, clamped to the triangle.
   glm::vec2 clamped_weights(const glm::dvec2& at) const {
     const glm::dvec2 w = weights(at);
@@ -49,9 +54,9 @@ class AxisTriangle {
   double depth(const glm::dvec2& at) const {
     const glm::dvec2 w = weights(at);
     const auto [nearest, farthest] = depths();
-    return std::clamp(
-        corners_[0].z + w.x * (corners_[1].z - corners_[0].z) + w.y * (corners_[2].z - corners_[0].z),
-        nearest, farthest);
+    return std::clamp(corners_[0].z + w.x * (corners_[1].z - corners_[0].z) +
+                          w.y * (corners_[2].z - corners_[0].z),
+                      nearest, farthest);
   }
   /// Minimum and maximum depth of the corners.
   std::pair<double, double> depths() const {
@@ -63,15 +68,19 @@ class AxisTriangle {
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::dvec2 a(corners_[i]), edge = glm::dvec2(corners_[(i + 1) % 3]) - a;
       const double across = (area_ < 0 ? -1 : 1) * cross(edge, at - a);
-      smallest = std::min(smallest, kSamples * across / (std::abs(edge.x) + std::abs(edge.y)) + kSeam);
+      smallest =
+          std::min(smallest, kSamples * across / (std::abs(edge.x) + std::abs(edge.y)) + kSeam);
     }
     return smallest;
   }
   /// Change of depth from sample to sample along u and v [cells].
-  glm::dvec2 slope() const { return glm::dvec2(normal_.x, normal_.y) / -normal_.z / double{kSamples}; }
+  glm::dvec2 slope() const {
+    return glm::dvec2(normal_.x, normal_.y) / -normal_.z / double{kSamples};
+  }
   /// First and last sample along u (0) or v (1) that may be covered, within `n` cells.
   std::pair<int, int> range(int along, int n) const {
-    const auto [low, high] = std::minmax({corners_[0][along], corners_[1][along], corners_[2][along]});
+    const auto [low, high] =
+        std::minmax({corners_[0][along], corners_[1][along], corners_[2][along]});
     const double last = kSamples * n - 1;
     return {static_cast<int>(std::clamp(std::floor(kSamples * low - 1), 0.0, last + 1)),
             static_cast<int>(std::clamp(std::ceil(kSamples * high), -1.0, last))};

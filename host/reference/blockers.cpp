@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// B_a: share of the square s x s across axis a, about a corner, that triangles inside the cube s^3 about the corner cover.
-// 8 x 8 samples per corner and axis.
+// B_a: share of the square s x s across axis a, about a corner, that triangles inside the cube s^3
+// about the corner cover. 8 x 8 samples per corner and axis.
 #include "reference/blockers.hpp"
 
 #include <algorithm>
@@ -24,7 +24,8 @@ class SampleMasks {
   void set(const AxisTriangle& projected, int u, int v, int k) {
     if (k < 0 || k >= n_) return;
     const glm::ivec3 c = projected.cell(u / kSamples, v / kSamples, k);
-    bits_[((projected.axis() * n_ + c.z) * n_ + c.y) * n_ + c.x].set(v % kSamples * kSamples + u % kSamples);
+    bits_[((projected.axis() * n_ + c.z) * n_ + c.y) * n_ + c.x].set(v % kSamples * kSamples +
+                                                                     u % kSamples);
   }
 
   /// Covered share of each corner and axis.
@@ -44,7 +45,11 @@ class SampleMasks {
 class BlockerRaster {
  public:
   BlockerRaster(const SceneData& scene, const ClpvGrid& grid)
-      : lower(static_cast<int>(grid.n) + 1), upper(lower), scene_(scene), materials_(scene), grid_(grid) {}
+      : lower(static_cast<int>(grid.n) + 1),
+        upper(lower),
+        scene_(scene),
+        materials_(scene),
+        grid_(grid) {}
 
   SampleMasks lower, upper;  ///< without and with uncertain samples
 
@@ -73,7 +78,8 @@ class BlockerRaster {
     // On steep triangles, rounding of the sample's position changes the depth most.
     const glm::dvec2 slope = glm::abs(projected.slope());
     const auto [nearest, farthest] = projected.depths();
-    const double steep = std::min(farthest - nearest, kBlockerTolerance * std::max(1.0, slope.x + slope.y));
+    const double steep =
+        std::min(farthest - nearest, kBlockerTolerance * std::max(1.0, slope.x + slope.y));
     const double depth = projected.depth(at), error = kBlockerTolerance / kSamples + steep;
     const int first = std::floor(depth - error), last = std::floor(depth + error);
     for (int k = first; k <= last; ++k) upper.set(projected, u, v, k);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `blockers` (kernels/voxels/blockers.cl): geometry volume from triangles, in double (docs/method.md,
-// 'Blockers').
+// CPU reference of stage `blockers` (kernels/voxels/blockers.cl): geometry volume from triangles,
+// in double (docs/method.md, 'Blockers').
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,9 @@
 
 namespace clpv::reference {
 
-/// Bounds on the covered shares [0, 1] of blocker_masks(): 3 numbers per corner, one channel. Rounding decides whether a
-/// sample very close to an edge, a cell boundary or an alpha cutoff is covered: `lower` excludes and `upper` includes it.
+/// Bounds on the covered shares [0, 1] of blocker_masks(): 3 numbers per corner, one channel.
+/// Rounding decides whether a sample very close to an edge, a cell boundary or an alpha cutoff is
+/// covered: `lower` excludes and `upper` includes it.
 struct BlockerBounds {
   Volume lower, upper;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One bounce: Phi_a = R_a sum_b Omega_b max(0, -w_b . a) L_b s^2, emitted by the cosine about a.
-// All bounces without a medium: light = I + R D_1 + R (1 + E) D_2, a truncated Neumann series in the coarsest cascade.
+// All bounces without a medium: light = I + R D_1 + R (1 + E) D_2, a truncated Neumann series in
+// the coarsest cascade.
 #include "reference/bounce.hpp"
 
 #include <algorithm>
@@ -57,7 +58,8 @@ IncidentFlux interpolated_flux(const ClpvGrid& coarse, const Volume& swept, cons
 }
 
 /// light += R D in every cascade.
-void add_one_bounce(const Basis& basis, const Transport& transport, std::vector<SweptCascade> cascades,
+void add_one_bounce(const Basis& basis, const Transport& transport,
+                    std::vector<SweptCascade> cascades,
                     const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
   for (SweptCascade& cascade : cascades) cascade.parts = 1;
   const std::vector<Volume> swept = sweep(basis, transport, cascades);
@@ -65,10 +67,11 @@ void add_one_bounce(const Basis& basis, const Transport& transport, std::vector<
     inject_reflected(basis, *reflectors[c], incident_flux_of(swept[c]), light[c]);
 }
 
-/// light += R D_1 + R (1 + E) D_2 in the coarsest cascade, R D in finer ones, D interpolated from the next coarser one.
+/// light += R D_1 + R (1 + E) D_2 in the coarsest cascade, R D in finer ones, D interpolated from
+/// the next coarser one.
 void add_all_bounces(const Basis& basis, const Transport& transport,
-                     const std::vector<SweptCascade>& cascades, const std::vector<const Volume*>& reflectors,
-                     std::vector<Volume>& light) {
+                     const std::vector<SweptCascade>& cascades,
+                     const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
   const SweptCascade& coarsest = cascades.back();
   const Volume first = swept_along_24(basis, transport, coarsest, light.back());
   Volume reflected(first.n, basis.size());
@@ -81,8 +84,8 @@ void add_all_bounces(const Basis& basis, const Transport& transport,
     const std::vector<SweptCascade> coarser(cascades.begin() + static_cast<std::ptrdiff_t>(c) + 1,
                                             cascades.end());
     const Volume swept = sweep(basis, transport, coarser)[0];
-    inject_reflected(basis, *reflectors[c], interpolated_flux(cascades[c + 1].grid, swept, cascades[c].grid),
-                     light[c]);
+    inject_reflected(basis, *reflectors[c],
+                     interpolated_flux(cascades[c + 1].grid, swept, cascades[c].grid), light[c]);
   }
 }
 
@@ -98,8 +101,8 @@ struct Sources {
   }
 };
 
-/// Bounces off surfaces and in a medium: each of `sweeps` sweeps along 24 directions is reflected and scattered. A cascade's
-/// border has light of the coarser one's last sweep.
+/// Bounces off surfaces and in a medium: each of `sweeps` sweeps along 24 directions is reflected
+/// and scattered. A cascade's border has light of the coarser one's last sweep.
 Sources bounce_in_medium(const Basis& basis, const Transport& transport,
                          const std::vector<SweptCascade>& cascades,
                          const std::vector<const Volume*>& reflectors, int sweeps) {
@@ -149,7 +152,8 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
   return series;
 }
 
-std::vector<Volume> bounce(const Basis& basis, const Transport& transport, std::vector<SweptCascade> cascades,
+std::vector<Volume> bounce(const Basis& basis, const Transport& transport,
+                           std::vector<SweptCascade> cascades,
                            const std::vector<const Volume*>& reflectors, Bounces bounces) {
   std::vector<Volume> light;
   for (const SweptCascade& cascade : cascades) light.push_back(*cascade.injected);

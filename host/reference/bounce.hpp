@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `bounce` (kernels/sweep/bounce.cl), in double: light reflected by surfaces before the last sweep
-// (docs/method.md, 'More bounces').
+// CPU reference of stage `bounce` (kernels/sweep/bounce.cl), in double: light reflected by surfaces
+// before the last sweep (docs/method.md, 'More bounces').
 #pragma once
 
 #include <vector>
@@ -14,9 +14,11 @@ namespace clpv::reference {
 Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
                      const Volume& reflectors);
 
-/// Sources of the sweep in every cascade, in `basis` [W/sr]: injected light and the light that `reflectors`, one volume per
-/// cascade, reflect. With all bounces, finer cascades interpolate incident flux from the next coarser one.
-std::vector<Volume> bounce(const Basis& basis, const Transport& transport, std::vector<SweptCascade> cascades,
+/// Sources of the sweep in every cascade, in `basis` [W/sr]: injected light and the light that
+/// `reflectors`, one volume per cascade, reflect. With all bounces, finer cascades interpolate
+/// incident flux from the next coarser one.
+std::vector<Volume> bounce(const Basis& basis, const Transport& transport,
+                           std::vector<SweptCascade> cascades,
                            const std::vector<const Volume*>& reflectors, Bounces bounces);
 
 /// Sweeps the result of bounce().

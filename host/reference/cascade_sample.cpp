@@ -7,7 +7,8 @@
 namespace clpv::reference {
 namespace {
 
-/// Linear interpolation along one axis: two cells and the weight of the upper one. Coordinates are clamped to [0, n - 1].
+/// Linear interpolation along one axis: two cells and the weight of the upper one. Coordinates are
+/// clamped to [0, n - 1].
 struct LinearSample {
   int lower, upper;
   double t;
@@ -22,7 +23,8 @@ LinearSample linear_sample(double at, int n) {
 constexpr int kPoints = 4;                       // visibility points per cube along each axis
 constexpr double kMinVisibleShare = 1.0 / 64.0;  // of the total weight; below it, all cells count
 
-/// Visible share of each of eight cells from a point `t` in their cube: visibility bits, interpolated trilinearly.
+/// Visible share of each of eight cells from a point `t` in their cube: visibility bits,
+/// interpolated trilinearly.
 std::array<double, 8> visible_shares(const glm::dvec3& t, const std::uint8_t* points) {
   std::array<LinearSample, 3> axes;
   for (int axis = 0; axis < 3; ++axis) axes[axis] = linear_sample(kPoints * t[axis] - 0.5, kPoints);
@@ -60,15 +62,18 @@ TrilinearSample trilinear_sample(const glm::dvec3& at, int n) {
   return sample;
 }
 
-void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, int n, const std::uint8_t* occluded) {
+void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, int n,
+                      const std::uint8_t* occluded) {
   const glm::ivec3 cube = sample.cell[0];
   const glm::dvec3 t = glm::clamp(at, 0.0, n - 1.0) - glm::dvec3(cube);
   const int number = ((cube.z * n + cube.y) * n + cube.x) * kPoints * kPoints * kPoints;
   const std::array<double, 8> visible = visible_shares(t, occluded + number);
   double total = 0;
-  for (std::size_t corner = 0; corner < 8; ++corner) total += visible[corner] * sample.weight[corner];
+  for (std::size_t corner = 0; corner < 8; ++corner)
+    total += visible[corner] * sample.weight[corner];
   if (total <= kMinVisibleShare) return;
-  for (std::size_t corner = 0; corner < 8; ++corner) sample.weight[corner] *= visible[corner] / total;
+  for (std::size_t corner = 0; corner < 8; ++corner)
+    sample.weight[corner] *= visible[corner] / total;
 }
 
 std::vector<double> interpolated(const Volume& volume, int channel, const TrilinearSample& sample) {

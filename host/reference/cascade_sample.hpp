@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/gather/cascades.h and kernels/gather/gather_packed.h: samples of a cascade's volume and its
-// weight, in double.
+// CPU reference of kernels/gather/cascades.h and kernels/gather/gather_packed.h: samples of a
+// cascade's volume and its weight, in double.
 #pragma once
 
 #include <array>
@@ -20,16 +20,19 @@ struct TrilinearSample {
   std::array<double, 8> weight;
 };
 
-/// Returns the cells about `at` [cells from the first centre], clamped to a grid of n cells along each axis.
+/// Returns the cells about `at` [cells from the first centre], clamped to a grid of n cells along
+/// each axis.
 TrilinearSample trilinear_sample(const glm::dvec3& at, int n);
 
 /// Multiplies weights by the visible shares of the cells from `at`, and normalises them.
-void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, int n, const std::uint8_t* occluded);
+void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, int n,
+                      const std::uint8_t* occluded);
 
 /// Interpolated coefficients of one channel.
 std::vector<double> interpolated(const Volume& volume, int channel, const TrilinearSample& sample);
 
-/// Blend weight of a cascade at a point: 1 inside, 0 at and beyond the boundary of the cube about the eye that it lights.
+/// Blend weight of a cascade at a point: 1 inside, 0 at and beyond the boundary of the cube about
+/// the eye that it lights.
 double share_of(const glm::dvec3& position, const ClpvGrid& grid, int n, double blend_cells);
 
 }  // namespace clpv::reference

@@ -11,8 +11,8 @@
 namespace clpv::reference {
 namespace {
 
-/// A triangle inside another, similar to it or (edge < 0) inverted. Corner and edge are in the outer triangle's barycentric
-/// coordinates.
+/// A triangle inside another, similar to it or (edge < 0) inverted. Corner and edge are in the
+/// outer triangle's barycentric coordinates.
 struct SubTriangle {
   glm::dvec2 corner{0};
   double edge = 1;
@@ -58,7 +58,8 @@ class EmissiveTriangle {
       const glm::dvec3 emitted = flux * radiance(sample);
       const double solid = materials_.solidity({index_, glm::vec2(sample.centroid())});
       if (solid >= 0) point.flux += emitted;
-      if (std::abs(solid) < kAlphaTolerance) point.tolerance += std::max({emitted.x, emitted.y, emitted.z});
+      if (std::abs(solid) < kAlphaTolerance)
+        point.tolerance += std::max({emitted.x, emitted.y, emitted.z});
     }
     return point;
   }
@@ -67,8 +68,8 @@ class EmissiveTriangle {
   /// Filtered radiance of a sample [W/m^2/sr].
   glm::dvec3 radiance(const SubTriangle& sample) const {
     const double width = double{CLPV_EMIT_FOOTPRINT} * sample.edge;
-    return glm::dvec3(
-        materials_.emissive({index_, glm::vec2(sample.centroid())}, {width * to_second_, width * to_third_}));
+    return glm::dvec3(materials_.emissive({index_, glm::vec2(sample.centroid())},
+                                          {width * to_second_, width * to_third_}));
   }
 
   const Materials& materials_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `emit` (kernels/inject/emit.cl): virtual point lights of emissive triangles, in double (docs/method.md,
-// 'Emissive surfaces').
+// CPU reference of stage `emit` (kernels/inject/emit.cl): virtual point lights of emissive
+// triangles, in double (docs/method.md, 'Emissive surfaces').
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// E = 4 I(-n) / s^2 for face transports, E = alpha(-n) . c / s^2 for the sweep; c interpolated trilinearly at p + h s n.
+// E = 4 I(-n) / s^2 for face transports, E = alpha(-n) . c / s^2 for the sweep; c interpolated
+// trilinearly at p + h s n.
 #include "reference/gather.hpp"
 
 #include <algorithm>
@@ -11,8 +12,8 @@ namespace clpv::reference {
 namespace {
 
 /// Weights g(n) of the coefficients: E s^2 = g(n) . c.
-std::vector<double> gather_weights(const Basis& basis, TransportKind transport, const LobeOptions& lobes,
-                                   const glm::dvec3& normal) {
+std::vector<double> gather_weights(const Basis& basis, TransportKind transport,
+                                   const LobeOptions& lobes, const glm::dvec3& normal) {
   std::vector<double> weights(static_cast<std::size_t>(basis.size()));
   if (!has_faces(transport)) {
     basis.cosine_integrals(-normal, weights);
@@ -44,24 +45,28 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
     const ClpvGrid& grid = cascade.grid;
     const glm::dvec3 at = (position - vector(grid.origin)) / double{grid.cell};
     const double share = share_of(position, grid, options.grid, options.blend_cells);
-    const glm::dvec3 point = at + options.gather_offset * normal - 0.5;  // the first cell's centre is at 0.5
+    // The first cell's centre is at 0.5.
+    const glm::dvec3 point = at + options.gather_offset * normal - 0.5;
     const double area = double{grid.cell} * grid.cell;
     TrilinearSample sample = trilinear_sample(point, options.grid);
-    if (options.gather == Gathering::visible) apply_visibility(sample, point, options.grid, cascade.occluded);
+    if (options.gather == Gathering::visible)
+      apply_visibility(sample, point, options.grid, cascade.occluded);
     e += share * rest / area * irradiance(*cascade.accumulated, sample, weights);
     rest *= 1 - share;
   }
   return e;
 }
 
-std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
-                               const std::vector<Cascade>& cascades, const SurfaceImage& camera) {
+std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,
+                               const GatherOptions& options, const std::vector<Cascade>& cascades,
+                               const SurfaceImage& camera) {
   std::vector<glm::dvec3> image(camera.depth.size(), glm::dvec3(0));
   for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
     const double depth = camera.depth[pixel];
     if (depth <= 0) continue;
-    image[pixel] = gather(basis, transport, options, cascades, surface_position(camera.view, pixel, depth),
-                          glm::dvec3(camera.normal[pixel]));
+    image[pixel] =
+        gather(basis, transport, options, cascades, surface_position(camera.view, pixel, depth),
+               glm::dvec3(camera.normal[pixel]));
   }
   return image;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `gather` (kernels/gather/gather.cl): irradiance from light volumes, in double
-// (docs/method.md, 'Gathering').
+// CPU reference of stage `gather` (kernels/gather/gather.cl): irradiance from light volumes, in
+// double (docs/method.md, 'Gathering').
 #pragma once
 
 #include <cstdint>
@@ -24,13 +24,16 @@ struct Cascade {
   const std::uint8_t* occluded = nullptr;
 };
 
-/// Returns the irradiance [W/m^2] in red, green, blue of a surface at `position` [m] with unit `normal`. `cascades`: finest
-/// first.
+/// Returns the irradiance [W/m^2] in red, green, blue of a surface at `position` [m] with unit
+/// `normal`. `cascades`: finest first.
 glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
-                  const std::vector<Cascade>& cascades, const glm::dvec3& position, const glm::dvec3& normal);
+                  const std::vector<Cascade>& cascades, const glm::dvec3& position,
+                  const glm::dvec3& normal);
 
-/// Returns the irradiance of every pixel of a G-buffer, row 0 first; 0 for pixels without a surface.
-std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
-                               const std::vector<Cascade>& cascades, const SurfaceImage& camera);
+/// Returns the irradiance of every pixel of a G-buffer, row 0 first; 0 for pixels without a
+/// surface.
+std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,
+                               const GatherOptions& options, const std::vector<Cascade>& cascades,
+                               const SurfaceImage& camera);
 
 }  // namespace clpv::reference

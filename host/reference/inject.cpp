@@ -23,7 +23,8 @@ bool finite(const glm::dvec3& v) {
 }
 
 /// The lobe about `normal`; with `unit_flux` scaled to a flux of pi.
-std::vector<double> lobe(const Basis& basis, const Lobes& lobes, const glm::dvec3& normal, bool unit_flux) {
+std::vector<double> lobe(const Basis& basis, const Lobes& lobes, const glm::dvec3& normal,
+                         bool unit_flux) {
   std::vector<double> c = lobes(normal);
   if (!unit_flux) return c;
   const double scale = std::numbers::pi / basis.energy(c);
@@ -31,7 +32,8 @@ std::vector<double> lobe(const Basis& basis, const Lobes& lobes, const glm::dvec
   return c;
 }
 
-void add(Volume& volume, int channel, const glm::ivec3& cell, double weight, const std::vector<double>& c) {
+void add(Volume& volume, int channel, const glm::ivec3& cell, double weight,
+         const std::vector<double>& c) {
   if (!volume.inside(cell.x, cell.y, cell.z)) return;
   for (std::size_t i = 0; i < c.size(); ++i) {
     volume.at(channel, static_cast<int>(i), cell.x, cell.y, cell.z) += weight * c[i];
@@ -57,14 +59,15 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
   Volume blocking(static_cast<int>(grid.n) + 1, blocking_size(options.blocking, basis), 1);
   const std::size_t every = stride;
   for (std::size_t pixel = 0; pixel < surface.depth.size(); ++pixel) {
-    const bool sampled =
-        pixel % surface.view.width % every == every / 2 && pixel / surface.view.width % every == every / 2;
+    const bool sampled = pixel % surface.view.width % every == every / 2 &&
+                         pixel / surface.view.width % every == every / 2;
     if (!sampled || !has_surface(surface, pixel)) continue;
     const glm::dvec3 normal = xyz(surface.normal[pixel]);
-    const double cosine = std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kMinCosine);
+    const double cosine =
+        std::max(std::abs(glm::dot(normal, ray(surface.view, pixel))), kMinCosine);
     const double share = stride * stride *
-                         footprint(surface.view, pixel % surface.view.width, pixel / surface.view.width,
-                                   surface.depth[pixel]) /
+                         footprint(surface.view, pixel % surface.view.width,
+                                   pixel / surface.view.width, surface.depth[pixel]) /
                          (double{grid.cell} * grid.cell * cosine);
     const glm::ivec3 corner(glm::floor(grid_point(surface, pixel, grid, false) + 0.5));
     if (!blocks_by_lobes(options.blocking)) {
@@ -78,10 +81,13 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
 
 }  // namespace
 
-glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid, bool light) {
-  const glm::dvec3 p = surface.position.empty() ? surface_position(surface.view, pixel, surface.depth[pixel])
-                                                : xyz(surface.position[pixel]);
-  return (p - vector(grid.origin)) / double{grid.cell} + (light ? 0.5 : 0.0) * xyz(surface.normal[pixel]);
+glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid,
+                      bool light) {
+  const glm::dvec3 p = surface.position.empty()
+                           ? surface_position(surface.view, pixel, surface.depth[pixel])
+                           : xyz(surface.position[pixel]);
+  return (p - vector(grid.origin)) / double{grid.cell} +
+         (light ? 0.5 : 0.0) * xyz(surface.normal[pixel]);
 }
 
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
@@ -90,7 +96,8 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
   for (std::size_t pixel = 0; pixel < rsm.normal.size(); ++pixel) {
     const glm::dvec3 flux = xyz(rsm.colour[pixel]);
     if (!has_surface(rsm, pixel) || !finite(flux)) continue;
-    const std::vector<double> c = lobe(basis, lobes, xyz(rsm.normal[pixel]), options.unit_flux_lobes);
+    const std::vector<double> c =
+        lobe(basis, lobes, xyz(rsm.normal[pixel]), options.unit_flux_lobes);
     const glm::dvec3 point = grid_point(rsm, pixel, grid, true);
     for (int channel = 0; channel < 3; ++channel) {
       add(light, channel, glm::ivec3(glm::floor(point)), flux[channel] / std::numbers::pi, c);
@@ -110,10 +117,12 @@ void merge_geometry(const Volume& found, const Basis& basis, Blocking blocking, 
 
 void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
                      const InjectOptions& options, Volume& geometry, int stride) {
-  merge_geometry(blocking_of(surface, grid, basis, options, stride), basis, options.blocking, geometry);
+  merge_geometry(blocking_of(surface, grid, basis, options, stride), basis, options.blocking,
+                 geometry);
 }
 
-Volume merged_against_ties(const Volume& a, const Volume& b, const Basis& basis, Blocking blocking) {
+Volume merged_against_ties(const Volume& a, const Volume& b, const Basis& basis,
+                           Blocking blocking) {
   Volume merged = a;
   merge_geometry(b, basis, blocking, merged);
   if (!blocks_by_lobes(blocking)) return merged;

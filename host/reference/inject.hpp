@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `inject` (kernels/inject/inject.cl), in double: light and surfels of an RSM or G-buffer into volumes
-// (docs/method.md, 'Injection', 'Blockers').
+// CPU reference of stage `inject` (kernels/inject/inject.cl), in double: light and surfels of an
+// RSM or G-buffer into volumes (docs/method.md, 'Injection', 'Blockers').
 #pragma once
 
 #include "basis/basis.hpp"
@@ -11,25 +11,28 @@
 
 namespace clpv::reference {
 
-/// Adds the virtual point lights of `rsm` to `light` (grid.n^3 cells, 3 channels): c += (P / pi) c(n) in each light's cell.
+/// Adds the virtual point lights of `rsm` to `light` (grid.n^3 cells, 3 channels): c += (P / pi)
+/// c(n) in each light's cell.
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
                   const InjectOptions& options, Volume& light);
 
-/// Merges the surfels of `surface` into `geometry` (grid.n + 1 samples along each axis, 1 channel). Uses every `stride`-th
-/// pixel along each axis, the middle one of stride^2, with stride^2 times the area.
+/// Merges the surfels of `surface` into `geometry` (grid.n + 1 samples along each axis, 1 channel).
+/// Uses every `stride`-th pixel along each axis, the middle one of stride^2, with stride^2 times
+/// the area.
 void inject_geometry(const SurfaceImage& surface, const ClpvGrid& grid, const Basis& basis,
                      const InjectOptions& options, Volume& geometry, int stride = 1);
 
-/// Merges the blockers `found` of one source into `geometry`: each sample keeps the function of higher energy, or the larger
-/// areas.
+/// Merges the blockers `found` of one source into `geometry`: each sample keeps the function of
+/// higher energy, or the larger areas.
 void merge_geometry(const Volume& found, const Basis& basis, Blocking blocking, Volume& geometry);
 
-/// Merges `a` and `b`, but chooses the function of lower energy where energies differ by rounding only. merge_geometry() and
-/// this function bound the result of a device.
+/// Merges `a` and `b`, but chooses the function of lower energy where energies differ by rounding
+/// only. merge_geometry() and this function bound the result of a device.
 Volume merged_against_ties(const Volume& a, const Volume& b, const Basis& basis, Blocking blocking);
 
-/// Returns the position of a pixel's surface in cells from the grid's origin. `light`: moved by half a cell along the
-/// normal.
-glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid, bool light);
+/// Returns the position of a pixel's surface in cells from the grid's origin. `light`: moved by
+/// half a cell along the normal.
+glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid,
+                      bool light);
 
 }  // namespace clpv::reference

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/raster/lighting.h: unshadowed irradiance of directional, point and spot lights (KHR_lights_punctual).
+// CPU reference of kernels/raster/lighting.h: unshadowed irradiance of directional, point and spot
+// lights (KHR_lights_punctual).
 #pragma once
 
 #include <glm/glm.hpp>
@@ -14,9 +15,10 @@ struct Incident {
   glm::dvec3 towards{0};     ///< unit, from the point to the light
 };
 
-/// Returns the light at `position` [m]. Directional: constant. Point: intensity / r^2, 0 beyond the range. Spot: the same
-/// times clamp(cos(angle) cone_scale + cone_offset, 0, 1)^2 (KHR_lights_punctual). The range is a hard edge, not the
-/// recommended smooth window, so that the inverse square is exact inside it. Times the transmittance of ClpvLight::medium.
+/// Returns the light at `position` [m]. Directional: constant. Point: intensity / r^2, 0 beyond the
+/// range. Spot: the same times clamp(cos(angle) cone_scale + cone_offset, 0, 1)^2
+/// (KHR_lights_punctual). The range is a hard edge, not the recommended smooth window, so that the
+/// inverse square is exact inside it. Times the transmittance of ClpvLight::medium.
 Incident light_at(const ClpvLight& light, const glm::dvec3& position);
 
 }  // namespace clpv::reference

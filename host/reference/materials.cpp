@@ -30,7 +30,8 @@ std::array<float, 256> decode_table() {
 /// Maps texel index `i` into [0, size) by wrap mode.
 std::uint32_t wrap(std::int64_t i, std::uint32_t size, std::uint32_t mode) {
   const std::int64_t n = size;
-  if (mode == CLPV_WRAP_CLAMP) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, n - 1));
+  if (mode == CLPV_WRAP_CLAMP)
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, n - 1));
   const std::int64_t period = mode == CLPV_WRAP_MIRROR ? 2 * n : n;
   std::int64_t j = i % period;
   if (j < 0) j += period;
@@ -45,7 +46,8 @@ glm::vec4 texel(const Texture& texture, std::uint32_t x, std::uint32_t y) {
 
 /// log2(sqrt(square)), piecewise linear between powers of two of `square`; at least 0.
 double mip_level(double square) {
-  if (!(square < std::numeric_limits<double>::infinity())) return std::numeric_limits<double>::infinity();
+  if (!(square < std::numeric_limits<double>::infinity()))
+    return std::numeric_limits<double>::infinity();
   if (square <= 1) return 0;
   const int power = std::ilogb(square);
   return 0.5 * (power + std::ldexp(square, -power) - 1);
@@ -55,7 +57,8 @@ double mip_level(double square) {
 
 Materials::Materials(const SceneData& scene) : scene_(&scene) {
   const std::vector<bool> holes = textures_with_holes(scene);
-  for (std::size_t i = 0; i < holes.size(); ++i) textures_.push_back(mip_chain(scene.textures[i], holes[i]));
+  for (std::size_t i = 0; i < holes.size(); ++i)
+    textures_.push_back(mip_chain(scene.textures[i], holes[i]));
 }
 
 glm::vec3 Materials::albedo(const SurfacePoint& point, const Footprint& footprint) const {
@@ -118,10 +121,12 @@ glm::dvec2 Materials::texture_step(const Triangle& triangle, const glm::dvec3& s
 }
 
 glm::vec4 look_up(const Texture& texture, const glm::vec2& uv) {
-  // Beyond 2^24, float coordinates cannot distinguish adjacent texels, and the cast below would overflow.
+  // Beyond 2^24, float coordinates cannot distinguish adjacent texels, and the cast below would
+  // overflow.
   constexpr float kMaxCoordinate = 16777216.0f;
   const glm::vec2 at = uv * glm::vec2(texture.width, texture.height) - 0.5f;
-  if (!(std::abs(at.x) < kMaxCoordinate && std::abs(at.y) < kMaxCoordinate)) return texel(texture, 0, 0);
+  if (!(std::abs(at.x) < kMaxCoordinate && std::abs(at.y) < kMaxCoordinate))
+    return texel(texture, 0, 0);
   const glm::vec2 base = glm::floor(at), weight = at - base;
   const auto x = static_cast<std::int64_t>(base.x), y = static_cast<std::int64_t>(base.y);
   const std::uint32_t x0 = wrap(x, texture.width, texture.wrap_u),

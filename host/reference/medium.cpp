@@ -34,7 +34,8 @@ struct AirRay {
 AirRay air_ray(const ClpvMedium& medium, const SurfaceImage& camera, unsigned x, unsigned y) {
   const glm::dvec3 origin = surface_position(camera.view, x, y, 0),
                    along = surface_position(camera.view, x, y, 1) - origin;
-  const double depth = camera.depth[std::size_t{y} * camera.view.width + x], length = glm::length(along);
+  const double depth = camera.depth[std::size_t{y} * camera.view.width + x],
+               length = glm::length(along);
   const double end = depth > 0 ? depth * length : std::numeric_limits<double>::infinity();
   const MediumPart part = medium_part(medium, origin, along / length, end);
   return {origin, along / length, part.length() > 0 ? part : MediumPart{}};
@@ -68,14 +69,15 @@ bool reaches(const MappedLight& light, const glm::dvec3& position) {
 }
 
 /// Light scattered towards a pixel's ray whose points have the place `x` in their intervals.
-glm::dvec3 scattered_along(const Basis& basis, const MediumOptions& options, const MediumScene& scene,
-                           const AirRay& ray, double place) {
+glm::dvec3 scattered_along(const Basis& basis, const MediumOptions& options,
+                           const MediumScene& scene, const AirRay& ray, double place) {
   glm::dvec3 sum(0);
   const double g = double{scene.medium.anisotropy};
   for (int k = 0; k < options.volume_steps; ++k) {
     const AirPoint point =
         air_point(scene.medium, ray, (k + place) / options.volume_steps, options.volume_steps);
-    RadianceField field = radiance_field(options.gather, scene.cascades, basis.size(), point.position);
+    RadianceField field =
+        radiance_field(options.gather, scene.cascades, basis.size(), point.position);
     for (std::vector<double>& channel : field) {
       for (std::size_t i = 1; i < channel.size(); ++i) channel[i] *= i < 4 ? g : g * g;
     }
@@ -87,7 +89,8 @@ glm::dvec3 scattered_along(const Basis& basis, const MediumOptions& options, con
           air_point(scene.medium, ray, (k + place) / options.light_steps, options.light_steps);
       const Incident incident = light_at(light.light, point.position);
       if (reaches(light, point.position))
-        sum += point.share * incident.irradiance * phase(g, glm::dot(incident.towards, ray.direction));
+        sum +=
+            point.share * incident.irradiance * phase(g, glm::dot(incident.towards, ray.direction));
     }
   }
   return vector(scene.medium.scattering) * sum;
@@ -101,7 +104,8 @@ double albedo(const ClpvMedium& medium, int channel) {
 
 /// Weight of a ray's neighbour, whose end is `other` [m]; 0 outside the medium.
 double alike(double end, double other) {
-  return other > 0 ? std::max(0.0, 1 - std::abs(end - other) / (kSameEnd * std::max(end, other))) : 0;
+  return other > 0 ? std::max(0.0, 1 - std::abs(end - other) / (kSameEnd * std::max(end, other)))
+                   : 0;
 }
 
 /// Rays of every second pixel along both axes, with the light that they see.
@@ -135,11 +139,13 @@ AirImage blurred(const AirImage& image) {
       WeightedMean mean;
       for (int dy = -kWindow; dy <= kWindow; ++dy) {
         for (int dx = -kWindow; dx <= kWindow; ++dx) {
-          const double share = (std::abs(dy) == kWindow ? 0.5 : 1) * (std::abs(dx) == kWindow ? 0.5 : 1);
+          const double share =
+              (std::abs(dy) == kWindow ? 0.5 : 1) * (std::abs(dx) == kWindow ? 0.5 : 1);
           mean.add(image, x + dx, y + dy, image.end(x, y), share);
         }
       }
-      result.light[y * image.width + x] = mean.weights > 0 ? mean.sum / mean.weights : glm::dvec3(0);
+      result.light[y * image.width + x] =
+          mean.weights > 0 ? mean.sum / mean.weights : glm::dvec3(0);
     }
   }
   return result;
@@ -150,14 +156,16 @@ AirImage blurred(const AirImage& image) {
 std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions& options,
                                         const MediumScene& scene, const SurfaceImage& camera) {
   const ClpvView& view = camera.view;
-  AirImage traced{int(view.width + kStep - 1) / kStep, int(view.height + kStep - 1) / kStep, {}, {}};
+  AirImage traced{
+      int(view.width + kStep - 1) / kStep, int(view.height + kStep - 1) / kStep, {}, {}};
   for (int y = 0; y < traced.height; ++y) {
     for (int x = 0; x < traced.width; ++x) {
       const AirRay ray = air_ray(scene.medium, camera, kStep * x, kStep * y);
       const double place = (kBayer[y % CLPV_PLANE_TILE][x % CLPV_PLANE_TILE] + 0.5) / 16;
       const bool inside = ray.part.length() > 0;
       traced.ends.push_back(inside ? ray.part.end : 0);
-      traced.light.push_back(inside ? scattered_along(basis, options, scene, ray, place) : glm::dvec3(0));
+      traced.light.push_back(inside ? scattered_along(basis, options, scene, ray, place)
+                                    : glm::dvec3(0));
     }
   }
   const AirImage mean = blurred(traced);
@@ -167,10 +175,12 @@ std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions&
     const AirRay ray = air_ray(scene.medium, camera, x, y);
     WeightedMean interpolated;
     for (int corner = 0; corner < 4; ++corner)
-      interpolated.add(mean, left + corner % 2 * (x % 2), above + corner / 2 * (y % 2), ray.part.end, 1);
+      interpolated.add(mean, left + corner % 2 * (x % 2), above + corner / 2 * (y % 2),
+                       ray.part.end, 1);
     interpolated.sum += kUnlike * mean.light[above * mean.width + left];
     interpolated.weights += kUnlike;
-    light.push_back(ray.part.length() > 0 ? interpolated.sum / interpolated.weights : glm::dvec3(0));
+    light.push_back(ray.part.length() > 0 ? interpolated.sum / interpolated.weights
+                                          : glm::dvec3(0));
   }
   return light;
 }
@@ -183,7 +193,8 @@ Volume scattered_in_cells(const ClpvMedium& medium, const std::vector<MappedLigh
   const double cell = double{grid.cell};
   for_each_cell(scattered.n, [&](const glm::ivec3& p) {
     const glm::dvec3 corner = vector(grid.origin) + cell * glm::dvec3(p);
-    if (glm::any(glm::greaterThanEqual(corner, upper)) || glm::any(glm::lessThanEqual(corner + cell, lower)))
+    if (glm::any(glm::greaterThanEqual(corner, upper)) ||
+        glm::any(glm::lessThanEqual(corner + cell, lower)))
       return;
     for (const MappedLight& light : lights) {
       const bool directional = light.light.kind == CLPV_LIGHT_DIRECTIONAL;
@@ -192,7 +203,8 @@ Volume scattered_in_cells(const ClpvMedium& medium, const std::vector<MappedLigh
         const glm::dvec3 offset = 0.25 + 0.5 * glm::dvec3(i & 1, i >> 1 & 1, i >> 2),
                          point = glm::clamp(corner + cell * offset, lower, upper);
         if (!reaches(light, point)) continue;
-        const double near = directional ? 1 : 4 / cell * glm::distance(point, vector(light.light.position));
+        const double near =
+            directional ? 1 : 4 / cell * glm::distance(point, vector(light.light.position));
         irradiance += light_at(light.light, point).irradiance / 8.0 * std::min(1.0, near * near);
       }
       glm::dvec3 along = vector(light.light.direction);
@@ -203,7 +215,8 @@ Volume scattered_in_cells(const ClpvMedium& medium, const std::vector<MappedLigh
       std::vector<double> phases;
       double integral = 0;
       for (const SweepBin& bin : bins) {
-        phases.push_back(phase(double{medium.anisotropy}, glm::dot(along, bin.directions.front().w)));
+        phases.push_back(
+            phase(double{medium.anisotropy}, glm::dot(along, bin.directions.front().w)));
         integral += phases.back() * 4 * std::numbers::pi / kSweepBins;
       }
       for (int c = 0; c < 3; ++c) {
@@ -221,7 +234,8 @@ void add_scattered(const ClpvMedium& medium, const Volume& swept, Volume& scatte
   for_each_cell(swept.n, [&](const glm::ivec3& p) {
     for (int c = 0; c < 3; ++c) {
       const std::vector<double> added = scattering * swept.cell(c, p);
-      for (int b = 0; b < kSweepBins; ++b) scattered.at(c, b, p.x, p.y, p.z) += albedo(medium, c) * added[b];
+      for (int b = 0; b < kSweepBins; ++b)
+        scattered.at(c, b, p.x, p.y, p.z) += albedo(medium, c) * added[b];
     }
   });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU references of stage `medium` (kernels/gather/medium.cl) and of the light that a medium scatters in cells
-// (kernels/sweep/sweep_medium.cl), in double.
+// CPU references of stage `medium` (kernels/gather/medium.cl) and of the light that a medium
+// scatters in cells (kernels/sweep/sweep_medium.cl), in double.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -22,12 +22,13 @@ struct MediumScene {
   const std::vector<Cascade>& cascades;  ///< finest first
 };
 
-/// Returns the radiance [W/m^2/sr] that the medium scatters towards the camera in each pixel. `basis`: of the cascades' volumes,
-/// swept_basis().
+/// Returns the radiance [W/m^2/sr] that the medium scatters towards the camera in each pixel.
+/// `basis`: of the cascades' volumes, swept_basis().
 std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions& options,
                                         const MediumScene& scene, const SurfaceImage& camera);
 
-/// Returns the source function of `lights` in the cells of `grid`, times s^2 [W/sr], in bins24 (kernels/sweep/sweep_medium.cl).
+/// Returns the source function of `lights` in the cells of `grid`, times s^2 [W/sr], in bins24
+/// (kernels/sweep/sweep_medium.cl).
 Volume scattered_in_cells(const ClpvMedium& medium, const std::vector<MappedLight>& lights,
                           const ClpvGrid& grid);
 /// Adds that of `swept` light, the result of sweep().

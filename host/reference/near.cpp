@@ -43,7 +43,8 @@ struct NearField {
   RadianceField field_at(const glm::dvec3& position, double offset, const glm::dvec3& lift) const {
     return radiance_field(options.gather, scene.cascades, basis.size(), position, offset, lift);
   }
-  double trust(const RadianceField& field, const glm::dvec3& gathered, const glm::dvec3& normal) const;
+  double trust(const RadianceField& field, const glm::dvec3& gathered,
+               const glm::dvec3& normal) const;
   glm::dvec3 radiance_of(const NearHit& hit, const NearPoint& point, const glm::dvec3& along,
                          bool& uncertain) const;
   void trace(NearPoint& point, const std::vector<glm::vec3>& directions) const;
@@ -52,7 +53,8 @@ struct NearField {
 double NearField::reach_at(const glm::dvec3& position) const {
   double reach = 0, rest = 1;
   for (const Cascade& cascade : scene.cascades) {
-    const double share = share_of(position, cascade.grid, options.gather.grid, options.gather.blend_cells);
+    const double share =
+        share_of(position, cascade.grid, options.gather.grid, options.gather.blend_cells);
     reach += share * rest * double{cascade.grid.cell};
     rest *= 1 - share;
   }
@@ -71,14 +73,15 @@ double NearField::trust(const RadianceField& field, const glm::dvec3& gathered,
 }
 
 /// Radiance of a hit towards the ray's origin.
-glm::dvec3 NearField::radiance_of(const NearHit& hit, const NearPoint& point, const glm::dvec3& along,
-                                  bool& uncertain) const {
+glm::dvec3 NearField::radiance_of(const NearHit& hit, const NearPoint& point,
+                                  const glm::dvec3& along, bool& uncertain) const {
   const Triangle& triangle = scene.scene.triangles[hit.point.triangle];
   const auto [a, b, c] = corners_of(scene.scene, triangle);
   const glm::dvec3 across = glm::cross(b - a, c - a);
   const double area2 = glm::length(across);
   const double height = std::abs(glm::dot(point.position - a, across)) / (area2 * point.reach);
-  uncertain = uncertain || std::abs(height - 2 * double{CLPV_NEAR_LIFT}) < 0.1 * double{CLPV_NEAR_LIFT};
+  uncertain =
+      uncertain || std::abs(height - 2 * double{CLPV_NEAR_LIFT}) < 0.1 * double{CLPV_NEAR_LIFT};
   if (height <= 2 * double{CLPV_NEAR_LIFT}) return glm::dvec3(0);
   const bool back = glm::dot(across, along) > 0;
   const glm::dvec3 front = back ? -across : across;
@@ -88,7 +91,9 @@ glm::dvec3 NearField::radiance_of(const NearHit& hit, const NearPoint& point, co
   if (glm::dot(n, front) < 0) n = -n;
   const glm::dvec3 position =
       a + double{hit.point.weights.x} * (b - a) + double{hit.point.weights.y} * (c - a);
-  const auto uv = [&](int i) { return glm::dvec2(coordinates(scene.scene.vertices[triangle.vertex[i]])); };
+  const auto uv = [&](int i) {
+    return glm::dvec2(coordinates(scene.scene.vertices[triangle.vertex[i]]));
+  };
   const double uv_area2 = std::abs(cross(uv(1) - uv(0), uv(2) - uv(0)));
   Footprint footprint;
   footprint.uv = hit.distance * near_cone(options.rays) * std::sqrt(uv_area2 / area2);
@@ -99,7 +104,8 @@ glm::dvec3 NearField::radiance_of(const NearHit& hit, const NearPoint& point, co
   const bool emitting = !back || double_sided(scene.scene.materials[triangle.material]);
   const glm::dvec3 emitted =
       emitting ? glm::dvec3(scene.materials.emissive(hit.point, footprint)) : glm::dvec3(0);
-  return emitted + glm::dvec3(scene.materials.albedo(hit.point, footprint)) / std::numbers::pi * irradiance;
+  return emitted +
+         glm::dvec3(scene.materials.albedo(hit.point, footprint)) / std::numbers::pi * irradiance;
 }
 
 /// Orthonormal frame about the normal; near_layout.h names its source.
@@ -116,8 +122,10 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
   const glm::dmat3 frame = frame_about(point.normal);
   for (const glm::vec3& direction : directions) {
     const glm::dvec3 w = frame * glm::dvec3(direction);
-    const NearRay ray{point.position + double{CLPV_NEAR_LIFT} * point.reach * point.normal, w, point.reach};
-    const std::optional<NearHit> hit = nearest_triangle(scene.scene, scene.materials, ray, point.uncertain);
+    const NearRay ray{point.position + double{CLPV_NEAR_LIFT} * point.reach * point.normal, w,
+                      point.reach};
+    const std::optional<NearHit> hit =
+        nearest_triangle(scene.scene, scene.materials, ray, point.uncertain);
     const glm::dvec3 v = radiance(basis, here, -w);
     if (hit) {
       point.difference += radiance_of(*hit, point, w, point.uncertain) - v;
@@ -158,7 +166,8 @@ struct Mean {
   double weight = 0;
   bool uncertain = false;
 
-  void add(const NearPoint& there, double share, const glm::dvec3& position, const glm::dvec3& normal) {
+  void add(const NearPoint& there, double share, const glm::dvec3& position,
+           const glm::dvec3& normal) {
     if (share > 0) add(there, share * same_surface(there, position, normal, uncertain));
   }
   void add(const NearPoint& there, double w) {
@@ -210,7 +219,8 @@ NearImage widened(const NearImage& image) {
     for (const int dy : {-3, 0, 3}) {
       for (const int dx : {-3, 0, 3}) {
         const NearPoint& there = image.at(layer, x + dx, y + dy);
-        const double apart = point.reach > 0 ? glm::length(there.position - point.position) / point.reach : 0;
+        const double apart =
+            point.reach > 0 ? glm::length(there.position - point.position) / point.reach : 0;
         mean.uncertain = mean.uncertain || close_to(apart, kWidened);
         mean.add(there, apart < kWidened ? 1 : 0, point.position, point.normal);
       }
@@ -235,8 +245,8 @@ struct NearPixels {
     return point;
   }
 
-  /// Light at a pixel of the camera from near pixels on its surface: by bilinear weights, or else of the blocks around, there on
-  /// any surface if none is on this one.
+  /// Light at a pixel of the camera from near pixels on its surface: by bilinear weights, or else
+  /// of the blocks around, there on any surface if none is on this one.
   Mean interpolated(const NearImage& image, int x, int y) const {
     const NearPoint here = point_at(x, y);
     const double across = x % step / double(step), down = y % step / double(step);
@@ -245,7 +255,8 @@ struct NearPixels {
       for (int corner = 0; corner < 4; ++corner) {
         const int right = corner % 2, below = corner / 2;
         mean.add(image.at(layer, x / step + right, y / step + below),
-                 (right ? across : 1 - across) * (below ? down : 1 - down), here.position, here.normal);
+                 (right ? across : 1 - across) * (below ? down : 1 - down), here.position,
+                 here.normal);
       }
     }
     for (const bool any : {false, true}) {
@@ -268,15 +279,17 @@ struct NearPixels {
   /// The first pixel of a block whose surface no near pixel of the blocks around it has.
   NearPoint other(const NearImage& image, int block_x, int block_y) const {
     bool unknown = false;
-    for (int y = block_y * step; y < std::min(block_y * step + step, int(camera.view.height)); ++y) {
-      for (int x = block_x * step; x < std::min(block_x * step + step, int(camera.view.width)); ++x) {
+    for (int y = block_y * step; y < std::min(block_y * step + step, int(camera.view.height));
+         ++y) {
+      for (int x = block_x * step; x < std::min(block_x * step + step, int(camera.view.width));
+           ++x) {
         NearPoint point = point_at(x, y);
         if (camera.depth[std::size_t{camera.view.width} * y + x] <= 0) continue;
         double covered = 0;
         for (int dy = -1; dy <= 2; ++dy) {
           for (int dx = -1; dx <= 2; ++dx)
-            covered +=
-                same_surface(image.at(0, block_x + dx, block_y + dy), point.position, point.normal, unknown);
+            covered += same_surface(image.at(0, block_x + dx, block_y + dy), point.position,
+                                    point.normal, unknown);
         }
         if (covered > 0) continue;
         point.unknown = unknown;
@@ -296,23 +309,24 @@ std::optional<NearHit> nearest_triangle(const SceneData& scene, const Materials&
   std::optional<NearHit> nearest;
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     const auto [a, b, c] = corners_of(scene, scene.triangles[i]);
-    const glm::dvec3 edge1 = b - a, edge2 = c - a, from = ray.from - a, across = glm::cross(ray.along, edge2),
-                     around = glm::cross(from, edge1);
+    const glm::dvec3 edge1 = b - a, edge2 = c - a, from = ray.from - a,
+                     across = glm::cross(ray.along, edge2), around = glm::cross(from, edge1);
     const double scale = 1 / glm::dot(edge1, across);
     const double u = glm::dot(from, across) * scale, v = glm::dot(ray.along, around) * scale,
                  distance = glm::dot(edge2, around) * scale;
     const double inside = std::min({u, v, 1 - u - v});
     const double end = nearest ? nearest->distance : ray.reach;
     // Within the margin of the triangle, and not clearly beyond the end.
-    const bool about =
-        inside > -kNearEdge && distance > -kNearEdge * ray.reach && distance < end + kNearEdge * ray.reach;
+    const bool about = inside > -kNearEdge && distance > -kNearEdge * ray.reach &&
+                       distance < end + kNearEdge * ray.reach;
     if (!about) continue;  // NaN for triangles without area, too
     const SurfacePoint point{i, {static_cast<float>(u), static_cast<float>(v)}};
     const double solidity = materials.solidity(point);
     if (solidity < -kAlphaTolerance) continue;
     uncertain = uncertain || inside < kNearEdge || distance < kNearEdge * ray.reach ||
                 distance > end - kNearEdge * ray.reach || std::abs(solidity) < kAlphaTolerance;
-    if (inside >= 0 && distance > 0 && distance < end && solidity >= 0) nearest = NearHit{point, distance};
+    if (inside >= 0 && distance > 0 && distance < end && solidity >= 0)
+      nearest = NearHit{point, distance};
   }
   return nearest;
 }
@@ -330,9 +344,11 @@ NearResult near(const Basis& basis, const NearOptions& options, const NearScene&
   for (int layer = 0; layer < (step > 1 ? 2 : 1); ++layer) {
     for (int y = 0; y < image.height; ++y) {
       for (int x = 0; x < image.width; ++x) {
-        NearPoint point = layer == 0 ? pixels.point_at(step * x, step * y) : pixels.other(image, x, y);
+        NearPoint point =
+            layer == 0 ? pixels.point_at(step * x, step * y) : pixels.other(image, x, y);
         if (point.reach > 0)
-          field.trace(point, directions[y % CLPV_PLANE_TILE * CLPV_PLANE_TILE + x % CLPV_PLANE_TILE]);
+          field.trace(point,
+                      directions[y % CLPV_PLANE_TILE * CLPV_PLANE_TILE + x % CLPV_PLANE_TILE]);
         image.layers[layer].push_back(point);
       }
     }

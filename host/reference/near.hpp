@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `near` (kernels/gather/near.cl): light from near surfaces, by brute force and in double (docs/method.md,
-// 'Near field').
+// CPU reference of stage `near` (kernels/gather/near.cl): light from near surfaces, by brute force
+// and in double (docs/method.md, 'Near field').
 #pragma once
 
 #include <glm/glm.hpp>
@@ -17,7 +17,8 @@
 
 namespace clpv::reference {
 
-/// A ray. Rays that pass within kNearEdge of an edge, an end or a limit are uncertain: rounding may decide what they hit.
+/// A ray. Rays that pass within kNearEdge of an edge, an end or a limit are uncertain: rounding may
+/// decide what they hit.
 struct NearRay {
   glm::dvec3 from{0}, along{0};  ///< origin [m], unit direction
   double reach = 0;              ///< [m]
@@ -29,8 +30,8 @@ struct NearHit {
   double distance = 0;  ///< [m]
 };
 
-/// Returns the nearest triangle along a ray, on either side, but not in holes of masked materials. Sets `uncertain` if
-/// rounding may decide it.
+/// Returns the nearest triangle along a ray, on either side, but not in holes of masked materials.
+/// Sets `uncertain` if rounding may decide it.
 std::optional<NearHit> nearest_triangle(const SceneData& scene, const Materials& materials,
                                         const NearRay& ray, bool& uncertain);
 
@@ -46,7 +47,8 @@ struct NearResult {
   std::vector<bool> uncertain;         ///< pixels that rounding may decide
 };
 
-/// Returns the gathered irradiance with the light of near surfaces replaced. `basis`: of the cascades' volumes.
+/// Returns the gathered irradiance with the light of near surfaces replaced. `basis`: of the
+/// cascades' volumes.
 NearResult near(const Basis& basis, const NearOptions& options, const NearScene& scene,
                 const SurfaceImage& camera, const std::vector<glm::dvec3>& gathered);
 

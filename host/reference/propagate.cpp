@@ -22,8 +22,9 @@ using CellValues = std::vector<double>;
 CellValues cell_transmittances(const Volume& geometry, const glm::ivec3& side,
                                const std::vector<double>& weights) {
   CellValues result;
-  for_each_cell(geometry.n - 1,
-                [&](const glm::ivec3& p) { result.push_back(transmittance(geometry, p, side, weights)); });
+  for_each_cell(geometry.n - 1, [&](const glm::ivec3& p) {
+    result.push_back(transmittance(geometry, p, side, weights));
+  });
   return result;
 }
 
@@ -51,7 +52,8 @@ CellValues upstream_sum(const Volume& from, int channel, const glm::ivec3& trave
     for (int z = std::max(0, travel.z); z < n + std::min(0, travel.z); ++z) {
       for (int y = std::max(0, travel.y); y < n + std::min(0, travel.y); ++y) {
         double* to = sum.data() + (static_cast<std::size_t>(z) * n + y) * n;
-        const double* c = from.values.data() + from.index(channel, i, 0, y - travel.y, z - travel.z);
+        const double* c =
+            from.values.data() + from.index(channel, i, 0, y - travel.y, z - travel.z);
         for (int x = first; x < last; ++x) to[x] += weight * c[x - travel.x];
       }
     }
@@ -69,8 +71,8 @@ void attenuate(CellValues& light, const std::vector<CellValues>& links, std::siz
   for (std::size_t at = 0; at < light.size(); ++at) light[at] *= links[link][at];
 }
 
-void add_faces(const FaceTransport& scheme, const Volume& from, const std::vector<CellValues>& links,
-               bool clamp, int channel, Volume& to) {
+void add_faces(const FaceTransport& scheme, const Volume& from,
+               const std::vector<CellValues>& links, bool clamp, int channel, Volume& to) {
   for (std::size_t w = 0; w < scheme.faces.size(); ++w) {
     const Face& face = scheme.faces[w];
     CellValues flux = upstream_sum(from, channel, face.travel, face.flux);
@@ -83,8 +85,8 @@ void add_faces(const FaceTransport& scheme, const Volume& from, const std::vecto
   }
 }
 
-Volume step(const Transport& transport, const Volume& travelling, const std::vector<CellValues>& links,
-            bool clamp) {
+Volume step(const Transport& transport, const Volume& travelling,
+            const std::vector<CellValues>& links, bool clamp) {
   Volume next(travelling.n, travelling.coefficients, travelling.channels);
   for (int channel = 0; channel < next.channels; ++channel)
     add_faces(faces_of(transport), travelling, links, clamp, channel, next);
@@ -103,7 +105,8 @@ Propagation propagate(const Transport& transport, const Volume& injected, const 
   const std::vector<CellValues> links = link_transmittances(transport, geometry);
   Propagation result{injected, injected};
   for (int t = 1; t <= iterations; ++t) {
-    result.travelling = step(transport, result.travelling, t > 1 ? links : std::vector<CellValues>(), clamp);
+    result.travelling =
+        step(transport, result.travelling, t > 1 ? links : std::vector<CellValues>(), clamp);
     for (std::size_t i = 0; i < result.accumulated.values.size(); ++i) {
       result.accumulated.values[i] += result.travelling.values[i];
     }
@@ -114,8 +117,9 @@ Propagation propagate(const Transport& transport, const Volume& injected, const 
 std::array<double, 3> energy(const Basis& basis, const Volume& volume) {
   std::array<double, 3> sum{};
   for (int channel = 0; channel < volume.channels; ++channel) {
-    for_each_cell(volume.n,
-                  [&](const glm::ivec3& p) { sum[channel] += basis.energy(volume.cell(channel, p)); });
+    for_each_cell(volume.n, [&](const glm::ivec3& p) {
+      sum[channel] += basis.energy(volume.cell(channel, p));
+    });
   }
   return sum;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `propagate` (kernels/steps/propagate.cl), in double: steps of light between neighbouring cells
-// (Kaplanyan and Dachsbacher 2010; docs/method.md, 'Propagation').
+// CPU reference of stage `propagate` (kernels/steps/propagate.cl), in double: steps of light
+// between neighbouring cells (Kaplanyan and Dachsbacher 2010; docs/method.md, 'Propagation').
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace clpv::reference {
 
-/// Returns the light after one step. `travelling`: n^3 cells, N coefficients [W/sr]. `geometry`: (n+1)^3 corners in the
-/// representation transport.blocking, one channel; null: no blockers. `clamp`: sets fluxes below 0 to 0, as the kernels do;
-/// without it, energy is conserved exactly.
+/// Returns the light after one step. `travelling`: n^3 cells, N coefficients [W/sr]. `geometry`:
+/// (n+1)^3 corners in the representation transport.blocking, one channel; null: no blockers.
+/// `clamp`: sets fluxes below 0 to 0, as the kernels do; without it, energy is conserved exactly.
 Volume propagate_step(const Transport& transport, const Volume& travelling, const Volume* geometry,
                       bool clamp = true);
 

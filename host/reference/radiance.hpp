@@ -12,10 +12,12 @@
 
 namespace clpv::reference {
 
-/// Coefficients C of the radiance at a point, in the basis of swept light, by channel: L(p, w) = sum_i Y_i(w) C_i(p).
+/// Coefficients C of the radiance at a point, in the basis of swept light, by channel: L(p, w) =
+/// sum_i Y_i(w) C_i(p).
 using RadianceField = std::array<std::vector<double>, 3>;
 
-/// Returns C at position + offset s lift of each cascade, s its cell, blended by the cascades' shares at `position` [m].
+/// Returns C at position + offset s lift of each cascade, s its cell, blended by the cascades'
+/// shares at `position` [m].
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset = 0,
                              const glm::dvec3& lift = glm::dvec3(0));
@@ -24,6 +26,7 @@ RadianceField radiance_field(const GatherOptions& options, const std::vector<Cas
 glm::dvec3 radiance(const Basis& basis, const RadianceField& field, const glm::dvec3& w);
 
 /// Returns the irradiance [W/m^2] of a surface with unit `normal`, at least 0.
-glm::dvec3 field_irradiance(const Basis& basis, const RadianceField& field, const glm::dvec3& normal);
+glm::dvec3 field_irradiance(const Basis& basis, const RadianceField& field,
+                            const glm::dvec3& normal);
 
 }  // namespace clpv::reference

@@ -29,7 +29,9 @@ glm::dvec3 along(const ClpvView& view, unsigned px, unsigned py) {
 class Candidate {
  public:
   Candidate(const SceneData& scene, const ClpvView& view, std::uint32_t index)
-      : index_(index), corners_(corners_of(scene, scene.triangles[index])), polygon_(view, corners_) {
+      : index_(index),
+        corners_(corners_of(scene, scene.triangles[index])),
+        polygon_(view, corners_) {
     normal_ = glm::cross(corners_[1] - corners_[0], corners_[2] - corners_[0]);
   }
 
@@ -39,7 +41,8 @@ class Candidate {
   /// Depth of its plane at a pixel, clamped to the range of its corners.
   double depth(const ClpvView& view, unsigned px, unsigned py) const {
     const glm::dvec3 start = surface_position(view, px, py, 0);
-    const double depth = glm::dot(normal_, corners_[0] - start) / glm::dot(normal_, along(view, px, py));
+    const double depth =
+        glm::dot(normal_, corners_[0] - start) / glm::dot(normal_, along(view, px, py));
     if (!std::isfinite(depth)) return polygon_.nearest();
     return std::clamp(depth, polygon_.nearest(), polygon_.farthest());
   }
@@ -51,13 +54,15 @@ class Candidate {
     const double area2 = glm::dot(normal_, normal_);
     if (area2 == 0) return {index_, glm::vec2(0)};
     const double second = std::clamp(glm::dot(offset, glm::cross(ac, normal_)) / area2, 0.0, 1.0);
-    const double third = std::clamp(glm::dot(offset, glm::cross(normal_, ab)) / area2, 0.0, 1.0 - second);
+    const double third =
+        std::clamp(glm::dot(offset, glm::cross(normal_, ab)) / area2, 0.0, 1.0 - second);
     return {index_, glm::vec2(second, third)};
   }
 
   bool edge_on(const ClpvView& view, unsigned px, unsigned py) const {
     const glm::dvec3 ray = along(view, px, py);
-    return std::abs(glm::dot(normal_, ray)) <= kEdgeOnTolerance * glm::length(normal_) * glm::length(ray);
+    return std::abs(glm::dot(normal_, ray)) <=
+           kEdgeOnTolerance * glm::length(normal_) * glm::length(ray);
   }
 
  private:
@@ -82,8 +87,8 @@ class ViewedScene {
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
       Candidate candidate(scene, view, i);
       const unsigned flags = scene.materials[scene.triangles[i].material].flags;
-      const bool culled =
-          cull_back_faces && !candidate.polygon().faces_viewer() && !(flags & CLPV_MATERIAL_DOUBLE_SIDED);
+      const bool culled = cull_back_faces && !candidate.polygon().faces_viewer() &&
+                          !(flags & CLPV_MATERIAL_DOUBLE_SIDED);
       if (!candidate.polygon().empty() && !culled) candidates_.push_back(std::move(candidate));
     }
   }
@@ -131,9 +136,10 @@ class ViewedScene {
 };
 
 /// Interpolated unit normal on the visible side of the triangle.
-glm::dvec3 visible_normal(const SceneData& scene, const Candidate& candidate, const SurfacePoint& point,
-                          const glm::dvec3& ray) {
-  const glm::dvec3 front = glm::dot(candidate.normal(), ray) > 0 ? -candidate.normal() : candidate.normal();
+glm::dvec3 visible_normal(const SceneData& scene, const Candidate& candidate,
+                          const SurfacePoint& point, const glm::dvec3& ray) {
+  const glm::dvec3 front =
+      glm::dot(candidate.normal(), ray) > 0 ? -candidate.normal() : candidate.normal();
   glm::dvec3 blended(interpolate(scene, scene.triangles[point.triangle], point.weights, normal));
   if (blended == glm::dvec3(0)) blended = front;
   return glm::normalize(glm::dot(blended, front) < 0 ? -blended : blended);
@@ -144,7 +150,8 @@ Footprint pixel_footprint(const ClpvView& view, const Candidate& candidate, cons
                           double depth) {
   const double scale = view.orthographic != 0 ? 1 : depth;
   const auto on_plane = [&](const glm::dvec3& across) {
-    return across - ray * (glm::dot(candidate.normal(), across) / glm::dot(candidate.normal(), ray));
+    return across -
+           ray * (glm::dot(candidate.normal(), across) / glm::dot(candidate.normal(), ray));
   };
   return {on_plane(vector(view.right) * (scale * 2 * view.half_width / view.width)),
           on_plane(vector(view.up) * (scale * -2 * view.half_height / view.height))};
@@ -152,7 +159,8 @@ Footprint pixel_footprint(const ClpvView& view, const Candidate& candidate, cons
 
 /// Renders a view; colour(albedo, px, py, depth) returns the image's colour.
 template <typename Colour>
-RasterizedImage rasterize(const SceneData& scene, const ClpvView& view, bool camera, Colour colour) {
+RasterizedImage rasterize(const SceneData& scene, const ClpvView& view, bool camera,
+                          Colour colour) {
   const ViewedScene viewed(scene, view, camera);
   const std::size_t count = static_cast<std::size_t>(view.width) * view.height;
   RasterizedImage out;
@@ -174,8 +182,8 @@ RasterizedImage rasterize(const SceneData& scene, const ClpvView& view, bool cam
       const double depth = std::max<double>(hit.depth, view.near_depth);
       image.depth[at] = depth;
       image.normal[at] = glm::vec4(glm::vec3(visible_normal(scene, *hit.candidate, point, ray)), 0);
-      image.colour[at] =
-          glm::vec4(colour(glm::dvec3(viewed.materials().albedo(point, footprint)), px, py, depth), 0);
+      image.colour[at] = glm::vec4(
+          colour(glm::dvec3(viewed.materials().albedo(point, footprint)), px, py, depth), 0);
       if (camera) image.emissive[at] = glm::vec4(viewed.materials().emissive(point, footprint), 0);
     }
   }
@@ -185,15 +193,19 @@ RasterizedImage rasterize(const SceneData& scene, const ClpvView& view, bool cam
 }  // namespace
 
 RasterizedImage rasterize_camera(const SceneData& scene, const ClpvView& view) {
-  return rasterize(scene, view, true,
-                   [](const glm::dvec3& albedo, unsigned, unsigned, double) { return glm::vec3(albedo); });
+  return rasterize(scene, view, true, [](const glm::dvec3& albedo, unsigned, unsigned, double) {
+    return glm::vec3(albedo);
+  });
 }
 
-RasterizedImage rasterize_rsm(const SceneData& scene, const ClpvLight& light, const ClpvView& view) {
-  return rasterize(scene, view, false, [&](const glm::dvec3& albedo, unsigned px, unsigned py, double depth) {
-    const glm::dvec3 irradiance = light_at(light, surface_position(view, px, py, depth)).irradiance;
-    return glm::vec3(albedo * irradiance * footprint(view, px, py, depth));
-  });
+RasterizedImage rasterize_rsm(const SceneData& scene, const ClpvLight& light,
+                              const ClpvView& view) {
+  return rasterize(scene, view, false,
+                   [&](const glm::dvec3& albedo, unsigned px, unsigned py, double depth) {
+                     const glm::dvec3 irradiance =
+                         light_at(light, surface_position(view, px, py, depth)).irradiance;
+                     return glm::vec3(albedo * irradiance * footprint(view, px, py, depth));
+                   });
 }
 
 }  // namespace clpv::reference

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// R_a: covered share of face a times mean albedo, by 8 x 8 samples per face, half a cell off the surface. A triangle of normal
-// n counts towards the three axes next to n with weights |n_a| / (|n_x| + |n_y| + |n_z|).
+// R_a: covered share of face a times mean albedo, by 8 x 8 samples per face, half a cell off the
+// surface. A triangle of normal n counts towards the three axes next to n with weights |n_a| /
+// (|n_x| + |n_y| + |n_z|).
 #include "reference/reflectors.hpp"
 
 #include <algorithm>
@@ -25,7 +26,8 @@ struct CellFace {
   std::bitset<kSamples * kSamples> covered;
   double samples = 0;
   glm::dvec3 colour{0};
-  double uncertain = 0, uncertain_mean = 0;  ///< uncertain samples, of the coverage and of the mean albedo
+  /// Uncertain samples, of the coverage and of the mean albedo.
+  double uncertain = 0, uncertain_mean = 0;
 };
 
 /// Covered samples of one row in one cell.
@@ -64,7 +66,8 @@ class CellFaces {
       const double count = std::max(side.samples, 1.0), whole = kSamples * kSamples;
       const int number = i % kCellFaces;
       const int cell = i / kCellFaces;
-      double share = static_cast<double>(side.covered.count()) / whole, uncertain = side.uncertain / whole;
+      double share = static_cast<double>(side.covered.count()) / whole,
+             uncertain = side.uncertain / whole;
       for (int other = 0; other < kCellFaces; ++other) {
         if (other / 2 == number / 2) continue;
         const CellFace& across = faces_[cell * kCellFaces + other];
@@ -73,7 +76,8 @@ class CellFaces {
       }
       for (int channel = 0; channel < 3; ++channel) {
         const int x = cell % n_, y = cell / n_ % n_, z = cell / n_ / n_;
-        result.areas.at(channel, number, x, y, z) = share * std::min(side.colour[channel] / count, 1.0);
+        result.areas.at(channel, number, x, y, z) =
+            share * std::min(side.colour[channel] / count, 1.0);
         result.tolerance.at(channel, number, x, y, z) = uncertain + side.uncertain_mean / count;
       }
     }
@@ -93,7 +97,8 @@ class CellFaces {
     for (int v = top; v <= bottom; ++v) {
       for (int i = left / kSamples; i <= right / kSamples && left <= right; ++i) {
         std::map<int, Row> rows;  // by cell
-        for (int u = i * kSamples; u < (i + 1) * kSamples; ++u) add_sample(triangle, projected, u, v, rows);
+        for (int u = i * kSamples; u < (i + 1) * kSamples; ++u)
+          add_sample(triangle, projected, u, v, rows);
         for (const auto& [k, row] : rows) {
           if (k >= 0 && k < n_) add_row(triangle, projected, row, i, v, k);
         }
@@ -113,19 +118,21 @@ class CellFaces {
     const glm::dvec2 slope = projected.slope();
     const double steep = kReflectorTolerance * (1 + std::abs(slope.x) + std::abs(slope.y));
     const double depth = projected.depth(at);
-    const int first =
-        std::floor(std::clamp(depth - steep, nearest - kReflectorTolerance, farthest + kReflectorTolerance));
-    const int last =
-        std::floor(std::clamp(depth + steep, nearest - kReflectorTolerance, farthest + kReflectorTolerance));
+    const int first = std::floor(
+        std::clamp(depth - steep, nearest - kReflectorTolerance, farthest + kReflectorTolerance));
+    const int last = std::floor(
+        std::clamp(depth + steep, nearest - kReflectorTolerance, farthest + kReflectorTolerance));
     const bool certain = distance > kReflectorTolerance && solid > kAlphaTolerance && first == last;
     for (int k = first; k <= last; ++k) {
       Row& row = rows[k];
       row.uncertain = row.uncertain || !certain;
-      if (distance >= 0 && solid >= 0 && k == static_cast<int>(std::floor(depth))) row.columns.push_back(u);
+      if (distance >= 0 && solid >= 0 && k == static_cast<int>(std::floor(depth)))
+        row.columns.push_back(u);
     }
   }
 
-  void add_row(std::uint32_t triangle, const AxisTriangle& projected, const Row& row, int i, int v, int k) {
+  void add_row(std::uint32_t triangle, const AxisTriangle& projected, const Row& row, int i, int v,
+               int k) {
     CellFace& face = side(projected, i, v / kSamples, k);
     const double count = row.columns.size();
     if (row.uncertain) face.uncertain += kSamples, face.uncertain_mean += kSamples;
@@ -137,7 +144,8 @@ class CellFaces {
     }
     const glm::dvec2 at = sample_centre(middle, v);
     const SurfacePoint point{triangle, projected.clamped_weights(at)};
-    const glm::dvec3 albedo(materials_.albedo(point, {step(projected, 1, count), step(projected, 2, 1)}));
+    const glm::dvec3 albedo(
+        materials_.albedo(point, {step(projected, 1, count), step(projected, 2, 1)}));
     face.samples += count;
     face.colour += count * projected.weight() * glm::clamp(albedo, 0.0, 1.0);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `reflectors` (kernels/voxels/reflectors.cl): reflecting areas of cell faces, in double (docs/method.md,
-// 'More bounces').
+// CPU reference of stage `reflectors` (kernels/voxels/reflectors.cl): reflecting areas of cell
+// faces, in double (docs/method.md, 'More bounces').
 #pragma once
 
 #include "kernels/shared/grid.h"
@@ -12,8 +12,8 @@ namespace clpv::reference {
 /// Reflecting areas of reflector_masks(): R_a of six faces per cell, three channels.
 struct ReflectingAreas {
   Volume areas;
-  /// Tolerance of each number: rounding decides whether samples very close to an edge, a cell boundary or an alpha cutoff are
-  /// covered.
+  /// Tolerance of each number: rounding decides whether samples very close to an edge, a cell
+  /// boundary or an alpha cutoff are covered.
   Volume tolerance;
 };
 

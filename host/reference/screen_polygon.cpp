@@ -34,8 +34,8 @@ glm::dvec2 centre(unsigned px, unsigned py) {
   return (glm::dvec2(px, py) + 0.5) * static_cast<double>(CLPV_SUBPIXELS);
 }
 
-/// Returns true if the point is left of the edge from a to b, or on it if it is a top or left edge. For triangles that are
-/// clockwise on the screen (y down).
+/// Returns true if the point is left of the edge from a to b, or on it if it is a top or left edge.
+/// For triangles that are clockwise on the screen (y down).
 bool inside_edge(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& point) {
   const double side = cross(b - a, point - a);
   const bool top_left = b.y < a.y || (b.y == a.y && b.x > a.x);
@@ -85,7 +85,8 @@ double ScreenPolygon::distance_to_edge(unsigned px, unsigned py) const {
   double smallest = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     smallest = std::min(
-        smallest, distance_to_segment(corners_[i], corners_[(i + 1) % corners_.size()], centre(px, py)));
+        smallest,
+        distance_to_segment(corners_[i], corners_[(i + 1) % corners_.size()], centre(px, py)));
   }
   return smallest / int{CLPV_SUBPIXELS};
 }

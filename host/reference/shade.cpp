@@ -12,7 +12,8 @@
 namespace clpv::reference {
 namespace {
 
-/// Depth at which a pixel's ray meets the plane through `point`; infinite if it does not approach the plane.
+/// Depth at which a pixel's ray meets the plane through `point`; infinite if it does not approach
+/// the plane.
 double plane_depth(const ClpvView& view, const glm::dvec2& pixel, const glm::dvec3& point,
                    const glm::dvec3& normal) {
   const glm::dvec3 at0 = surface_position(view, pixel.x, pixel.y, 0);
@@ -29,12 +30,16 @@ double tap_weight(double distance) {
 }  // namespace
 
 const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset) {
-  const auto along = [&](const ShadowMap& map) { return glm::dot(offset, vector(map.view.forward)); };
-  return *std::max_element(maps.begin(), maps.end(),
-                           [&](const ShadowMap& a, const ShadowMap& b) { return along(a) < along(b); });
+  const auto along = [&](const ShadowMap& map) {
+    return glm::dot(offset, vector(map.view.forward));
+  };
+  return *std::max_element(maps.begin(), maps.end(), [&](const ShadowMap& a, const ShadowMap& b) {
+    return along(a) < along(b);
+  });
 }
 
-double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal, double cosine) {
+double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal,
+                  double cosine) {
   const ProjectedPoint at = project(map.view, position);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   const double lift =
@@ -57,7 +62,8 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
   return total > 0 ? 1 - blocked / total : 1;
 }
 
-glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position, const glm::dvec3& normal) {
+glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position,
+                             const glm::dvec3& normal) {
   const Incident incident = light_at(light.light, position);
   const double cosine = glm::dot(normal, incident.towards);
   if (cosine <= 0) return glm::dvec3(0);
@@ -80,13 +86,15 @@ std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights
   return image;
 }
 
-std::vector<glm::dvec4> shade(Show show, const SurfaceImage& camera, const std::vector<glm::dvec3>& direct,
+std::vector<glm::dvec4> shade(Show show, const SurfaceImage& camera,
+                              const std::vector<glm::dvec3>& direct,
                               const std::vector<glm::dvec3>& indirect) {
   std::vector<glm::dvec4> image(camera.depth.size(), glm::dvec4(0));
   for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
     if (camera.depth[pixel] <= 0) continue;
     const glm::dvec3 albedo(camera.colour[pixel]);
-    const glm::dvec3 emitted = camera.emissive.empty() ? glm::dvec3(0) : glm::dvec3(camera.emissive[pixel]);
+    const glm::dvec3 emitted =
+        camera.emissive.empty() ? glm::dvec3(0) : glm::dvec3(camera.emissive[pixel]);
     const glm::dvec3 from_lights = albedo / std::numbers::pi * direct[pixel] + emitted;
     const glm::dvec3 from_volumes = albedo / std::numbers::pi * indirect[pixel];
     glm::dvec3 shown(0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `shade` (kernels/raster/shade.cl): shadowed direct light and the final image, in double (docs/method.md,
-// 'Shading').
+// CPU reference of stage `shade` (kernels/raster/shade.cl): shadowed direct light and the final
+// image, in double (docs/method.md, 'Shading').
 #pragma once
 
 #include <glm/glm.hpp>
@@ -24,22 +24,29 @@ struct MappedLight {
   std::vector<ShadowMap> maps;
 };
 
-/// Returns the map of a light that covers a point: the one whose view looks most along `offset`, from the light to the point.
+/// Returns the map of a light that covers a point: the one whose view looks most along `offset`,
+/// from the light to the point.
 const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset);
 
-/// Returns the share [0, 1] of the light that reaches a surface at `position` [m] with unit `normal` on the lit side.
-/// `cosine`: cosine between the normal and the direction to the light.
-double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal, double cosine);
+/// Returns the share [0, 1] of the light that reaches a surface at `position` [m] with unit
+/// `normal` on the lit side. `cosine`: cosine between the normal and the direction to the light.
+double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal,
+                  double cosine);
 
 /// Returns the irradiance of a light on that surface [W/m^2].
-glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position, const glm::dvec3& normal);
+glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position,
+                             const glm::dvec3& normal);
 
-/// Returns the irradiance of all lights for every pixel of a G-buffer; 0 for pixels without a surface.
-std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights, const SurfaceImage& camera);
+/// Returns the irradiance of all lights for every pixel of a G-buffer; 0 for pixels without a
+/// surface.
+std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights,
+                                          const SurfaceImage& camera);
 
-/// Returns RGBA of every pixel: albedo / pi (direct + indirect) + emission, or the part that `show` selects. `direct` and
-/// `indirect` are irradiances [W/m^2]. Without `camera.emissive`, emission is 0.
-std::vector<glm::dvec4> shade(Show show, const SurfaceImage& camera, const std::vector<glm::dvec3>& direct,
+/// Returns RGBA of every pixel: albedo / pi (direct + indirect) + emission, or the part that `show`
+/// selects. `direct` and `indirect` are irradiances [W/m^2]. Without `camera.emissive`, emission is
+/// 0.
+std::vector<glm::dvec4> shade(Show show, const SurfaceImage& camera,
+                              const std::vector<glm::dvec3>& direct,
                               const std::vector<glm::dvec3>& indirect);
 
 }  // namespace clpv::reference

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// D = I + (1 - f a) sum_k t_k T_k D_k + |w_m| a (f J) s^2 from upstream to downstream, for each direction;
-// L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b).   In a medium: a = 1 - exp(-sigma_t s / |w_m|), J its source function, f the
-// part of a cell in it; f and f J are means of the cell and its neighbour upstream along m.
+//   D = I + (1 - f a) sum_k t_k T_k D_k + |w_m| a (f J) s^2   upstream to downstream, per direction
+//   L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b)
+// In a medium: a = 1 - exp(-sigma_t s / |w_m|), J its source function, f the part of a cell in it;
+// f and f J are means of the cell and its neighbour upstream along m.
 #include "reference/sweep.hpp"
 
 #include <algorithm>
@@ -28,7 +29,8 @@ struct BoundaryCondition {
   const SweptCascade* cascade = nullptr;  ///< coarser cascade; null: none
   const Fields* fields = nullptr;
   const std::vector<SweepBin>* bins = nullptr;
-  std::vector<glm::dvec3> sky = {};  ///< radiance of each direction without a coarser cascade; empty: dark
+  std::vector<glm::dvec3> sky =
+      {};  ///< radiance of each direction without a coarser cascade; empty: dark
 };
 
 /// Sweep of one cascade.
@@ -60,9 +62,11 @@ class Sweep {
         double arriving = 0;
         for (std::size_t k = 0; k < d.taps.size(); ++k) {
           const glm::ivec3 q = p - sweep_bin.offset[k];
-          const double transmitted = transmittance_[link_of(sweep_bin.offset[k])].value(0, 0, p.x, p.y, p.z);
-          const double upstream = field.inside(q.x, q.y, q.z) ? field.value(channel, 0, q.x, q.y, q.z)
-                                                              : inflow(channel, bin, part, d, q);
+          const double transmitted =
+              transmittance_[link_of(sweep_bin.offset[k])].value(0, 0, p.x, p.y, p.z);
+          const double upstream = field.inside(q.x, q.y, q.z)
+                                      ? field.value(channel, 0, q.x, q.y, q.z)
+                                      : inflow(channel, bin, part, d, q);
           arriving += d.taps[k] * transmitted * upstream;
         }
         field.at(channel, 0, p.x, p.y, p.z) = injected(cascade_.injected->cell(channel, p), means) +
@@ -73,7 +77,8 @@ class Sweep {
   }
 
  private:
-  /// Light that a cell of coefficients c injects along a direction, with the basis's means over its part.
+  /// Light that a cell of coefficients c injects along a direction, with the basis's means over its
+  /// part.
   double injected(const std::vector<double>& c, std::span<const double> means) const {
     const double field = dot(means, c);
     if (!rest_) return field;
@@ -84,8 +89,8 @@ class Sweep {
     const double r = std::min(1.0, linear / alpha1 / (uniform / alpha0));
     const double z = (means[1] * c[1] + means[2] * c[2] + means[3] * c[3]) / (y1 * linear);
     const auto [e0, e2, e4] = rest_->even;
-    return field +
-           std::pow(r, 4) * uniform / alpha0 * (std::abs(z) / 2 - e0 - e2 * z * z - e4 * std::pow(z, 4));
+    return field + std::pow(r, 4) * uniform / alpha0 *
+                       (std::abs(z) / 2 - e0 - e2 * z * z - e4 * std::pow(z, 4));
   }
 
   /// Part of a cell in the medium.
@@ -93,8 +98,8 @@ class Sweep {
     const double cell = double{cascade_.grid.cell};
     double part = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      const double low = cascade_.grid.origin[axis] + cell * p[axis], upper = cascade_.medium->upper[axis],
-                   lower = cascade_.medium->lower[axis];
+      const double low = cascade_.grid.origin[axis] + cell * p[axis],
+                   upper = cascade_.medium->upper[axis], lower = cascade_.medium->lower[axis];
       part *= std::clamp((std::min(low + cell, upper) - std::max(low, lower)) / cell, 0.0, 1.0);
     }
     return part;
@@ -104,8 +109,8 @@ class Sweep {
   double in_medium(int channel, int bin, const SweepBin& sweep_bin, const SweepDirection& d,
                    const glm::ivec3& p, double arriving) const {
     if (cascade_.medium == nullptr) return arriving;
-    const double lost =
-        -std::expm1(-double{cascade_.medium->extinction[channel]} * double{cascade_.grid.cell} / d.flux);
+    const double lost = -std::expm1(-double{cascade_.medium->extinction[channel]} *
+                                    double{cascade_.grid.cell} / d.flux);
     glm::ivec3 upstream = p;
     upstream[sweep_bin.axis] -= sweep_bin.sign[sweep_bin.axis];
     const double here = inside(p) / 2, before = inside(upstream) / 2;
@@ -137,11 +142,13 @@ class Sweep {
   }
 
   /// Boundary condition at a cell outside this grid: equal radiance on both sides, D = L s^2 |w_m|.
-  double inflow(int channel, int bin, int part, const SweepDirection& d, const glm::ivec3& cell) const {
+  double inflow(int channel, int bin, int part, const SweepDirection& d,
+                const glm::ivec3& cell) const {
     if (boundary_.cascade == nullptr) {
       if (boundary_.sky.empty()) return 0;
       const double edge = double{cascade_.grid.cell};
-      return boundary_.sky[bin * cascade_.parts * cascade_.parts + part][channel] * edge * edge * d.flux;
+      return boundary_.sky[bin * cascade_.parts * cascade_.parts + part][channel] * edge * edge *
+             d.flux;
     }
     const ClpvGrid &fine = cascade_.grid, &coarse = boundary_.cascade->grid;
     const int parts = boundary_.cascade->parts, from = coarser_part(part, cascade_.parts, parts);
@@ -174,7 +181,8 @@ Volume collect_bins(const std::vector<SweepBin>& bins, const Fields& fields) {
       for (int channel = 0; channel < 3; ++channel) {
         const std::size_t cells = field.values.size() / 3, from = field.index(channel, 0, 0, 0, 0),
                           to = sums.index(channel, bin, 0, 0, 0);
-        for (std::size_t i = 0; i < cells; ++i) sums.values[to + i] += share * field.values[from + i];
+        for (std::size_t i = 0; i < cells; ++i)
+          sums.values[to + i] += share * field.values[from + i];
       }
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of the sweep (kernels/sweep*.cl), in double: discrete ordinates with short characteristics (docs/method.md,
-// 'The sweep').
+// CPU reference of the sweep (kernels/sweep*.cl), in double: discrete ordinates with short
+// characteristics (docs/method.md, 'The sweep').
 #pragma once
 
 #include <vector>
@@ -20,16 +20,20 @@ struct SweptCascade {
   const Volume* geometry = nullptr;    ///< blockers at the cells' corners; null: no blockers
   int parts = 1;                       ///< subdivision of its bins (sweep_bins)
   const ClpvMedium* medium = nullptr;  ///< null: none
-  const Volume* scattered = nullptr;   ///< the medium's source function, of scattered_in_cells(); null: 0
+  /// The medium's source function, of scattered_in_cells(); null: 0.
+  const Volume* scattered = nullptr;
 };
 
-/// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of its first cell.
+/// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of
+/// its first cell.
 glm::dvec3 position_in(const ClpvGrid& coarse, const ClpvGrid& fine, const glm::ivec3& cell);
-/// Returns all coefficients of a channel at such a position, interpolated trilinearly between cell centres; 0 outside.
+/// Returns all coefficients of a channel at such a position, interpolated trilinearly between cell
+/// centres; 0 outside.
 std::vector<double> trilinear(const Volume& volume, int channel, const glm::dvec3& at);
 
-/// Returns the swept light of every cascade in bins24, as radiance times s^2. `cascades`: finest first. `transport`:
-/// TransportKind::sweep. `sky`: boundary condition of the coarsest cascade; null: dark border.
+/// Returns the swept light of every cascade in bins24, as radiance times s^2. `cascades`: finest
+/// first. `transport`: TransportKind::sweep. `sky`: boundary condition of the coarsest cascade;
+/// null: dark border.
 std::vector<Volume> sweep(const Basis& basis, const Transport& transport,
                           const std::vector<SweptCascade>& cascades, const Sky* sky = nullptr);
 

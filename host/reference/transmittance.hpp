@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of kernels/steps/transmittance.cl: transmittance of a link into a cell, T = 1 - clamp(B, 0, 1) (docs/method.md,
-// 'Blockers').
+// CPU reference of kernels/steps/transmittance.cl: transmittance of a link into a cell, T = 1 -
+// clamp(B, 0, 1) (docs/method.md, 'Blockers').
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,8 +10,9 @@
 
 namespace clpv::reference {
 
-/// Returns T in [0, 1]. B = weights . mean of the blockers over the corners of `cell` on `side` (components -1, 0, 1).
-/// `weights`: blocked_by of a Face or SweepLink. `geometry`: (n+1)^3 corners, one channel.
+/// Returns T in [0, 1]. B = weights . mean of the blockers over the corners of `cell` on `side`
+/// (components -1, 0, 1). `weights`: blocked_by of a Face or SweepLink. `geometry`: (n+1)^3
+/// corners, one channel.
 double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
                      const std::vector<double>& weights);
 

@@ -10,9 +10,11 @@
 
 namespace clpv::reference {
 
-inline constexpr int kSamples = 8;          // per cell face along each axis
-inline constexpr double kSeam = 1.0 / 256;  // [samples]: points this far outside an edge count as inside
-/// Alpha closer than this to the cutoff is uncertain: texture gradients amplify rounding errors of the sample's position.
+inline constexpr int kSamples = 8;  // per cell face along each axis
+// [samples]: points this far outside an edge count as inside.
+inline constexpr double kSeam = 1.0 / 256;
+/// Alpha closer than this to the cutoff is uncertain: texture gradients amplify rounding errors of
+/// the sample's position.
 inline constexpr double kAlphaTolerance = 0.03;
 
 inline glm::vec3 position(const Vertex& v) {
@@ -30,7 +32,8 @@ inline glm::vec4 colour(const Vertex& v) {
 
 /// Interpolates get(vertex); `weights` are barycentric coordinates of the second and third vertex.
 template <typename Get>
-auto interpolate(const SceneData& scene, const Triangle& triangle, const glm::vec2& weights, Get get) {
+auto interpolate(const SceneData& scene, const Triangle& triangle, const glm::vec2& weights,
+                 Get get) {
   return (1 - weights.x - weights.y) * get(scene.vertices[triangle.vertex[0]]) +
          weights.x * get(scene.vertices[triangle.vertex[1]]) +
          weights.y * get(scene.vertices[triangle.vertex[2]]);

@@ -9,7 +9,8 @@ glm::dvec3 surface_position(const ClpvView& view, double px, double py, double d
   const double scale = view.orthographic != 0 ? 1.0 : depth;
   const double sx = (2 * (px + 0.5) / view.width - 1) * view.half_width * scale;
   const double sy = (1 - 2 * (py + 0.5) / view.height) * view.half_height * scale;
-  return vector(view.eye) + depth * vector(view.forward) + sx * vector(view.right) + sy * vector(view.up);
+  return vector(view.eye) + depth * vector(view.forward) + sx * vector(view.right) +
+         sy * vector(view.up);
 }
 
 ProjectedPoint project(const ClpvView& view, const glm::dvec3& point) {

@@ -11,14 +11,15 @@
 namespace clpv::reference {
 namespace {
 
-constexpr int kCubePoints = 4;                 // per cube along each axis
-constexpr double kVisibilitySeam = 1e-3;       // [cells]: points this far outside an edge count as inside
+constexpr int kCubePoints = 4;  // per cube along each axis
+// [cells]: points this far outside an edge count as inside.
+constexpr double kVisibilitySeam = 1e-3;
 constexpr double kVisibilityTolerance = 4e-4;  // [cells]: rounding error of float32
 
 using Corners = std::array<glm::dvec3, 3>;  // [cells] from the first cell's centre
 
-/// Margin [cells] by which the segment from `from` to `to` crosses a triangle; negative if it does not. The minimum of the
-/// distance to the plane beyond the cut and the distances to the edges.
+/// Margin [cells] by which the segment from `from` to `to` crosses a triangle; negative if it does
+/// not. The minimum of the distance to the plane beyond the cut and the distances to the edges.
 double crossing(const Corners& t, const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]), segment = to - from;
   const double size = glm::length(normal), along = glm::dot(normal, segment),
@@ -28,8 +29,8 @@ double crossing(const Corners& t, const glm::dvec3& from, const glm::dvec3& to) 
   double margin = (std::abs(along) - std::abs(distance)) / size;
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 a = t[i], edge = t[(i + 1) % 3] - a;
-    const double inside =
-        glm::dot(glm::cross(edge, cut - a), normal) / (size * size);  // a barycentric coordinate
+    // A barycentric coordinate.
+    const double inside = glm::dot(glm::cross(edge, cut - a), normal) / (size * size);
     const double breadth = std::abs(edge.x) + std::abs(edge.y) + std::abs(edge.z);
     margin = std::min(margin, inside * std::abs(along) / breadth + kVisibilitySeam);
   }
@@ -39,7 +40,8 @@ double crossing(const Corners& t, const glm::dvec3& from, const glm::dvec3& to) 
 
 /// Adds the segments of one cube that a triangle crosses.
 void add(Occlusion& occluded, int n, const Corners& t, const glm::ivec3& cube) {
-  const std::size_t first = ((cube.z * n + cube.y) * n + cube.x) * kCubePoints * kCubePoints * kCubePoints;
+  const std::size_t first =
+      ((cube.z * n + cube.y) * n + cube.x) * kCubePoints * kCubePoints * kCubePoints;
   for (int point = 0; point < kCubePoints * kCubePoints * kCubePoints; ++point) {
     const glm::dvec3 at(point % kCubePoints, point / kCubePoints % kCubePoints,
                         point / kCubePoints / kCubePoints);
@@ -48,8 +50,10 @@ void add(Occlusion& occluded, int n, const Corners& t, const glm::ivec3& cube) {
       const double margin =
           crossing(t, glm::dvec3(cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)), to);
       const std::uint8_t bit = 1u << corner;
-      if (margin > kVisibilityTolerance) occluded.lower[first + static_cast<std::size_t>(point)] |= bit;
-      if (margin >= -kVisibilityTolerance) occluded.upper[first + static_cast<std::size_t>(point)] |= bit;
+      if (margin > kVisibilityTolerance)
+        occluded.lower[first + static_cast<std::size_t>(point)] |= bit;
+      if (margin >= -kVisibilityTolerance)
+        occluded.upper[first + static_cast<std::size_t>(point)] |= bit;
     }
   }
 }
@@ -64,7 +68,8 @@ Occlusion occlude(const SceneData& scene, const ClpvGrid& grid) {
     if ((scene.materials[triangle.material].flags & CLPV_MATERIAL_MASKED) != 0) continue;
     Corners t = corners_of(scene, triangle);
     for (glm::dvec3& at : t) at = (at - vector(grid.origin)) / double{grid.cell} - 0.5;
-    const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])), high = glm::max(t[0], glm::max(t[1], t[2]));
+    const glm::dvec3 low = glm::min(t[0], glm::min(t[1], t[2])),
+                     high = glm::max(t[0], glm::max(t[1], t[2]));
     const glm::ivec3 first(glm::clamp(glm::floor(low - kVisibilityTolerance), 0.0, n - 1.0)),
         last(glm::clamp(glm::floor(high + kVisibilityTolerance), -1.0, n - 2.0));
     for (int z = first.z; z <= last.z; ++z) {

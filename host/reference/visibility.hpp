@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `visibility` (kernels/voxels/visibility.cl): cells occluded from points between them, in double
-// (docs/method.md, 'Gathering').
+// CPU reference of stage `visibility` (kernels/voxels/visibility.cl): cells occluded from points
+// between them, in double (docs/method.md, 'Gathering').
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,10 @@
 
 namespace clpv::reference {
 
-/// Bounds on the bits of visibility_masks(): one byte per point, one bit per cell of its cube, set if a triangle
-/// crosses the segment between them. Rounding decides where a segment ends very close to a triangle or passes very close to its edge: `lower`
-/// excludes those bits, `upper` includes them.
+/// Bounds on the bits of visibility_masks(): one byte per point, one bit per cell of its cube, set
+/// if a triangle crosses the segment between them. Rounding decides where a segment ends very close
+/// to a triangle or passes very close to its edge: `lower` excludes those bits, `upper` includes
+/// them.
 struct Occlusion {
   std::vector<std::uint8_t> lower, upper;
 };

@@ -18,13 +18,16 @@ struct Volume {
       : n(samples),
         coefficients(coefficient_count),
         channels(channel_count),
-        values(static_cast<std::size_t>(samples) * samples * samples * coefficient_count * channel_count,
+        values(static_cast<std::size_t>(samples) * samples * samples * coefficient_count *
+                   channel_count,
                0.0) {}
 
   std::size_t index(int channel, int i, int x, int y, int z) const {
     return ((((static_cast<std::size_t>(channel) * coefficients + i) * n + z) * n + y) * n) + x;
   }
-  bool inside(int x, int y, int z) const { return x >= 0 && y >= 0 && z >= 0 && x < n && y < n && z < n; }
+  bool inside(int x, int y, int z) const {
+    return x >= 0 && y >= 0 && z >= 0 && x < n && y < n && z < n;
+  }
   double& at(int channel, int i, int x, int y, int z) { return values[index(channel, i, x, y, z)]; }
   double value(int channel, int i, int x, int y, int z) const {
     return inside(x, y, z) ? values[index(channel, i, x, y, z)] : 0.0;

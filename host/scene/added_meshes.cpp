@@ -26,7 +26,9 @@ class MemoryArray : public NumberArray {
 
   std::size_t count() const override { return values_.size(); }
   int components() const override { return static_cast<int>(n); }
-  double number(std::size_t element, int component) const override { return values_[element][component]; }
+  double number(std::size_t element, int component) const override {
+    return values_[element][component];
+  }
   std::uint32_t index(std::size_t element, int component) const override {
     return static_cast<std::uint32_t>(values_[element][component]);
   }
@@ -45,11 +47,14 @@ using Vectors = MemoryArray<float, 3>;
 /// The corners of triangles, one by one.
 class Corners : public NumberArray {
  public:
-  explicit Corners(std::span<const std::array<std::uint32_t, 3>> triangles) : triangles_(triangles) {}
+  explicit Corners(std::span<const std::array<std::uint32_t, 3>> triangles)
+      : triangles_(triangles) {}
 
   std::size_t count() const override { return 3 * triangles_.size(); }
   int components() const override { return 1; }
-  double number(std::size_t element, int component) const override { return index(element, component); }
+  double number(std::size_t element, int component) const override {
+    return index(element, component);
+  }
   std::uint32_t index(std::size_t element, int) const override {
     return triangles_[element / 3][element % 3];
   }
@@ -64,20 +69,22 @@ class Corners : public NumberArray {
 
 void check_length(const char* function, const char* name, std::size_t found, std::size_t allowed) {
   if (found == allowed) return;
-  reject(function, name, fmt::format("{} elements", found), fmt::format("{}, one for each vertex", allowed));
+  reject(function, name, fmt::format("{} elements", found),
+         fmt::format("{}, one for each vertex", allowed));
 }
 
 LocalPrimitive primitive_of(const Mesh& mesh, const SceneData& scene) {
   const MemoryArray<float, 2> uvs(kAdd, "uvs", mesh.uvs);
   const MemoryArray<float, 4> colours(kAdd, "colours", mesh.colours);
-  const Vectors positions(kAdd, "positions", mesh.positions), normals(kAdd, "normals", mesh.normals);
+  const Vectors positions(kAdd, "positions", mesh.positions),
+      normals(kAdd, "normals", mesh.normals);
   const Corners corners(mesh.triangles);
   const auto given = [&](const NumberArray& array, const char* name) {
     if (array.count() > 0) check_length(kAdd, name, array.count(), mesh.positions.size());
     return array.count() > 0 ? &array : nullptr;
   };
-  PrimitiveArrays arrays{&positions, given(normals, "normals"), given(uvs, "uvs"), given(colours, "colours"),
-                         &corners};
+  PrimitiveArrays arrays{&positions, given(normals, "normals"), given(uvs, "uvs"),
+                         given(colours, "colours"), &corners};
   arrays.smooth = mesh.smooth;
   const GeometryBudget budget{bounds::kVertices - scene.vertices.size(),
                               bounds::kTriangles - scene.triangles.size(), 0};
@@ -100,8 +107,8 @@ NodeTree tree_of(const char* function, const Transform& transform) {
   }
   if (transform[3] != kIdentity[3]) {
     const auto& last = transform[3];
-    reject(function, "transform[3]", fmt::format("{}, {}, {}, {}", last[0], last[1], last[2], last[3]),
-           "0, 0, 0, 1");
+    reject(function, "transform[3]",
+           fmt::format("{}, {}, {}, {}", last[0], last[1], last[2], last[3]), "0, 0, 0, 1");
   }
   NodeTree tree;
   tree.file = function;
@@ -164,8 +171,8 @@ bool same(const ClpvMaterial& a, const ClpvMaterial& b) {
 AddedMeshes::Added& AddedMeshes::entry(const char* function, int mesh) {
   const auto found = meshes_.find(mesh);
   if (found == meshes_.end())
-    throw Error(ExitCode::usage, "{}: mesh: found {}, allowed: a number that add_mesh returned", function,
-                mesh);
+    throw Error(ExitCode::usage, "{}: mesh: found {}, allowed: a number that add_mesh returned",
+                function, mesh);
   return found->second;
 }
 
@@ -220,11 +227,13 @@ void AddedMeshes::remove(int mesh, SceneData& scene) {
 }
 
 bool AddedMeshes::set_positions(int mesh, std::span<const std::array<float, 3>> given,
-                                std::span<const std::array<float, 3>> given_normals, SceneData& scene) {
+                                std::span<const std::array<float, 3>> given_normals,
+                                SceneData& scene) {
   constexpr const char* kFunction = "set_positions";
   const Added& one = entry(kFunction, mesh);
   const std::shared_ptr<const LocalPrimitive> before = one.instance.primitive;
-  const Vectors positions(kFunction, "positions", given), normals(kFunction, "normals", given_normals);
+  const Vectors positions(kFunction, "positions", given),
+      normals(kFunction, "normals", given_normals);
   check_length(kFunction, "positions", given.size(), one.positions);
   if (!given_normals.empty()) {
     if (before->normals != Normals::stored)
@@ -308,7 +317,8 @@ std::uint32_t AddedMeshes::texture_slot(const Material::Texture& given, SceneDat
     slot = file_->textures;
     while (slot < scene.textures.size() && uses_texture(slot, scene)) ++slot;
     if (slot == bounds::kTextures)
-      reject(kAdd, "material: texture", "one more texture", fmt::format("at most {}", bounds::kTextures));
+      reject(kAdd, "material: texture", "one more texture",
+             fmt::format("at most {}", bounds::kTextures));
     if (slot == scene.textures.size()) scene.textures.emplace_back();
     scene.textures[slot] = {given.width,      given.height, CLPV_WRAP_REPEAT,
                             CLPV_WRAP_REPEAT, given.rgba,   "of a mesh"};
@@ -333,19 +343,21 @@ std::uint32_t AddedMeshes::material_slot(const Material& given, SceneData& scene
 }
 
 Material::Texture Material::Texture::of(const Image& image) {
-  const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"), a = image.channel("A");
+  const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
+             a = image.channel("A");
   if (!r || !g || !b) reject("texture", "channels", "others", "R, G, B and optionally A");
   const auto byte = [](float value) {
     return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
   };
-  Texture made{static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), {}};
+  Texture made{
+      static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), {}};
   for (std::size_t p = 0; p < image.pixel_count(); ++p) {
     const float* in = &image.pixels[p * image.channels.size()];
     for (const auto c : {r, g, b, a}) {
       const float value = c ? in[*c] : 1;
       if (!std::isfinite(value)) {
-        reject("texture", fmt::format("[{}, {}]", p / image.width, p % image.width), fmt::format("{}", value),
-               "finite numbers");
+        reject("texture", fmt::format("[{}, {}]", p / image.width, p % image.width),
+               fmt::format("{}", value), "finite numbers");
       }
       const bool encode = c != a && image.encoding == Encoding::linear;
       made.rgba.push_back(byte(encode ? srgb_encode(std::clamp(value, 0.0f, 1.0f)) : value));

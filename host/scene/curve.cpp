@@ -10,7 +10,8 @@ namespace {
 
 /// The interval between two keys that contains an instant.
 struct KeyInterval {
-  std::size_t key;      ///< key at the start of the interval, or the first or last key outside all intervals
+  /// Key at the start of the interval, or the first or last key outside all intervals.
+  std::size_t key;
   double fraction = 0;  ///< position in the interval, in [0, 1); 0 outside
   double duration = 0;  ///< [s]
 };
@@ -24,7 +25,8 @@ KeyInterval interval_at(const Curve& curve, double seconds) {
   return {key, (seconds - curve.times[key]) / duration, duration};
 }
 
-/// Numbers of a key. In a cubic spline, `part` is 0 for the in-tangent, 1 for the value, 2 for the out-tangent.
+/// Numbers of a key. In a cubic spline, `part` is 0 for the in-tangent, 1 for the value, 2 for the
+/// out-tangent.
 const double* key_of(const Curve& curve, std::size_t key, std::size_t part = 1) {
   const bool cubic = curve.interpolation == Interpolation::cubic_spline;
   return &curve.values[(cubic ? 3 * key + part : key) * curve.components];
@@ -61,7 +63,8 @@ void evaluate(const Curve& curve, double seconds, std::span<double> out) {
     hermite(curve, at, out);
   } else {
     const double* to = key_of(curve, at.key + 1);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = (1 - at.fraction) * from[i] + at.fraction * to[i];
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = (1 - at.fraction) * from[i] + at.fraction * to[i];
   }
 }
 
@@ -78,13 +81,15 @@ glm::dvec3 direction_at(const Curve& curve, double seconds) {
   const glm::dvec3 to = vector_of(key_of(curve, at.key + 1));
   const double angle = std::atan2(glm::length(glm::cross(from, to)), glm::dot(from, to));
   if (angle < 1e-9) return from;  // equal up to rounding
-  return glm::normalize(std::sin((1 - at.fraction) * angle) * from + std::sin(at.fraction * angle) * to);
+  return glm::normalize(std::sin((1 - at.fraction) * angle) * from +
+                        std::sin(at.fraction * angle) * to);
 }
 
 glm::dquat rotation_at(const Curve& curve, double seconds) {
   const KeyInterval at = interval_at(curve, seconds);
   if (at.fraction > 0 && curve.interpolation == Interpolation::linear) {
-    const glm::dquat from = rotation_of(key_of(curve, at.key)), to = rotation_of(key_of(curve, at.key + 1));
+    const glm::dquat from = rotation_of(key_of(curve, at.key)),
+                     to = rotation_of(key_of(curve, at.key + 1));
     return glm::normalize(glm::slerp(from, to, at.fraction));
   }
   double v[4];

@@ -27,8 +27,8 @@ struct Curve {
   Interpolation interpolation = Interpolation::linear;
   std::size_t components = 1;
   std::vector<double> times;  ///< [s], at least one, strictly rising
-  /// `components` numbers per key. A cubic spline has three times as many: in-tangent [1/s], value, out-tangent [1/s]
-  /// (glTF 2.0, appendix C.5).
+  /// `components` numbers per key. A cubic spline has three times as many: in-tangent [1/s], value,
+  /// out-tangent [1/s] (glTF 2.0, appendix C.5).
   std::vector<double> values;
 };
 
@@ -38,11 +38,12 @@ void evaluate(const Curve& curve, double seconds, std::span<double> out);
 /// Evaluates a curve of three components.
 glm::dvec3 vector_at(const Curve& curve, double seconds);
 
-/// Evaluates a curve of unit vectors by spherical interpolation. Adjacent keys must not be opposite. Not for cubic splines.
+/// Evaluates a curve of unit vectors by spherical interpolation. Adjacent keys must not be
+/// opposite. Not for cubic splines.
 glm::dvec3 direction_at(const Curve& curve, double seconds);
 
-/// Evaluates a curve of unit quaternions x, y, z, w by spherical interpolation along the shorter arc. Cubic splines are
-/// normalised, unless their length is 0.
+/// Evaluates a curve of unit quaternions x, y, z, w by spherical interpolation along the shorter
+/// arc. Cubic splines are normalised, unless their length is 0.
 glm::dquat rotation_at(const Curve& curve, double seconds);
 
 }  // namespace clpv

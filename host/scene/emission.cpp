@@ -37,7 +37,8 @@ class Planner {
   std::vector<ClpvEmitter> take() { return std::move(parts_); }
 
  private:
-  /// The finest grid that light from a box can enter, as light starts half a cell off its surface; null if there is none.
+  /// The finest grid that light from a box can enter, as light starts half a cell off its surface;
+  /// null if there is none.
   const ClpvGrid* reached(const glm::dvec3& lower, const glm::dvec3& upper) const {
     const auto overlaps = [&](const ClpvGrid& grid) {
       const double cell = double{grid.cell}, edge = grid.n * cell;
@@ -51,7 +52,8 @@ class Planner {
     return finest == grids_.end() ? nullptr : &*finest;
   }
 
-  /// Adds the part with corner (u, v) and edge `size`, in barycentric coordinates, or the four halves of a large one.
+  /// Adds the part with corner (u, v) and edge `size`, in barycentric coordinates, or the four
+  /// halves of a large one.
   void add_range(double u, double v, double size) {
     const auto at = [&](double s, double t) {
       const double w1 = u + size * s, w2 = v + size * t;
@@ -69,15 +71,17 @@ class Planner {
       add_range(u + half, v + half, -half);
       return;
     }
-    const auto rows = static_cast<std::uint32_t>(std::max(1.0, std::ceil(edge / (spacing_ * cell))));
+    const auto rows =
+        static_cast<std::uint32_t>(std::max(1.0, std::ceil(edge / (spacing_ * cell))));
     for (int side = 0; side < sides_; ++side) {
       if (parts_.size() == max_parts_) {
         throw Error(ExitCode::run_time,
-                    "emissive triangles: found over {} parts in the cascades; allowed: up to {}", max_parts_,
-                    max_parts_);
+                    "emissive triangles: found over {} parts in the cascades; allowed: up to {}",
+                    max_parts_, max_parts_);
       }
-      parts_.push_back({triangle_, static_cast<float>(u), static_cast<float>(v), static_cast<float>(size),
-                        rows, static_cast<std::uint32_t>(points_), side == 0 ? 1.0f : -1.0f, 0});
+      parts_.push_back({triangle_, static_cast<float>(u), static_cast<float>(v),
+                        static_cast<float>(size), rows, static_cast<std::uint32_t>(points_),
+                        side == 0 ? 1.0f : -1.0f, 0});
       points_ += std::uint64_t{rows} * rows;
     }
   }
@@ -122,16 +126,19 @@ std::vector<std::uint32_t> emissive_triangles(const SceneData& scene) {
 }
 
 bool emits(const SceneData& scene) {
-  return std::ranges::any_of(
-      scene.triangles, [&](const Triangle& triangle) { return emits(scene.materials[triangle.material]); });
+  return std::ranges::any_of(scene.triangles, [&](const Triangle& triangle) {
+    return emits(scene.materials[triangle.material]);
+  });
 }
 
-double max_emitted_flux(const SceneData& scene, const std::vector<std::uint32_t>& triangles, double cell) {
+double max_emitted_flux(const SceneData& scene, const std::vector<std::uint32_t>& triangles,
+                        double cell) {
   double total = 0, brightest_cell = 0;
   for (const std::uint32_t i : triangles) {
     const Triangle& triangle = scene.triangles[i];
     const ClpvMaterial& material = scene.materials[triangle.material];
-    const double exitance = std::numbers::pi * brightest(material) * (double_sided(material) ? 2 : 1);
+    const double exitance =
+        std::numbers::pi * brightest(material) * (double_sided(material) ? 2 : 1);
     const auto [a, b, c] = corners_of(scene, triangle);
     total += exitance * glm::length(glm::cross(b - a, c - a)) / 2;
     brightest_cell = std::max(brightest_cell, exitance * cell * cell);

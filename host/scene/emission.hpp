@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Emissive triangles of a scene, and the points on them that kernels/inject/emit.cl injects. Does not depend on OpenCL.
+// Emissive triangles of a scene, and the points on them that kernels/inject/emit.cl injects. Does
+// not depend on OpenCL.
 #pragma once
 
 #include <array>
@@ -28,9 +29,10 @@ std::vector<std::uint32_t> emissive_triangles(const SceneData& scene);
 /// Returns true if a triangle of the scene emits.
 bool emits(const SceneData& scene);
 
-/// Upper bound of the emitted flux through a cell of edge `cell` [m], in the brightest channel [W]: min(flux of all
-/// triangles, largest exitance times cell^2). Textures count as white.
-double max_emitted_flux(const SceneData& scene, const std::vector<std::uint32_t>& triangles, double cell);
+/// Upper bound of the emitted flux through a cell of edge `cell` [m], in the brightest channel [W]:
+/// min(flux of all triangles, largest exitance times cell^2). Textures count as white.
+double max_emitted_flux(const SceneData& scene, const std::vector<std::uint32_t>& triangles,
+                        double cell);
 
 /// Points on emissive triangles.
 struct EmissionPlan {
@@ -43,10 +45,12 @@ struct EmissionPlan {
 inline constexpr int kEmittedPointsPerCell = 4;
 inline constexpr std::uint32_t kMaxEmittedPoints = 1u << 20;
 
-/// Distributes points on the emissive `triangles`. `grids` are sorted from fine to coarse. A part has kEmittedPointsPerCell
-/// points per cell edge of the finest grid that it reaches, and is at most as large as that grid; parts outside all grids are
-/// omitted. Double-sided triangles have parts on both sides. Throws Error(run_time) for more than `max_count` parts.
+/// Distributes points on the emissive `triangles`. `grids` are sorted from fine to coarse. A part
+/// has kEmittedPointsPerCell points per cell edge of the finest grid that it reaches, and is at
+/// most as large as that grid; parts outside all grids are omitted. Double-sided triangles have
+/// parts on both sides. Throws Error(run_time) for more than `max_count` parts.
 EmissionPlan plan_emission(const SceneData& scene, const std::vector<std::uint32_t>& triangles,
-                           const std::vector<ClpvGrid>& grids, std::uint32_t max_count = kMaxEmittedPoints);
+                           const std::vector<ClpvGrid>& grids,
+                           std::uint32_t max_count = kMaxEmittedPoints);
 
 }  // namespace clpv

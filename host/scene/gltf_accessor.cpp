@@ -15,7 +15,8 @@
 
 namespace clpv {
 
-static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian and read in place");
+static_assert(std::endian::native == std::endian::little,
+              "glTF buffers are little-endian and read in place");
 
 namespace {
 
@@ -40,7 +41,8 @@ std::uint32_t load_unsigned(const std::uint8_t* from, int component_type) {
 template <typename T>
 double load_integer(const std::uint8_t* from, bool normalized) {
   const double value = load<T>(from);
-  return normalized ? std::max(value / static_cast<double>(std::numeric_limits<T>::max()), -1.0) : value;
+  return normalized ? std::max(value / static_cast<double>(std::numeric_limits<T>::max()), -1.0)
+                    : value;
 }
 
 double load_number(const std::uint8_t* from, int component_type, bool normalized) {
@@ -61,7 +63,8 @@ double load_number(const std::uint8_t* from, int component_type, bool normalized
 }
 
 std::size_t bytes_of(int component_type) {
-  return static_cast<unsigned>(tinygltf::GetComponentSizeInBytes(static_cast<unsigned>(component_type)));
+  return static_cast<unsigned>(
+      tinygltf::GetComponentSizeInBytes(static_cast<unsigned>(component_type)));
 }
 
 std::string type_name(int type) {
@@ -81,15 +84,18 @@ GltfAccessor::GltfAccessor(const GltfDocument& document, int index)
   if (accessor_->bufferView >= 0) {
     stride_ = entry(document.model.bufferViews, accessor_->bufferView).byteStride;
     if (stride_ == 0) stride_ = element_bytes_;
-    values_ = elements(accessor_->bufferView, accessor_->byteOffset, count(), stride_, element_bytes_);
+    values_ =
+        elements(accessor_->bufferView, accessor_->byteOffset, count(), stride_, element_bytes_);
   }
   if (const auto& sparse = accessor_->sparse; sparse.isSparse) {
     sparse_count_ = static_cast<std::size_t>(sparse.count);
     const std::size_t bytes = bytes_of(sparse.indices.componentType);
-    sparse_indices_ = elements(sparse.indices.bufferView, static_cast<unsigned>(sparse.indices.byteOffset),
-                               sparse_count_, bytes, bytes);
-    sparse_values_ = elements(sparse.values.bufferView, static_cast<unsigned>(sparse.values.byteOffset),
-                              sparse_count_, element_bytes_, element_bytes_);
+    sparse_indices_ =
+        elements(sparse.indices.bufferView, static_cast<unsigned>(sparse.indices.byteOffset),
+                 sparse_count_, bytes, bytes);
+    sparse_values_ =
+        elements(sparse.values.bufferView, static_cast<unsigned>(sparse.values.byteOffset),
+                 sparse_count_, element_bytes_, element_bytes_);
   }
 }
 
@@ -107,13 +113,15 @@ GltfAccessor::GltfAccessor(const GltfDocument& document, int index, std::string 
          fmt::format("/accessors/{}, {} of {}, componentType {}{}", index, accessor_->count,
                      type_name(accessor_->type), accessor_->componentType,
                      accessor_->normalized ? ", normalized" : ""),
-         fmt::format("{}{} of {}", count ? fmt::format("{} of ", *count) : "", fmt::join(names, " or "),
-                     numbers.description));
+         fmt::format("{}{} of {}", count ? fmt::format("{} of ", *count) : "",
+                     fmt::join(names, " or "), numbers.description));
 }
 
-/// Bytes of `count` elements of `bytes` each, with `stride`, from `offset`. Products fit 64 bits, as counts are below 2^32.
-std::span<const std::uint8_t> GltfAccessor::elements(int view, std::size_t offset, std::size_t count,
-                                                     std::size_t stride, std::size_t bytes) const {
+/// Bytes of `count` elements of `bytes` each, with `stride`, from `offset`. Products fit 64 bits,
+/// as counts are below 2^32.
+std::span<const std::uint8_t> GltfAccessor::elements(int view, std::size_t offset,
+                                                     std::size_t count, std::size_t stride,
+                                                     std::size_t bytes) const {
   const auto view_bytes = document_->view(view);
   if (stride < bytes) {
     reject(document_->file, place_, fmt::format("elements of {} bytes", bytes),
@@ -143,7 +151,8 @@ const std::uint8_t* GltfAccessor::address(std::size_t element, int component) co
       else
         end = middle;
     }
-    if (i < sparse_count_ && sparse_index(i) == element) return &sparse_values_[i * element_bytes_ + within];
+    if (i < sparse_count_ && sparse_index(i) == element)
+      return &sparse_values_[i * element_bytes_ + within];
   }
   return values_.empty() ? nullptr : &values_[element * stride_ + within];
 }
@@ -175,7 +184,8 @@ void check_accessors(const GltfDocument& document) {
     for (std::size_t i = 0; i < accessor.sparse_count_; ++i) {
       const std::uint32_t element = accessor.sparse_index(i);
       if (element >= accessor.count() || (i > 0 && element <= accessor.sparse_index(i - 1))) {
-        reject(document.file, accessor.place_ + "/sparse/indices", fmt::format("index {} at {}", element, i),
+        reject(document.file, accessor.place_ + "/sparse/indices",
+               fmt::format("index {} at {}", element, i),
                fmt::format("ascending indices below {}", accessor.count()));
       }
     }

@@ -17,7 +17,8 @@ namespace {
 
 using CurvePointer = std::shared_ptr<const Curve>;
 
-/// An animated property of a node: its path in glTF, type and component types of the sampler's output, and its curve.
+/// An animated property of a node: its path in glTF, type and component types of the sampler's
+/// output, and its curve.
 struct Target {
   std::string_view path;
   int type;
@@ -33,14 +34,17 @@ constexpr std::array<Target, 4> kAnimatedProperties = {
 
 class AnimationReader {
  public:
-  AnimationReader(const GltfDocument& document, Notes& notes) : document_(document), notes_(notes) {}
+  AnimationReader(const GltfDocument& document, Notes& notes)
+      : document_(document), notes_(notes) {}
 
-  /// `place`: "/animations/0". Messages do not number channels, as tinygltf omits those without a node.
+  /// `place`: "/animations/0". Messages do not number channels, as tinygltf omits those without a
+  /// node.
   void read(const tinygltf::Animation& animation, const std::string& place) {
-    std::map<std::tuple<int, std::string_view, std::size_t>, CurvePointer>
-        curves;  // by sampler, path and size, as channels may share a sampler
+    // By sampler, path and size, as channels may share a sampler.
+    std::map<std::tuple<int, std::string_view, std::size_t>, CurvePointer> curves;
     for (const tinygltf::AnimationChannel& channel : animation.channels) {
-      const auto target = std::ranges::find(kAnimatedProperties, channel.target_path, &Target::path);
+      const auto target =
+          std::ranges::find(kAnimatedProperties, channel.target_path, &Target::path);
       if (target == kAnimatedProperties.end()) continue;  // extensions
       const int count = static_cast<int>(animation.samplers.size());
       if (channel.sampler >= count) {
@@ -49,8 +53,8 @@ class AnimationReader {
       }
       const std::size_t components = components_of(*target, channel.target_node);
       if (components == 0) {
-        notes_.add(fmt::format("{}: animates {} of node {}, which has no such property", place, target->path,
-                               channel.target_node));
+        notes_.add(fmt::format("{}: animates {} of node {}, which has no such property", place,
+                               target->path, channel.target_node));
         continue;
       }
       CurvePointer& curve = curves[{channel.sampler, target->path, components}];
@@ -76,10 +80,12 @@ class AnimationReader {
   void assign(int node, const Target& target, const CurvePointer& curve, const std::string& place) {
     if (target.type != TINYGLTF_TYPE_SCALAR && !entry(document_.model.nodes, node).matrix.empty()) {
       reject(document_.file, fmt::format("/nodes/{}/matrix", node),
-             fmt::format("a matrix, and a {} by {}", target.path, place), "translation, rotation and scale");
+             fmt::format("a matrix, and a {} by {}", target.path, place),
+             "translation, rotation and scale");
     }
     CurvePointer& assigned = nodes_[node].*target.curve;
-    if (assigned) return notes_.add(fmt::format("{}: node {} is moved by an earlier channel", place, node));
+    if (assigned)
+      return notes_.add(fmt::format("{}: node {} is moved by an earlier channel", place, node));
     assigned = curve;
   }
 
@@ -90,9 +96,10 @@ class AnimationReader {
     curve.components = components;
     const std::size_t parts = curve.interpolation == Interpolation::cubic_spline ? 3 : 1;
     const bool scalars = target.type == TINYGLTF_TYPE_SCALAR;
-    const GltfAccessor input(document_, sampler.input, place + "/input", {TINYGLTF_TYPE_SCALAR}, kFloats);
-    const GltfAccessor output(document_, sampler.output, place + "/output", {target.type}, target.numbers,
-                              input.count() * parts * (scalars ? components : 1));
+    const GltfAccessor input(document_, sampler.input, place + "/input", {TINYGLTF_TYPE_SCALAR},
+                             kFloats);
+    const GltfAccessor output(document_, sampler.output, place + "/output", {target.type},
+                              target.numbers, input.count() * parts * (scalars ? components : 1));
     reserve(input.count() * (1 + parts * components), place);
     read_times(input, curve, place + "/input");
     curve.values.reserve(input.count() * parts * components);
@@ -106,7 +113,8 @@ class AnimationReader {
   void reserve(std::uint64_t numbers, const std::string& place) {
     numbers_ += numbers;
     if (numbers_ > bounds::kKeyNumbers) {
-      reject(document_.file, place, fmt::format("{} times and values of all animations so far", numbers_),
+      reject(document_.file, place,
+             fmt::format("{} times and values of all animations so far", numbers_),
              fmt::format("at most {}", bounds::kKeyNumbers));
     }
   }
@@ -117,7 +125,8 @@ class AnimationReader {
       const double time = input.finite(i, 0);
       if (i == 0 ? time < 0 : time <= curve.times.back()) {
         reject(document_.file, place, fmt::format("{} s at {}", time, i),
-               i == 0 ? "times from 0 s on" : fmt::format("more than the {} s before", curve.times.back()));
+               i == 0 ? "times from 0 s on"
+                      : fmt::format("more than the {} s before", curve.times.back()));
       }
       curve.times.push_back(time);
     }
@@ -130,8 +139,8 @@ class AnimationReader {
       double* v = &curve.values[4 * element];
       const double length = glm::length(glm::dquat(v[3], v[0], v[1], v[2]));
       if (length < 0.5) {
-        reject(document_.file, place, fmt::format("a quaternion of length {} at {}", length, element),
-               "unit quaternions");
+        reject(document_.file, place,
+               fmt::format("a quaternion of length {} at {}", length, element), "unit quaternions");
       }
       for (int i = 0; i < 4 && parts == 1; ++i) v[i] /= length;
     }

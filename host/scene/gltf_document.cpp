@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads glTF documents by tinygltf 2.7, which trusts indices and sizes, opens files of URIs, and decodes images. Here it
-// reads only checked JSON, opens only buffers in the model's folder, and does not decode images.
+// Reads glTF documents by tinygltf 2.7, which trusts indices and sizes, opens files of URIs, and
+// decodes images. Here it reads only checked JSON, opens only buffers in the model's folder, and
+// does not decode images.
 #include "scene/gltf_document.hpp"
 
 #include <nlohmann/json.hpp>
@@ -20,30 +21,33 @@ bool is_glb(const Bytes& bytes) {
   return bytes.size() >= 4 && little_endian_word(bytes, 0) == kMagic;
 }
 
-/// JSON of a .glb, its first chunk. Checks the version and the header of the second chunk, which tinygltf does not.
+/// JSON of a .glb, its first chunk. Checks the version and the header of the second chunk, which
+/// tinygltf does not.
 std::string_view json_of_glb(const Bytes& bytes, const std::string& file) {
   constexpr std::size_t kChunkHeader = 8, kText = 12 + kChunkHeader;
   if (bytes.size() < kText)
-    reject(file, {}, fmt::format("a .glb of {} bytes", bytes.size()), "at least 20: it is truncated");
+    reject(file, {}, fmt::format("a .glb of {} bytes", bytes.size()),
+           "at least 20: it is truncated");
   if (const auto version = little_endian_word(bytes, 4); version != 2)
     reject(file, {}, fmt::format(".glb version {}", version), "version 2");
   const std::size_t length = little_endian_word(bytes, 8), size = little_endian_word(bytes, 12);
   const std::size_t end = kText + size;
   if (length > bytes.size() || end > length) {
-    reject(
-        file, {},
-        fmt::format("a .glb of {} bytes, by its header {}, its first chunk {}", bytes.size(), length, size),
-        "chunks within the file: it is truncated");
+    reject(file, {},
+           fmt::format("a .glb of {} bytes, by its header {}, its first chunk {}", bytes.size(),
+                       length, size),
+           "chunks within the file: it is truncated");
   }
-  if (end + kChunkHeader <= length && end + kChunkHeader + little_endian_word(bytes, end) > length) {
+  if (end + kChunkHeader <= length &&
+      end + kChunkHeader + little_endian_word(bytes, end) > length) {
     reject(file, {}, fmt::format("a second .glb chunk of {} bytes", little_endian_word(bytes, end)),
            fmt::format("at most {}, the rest of the file", length - end - kChunkHeader));
   }
   return {reinterpret_cast<const char*>(bytes.data()) + kText, size};
 }
 
-/// Buffers in files, in the order in which tinygltf opens them. After them it looks for image files and finds none:
-/// load_textures reads those in use.
+/// Buffers in files, in the order in which tinygltf opens them. After them it looks for image files
+/// and finds none: load_textures reads those in use.
 struct BufferFiles {
   const GltfDocument& document;
   const json& parsed;
@@ -93,7 +97,8 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
-/// JSON pointer of the entry at which tinygltf failed, in those lists, and in the order, in which it can fail.
+/// JSON pointer of the entry at which tinygltf failed, in those lists, and in the order, in which
+/// it can fail.
 std::string place_of_failure(const tinygltf::Model& model, const json& document) {
   const std::pair<std::string, std::size_t> read[] = {
       {"/buffers", model.buffers.size()},
@@ -116,11 +121,13 @@ void load_model(const Bytes& bytes, const json& parsed, GltfDocument& document) 
   loader.SetImageLoader(keep_encoded, nullptr);
   std::string error, warning;
   const auto size = static_cast<unsigned>(bytes.size());
-  const bool loaded = is_glb(bytes)
-                          ? loader.LoadBinaryFromMemory(&document.model, &error, &warning, bytes.data(), size)
-                          : loader.LoadASCIIFromString(&document.model, &error, &warning,
-                                                       reinterpret_cast<const char*>(bytes.data()), size, "");
-  if (!loaded) reject(document.file, place_of_failure(document.model, parsed), excerpt(error), "glTF 2.0");
+  const bool loaded =
+      is_glb(bytes)
+          ? loader.LoadBinaryFromMemory(&document.model, &error, &warning, bytes.data(), size)
+          : loader.LoadASCIIFromString(&document.model, &error, &warning,
+                                       reinterpret_cast<const char*>(bytes.data()), size, "");
+  if (!loaded)
+    reject(document.file, place_of_failure(document.model, parsed), excerpt(error), "glTF 2.0");
 }
 
 }  // namespace
@@ -137,7 +144,8 @@ std::vector<std::filesystem::path> GltfDocument::files() const {
 
 std::span<const std::uint8_t> GltfDocument::view(int index) const {
   const tinygltf::BufferView& view = entry(model.bufferViews, index);
-  return std::span(entry(model.buffers, view.buffer).data).subspan(view.byteOffset, view.byteLength);
+  return std::span(entry(model.buffers, view.buffer).data)
+      .subspan(view.byteOffset, view.byteLength);
 }
 
 GltfDocument read_gltf_document(const std::filesystem::path& path) {

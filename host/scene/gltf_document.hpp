@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A glTF document read by tinygltf after checks of its JSON. Internal to the loader; includes tinygltf.
+// A glTF document read by tinygltf after checks of its JSON. Internal to the loader; includes
+// tinygltf.
 #pragma once
 
 #include <tiny_gltf.h>
@@ -23,7 +24,8 @@ const T& entry(const std::vector<T>& list, int index) {
 struct GltfDocument {
   std::string file;              ///< path from the user, for messages
   std::filesystem::path folder;  ///< canonical path of the folder to which reads are restricted
-  tinygltf::Model model;         ///< indices are in range; Image::image has the encoded bytes of a data URI
+  /// Indices are in range; Image::image has the encoded bytes of a data URI.
+  tinygltf::Model model;
 
   /// Its own file, and those of its buffers and images.
   std::vector<std::filesystem::path> files() const;
@@ -35,8 +37,9 @@ struct GltfDocument {
 /// Reads a .gltf or .glb; the content determines which. Throws Error(bad_input).
 GltfDocument read_gltf_document(const std::filesystem::path& path);
 
-/// Checks parsed JSON before tinygltf reads it: types, ranges, indices, views within their buffers, and all that tinygltf
-/// trusts. Throws Error(bad_input). Defined in gltf_schema.cpp, with reads_extension().
+/// Checks parsed JSON before tinygltf reads it: types, ranges, indices, views within their buffers,
+/// and all that tinygltf trusts. Throws Error(bad_input). Defined in gltf_schema.cpp, with
+/// reads_extension().
 void check_gltf(const nlohmann::json& document, const std::string& file);
 
 /// Returns true if the loader reads that extension.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads materials. Metals reflect their base colour diffusely, unlike in glTF, as light propagation volumes carry diffuse
-// light only. Metalness, roughness and normal maps are not read.
+// Reads materials. Metals reflect their base colour diffusely, unlike in glTF, as light propagation
+// volumes carry diffuse light only. Metalness, roughness and normal maps are not read.
 #include <algorithm>
 
 #include "scene/bounds.hpp"
@@ -23,14 +23,15 @@ glm::dvec2 pair_in(const Value& object, const char* key, glm::dvec2 fallback) {
   return {object.Get(key).Get(0).GetNumberAsDouble(), object.Get(key).Get(1).GetNumberAsDouble()};
 }
 
-/// Texture coordinates by KHR_texture_transform: scale, then rotation, then offset. The rotation is counter-clockwise with v
-/// pointing down (KhronosGroup/glTF issue 1563), so u turns towards -v.
+/// Texture coordinates by KHR_texture_transform: scale, then rotation, then offset. The rotation is
+/// counter-clockwise with v pointing down (KhronosGroup/glTF issue 1563), so u turns towards -v.
 UvMapping mapping_of(int set, const tinygltf::ExtensionMap& extensions) {
   UvMapping mapping{set};
   const auto found = extensions.find("KHR_texture_transform");
   if (found == extensions.end()) return mapping;
   const Value& given = found->second;
-  const glm::dvec2 offset = pair_in(given, "offset", {0, 0}), scale = pair_in(given, "scale", {1, 1});
+  const glm::dvec2 offset = pair_in(given, "offset", {0, 0}),
+                   scale = pair_in(given, "scale", {1, 1});
   const double angle = number_in(given, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
   mapping.transform =
       glm::dmat3(c * scale.x, -s * scale.x, 0, s * scale.y, c * scale.y, 0, offset.x, offset.y, 1);
@@ -48,7 +49,8 @@ std::uint32_t wrap_of(int gltf) {
 std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& set) {
   const tinygltf::Texture& source = entry(document.model.textures, texture);
   if (source.source < 0) {
-    reject(document.file, fmt::format("/textures/{}", texture), "no source", "a source: a PNG or JPEG image");
+    reject(document.file, fmt::format("/textures/{}", texture), "no source",
+           "a source: a PNG or JPEG image");
   }
   TextureRequest requested{source.source, CLPV_WRAP_REPEAT, CLPV_WRAP_REPEAT};
   if (source.sampler >= 0) {
@@ -75,12 +77,14 @@ void read_alpha(const tinygltf::Material& source, const std::string& place, Clpv
   } else if (source.alphaMode == "BLEND") {
     made.flags |= CLPV_MATERIAL_MASKED;
     made.alpha_cutoff = kBlendCutoff;
-    notes.add(fmt::format("{} ('{}') blends: masked at alpha {} instead", place, source.name, kBlendCutoff));
+    notes.add(fmt::format("{} ('{}') blends: masked at alpha {} instead", place, source.name,
+                          kBlendCutoff));
   }
   if (source.doubleSided) made.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
 }
 
-void read_material(const GltfDocument& document, std::size_t index, MaterialSet& set, Notes& notes) {
+void read_material(const GltfDocument& document, std::size_t index, MaterialSet& set,
+                   Notes& notes) {
   const tinygltf::Material& source = document.model.materials[index];
   const std::string place = fmt::format("/materials/{}", index);
   ClpvMaterial made = blank_material();
@@ -103,12 +107,14 @@ void read_material(const GltfDocument& document, std::size_t index, MaterialSet&
   const bool emits = made.emissive[0] + made.emissive[1] + made.emissive[2] > 0;
   if (source.emissiveTexture.index >= 0 && emits) {
     made.emissive_texture = request(source.emissiveTexture.index, document, set);
-    const UvMapping own = mapping_of(source.emissiveTexture.texCoord, source.emissiveTexture.extensions);
+    const UvMapping own =
+        mapping_of(source.emissiveTexture.texCoord, source.emissiveTexture.extensions);
     if (made.texture == CLPV_NO_TEXTURE) {
       mapping = own;
     } else if (!(own == mapping)) {
-      notes.add(place +
-                "/emissiveTexture: uses the texture coordinates of baseColorTexture instead of its own");
+      notes.add(
+          place +
+          "/emissiveTexture: uses the texture coordinates of baseColorTexture instead of its own");
     }
   }
   set.materials.push_back(made);
@@ -119,7 +125,8 @@ void read_material(const GltfDocument& document, std::size_t index, MaterialSet&
 
 MaterialSet read_materials(const GltfDocument& document, Notes& notes) {
   MaterialSet set;
-  for (std::size_t i = 0; i < document.model.materials.size(); ++i) read_material(document, i, set, notes);
+  for (std::size_t i = 0; i < document.model.materials.size(); ++i)
+    read_material(document, i, set, notes);
   set.materials.push_back(blank_material());
   set.mappings.emplace_back();
   return set;

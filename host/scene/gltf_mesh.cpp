@@ -11,7 +11,8 @@ namespace clpv {
 namespace {
 
 /// Weights of morph targets without a curve: those of the node, else of the mesh, else 0.
-std::vector<double> stored_weights(const GltfDocument& document, const TreeNode& node, std::size_t targets) {
+std::vector<double> stored_weights(const GltfDocument& document, const TreeNode& node,
+                                   std::size_t targets) {
   const tinygltf::Node& source = entry(document.model.nodes, node.index);
   const bool in_node = !source.weights.empty();
   const std::vector<double>& weights =
@@ -30,11 +31,15 @@ std::vector<double> stored_weights(const GltfDocument& document, const TreeNode&
 class Appender {
  public:
   Appender(const GltfDocument& document, SceneData& scene, Motion& motion, Notes& notes)
-      : document_(document), scene_(scene), motion_(motion), notes_(notes), skins_(document, motion.tree) {}
+      : document_(document),
+        scene_(scene),
+        motion_(motion),
+        notes_(notes),
+        skins_(document, motion.tree) {}
 
   /// Appends an instance of the primitive for each node. Checks the bounds before it allocates.
-  void append(const std::shared_ptr<const LocalPrimitive>& primitive, const std::vector<std::size_t>& nodes,
-              PosedTree& posed) {
+  void append(const std::shared_ptr<const LocalPrimitive>& primitive,
+              const std::vector<std::size_t>& nodes, PosedTree& posed) {
     reserve(scene_, *primitive, nodes.size(), document_.file);
     for (const std::size_t node : nodes) {
       Instance made = instance(primitive, node);
@@ -49,11 +54,13 @@ class Appender {
     made.primitive = primitive;
     made.node = node;
     const TreeNode& at = motion_.tree.nodes[node];
-    if (!primitive->targets.empty()) made.weights = stored_weights(document_, at, primitive->targets.size());
+    if (!primitive->targets.empty())
+      made.weights = stored_weights(document_, at, primitive->targets.size());
     if (const int skin = entry(document_.model.nodes, at.index).skin; skin >= 0) {
       made.skin = skins_.read(skin);
       if (primitive->influences.empty())
-        notes_.add(fmt::format("{}: has no joints for the skin of /nodes/{}", primitive->place, at.index));
+        notes_.add(
+            fmt::format("{}: has no joints for the skin of /nodes/{}", primitive->place, at.index));
       check_joints(*primitive, made.skin->joints.size(), skin);
     }
     return made;
@@ -81,9 +88,10 @@ class Appender {
 void check_targets(const GltfDocument& document, int mesh, std::size_t index) {
   const auto& primitives = entry(document.model.meshes, mesh).primitives;
   if (primitives[index].targets.size() != primitives[0].targets.size()) {
-    reject(document.file, fmt::format("/meshes/{}/primitives/{}/targets", mesh, index),
-           fmt::format("{} morph targets", primitives[index].targets.size()),
-           fmt::format("as many as the mesh's first primitive has, {}", primitives[0].targets.size()));
+    reject(
+        document.file, fmt::format("/meshes/{}/primitives/{}/targets", mesh, index),
+        fmt::format("{} morph targets", primitives[index].targets.size()),
+        fmt::format("as many as the mesh's first primitive has, {}", primitives[0].targets.size()));
   }
 }
 

@@ -38,7 +38,8 @@ Pose stored_pose(const tinygltf::Node& node, const std::string& file, int index)
   if (!node.translation.empty()) pose.translation = glm::make_vec3(node.translation.data());
   if (!node.scale.empty()) pose.scale = glm::make_vec3(node.scale.data());
   if (!node.rotation.empty()) {  // glTF: x, y, z, w
-    const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1],
+                              node.rotation[2]);
     if (glm::length(rotation) < 0.5) {
       reject(file, place_of(index) + "/rotation",
              fmt::format("a quaternion of length {}", glm::length(rotation)), "a unit quaternion");
@@ -48,7 +49,8 @@ Pose stored_pose(const tinygltf::Node& node, const std::string& file, int index)
   return pose;
 }
 
-TreeNode make_node(const GltfDocument& document, int index, const std::map<int, NodeCurves>& curves) {
+TreeNode make_node(const GltfDocument& document, int index,
+                   const std::map<int, NodeCurves>& curves) {
   const tinygltf::Node& source = entry(document.model.nodes, index);
   TreeNode made;
   made.index = index;
@@ -73,7 +75,8 @@ std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>
   std::set<int> listed;
   for (const int node : entry(document.model.scenes, scene).nodes) {
     if (const int parent = entry(parents, node); parent != kNone)
-      reject(document.file, place, fmt::format("node {}, a child of node {}", node, parent), "root nodes");
+      reject(document.file, place, fmt::format("node {}, a child of node {}", node, parent),
+             "root nodes");
     if (!listed.insert(node).second)
       reject(document.file, place, fmt::format("node {} twice", node), "each node once");
     roots.push_back(node);
@@ -81,8 +84,8 @@ std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>
   return roots;
 }
 
-std::vector<glm::dmat4> read_inverse_binds(const GltfDocument& document, int accessor, std::size_t joints,
-                                           const std::string& place) {
+std::vector<glm::dmat4> read_inverse_binds(const GltfDocument& document, int accessor,
+                                           std::size_t joints, const std::string& place) {
   if (accessor < 0) return std::vector<glm::dmat4>(joints, glm::dmat4(1.0));
   const GltfAccessor from(document, accessor, place, {TINYGLTF_TYPE_MAT4}, kFloats);
   if (from.count() < joints) {
@@ -108,8 +111,10 @@ NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves
     std::optional<std::size_t> parent;
   };
   std::vector<Pending> pending;
-  const auto push = [&](const std::vector<int>& nodes, int depth, std::optional<std::size_t> parent) {
-    for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) pending.push_back({*node, depth, parent});
+  const auto push = [&](const std::vector<int>& nodes, int depth,
+                        std::optional<std::size_t> parent) {
+    for (auto node = nodes.rbegin(); node != nodes.rend(); ++node)
+      pending.push_back({*node, depth, parent});
   };
   push(root_nodes(document, find_parents(document)), 1, std::nullopt);
   while (!pending.empty()) {
@@ -146,7 +151,9 @@ std::shared_ptr<const Skin> SkinReader::read(int index) {
   Skin skin;
   for (const int joint : source.joints) {
     const std::optional<std::size_t> node = entry(in_tree_, joint);
-    if (!node) reject(document_.file, place + "/joints", fmt::format("node {}", joint), "nodes of the scene");
+    if (!node)
+      reject(document_.file, place + "/joints", fmt::format("node {}", joint),
+             "nodes of the scene");
     skin.joints.push_back(*node);
   }
   skin.inverse_binds = read_inverse_binds(document_, source.inverseBindMatrices, skin.joints.size(),

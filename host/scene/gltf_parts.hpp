@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Readers of the parts of a glTF document: animations, nodes, skins, meshes, cameras and lights. Internal to the loader.
+// Readers of the parts of a glTF document: animations, nodes, skins, meshes, cameras and lights.
+// Internal to the loader.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,8 @@
 
 namespace clpv {
 
-/// Texture coordinates of a material: uv' = transform (u, v, 1) with (u, v) from attribute TEXCOORD_set.
+/// Texture coordinates of a material: uv' = transform (u, v, 1) with (u, v) from attribute
+/// TEXCOORD_set.
 struct UvMapping {
   int set = 0;
   glm::dmat3 transform{1.0};
@@ -32,7 +34,8 @@ struct TextureRequest {
 };
 
 struct MaterialSet {
-  std::vector<ClpvMaterial> materials;   ///< those of the document in order, then glTF's default material
+  /// Those of the document in order, then glTF's default material.
+  std::vector<ClpvMaterial> materials;
   std::vector<UvMapping> mappings;       ///< one per material
   std::vector<TextureRequest> textures;  ///< indexed by Material::texture
 };
@@ -40,18 +43,21 @@ struct MaterialSet {
 /// Throws Error(bad_input).
 MaterialSet read_materials(const GltfDocument& document, Notes& notes);
 
-/// Decodes the requested images on all cores after checks of their headers. The first bytes of an image determine whether it
-/// is PNG or JPEG. Row 0 is v = 0. Throws Error(bad_input) for the first invalid image in the document's order.
-std::vector<Texture> load_textures(const GltfDocument& document, const std::vector<TextureRequest>& requests);
+/// Decodes the requested images on all cores after checks of their headers. The first bytes of an
+/// image determine whether it is PNG or JPEG. Row 0 is v = 0. Throws Error(bad_input) for the first
+/// invalid image in the document's order.
+std::vector<Texture> load_textures(const GltfDocument& document,
+                                   const std::vector<TextureRequest>& requests);
 
-/// Curves of animated nodes, by node index. All animations play simultaneously. If several animate the same property of a
-/// node, the first does, with a note. Throws Error(bad_input) for invalid accessors, times that are negative, not finite or
-/// not rising, quaternions of length below 0.5, and more numbers than the bounds allow.
+/// Curves of animated nodes, by node index. All animations play simultaneously. If several animate
+/// the same property of a node, the first does, with a note. Throws Error(bad_input) for invalid
+/// accessors, times that are negative, not finite or not rising, quaternions of length below 0.5,
+/// and more numbers than the bounds allow.
 std::map<int, NodeCurves> read_animations(const GltfDocument& document, Notes& notes);
 
-/// Nodes of the default scene, parents first: else of the first scene, or below all root nodes without scenes. `curves` are
-/// by node index; `root` transforms the model to world space. Throws Error(bad_input) for cycles, several parents and
-/// excessive depth.
+/// Nodes of the default scene, parents first: else of the first scene, or below all root nodes
+/// without scenes. `curves` are by node index; `root` transforms the model to world space. Throws
+/// Error(bad_input) for cycles, several parents and excessive depth.
 NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
                     const glm::dmat4& root);
 
@@ -60,8 +66,8 @@ class SkinReader {
  public:
   SkinReader(const GltfDocument& document, const NodeTree& tree);
 
-  /// Throws Error(bad_input) for joints outside the tree, invalid or missing inverse bind matrices, and more joints than the
-  /// bounds allow.
+  /// Throws Error(bad_input) for joints outside the tree, invalid or missing inverse bind matrices,
+  /// and more joints than the bounds allow.
   std::shared_ptr<const Skin> read(int index);
 
  private:
@@ -71,22 +77,24 @@ class SkinReader {
   std::size_t joints_ = 0;
 };
 
-/// Appends the meshes of all nodes of `motion.tree` to the scene, posed by `posed`, with morph targets and skins applied.
-/// Positions are in metres, normals unit, texture coordinates mapped by materials. Mirrored nodes keep their fronts outside.
-/// Moving instances are also added to `motion.meshes`; points and lines get a note. Throws Error(bad_input) for invalid
-/// attributes and for more geometry than the bounds allow.
+/// Appends the meshes of all nodes of `motion.tree` to the scene, posed by `posed`, with morph
+/// targets and skins applied. Positions are in metres, normals unit, texture coordinates mapped by
+/// materials. Mirrored nodes keep their fronts outside. Moving instances are also added to
+/// `motion.meshes`; points and lines get a note. Throws Error(bad_input) for invalid attributes and
+/// for more geometry than the bounds allow.
 void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials,
                    SceneData& scene, Motion& motion, Notes& notes);
 
-/// Appends the cameras and lights of the nodes of `motion.tree`, posed by `posed`, with unique names. `metres_per_unit` scales
-/// near planes and ranges; scales of nodes do not. Cameras and lights at moving nodes are also added to `motion`. Throws
-/// Error(bad_input).
+/// Appends the cameras and lights of the nodes of `motion.tree`, posed by `posed`, with unique
+/// names. `metres_per_unit` scales near planes and ranges; scales of nodes do not. Cameras and
+/// lights at moving nodes are also added to `motion`. Throws Error(bad_input).
 void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit,
                   SceneData& scene, Motion& motion, Notes& notes);
 
-/// Reads primitive `index` of mesh `mesh` with joints, weights and morph targets; subtracts from `budget.morph_numbers`.
-/// Points and lines give no triangles and a note. `slots` is scratch memory, kNoSlot between calls, as primitives often share
-/// one large accessor. Throws Error(bad_input).
+/// Reads primitive `index` of mesh `mesh` with joints, weights and morph targets; subtracts from
+/// `budget.morph_numbers`. Points and lines give no triangles and a note. `slots` is scratch
+/// memory, kNoSlot between calls, as primitives often share one large accessor. Throws
+/// Error(bad_input).
 LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_t index,
                               const MaterialSet& materials, GeometryBudget& budget,
                               std::vector<std::uint32_t>& slots, Notes& notes);

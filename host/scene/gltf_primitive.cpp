@@ -32,8 +32,8 @@ TriangleOrder order_of(int mode) {
 
 class PrimitiveReader {
  public:
-  PrimitiveReader(const GltfDocument& document, const tinygltf::Primitive& source, std::string place,
-                  const UvMapping& mapping)
+  PrimitiveReader(const GltfDocument& document, const tinygltf::Primitive& source,
+                  std::string place, const UvMapping& mapping)
       : document_(document), source_(source), place_(std::move(place)), mapping_(mapping) {}
 
   Attributes attributes(bool textured, Notes& notes) const {
@@ -46,8 +46,8 @@ class PrimitiveReader {
     Attributes made{*position, find("NORMAL", {TINYGLTF_TYPE_VEC3}, count), std::nullopt,
                     find("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, count), std::nullopt};
     if (source_.indices >= 0) {
-      made.indices =
-          GltfAccessor(document_, source_.indices, place_ + "/indices", {TINYGLTF_TYPE_SCALAR}, kIndices);
+      made.indices = GltfAccessor(document_, source_.indices, place_ + "/indices",
+                                  {TINYGLTF_TYPE_SCALAR}, kIndices);
     }
     if (textured) {
       const std::string set = fmt::format("TEXCOORD_{}", mapping_.set);
@@ -60,8 +60,8 @@ class PrimitiveReader {
   /// Reads joints and normalised weights of the vertices.
   void read_influences(const Attributes& from, LocalPrimitive& to) const {
     const auto find = [&](const char* name, const ComponentTypes& numbers) {
-      return attribute(source_.attributes, "/attributes", name, {TINYGLTF_TYPE_VEC4}, from.position.count(),
-                       numbers);
+      return attribute(source_.attributes, "/attributes", name, {TINYGLTF_TYPE_VEC4},
+                       from.position.count(), numbers);
     };
     const auto joints = find("JOINTS_0", kJoints), weights = find("WEIGHTS_0", kNumbers);
     if (joints.has_value() != weights.has_value()) {
@@ -100,12 +100,14 @@ class PrimitiveReader {
         if (!found) return made;
         const std::uint64_t numbers = 3 * to.vertices.size();
         if (numbers > budget.morph_numbers) {
-          reject(document_.file, place_ + place, fmt::format("{} more numbers of morph targets", numbers),
+          reject(document_.file, place_ + place,
+                 fmt::format("{} more numbers of morph targets", numbers),
                  fmt::format("{} left of {} in all", budget.morph_numbers, bounds::kMorphNumbers));
         }
         budget.morph_numbers -= numbers;
         made.reserve(to.vertices.size());
-        for (const LocalVertex& vertex : to.vertices) made.emplace_back(vector_in(*found, vertex.source));
+        for (const LocalVertex& vertex : to.vertices)
+          made.emplace_back(vector_in(*found, vertex.source));
         return made;
       };
       MorphTarget target{read("POSITION"), {}};
@@ -118,13 +120,13 @@ class PrimitiveReader {
   using Types = std::initializer_list<int>;
 
   std::optional<GltfAccessor> attribute(const std::map<std::string, int>& attributes,
-                                        const std::string& place, const std::string& name, Types types,
-                                        std::optional<std::size_t> count,
+                                        const std::string& place, const std::string& name,
+                                        Types types, std::optional<std::size_t> count,
                                         const ComponentTypes& numbers = kNumbers) const {
     const auto found = attributes.find(name);
     if (found == attributes.end()) return std::nullopt;
-    return GltfAccessor(document_, found->second, fmt::format("{}{}/{}", place_, place, name), types, numbers,
-                        count);
+    return GltfAccessor(document_, found->second, fmt::format("{}{}/{}", place_, place, name),
+                        types, numbers, count);
   }
 
   [[noreturn]] void reject_here(const std::string& found, const std::string& allowed) const {
@@ -152,15 +154,17 @@ LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_
   const auto number = static_cast<std::uint32_t>(
       source.material < 0 ? static_cast<int>(materials.materials.size()) - 1 : source.material);
   const ClpvMaterial& material = materials.materials[number];
-  const bool textured = material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
+  const bool textured =
+      material.texture != CLPV_NO_TEXTURE || material.emissive_texture != CLPV_NO_TEXTURE;
   const UvMapping& mapping = materials.mappings[number];
   const PrimitiveReader reader(document, source, place, mapping);
   const Attributes attributes = reader.attributes(textured, notes);
   const auto pointer = [](const auto& accessor) { return accessor ? &*accessor : nullptr; };
-  LocalPrimitive made = make_primitive(
-      {&attributes.position, pointer(attributes.normal), pointer(attributes.uv), pointer(attributes.colour),
-       pointer(attributes.indices), order_of(source.mode), mapping.transform},
-      document.file, place, number, budget, slots);
+  LocalPrimitive made =
+      make_primitive({&attributes.position, pointer(attributes.normal), pointer(attributes.uv),
+                      pointer(attributes.colour), pointer(attributes.indices),
+                      order_of(source.mode), mapping.transform},
+                     document.file, place, number, budget, slots);
   reader.read_influences(attributes, made);
   reader.read_targets(attributes, budget, made);
   if (source.attributes.contains("JOINTS_1"))

@@ -20,22 +20,25 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kAny = 1e30;         // maximum of unbounded numbers; products with coordinates fit a double
+// Maximum of unbounded numbers; products with coordinates fit a double.
+constexpr double kAny = 1e30;
 constexpr double kMany = 4294967295;  // maximum of counts and offsets
 constexpr double kInt = 2147483647;   // maximum of counts and offsets that tinygltf stores as int
-constexpr double kBrightest = 1e15;   // maximum intensity and colour of a light: their product fits a float
+// Maximum intensity and colour of a light: their product fits a float.
+constexpr double kBrightest = 1e15;
 constexpr std::size_t kTargets = 1024;  // maximum morph targets of a primitive
 constexpr double kAboveZero = 1e-9;     // minimum of positive numbers
 const std::string kPunctual = "/extensions/KHR_lights_punctual";
 
 /// Supported extensions. A file that requires others is rejected.
-constexpr std::array kExtensions = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
-                                    "KHR_materials_emissive_strength"};
+constexpr std::array kExtensions = {"KHR_lights_punctual", "KHR_texture_transform",
+                                    "KHR_mesh_quantization", "KHR_materials_emissive_strength"};
 
 using Rules = std::vector<Rule>;
 
 void append(Rules& rules, Rules more) {
-  rules.insert(rules.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  rules.insert(rules.end(), std::make_move_iterator(more.begin()),
+               std::make_move_iterator(more.end()));
 }
 
 /// Rules of the top level. Rules of lists come first, as later rules check indices into them.
@@ -43,8 +46,8 @@ Rules document_rules() {
   using namespace rule;
   Rules rules = {object("").must(), object("/asset").must(), text("/asset/version").must(),
                  text("/asset/minVersion"), object("/extensions")};
-  for (const char* name : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "textures",
-                           "images", "samplers", "animations", "skins"}) {
+  for (const char* name : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers",
+                           "textures", "images", "samplers", "animations", "skins"}) {
     rules.push_back(list(std::string("/") + name, 0, bounds::kListEntries));
     rules.push_back(object(std::string("/") + name + "/*"));
   }
@@ -86,39 +89,40 @@ Rules node_rules() {
 Rules geometry_rules() {
   using namespace rule;
   const std::string primitive = "/meshes/*/primitives/*";
-  return {list("/meshes/*/primitives", 1, bounds::kListEntries).must(),
-          object(primitive),
-          object(primitive + "/attributes").must(),
-          index(primitive + "/attributes/*", "/accessors"),
-          index(primitive + "/indices", "/accessors"),
-          index(primitive + "/material", "/materials"),
-          integer(primitive + "/mode", 0, 6),
-          list("/meshes/*/weights", 0, kTargets),
-          number("/meshes/*/weights/*", -kAny, kAny),
-          list(primitive + "/targets", 0, kTargets),
-          object(primitive + "/targets/*"),
-          index(primitive + "/targets/*/*", "/accessors"),
-          integer("/accessors/*/count", 1, kMany).must(),
-          integer("/accessors/*/byteOffset", 0, kMany),
-          index("/accessors/*/bufferView", "/bufferViews"),
-          choice("/accessors/*/componentType", {5120, 5121, 5122, 5123, 5125, 5126}).must(),
-          text("/accessors/*/type", {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"}).must(),
-          flag("/accessors/*/normalized"),
-          object("/accessors/*/sparse"),
-          integer("/accessors/*/sparse/count", 1, kInt).must(),
-          object("/accessors/*/sparse/indices").must(),
-          index("/accessors/*/sparse/indices/bufferView", "/bufferViews").must(),
-          integer("/accessors/*/sparse/indices/byteOffset", 0, kInt),
-          choice("/accessors/*/sparse/indices/componentType", {5121, 5123, 5125}).must(),
-          object("/accessors/*/sparse/values").must(),
-          index("/accessors/*/sparse/values/bufferView", "/bufferViews").must(),
-          integer("/accessors/*/sparse/values/byteOffset", 0, kInt),
-          index("/bufferViews/*/buffer", "/buffers").must(),
-          integer("/bufferViews/*/byteOffset", 0, kMany),
-          integer("/bufferViews/*/byteLength", 1, kMany).must(),
-          integer("/bufferViews/*/byteStride", 4, 252),
-          integer("/buffers/*/byteLength", 1, static_cast<double>(bounds::kBufferBytes)).must(),
-          text("/buffers/*/uri")};
+  return {
+      list("/meshes/*/primitives", 1, bounds::kListEntries).must(),
+      object(primitive),
+      object(primitive + "/attributes").must(),
+      index(primitive + "/attributes/*", "/accessors"),
+      index(primitive + "/indices", "/accessors"),
+      index(primitive + "/material", "/materials"),
+      integer(primitive + "/mode", 0, 6),
+      list("/meshes/*/weights", 0, kTargets),
+      number("/meshes/*/weights/*", -kAny, kAny),
+      list(primitive + "/targets", 0, kTargets),
+      object(primitive + "/targets/*"),
+      index(primitive + "/targets/*/*", "/accessors"),
+      integer("/accessors/*/count", 1, kMany).must(),
+      integer("/accessors/*/byteOffset", 0, kMany),
+      index("/accessors/*/bufferView", "/bufferViews"),
+      choice("/accessors/*/componentType", {5120, 5121, 5122, 5123, 5125, 5126}).must(),
+      text("/accessors/*/type", {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"}).must(),
+      flag("/accessors/*/normalized"),
+      object("/accessors/*/sparse"),
+      integer("/accessors/*/sparse/count", 1, kInt).must(),
+      object("/accessors/*/sparse/indices").must(),
+      index("/accessors/*/sparse/indices/bufferView", "/bufferViews").must(),
+      integer("/accessors/*/sparse/indices/byteOffset", 0, kInt),
+      choice("/accessors/*/sparse/indices/componentType", {5121, 5123, 5125}).must(),
+      object("/accessors/*/sparse/values").must(),
+      index("/accessors/*/sparse/values/bufferView", "/bufferViews").must(),
+      integer("/accessors/*/sparse/values/byteOffset", 0, kInt),
+      index("/bufferViews/*/buffer", "/buffers").must(),
+      integer("/bufferViews/*/byteOffset", 0, kMany),
+      integer("/bufferViews/*/byteLength", 1, kMany).must(),
+      integer("/bufferViews/*/byteStride", 4, 252),
+      integer("/buffers/*/byteLength", 1, static_cast<double>(bounds::kBufferBytes)).must(),
+      text("/buffers/*/uri")};
 }
 
 /// Rules of a material's reference to a texture.
@@ -187,13 +191,15 @@ Rules animation_rules() {
       integer(channels + "/*/sampler", 0, kInt).must(),
       object(channels + "/*/target").must(),
       index(channels + "/*/target/node", "/nodes"),
-      text(channels + "/*/target/path", {"translation", "rotation", "scale", "weights", "pointer"}).must(),
+      text(channels + "/*/target/path", {"translation", "rotation", "scale", "weights", "pointer"})
+          .must(),
       object("/animations/*/extensions")};
 }
 
 void check_asset(const json& document, const std::string& file) {
   const std::string& version = document["asset"]["version"].get_ref<const std::string&>();
-  if (!version.starts_with("2.")) reject(file, "/asset/version", "'" + version.substr(0, 60) + "'", "2.x");
+  if (!version.starts_with("2."))
+    reject(file, "/asset/version", "'" + version.substr(0, 60) + "'", "2.x");
   // A model of version 2.x can be read by readers of 2.0, unless minVersion is higher.
   const std::string minimum = document["asset"].value("minVersion", "2.0");
   if (minimum != "2.0") reject(file, "/asset/minVersion", "'" + minimum.substr(0, 60) + "'", "2.0");
@@ -216,8 +222,8 @@ void for_each_in(const json& document, const char* list, const Check& check) {
     check(document[list][i], fmt::format("/{}/{}", list, i));
 }
 
-/// Checks the size of all buffers together. tinygltf uses the binary chunk for every buffer without a uri, while glTF allows
-/// that for the first only.
+/// Checks the size of all buffers together. tinygltf uses the binary chunk for every buffer without
+/// a uri, while glTF allows that for the first only.
 void check_buffers(const json& document, const std::string& file) {
   std::uint64_t total = 0;
   for_each_in(document, "buffers", [&](const json& buffer, const std::string& place) {

@@ -24,7 +24,8 @@ class ViewReader {
       return false;
     }
     if (scene_.cameras.size() == bounds::kCameras) {
-      reject(document_.file, place_of(node), "one more camera", fmt::format("at most {}", bounds::kCameras));
+      reject(document_.file, place_of(node), "one more camera",
+             fmt::format("at most {}", bounds::kCameras));
     }
     SceneCamera made;
     made.name = unique(given.name.empty() ? source.name : given.name, "camera", camera_names_);
@@ -38,7 +39,8 @@ class ViewReader {
   void light(int node, const tinygltf::Node& source, int index, const glm::dmat4& to_world) {
     const tinygltf::Light& given = entry(document_.model.lights, index);
     if (scene_.lights.size() == bounds::kLights) {
-      reject(document_.file, place_of(node), "one more light", fmt::format("at most {}", bounds::kLights));
+      reject(document_.file, place_of(node), "one more light",
+             fmt::format("at most {}", bounds::kLights));
     }
     SceneLight made;
     made.name = unique(given.name.empty() ? source.name : given.name, "light", light_names_);
@@ -47,14 +49,17 @@ class ViewReader {
     data.kind = static_cast<unsigned>(kind);
     place_light(data, to_world, document_.file, node);
     for (std::size_t i = 0; i < 3; ++i) {
-      data.intensity[i] = static_cast<float>(given.intensity * (given.color.empty() ? 1.0 : given.color[i]));
+      data.intensity[i] =
+          static_cast<float>(given.intensity * (given.color.empty() ? 1.0 : given.color[i]));
     }
-    if (kind != LightKind::directional) data.range = static_cast<float>(given.range * metres_per_unit_);
+    if (kind != LightKind::directional)
+      data.range = static_cast<float>(given.range * metres_per_unit_);
     if (kind == LightKind::spot) {
       const double inner = given.spot.innerConeAngle, outer = given.spot.outerConeAngle;
       if (inner >= outer) {
         reject(document_.file, fmt::format("/extensions/KHR_lights_punctual/lights/{}/spot", index),
-               fmt::format("innerConeAngle {} and outerConeAngle {}", inner, outer), "inner less than outer");
+               fmt::format("innerConeAngle {} and outerConeAngle {}", inner, outer),
+               "inner less than outer");
       }
       set_cone(data, inner, outer);
     }
@@ -65,7 +70,8 @@ class ViewReader {
   static std::string place_of(int node) { return fmt::format("/nodes/{}", node); }
 
   /// Returns `preferred`, or a name like it that is not in `used`, and adds it there.
-  static std::string unique(const std::string& preferred, const char* kind, std::set<std::string>& used) {
+  static std::string unique(const std::string& preferred, const char* kind,
+                            std::set<std::string>& used) {
     std::string name = preferred.empty() ? fmt::format("{} {}", kind, used.size()) : preferred;
     for (int i = 2; used.contains(name); ++i)
       name = fmt::format("{} {}", preferred.empty() ? kind : preferred, i);
@@ -91,8 +97,10 @@ void append_views(const GltfDocument& document, const PosedTree& posed, double m
     if (source.camera >= 0 && reader.camera(node.index, source, posed.to_world(i)) && node.moves) {
       motion.cameras.push_back({scene.cameras.size() - 1, i});
     }
-    if (const auto found = source.extensions.find("KHR_lights_punctual"); found != source.extensions.end()) {
-      reader.light(node.index, source, found->second.Get("light").GetNumberAsInt(), posed.to_world(i));
+    if (const auto found = source.extensions.find("KHR_lights_punctual");
+        found != source.extensions.end()) {
+      reader.light(node.index, source, found->second.Get("light").GetNumberAsInt(),
+                   posed.to_world(i));
       if (node.moves) motion.lights.push_back({scene.lights.size() - 1, i});
     }
   }

@@ -30,7 +30,8 @@ std::optional<std::string> percent_decoded(std::string_view uri) {
 }
 
 bool lies_in(const fs::path& path, const fs::path& folder) {
-  const auto [in_folder, in_path] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  const auto [in_folder, in_path] =
+      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
   return in_folder == folder.end();
 }
 
@@ -50,15 +51,18 @@ fs::path resolve_uri(const fs::path& folder, const std::string& uri, const std::
            "a relative path to a file in the model's folder or below");
   };
   const std::optional<std::string> decoded = percent_decoded(uri);
-  if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) reject_uri("malformed");
+  if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos)
+    reject_uri("malformed");
   const fs::path relative = *decoded;
   if (relative.is_absolute()) reject_uri("an absolute path");
-  if (std::ranges::find(relative, fs::path("..")) != relative.end()) reject_uri("which contains '..'");
+  if (std::ranges::find(relative, fs::path("..")) != relative.end())
+    reject_uri("which contains '..'");
   std::error_code failure;
   const fs::path real = fs::canonical(folder / relative, failure);
   if (failure) reject_uri("no such file");
   if (!lies_in(real, fs::canonical(folder))) reject_uri("which leaves the model's folder");
-  if (!fs::is_regular_file(real)) reject_uri(fs::is_directory(real) ? "a folder" : "no regular file");
+  if (!fs::is_regular_file(real))
+    reject_uri(fs::is_directory(real) ? "a folder" : "no regular file");
   return real;
 }
 

@@ -14,8 +14,9 @@ namespace clpv {
 /// Up to 160 bytes of a text on one line, for messages.
 std::string excerpt(std::string_view text);
 
-/// Canonical path of the relative URI `uri` in `file`, percent-decoded, with links resolved. `folder` must be canonical.
-/// Throws Error(bad_input) for absolute paths, `..`, links that lead outside `folder`, and all but regular files.
+/// Canonical path of the relative URI `uri` in `file`, percent-decoded, with links resolved.
+/// `folder` must be canonical. Throws Error(bad_input) for absolute paths, `..`, links that lead
+/// outside `folder`, and all but regular files.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, const std::string& uri,
                                   const std::string& file, std::string_view place);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Kinds of lights, with their names in scene files and glTF. Switches over them have no default, so that the compiler finds
-// all places for a new kind.
+// Kinds of lights, with their names in scene files and glTF. Switches over them have no default, so
+// that the compiler finds all places for a new kind.
 #pragma once
 
 #include <algorithm>
@@ -29,11 +29,12 @@ inline LightKind kind_of(const ClpvLight& light) {
               kinds.size() - 1, fmt::join(names_of<LightKind>(), ", "));
 }
 
-/// Sets the cone of a spot light by KHR_lights_punctual. Angles are from the axis [rad]: full intensity within `inner`, 0
-/// beyond `outer` > inner.
+/// Sets the cone of a spot light by KHR_lights_punctual. Angles are from the axis [rad]: full
+/// intensity within `inner`, 0 beyond `outer` > inner.
 inline void set_cone(ClpvLight& light, double inner, double outer) {
   constexpr double kMinDifference = 0.001;  // from the extension, for inner == outer
-  light.cone_scale = static_cast<float>(1.0 / std::max(kMinDifference, std::cos(inner) - std::cos(outer)));
+  light.cone_scale =
+      static_cast<float>(1.0 / std::max(kMinDifference, std::cos(inner) - std::cos(outer)));
   light.cone_offset = static_cast<float>(-std::cos(outer) * light.cone_scale);
 }
 

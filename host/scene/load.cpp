@@ -19,25 +19,29 @@
 namespace clpv {
 namespace {
 
-/// Loads a .gltf or .glb at 0 s: geometry, materials, textures, cameras and lights, in metres and without defaults. Stores
-/// animated meshes, cameras and lights in `motion`.
-SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, Motion& motion, Notes& notes) {
+/// Loads a .gltf or .glb at 0 s: geometry, materials, textures, cameras and lights, in metres and
+/// without defaults. Stores animated meshes, cameras and lights in `motion`.
+SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, Motion& motion,
+                    Notes& notes) {
   const GltfDocument document = read_gltf_document(path);
   std::vector<std::string> ignored = document.model.extensionsUsed;
   std::erase_if(ignored, reads_extension);
-  if (!ignored.empty()) notes.add(fmt::format("extensions that are not read: {}", fmt::join(ignored, ", ")));
+  if (!ignored.empty())
+    notes.add(fmt::format("extensions that are not read: {}", fmt::join(ignored, ", ")));
   SceneData scene;
   scene.files = document.files();
   motion.tree = read_nodes(document, read_animations(document, notes),
                            glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
   PosedTree posed(motion.tree, 0);
   const MaterialSet materials = read_materials(document, notes);
-  auto textures = std::async(std::launch::async, [&] { return load_textures(document, materials.textures); });
+  auto textures =
+      std::async(std::launch::async, [&] { return load_textures(document, materials.textures); });
   append_meshes(document, posed, materials, scene, motion, notes);  // concurrent with load_textures
   append_views(document, posed, metres_per_unit, scene, motion, notes);
   scene.textures = textures.get();
   scene.materials = materials.materials;
-  const auto last = static_cast<std::uint32_t>(scene.materials.size() - 1);  // glTF's default material
+  // GlTF's default material.
+  const auto last = static_cast<std::uint32_t>(scene.materials.size() - 1);
   if (std::none_of(scene.triangles.begin(), scene.triangles.end(),
                    [&](auto& t) { return t.material == last; })) {
     scene.materials.pop_back();
@@ -70,7 +74,8 @@ void check_camera_lights(const SceneData& scene) {
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     if (!scene.cameras[i].light.empty() && scene.lights_for(scene.cameras[i]).empty()) {
       reject(scene.path, fmt::format("/cameras/{}/light", i), "'" + scene.cameras[i].light + "'",
-             names.empty() ? "none, since there are no lights" : fmt::format("{}", fmt::join(names, ", ")));
+             names.empty() ? "none, since there are no lights"
+                           : fmt::format("{}", fmt::join(names, ", ")));
     }
   }
 }
@@ -78,18 +83,21 @@ void check_camera_lights(const SceneData& scene) {
 std::vector<MeshRange> ranges_of(const std::vector<Instance>& meshes) {
   std::vector<MeshRange> ranges;
   for (const Instance& instance : meshes) {
-    ranges.push_back({instance.first_vertex, static_cast<std::uint32_t>(instance.primitive->vertices.size()),
+    ranges.push_back({instance.first_vertex,
+                      static_cast<std::uint32_t>(instance.primitive->vertices.size()),
                       instance.first_triangle,
                       static_cast<std::uint32_t>(instance.primitive->triangles.size())});
   }
   return ranges;
 }
 
-// Default light of a model without lights: a steep sun from behind and to the right of the default camera. With 10 lx, a
-// white floor has radiance 3.2, so that diffuse walls fill the tone curve's range at exposure 0.
+// Default light of a model without lights: a steep sun from behind and to the right of the default
+// camera. With 10 lx, a white floor has radiance 3.2, so that diffuse walls fill the tone curve's
+// range at exposure 0.
 constexpr glm::vec3 kSunDirection{-0.35f, -0.85f, -0.4f};
 
-// Default camera of a model without cameras: from above and the side, with the bounding sphere just within its view.
+// Default camera of a model without cameras: from above and the side, with the bounding sphere just
+// within its view.
 constexpr glm::vec3 kFramingDirection{-0.5f, -0.35f, -1.0f};  // viewing direction
 constexpr float kFramingFov = static_cast<float>(std::numbers::pi) / 4;
 
@@ -126,8 +134,8 @@ const std::string kNoTriangles = "the model has no triangles",
 
 }  // namespace
 
-/// Adds a default camera and light, with a note each, to a scene whose bounding box is set. `has_lights`: an empty list of
-/// lights is intended, and gets no default.
+/// Adds a default camera and light, with a note each, to a scene whose bounding box is set.
+/// `has_lights`: an empty list of lights is intended, and gets no default.
 void MovingScene::add_defaults(bool has_lights) {
   if (scene_.triangles.empty()) scene_.notes.push_back(kNoTriangles);
   if (scene_.cameras.empty()) {
@@ -140,12 +148,13 @@ void MovingScene::add_defaults(bool has_lights) {
   }
 }
 
-void MovingScene::load_scene_file(const std::filesystem::path& path, const std::filesystem::path& replacement,
-                                  Notes& notes) {
+void MovingScene::load_scene_file(const std::filesystem::path& path,
+                                  const std::filesystem::path& replacement, Notes& notes) {
   description_ = read_scene_file(path);
   SceneViews views = views_at(description_, 0);
   const std::filesystem::path model = replacement.empty() ? description_.model : replacement;
-  if (model.empty()) reject(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
+  if (model.empty())
+    reject(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
   std::error_code unknown;
   if (replacement.empty() && !std::filesystem::exists(model, unknown)) {
     reject(path.string(), "/model", "no file '" + model.string() + "'",
@@ -209,7 +218,8 @@ MovingScene::MovingScene() {
   add_defaults(false);
 }
 
-MovingScene::MovingScene(const std::filesystem::path& path, const std::filesystem::path& replacement) {
+MovingScene::MovingScene(const std::filesystem::path& path,
+                         const std::filesystem::path& replacement) {
   Notes notes;
   const std::string extension = extension_of(path);
   if (extension == ".json") {
@@ -220,7 +230,8 @@ MovingScene::MovingScene(const std::filesystem::path& path, const std::filesyste
     scene_ = load_gltf(model, 1.0, motion_, notes);
     scene_.path = model.string();
   } else {
-    reject(path.string(), {}, "the extension '" + extension + "'", ".json (a scene file), .gltf or .glb");
+    reject(path.string(), {}, "the extension '" + extension + "'",
+           ".json (a scene file), .gltf or .glb");
   }
   if (motion_.empty()) motion_.tree = {};  // frees its memory
   scene_.moving = ranges_of(motion_.meshes);

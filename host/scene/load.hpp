@@ -12,12 +12,14 @@
 
 namespace clpv {
 
-/// Loads a scene file (.json: see docs/scenes.md) or a model (.gltf, .glb) at 0 s. A `model` that is not empty replaces the
-/// file's. Input is untrusted: sizes are checked before allocation, and nothing outside the model's folder is read.
-/// Throws Error(bad_input) that names file, place (JSON pointer), value found and value allowed.
+/// Loads a scene file (.json: see docs/scenes.md) or a model (.gltf, .glb) at 0 s. A `model` that
+/// is not empty replaces the file's. Input is untrusted: sizes are checked before allocation, and
+/// nothing outside the model's folder is read. Throws Error(bad_input) that names file, place (JSON
+/// pointer), value found and value allowed.
 SceneData load_scene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
-/// A scene that may be animated, loaded once and posed at any time. A default camera frames the scene at 0 s.
+/// A scene that may be animated, loaded once and posed at any time. A default camera frames the
+/// scene at 0 s.
 class MovingScene {
  public:
   /// A scene without meshes.
@@ -26,7 +28,8 @@ class MovingScene {
   /// Loads the scene at 0 s. Throws as load_scene().
   explicit MovingScene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
-  /// The scene at the time of the last pose(); it depends on that time only. The reference is valid as long as this object.
+  /// The scene at the time of the last pose(); it depends on that time only. The reference is valid
+  /// as long as this object.
   const SceneData& scene() const { return scene_; }
 
   /// Returns true if anything is animated.
@@ -35,17 +38,17 @@ class MovingScene {
   /// Poses the scene at a time. Throws Error(bad_input) if values leave their bounds.
   void pose(double seconds);
 
-  /// Replace all cameras (at least one) or lights; they are then not animated. A camera whose only light is gone gets all.
-  /// Call before pose().
+  /// Replace all cameras (at least one) or lights; they are then not animated. A camera whose only
+  /// light is gone gets all. Call before pose().
   void set_cameras(std::vector<SceneCamera> cameras);
   void set_lights(std::vector<SceneLight> lights);
 
-  /// Replaces the medium or removes it. One without a box, `lower` equal to `upper`, fills the scene's bounding box at
-  /// the present time.
+  /// Replaces the medium or removes it. One without a box, `lower` equal to `upper`, fills the
+  /// scene's bounding box at the present time.
   void set_medium(std::optional<ClpvMedium> medium);
 
-  /// Change meshes in memory, as clpv::Scene does. set_positions() and set_transform() return true if the mesh moves for the first
-  /// time, so that SceneData::moving is longer. Call before pose().
+  /// Change meshes in memory, as clpv::Scene does. set_positions() and set_transform() return true
+  /// if the mesh moves for the first time, so that SceneData::moving is longer. Call before pose().
   int add_mesh(const Mesh& mesh, const Transform& transform);
   int add_instance(int mesh, const Transform& transform);
   void remove_mesh(int mesh);
@@ -56,7 +59,8 @@ class MovingScene {
   SceneData take() && { return std::move(scene_); }
 
  private:
-  void load_scene_file(const std::filesystem::path& path, const std::filesystem::path& model, Notes& notes);
+  void load_scene_file(const std::filesystem::path& path, const std::filesystem::path& model,
+                       Notes& notes);
   void set_views(SceneViews views);
   void add_defaults(bool has_lights);
   void forget_missing_lights();
@@ -70,7 +74,8 @@ class MovingScene {
 
 inline constexpr double kSunIlluminance = 10;  ///< of the sun that a model without lights gets [lx]
 
-/// Returns true if the scene has no scene file, and thus no settings of cascades: a model, or meshes in memory.
+/// Returns true if the scene has no scene file, and thus no settings of cascades: a model, or
+/// meshes in memory.
 bool is_bare_model(const SceneData& scene);
 
 }  // namespace clpv

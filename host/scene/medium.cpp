@@ -7,8 +7,8 @@
 
 namespace clpv {
 
-MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin, const glm::dvec3& direction,
-                       double end) {
+MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin,
+                       const glm::dvec3& direction, double end) {
   if (vector(medium.extinction) == glm::dvec3(0)) return {};
   MediumPart part{0, end};
   for (int axis = 0; axis < 3; ++axis) {

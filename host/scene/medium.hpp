@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays through a homogeneous medium in a box (kernels/shared/light.h; docs/method.md, 'Media'), in double.
+// Rays through a homogeneous medium in a box (kernels/shared/light.h; docs/method.md, 'Media'), in
+// double.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -15,10 +16,10 @@ struct MediumPart {
   double length() const { return end > start ? end - start : 0; }
 };
 
-/// Returns the part of origin + t direction, t in (0, end), in the medium; none if the medium does not attenuate. `end` may
-/// be infinite.
-MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin, const glm::dvec3& direction,
-                       double end);
+/// Returns the part of origin + t direction, t in (0, end), in the medium; none if the medium does
+/// not attenuate. `end` may be infinite.
+MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin,
+                       const glm::dvec3& direction, double end);
 
 /// exp(-sigma_t l) for each channel. `part`: of a ray with a unit direction [m].
 glm::dvec3 transmittance(const ClpvMedium& medium, const MediumPart& part);

@@ -18,8 +18,8 @@ const std::array<float, 256>& decode_table() {
   return table;
 }
 
-/// sRGB encoding by a table that is fine enough for the steepest part of the curve (slope 12.92): the result is the nearest
-/// byte or, at a boundary, its neighbour.
+/// sRGB encoding by a table that is fine enough for the steepest part of the curve (slope 12.92):
+/// the result is the nearest byte or, at a boundary, its neighbour.
 std::uint8_t encode(float linear) {
   constexpr std::size_t kSteps = 1 << 14;
   static const std::vector<std::uint8_t> table = [] {
@@ -47,22 +47,26 @@ std::vector<Taps> make_taps(std::uint32_t from, std::uint32_t to) {
     taps[i].first = static_cast<std::uint32_t>(begin);
     for (std::uint32_t t = taps[i].first; t < from && t < end && taps[i].count < 3; ++t) {
       const double covered = std::min<double>(t + 1, end) - std::max<double>(t, begin);
-      taps[i].weight[static_cast<std::size_t>(taps[i].count++)] = static_cast<float>(covered / ratio);
+      taps[i].weight[static_cast<std::size_t>(taps[i].count++)] =
+          static_cast<float>(covered / ratio);
     }
   }
   return taps;
 }
 
-void filter_texel(const Texture& from, const Taps& x, const Taps& y, bool weigh_by_alpha, std::uint8_t* out) {
+void filter_texel(const Texture& from, const Taps& x, const Taps& y, bool weigh_by_alpha,
+                  std::uint8_t* out) {
   const std::array<float, 256>& linear = decode_table();
   glm::vec3 mean(0), weighted(0);
   float alpha = 0;
   for (int j = 0; j < y.count; ++j) {
     for (int i = 0; i < x.count; ++i) {
-      const std::size_t at = static_cast<std::size_t>(y.first + static_cast<unsigned>(j)) * from.width +
-                             x.first + static_cast<unsigned>(i);
+      const std::size_t at =
+          static_cast<std::size_t>(y.first + static_cast<unsigned>(j)) * from.width + x.first +
+          static_cast<unsigned>(i);
       const std::uint8_t* texel = &from.rgba[4 * at];
-      const float weight = x.weight[static_cast<std::size_t>(i)] * y.weight[static_cast<std::size_t>(j)];
+      const float weight =
+          x.weight[static_cast<std::size_t>(i)] * y.weight[static_cast<std::size_t>(j)];
       const glm::vec3 colour(linear[texel[0]], linear[texel[1]], linear[texel[2]]);
       mean += weight * colour;
       weighted += weight * static_cast<float>(texel[3]) * colour;
@@ -82,7 +86,8 @@ Texture halved(const Texture& from, bool weigh_by_alpha) {
   to.wrap_u = from.wrap_u;
   to.wrap_v = from.wrap_v;
   to.rgba.resize(static_cast<std::size_t>(to.width) * to.height * 4);
-  const std::vector<Taps> columns = make_taps(from.width, to.width), rows = make_taps(from.height, to.height);
+  const std::vector<Taps> columns = make_taps(from.width, to.width),
+                          rows = make_taps(from.height, to.height);
   std::uint8_t* out = to.rgba.data();
   for (const Taps& row : rows) {
     for (const Taps& column : columns) {
@@ -101,7 +106,8 @@ double linear_from_srgb(unsigned byte) {
 }
 
 unsigned srgb_from_linear(double linear) {
-  const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+  const double encoded =
+      linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
   return static_cast<unsigned>(std::lround(255 * std::clamp(encoded, 0.0, 1.0)));
 }
 
@@ -115,7 +121,8 @@ std::vector<Texture> mip_chain(const Texture& texture, bool weigh_by_alpha) {
 std::vector<bool> textures_with_holes(const SceneData& scene) {
   std::vector<bool> holes(scene.textures.size(), false);
   for (const ClpvMaterial& m : scene.materials) {
-    if ((m.flags & CLPV_MATERIAL_MASKED) != 0 && m.texture != CLPV_NO_TEXTURE) holes[m.texture] = true;
+    if ((m.flags & CLPV_MATERIAL_MASKED) != 0 && m.texture != CLPV_NO_TEXTURE)
+      holes[m.texture] = true;
   }
   return holes;
 }

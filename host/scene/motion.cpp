@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Poses meshes, cameras and lights: morph targets, skinning and node transforms (glTF 2.0, section 3.7).
+// Poses meshes, cameras and lights: morph targets, skinning and node transforms (glTF 2.0, section
+// 3.7).
 #include "scene/motion.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +16,8 @@
 namespace clpv {
 namespace {
 
-constexpr double kMinMorphedNormal = 1e-6;  // shorter morphed normals are replaced by the stored ones
+// Shorter morphed normals are replaced by the stored ones.
+constexpr double kMinMorphedNormal = 1e-6;
 
 void add_target(const MorphTarget& target, double weight, std::vector<LocalVertex>& vertices) {
   if (weight == 0) return;
@@ -25,7 +27,8 @@ void add_target(const MorphTarget& target, double weight, std::vector<LocalVerte
     vertices[i].normal += weight * glm::dvec3(target.normals[i]);
 }
 
-/// Vertices plus the weighted morph targets. Normals are normalised; flat ones are recomputed from the triangles.
+/// Vertices plus the weighted morph targets. Normals are normalised; flat ones are recomputed from
+/// the triangles.
 std::vector<LocalVertex> morphed(const LocalPrimitive& primitive, std::span<const double> weights) {
   std::vector<LocalVertex> vertices = primitive.vertices;
   for (std::size_t t = 0; t < primitive.targets.size(); ++t)
@@ -39,7 +42,8 @@ std::vector<LocalVertex> morphed(const LocalPrimitive& primitive, std::span<cons
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     glm::dvec3& normal = vertices[i].normal;
-    normal = glm::length(normal) < kMinMorphedNormal ? primitive.vertices[i].normal : glm::normalize(normal);
+    normal = glm::length(normal) < kMinMorphedNormal ? primitive.vertices[i].normal
+                                                     : glm::normalize(normal);
   }
   return vertices;
 }
@@ -53,10 +57,11 @@ glm::dmat4 blended(const Influence& influence, std::span<const glm::dmat4> joint
   return sum;
 }
 
-/// Transform of normals: the cofactor matrix of m, which is det(m) times the inverse transpose and exists for singular m
-/// too. The sign of the determinant corrects mirroring.
+/// Transform of normals: the cofactor matrix of m, which is det(m) times the inverse transpose and
+/// exists for singular m too. The sign of the determinant corrects mirroring.
 glm::dmat3 normal_matrix(const glm::dmat3& m) {
-  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]),
+                             glm::cross(m[0], m[1]));
   return glm::determinant(m) < 0 ? -cofactors : cofactors;
 }
 
@@ -70,7 +75,8 @@ struct Placement {
 };
 
 Placement placement_of(const Instance& instance, PosedTree& posed) {
-  if (!instance.skin || instance.primitive->influences.empty()) return {posed.to_world(instance.node), {}};
+  if (!instance.skin || instance.primitive->influences.empty())
+    return {posed.to_world(instance.node), {}};
   Placement made{glm::dmat4(1.0), posed.joints(*instance.skin)};
   made.to_world = made.of(*instance.primitive, 0);  // for its determinant's sign
   return made;
@@ -114,7 +120,8 @@ void place_vertices(const Instance& instance, const std::vector<LocalVertex>& ve
       to_world = placement.of(*instance.primitive, i);
       to_normal = normal_matrix(glm::dmat3(to_world));
     }
-    scene.vertices[instance.first_vertex + i] = placed(vertices[i], to_world, to_normal, instance, tree);
+    scene.vertices[instance.first_vertex + i] =
+        placed(vertices[i], to_world, to_normal, instance, tree);
   }
 }
 
@@ -122,12 +129,14 @@ void place_triangles(const Instance& instance, bool mirrored, SceneData& scene) 
   const std::uint32_t base = instance.first_vertex;
   Triangle* triangle = scene.triangles.data() + instance.first_triangle;
   for (const glm::uvec3& t : instance.primitive->triangles) {
-    const std::uint32_t second = base + (mirrored ? t.z : t.y), third = base + (mirrored ? t.y : t.z);
+    const std::uint32_t second = base + (mirrored ? t.z : t.y),
+                        third = base + (mirrored ? t.y : t.z);
     *triangle++ = {{base + t.x, second, third}, instance.primitive->material};
   }
 }
 
-/// Reserves with geometric growth: an exact reserve for each primitive would copy all vertices each time.
+/// Reserves with geometric growth: an exact reserve for each primitive would copy all vertices each
+/// time.
 template <typename T>
 void grow(std::vector<T>& values, std::uint64_t size) {
   if (size > values.capacity()) values.reserve(std::max<std::size_t>(size, 2 * values.capacity()));
@@ -158,7 +167,8 @@ glm::vec3 axis(const NodeTransform& node, const glm::dvec3& local, const char* m
   const glm::dvec3 direction = glm::dmat3(node.to_world) * local;
   const double length = glm::length(direction);
   if (!(length > 0) || !std::isfinite(length)) {
-    reject(node.file, node.place + member, "a transform that leaves no direction", "scales other than 0");
+    reject(node.file, node.place + member, "a transform that leaves no direction",
+           "scales other than 0");
   }
   return glm::vec3(direction / length);
 }
@@ -183,16 +193,18 @@ bool moves(const Instance& instance, const NodeTree& tree) {
 
 MeshRange range_of(const Instance& instance) {
   return {instance.first_vertex, static_cast<std::uint32_t>(instance.primitive->vertices.size()),
-          instance.first_triangle, static_cast<std::uint32_t>(instance.primitive->triangles.size())};
+          instance.first_triangle,
+          static_cast<std::uint32_t>(instance.primitive->triangles.size())};
 }
 
-void reserve(SceneData& scene, const LocalPrimitive& primitive, std::size_t count, const std::string& file) {
+void reserve(SceneData& scene, const LocalPrimitive& primitive, std::size_t count,
+             const std::string& file) {
   const std::uint64_t vertices = scene.vertices.size() + count * primitive.vertices.size();
   const std::uint64_t triangles = scene.triangles.size() + count * primitive.triangles.size();
   if (vertices > bounds::kVertices || triangles > bounds::kTriangles) {
     reject(file, primitive.place,
-           fmt::format("{} vertices and {} triangles so far, with this primitive at {} nodes", vertices,
-                       triangles, count),
+           fmt::format("{} vertices and {} triangles so far, with this primitive at {} nodes",
+                       vertices, triangles, count),
            fmt::format("at most {} and {} in all", bounds::kVertices, bounds::kTriangles));
   }
   grow(scene.vertices, vertices);
@@ -214,17 +226,20 @@ void place(const Instance& instance, PosedTree& posed, SceneData& scene) {
   if (primitive.targets.empty()) {
     place_vertices(instance, primitive.vertices, placement, posed.tree(), scene);
   } else {
-    place_vertices(instance, morphed(primitive, weights_of(instance, posed)), placement, posed.tree(), scene);
+    place_vertices(instance, morphed(primitive, weights_of(instance, posed)), placement,
+                   posed.tree(), scene);
   }
   place_triangles(instance, glm::determinant(glm::dmat3(placement.to_world)) < 0, scene);
 }
 
-void place_camera(SceneCamera& camera, const glm::dmat4& to_world, const std::string& file, int node) {
+void place_camera(SceneCamera& camera, const glm::dmat4& to_world, const std::string& file,
+                  int node) {
   const NodeTransform transform{to_world, file, fmt::format("/nodes/{}", node)};
   camera.eye = position(transform);
   camera.forward = axis(transform, {0, 0, -1}, "/camera");
   const glm::dvec3 up(axis(transform, {0, 1, 0}, "/camera")), forward(camera.forward);
-  const glm::dvec3 perpendicular = up - forward * glm::dot(forward, up);  // shear makes them oblique
+  // Shear makes them oblique.
+  const glm::dvec3 perpendicular = up - forward * glm::dot(forward, up);
   if (glm::length(perpendicular) < 1e-6)
     reject(file, transform.place, "a camera's transform with parallel up and forward",
            "different directions");
@@ -243,7 +258,8 @@ void Motion::pose(SceneData& scene, double seconds) const {
   PosedTree posed(tree, seconds);
   for (const Instance& instance : meshes) place(instance, posed, scene);
   for (const MovingView& each : cameras) {
-    place_camera(scene.cameras[each.view], posed.to_world(each.node), tree.file, tree.nodes[each.node].index);
+    place_camera(scene.cameras[each.view], posed.to_world(each.node), tree.file,
+                 tree.nodes[each.node].index);
   }
   for (const MovingView& each : lights) {
     place_light(scene.lights[each.view].data, posed.to_world(each.node), tree.file,

@@ -32,7 +32,8 @@ struct MorphTarget {
   std::vector<glm::vec3> positions, normals;
 };
 
-/// Where normals come from: given; of each triangle, whose vertices no other shares; means of triangles, weighted by angle.
+/// Where normals come from: given; of each triangle, whose vertices no other shares; means of
+/// triangles, weighted by angle.
 enum class Normals { stored, flat, smooth };
 
 struct LocalPrimitive {
@@ -51,10 +52,11 @@ glm::dvec3 triangle_normal(const std::vector<LocalVertex>& vertices, const glm::
 /// A primitive at a node, and the range of the scene's vertices and triangles that it fills.
 struct Instance {
   std::shared_ptr<const LocalPrimitive> primitive;
-  std::size_t node = 0;                                ///< index in the tree
-  std::shared_ptr<const Skin> skin;                    ///< null: the node's transform applies
-  std::vector<double> weights;                         ///< of morph targets without a curve
-  std::uint32_t first_vertex = 0, first_triangle = 0;  ///< in the scene, whose vectors have their final size
+  std::size_t node = 0;              ///< index in the tree
+  std::shared_ptr<const Skin> skin;  ///< null: the node's transform applies
+  std::vector<double> weights;       ///< of morph targets without a curve
+  /// In the scene, whose vectors have their final size.
+  std::uint32_t first_vertex = 0, first_triangle = 0;
 };
 
 /// Range of the scene's vertices and triangles that an instance fills.
@@ -63,20 +65,24 @@ MeshRange range_of(const Instance& instance);
 /// Returns true if the instance is animated.
 bool moves(const Instance& instance, const NodeTree& tree);
 
-/// Reserves memory for more instances of a primitive, with geometric growth. Throws Error(bad_input) with `file` and the primitive's
-/// place for more geometry than the bounds allow.
-void reserve(SceneData& scene, const LocalPrimitive& primitive, std::size_t count, const std::string& file);
+/// Reserves memory for more instances of a primitive, with geometric growth. Throws
+/// Error(bad_input) with `file` and the primitive's place for more geometry than the bounds allow.
+void reserve(SceneData& scene, const LocalPrimitive& primitive, std::size_t count,
+             const std::string& file);
 
 /// Appends an instance to the scene, and sets the range that it fills. Throws as place().
 void append(Instance& instance, PosedTree& posed, SceneData& scene);
 
-/// Writes the vertices [m] and triangles of an instance into the scene, transformed by morph targets, then skin or node.
-/// Mirrored instances keep their fronts outside. Throws Error(bad_input) for coordinates beyond the bounds.
+/// Writes the vertices [m] and triangles of an instance into the scene, transformed by morph
+/// targets, then skin or node. Mirrored instances keep their fronts outside. Throws
+/// Error(bad_input) for coordinates beyond the bounds.
 void place(const Instance& instance, PosedTree& posed, SceneData& scene);
 
-/// Sets eye, forward (the node's -z) and up. Messages contain `file` and the node's index. Throws Error(bad_input) for
-/// coordinates beyond the bounds and for transforms that map the direction to 0.
-void place_camera(SceneCamera& camera, const glm::dmat4& to_world, const std::string& file, int node);
+/// Sets eye, forward (the node's -z) and up. Messages contain `file` and the node's index. Throws
+/// Error(bad_input) for coordinates beyond the bounds and for transforms that map the direction to
+/// 0.
+void place_camera(SceneCamera& camera, const glm::dmat4& to_world, const std::string& file,
+                  int node);
 
 /// Sets position and direction (the node's -z; not for point lights). Throws as place_camera().
 void place_light(ClpvLight& light, const glm::dmat4& to_world, const std::string& file, int node);
@@ -95,7 +101,8 @@ struct Motion {
 
   bool empty() const { return meshes.empty() && cameras.empty() && lights.empty(); }
 
-  /// Poses the scene at a time [s], independently of its pose before. Throws Error(bad_input) if values leave their bounds.
+  /// Poses the scene at a time [s], independently of its pose before. Throws Error(bad_input) if
+  /// values leave their bounds.
   void pose(SceneData& scene, double seconds) const;
 };
 

@@ -46,14 +46,15 @@ struct NodeTree {
   glm::dmat4 root{1.0};
   std::vector<TreeNode> nodes;
 
-  /// Transforms of all nodes to world space, in order. Throws Error(bad_input) for transforms that are not finite, and for
-  /// splines of rotations with a length below 0.5.
+  /// Transforms of all nodes to world space, in order. Throws Error(bad_input) for transforms that
+  /// are not finite, and for splines of rotations with a length below 0.5.
   std::vector<glm::dmat4> to_world(double seconds) const;
 };
 
 struct Skin {
-  std::vector<std::size_t> joints;        ///< positions in NodeTree::nodes
-  std::vector<glm::dmat4> inverse_binds;  ///< one per joint: from the mesh's space to the joint's space
+  std::vector<std::size_t> joints;  ///< positions in NodeTree::nodes
+  /// One per joint: from the mesh's space to the joint's space.
+  std::vector<glm::dmat4> inverse_binds;
 };
 
 /// A tree at a time: transforms of nodes and of joints. Borrows the tree.

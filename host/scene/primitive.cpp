@@ -29,8 +29,8 @@ glm::uvec3 corners_of(TriangleOrder order, std::uint32_t i) {
 }
 
 /// Number of triangles. Rejects invalid numbers of corners and geometry beyond the budget.
-std::uint64_t triangle_count(const PrimitiveArrays& from, const std::string& file, const std::string& place,
-                             const GeometryBudget& budget) {
+std::uint64_t triangle_count(const PrimitiveArrays& from, const std::string& file,
+                             const std::string& place, const GeometryBudget& budget) {
   const std::uint64_t stored = from.positions->count(),
                       corners = from.indices ? from.indices->count() : stored;
   const bool list = from.order == TriangleOrder::list;
@@ -58,7 +58,8 @@ LocalVertex vertex(const PrimitiveArrays& from, std::uint32_t index) {
     const glm::dvec3 uv(from.uvs->finite(index, 0), from.uvs->finite(index, 1), 1);
     made.uv = glm::vec2(from.uv_transform * uv);
     if (!std::isfinite(made.uv.x) || !std::isfinite(made.uv.y)) {
-      from.uvs->reject_element(index, fmt::format("texture coordinates ({}, {})", made.uv.x, made.uv.y),
+      from.uvs->reject_element(index,
+                               fmt::format("texture coordinates ({}, {})", made.uv.x, made.uv.y),
                                "finite numbers");
     }
   }
@@ -67,8 +68,8 @@ LocalVertex vertex(const PrimitiveArrays& from, std::uint32_t index) {
   return made;
 }
 
-void read_triangles(const PrimitiveArrays& from, std::uint64_t count, std::vector<std::uint32_t>& slots,
-                    LocalPrimitive& to) {
+void read_triangles(const PrimitiveArrays& from, std::uint64_t count,
+                    std::vector<std::uint32_t>& slots, LocalPrimitive& to) {
   const std::size_t stored = from.positions->count();
   if (slots.size() < stored) slots.resize(stored, kNoSlot);
   to.vertices.reserve(std::min<std::uint64_t>(stored, 3 * count));
@@ -121,13 +122,15 @@ double angle_at(const std::vector<LocalVertex>& vertices, const glm::uvec3& tria
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-/// Means of the normals of the triangles at each vertex, weighted by their angles there (Thürmer and Wüthrich 1998).
+/// Means of the normals of the triangles at each vertex, weighted by their angles there (Thürmer
+/// and Wüthrich 1998).
 void set_smooth_normals(LocalPrimitive& primitive) {
   std::vector<LocalVertex>& vertices = primitive.vertices;
   for (LocalVertex& vertex : vertices) vertex.normal = glm::dvec3(0);
   for (const glm::uvec3& triangle : primitive.triangles) {
     const glm::dvec3 normal = triangle_normal(vertices, triangle);
-    for (int k = 0; k < 3; ++k) vertices[triangle[k]].normal += angle_at(vertices, triangle, k) * normal;
+    for (int k = 0; k < 3; ++k)
+      vertices[triangle[k]].normal += angle_at(vertices, triangle, k) * normal;
   }
   for (LocalVertex& vertex : vertices)
     vertex.normal = glm::length(vertex.normal) < kMinNormal ? kUp : glm::normalize(vertex.normal);
@@ -178,9 +181,9 @@ glm::dvec3 vector_in(const NumberArray& from, std::size_t element) {
   return {from.finite(element, 0), from.finite(element, 1), from.finite(element, 2)};
 }
 
-LocalPrimitive make_primitive(const PrimitiveArrays& arrays, const std::string& file, std::string place,
-                              std::uint32_t material, const GeometryBudget& budget,
-                              std::vector<std::uint32_t>& slots) {
+LocalPrimitive make_primitive(const PrimitiveArrays& arrays, const std::string& file,
+                              std::string place, std::uint32_t material,
+                              const GeometryBudget& budget, std::vector<std::uint32_t>& slots) {
   const std::uint64_t triangles = triangle_count(arrays, file, place, budget);
   LocalPrimitive made;
   made.place = std::move(place);
@@ -192,7 +195,8 @@ LocalPrimitive make_primitive(const PrimitiveArrays& arrays, const std::string& 
   return made;
 }
 
-void move_vertices(LocalPrimitive& primitive, const NumberArray& positions, const NumberArray* normals) {
+void move_vertices(LocalPrimitive& primitive, const NumberArray& positions,
+                   const NumberArray* normals) {
   for (LocalVertex& vertex : primitive.vertices) {
     vertex.position = vector_in(positions, vertex.source);
     if (normals) vertex.normal = vector_in(*normals, vertex.source);

@@ -43,8 +43,8 @@ struct PrimitiveArrays {
   const NumberArray* indices = nullptr;  ///< of corners, one component; absent: 0, 1, 2, ...
   TriangleOrder order = TriangleOrder::list;
   glm::dmat3 uv_transform{1.0};
-  bool smooth =
-      false;  ///< without normals: means of the triangles' normals, weighted by angle, in place of flat ones
+  bool smooth = false;  ///< without normals: means of the triangles' normals, weighted by angle, in
+                        ///< place of flat ones
 };
 
 /// Geometry that the scene may still add.
@@ -57,15 +57,16 @@ struct GeometryBudget {
 /// `slots` is scratch memory, kNoSlot between calls, as primitives often share one large array.
 /// Throws Error(bad_input) for numbers that are not finite, indices out of range, and more geometry
 /// than `budget`.
-LocalPrimitive make_primitive(const PrimitiveArrays& arrays, const std::string& file, std::string place,
-                              std::uint32_t material, const GeometryBudget& budget,
-                              std::vector<std::uint32_t>& slots);
+LocalPrimitive make_primitive(const PrimitiveArrays& arrays, const std::string& file,
+                              std::string place, std::uint32_t material,
+                              const GeometryBudget& budget, std::vector<std::uint32_t>& slots);
 
 inline constexpr std::uint32_t kNoSlot = 0xffffffff;
 
 /// Moves a primitive's vertices, indexed by LocalVertex::source. Stored normals stay unless
 /// `normals` replaces them; others are computed again. Throws Error(bad_input) for numbers that are
 /// not finite.
-void move_vertices(LocalPrimitive& primitive, const NumberArray& positions, const NumberArray* normals);
+void move_vertices(LocalPrimitive& primitive, const NumberArray& positions,
+                   const NumberArray* normals);
 
 }  // namespace clpv

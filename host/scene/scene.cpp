@@ -34,7 +34,8 @@ const SceneCamera& SceneData::camera(const std::string& name) const {
     if (name.empty() || candidate.name == name) return candidate;
     names.push_back(candidate.name);
   }
-  throw Error(ExitCode::usage, "{}: no camera named '{}'; allowed: {}", path, name, fmt::join(names, ", "));
+  throw Error(ExitCode::usage, "{}: no camera named '{}'; allowed: {}", path, name,
+              fmt::join(names, ", "));
 }
 
 std::vector<SceneLight> SceneData::lights_for(const SceneCamera& camera) const {
@@ -49,7 +50,8 @@ std::vector<SceneLight> SceneData::lights_for(const SceneCamera& camera) const {
 
 void add_range(Fingerprint& print, const SceneData& scene, const MeshRange& range) {
   print.add(std::as_bytes(std::span(scene.vertices).subspan(range.first_vertex, range.vertices)));
-  print.add(std::as_bytes(std::span(scene.triangles).subspan(range.first_triangle, range.triangles)));
+  print.add(
+      std::as_bytes(std::span(scene.triangles).subspan(range.first_triangle, range.triangles)));
 }
 
 void add_moving(Fingerprint& print, const SceneData& scene) {

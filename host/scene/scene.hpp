@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene at one time: triangles, materials, textures, cameras and lights, in metres. Does not depend on OpenCL.
+// A scene at one time: triangles, materials, textures, cameras and lights, in metres. Does not
+// depend on OpenCL.
 #pragma once
 
 #include <cstdint>
@@ -63,9 +64,10 @@ struct MeshRange {
 };
 
 struct SceneData {
-  std::string name;                          ///< the file's stem
-  std::string path;                          ///< the scene's file
-  std::vector<std::filesystem::path> files;  ///< other files that it was read from: model, buffers, images
+  std::string name;  ///< the file's stem
+  std::string path;  ///< the scene's file
+  /// Other files that it was read from: model, buffers, images.
+  std::vector<std::filesystem::path> files;
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
   std::vector<ClpvMaterial> materials;  ///< at least one if there are triangles
@@ -82,10 +84,12 @@ struct SceneData {
   std::optional<int> cascades;        ///< number of cascades from the scene file
   std::vector<std::string> notes;     ///< notes of the loader to the user ("no light: added a sun")
 
-  /// Largest distance along an axis from a camera's eye to the bounding box's faces [m]; animated scenes: at 0 s.
+  /// Largest distance along an axis from a camera's eye to the bounding box's faces [m]; animated
+  /// scenes: at 0 s.
   double reach() const;
 
-  /// The camera with this name, or the first for an empty name. Throws Error(usage) that lists all names.
+  /// The camera with this name, or the first for an empty name. Throws Error(usage) that lists all
+  /// names.
   const SceneCamera& camera(const std::string& name) const;
 
   /// Lights for a camera, the one it names or all, in the scene's medium.

@@ -33,7 +33,8 @@ const KeyedList& keyed_cameras() {
   static const KeyedList kList = {
       "/cameras",
       {vector("/cameras/*/eye", 3, -kFar, kFar), vector("/cameras/*/target", 3, -kFar, kFar),
-       vector("/cameras/*/up", 3, -kFar, kFar), number("/cameras/*/vertical_fov_degrees", 0.01, 179.9)},
+       vector("/cameras/*/up", 3, -kFar, kFar),
+       number("/cameras/*/vertical_fov_degrees", 0.01, 179.9)},
       "",
       {KeyInterpolation::linear, KeyInterpolation::step, KeyInterpolation::smooth}};
   return kList;
@@ -44,7 +45,8 @@ const KeyedList& keyed_lights() {
   static const KeyedList kList = {
       "/lights",
       {vector("/lights/*/direction", 3, -kFar, kFar), vector("/lights/*/position", 3, -kFar, kFar),
-       number("/lights/*/illuminance_lux", 0, kBright), number("/lights/*/intensity_candela", 0, kBright),
+       number("/lights/*/illuminance_lux", 0, kBright),
+       number("/lights/*/intensity_candela", 0, kBright),
        vector("/lights/*/colour", 3, 0, kBright)},
       "direction",
       {KeyInterpolation::linear, KeyInterpolation::step}};
@@ -119,14 +121,17 @@ Vec3 numbers_in(const json& object, const char* key, const Vec3& fallback) {
 
 /// Rejects a member of an entry of the file.
 RejectMember rejected_at(const std::string& file, const std::string& place) {
-  return [&file, place](const std::string& member, const std::string& found, const std::string& allowed) {
+  return [&file, place](const std::string& member, const std::string& found,
+                        const std::string& allowed) {
     reject(file, member.empty() ? place : pointer_to(place, member), found, allowed);
   };
 }
 
-SceneCamera read_camera(const json& given, double scale, const std::string& file, const std::string& place) {
+SceneCamera read_camera(const json& given, double scale, const std::string& file,
+                        const std::string& place) {
   for (const char* key : {"eye", "target"}) {
-    if (!given.contains(key)) reject(file, pointer_to(place, key), "nothing", "a point, here or in keys");
+    if (!given.contains(key))
+      reject(file, pointer_to(place, key), "nothing", "a point, here or in keys");
   }
   Camera camera;
   camera.name = given["name"];
@@ -137,7 +142,8 @@ SceneCamera read_camera(const json& given, double scale, const std::string& file
   camera.vertical_fov_degrees = given.value("vertical_fov_degrees", camera.vertical_fov_degrees);
   if (given.contains("near")) camera.near = given["near"];
   SceneCamera made = scene_camera(camera, rejected_at(file, place), scale);
-  if (!given.contains("near")) made.near_depth = static_cast<float>(Camera{}.near);  // [m] in any unit
+  if (!given.contains("near"))
+    made.near_depth = static_cast<float>(Camera{}.near);  // [m] in any unit
   return made;
 }
 
@@ -178,7 +184,8 @@ void check_light_keys(const json& given, LightKind light_kind, const std::string
   }
 }
 
-SceneLight read_light(const json& given, double scale, const std::string& file, const std::string& place) {
+SceneLight read_light(const json& given, double scale, const std::string& file,
+                      const std::string& place) {
   Light light;
   light.kind = named<LightKind>("kind", given["kind"].get_ref<const std::string&>());
   check_light_keys(given, light.kind, file, place);
@@ -209,7 +216,8 @@ void check_names(const std::vector<Named>& list, const std::string& file, const 
 
 /// Reads each entry of a list by `read`.
 template <typename Read>
-auto read_list(const json& list, Read read, double scale, const std::string& file, const char* place) {
+auto read_list(const json& list, Read read, double scale, const std::string& file,
+               const char* place) {
   std::vector<decltype(read(list, scale, file, file))> made;
   for (std::size_t i = 0; i < list.size(); ++i)
     made.push_back(read(list[i], scale, file, fmt::format("{}/{}", place, i)));
@@ -218,7 +226,8 @@ auto read_list(const json& list, Read read, double scale, const std::string& fil
 }
 
 std::optional<std::vector<KeyedEntry>> read_entries(const json& document, const char* key,
-                                                    const KeyedList& list, const std::string& file) {
+                                                    const KeyedList& list,
+                                                    const std::string& file) {
   if (!document.contains(key)) return std::nullopt;
   std::vector<KeyedEntry> entries;
   for (std::size_t i = 0; i < document[key].size(); ++i)
@@ -240,7 +249,8 @@ Sky read_sky_member(const json& given, const std::filesystem::path& path, const 
   }
   if (given.contains("radiance")) {
     for (const char* key : {"scale", "rotation_degrees"}) {
-      if (given.contains(key)) reject(file, pointer_to("/sky", key), "a value", "none, for a constant sky");
+      if (given.contains(key))
+        reject(file, pointer_to("/sky", key), "a value", "none, for a constant sky");
     }
     const glm::vec3 above(vector_in(given, "radiance"));
     return given.contains("ground") ? sky_with_ground(above, glm::vec3(vector_in(given, "ground")))
@@ -309,16 +319,20 @@ SceneDescription read_scene_file(const std::filesystem::path& path) {
 
 SceneViews views_at(const SceneDescription& description, double seconds) {
   const bool moves = description.moves();
-  const std::string file = moves ? fmt::format("{} at {} s", description.file, seconds) : description.file;
+  const std::string file =
+      moves ? fmt::format("{} at {} s", description.file, seconds) : description.file;
   json posed = json::object();
   if (description.cameras) posed["cameras"] = entries_at(*description.cameras, seconds);
   if (description.lights) posed["lights"] = entries_at(*description.lights, seconds);
   if (moves)
-    check_rules(posed, camera_and_light_rules(), file);  // splines may exceed the range of their keys
+    check_rules(posed, camera_and_light_rules(),
+                file);  // splines may exceed the range of their keys
   const double scale = description.metres_per_unit;
   SceneViews made;
-  if (description.cameras) made.cameras = read_list(posed["cameras"], read_camera, scale, file, "/cameras");
-  if (description.lights) made.lights = read_list(posed["lights"], read_light, scale, file, "/lights");
+  if (description.cameras)
+    made.cameras = read_list(posed["cameras"], read_camera, scale, file, "/cameras");
+  if (description.lights)
+    made.lights = read_list(posed["lights"], read_light, scale, file, "/lights");
   return made;
 }
 

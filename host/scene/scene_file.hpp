@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scene files: model, units, cameras, lights, sky and their keys. docs/scenes.md describes the format.
+// Scene files: model, units, cameras, lights, sky and their keys. docs/scenes.md describes the
+// format.
 #pragma once
 
 #include <filesystem>
@@ -19,9 +20,9 @@ struct SceneDescription {
   float exposure = 0;
   std::optional<float> cascade_size;  ///< [m]
   std::optional<int> cascades;
-  std::shared_ptr<const Sky> sky;                          ///< null if absent
-  std::filesystem::path sky_map;                           ///< its file; empty if absent
-  std::optional<ClpvMedium> medium;                        ///< without a box: lower and upper are equal
+  std::shared_ptr<const Sky> sky;    ///< null if absent
+  std::filesystem::path sky_map;     ///< its file; empty if absent
+  std::optional<ClpvMedium> medium;  ///< without a box: lower and upper are equal
   std::optional<std::vector<KeyedEntry>> cameras, lights;  ///< replace the model's, unless absent
 
   /// Returns true if a camera or light has keys.

@@ -50,14 +50,15 @@ void check_key_quantities(const json& given, const KeyedList& list, const std::s
     }
     for (const auto& [key, value] : keys[i].items()) {
       if (given.contains(key)) {
-        reject(file, pointer_to(here, key), fmt::format("a duplicate of {}", pointer_to(place, key)),
-               "one of the two");
+        reject(file, pointer_to(here, key),
+               fmt::format("a duplicate of {}", pointer_to(place, key)), "one of the two");
       }
     }
   }
 }
 
-/// Values with tangents: those of the parabola through a key and its neighbours, and 0 at the first and last key.
+/// Values with tangents: those of the parabola through a key and its neighbours, and 0 at the first
+/// and last key.
 std::vector<double> with_tangents(const Curve& linear) {
   const std::size_t n = linear.components, keys = linear.times.size();
   std::vector<double> values;
@@ -66,8 +67,10 @@ std::vector<double> with_tangents(const Curve& linear) {
     for (std::size_t i = 0; k > 0 && k + 1 < keys && i < n; ++i) {
       const double before = linear.times[k] - linear.times[k - 1],
                    after = linear.times[k + 1] - linear.times[k];
-      const double slope_before = (linear.values[k * n + i] - linear.values[(k - 1) * n + i]) / before,
-                   slope_after = (linear.values[(k + 1) * n + i] - linear.values[k * n + i]) / after;
+      const double slope_before =
+                       (linear.values[k * n + i] - linear.values[(k - 1) * n + i]) / before,
+                   slope_after =
+                       (linear.values[(k + 1) * n + i] - linear.values[k * n + i]) / after;
       tangent[i] = (slope_before * after + slope_after * before) / (before + after);
     }
     values.insert(values.end(), tangent.begin(), tangent.end());
@@ -79,8 +82,10 @@ std::vector<double> with_tangents(const Curve& linear) {
 }
 
 /// Appends a value as unit vector. Rejects length 0 and the opposite of the previous key.
-void add_direction(Curve& curve, const glm::dvec3& value, const std::string& file, const std::string& place) {
-  if (glm::length(value) < kMinDirection) reject(file, place, "a vector of no length", "a direction");
+void add_direction(Curve& curve, const glm::dvec3& value, const std::string& file,
+                   const std::string& place) {
+  if (glm::length(value) < kMinDirection)
+    reject(file, place, "a vector of no length", "a direction");
   const glm::dvec3 unit = glm::normalize(value);
   if (!curve.values.empty()) {
     const double* last = &curve.values[curve.values.size() - 3];
@@ -91,16 +96,17 @@ void add_direction(Curve& curve, const glm::dvec3& value, const std::string& fil
   for (int i = 0; i < 3; ++i) curve.values.push_back(unit[i]);
 }
 
-Curve read_curve(const json& keys, const std::string& quantity, bool direction, const std::string& file,
-                 const std::string& place) {
+Curve read_curve(const json& keys, const std::string& quantity, bool direction,
+                 const std::string& file, const std::string& place) {
   Curve curve;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const auto found = keys[i].find(quantity);
     if (found == keys[i].end()) continue;
     curve.times.push_back(keys[i]["time"]);
     if (direction) {
-      add_direction(curve, {(*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>()},
-                    file, pointer_to(fmt::format("{}/keys/{}", place, i), quantity));
+      add_direction(
+          curve, {(*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>()},
+          file, pointer_to(fmt::format("{}/keys/{}", place, i), quantity));
     } else if (found->is_number()) {
       curve.values.push_back(*found);
     } else {
@@ -143,8 +149,10 @@ KeyedEntry::KeyedEntry(const json& given, const KeyedList& list, const std::stri
   const auto interpolation =
       named<KeyInterpolation>("interpolation", given.value("interpolation", std::string("linear")));
   for (const Rule& quantity : list.quantities) {
-    Track track{
-        quantity_of(quantity), quantity.shape == Shape::number, quantity_of(quantity) == list.direction, {}};
+    Track track{quantity_of(quantity),
+                quantity.shape == Shape::number,
+                quantity_of(quantity) == list.direction,
+                {}};
     track.curve = read_curve(given["keys"], track.quantity, track.direction, file, place);
     if (track.curve.times.empty()) continue;
     if (interpolation == KeyInterpolation::smooth) track.curve.values = with_tangents(track.curve);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Animated cameras and lights of a scene file: `keys`, each with a time and values of some quantities.
+// Animated cameras and lights of a scene file: `keys`, each with a time and values of some
+// quantities.
 #pragma once
 
 #include <memory>
@@ -23,11 +24,12 @@ enum class KeyInterpolation : unsigned {
 template <>
 inline constexpr auto kNames<KeyInterpolation> = name_list("linear", "step", "smooth");
 
-/// A list of the scene file (cameras or lights) and the quantities of its entries that may have keys.
+/// A list of the scene file (cameras or lights) and the quantities of its entries that may have
+/// keys.
 struct KeyedList {
   std::string place;  ///< "/cameras"
-  std::vector<Rule>
-      quantities;         ///< rules of the quantities without keys ("/cameras/*/eye"): numbers or vectors
+  /// Rules of the quantities without keys ("/cameras/*/eye"): numbers or vectors.
+  std::vector<Rule> quantities;
   std::string direction;  ///< the quantity that is interpolated as a unit vector; may be empty
   std::vector<KeyInterpolation> interpolations;  ///< allowed
 };
@@ -38,8 +40,9 @@ std::vector<Rule> key_rules(const KeyedList& list);
 /// One entry of a list: its members without keys, and a curve per quantity with keys.
 class KeyedEntry {
  public:
-  /// `given` must obey the schema. Throws Error(bad_input) for times that do not rise, keys without quantities, quantities
-  /// both in the entry and in keys, directions of length 0, and opposite directions in adjacent keys.
+  /// `given` must obey the schema. Throws Error(bad_input) for times that do not rise, keys without
+  /// quantities, quantities both in the entry and in keys, directions of length 0, and opposite
+  /// directions in adjacent keys.
   KeyedEntry(const nlohmann::json& given, const KeyedList& list, const std::string& file,
              const std::string& place);
 

@@ -26,12 +26,14 @@ struct MapPoint {
 
 MapPoint point_of(const Sky& sky, const glm::dvec3& direction) {
   const double turn = std::atan2(direction.x, -direction.z) - sky.rotation;  // from -z towards +x
-  const double across = turn / (2 * pi) + 0.5, down = std::acos(std::clamp(direction.y, -1.0, 1.0)) / pi;
+  const double across = turn / (2 * pi) + 0.5,
+               down = std::acos(std::clamp(direction.y, -1.0, 1.0)) / pi;
   return {(across - std::floor(across)) * sky.width, down * sky.height};
 }
 
 std::size_t index_of(const Sky& sky, int x, int y) {
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(sky.width) + static_cast<std::size_t>(x);
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(sky.width) +
+         static_cast<std::size_t>(x);
 }
 
 }  // namespace
@@ -56,7 +58,8 @@ glm::vec3 Sky::interpolated(const glm::dvec3& direction) const {
 }
 
 glm::dvec3 Sky::direction(double x, double y) const {
-  const double turn = 2 * pi * (x / width - 0.5) + rotation, down = pi * y / height, out = std::sin(down);
+  const double turn = 2 * pi * (x / width - 0.5) + rotation, down = pi * y / height,
+               out = std::sin(down);
   return {out * std::sin(turn), std::cos(down), -out * std::cos(turn)};
 }
 
@@ -94,8 +97,8 @@ Sky read_sky(const std::filesystem::path& path, double scale, double rotation) {
     throw Error(ExitCode::bad_input, "{}: sRGB-encoded sky; allowed: linear EXR and HDR files",
                 path.string());
   if (image.width > bounds::kSkyWidth || image.height > bounds::kSkyHeight) {
-    throw Error(ExitCode::bad_input, "{}: sky of {} x {} pixels; allowed: up to {} x {}", path.string(),
-                image.width, image.height, bounds::kSkyWidth, bounds::kSkyHeight);
+    throw Error(ExitCode::bad_input, "{}: sky of {} x {} pixels; allowed: up to {} x {}",
+                path.string(), image.width, image.height, bounds::kSkyWidth, bounds::kSkyHeight);
   }
   const std::array<const char*, 3> names = {"R", "G", "B"};
   Sky sky;
@@ -105,14 +108,16 @@ Sky read_sky(const std::filesystem::path& path, double scale, double rotation) {
     const char* name = names[channel];
     const auto from = image.channel(name);
     if (!from)
-      throw Error(ExitCode::bad_input, "{}: found no channel {}; allowed: R, G and B", path.string(), name);
+      throw Error(ExitCode::bad_input, "{}: found no channel {}; allowed: R, G and B",
+                  path.string(), name);
     for (std::size_t i = 0; i < sky.texels.size(); ++i) {
       const float value = image.pixels[i * image.channels.size() + *from];
       const double scaled = scale * double{value};
       if (!(scaled >= 0 && scaled <= bounds::kSkyRadiance)) {
-        throw Error(ExitCode::bad_input, "{}: pixel {},{} channel {}: found {}, times {}; allowed: 0 to {}",
-                    path.string(), i % static_cast<std::size_t>(sky.width),
-                    i / static_cast<std::size_t>(sky.width), name, value, scale, bounds::kSkyRadiance);
+        throw Error(
+            ExitCode::bad_input, "{}: pixel {},{} channel {}: found {}, times {}; allowed: 0 to {}",
+            path.string(), i % static_cast<std::size_t>(sky.width),
+            i / static_cast<std::size_t>(sky.width), name, value, scale, bounds::kSkyRadiance);
       }
       sky.texels[i][channel] = static_cast<float>(scaled);
     }

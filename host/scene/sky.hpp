@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sky: radiance from all directions, a constant or an equirectangular map. Does not depend on OpenCL.
+// Sky: radiance from all directions, a constant or an equirectangular map. Does not depend on
+// OpenCL.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +12,9 @@ namespace clpv {
 
 class Fingerprint;
 
-/// Equirectangular map: the top row is at +y, the bottom row at -y. The centre of a row is at -z, its right half towards +x;
-/// `rotation` turns the map in that sense. As a light, a texel has constant radiance; cameras show the map with bilinear
-/// interpolation.
+/// Equirectangular map: the top row is at +y, the bottom row at -y. The centre of a row is at -z,
+/// its right half towards +x; `rotation` turns the map in that sense. As a light, a texel has
+/// constant radiance; cameras show the map with bilinear interpolation.
 struct Sky {
   int width = 1, height = 1;
   std::vector<glm::vec3> texels = {glm::vec3(0)};  ///< radiance [W/m^2/sr], row 0 first
@@ -38,8 +39,9 @@ Sky constant_sky(const glm::vec3& radiance);
 /// Sky with one radiance above the horizon and another below.
 Sky sky_with_ground(const glm::vec3& above, const glm::vec3& below);
 
-/// Reads a map from an EXR or HDR file with channels R, G and B, times `scale`; `rotation` in [rad]. Throws Error(bad_input)
-/// for other files, more than bounds::kSkyWidth x kSkyHeight pixels, and values that are negative or not finite.
+/// Reads a map from an EXR or HDR file with channels R, G and B, times `scale`; `rotation` in
+/// [rad]. Throws Error(bad_input) for other files, more than bounds::kSkyWidth x kSkyHeight pixels,
+/// and values that are negative or not finite.
 Sky read_sky(const std::filesystem::path& path, double scale, double rotation);
 
 /// Adds a sky to a hash.

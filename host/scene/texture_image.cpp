@@ -38,7 +38,8 @@ void read_encoded(const GltfDocument& document, int index, EncodedImage& encoded
   } else if (!image.image.empty()) {
     encoded.bytes = image.image;
   } else {
-    const auto path = resolve_uri(document.folder, image.uri, document.file, encoded.place + "/uri");
+    const auto path =
+        resolve_uri(document.folder, image.uri, document.file, encoded.place + "/uri");
     encoded.owned = read_file(path, bounds::kImageFileBytes, document.file, encoded.place + "/uri");
     encoded.bytes = encoded.owned;
     encoded.name = path.filename().string();
@@ -59,7 +60,8 @@ void check_encoded(const GltfDocument& document, EncodedImage& encoded) {
            fmt::format("1 to {} pixels per side", bounds::kImageSide));
   }
   if (!header->complete) {
-    reject(document.file, encoded.place, fmt::format("'{}', truncated", encoded.name), "a complete image");
+    reject(document.file, encoded.place, fmt::format("'{}', truncated", encoded.name),
+           "a complete image");
   }
   encoded.header = *header;
 }
@@ -81,7 +83,8 @@ std::vector<std::uint8_t> to_rgba(const std::vector<std::uint8_t>& pixels, int c
 
 std::vector<std::uint8_t> decode(const GltfDocument& document, const EncodedImage& encoded) {
   const auto fail = [&](const std::string& reason) {
-    reject(document.file, encoded.place, fmt::format("'{}', which does not decode: {}", encoded.name, reason),
+    reject(document.file, encoded.place,
+           fmt::format("'{}', which does not decode: {}", encoded.name, reason),
            "a readable PNG or JPEG image");
   };
   const bool png = encoded.header.format == ImageFormat::png;
@@ -100,7 +103,8 @@ std::vector<std::uint8_t> decode(const GltfDocument& document, const EncodedImag
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(image.width) *
                                    static_cast<std::size_t>(image.height) * image.channels.size());
   if (const std::string failure = decoder->read(pixels.data()); !failure.empty()) fail(failure);
-  return image.channels.size() == 4 ? pixels : to_rgba(pixels, static_cast<int>(image.channels.size()));
+  return image.channels.size() == 4 ? pixels
+                                    : to_rgba(pixels, static_cast<int>(image.channels.size()));
 }
 
 /// Runs `work(i)` for i in 0..count-1 on all cores. Rethrows the exception of the lowest i.
@@ -118,8 +122,10 @@ void for_all(std::size_t count, const Work& work) {
     }
   };
   std::vector<std::future<void>> workers;
-  const std::size_t threads = std::min<std::size_t>(count, std::max(1u, std::thread::hardware_concurrency()));
-  for (std::size_t i = 1; i < threads; ++i) workers.push_back(std::async(std::launch::async, worker));
+  const std::size_t threads =
+      std::min<std::size_t>(count, std::max(1u, std::thread::hardware_concurrency()));
+  for (std::size_t i = 1; i < threads; ++i)
+    workers.push_back(std::async(std::launch::async, worker));
   worker();
   for (auto& each : workers) each.get();
   for (const auto& failure : failures) {
@@ -145,7 +151,8 @@ std::vector<Texture> load_textures(const GltfDocument& document,
     check_encoded(document, encoded[i]);
     file_bytes += encoded[i].owned.size();
     if (file_bytes > bounds::kBufferBytes) {
-      reject(document.file, encoded[i].place, fmt::format("{} bytes of image files so far", file_bytes),
+      reject(document.file, encoded[i].place,
+             fmt::format("{} bytes of image files so far", file_bytes),
              fmt::format("at most {} in all", bounds::kBufferBytes));
     }
   }
@@ -164,8 +171,8 @@ std::vector<Texture> load_textures(const GltfDocument& document,
   for (const TextureRequest& request : requests) {
     const std::size_t slot = slots[request.image];
     const ImageHeader& header = encoded[slot].header;
-    textures.push_back(
-        {header.width, header.height, request.wrap_u, request.wrap_v, decoded[slot], encoded[slot].name});
+    textures.push_back({header.width, header.height, request.wrap_u, request.wrap_v, decoded[slot],
+                        encoded[slot].name});
   }
   return textures;
 }

@@ -42,7 +42,8 @@ glm::dvec3 checked(const char* member, const Vec3& value, double limit, bool may
                    const RejectMember& reject) {
   for (const double component : value) {
     if (!(component >= (may_be_negative ? -limit : 0) && component <= limit))
-      reject(member, text_of(value), fmt::format("{}..{} each", may_be_negative ? -limit : 0, limit));
+      reject(member, text_of(value),
+             fmt::format("{}..{} each", may_be_negative ? -limit : 0, limit));
   }
   return dvec3(value);
 }
@@ -65,15 +66,16 @@ void store_floats(float out[3], const glm::dvec3& v) {
 
 RejectMember rejected_in(const std::string& what) {
   return [what](const std::string& member, const std::string& found, const std::string& allowed) {
-    throw Error(ExitCode::usage, "{}: {}{}found {}, allowed: {}", what, member, member.empty() ? "" : ": ",
-                found, allowed);
+    throw Error(ExitCode::usage, "{}: {}{}found {}, allowed: {}", what, member,
+                member.empty() ? "" : ": ", found, allowed);
   };
 }
 
 SceneCamera scene_camera(const Camera& camera, const RejectMember& reject, double metres_per_unit) {
   const glm::dvec3 eye = point("eye", camera.eye, reject),
                    towards = point("target", camera.target, reject) - eye;
-  if (glm::length(towards) < kMinLength) reject("target", "the eye itself", "a point away from eye");
+  if (glm::length(towards) < kMinLength)
+    reject("target", "the eye itself", "a point away from eye");
   check_number("vertical_fov_degrees", camera.vertical_fov_degrees, 0.01, 179.9, reject);
   check_number("near", camera.near, kMinLength, bounds::kCoordinate, reject);
   const glm::dvec3 forward = glm::normalize(towards), up = direction("up", camera.up, reject);
@@ -113,8 +115,8 @@ SceneLight scene_light(const Light& light, const RejectMember& reject, double me
     check_number("outer_cone_degrees", light.outer_cone_degrees, kMinLength, 90, reject);
     if (light.inner_cone_degrees >= light.outer_cone_degrees) {
       reject("",
-             fmt::format("inner_cone_degrees {} and outer_cone_degrees {}", light.inner_cone_degrees,
-                         light.outer_cone_degrees),
+             fmt::format("inner_cone_degrees {} and outer_cone_degrees {}",
+                         light.inner_cone_degrees, light.outer_cone_degrees),
              "inner less than outer");
     }
     set_cone(data, glm::radians(light.inner_cone_degrees), glm::radians(light.outer_cone_degrees));
@@ -123,8 +125,10 @@ SceneLight scene_light(const Light& light, const RejectMember& reject, double me
 }
 
 ClpvMedium scene_medium(const Medium& medium, const RejectMember& reject, double metres_per_unit) {
-  const glm::dvec3 scattering = checked("scattering", medium.scattering, bounds::kExtinction, false, reject),
-                   absorption = checked("absorption", medium.absorption, bounds::kExtinction, false, reject);
+  const glm::dvec3 scattering =
+                       checked("scattering", medium.scattering, bounds::kExtinction, false, reject),
+                   absorption =
+                       checked("absorption", medium.absorption, bounds::kExtinction, false, reject);
   check_number("anisotropy", medium.anisotropy, -bounds::kAnisotropy, bounds::kAnisotropy, reject);
   ClpvMedium made{};
   store_floats(made.scattering, scattering);
@@ -165,9 +169,14 @@ Camera camera_of(const SceneCamera& camera) {
 
 Light light_of(const SceneLight& light) {
   const ClpvLight& data = light.data;
-  Light made{
-      kind_of(data), vec3(data.position), vec3(data.direction), vec3(data.intensity), data.range, 0, 45,
-      light.name};
+  Light made{kind_of(data),
+             vec3(data.position),
+             vec3(data.direction),
+             vec3(data.intensity),
+             data.range,
+             0,
+             45,
+             light.name};
   if (made.kind != LightKind::spot) return made;
   const double outer = -double{data.cone_offset} / data.cone_scale;  // cosines (set_cone)
   made.outer_cone_degrees = glm::degrees(std::acos(std::clamp(outer, 0.0, 1.0)));
@@ -177,8 +186,9 @@ Light light_of(const SceneLight& light) {
 }
 
 std::string text_of(const Camera& camera) {
-  return fmt::format("eye {} target {} up {} fov {} near {}", text_of(camera.eye), text_of(camera.target),
-                     text_of(camera.up), float(camera.vertical_fov_degrees), float(camera.near));
+  return fmt::format("eye {} target {} up {} fov {} near {}", text_of(camera.eye),
+                     text_of(camera.target), text_of(camera.up), float(camera.vertical_fov_degrees),
+                     float(camera.near));
 }
 
 }  // namespace clpv

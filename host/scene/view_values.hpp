@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Converts cameras, lights and media of the public interface (clpv/scene.hpp) to those of a scene and back. The only
-// checks of their numbers.
+// Converts cameras, lights and media of the public interface (clpv/scene.hpp) to those of a scene
+// and back. The only checks of their numbers.
 #pragma once
 
 #include <functional>
@@ -12,18 +12,20 @@
 namespace clpv {
 
 /// Receives member, value found and value allowed; throws.
-using RejectMember =
-    std::function<void(const std::string& member, const std::string& found, const std::string& allowed)>;
+using RejectMember = std::function<void(const std::string& member, const std::string& found,
+                                        const std::string& allowed)>;
 
 /// Throws Error(usage): "`what`: eye: found ..., allowed: ...".
 RejectMember rejected_in(const std::string& what);
 
 /// Lengths and positions are multiplied by `metres_per_unit`.
-SceneCamera scene_camera(const Camera& camera, const RejectMember& reject, double metres_per_unit = 1);
+SceneCamera scene_camera(const Camera& camera, const RejectMember& reject,
+                         double metres_per_unit = 1);
 SceneLight scene_light(const Light& light, const RejectMember& reject, double metres_per_unit = 1);
 
 /// Without a box, `lower` and `upper` are equal (MovingScene::set_medium).
-ClpvMedium scene_medium(const Medium& medium, const RejectMember& reject, double metres_per_unit = 1);
+ClpvMedium scene_medium(const Medium& medium, const RejectMember& reject,
+                        double metres_per_unit = 1);
 
 Camera camera_of(const SceneCamera& camera);
 Light light_of(const SceneLight& light);

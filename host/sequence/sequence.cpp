@@ -25,7 +25,8 @@ constexpr const char* kKey = "frame_key";        // metadata: the key of a frame
 constexpr std::chrono::seconds kTimesEvery{10};  // interval of saving times.json
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
 }
 
 /// Returns true if the file holds a frame with that key. Warns about unreadable files.
@@ -49,7 +50,8 @@ fs::path SequenceOptions::file(int frame) const {
 }
 
 Sequence::Sequence(const SequenceOptions& options, SequenceSubject subject, MovingScene& scene,
-                   const RenderOptions& resolved, const Device& device, Compilation compilation, Ranks& ranks)
+                   const RenderOptions& resolved, const Device& device, Compilation compilation,
+                   Ranks& ranks)
     : options_(options),
       subject_(std::move(subject)),
       moving_(scene),
@@ -76,16 +78,18 @@ void Sequence::render() {
       (render(i) ? rendered : there) += 1;  // a signal may also end it where it compiles kernels
     } catch (const Interrupted&) {
       write_times();
-      throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes", rendered + there,
-                                    mine, options_.folder));
+      throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes",
+                                    rendered + there, mine, options_.folder));
     }
     progress.advance();
   }
   ranks_.sum(counts);
   if (there > 0) spdlog::info("{} of {} frames existed already", there, options_.frames);
-  if (rendered > 0) spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
+  if (rendered > 0)
+    spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
   for (const std::string& gathered : ranks_.gather(nlohmann::json(times_).dump()))
-    for (auto& [number, frame] : nlohmann::json::parse(gathered).get<SequenceTimes>()) times_[number] = frame;
+    for (auto& [number, frame] : nlohmann::json::parse(gathered).get<SequenceTimes>())
+      times_[number] = frame;
   write_times();
   if (renderer_) renderer_->session.store_programs();
   renderer_.reset();
@@ -129,8 +133,8 @@ nlohmann::json Sequence::described(double seconds) const {
   return all;
 }
 
-/// Returns the cache key over all inputs of a frame's pixels: program, device, options, scene content and its current
-/// pose.
+/// Returns the cache key over all inputs of a frame's pixels: program, device, options, scene
+/// content and its current pose.
 std::string Sequence::key(const nlohmann::json& described) const {
   const SceneData& posed = moving_.scene();
   Fingerprint print;
@@ -176,7 +180,8 @@ bool Sequence::render(int number) {
   return true;
 }
 
-void Sequence::write(int number, Frame& frame, const nlohmann::json& description, const std::string& key) {
+void Sequence::write(int number, Frame& frame, const nlohmann::json& description,
+                     const std::string& key) {
   Image image = view_image(frame, options_.view);
   image.metadata = metadata_of(description);
   image.metadata[kKey] = key;

@@ -34,7 +34,8 @@ struct SequenceOptions {
   double frames_per_second = 0, from = 0;
   Show view = Show::full;
   FrameFormat format = FrameFormat::exr;
-  std::uint32_t traced = 0;  ///< paths per pixel of the path-traced noise in stability.json; 0: none
+  /// Paths per pixel of the path-traced noise in stability.json; 0: none.
+  std::uint32_t traced = 0;
 
   double time_of(int frame) const { return from + frame / frames_per_second; }
   std::filesystem::path file(int frame) const;
@@ -45,22 +46,25 @@ struct SequenceSubject {
   std::string camera;
   float exposure;
   ToneMap tonemap;
-  std::function<nlohmann::json(const SceneData& posed, double seconds)>
-      describe;                                       ///< inputs of a frame, by name
+  /// Inputs of a frame, by name.
+  std::function<nlohmann::json(const SceneData& posed, double seconds)> describe;
   std::function<void(Session&, Frame&)> first_frame;  ///< called after the first frame
 };
 
-/// Renders the frames; scene, device and device resources persist between frames. The ranks share them out.
+/// Renders the frames; scene, device and device resources persist between frames. The ranks share
+/// them out.
 class Sequence {
  public:
   Sequence(const SequenceOptions& options, SequenceSubject subject, MovingScene& scene,
-           const RenderOptions& resolved, const Device& device, Compilation compilation, Ranks& ranks);
+           const RenderOptions& resolved, const Device& device, Compilation compilation,
+           Ranks& ranks);
 
-  /// Renders the missing frames of this rank; then rank 0 writes the times of all. Throws Interrupted, which names the
-  /// frames that are kept.
+  /// Renders the missing frames of this rank; then rank 0 writes the times of all. Throws
+  /// Interrupted, which names the frames that are kept.
   void render();
 
-  /// Writes stability.json. One rank renders all frames again, because an earlier run may have written most of them.
+  /// Writes stability.json. One rank renders all frames again, because an earlier run may have
+  /// written most of them.
   void measure_stability();
 
   /// Calls action(image) for the display image of each frame, from its file.
@@ -72,7 +76,8 @@ class Sequence {
     Frame frame;
     Renderer(const Device& device, const SceneData& scene, const RenderOptions& options,
              Compilation compilation)
-        : session(device, ProgramCache::of_user(), std::move(compilation)), frame(session, scene, options) {}
+        : session(device, ProgramCache::of_user(), std::move(compilation)),
+          frame(session, scene, options) {}
   };
   using Clock = std::chrono::steady_clock;
 
@@ -82,7 +87,9 @@ class Sequence {
     return display_image(image, subject_.exposure, subject_.tonemap);
   }
   const SceneCamera& camera() const { return moving_.scene().camera(subject_.camera); }
-  std::filesystem::path times_file() const { return std::filesystem::path(options_.folder) / "times.json"; }
+  std::filesystem::path times_file() const {
+    return std::filesystem::path(options_.folder) / "times.json";
+  }
   nlohmann::json described(double seconds) const;
   std::string key(const nlohmann::json& described) const;
   bool render(int number);

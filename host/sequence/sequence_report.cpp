@@ -91,15 +91,19 @@ json stability_json(const json& about, std::span<const StabilityStep> steps) {
       (step.cascades_moved.empty() ? inside : across).push_back(*step.change.mean);
   }
   all.update({{"schema", kSchema}, {"frames", std::move(frames)}});
-  for (const auto& [name, samples] : {std::pair("inside_cells", inside), std::pair("across_cells", across)}) {
+  for (const auto& [name, samples] :
+       {std::pair("inside_cells", inside), std::pair("across_cells", across)}) {
     if (samples.empty()) {
       all["summary"][name] = nullptr;
-      all["note"] = "null: no two successive frames of an unchanged scene show light under that condition";
+      all["note"] =
+          "null: no two successive frames of an unchanged scene show light under that condition";
       continue;
     }
     const Statistics figures = statistics_of(samples);
-    all["summary"][name] = {
-        {"frames", samples.size()}, {"median", figures.median}, {"p95", figures.p95}, {"worst", figures.max}};
+    all["summary"][name] = {{"frames", samples.size()},
+                            {"median", figures.median},
+                            {"p95", figures.p95},
+                            {"worst", figures.max}};
   }
   return all;
 }

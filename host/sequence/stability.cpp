@@ -13,9 +13,11 @@ namespace {
 
 // Maximum angle between normals of adjacent pixels on one surface, smooth ones included: 8 degrees.
 constexpr double kMinCosine = 0.99;
-// Maximum distance of a point from the nearest pixel's plane, in pixel edges; curved surfaces deviate by less.
+// Maximum distance of a point from the nearest pixel's plane, in pixel edges; curved surfaces
+// deviate by less.
 constexpr double kOffPlane = 0.1;
-// Maximum distance along the surface: half a pixel's diagonal across the view, more on slanted surfaces.
+// Maximum distance along the surface: half a pixel's diagonal across the view, more on slanted
+// surfaces.
 constexpr double kApart = 0.75;
 
 glm::dvec3 normal_of(const SurfaceImage& image, std::size_t pixel) {
@@ -28,9 +30,11 @@ std::size_t pixel_of(const SurfaceImage& later, const glm::dvec3& point, const g
   if (!(at.depth > later.view.near_depth)) return kNotSeen;
   const double x = std::round(at.pixel.x), y = std::round(at.pixel.y);
   if (!(x >= 0 && x < later.view.width && y >= 0 && y < later.view.height)) return kNotSeen;
-  const std::size_t pixel = static_cast<std::size_t>(y) * later.view.width + static_cast<std::size_t>(x);
+  const std::size_t pixel =
+      static_cast<std::size_t>(y) * later.view.width + static_cast<std::size_t>(x);
   if (later.depth[pixel] <= 0) return kNotSeen;
-  const glm::dvec3 there = reference::surface_position(later.view, x, y, double{later.depth[pixel]}),
+  const glm::dvec3 there =
+                       reference::surface_position(later.view, x, y, double{later.depth[pixel]}),
                    off = there - point, there_normal = normal_of(later, pixel);
   const double edge = reference::pixel_edge(later.view, at.depth);
   const glm::dvec3 ray = glm::normalize(there - vector(later.view.eye));
@@ -49,8 +53,9 @@ std::vector<std::size_t> later_pixels(const SurfaceImage& earlier, const Surface
     if (earlier.depth[i] <= 0) continue;
     const auto x = static_cast<double>(i % earlier.view.width),
                y = static_cast<double>(i / earlier.view.width);
-    pixels[i] = pixel_of(later, reference::surface_position(earlier.view, x, y, double{earlier.depth[i]}),
-                         normal_of(earlier, i));
+    pixels[i] =
+        pixel_of(later, reference::surface_position(earlier.view, x, y, double{earlier.depth[i]}),
+                 normal_of(earlier, i));
   }
   return pixels;
 }
@@ -107,22 +112,24 @@ std::vector<int> moved(const std::vector<ClpvGrid>& before, const std::vector<Cl
 }  // namespace
 
 void Stability::add(int number, double seconds, const SceneData& scene, const SceneCamera& camera) {
-  Seen now{read_surface(session_, frame_.seen()), frame_.read(Show::irradiance), frame_.light().grids,
-           content_of(scene, camera)};
+  Seen now{read_surface(session_, frame_.seen()), frame_.read(Show::irradiance),
+           frame_.light().grids, content_of(scene, camera)};
   if (before_) {
     const std::vector<bool> counted = still_seen(before_->surfaces, now.surfaces);
-    const auto surfaces = std::ranges::count_if(before_->surfaces.depth, [](float d) { return d > 0; });
+    const auto surfaces =
+        std::ranges::count_if(before_->surfaces.depth, [](float d) { return d > 0; });
     const LightChange change = change_of_light(counted, before_->irradiance, light_before(now));
     const double seen =
         surfaces > 0 ? static_cast<double>(change.points) / static_cast<double>(surfaces) : 0.0;
-    steps_.push_back({number, seconds, now.content == before_->content, moved(before_->grids, now.grids),
-                      seen, change, noise(scene, camera, counted)});
+    steps_.push_back({number, seconds, now.content == before_->content,
+                      moved(before_->grids, now.grids), seen, change,
+                      noise(scene, camera, counted)});
   }
   before_ = std::move(now);
 }
 
-/// Light of the frame `now` at the points of the previous one: from the volumes, with the near-field
-/// correction of the nearest pixels.
+/// Light of the frame `now` at the points of the previous one: from the volumes, with the
+/// near-field correction of the nearest pixels.
 std::vector<float> Stability::light_before(const Seen& now) {
   std::vector<float> light = frame_.irradiance_on(before_->surfaces);
   if (!frame_.options().traces_near()) return light;

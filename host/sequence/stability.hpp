@@ -15,9 +15,10 @@ namespace clpv {
 
 constexpr std::size_t kNotSeen = static_cast<std::size_t>(-1);
 
-/// Returns, for each pixel of `earlier`, the pixel of `later` that sees the same surface at the same position, or
-/// kNotSeen. Its point is projected to a pixel of `later`, which must show a similar normal, the same plane and a point
-/// within the pixel spacing. Moved, hidden and out-of-view points and edges do not match.
+/// Returns, for each pixel of `earlier`, the pixel of `later` that sees the same surface at the
+/// same position, or kNotSeen. Its point is projected to a pixel of `later`, which must show a
+/// similar normal, the same plane and a point within the pixel spacing. Moved, hidden and
+/// out-of-view points and edges do not match.
 std::vector<std::size_t> later_pixels(const SurfaceImage& earlier, const SurfaceImage& later);
 /// Whether there is such a pixel.
 std::vector<bool> still_seen(const SurfaceImage& earlier, const SurfaceImage& later);
@@ -25,14 +26,16 @@ std::vector<bool> still_seen(const SurfaceImage& earlier, const SurfaceImage& la
 /// Change of light at points.
 struct LightChange {
   std::size_t points = 0;
-  /// Sum of |after - before| / sum of `before`, over all points and channels; empty without points or light.
+  /// Sum of |after - before| / sum of `before`, over all points and channels; empty without points
+  /// or light.
   std::optional<double> mean;
-  /// 95th percentile of the change: a point's sum over channels, relative to the mean point of `before`.
+  /// 95th percentile of the change: a point's sum over channels, relative to the mean point of
+  /// `before`.
   std::optional<double> p95;
 };
 
-/// Computes the change of irradiance at the same points; four numbers each: red, green, blue and one ignored.
-/// `counted` selects the points to include.
+/// Computes the change of irradiance at the same points; four numbers each: red, green, blue and
+/// one ignored. `counted` selects the points to include.
 LightChange change_of_light(const std::vector<bool>& counted, const std::vector<float>& before,
                             const std::vector<float>& after);
 
@@ -47,8 +50,9 @@ struct StabilityStep {
   std::optional<double> noise;  ///< mean change between two path-traced images, if requested
 };
 
-/// Measures consecutive frames. Gathers the light of each frame at the points visible in the previous frame, which
-/// avoids interpolation between pixels. The near-field correction is taken from the nearest pixel.
+/// Measures consecutive frames. Gathers the light of each frame at the points visible in the
+/// previous frame, which avoids interpolation between pixels. The near-field correction is taken
+/// from the nearest pixel.
 class Stability {
  public:
   /// `traced`: paths per pixel of the path-traced images; 0: none.

@@ -24,7 +24,8 @@ void write_npy(const std::filesystem::path& path, std::span<const float> values,
                std::span<const std::size_t> shape) {
   std::size_t count = 1;
   for (const std::size_t extent : shape) count *= extent;
-  if (count != values.size()) throw std::logic_error("write_npy: shape and number of values differ");
+  if (count != values.size())
+    throw std::logic_error("write_npy: shape and number of values differ");
   // A Python tuple of one element needs a comma.
   std::string header = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}{}), }}",
                                    fmt::join(shape, ", "), shape.size() == 1 ? "," : "");

@@ -52,7 +52,8 @@ struct Descriptor {
 std::optional<std::string> CacheFolder::read(const std::string& name, std::uintmax_t limit) const {
   if (!distrust(path_).empty()) return std::nullopt;
   // O_NONBLOCK: opening a FIFO would wait for its writer.
-  const Descriptor file{::open((path_ / name).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)};
+  const Descriptor file{
+      ::open((path_ / name).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)};
   struct stat found {};
   if (file.number < 0 || ::fstat(file.number, &found) != 0 || !S_ISREG(found.st_mode) ||
       !trusted_owner(found) || static_cast<std::uintmax_t>(found.st_size) > limit)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A cache on disk: entries that later runs of this user read, and that may be lost or damaged at any time.
+// A cache on disk: entries that later runs of this user read, and that may be lost or damaged at
+// any time.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +15,23 @@
 
 namespace clpv {
 
-/// A folder of cache entries. Nobody else may have written what is read from it: the folder and each entry belong to this user or
-/// root, and only their owner can write the folder. No function throws, since a cache never ends a run.
+/// A folder of cache entries. Nobody else may have written what is read from it: the folder and
+/// each entry belong to this user or root, and only their owner can write the folder. No function
+/// throws, since a cache never ends a run.
 class CacheFolder {
  public:
   explicit CacheFolder(std::filesystem::path path) : path_(std::move(path)) {}
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Returns the bytes of an entry; nothing if it or the folder is of someone else, if it is not a regular file (a symbolic link
-  /// is none), longer than `limit` bytes, or missing. Whether the content is sound is for the caller to check.
-  std::optional<std::string> read(const std::string& name, std::uintmax_t limit = kMaxFileBytes) const;
+  /// Returns the bytes of an entry; nothing if it or the folder is of someone else, if it is not a
+  /// regular file (a symbolic link is none), longer than `limit` bytes, or missing. Whether the
+  /// content is sound is for the caller to check.
+  std::optional<std::string> read(const std::string& name,
+                                  std::uintmax_t limit = kMaxFileBytes) const;
 
-  /// Writes an entry, as a whole, in place of anything that has its name; does not follow links. Creates the folder for its owner
-  /// only (0700). Returns the reason of a failure, else "".
+  /// Writes an entry, as a whole, in place of anything that has its name; does not follow links.
+  /// Creates the folder for its owner only (0700). Returns the reason of a failure, else "".
   std::string write(const std::string& name, std::span<const std::byte> bytes) const;
   std::string write(const std::string& name, std::string_view text) const {
     return write(name, std::as_bytes(std::span(text)));

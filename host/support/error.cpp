@@ -11,8 +11,8 @@ Error::Error(ExitCode code, const std::string& message)
 
 void reject(const std::string& file, std::string_view place, std::string_view found,
             std::string_view allowed) {
-  throw Error(ExitCode::bad_input, "{}: {}{}found {}; allowed: {}", file, place, place.empty() ? "" : ": ",
-              found, allowed);
+  throw Error(ExitCode::bad_input, "{}: {}{}found {}; allowed: {}", file, place,
+              place.empty() ? "" : ": ", found, allowed);
 }
 
 }  // namespace clpv

@@ -9,7 +9,8 @@
 
 namespace clpv {
 
-/// Throws Error(bad_input) "FILE: PLACE: found FOUND; allowed: ALLOWED". `place` is a JSON pointer, or empty.
+/// Throws Error(bad_input) "FILE: PLACE: found FOUND; allowed: ALLOWED". `place` is a JSON pointer,
+/// or empty.
 [[noreturn]] void reject(const std::string& file, std::string_view place, std::string_view found,
                          std::string_view allowed);
 

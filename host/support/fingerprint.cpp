@@ -11,7 +11,8 @@
 namespace clpv {
 namespace {
 
-/// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): every bit of x affects every bit of the result.
+/// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): every bit of x affects every bit of the
+/// result.
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;

@@ -23,7 +23,8 @@ class Fingerprint {
     return add(std::as_bytes(std::span(values)));
   }
   template <typename T>
-  requires(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>) Fingerprint& add(const T& value) {
+  requires(std::is_trivially_copyable_v<T> &&
+           !std::is_pointer_v<T>) Fingerprint& add(const T& value) {
     return add(std::as_bytes(std::span(&value, 1)));
   }
 
@@ -34,7 +35,8 @@ class Fingerprint {
   std::uint64_t state_ = 0;
 };
 
-/// Returns the hash of the running program's executable file. Throws Error(run_time) if it cannot be read.
+/// Returns the hash of the running program's executable file. Throws Error(run_time) if it cannot
+/// be read.
 std::string program_fingerprint();
 
 }  // namespace clpv

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Helper processes: the same program, started once per core, that shares out a list of jobs with its siblings.
+// Helper processes: the same program, started once per core, that shares out a list of jobs with
+// its siblings.
 //
-// PoCL compiles one kernel at a time in a process, but processes compile side by side and share its cache.
+// PoCL compiles one kernel at a time in a process, but processes compile side by side and share its
+// cache.
 #pragma once
 
 #include <chrono>
@@ -16,7 +18,8 @@
 
 namespace clpv {
 
-/// Sets the file of this program, which helpers run. Without it, as in a library, there are no helpers.
+/// Sets the file of this program, which helpers run. Without it, as in a library, there are no
+/// helpers.
 void set_helper_program(std::string file);
 
 /// Returns true if set_helper_program() was called.
@@ -29,7 +32,8 @@ unsigned helper_count();
 class Claims {
  public:
   explicit Claims(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  /// Returns true in the first process that takes the job `name`. Throws Error(run_time) if the folder cannot be written.
+  /// Returns true in the first process that takes the job `name`. Throws Error(run_time) if the
+  /// folder cannot be written.
   bool take(const std::string& name) const;
   /// Records that the job `name` is done, with its result.
   void finish(const std::string& name, const std::string& result = {}) const;
@@ -52,8 +56,8 @@ class Claims {
 /// Processes of this program, and the folder of their claims.
 class Helpers {
  public:
-  /// Starts `count` times `clpv arguments... --claims FOLDER`. Throws Error(run_time) if the temporary folder cannot be
-  /// made.
+  /// Starts `count` times `clpv arguments... --claims FOLDER`. Throws Error(run_time) if the
+  /// temporary folder cannot be made.
   explicit Helpers(std::vector<std::string> arguments, unsigned count = helper_count());
   ~Helpers();  ///< ends helpers that still run, and removes the folder
   Helpers(const Helpers&) = delete;

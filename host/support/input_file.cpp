@@ -10,16 +10,17 @@ namespace clpv {
 
 namespace fs = std::filesystem;
 
-Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file, std::string_view place) {
+Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file,
+                std::string_view place) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (!fs::exists(status))
     reject(file, place, fmt::format("no file '{}'", path.string()), "an existing file");
   if (!fs::is_regular_file(status)) {
-    reject(
-        file, place,
-        fmt::format("'{}', {}", path.string(), fs::is_directory(status) ? "a folder" : "not a regular file"),
-        "a regular file");
+    reject(file, place,
+           fmt::format("'{}', {}", path.string(),
+                       fs::is_directory(status) ? "a folder" : "not a regular file"),
+           "a regular file");
   }
   const std::uint64_t size = fs::file_size(path, failure);
   if (failure || size > limit) {
@@ -30,7 +31,8 @@ Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& fi
   std::ifstream stream(path, std::ios::binary);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (!stream || static_cast<std::uint64_t>(stream.gcount()) != size) {
-    reject(file, place, fmt::format("'{}', which cannot be read", path.string()), "a readable file");
+    reject(file, place, fmt::format("'{}', which cannot be read", path.string()),
+           "a readable file");
   }
   return bytes;
 }
@@ -45,7 +47,8 @@ std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t max_b
 }
 
 std::optional<fs::path> user_cache_folder() {
-  if (const char* home = std::getenv("XDG_CACHE_HOME"); home && *home) return fs::path(home) / "clpv";
+  if (const char* home = std::getenv("XDG_CACHE_HOME"); home && *home)
+    return fs::path(home) / "clpv";
   if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache/clpv";
   return std::nullopt;
 }

@@ -14,7 +14,8 @@ namespace {
 std::atomic<int> pending_signal{0};
 std::atomic<const char*> uninterruptible{nullptr};
 static_assert(std::atomic<const char*>::is_always_lock_free);
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may write only lock-free atomics");
+static_assert(std::atomic<int>::is_always_lock_free,
+              "a signal handler may write only lock-free atomics");
 
 /// Writes text to stderr; async-signal-safe.
 void say(const char* text) {

@@ -13,10 +13,12 @@ class Interrupted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Installs the handler: the first SIGINT or SIGTERM sets interrupted(), a second one ends the process at once.
+/// Installs the handler: the first SIGINT or SIGTERM sets interrupted(), a second one ends the
+/// process at once.
 void catch_interrupts();
 
-/// Work that cannot be interrupted, during its lifetime: a signal then logs "stopping after `what`".
+/// Work that cannot be interrupted, during its lifetime: a signal then logs "stopping after
+/// `what`".
 class Uninterruptible {
  public:
   explicit Uninterruptible(const char* what);
@@ -31,7 +33,8 @@ class Uninterruptible {
 /// Returns true after a signal. For loops that must not throw, such as those of other threads.
 bool interrupted();
 
-/// Acts as if a signal had come, or forgets one. For hosts that catch signals themselves, such as Python.
+/// Acts as if a signal had come, or forgets one. For hosts that catch signals themselves, such as
+/// Python.
 void set_interrupted(bool now);
 
 /// Throws Interrupted(kept) after a signal.

@@ -19,7 +19,8 @@ Rule object(std::string place) {
   return {std::move(place), Shape::object};
 }
 Rule list(std::string place, std::size_t minimum, std::size_t maximum) {
-  return {std::move(place), Shape::list, static_cast<double>(minimum), static_cast<double>(maximum)};
+  return {std::move(place), Shape::list, static_cast<double>(minimum),
+          static_cast<double>(maximum)};
 }
 Rule text(std::string place, std::vector<std::string> words) {
   Rule made{std::move(place), Shape::text};
@@ -54,7 +55,8 @@ namespace {
 
 std::size_t list_size(const json& document, const std::string& place) {
   const json::json_pointer pointer(place);
-  return document.contains(pointer) && document.at(pointer).is_array() ? document.at(pointer).size() : 0;
+  return document.contains(pointer) && document.at(pointer).is_array() ? document.at(pointer).size()
+                                                                       : 0;
 }
 
 std::string allowed_values(const Rule& rule, std::size_t into_size) {
@@ -69,12 +71,14 @@ std::string allowed_values(const Rule& rule, std::size_t into_size) {
     case Shape::flag:
       return "true or false";
     case Shape::integer:
-      return rule.choices.empty() ? fmt::format("an integer from {} to {}", rule.minimum, rule.maximum)
-                                  : fmt::format("one of {}", fmt::join(rule.choices, ", "));
+      return rule.choices.empty()
+                 ? fmt::format("an integer from {} to {}", rule.minimum, rule.maximum)
+                 : fmt::format("one of {}", fmt::join(rule.choices, ", "));
     case Shape::number:
       return fmt::format("a number from {} to {}", rule.minimum, rule.maximum);
     case Shape::vector:
-      return fmt::format("an array of {} numbers from {} to {}", rule.size, rule.minimum, rule.maximum);
+      return fmt::format("an array of {} numbers from {} to {}", rule.size, rule.minimum,
+                         rule.maximum);
     case Shape::index:
       return into_size == 0 ? fmt::format("none, since {} is empty", rule.into)
                             : fmt::format("an index into {}, 0 to {}", rule.into, into_size - 1);
@@ -83,7 +87,8 @@ std::string allowed_values(const Rule& rule, std::size_t into_size) {
 }
 
 bool in_range(const Rule& rule, const json& value) {
-  return value.is_number() && value.get<double>() >= rule.minimum && value.get<double>() <= rule.maximum;
+  return value.is_number() && value.get<double>() >= rule.minimum &&
+         value.get<double>() <= rule.maximum;
 }
 
 bool matches(const Rule& rule, const json& value, std::size_t into_size) {
@@ -101,12 +106,14 @@ bool matches(const Rule& rule, const json& value, std::size_t into_size) {
       return value.is_boolean();
     case Shape::integer:
       if (!value.is_number_integer()) return false;
-      return rule.choices.empty() ? in_range(rule, value) : one_of(rule.choices, value.get<std::int64_t>());
+      return rule.choices.empty() ? in_range(rule, value)
+                                  : one_of(rule.choices, value.get<std::int64_t>());
     case Shape::number:
       return in_range(rule, value);
     case Shape::vector:
       return value.is_array() && value.size() == rule.size &&
-             std::all_of(value.begin(), value.end(), [&](const json& each) { return in_range(rule, each); });
+             std::all_of(value.begin(), value.end(),
+                         [&](const json& each) { return in_range(rule, each); });
     case Shape::index:
       return value.is_number_unsigned() && value.get<std::uint64_t>() < into_size;
   }
@@ -152,7 +159,8 @@ class Checker {
     }
   }
 
-  /// One level of a path: a key, or an index if `key` is null. Formatted only for errors, since documents are large.
+  /// One level of a path: a key, or an index if `key` is null. Formatted only for errors, since
+  /// documents are large.
   struct Step {
     const std::string* key;
     std::size_t index;
@@ -175,8 +183,8 @@ class Checker {
     if (matches(rule_, value, into_size_)) return;
     std::string found = quoted(value);
     if (rule_.shape == Shape::vector && value.is_array() && value.size() == rule_.size) {
-      const auto wrong =
-          std::find_if_not(value.begin(), value.end(), [&](const json& v) { return in_range(rule_, v); });
+      const auto wrong = std::find_if_not(value.begin(), value.end(),
+                                          [&](const json& v) { return in_range(rule_, v); });
       found += " with " + quoted(*wrong);
     }
     reject(file_, place(), found, allowed_values(rule_, into_size_));
@@ -190,7 +198,8 @@ class Checker {
   std::vector<Step> steps_;
 };
 
-/// Rejects keys of `value` without a rule. `pattern` is the value's place in rules, `place` its JSON pointer.
+/// Rejects keys of `value` without a rule. `pattern` is the value's place in rules, `place` its
+/// JSON pointer.
 void check_keys(const json& value, const std::string& pattern, const std::string& place,
                 std::span<const Rule> rules, const std::string& file) {
   if (value.is_array()) {
@@ -213,7 +222,8 @@ void check_keys(const json& value, const std::string& pattern, const std::string
   }
 }
 
-/// Rejects JSON nested too deep or with too many values, without recursion and before a parser allocates.
+/// Rejects JSON nested too deep or with too many values, without recursion and before a parser
+/// allocates.
 void check_extent(std::string_view text, const std::string& file) {
   int depth = 0;
   std::uint64_t values = 0;
@@ -227,7 +237,8 @@ void check_extent(std::string_view text, const std::string& file) {
       quoted = true;
     } else if (c == '[' || c == '{') {
       if (++depth > bounds::kJsonNesting) {
-        reject(file, {}, fmt::format("JSON nested more than {} deep at byte {}", bounds::kJsonNesting, i),
+        reject(file, {},
+               fmt::format("JSON nested more than {} deep at byte {}", bounds::kJsonNesting, i),
                fmt::format("at most {} levels", bounds::kJsonNesting));
       }
     } else if (c == ']' || c == '}') {
@@ -245,7 +256,8 @@ void check_rules(const json& document, std::span<const Rule> rules, const std::s
   for (const Rule& rule : rules) Checker(document, rule, file).run();
 }
 
-void check_no_other_keys(const json& document, std::span<const Rule> rules, const std::string& file) {
+void check_no_other_keys(const json& document, std::span<const Rule> rules,
+                         const std::string& file) {
   check_keys(document, "", "", rules, file);
 }
 
@@ -258,12 +270,13 @@ json parse_json(std::string_view text, const std::string& file) {
   try {
     return json::parse(text);
   } catch (const json::exception& error) {  // its text has line, column and what was expected
-    std::string what =
-        error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: ...".
+    std::string what = error.what();
     if (const std::size_t tag = what.find("] "); what.starts_with('[') && tag != std::string::npos)
       what.erase(0, tag + 2);
     std::erase_if(what, [](unsigned char c) { return c < 0x20 && c != '\t'; });
-    reject(file, {}, "invalid JSON: " + what, "well-formed JSON in UTF-8, numbers within double's range");
+    reject(file, {}, "invalid JSON: " + what,
+           "well-formed JSON in UTF-8, numbers within double's range");
   }
 }
 

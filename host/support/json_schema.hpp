@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A small schema for untrusted JSON: kind and range of the value at each place.
 //
-// A document is checked once before it is read, so readers need no checks. Every error names the file, the JSON
-// pointer, the value found and the values allowed.
+// A document is checked once before it is read, so readers need no checks. Every error names the
+// file, the JSON pointer, the value found and the values allowed.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ enum class Shape { object, list, text, flag, integer, number, vector, index };
 struct Rule {
   std::string place;  ///< JSON pointer; a segment "*" matches every element or member
   Shape shape;
-  double minimum = 0, maximum = 0;         ///< range of a number or vector component; of a list's length
-  std::size_t size = 0;                    ///< length of a vector
+  double minimum = 0, maximum = 0;  ///< range of a number or vector component; of a list's length
+  std::size_t size = 0;             ///< length of a vector
   std::vector<std::int64_t> choices = {};  ///< allowed integers, if not empty
   std::vector<std::string> words = {};     ///< allowed strings, if not empty
   std::string into = {};                   ///< place of the list that an index points into
@@ -55,19 +55,23 @@ Rule vector(std::string place, std::size_t size, double minimum, double maximum)
 Rule index(std::string place, std::string into);
 }  // namespace rule
 
-/// Throws Error(bad_input) at the first value that violates a rule. Values without a rule are ignored.
-void check_rules(const nlohmann::json& document, std::span<const Rule> rules, const std::string& file);
+/// Throws Error(bad_input) at the first value that violates a rule. Values without a rule are
+/// ignored.
+void check_rules(const nlohmann::json& document, std::span<const Rule> rules,
+                 const std::string& file);
 
 /// Throws Error(bad_input) at the first member without a rule, and lists the allowed keys.
 void check_no_other_keys(const nlohmann::json& document, std::span<const Rule> rules,
                          const std::string& file);
 
-/// Parses JSON after bounding its length, nesting and number of values. Throws Error(bad_input) with line and column of a
-/// syntax error.
+/// Parses JSON after bounding its length, nesting and number of values. Throws Error(bad_input)
+/// with line and column of a syntax error.
 nlohmann::json parse_json(std::string_view text, const std::string& file);
 
-/// Reads JSON from a file. Throws Error(bad_input) if it is unreadable, longer than `limit` bytes or invalid.
-nlohmann::json read_json(const std::filesystem::path& path, std::uint64_t limit = bounds::kJsonBytes);
+/// Reads JSON from a file. Throws Error(bad_input) if it is unreadable, longer than `limit` bytes
+/// or invalid.
+nlohmann::json read_json(const std::filesystem::path& path,
+                         std::uint64_t limit = bounds::kJsonBytes);
 
 /// Returns a value as errors quote it: at most 60 characters of JSON, or the length of an array.
 std::string quoted(const nlohmann::json& value);

@@ -13,8 +13,9 @@ namespace clpv {
 namespace {
 
 constexpr std::uint64_t kMiB = 1 << 20;
-// Address space of PoCL 3.1: the first is LLVM and its modules, the second three threads per core with 8 MiB of stack and 64 MiB
-// of heap each. Measured on two cores: 690 MiB from opening the device to the end of a small frame.
+// Address space of PoCL 3.1: the first is LLVM and its modules, the second three threads per core
+// with 8 MiB of stack and 64 MiB of heap each. Measured on two cores: 690 MiB from opening the
+// device to the end of a small frame.
 constexpr std::uint64_t kCompilerBytes = 512 * kMiB, kCoreBytes = 128 * kMiB;
 constexpr std::uint64_t kLeastLeft = 64 * kMiB;
 constexpr std::uint64_t kLeastFiles = 64;        // libraries, a linker's inputs, caches
@@ -22,7 +23,8 @@ constexpr std::uint64_t kLeastFileBytes = kMiB;  // compiled kernels have 0.1 Mi
 
 std::uint64_t limit_of(int resource) {
   rlimit limit{};
-  if (::getrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+  if (::getrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0 ||
+      limit.rlim_cur == RLIM_INFINITY)
     return kUnlimited;
   return limit.rlim_cur;
 }
@@ -48,17 +50,20 @@ std::uint64_t address_space_left() {
 
 void require_limits() {
   if (address_space_left() < kLeastLeft) {
-    throw Error(ExitCode::run_time, "address space (ulimit -v): found {} MiB, allowed for OpenCL: {} or more",
+    throw Error(ExitCode::run_time,
+                "address space (ulimit -v): found {} MiB, allowed for OpenCL: {} or more",
                 limit_of(RLIMIT_AS) / kMiB,
                 (address_space_in_use() + driver_bytes() + kLeastLeft) / kMiB + 1);
   }
   if (const std::uint64_t files = limit_of(RLIMIT_NOFILE); files < kLeastFiles) {
-    throw Error(ExitCode::run_time, "open files (ulimit -n): found {}, allowed for OpenCL: {} or more", files,
+    throw Error(ExitCode::run_time,
+                "open files (ulimit -n): found {}, allowed for OpenCL: {} or more", files,
                 kLeastFiles);
   }
   if (const std::uint64_t bytes = limit_of(RLIMIT_FSIZE); bytes < kLeastFileBytes) {
-    throw Error(ExitCode::run_time, "file size (ulimit -f): found {} KiB, allowed for OpenCL: {} or more",
-                bytes / 1024, kLeastFileBytes / 1024);
+    throw Error(ExitCode::run_time,
+                "file size (ulimit -f): found {} KiB, allowed for OpenCL: {} or more", bytes / 1024,
+                kLeastFileBytes / 1024);
   }
 }
 

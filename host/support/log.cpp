@@ -11,11 +11,14 @@ namespace {
 
 /// The message without control characters, since it may quote names of untrusted scenes.
 struct PrintableText : spdlog::custom_flag_formatter {
-  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& line) override {
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& line) override {
     const std::string text = printable({message.payload.data(), message.payload.size()});
     line.append(text.data(), text.data() + text.size());
   }
-  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<PrintableText>(); }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<PrintableText>();
+  }
 };
 
 std::unique_ptr<spdlog::formatter> line_formatter() {
@@ -28,7 +31,8 @@ std::unique_ptr<spdlog::formatter> line_formatter() {
 
 void set_log_level(bool quiet, int verbosity) {
   static const auto logger = [] {
-    auto made = std::make_shared<spdlog::logger>("clpv", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+    auto made =
+        std::make_shared<spdlog::logger>("clpv", std::make_shared<spdlog::sinks::stderr_sink_mt>());
     made->set_formatter(line_formatter());
     spdlog::set_default_logger(made);
     return made;

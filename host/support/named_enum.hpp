@@ -47,8 +47,8 @@ std::vector<std::string> names_of() {
   return {kNames<E>.begin(), kNames<E>.end()};
 }
 
-/// Returns the index of `name` in `allowed`. Throws Error(usage) if it is missing: "layout: found 'planes', allowed:
-/// image|aos|soa|tiled".
+/// Returns the index of `name` in `allowed`. Throws Error(usage) if it is missing: "layout: found
+/// 'planes', allowed: image|aos|soa|tiled".
 std::size_t index_of_name(std::string_view what, std::string_view name,
                           std::span<const std::string_view> allowed);
 

@@ -64,7 +64,8 @@ fs::path resolve(const fs::path& path) {
   if (status.type() == fs::file_type::none)
     reject_output(path, error.message());  // for example a name too long
   if (fs::is_directory(status)) reject_output(path, "it is a folder");
-  if (fs::exists(status) && !fs::is_regular_file(status)) reject_output(path, "it is not a regular file");
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    reject_output(path, "it is not a regular file");
   if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0) reject_output(path, reason(errno));
   return target;
 }
@@ -81,9 +82,11 @@ OutputFile::OutputFile(const fs::path& path, Links links)
   struct stat replaced {};
   const bool replaces = ::lstat(target_.c_str(), &replaced) == 0 && S_ISREG(replaced.st_mode);
   // The name may exist: of a killed process, or of a process on another machine.
-  for (int tries = 0; descriptor_ < 0 && tries < kMaxNames && (tries == 0 || errno == EEXIST); ++tries) {
+  for (int tries = 0; descriptor_ < 0 && tries < kMaxNames && (tries == 0 || errno == EEXIST);
+       ++tries) {
     temporary_ = target_.parent_path() / temporary_name(target_.filename().string());
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, replaces ? 0600 : 0666);
+    descriptor_ =
+        ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, replaces ? 0600 : 0666);
   }
   if (descriptor_ < 0) reject_output(target_, reason(errno));
   // Some file systems have no modes.
@@ -123,8 +126,8 @@ void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<Name
       return !other.path.empty() && same_file(output.path, other.path);
     });
     if (same != others.end()) {
-      throw Error(ExitCode::usage, "{} {}: found the file of {} {}; allowed: another file", output.option,
-                  output.path.string(), same->option, same->path.string());
+      throw Error(ExitCode::usage, "{} {}: found the file of {} {}; allowed: another file",
+                  output.option, output.path.string(), same->option, same->path.string());
     }
     check_writable(output.path);
     others.push_back(output);

@@ -11,7 +11,8 @@
 
 namespace clpv {
 
-/// A file under a temporary name in the folder of its target. Readers see the old or the new target, never a partial one.
+/// A file under a temporary name in the folder of its target. Readers see the old or the new
+/// target, never a partial one.
 class OutputFile {
  public:
   enum class Links {
@@ -19,8 +20,9 @@ class OutputFile {
     replace  ///< whatever has the name is replaced, as in a cache
   };
 
-  /// Creates the temporary file. The mode is that of the file that it replaces, else as umask says. Throws Error(run_time) with
-  /// the path and the reason if there is no folder, if no file can be written, or if anything but a regular file exists there.
+  /// Creates the temporary file. The mode is that of the file that it replaces, else as umask says.
+  /// Throws Error(run_time) with the path and the reason if there is no folder, if no file can be
+  /// written, or if anything but a regular file exists there.
   explicit OutputFile(const std::filesystem::path& path, Links links = Links::follow);
   ~OutputFile();  ///< removes the temporary file unless commit() renamed it
   OutputFile(const OutputFile&) = delete;
@@ -38,21 +40,24 @@ class OutputFile {
   bool renamed_ = false;
 };
 
-/// Checks before long work that `path` can be written: its folder exists and accepts a new file, and any existing
-/// file is regular and writable. Leaves no file behind. Throws Error(run_time) with the path and the reason.
+/// Checks before long work that `path` can be written: its folder exists and accepts a new file,
+/// and any existing file is regular and writable. Leaves no file behind. Throws Error(run_time)
+/// with the path and the reason.
 void check_writable(const std::filesystem::path& path);
 
-/// A file and the option that names it, for errors. An empty path means that the option is not given.
+/// A file and the option that names it, for errors. An empty path means that the option is not
+/// given.
 struct NamedFile {
   std::string option;
   std::filesystem::path path;
 };
 
-/// check_writable() of all outputs. Throws Error(usage) if two outputs, or an output and an input, are one file.
+/// check_writable() of all outputs. Throws Error(usage) if two outputs, or an output and an input,
+/// are one file.
 void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
-/// Writes `bytes` to `path` as an OutputFile. On failure (for example a full disk) leaves `path` unchanged and throws
-/// Error(run_time) with the reason.
+/// Writes `bytes` to `path` as an OutputFile. On failure (for example a full disk) leaves `path`
+/// unchanged and throws Error(run_time) with the reason.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_file(const std::filesystem::path& path, std::string_view text);
 

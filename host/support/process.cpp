@@ -37,7 +37,8 @@ std::string contents(std::FILE* file) {
   std::string text;
   std::rewind(file);
   char buffer[4096];
-  for (std::size_t read; (read = std::fread(buffer, 1, sizeof buffer, file)) > 0;) text.append(buffer, read);
+  for (std::size_t read; (read = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
+    text.append(buffer, read);
   return text;
 }
 
@@ -65,7 +66,8 @@ std::optional<std::filesystem::path> find_program(const std::string& name) {
   for (const std::string& folder : program_folders()) {
     const std::filesystem::path file = std::filesystem::path(folder) / name;
     std::error_code unknown;
-    if (std::filesystem::is_regular_file(file, unknown) && ::access(file.c_str(), X_OK) == 0) return file;
+    if (std::filesystem::is_regular_file(file, unknown) && ::access(file.c_str(), X_OK) == 0)
+      return file;
   }
   return std::nullopt;
 }
@@ -75,7 +77,8 @@ Process::Process(const std::filesystem::path& program, const std::vector<std::st
     : output_(file_in_memory()) {
   // Sockets instead of a pipe: writing to a closed reader is then an error, not SIGPIPE.
   int ends[2] = {-1, -1};
-  if (output_ == nullptr || (with_input && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)) {
+  if (output_ == nullptr ||
+      (with_input && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)) {
     start_error_ = errno;
     return;
   }
@@ -128,7 +131,8 @@ Process::Result Process::end() {
   while (!exited_ && ::waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
-  return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_), contents(output_.get())};
+  return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_),
+          contents(output_.get())};
 }
 
 }  // namespace clpv

@@ -15,8 +15,8 @@
 
 namespace clpv {
 
-/// Removes the entries of PATH that depend on the current folder, since a scene's folder may hold anything. For drivers that start
-/// programs, as PoCL starts ld.
+/// Removes the entries of PATH that depend on the current folder, since a scene's folder may hold
+/// anything. For drivers that start programs, as PoCL starts ld.
 void keep_absolute_path_entries();
 
 /// Returns the file of a program in the absolute entries of PATH.
@@ -30,15 +30,16 @@ class Process {
     std::string output;  ///< stdout and stderr, or the reason why it did not start
   };
 
-  /// Starts the program of that file. `with_input`: its stdin reads the bytes of feed(); else stdin is empty. end() reports a
-  /// failure to start.
+  /// Starts the program of that file. `with_input`: its stdin reads the bytes of feed(); else stdin
+  /// is empty. end() reports a failure to start.
   Process(const std::filesystem::path& program, const std::vector<std::string>& arguments,
           bool with_input = false);
   ~Process();  ///< closes its input and waits for it to exit
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// Writes `bytes` to its stdin; blocks while it reads slowly. Returns false if it has closed stdin.
+  /// Writes `bytes` to its stdin; blocks while it reads slowly. Returns false if it has closed
+  /// stdin.
   bool feed(std::span<const std::byte> bytes);
 
   pid_t id() const { return child_; }  ///< -1 if it did not start, and after end()

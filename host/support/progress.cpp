@@ -27,7 +27,8 @@ int terminal_columns() {
 
 std::string duration(double seconds) {
   const auto whole = std::llround(std::min(seconds, 359999.0));  // at most 99:59:59
-  if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+  if (whole >= 3600)
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
@@ -43,7 +44,8 @@ std::string time_left(double share, double elapsed_seconds) {
 ProgressStyle effective_style() {
   if (!spdlog::should_log(spdlog::level::info)) return ProgressStyle::none;
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  return requested_style == ProgressStyle::bar && !terminal ? ProgressStyle::lines : requested_style;
+  return requested_style == ProgressStyle::bar && !terminal ? ProgressStyle::lines
+                                                            : requested_style;
 }
 
 }  // namespace
@@ -56,8 +58,8 @@ std::string progress_words(const std::string& title, std::uint64_t done, std::ui
                            double elapsed_seconds) {
   const double share = share_of(done, total);
   const std::string left = time_left(share, elapsed_seconds);
-  return fmt::format("{}: {} of {}, {:.0f} %{}{}", title, done, total, 100 * share, left.empty() ? "" : ", ",
-                     left);
+  return fmt::format("{}: {} of {}, {:.0f} %{}{}", title, done, total, 100 * share,
+                     left.empty() ? "" : ", ", left);
 }
 
 std::string progress_line(const std::string& title, std::uint64_t done, std::uint64_t total,

@@ -14,11 +14,13 @@ enum class ProgressStyle { bar, lines, none };
 /// Sets the style of every Progress constructed later.
 void set_progress_style(ProgressStyle style);
 
-/// Counts work done out of a known total. Draws no bar during the first second. Logs lines instead if stderr is no terminal,
-/// and nothing if the log is quiet (set_log_level). The destructor erases the bar. advance() and reach() are thread safe.
+/// Counts work done out of a known total. Draws no bar during the first second. Logs lines instead
+/// if stderr is no terminal, and nothing if the log is quiet (set_log_level). The destructor erases
+/// the bar. advance() and reach() are thread safe.
 class Progress {
  public:
-  /// `title` names the work ("path tracing"); `total` is in the caller's units; a total of 0 counts as done.
+  /// `title` names the work ("path tracing"); `total` is in the caller's units; a total of 0 counts
+  /// as done.
   Progress(std::string title, std::uint64_t total);
   ~Progress();
   Progress(const Progress&) = delete;
@@ -43,7 +45,8 @@ class Progress {
 std::string progress_words(const std::string& title, std::uint64_t done, std::uint64_t total,
                            double elapsed_seconds);
 
-/// Returns the bar of a Progress: title, bar, percentage and estimated time left, at most `columns` wide.
+/// Returns the bar of a Progress: title, bar, percentage and estimated time left, at most `columns`
+/// wide.
 std::string progress_line(const std::string& title, std::uint64_t done, std::uint64_t total,
                           double elapsed_seconds, int columns);
 

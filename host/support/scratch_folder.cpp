@@ -39,7 +39,8 @@ void remove_abandoned(const fs::path& above) {
     const int folder = open_folder(it->path());
     struct stat found {};
     if (folder >= 0 && ::fstat(folder, &found) == 0 && found.st_uid == ::geteuid() &&
-        std::time(nullptr) - found.st_mtime > kSecondsToLock && ::flock(folder, LOCK_EX | LOCK_NB) == 0) {
+        std::time(nullptr) - found.st_mtime > kSecondsToLock &&
+        ::flock(folder, LOCK_EX | LOCK_NB) == 0) {
       std::error_code ignored;  // another run may be removing it too
       fs::remove_all(it->path(), ignored);
     }
@@ -55,12 +56,14 @@ ScratchFolder::ScratchFolder() {
   remove_abandoned(above);
   std::string name = (above / (kPrefix + std::string(kRandom, 'X'))).string();
   if (::mkdtemp(name.data()) == nullptr) {
-    throw Error(ExitCode::run_time, "TMPDIR: found '{}' ({}); allowed: a folder that can be written",
-                above.string(), std::generic_category().message(errno));
+    throw Error(ExitCode::run_time,
+                "TMPDIR: found '{}' ({}); allowed: a folder that can be written", above.string(),
+                std::generic_category().message(errno));
   }
   path_ = name;
   lock_ = open_folder(path_);
-  if (lock_ >= 0) ::flock(lock_, LOCK_EX | LOCK_NB);  // without locks, nobody removes folders of others
+  if (lock_ >= 0)
+    ::flock(lock_, LOCK_EX | LOCK_NB);  // without locks, nobody removes folders of others
 }
 
 ScratchFolder::~ScratchFolder() {

@@ -9,8 +9,8 @@ namespace clpv {
 /// A new folder clpv-XXXXXX in $TMPDIR, or /tmp, that only this user can read.
 class ScratchFolder {
  public:
-  /// Also removes the folders that killed runs of this user left there. Throws Error(run_time) that names TMPDIR if the folder
-  /// cannot be made.
+  /// Also removes the folders that killed runs of this user left there. Throws Error(run_time) that
+  /// names TMPDIR if the folder cannot be made.
   ScratchFolder();
   ~ScratchFolder();  ///< removes it with all it holds
   ScratchFolder(const ScratchFolder&) = delete;

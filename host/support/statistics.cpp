@@ -19,7 +19,8 @@ double quantile(const std::vector<double>& sorted, double share) {
 Statistics statistics_of(std::vector<double> samples) {
   if (samples.empty()) return {};
   std::ranges::sort(samples);
-  Statistics result{samples.front(), quantile(samples, 0.5), quantile(samples, 0.95), samples.back()};
+  Statistics result{samples.front(), quantile(samples, 0.5), quantile(samples, 0.95),
+                    samples.back()};
   for (double& sample : samples) sample = std::abs(sample - result.median);
   std::ranges::sort(samples);
   result.mad = quantile(samples, 0.5);

@@ -13,7 +13,8 @@ struct Statistics {
   double mad = 0;  ///< median absolute deviation from the median, robust against outliers
 };
 
-/// Quantiles interpolate linearly between the sorted samples; the first is quantile 0, the last quantile 1.
+/// Quantiles interpolate linearly between the sorted samples; the first is quantile 0, the last
+/// quantile 1.
 Statistics statistics_of(std::vector<double> samples);
 
 inline double median(std::vector<double> samples) {

@@ -9,8 +9,8 @@
 
 namespace clpv {
 
-/// Returns `text` (UTF-8) with control characters (U+0000 to U+001F, U+007F to U+009F) replaced by '?', except newline and
-/// tab. Untrusted text must not control a terminal.
+/// Returns `text` (UTF-8) with control characters (U+0000 to U+001F, U+007F to U+009F) replaced by
+/// '?', except newline and tab. Untrusted text must not control a terminal.
 std::string printable(std::string_view text);
 
 /// Returns printable() text, escaped for an XML element or attribute.
@@ -25,7 +25,8 @@ template <typename Number>
 std::optional<Number> parse_number(std::string_view text) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value)
+                                                                  : std::nullopt;
 }
 
 }  // namespace clpv

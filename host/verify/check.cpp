@@ -25,7 +25,8 @@ CheckResults results_of(const Case& compared, Session& session) {
     return one;
   };
   const auto of_error = [&](const Error& error) {
-    return result(error.code() == ExitCode::device ? Status::unsupported : Status::failed, error.what());
+    return result(error.code() == ExitCode::device ? Status::unsupported : Status::failed,
+                  error.what());
   };
   try {
     return compared.compare(session);
@@ -42,13 +43,16 @@ CheckResults results_of(const Case& compared, Session& session) {
 
 }  // namespace
 
-CheckResult result_of(std::string_view stage, const std::string& variant, const Deviation& deviation) {
+CheckResult result_of(std::string_view stage, const std::string& variant,
+                      const Deviation& deviation) {
   return {std::string(stage), variant, deviation, deviation.passed() ? Status::ok : Status::wrong};
 }
 
-Case deviation_case(Stage stage, const std::string& name, const std::function<Deviation(Session&)>& compare) {
-  return {stage, name,
-          [=](Session& session) { return CheckResults{result_of(name_of(stage), name, compare(session))}; }};
+Case deviation_case(Stage stage, const std::string& name,
+                    const std::function<Deviation(Session&)>& compare) {
+  return {stage, name, [=](Session& session) {
+            return CheckResults{result_of(name_of(stage), name, compare(session))};
+          }};
 }
 
 Case job_case(Stage stage, const std::string& name, const std::function<Job(Session&)>& make) {
@@ -72,7 +76,8 @@ Cases cases_of(Stage stage, const CheckScope& scope) {
 CheckResults run_case(const Case& compared, Session& session) {
   const auto start = std::chrono::steady_clock::now();
   CheckResults results = results_of(compared, session);
-  results.back().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  results.back().seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return results;
 }
 

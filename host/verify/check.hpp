@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The table of comparisons of kernels with their double-precision CPU references, on any device; `clpv check` and
-// tests run it.
+// The table of comparisons of kernels with their double-precision CPU references, on any device;
+// `clpv check` and tests run it.
 #pragma once
 
 #include <functional>
@@ -31,7 +31,8 @@ struct CheckResult {
 using CheckResults = std::vector<CheckResult>;
 
 /// Returns a result with the status of its deviation.
-CheckResult result_of(std::string_view stage, const std::string& variant, const Deviation& deviation);
+CheckResult result_of(std::string_view stage, const std::string& variant,
+                      const Deviation& deviation);
 
 /// One case of the table. Nothing is built before compare() is called.
 struct Case {
@@ -42,14 +43,16 @@ struct Case {
 using Cases = std::vector<Case>;
 
 /// Returns a case with one deviation.
-Case deviation_case(Stage stage, const std::string& name, const std::function<Deviation(Session&)>& compare);
+Case deviation_case(Stage stage, const std::string& name,
+                    const std::function<Deviation(Session&)>& compare);
 /// Returns a case that runs a job once.
 Case job_case(Stage stage, const std::string& name, const std::function<Job(Session&)>& make);
 
-/// Scope of a check. The default covers each path of a kernel once: one basis of each kind of code (harmonics, radial
-/// functions with and without opposite centres, bins), each volume layout and each number format. It omits variants
-/// that differ only in constants (exact face fluxes of all bases, further directions and grid sizes) and combinations
-/// of basis, format and option; `thorough` has them. Building kernels is nearly all of the time.
+/// Scope of a check. The default covers each path of a kernel once: one basis of each kind of code
+/// (harmonics, radial functions with and without opposite centres, bins), each volume layout and
+/// each number format. It omits variants that differ only in constants (exact face fluxes of all
+/// bases, further directions and grid sizes) and combinations of basis, format and option;
+/// `thorough` has them. Building kernels is nearly all of the time.
 struct CheckScope {
   bool thorough = false;  ///< every combination of basis and options
   std::vector<std::string> bases = {"sh2", "sh3", "srbf4", "srbf8v2", "bins24"};
@@ -69,20 +72,22 @@ Cases cases_of(Stage stage, const CheckScope& scope = {});
 /// Returns the cases of injection, propagation and gathering with exactly these options.
 Cases cases_of(const RenderOptions& options);
 
-/// Runs one case. A capability that the device lacks gives Status::unsupported, any other error Status::failed.
-/// Throws Interrupted.
+/// Runs one case. A capability that the device lacks gives Status::unsupported, any other error
+/// Status::failed. Throws Interrupted.
 CheckResults run_case(const Case& compared, Session& session);
 
-/// Returns true if a result is ok, and none wrong or failed: a device without any capability does not pass.
+/// Returns true if a result is ok, and none wrong or failed: a device without any capability does
+/// not pass.
 bool passed(const CheckResults& results);
 
-/// Runs all cases of one stage. Inputs are small: apart from building kernels, each takes seconds on a CPU device.
+/// Runs all cases of one stage. Inputs are small: apart from building kernels, each takes seconds
+/// on a CPU device.
 CheckResults check(Stage stage, Session& session, const CheckScope& scope = {});
 
 // One function per stage, in host/verify/.
 using StageCases = Cases(const CheckScope& scope);
 StageCases sizes_cases, rasterize_cases, emit_cases, inject_cases, blockers_cases, reflectors_cases,
-    propagate_cases, sweep_cases, bounce_cases, visibility_cases, gather_cases, near_cases, medium_cases,
-    shade_cases;
+    propagate_cases, sweep_cases, bounce_cases, visibility_cases, gather_cases, near_cases,
+    medium_cases, shade_cases;
 
 }  // namespace clpv::verify

@@ -29,7 +29,8 @@ Job propagate_job_of(Session& session, const RenderOptions& o) {
   const std::shared_ptr<const Basis> basis = make_basis(o);
   const Transport transport = make_transport(o, *basis);
   return has_faces(o.transport)
-             ? propagate_job(session, random_propagation(basis, transport, propagate_options(o), o.blocked()))
+             ? propagate_job(
+                   session, random_propagation(basis, transport, propagate_options(o), o.blocked()))
              : sweep_job(session, random_sweep(basis, transport, sweep_options(o)));
 }
 
@@ -43,7 +44,8 @@ Job gather_job_of(Session& session, const RenderOptions& o) {
 Cases cases_of(const RenderOptions& options) {
   RenderOptions o = options;
   o.grid = kGrid;
-  const std::string name = fmt::format("{}/{}/{}", name_of(o.preset), o.basis, format_name(o.format()));
+  const std::string name =
+      fmt::format("{}/{}/{}", name_of(o.preset), o.basis, format_name(o.format()));
   Cases cases = {job_case(Stage::inject, name + "/light",
                           [o](Session& session) { return inject_job_of(session, o, true); })};
   if (o.blockers == Blockers::seen)
@@ -54,7 +56,8 @@ Cases cases_of(const RenderOptions& options) {
                                                         : Stage::bounce;
   cases.push_back(
       job_case(propagation, name, [o](Session& session) { return propagate_job_of(session, o); }));
-  cases.push_back(job_case(Stage::gather, name, [o](Session& session) { return gather_job_of(session, o); }));
+  cases.push_back(
+      job_case(Stage::gather, name, [o](Session& session) { return gather_job_of(session, o); }));
   return cases;
 }
 

@@ -15,9 +15,10 @@ Deviation compare_volumes(std::span<const float> found, std::span<const double> 
   if (worst.value == 0) return {0, allowed};
   const std::size_t side = n;
   const std::size_t at = worst.at;
-  return {worst.value, allowed,
-          fmt::format("cell {},{},{} plane {}: {:.7g}, expected {:.7g}", at % side, at / side % side,
-                      at / side / side % side, at / side / side / side, found[at], expected[at])};
+  return {
+      worst.value, allowed,
+      fmt::format("cell {},{},{} plane {}: {:.7g}, expected {:.7g}", at % side, at / side % side,
+                  at / side / side % side, at / side / side / side, found[at], expected[at])};
 }
 
 Deviation compare_functions(std::span<const float> found, std::span<const double> expected,
@@ -42,10 +43,12 @@ Deviation compare_functions(std::span<const float> found, std::span<const double
         or_wanted += b[i] * other[index];
       }
       largest = std::max(largest, std::abs(wanted));
-      if (!worst.take(std::min(std::abs(value - wanted), std::abs(value - or_wanted)), at)) continue;
+      if (!worst.take(std::min(std::abs(value - wanted), std::abs(value - or_wanted)), at))
+        continue;
       result.place = fmt::format(
-          "cell {},{},{} channel {} towards {:.2f},{:.2f},{:.2f}: {:.7g}, expected {:.7g}", at % side,
-          at / side % side, at / side / side % side, at / samples, w.x, w.y, w.z, value, wanted);
+          "cell {},{},{} channel {} towards {:.2f},{:.2f},{:.2f}: {:.7g}, expected {:.7g}",
+          at % side, at / side % side, at / side / side % side, at / samples, w.x, w.y, w.z, value,
+          wanted);
     }
   }
   result.worst = worst.value / largest;

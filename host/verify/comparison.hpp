@@ -27,7 +27,8 @@ struct WorstError {
   }
 };
 
-/// Returns the largest difference of `count` values found(i) and wanted(i), relative to the largest |wanted|.
+/// Returns the largest difference of `count` values found(i) and wanted(i), relative to the largest
+/// |wanted|.
 template <typename Found, typename Wanted>
 WorstError worst_difference(std::size_t count, const Found& found, const Wanted& wanted) {
   double largest = 0;
@@ -42,9 +43,10 @@ WorstError worst_difference(std::size_t count, const Found& found, const Wanted&
 Deviation compare_volumes(std::span<const float> found, std::span<const double> expected, int n,
                           double allowed = 0);
 
-/// Compares the functions that volumes represent, in 26 directions. With an ill-conditioned Gram matrix, coefficients
-/// differ while the functions agree. `numbers`: values per sample and channel. `weights`: their weights in a direction.
-/// `other`: a second reference result, as accurate as `expected`.
+/// Compares the functions that volumes represent, in 26 directions. With an ill-conditioned Gram
+/// matrix, coefficients differ while the functions agree. `numbers`: values per sample and channel.
+/// `weights`: their weights in a direction. `other`: a second reference result, as accurate as
+/// `expected`.
 Deviation compare_functions(std::span<const float> found, std::span<const double> expected,
                             std::span<const double> other, int n, int numbers,
                             const std::function<std::vector<double>(const glm::dvec3&)>& weights,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Points of emissive triangles: kernel against CPU reference on random triangles of all sizes, textured and masked.
+// Points of emissive triangles: kernel against CPU reference on random triangles of all sizes,
+// textured and masked.
 #include "pipeline/inject/emit.hpp"
 
 #include <fmt/format.h>
@@ -34,7 +35,8 @@ SceneData emissive_soup() {
 }
 
 Deviation compare_scene(Session& session, const SceneData& scene) {
-  const std::vector<ClpvGrid> grids = {{{-1, 2, 2.5f}, 0.5f, kGrid, {}}, {{-2, 1, 1.5f}, 1, kGrid, {}}};
+  const std::vector<ClpvGrid> grids = {{{-1, 2, 2.5f}, 0.5f, kGrid, {}},
+                                       {{-2, 1, 1.5f}, 1, kGrid, {}}};
   const EmissionPlan plan = plan_emission(scene, emissive_triangles(scene), grids);
   const SceneBuffers buffers = upload_scene(session, scene);
   Emitter emitter(session, buffers);
@@ -46,15 +48,17 @@ Deviation compare_scene(Session& session, const SceneData& scene) {
     largest = std::max({largest, point.flux.x, point.flux.y, point.flux.z});
   Deviation result{0, tolerance("emit")};
   for (std::size_t i = 0; i < found.normal.size(); ++i) {
-    const reference::EmittedPoint wanted = i < expected.size() ? expected[i] : reference::EmittedPoint{};
+    const reference::EmittedPoint wanted =
+        i < expected.size() ? expected[i] : reference::EmittedPoint{};
     const glm::dvec3 flux = glm::dvec3(found.colour[i]) / double{kScale};
     const double off = glm::length(flux - wanted.flux) - 2 * wanted.tolerance;
     const double places = glm::length(glm::dvec3(found.position[i]) - wanted.position) / 10 +
                           glm::length(glm::dvec3(found.normal[i]) - wanted.normal);
     const auto where = [&] {
       return fmt::format(
-          "point {} of {}: flux {:.6g} {:.6g} {:.6g}, expected {:.6g} {:.6g} {:.6g}; off by {:.2g}", i,
-          expected.size(), flux.x, flux.y, flux.z, wanted.flux.x, wanted.flux.y, wanted.flux.z, places);
+          "point {} of {}: flux {:.6g} {:.6g} {:.6g}, expected {:.6g} {:.6g} {:.6g}; off by {:.2g}",
+          i, expected.size(), flux.x, flux.y, flux.z, wanted.flux.x, wanted.flux.y, wanted.flux.z,
+          places);
     };
     result.take(off / largest, where);
     result.take(places, where);

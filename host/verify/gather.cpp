@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Gathering: kernels against CPU reference. Checks use random light in three nested cascades, and surfaces in and
-// around them.
+// Gathering: kernels against CPU reference. Checks use random light in three nested cascades, and
+// surfaces in and around them.
 #include "verify/gather.hpp"
 
 #include <fmt/format.h>
@@ -41,7 +41,8 @@ struct GatherWork {
 
 /// Returns true if the device's image filter interpolates.
 bool filtered_by_device(const GatherOptions& options) {
-  return options.format.layout == Layout::image && options.filtered && options.gather == Gathering::all;
+  return options.format.layout == Layout::image && options.filtered &&
+         options.gather == Gathering::all;
 }
 
 std::string_view compared_as(const GatherOptions& options) {
@@ -76,14 +77,14 @@ Cost cost_of(const GatherWork& p) {
        p.light.stored)  // images are read once; buffers are packed: read, written, read again
     cost.bytes += static_cast<double>(volume.bytes()) * (o.format.layout == Layout::image ? 1 : 3);
   cost.working_set = cost.bytes;
-  // Reads per pixel in one cascade: eight cells, or one filtered texel. A read of packed buffers has two coefficients
-  // of three channels.
+  // Reads per pixel in one cascade: eight cells, or one filtered texel. A read of packed buffers
+  // has two coefficients of three channels.
   const double texels = kChannels * accesses_per_cell(o.format, n);
   cost.reads_per_cell = o.format.layout != Layout::image ? 8.0 * ((n + 1) / 2)
                         : o.filtered                     ? texels
                                                          : 8 * texels;
-  // Per coefficient and channel: 8 multiply-adds of the trilinear interpolation, unless the filter does them, and one of
-  // the dot product g(n) . c.
+  // Per coefficient and channel: 8 multiply-adds of the trilinear interpolation, unless the filter
+  // does them, and one of the dot product g(n) . c.
   cost.flops = pixels * kChannels * n * (filtered_by_device(o) ? 2 : 2 * 8 + 2);
   return cost;
 }
@@ -99,7 +100,8 @@ Job gather_job(Session& session, const GatherProblem& problem, const Share& shar
   job.compare = [p, &session, share] {
     const GatherProblem& q = p->problem;
     const Values expected = share([&] { return expected_pixels(*p); });
-    return compare_pixels(session.read<cl_float4>(p->irradiance, p->pixels()), *expected, q.image->view.width,
+    return compare_pixels(session.read<cl_float4>(p->irradiance, p->pixels()), *expected,
+                          q.image->view.width,
                           tolerance(compared_as(q.options), q.options.format.storage), q.every);
   };
   return job;
@@ -110,16 +112,18 @@ GatherProblem random_gathering(Session& session, const std::shared_ptr<const Bas
   std::mt19937 random(11);
   SurfaceImage image = random_surfaces(random);
   for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
-    if (rounding_decides(*basis, options.lobes, glm::dvec3(image.normal[pixel]))) image.depth[pixel] = 0;
+    if (rounding_decides(*basis, options.lobes, glm::dvec3(image.normal[pixel])))
+      image.depth[pixel] = 0;
   }
   std::vector<std::uint8_t> occluded = random_occlusion(kCascades, options.grid, random);
   if (options.gather != Gathering::visible) occluded.clear();
-  return {basis,
-          transport,
-          options,
-          random_cascades(*basis, kCascades, kFinestEdge, options.grid, std::move(occluded), random),
-          upload_surface(session, image),
-          std::make_shared<const SurfaceImage>(image)};
+  return {
+      basis,
+      transport,
+      options,
+      random_cascades(*basis, kCascades, kFinestEdge, options.grid, std::move(occluded), random),
+      upload_surface(session, image),
+      std::make_shared<const SurfaceImage>(image)};
 }
 
 Cases gather_cases(const CheckScope& scope) {
@@ -127,10 +131,12 @@ Cases gather_cases(const CheckScope& scope) {
   const auto add = [&](const std::string& basis, TransportKind transport, const std::string& name,
                        GatherOptions options) {
     options.grid = kGrid;
-    cases.push_back(job_case(
-        Stage::gather, fmt::format("{}/{}/{}", basis, name_of(transport), name), [=](Session& session) {
-          return gather_job(session, random_gathering(session, make_basis(basis), transport, options));
-        }));
+    cases.push_back(
+        job_case(Stage::gather, fmt::format("{}/{}/{}", basis, name_of(transport), name),
+                 [=](Session& session) {
+                   return gather_job(
+                       session, random_gathering(session, make_basis(basis), transport, options));
+                 }));
   };
   const GatherOptions visible{.gather = Gathering::visible};
   for (const std::string& name : scope.bases) {
@@ -148,7 +154,8 @@ Cases gather_cases(const CheckScope& scope) {
   const std::string swept = swept_basis()->name();  // all bases of swept light
   add(swept, TransportKind::sweep, "plain", {});
   add(swept, TransportKind::sweep, "visible", visible);
-  for (const VolumeFormat& format : scope.formats) {  // images both with the device's filter and from texels
+  for (const VolumeFormat& format :
+       scope.formats) {  // images both with the device's filter and from texels
     GatherOptions options{.format = format};
     std::string name = format_name(format);
     if (format.layout == Layout::image) {

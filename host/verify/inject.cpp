@@ -25,8 +25,8 @@ namespace {
 
 constexpr int kGrid = 5;  // odd and small: many texels per cell, several segments in some cells
 constexpr unsigned kWidth = 37, kHeight = 23;  // no multiples of a work-group
-// [cells]; excludes points close to a cell boundary, where rounding decides. Exceeds the position error of 8-bit
-// normals.
+// [cells]; excludes points close to a cell boundary, where rounding decides. Exceeds the position
+// error of 8-bit normals.
 constexpr double kMargin = 0.01;
 
 const ClpvGrid kCells = {{-1.5f, 0.5f, 2.0f}, 0.5f, kGrid, {}};
@@ -35,7 +35,8 @@ const ClpvGrid kCells = {{-1.5f, 0.5f, 2.0f}, 0.5f, kGrid, {}};
 ClpvView view_of_grid(bool orthographic, float distance) {
   const glm::vec3 centre = glm::vec3(vector(kCells.origin)) + 0.5f * kCells.cell * kGrid;
   SceneCamera camera;
-  camera.forward = glm::normalize(orthographic ? glm::vec3(0.2f, -1, 0.1f) : glm::vec3(-1, -0.7f, 0.5f));
+  camera.forward =
+      glm::normalize(orthographic ? glm::vec3(0.2f, -1, 0.1f) : glm::vec3(-1, -0.7f, 0.5f));
   camera.up = {0, 0, 1};
   camera.eye = centre - distance * camera.forward;
   ClpvView view = camera_view(camera, kWidth, kHeight);
@@ -50,10 +51,10 @@ bool near_border(const glm::dvec3& point) {
   return std::min({off.x, off.y, off.z}) < kMargin;
 }
 
-/// Random depths, colours and normals towards the viewer, with holes and values that are not finite. Excludes normals
-/// whose lobe depends on rounding.
-SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool orthographic, bool light,
-                            RsmFormat format, unsigned seed) {
+/// Random depths, colours and normals towards the viewer, with holes and values that are not
+/// finite. Excludes normals whose lobe depends on rounding.
+SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool orthographic,
+                            bool light, RsmFormat format, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(-1, 1);
   constexpr float kDistance = 5, kSpread = 1.4f;
@@ -66,10 +67,11 @@ SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool o
     const glm::vec3 around(uniform(random), uniform(random), uniform(random));
     surface.depth[i] = uniform(random) > 0.8f ? 0 : kDistance + kSpread * uniform(random);
     surface.normal[i] = glm::vec4(glm::normalize(1.2f * around - forward), 0);
-    surface.colour[i] = 0.5f + 0.5f * glm::vec4(uniform(random), uniform(random), uniform(random), 0);
+    surface.colour[i] =
+        0.5f + 0.5f * glm::vec4(uniform(random), uniform(random), uniform(random), 0);
     const glm::dvec3 point = reference::grid_point(surface, i, kCells, light);
-    const bool unsure =
-        lobes.kind == LobeKind::rotate && rounding_decides(basis, lobes, glm::dvec3(surface.normal[i]));
+    const bool unsure = lobes.kind == LobeKind::rotate &&
+                        rounding_decides(basis, lobes, glm::dvec3(surface.normal[i]));
     if (unsure || near_border(light ? point : point + 0.5)) surface.depth[i] = 0;
   }
   surface.depth[3] = std::numeric_limits<float>::infinity();
@@ -82,8 +84,9 @@ SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool o
 /// The same surface as points without a view.
 SurfaceImage as_points(SurfaceImage surface) {
   for (std::size_t i = 0; i < surface.depth.size(); ++i) {
-    const glm::dvec3 at = reference::surface_position(surface.view, static_cast<double>(i % kWidth),
-                                                      static_cast<double>(i / kWidth), surface.depth[i]);
+    const glm::dvec3 at =
+        reference::surface_position(surface.view, static_cast<double>(i % kWidth),
+                                    static_cast<double>(i / kWidth), surface.depth[i]);
     surface.position.emplace_back(glm::vec3(at), 1);
     if (surface.depth[i] == 0) surface.normal[i] = glm::vec4(0);
   }
@@ -100,7 +103,8 @@ struct InjectWork {
   InjectWork(Session& session, const InjectProblem& p)
       : problem(p), injector(session, *p.basis, problem.options) {
     const InjectOptions& o = p.options;
-    if (p.light) light.emplace(session, VolumeShape{o.grid, p.basis->size(), 3}, "injected light", o.format);
+    if (p.light)
+      light.emplace(session, VolumeShape{o.grid, p.basis->size(), 3}, "injected light", o.format);
     if (!p.blockers.empty())
       geometry.emplace(session, VolumeShape{o.grid + 1, blocking_size(o.blocking, *p.basis), 1},
                        "geometry volume", o.format);
@@ -117,8 +121,8 @@ struct InjectWork {
   }
 };
 
-/// Expected volumes: light (if injected), then geometry (if injected) and the alternative geometry that is equally
-/// correct where rounding decides between two surfaces.
+/// Expected volumes: light (if injected), then geometry (if injected) and the alternative geometry
+/// that is equally correct where rounding decides between two surfaces.
 std::vector<double> expected_volumes(const InjectProblem& p) {
   const InjectOptions& o = p.options;
   std::vector<double> values;
@@ -128,7 +132,8 @@ std::vector<double> expected_volumes(const InjectProblem& p) {
     values = std::move(light.values);
   }
   if (p.blockers.empty()) return values;
-  reference::Volume merged(o.grid + 1, blocking_size(o.blocking, *p.basis), 1), alternative = merged;
+  reference::Volume merged(o.grid + 1, blocking_size(o.blocking, *p.basis), 1),
+      alternative = merged;
   const reference::Volume none = merged;
   for (const InjectedSurface& blocker : p.blockers) {
     reference::Volume found = none;
@@ -156,8 +161,8 @@ Deviation compare(Session& session, const InjectWork& p, const std::vector<doubl
       return light ? basis.evaluate(w) : blocking_weights(o.blocking, basis, o.lobes, w);
     };
     const VolumeShape& shape = volume.shape();
-    const Deviation found = compare_functions(values, merged, light ? merged : all.last(size), shape.n,
-                                              shape.coefficients, weights);
+    const Deviation found = compare_functions(values, merged, light ? merged : all.last(size),
+                                              shape.n, shape.coefficients, weights);
     result.take(found.worst,
                 [&] { return fmt::format("{}, {}", light ? "light" : "geometry", found.place); });
   };
@@ -166,10 +171,12 @@ Deviation compare(Session& session, const InjectWork& p, const std::vector<doubl
   return result;
 }
 
-/// Bytes of each texel's depth and normal, and of its colour for the light volume. Clearing volumes is not timed.
+/// Bytes of each texel's depth and normal, and of its colour for the light volume. Clearing volumes
+/// is not timed.
 Cost cost_of(const InjectWork& p) {
   const auto bytes = [](const Surface& surface, int fields) {
-    const std::size_t field = surface.format == RsmFormat::paper ? sizeof(cl_uint) : sizeof(cl_float4);
+    const std::size_t field =
+        surface.format == RsmFormat::paper ? sizeof(cl_uint) : sizeof(cl_float4);
     return static_cast<double>(surface.view.width) * surface.view.height *
            static_cast<double>(sizeof(float) + fields * field);
   };
@@ -205,8 +212,9 @@ struct InjectCase {
   }
 };
 
-/// Returns the cases of one basis. Light and blockers evaluate the same lobes, so without `thorough` only the small
-/// bases compare both. Features nearly independent of the basis use them too.
+/// Returns the cases of one basis. Light and blockers evaluate the same lobes, so without
+/// `thorough` only the small bases compare both. Features nearly independent of the basis use them
+/// too.
 std::vector<InjectCase> cases_of_basis(const Basis& basis, bool thorough) {
   const bool both = thorough || basis.size() == 4;
   std::vector<InjectCase> cases = {{}};
@@ -252,8 +260,8 @@ Job inject_job(Session& session, const InjectProblem& problem, const Share& shar
 }
 
 InjectProblem random_injection(Session& session, const std::shared_ptr<const Basis>& basis,
-                               const InjectOptions& options, bool light, bool orthographic, RsmFormat format,
-                               bool points) {
+                               const InjectOptions& options, bool light, bool orthographic,
+                               RsmFormat format, bool points) {
   InjectProblem problem{basis, options, kCells, {}, {}};
   problem.options.grid = kGrid;
   const auto surface = [&](bool above, unsigned seed) {
@@ -272,8 +280,8 @@ Cases inject_cases(const CheckScope& scope) {
   Cases cases;
   const auto add = [&](const std::string& basis, const InjectCase& c) {
     cases.push_back(job_case(Stage::inject, c.name(basis), [basis, c](Session& session) {
-      InjectProblem problem = random_injection(session, make_basis(basis), c.options, c.light, c.orthographic,
-                                               c.format, c.points);
+      InjectProblem problem = random_injection(session, make_basis(basis), c.options, c.light,
+                                               c.orthographic, c.format, c.points);
       problem.stride = c.stride;
       return inject_job(session, problem);
     }));

@@ -38,7 +38,7 @@ Job inject_job(Session& session, const InjectProblem& problem, const Share& shar
 
 /// A problem with random surfaces: one of light, or two of blockers, to test merging.
 InjectProblem random_injection(Session& session, const std::shared_ptr<const Basis>& basis,
-                               const InjectOptions& options, bool light, bool orthographic, RsmFormat format,
-                               bool points = false);
+                               const InjectOptions& options, bool light, bool orthographic,
+                               RsmFormat format, bool points = false);
 
 }  // namespace clpv::verify

@@ -17,11 +17,12 @@ namespace {
 
 constexpr unsigned kWidth = 45, kHeight = 31;  // no multiples of a work-group
 constexpr float kFarthest = 12;                // [m]
-constexpr double kHeightError = 1e-6;          // height of a rotated centre in float32; measured 3e-7
+constexpr double kHeightError = 1e-6;  // height of a rotated centre in float32; measured 3e-7
 
 void add_materials(SceneData& scene, std::mt19937& random) {
   Texture texture{.width = 5, .height = 4, .wrap_u = CLPV_WRAP_MIRROR, .rgba = {}, .name = "holes"};
-  for (int i = 0; i < 5 * 4 * 4; ++i) texture.rgba.push_back(static_cast<std::uint8_t>(random() % 256));
+  for (int i = 0; i < 5 * 4 * 4; ++i)
+    texture.rgba.push_back(static_cast<std::uint8_t>(random() % 256));
   scene.textures.push_back(texture);
   for (const unsigned flags : {0u, CLPV_MATERIAL_MASKED}) {
     ClpvMaterial material{{0.9f, 0.6f, 0.3f, 0.9f}, {}, 0.4f, 0, CLPV_NO_TEXTURE, flags, 0};
@@ -81,14 +82,16 @@ bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm:
 
 Deviation compare_pixels(const std::vector<cl_float4>& device, std::span<const double> expected,
                          unsigned width, double allowed, std::size_t every) {
-  const auto found = [&](std::size_t i) { return static_cast<double>(device[i / 4 * every].s[i % 4]); };
+  const auto found = [&](std::size_t i) {
+    return static_cast<double>(device[i / 4 * every].s[i % 4]);
+  };
   const auto wanted = [&](std::size_t i) { return expected[i]; };
   const WorstError worst = worst_difference(expected.size(), found, wanted);
   if (worst.value == 0) return {0, allowed};
   const std::size_t pixel = worst.at / 4 * every;
   return {worst.value, allowed,
-          fmt::format("pixel {},{} channel {}: {:.7g}, expected {:.7g}", pixel % width, pixel / width,
-                      worst.at % 4, found(worst.at), wanted(worst.at))};
+          fmt::format("pixel {},{} channel {}: {:.7g}, expected {:.7g}", pixel % width,
+                      pixel / width, worst.at % 4, found(worst.at), wanted(worst.at))};
 }
 
 void append_pixel(std::vector<double>& values, const glm::dvec3& colour, double alpha) {
@@ -98,7 +101,9 @@ void append_pixel(std::vector<double>& values, const glm::dvec3& colour, double 
 SceneData triangle_soup() {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(-1, 1);
-  const auto direction = [&] { return glm::vec3(uniform(random), uniform(random), uniform(random)); };
+  const auto direction = [&] {
+    return glm::vec3(uniform(random), uniform(random), uniform(random));
+  };
   SceneData scene;
   add_materials(scene, random);
   const glm::vec3 middle(-0.25f, 2.75f, 3.25f);
@@ -149,12 +154,14 @@ std::vector<std::uint8_t> random_occlusion(int cascades, int grid, std::mt19937&
 
 CascadeLight random_cascades(const Basis& basis, int count, double edge, int grid,
                              std::vector<std::uint8_t> occluded, std::mt19937& random) {
-  CascadeLight result{cascade_grids({0.1f, 0.2f, 0.3f}, count, edge, grid), {}, std::move(occluded)};
+  CascadeLight result{
+      cascade_grids({0.1f, 0.2f, 0.3f}, count, edge, grid), {}, std::move(occluded)};
   for (int c = 0; c < count; ++c) result.light.push_back(random_light(basis, grid, random));
   return result;
 }
 
-CascadesOnDevice::CascadesOnDevice(Session& session, const CascadeLight& from, const VolumeFormat& format)
+CascadesOnDevice::CascadesOnDevice(Session& session, const CascadeLight& from,
+                                   const VolumeFormat& format)
     : grids(from.grids) {
   for (const SharedVolume& light : from.light) stored.push_back(on_device(session, *light, format));
   const bool occludes = !from.occluded.empty();
@@ -174,16 +181,18 @@ GatheredLight CascadesOnDevice::gathered() const {
 }
 
 std::vector<reference::MappedLight> lights_in(const ClpvMedium& medium) {
-  const ClpvLight sun{{}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {},
-                      {}};
+  const ClpvLight sun{
+      {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {}, {}};
   const ClpvLight point{{1, 1.5f, -2.3f}, CLPV_LIGHT_POINT, {}, 0, {6, 5, 4}, 0, 0, {}, {}};
-  const ClpvLight spot{{-1, 2.5f, -3}, CLPV_LIGHT_SPOT, {0.6f, -0.8f, 0}, 9, {20, 30, 20}, 2, -1, {}, {}};
+  const ClpvLight spot{
+      {-1, 2.5f, -3}, CLPV_LIGHT_SPOT, {0.6f, -0.8f, 0}, 9, {20, 30, 20}, 2, -1, {}, {}};
   reference::MappedLight unshadowed{spot, {}};
   unshadowed.light.medium = medium;
   return {mapped(sun, medium, 0), mapped(sun, medium, 1e-3f), mapped(point, medium, 0), unshadowed};
 }
 
-std::vector<ShadowedLight> on_device(Session& session, const std::vector<reference::MappedLight>& lights) {
+std::vector<ShadowedLight> on_device(Session& session,
+                                     const std::vector<reference::MappedLight>& lights) {
   std::vector<ShadowedLight> shadowed;
   for (const reference::MappedLight& light : lights) {
     ShadowedLight& there = shadowed.emplace_back(ShadowedLight{light.light, {}, {}});

@@ -25,24 +25,27 @@
 
 namespace clpv::verify {
 
-/// Returns the G-buffer of a camera near the origin: random depths up to 12 m, normals, colours and emission. 10 % of
-/// the pixels show no surface.
+/// Returns the G-buffer of a camera near the origin: random depths up to 12 m, normals, colours and
+/// emission. 10 % of the pixels show no surface.
 SurfaceImage random_surfaces(std::mt19937& random);
 
-/// Compares red, green, blue and alpha of every `every`-th pixel with the CPU reference: `expected` has four numbers for
-/// each. Errors are relative to its largest value. `width`: image width, for places.
+/// Compares red, green, blue and alpha of every `every`-th pixel with the CPU reference: `expected`
+/// has four numbers for each. Errors are relative to its largest value. `width`: image width, for
+/// places.
 Deviation compare_pixels(const std::vector<cl_float4>& device, std::span<const double> expected,
                          unsigned width, double allowed, std::size_t every = 1);
 
 /// Appends red, green and blue of `colour`, and `alpha`.
 void append_pixel(std::vector<double>& values, const glm::dvec3& colour, double alpha);
 
-/// Returns true if single and double precision may read different table entries. This concerns looking up `direction`,
-/// and rotating a lobe to it or to its opposite. Returns false without a table.
+/// Returns true if single and double precision may read different table entries. This concerns
+/// looking up `direction`, and rotating a lobe to it or to its opposite. Returns false without a
+/// table.
 bool rounding_decides(const Basis& basis, const LobeOptions& options, const glm::dvec3& direction);
 
-/// Returns triangles in and around a grid of nine cells of 0.5 m from (-2.5, 0.5, 1). Sizes range from specks to far
-/// larger than the grid. One has no area, some are axis-aligned, and 1 of 3 has holes.
+/// Returns triangles in and around a grid of nine cells of 0.5 m from (-2.5, 0.5, 1). Sizes range
+/// from specks to far larger than the grid. One has no area, some are axis-aligned, and 1 of 3 has
+/// holes.
 SceneData triangle_soup();
 
 /// Returns light in 1 of 3 cells, of either sign, as from bases with negative lobes.
@@ -51,12 +54,13 @@ std::shared_ptr<reference::Volume> random_light(const Basis& basis, int n, std::
 /// Returns `numbers` values in [0, 1] per corner.
 std::shared_ptr<reference::Volume> random_blockers(int numbers, int n, std::mt19937& random);
 
-/// Returns a sun in the open and one that is blocked, a point light and a spot without maps, in a medium. Maps are empty
-/// or block everything, so that rounding decides no texel.
+/// Returns a sun in the open and one that is blocked, a point light and a spot without maps, in a
+/// medium. Maps are empty or block everything, so that rounding decides no texel.
 std::vector<reference::MappedLight> lights_in(const ClpvMedium& medium);
 
 /// Returns lights with their maps on the device.
-std::vector<ShadowedLight> on_device(Session& session, const std::vector<reference::MappedLight>& lights);
+std::vector<ShadowedLight> on_device(Session& session,
+                                     const std::vector<reference::MappedLight>& lights);
 
 /// Returns a volume on the device with the same values.
 Volume on_device(Session& session, const reference::Volume& from, const VolumeFormat& format);
@@ -65,10 +69,12 @@ Volume on_device(Session& session, const reference::Volume& from, const VolumeFo
 struct CascadeLight {
   std::vector<ClpvGrid> grids;
   std::vector<SharedVolume> light;
-  std::vector<std::uint8_t> occluded;  ///< of visibility_masks() for all cascades; empty: nothing is occluded
+  /// Of visibility_masks() for all cascades; empty: nothing is occluded.
+  std::vector<std::uint8_t> occluded;
 };
 
-/// Returns random light in `count` cascades about a point near the origin. `edge`: of the finest [m].
+/// Returns random light in `count` cascades about a point near the origin. `edge`: of the finest
+/// [m].
 CascadeLight random_cascades(const Basis& basis, int count, double edge, int grid,
                              std::vector<std::uint8_t> occluded, std::mt19937& random);
 

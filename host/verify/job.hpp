@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A job: work of one stage on a device that can be repeated, and the comparison of its output with the CPU reference.
-// `clpv check` runs jobs on small random inputs, `clpv bench` times them on a scene's.
+// A job: work of one stage on a device that can be repeated, and the comparison of its output with
+// the CPU reference. `clpv check` runs jobs on small random inputs, `clpv bench` times them on a
+// scene's.
 #pragma once
 
 #include <cmath>
@@ -30,13 +31,15 @@ inline constexpr auto kNames<verify::Status> = name_list("ok", "wrong", "failed"
 
 namespace verify {
 
-/// Largest error of an output against its reference, as verify/tolerances.hpp defines it for the stage.
+/// Largest error of an output against its reference, as verify/tolerances.hpp defines it for the
+/// stage.
 struct Deviation {
   double worst = 0, allowed = 0;
   std::string place = {};  ///< of the largest error, with both values; empty without an error
 
   bool passed() const { return worst <= allowed; }  // false for NaN
-  /// Records an error if it is the largest so far, with its place from `where`. A NaN exceeds any number and stays.
+  /// Records an error if it is the largest so far, with its place from `where`. A NaN exceeds any
+  /// number and stays.
   template <typename Where>
   void take(double error, const Where& where) {
     if (std::isnan(worst) || error <= worst) return;
@@ -47,18 +50,21 @@ struct Deviation {
 
 /// Operations and bytes of the work, counted and not measured.
 struct Cost {
-  double flops = 0;        ///< executed by the kernels; a fused multiply-add counts as 2
-  double bytes = 0;        ///< compulsory traffic: each input of a launch read once, each output written once
+  double flops = 0;  ///< executed by the kernels; a fused multiply-add counts as 2
+  /// Compulsory traffic: each input of a launch read once, each output written once.
+  double bytes = 0;
   double working_set = 0;  ///< bytes touched in total; selects the bandwidth ceiling
-  double reads_per_cell = 0;  ///< values (or texels) read from volumes per cell, over all channels and steps
+  /// Values (or texels) read from volumes per cell, over all channels and steps.
+  double reads_per_cell = 0;
   double writes_per_cell = 0;
   double triangles = 0, pixels = 0;  ///< rasterising: sums over all views
 };
 
 struct Job {
-  std::function<void()> reset = {};         ///< clears outputs before a repetition; may be null
-  std::function<void()> run = {};           ///< enqueues the work
-  std::function<Deviation()> compare = {};  ///< checks the last repetition's output; null: no reference
+  std::function<void()> reset = {};  ///< clears outputs before a repetition; may be null
+  std::function<void()> run = {};    ///< enqueues the work
+  std::function<Deviation()> compare =
+      {};  ///< checks the last repetition's output; null: no reference
   Cost cost = {};
 };
 

@@ -21,8 +21,9 @@ std::string test_case(const CheckResult& result) {
     case Status::ok:
       return head + "/>\n";
     case Status::wrong:
-      return with(fmt::format("<failure message=\"{:.3e} &gt; {:.0e}\">{}</failure>", result.deviation.worst,
-                              result.deviation.allowed, xml_escaped(result.deviation.place)));
+      return with(fmt::format("<failure message=\"{:.3e} &gt; {:.0e}\">{}</failure>",
+                              result.deviation.worst, result.deviation.allowed,
+                              xml_escaped(result.deviation.place)));
     case Status::failed:
       return with(fmt::format("<error>{}</error>", xml_escaped(result.reason)));
     case Status::unsupported:
@@ -34,7 +35,8 @@ std::string test_case(const CheckResult& result) {
 /// The counts of a suite, as attributes.
 std::string counts(CheckResults::const_iterator first, CheckResults::const_iterator last) {
   const auto of = [&](Status status) {
-    return std::count_if(first, last, [&](const CheckResult& result) { return result.status == status; });
+    return std::count_if(first, last,
+                         [&](const CheckResult& result) { return result.status == status; });
   };
   return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\"", last - first,
                      of(Status::wrong), of(Status::failed), of(Status::unsupported));
@@ -43,13 +45,15 @@ std::string counts(CheckResults::const_iterator first, CheckResults::const_itera
 }  // namespace
 
 std::string junit(const CheckResults& results, const std::string& device) {
-  std::string text =
-      fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"clpv check on {}\" {}>\n",
-                  xml_escaped(device), counts(results.begin(), results.end()));
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"clpv check on {}\" {}>\n",
+      xml_escaped(device), counts(results.begin(), results.end()));
   for (auto first = results.begin(); first != results.end();) {
-    const auto last = std::find_if(first, results.end(),
-                                   [&](const CheckResult& result) { return result.stage != first->stage; });
-    text += fmt::format("  <testsuite name=\"{}\" {}>\n", xml_escaped(first->stage), counts(first, last));
+    const auto last = std::find_if(first, results.end(), [&](const CheckResult& result) {
+      return result.stage != first->stage;
+    });
+    text += fmt::format("  <testsuite name=\"{}\" {}>\n", xml_escaped(first->stage),
+                        counts(first, last));
     for (; first != last; ++first) text += test_case(*first);
     text += "  </testsuite>\n";
   }

@@ -8,8 +8,8 @@
 
 namespace clpv::verify {
 
-/// Writes one <testsuite> per stage, in order, and one <testcase> per result. Wrong results are failures with error and
-/// place, failed ones errors, unsupported ones skipped.
+/// Writes one <testsuite> per stage, in order, and one <testcase> per result. Wrong results are
+/// failures with error and place, failed ones errors, unsupported ones skipped.
 std::string junit(const CheckResults& results, const std::string& device);
 
 }  // namespace clpv::verify

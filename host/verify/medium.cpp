@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light scattered by a medium: kernels against CPU reference, under a sun, a spot and a point light and in random light of
-// two cascades.
+// Light scattered by a medium: kernels against CPU reference, under a sun, a spot and a point light
+// and in random light of two cascades.
 #include "pipeline/gather/medium.hpp"
 
 #include <memory>
@@ -20,8 +20,10 @@ namespace {
 constexpr int kMediumGrid = 9, kMediumCascades = 2;
 constexpr double kMediumFinestEdge = 6;  // [m]
 
-const ClpvMedium kFog{{-2, -1.5f, -7}, {4, 3, 2}, {0.1f, 0.3f, 0.5f}, {0.15f, 0.3f, 0.9f}, 0.5f, {}};
-const ClpvMedium kDust{{-20, -20, -20}, {20, 20, 20}, {1e-5f, 2e-5f, 0}, {1e-5f, 2e-5f, 1e-5f}, -0.3f, {}};
+const ClpvMedium kFog{{-2, -1.5f, -7},     {4, 3, 2}, {0.1f, 0.3f, 0.5f},
+                      {0.15f, 0.3f, 0.9f}, 0.5f,      {}};
+const ClpvMedium kDust{{-20, -20, -20},       {20, 20, 20}, {1e-5f, 2e-5f, 0},
+                       {1e-5f, 2e-5f, 1e-5f}, -0.3f,        {}};
 
 Deviation compare_medium(Session& session, const ClpvMedium& medium) {
   std::mt19937 random(31);
@@ -45,16 +47,17 @@ Deviation compare_medium(Session& session, const ClpvMedium& medium) {
   for (const glm::dvec3& wanted :
        reference::scattered_light(*basis, options, {medium, lights, light.cascades}, image))
     append_pixel(expected, wanted, 1);
-  return compare_pixels(session.read<cl_float4>(pixels, image.depth.size()), expected, image.view.width,
-                        tolerance("medium"));
+  return compare_pixels(session.read<cl_float4>(pixels, image.depth.size()), expected,
+                        image.view.width, tolerance("medium"));
 }
 
 }  // namespace
 
 Cases medium_cases(const CheckScope&) {
-  return {
-      deviation_case(Stage::medium, "fog", [](Session& session) { return compare_medium(session, kFog); }),
-      deviation_case(Stage::medium, "dust", [](Session& session) { return compare_medium(session, kDust); })};
+  return {deviation_case(Stage::medium, "fog",
+                         [](Session& session) { return compare_medium(session, kFog); }),
+          deviation_case(Stage::medium, "dust",
+                         [](Session& session) { return compare_medium(session, kDust); })};
 }
 
 }  // namespace clpv::verify

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Near field: kernels against CPU reference, on random triangles with textures, holes and emission, under all kinds of
-// light, in random light of three cascades. Pixels that rounding may decide are left out.
+// Near field: kernels against CPU reference, on random triangles with textures, holes and emission,
+// under all kinds of light, in random light of three cascades. Pixels that rounding may decide are
+// left out.
 #include "pipeline/gather/near.hpp"
 
 #include <fmt/format.h>
@@ -38,7 +39,8 @@ SurfaceImage near_surfaces(std::mt19937& random) {
   return image;
 }
 
-/// Maps are empty or, texel by texel at random, block all light: no depth is close to that of a surface.
+/// Maps are empty or, texel by texel at random, block all light: no depth is close to that of a
+/// surface.
 reference::MappedLight near_light(const ClpvLight& light, bool shadows, std::mt19937& random) {
   reference::MappedLight mapped{light, {}};
   if (!shadows) return mapped;
@@ -51,10 +53,11 @@ reference::MappedLight near_light(const ClpvLight& light, bool shadows, std::mt1
 }
 
 std::vector<reference::MappedLight> near_lights(std::mt19937& random) {
-  const ClpvLight sun{{}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {},
-                      {}};
+  const ClpvLight sun{
+      {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {}, {}};
   const ClpvLight point{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, {}, {}};
-  return {near_light(sun, true, random), near_light(point, true, random), near_light(sun, false, random)};
+  return {near_light(sun, true, random), near_light(point, true, random),
+          near_light(sun, false, random)};
 }
 
 struct NearCase {
@@ -75,8 +78,8 @@ Deviation compare_near(Session& session, const NearCase& variant) {
   const std::vector<reference::MappedLight> lights = near_lights(random);
   std::vector<std::uint8_t> occluded = random_occlusion(kNearCascades, kNearGrid, random);
   if (variant.gather != Gathering::visible) occluded.clear();
-  const CascadeLight cascades =
-      random_cascades(*basis, kNearCascades, kNearFinestEdge, kNearGrid, std::move(occluded), random);
+  const CascadeLight cascades = random_cascades(*basis, kNearCascades, kNearFinestEdge, kNearGrid,
+                                                std::move(occluded), random);
   const CascadesOnDevice light(session, cascades, variant.format);
   const NearOptions options{.gather = {.grid = kNearGrid,
                                        .gather = variant.gather,
@@ -96,9 +99,9 @@ Deviation compare_near(Session& session, const NearCase& variant) {
   field.trace(camera, gatherer);
   field.add(camera, gatherer, on_device(session, lights), irradiance);
 
-  const reference::NearResult wanted =
-      reference::near(*basis, options, {scene, materials, lights, light.cascades}, image,
-                      reference::gather(*basis, TransportKind::sweep, options.gather, light.cascades, image));
+  const reference::NearResult wanted = reference::near(
+      *basis, options, {scene, materials, lights, light.cascades}, image,
+      reference::gather(*basis, TransportKind::sweep, options.gather, light.cascades, image));
   const std::vector<cl_float4> found = session.read<cl_float4>(irradiance, image.depth.size());
   std::vector<double> expected;
   std::size_t certain = 0;
@@ -111,7 +114,8 @@ Deviation compare_near(Session& session, const NearCase& variant) {
   const double share = static_cast<double>(certain) / static_cast<double>(found.size()),
                allowed = tolerance("near", variant.format.storage);
   if (share < kLeastCertain)
-    return {1, allowed, fmt::format("rounding may decide all but {:.0f} % of the pixels", 100 * share)};
+    return {1, allowed,
+            fmt::format("rounding may decide all but {:.0f} % of the pixels", 100 * share)};
   return compare_pixels(found, expected, image.view.width, allowed);
 }
 
@@ -120,8 +124,9 @@ Deviation compare_near(Session& session, const NearCase& variant) {
 Cases near_cases(const CheckScope& scope) {
   Cases cases;
   const auto add = [&](const NearCase& variant) {
-    cases.push_back(deviation_case(Stage::near, variant.name,
-                                   [variant](Session& session) { return compare_near(session, variant); }));
+    cases.push_back(deviation_case(Stage::near, variant.name, [variant](Session& session) {
+      return compare_near(session, variant);
+    }));
   };
   add({.name = "quarter", .step = 4});
   add({.name = "reflects", .reflects = true});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Propagation: kernels against CPU reference. Checks use a small grid of random light and random blockers.
+// Propagation: kernels against CPU reference. Checks use a small grid of random light and random
+// blockers.
 #include "verify/propagate.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@
 namespace clpv::verify {
 namespace {
 
-constexpr int kGrid = 7;         // no multiple of a work-group: tests borders and partial work-groups
+constexpr int kGrid = 7;  // no multiple of a work-group: tests borders and partial work-groups
 constexpr int kFormatGrid = 17;  // whole blocks of 8 cells plus one cell
 constexpr int kSteps = 5;        // light crosses the grid and meets blockers
 
@@ -49,32 +50,38 @@ struct PropagateWork {
 /// Bytes and memory accesses to read or write `coefficients` numbers of a cell in a format.
 struct Access {
   VolumeFormat format;
-  double bytes(int coefficients) const { return static_cast<double>(bytes_per_cell(format, coefficients)); }
+  double bytes(int coefficients) const {
+    return static_cast<double>(bytes_per_cell(format, coefficients));
+  }
   double count(int coefficients) const { return accesses_per_cell(format, coefficients); }
 };
 
-/// Adds the cost of one step. Bytes count each value once; reads count every access. `separate_sum`: the step reads the
-/// sum so far besides its source.
+/// Adds the cost of one step. Bytes count each value once; reads count every access.
+/// `separate_sum`: the step reads the sum so far besides its source.
 void add_step(Cost& cost, const PropagateWork& p, bool blocked, bool separate_sum) {
   const double cells = std::pow(p.problem.options.grid, 3);
   const Access access{p.problem.options.format};
   const int n = p.problem.basis->size();
   const LinkTransmittance* transmitter = p.propagator.transmitter();
-  const int links = blocked && transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
-  cost.bytes += cells * (kChannels * (3 + (separate_sum ? 1 : 0)) * access.bytes(n) + access.bytes(links));
+  const int links =
+      blocked && transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
+  cost.bytes +=
+      cells * (kChannels * (3 + (separate_sum ? 1 : 0)) * access.bytes(n) + access.bytes(links));
   cost.flops += cells * kChannels * (step_operations(p.problem.transport, blocked).flops() + n);
   cost.reads_per_cell = kChannels * 7 * access.count(n) + access.count(links);
   cost.writes_per_cell = kChannels * 2 * access.count(n);
 }
 
-/// Cost of the kernels, after a first run has built them. Reads and writes per cell are those of a later step.
+/// Cost of the kernels, after a first run has built them. Reads and writes per cell are those of a
+/// later step.
 Cost cost_of(const PropagateWork& p) {
   const PropagateOptions& o = p.problem.options;
   const int n = p.problem.basis->size();
   const double cells = std::pow(o.grid, 3), corners = std::pow((o.grid + 1.0) / o.grid, 3);
   const Access access{o.format};
   Cost cost;
-  for (int step = 1; step <= p.problem.steps; ++step) add_step(cost, p, p.geometry.has_value(), step > 1);
+  for (int step = 1; step <= p.problem.steps; ++step)
+    add_step(cost, p, p.geometry.has_value(), step > 1);
   double links = 0;
   if (const LinkTransmittance* transmitter = p.propagator.transmitter()) {
     links = access.bytes(transmitter->transmittance().shape().coefficients);
@@ -103,7 +110,8 @@ struct PropagateCase {
                        options.lobe_time == LobeTime::host     ? ""
                        : options.table == TableStorage::buffer ? "/kernel"
                                                                : "/kernel image") +
-           (options.format == VolumeFormat{} ? "" : fmt::format("/{}", format_name(options.format)));
+           (options.format == VolumeFormat{} ? ""
+                                             : fmt::format("/{}", format_name(options.format)));
   }
 };
 
@@ -117,16 +125,19 @@ struct ConstantsCase {
   bool blockers = true;
 };
 
-/// Few and many coefficients, matrices with and without zeros. A run with blockers also tests a step that is not blocked.
+/// Few and many coefficients, matrices with and without zeros. A run with blockers also tests a
+/// step that is not blocked.
 constexpr ConstantsCase kConstants[] = {
     {"sh2", TransportKind::sampled},    {"sh2", TransportKind::exact, false},
     {"srbf4", TransportKind::exact},    {"srbf8v2", TransportKind::sampled},
     {"bins24", TransportKind::sampled},
 };
 
-void add_constants(const std::string& basis, const LobeOptions& lobes, bool thorough, const Add& add_case) {
+void add_constants(const std::string& basis, const LobeOptions& lobes, bool thorough,
+                   const Add& add_case) {
   const auto add = [&](TransportKind kind, bool blockers) {
-    add_case(basis, {.kind = kind, .lobes = lobes, .options = {.grid = kGrid}, .blockers = blockers});
+    add_case(basis,
+             {.kind = kind, .lobes = lobes, .options = {.grid = kGrid}, .blockers = blockers});
   };
   for (const ConstantsCase& c : kConstants) {
     if (!thorough && c.basis == basis) add(c.kind, c.blockers);
@@ -138,7 +149,8 @@ void add_constants(const std::string& basis, const LobeOptions& lobes, bool thor
   }
 }
 
-/// Lobes computed in the kernel: exact and rotated ones, with the table as a buffer and as an image.
+/// Lobes computed in the kernel: exact and rotated ones, with the table as a buffer and as an
+/// image.
 void add_run_time_lobes(const std::string& basis, bool full, const Add& add_case) {
   const auto add = [&](TransportKind transport, LobeKind kind, TableStorage table) {
     add_case(basis, {.kind = transport,
@@ -163,23 +175,28 @@ Job propagate_job(Session& session, const PropagateProblem& problem, const Share
   job.compare = [p, &session, share] {
     const PropagateProblem& q = p->problem;
     const Values expected = share([&] {
-      return reference::propagate(q.transport, *q.light, q.geometry.get(), q.steps).accumulated.values;
+      return reference::propagate(q.transport, *q.light, q.geometry.get(), q.steps)
+          .accumulated.values;
     });
     // In half-floats, the rounding of storage is larger than that of lobes rotated at run time.
     const Storage storage = q.options.format.storage;
     const bool at_run_time = q.options.lobe_time == LobeTime::kernel && storage == Storage::float32;
-    return compare_volumes(p->accumulated.read(session), *expected, q.options.grid,
-                           tolerance(at_run_time ? "propagate-run-time-lobes" : "propagate", storage));
+    return compare_volumes(
+        p->accumulated.read(session), *expected, q.options.grid,
+        tolerance(at_run_time ? "propagate-run-time-lobes" : "propagate", storage));
   };
   return job;
 }
 
-PropagateProblem random_propagation(const std::shared_ptr<const Basis>& basis, const Transport& transport,
-                                    const PropagateOptions& options, bool blocked) {
+PropagateProblem random_propagation(const std::shared_ptr<const Basis>& basis,
+                                    const Transport& transport, const PropagateOptions& options,
+                                    bool blocked) {
   std::mt19937 random(7);
-  PropagateProblem problem{basis, transport, options, kSteps, random_light(*basis, options.grid, random), {}};
+  PropagateProblem problem{
+      basis, transport, options, kSteps, random_light(*basis, options.grid, random), {}};
   if (blocked)
-    problem.geometry = random_blockers(blocking_size(transport.blocking, *basis), options.grid, random);
+    problem.geometry =
+        random_blockers(blocking_size(transport.blocking, *basis), options.grid, random);
   return problem;
 }
 
@@ -189,8 +206,8 @@ Cases propagate_cases(const CheckScope& scope) {
     cases.push_back(job_case(Stage::propagate, c.name(name), [name, c](Session& session) {
       const std::shared_ptr<const Basis> basis = make_basis(name);
       return propagate_job(
-          session, random_propagation(basis, make_transport(c.kind, *basis, c.lobes, c.blocking), c.options,
-                                      c.blockers));
+          session, random_propagation(basis, make_transport(c.kind, *basis, c.lobes, c.blocking),
+                                      c.options, c.blockers));
     }));
   };
   for (const std::string& name : scope.bases) {
@@ -198,7 +215,8 @@ Cases propagate_cases(const CheckScope& scope) {
     const bool centred = !basis->centres().empty();
     add_constants(name, {}, scope.thorough, add);
     // Only the small bases, without and with a table.
-    if (scope.thorough || basis->size() == 4) add_run_time_lobes(name, scope.thorough || centred, add);
+    if (scope.thorough || basis->size() == 4)
+      add_run_time_lobes(name, scope.thorough || centred, add);
     if (centred && scope.thorough)
       add_constants(name, {.kind = LobeKind::rotate, .table_functions = true}, true, add);
   }
@@ -210,7 +228,8 @@ Cases propagate_cases(const CheckScope& scope) {
   }
   // Basis and transport do not affect formats.
   for (const VolumeFormat& format : scope.formats)
-    add("sh2", {.kind = TransportKind::sampled, .options = {.grid = kFormatGrid, .format = format}});
+    add("sh2",
+        {.kind = TransportKind::sampled, .options = {.grid = kFormatGrid, .format = format}});
   return cases;
 }
 

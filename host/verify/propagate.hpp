@@ -21,10 +21,12 @@ struct PropagateProblem {
   SharedVolume geometry;  ///< null: nothing blocks
 };
 
-Job propagate_job(Session& session, const PropagateProblem& problem, const Share& share = not_shared);
+Job propagate_job(Session& session, const PropagateProblem& problem,
+                  const Share& share = not_shared);
 
 /// A problem with random light, and random blockers if `blocked`.
-PropagateProblem random_propagation(const std::shared_ptr<const Basis>& basis, const Transport& transport,
-                                    const PropagateOptions& options, bool blocked);
+PropagateProblem random_propagation(const std::shared_ptr<const Basis>& basis,
+                                    const Transport& transport, const PropagateOptions& options,
+                                    bool blocked);
 
 }  // namespace clpv::verify

@@ -31,7 +31,8 @@ class SceneMaker {
     for (int i = 0; i < 120; ++i) {
       const glm::vec3 middle = 4.0f * direction() + glm::vec3(0, 0, -4);
       const float size = std::exp(4 * uniform() - 2);  // 0.02 to 7 m
-      add(scene, {middle + size * direction(), middle + size * direction(), middle + size * direction()});
+      add(scene,
+          {middle + size * direction(), middle + size * direction(), middle + size * direction()});
     }
     return scene;
   }
@@ -57,8 +58,8 @@ class SceneMaker {
     return scene;
   }
 
-  /// Vertices on pixel centres and borders of an orthographic view of 1/8 m per pixel, surfaces at equal depth, and
-  /// triangles without area.
+  /// Vertices on pixel centres and borders of an orthographic view of 1/8 m per pixel, surfaces at
+  /// equal depth, and triangles without area.
   SceneData lattice() {
     SceneData scene = with_materials();
     for (int i = 0; i < 60; ++i) {
@@ -92,7 +93,8 @@ class SceneMaker {
     scene.triangles.push_back(triangle);
   }
 
-  /// Plain, textured, double-sided, masked and emissive materials; textures of odd sizes and every wrap mode.
+  /// Plain, textured, double-sided, masked and emissive materials; textures of odd sizes and every
+  /// wrap mode.
   SceneData with_materials() {
     SceneData scene;
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -103,7 +105,8 @@ class SceneMaker {
                       .rgba = {},
                       .name = {}};
       for (std::uint32_t k = 0; k < texture.width * texture.height; ++k) {
-        for (int c = 0; c < 3; ++c) texture.rgba.push_back(static_cast<std::uint8_t>(random_() % 256));
+        for (int c = 0; c < 3; ++c)
+          texture.rgba.push_back(static_cast<std::uint8_t>(random_() % 256));
         texture.rgba.push_back(random_() % 4 == 0 ? 0 : 255);
       }
       scene.textures.push_back(texture);
@@ -124,22 +127,24 @@ class SceneMaker {
 
 double largest(const std::vector<glm::vec4>& field) {
   float maximum = 0;
-  for (const glm::vec4& v : field) maximum = std::max({maximum, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  for (const glm::vec4& v : field)
+    maximum = std::max({maximum, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   return maximum > 0 ? maximum : 1.0;
 }
 
-/// Returns the largest difference of a pixel's three numbers, relative to the field's largest value; 0 without a field.
-double relative_difference(const std::vector<glm::vec4>& device, const std::vector<glm::vec4>& expected,
-                           std::size_t at) {
+/// Returns the largest difference of a pixel's three numbers, relative to the field's largest
+/// value; 0 without a field.
+double relative_difference(const std::vector<glm::vec4>& device,
+                           const std::vector<glm::vec4>& expected, std::size_t at) {
   if (device.empty() || expected.empty()) return 0;
   const glm::dvec3 off = glm::abs(glm::dvec3(device[at]) - glm::dvec3(expected[at]));
   return glm::any(glm::isnan(off)) ? NAN : std::max({off.x, off.y, off.z}) / largest(expected);
 }
 
-/// Compares a device's surface with the CPU reference pixel by pixel. Checks values where the reference is certain,
-/// and the share of the other pixels that differ.
-void append(CheckResults& results, const SurfaceImage& device, const reference::RasterizedImage& expected,
-            const std::string& variant) {
+/// Compares a device's surface with the CPU reference pixel by pixel. Checks values where the
+/// reference is certain, and the share of the other pixels that differ.
+void append(CheckResults& results, const SurfaceImage& device,
+            const reference::RasterizedImage& expected, const std::string& variant) {
   Deviation values{0, tolerance("rasterize")};
   const SurfaceImage& image = expected.image;
   const double deepest = std::max(1.0f, std::ranges::max(image.depth));
@@ -153,7 +158,8 @@ void append(CheckResults& results, const SurfaceImage& device, const reference::
     for (const double error : errors) {
       (expected.uncertain[at] ? pixel : values).take(error, [&] {
         return fmt::format(
-            "pixel {},{}: depth {:.7g}, expected {:.7g}; errors of depth, normal, colour and emission {:.1e}",
+            "pixel {},{}: depth {:.7g}, expected {:.7g}; errors of depth, normal, colour and "
+            "emission {:.1e}",
             at % image.view.width, at / image.view.width, device.depth[at], image.depth[at],
             fmt::join(errors, ", "));
       });
@@ -164,8 +170,8 @@ void append(CheckResults& results, const SurfaceImage& device, const reference::
   results.push_back(result_of("rasterize", variant, values));
   results.push_back(result_of("rasterize-edges", variant,
                               {differing / pixels, tolerance("rasterize-edges"),
-                               fmt::format("{} of {} pixels, {} of them uncertain", differing, pixels,
-                                           std::ranges::count(expected.uncertain, true))}));
+                               fmt::format("{} of {} pixels, {} of them uncertain", differing,
+                                           pixels, std::ranges::count(expected.uncertain, true))}));
 }
 
 CheckResults compare_camera(Session& session, const SceneData& scene, const std::string& name) {
@@ -176,7 +182,8 @@ CheckResults compare_camera(Session& session, const SceneData& scene, const std:
   Surface surface = make_surface(session, view, RsmFormat::float32, true);
   rasterizer.rasterize_camera(surface);
   CheckResults results;
-  append(results, read_surface(session, surface), reference::rasterize_camera(scene, view), "camera/" + name);
+  append(results, read_surface(session, surface), reference::rasterize_camera(scene, view),
+         "camera/" + name);
   return results;
 }
 
@@ -205,7 +212,8 @@ ClpvLight sun() {
   return light;
 }
 
-/// Views along the z axis, 1/8 m per pixel: the lattice's vertices fall on pixel centres and borders.
+/// Views along the z axis, 1/8 m per pixel: the lattice's vertices fall on pixel centres and
+/// borders.
 ClpvView lattice_view() {
   ClpvView view = camera_view(SceneCamera{}, 2 * kLightSize - 10, kLightSize - 5);
   view.orthographic = 1;
@@ -237,10 +245,11 @@ Cases rasterize_cases(const CheckScope&) {
     cases.push_back({Stage::rasterize, "camera/" + name,
                      [=](Session& session) { return compare_camera(session, scene, name); }});
   };
-  const auto add_light = [&](const std::string& name, const SceneData& scene, const ClpvLight& light,
-                             const ClpvView& view) {
-    cases.push_back({Stage::rasterize, "light/" + name,
-                     [=](Session& session) { return compare_light(session, scene, light, view, name); }});
+  const auto add_light = [&](const std::string& name, const SceneData& scene,
+                             const ClpvLight& light, const ClpvView& view) {
+    cases.push_back({Stage::rasterize, "light/" + name, [=](Session& session) {
+                       return compare_light(session, scene, light, view, name);
+                     }});
   };
   add_camera("soup", soup);
   add_camera("sheet", sheet);

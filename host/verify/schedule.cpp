@@ -35,10 +35,11 @@ CheckResult from_json(const nlohmann::json& json) {
 }
 
 std::string words_of(const Helpers::Ended& ended) {
-  std::string words = ended.code > kSignalled
-                          ? fmt::format("the process ended by signal {} ({})", ended.code - kSignalled,
-                                        ::strsignal(ended.code - kSignalled))
-                          : fmt::format("the process ended with {}", ended.code);
+  std::string words =
+      ended.code > kSignalled
+          ? fmt::format("the process ended by signal {} ({})", ended.code - kSignalled,
+                        ::strsignal(ended.code - kSignalled))
+          : fmt::format("the process ended with {}", ended.code);
   if (!ended.output.empty()) words += ": " + ended.output;
   while (words.ends_with('\n')) words.pop_back();
   return words;
@@ -69,9 +70,14 @@ class Dispatch {
   CheckResults results_of(std::size_t number) const {
     const Case& compared = cases_[number];
     if (const auto failure = failures_.find(number); failure != failures_.end())
-      return {{std::string(name_of(compared.stage)), compared.name, {}, Status::failed, failure->second}};
+      return {{std::string(name_of(compared.stage)),
+               compared.name,
+               {},
+               Status::failed,
+               failure->second}};
     CheckResults results;
-    for (const nlohmann::json& result : nlohmann::json::parse(helpers_.claims().result(claim_of(number))))
+    for (const nlohmann::json& result :
+         nlohmann::json::parse(helpers_.claims().result(claim_of(number))))
       results.push_back(from_json(result));
     return results;
   }
@@ -94,8 +100,8 @@ class Dispatch {
     });
   }
 
-  /// Fails the cases that ended helpers did not finish, and starts another helper in the place of each such helper.
-  /// Returns true if one was started.
+  /// Fails the cases that ended helpers did not finish, and starts another helper in the place of
+  /// each such helper. Returns true if one was started.
   bool replace_ended() {
     bool started = false;
     for (; replaced_ < helpers_.ended().size(); ++replaced_) {
@@ -136,14 +142,19 @@ Cases CheckChoice::cases() const {
     all = cases_of(options);
   } else {
     for (const Stage stage : values_of<Stage>())
-      std::ranges::move(cases_of(stage, thorough ? thorough_scope() : CheckScope{}), std::back_inserter(all));
+      std::ranges::move(cases_of(stage, thorough ? thorough_scope() : CheckScope{}),
+                        std::back_inserter(all));
   }
   std::erase_if(all, [&](const Case& c) {
-    const auto has = [&](const std::string& text) { return c.name.find(text) != std::string::npos; };
-    return (!stages.empty() && std::ranges::count(stages, c.stage) == 0) || !std::ranges::all_of(match, has);
+    const auto has = [&](const std::string& text) {
+      return c.name.find(text) != std::string::npos;
+    };
+    return (!stages.empty() && std::ranges::count(stages, c.stage) == 0) ||
+           !std::ranges::all_of(match, has);
   });
   if (all.empty())
-    throw Error(ExitCode::usage, "--match {}: no comparison has it; clpv check --list shows their names",
+    throw Error(ExitCode::usage,
+                "--match {}: no comparison has it; clpv check --list shows their names",
                 fmt::join(match, " "));
   return all;
 }
@@ -152,7 +163,8 @@ std::vector<std::string> CheckChoice::arguments() const {
   std::vector<std::string> arguments = {"check"};
   for (const Stage stage : stages) arguments.push_back(fmt::format("--stage={}", name_of(stage)));
   for (const std::string& text : match) {
-    if (!text.empty()) arguments.push_back("--match=" + text);  // empty, it would take the next word
+    if (!text.empty())
+      arguments.push_back("--match=" + text);  // empty, it would take the next word
   }
   if (thorough) arguments.push_back("--thorough");
   if (preset) arguments.push_back(fmt::format("--preset={}", name_of(*preset)));
@@ -177,11 +189,13 @@ void help(const Cases& cases, Session& session, const Claims& claims) {
     for (std::size_t number = 0; number < cases.size(); ++number) {
       if (cases[number].stage != stage || !claims.take(claim_of(number))) continue;
       nlohmann::json results = nlohmann::json::array();
-      for (const CheckResult& result : run_case(cases[number], session)) results.push_back(to_json(result));
+      for (const CheckResult& result : run_case(cases[number], session))
+        results.push_back(to_json(result));
       claims.finish(claim_of(number), results.dump());
     }
   };
-  // The last stages take longest and come first, but for the sweep, whose kernels `bounce` uses too.
+  // The last stages take longest and come first, but for the sweep, whose kernels `bounce` uses
+  // too.
   std::vector<Stage> order = {Stage::sweep};
   for (const Stage stage : values_of<Stage>())
     if (stage != Stage::sweep) order.insert(order.begin() + 1, stage);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs the table of comparisons, in this process or in helper processes, so that no driver error ends the check.
+// Runs the table of comparisons, in this process or in helper processes, so that no driver error
+// ends the check.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -31,13 +32,14 @@ using Finished = std::function<void(const CheckResults&)>;
 /// Runs all cases in this process. Throws Interrupted.
 void run_here(const Cases& cases, Session& session, const Finished& finished);
 
-/// Runs the cases in helper processes, which `arguments` start. A case fails whose helper ends by a signal or takes more
-/// than `limit` seconds; another helper then takes its place. Throws Interrupted.
+/// Runs the cases in helper processes, which `arguments` start. A case fails whose helper ends by a
+/// signal or takes more than `limit` seconds; another helper then takes its place. Throws
+/// Interrupted.
 void run_in_helpers(const Cases& cases, const std::vector<std::string>& arguments, double limit,
                     const Finished& finished);
 
-/// The work of a helper: takes whole stages, since their cases share kernels, and then single cases of stages that others
-/// took, until none is left.
+/// The work of a helper: takes whole stages, since their cases share kernels, and then single cases
+/// of stages that others took, until none is left.
 void help(const Cases& cases, Session& session, const Claims& claims);
 
 /// Keys: stage, variant, status, passed, worst, allowed, place, reason, seconds. NaN becomes null.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Shading: kernels against CPU reference, on random surfaces and random shadow maps of all kinds of light.
+// Shading: kernels against CPU reference, on random surfaces and random shadow maps of all kinds of
+// light.
 #include "pipeline/raster/shade.hpp"
 
 #include <algorithm>
@@ -19,7 +20,8 @@ namespace {
 constexpr unsigned kMapWidth = 24, kMapHeight = 20;
 constexpr float kMapReach = 20;  // [m]: range of depths in a map
 
-/// Independent random depths per texel, 1 of 3 empty, so that a wrong filter address causes an error.
+/// Independent random depths per texel, 1 of 3 empty, so that a wrong filter address causes an
+/// error.
 reference::ShadowMap random_map(const ClpvView& view, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-0.5f, 1);
   reference::ShadowMap map{view, {}};
@@ -29,10 +31,18 @@ reference::ShadowMap random_map(const ClpvView& view, std::mt19937& random) {
   return map;
 }
 
-const ClpvLight kSun{{}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {}, {}};
+const ClpvLight kSun{
+    {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {}, {}};
 /// Cone from full light at acos(0.9) to dark at acos(0.7).
-const ClpvLight kSpot{
-    {6, 8, -1}, CLPV_LIGHT_SPOT, {-1 / 9.0f, -8 / 9.0f, 4 / 9.0f}, 14, {100, 150, 200}, 5, -3.5f, {}, {}};
+const ClpvLight kSpot{{6, 8, -1},
+                      CLPV_LIGHT_SPOT,
+                      {-1 / 9.0f, -8 / 9.0f, 4 / 9.0f},
+                      14,
+                      {100, 150, 200},
+                      5,
+                      -3.5f,
+                      {},
+                      {}};
 const ClpvLight kPoint{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, {}, {}};
 
 /// The sun's map is smaller than the camera's view: some surfaces lie on and beyond its edge.
@@ -60,7 +70,8 @@ ShadeInputs random_inputs() {
   ShadeInputs inputs{random_surfaces(random), {}, {}};
   for (std::size_t pixel = 0; pixel < inputs.image.depth.size(); ++pixel)
     inputs.irradiance.push_back({{uniform(random), uniform(random), uniform(random), 0}});
-  inputs.lights = {mapped(kSun, random), mapped(kSpot, random), mapped(kPoint, random), {kPoint, {}}};
+  inputs.lights = {
+      mapped(kSun, random), mapped(kSpot, random), mapped(kPoint, random), {kPoint, {}}};
   return inputs;
 }
 
@@ -91,11 +102,12 @@ Deviation compare_view(Session& session, Show show, std::optional<std::size_t> c
 Cases shade_cases(const CheckScope&) {
   Cases cases;
   const auto add = [&](const std::string& name, Show show, std::optional<std::size_t> chosen) {
-    cases.push_back(deviation_case(Stage::shade, name,
-                                   [=](Session& session) { return compare_view(session, show, chosen); }));
+    cases.push_back(deviation_case(
+        Stage::shade, name, [=](Session& session) { return compare_view(session, show, chosen); }));
   };
   for (std::size_t i = 0; i < std::size(kKinds); ++i) add(kKinds[i], Show::direct, i);
-  for (const Show show : kSurfaceViews) add(fmt::format("view {}", name_of(show)), show, std::nullopt);
+  for (const Show show : kSurfaceViews)
+    add(fmt::format("view {}", name_of(show)), show, std::nullopt);
   return cases;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compares the device's layout of the shared structs with the host's; a mismatch would corrupt every stage's input.
+// Compares the device's layout of the shared structs with the host's; a mismatch would corrupt
+// every stage's input.
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -42,7 +43,8 @@ Deviation compare_sizes(Session& session) {
 
   Deviation result{0, tolerance("sizes")};
   for (std::size_t i = 0; i < count; ++i) {
-    const double error = device[i] > kHost[i].bytes ? device[i] - kHost[i].bytes : kHost[i].bytes - device[i];
+    const double error =
+        device[i] > kHost[i].bytes ? device[i] - kHost[i].bytes : kHost[i].bytes - device[i];
     result.take(error, [&] {
       return fmt::format("{}: {} bytes, host {}", kHost[i].name, device[i], kHost[i].bytes);
     });

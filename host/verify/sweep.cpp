@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sweep and bounces: kernels against CPU references. Checks use small cascades of random light, blockers and reflectors.
+// Sweep and bounces: kernels against CPU references. Checks use small cascades of random light,
+// blockers and reflectors.
 #include "verify/sweep.hpp"
 
 #include <fmt/format.h>
@@ -58,7 +59,8 @@ struct SweepWork {
       light.push_back(on_device(session, *p.light[i], o.format));
       if (o.blocking) blockers.push_back(on_device(session, *p.blockers[i], o.format));
       if (bounces()) reflectors.push_back(on_device(session, *p.reflectors[i], o.format));
-      swept.emplace_back(session, VolumeShape{o.grid, swept_basis()->size(), 3}, "swept light", o.format);
+      swept.emplace_back(session, VolumeShape{o.grid, swept_basis()->size(), 3}, "swept light",
+                         o.format);
     }
   }
   bool bounces() const { return problem.options.bounces != Bounces::one; }
@@ -101,33 +103,38 @@ std::vector<double> expected_light(const SweepProblem& p) {
   return values;
 }
 
-/// Cost of the kernels in use, without sources: few rows hold light. Plane buffers and sums have the sweep's layout, not
-/// that of the volumes.
+/// Cost of the kernels in use, without sources: few rows hold light. Plane buffers and sums have
+/// the sweep's layout, not that of the volumes.
 Cost cost_of(const SweepWork& p) {
   const SweepProblem& q = p.problem;
   const VolumeFormat& format = q.options.format;
   const double n = q.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
   const double directions = kSweepBins * std::pow(q.options.parts.front(), 2);
   const int coefficients = q.basis->size(), harmonics = swept_basis()->size();
-  const double bins = kChannels * kSweepBins, links = q.options.blocking ? link_volumes().count() : 0;
+  const double bins = kChannels * kSweepBins,
+               links = q.options.blocking ? link_volumes().count() : 0;
   const double swept = kChannels * directions, sides = 2 * swept * n * n;
   const auto number = static_cast<double>(number_bytes(format.storage));
   const double light = kChannels * static_cast<double>(bytes_per_cell(format, coefficients) +
                                                        bytes_per_cell(format, harmonics));
-  // With a launch per plane, each launch reads one plane of every direction and writes the next; the dark border is read.
-  const double planes = p.sweeper.whole_bins() ? 1 : 1 + 2 * n, dark = p.sweeper.whole_bins() ? 0 : 2 * sides;
+  // With a launch per plane, each launch reads one plane of every direction and writes the next;
+  // the dark border is read.
+  const double planes = p.sweeper.whole_bins() ? 1 : 1 + 2 * n,
+               dark = p.sweeper.whole_bins() ? 0 : 2 * sides;
   Cost cost;
-  cost.bytes =
-      cells * (light + (2 * bins + links) * number) + dark * number + swept * n * n * sizeof(float) * planes;
+  cost.bytes = cells * (light + (2 * bins + links) * number) + dark * number +
+               swept * n * n * sizeof(float) * planes;
   const double flops_per_direction = kChannels * (4 + 1) * 2 + (q.options.blocking ? 4 : 0);
-  cost.flops = cells * (kChannels * sweep_collect_operations().flops() + directions * flops_per_direction);
+  cost.flops =
+      cells * (kChannels * sweep_collect_operations().flops() + directions * flops_per_direction);
   cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + bins;
   cost.writes_per_cell = kChannels * accesses_per_cell(format, harmonics) + bins;
   cost.working_set =
       cells * (light + (bins + links) * number) + dark * number / 2 + swept * n * n * sizeof(float);
   if (!q.options.blocking) return cost;
   const int areas = blocking_size(q.transport.blocking, *q.basis);
-  cost.bytes += corners * static_cast<double>(bytes_per_cell(format, areas)) + cells * links * number;
+  cost.bytes +=
+      corners * static_cast<double>(bytes_per_cell(format, areas)) + cells * links * number;
   cost.flops += cells * transmittance_source(*q.basis, q.transport).operations.flops();
   cost.reads_per_cell += 8 * accesses_per_cell(format, areas) + 4 * kSweepBins;
   cost.writes_per_cell += links;
@@ -153,8 +160,8 @@ struct SweepCase {
     return fmt::format("{}/{}^3/{}{}{}{}{}{}{}/{}", basis, grid, directions,
                        bounces == Bounces::one ? "" : fmt::format("/{} bounces", name_of(bounces)),
                        blocking ? "" : "/free", blocked_by == Blocking::areas ? "" : "/one-sided",
-                       form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "", medium ? "/medium" : "",
-                       format_name(format));
+                       form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "",
+                       medium ? "/medium" : "", format_name(format));
   }
 };
 
@@ -188,14 +195,15 @@ SharedVolume random_reflectors(int n, std::mt19937& random) {
 
 Job job_of(Session& session, const SweepCase& c) {
   const std::shared_ptr<const Basis> basis = make_basis(c.basis);
-  SweepProblem problem = random_sweep(basis, make_transport(TransportKind::sweep, *basis, {}, c.blocked_by),
-                                      {.grid = c.grid,
-                                       .parts = c.parts,
-                                       .blocking = c.blocking,
-                                       .bounces = c.bounces,
-                                       .format = c.format,
-                                       .form = c.form,
-                                       .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt});
+  SweepProblem problem =
+      random_sweep(basis, make_transport(TransportKind::sweep, *basis, {}, c.blocked_by),
+                   {.grid = c.grid,
+                    .parts = c.parts,
+                    .blocking = c.blocking,
+                    .bounces = c.bounces,
+                    .format = c.format,
+                    .form = c.form,
+                    .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt});
   if (c.sky) problem.sky = uneven_sky(), problem.sky_scale = kSkyScale;
   return sweep_job(session, problem);
 }
@@ -203,7 +211,8 @@ Job job_of(Session& session, const SweepCase& c) {
 Cases named_cases(Stage stage, const std::vector<SweepCase>& all) {
   Cases cases;
   for (const SweepCase& c : all)
-    cases.push_back(job_case(stage, c.name(), [c](Session& session) { return job_of(session, c); }));
+    cases.push_back(
+        job_case(stage, c.name(), [c](Session& session) { return job_of(session, c); }));
   return cases;
 }
 
@@ -223,8 +232,8 @@ Job sweep_job(Session& session, const SweepProblem& problem, const Share& share)
     Deviation result{0, tolerance(p->bounces() ? "bounce" : "sweep", o.format.storage)};
     for (std::size_t i = 0; i < p->swept.size(); ++i) {
       const std::vector<float> found = p->swept[i].read(session);
-      const Deviation apart =
-          compare_volumes(found, std::span(*expected).subspan(i * found.size(), found.size()), o.grid);
+      const Deviation apart = compare_volumes(
+          found, std::span(*expected).subspan(i * found.size(), found.size()), o.grid);
       result.take(apart.worst, [&] { return fmt::format("cascade {} {}", i, apart.place); });
     }
     return result;
@@ -245,7 +254,8 @@ SweepProblem random_sweep(const std::shared_ptr<const Basis>& basis, const Trans
         random_blockers(blocking_size(transport.blocking, *basis), options.grid, random));
     problem.reflectors.push_back(random_reflectors(options.grid, random));
   }
-  if (options.medium) problem.lights = lights_in(*options.medium), problem.medium_scale = kMediumScale;
+  if (options.medium)
+    problem.lights = lights_in(*options.medium), problem.medium_scale = kMediumScale;
   return problem;
 }
 
@@ -267,7 +277,8 @@ Cases sweep_cases(const CheckScope& scope) {
     cases.push_back({.basis = "sh3", .grid = 8, .parts = {2, 2}, .form = SweepForm::planes});
     cases.push_back({.basis = "bins24", .grid = 7, .parts = {1, 1, 2}, .form = SweepForm::planes});
     for (const std::string& name : basis_names()) {
-      for (const int parts : {1, 2, 3, 4}) cases.push_back({.basis = name, .grid = 6, .parts = {parts, 1}});
+      for (const int parts : {1, 2, 3, 4})
+        cases.push_back({.basis = name, .grid = 6, .parts = {parts, 1}});
     }
   }
   return named_cases(Stage::sweep, cases);
@@ -277,10 +288,15 @@ Cases bounce_cases(const CheckScope& scope) {
   const Bounces all = Bounces::all;
   std::vector<SweepCase> cases = {
       {.basis = "sh3", .grid = 9, .parts = {2, 1}, .bounces = all},
-      {.basis = "sh3", .grid = 9, .parts = {1, 3}, .bounces = Bounces::two, .form = SweepForm::planes},
+      {.basis = "sh3",
+       .grid = 9,
+       .parts = {1, 3},
+       .bounces = Bounces::two,
+       .form = SweepForm::planes},
       {.basis = "sh3", .grid = 9, .parts = {2, 1}, .bounces = all, .medium = true},
   };
-  // Stage `sweep` compares the sweep in every format, so without `thorough` only one layout of buffers and images follow.
+  // Stage `sweep` compares the sweep in every format, so without `thorough` only one layout of
+  // buffers and images follow.
   for (const VolumeFormat& format : scope.formats) {
     if (!scope.thorough && format.layout != Layout::soa && format.layout != Layout::image) continue;
     cases.push_back({.basis = "sh3", .grid = 9, .parts = {1, 1}, .bounces = all, .format = format});
@@ -288,10 +304,14 @@ Cases bounce_cases(const CheckScope& scope) {
   if (scope.thorough) {
     cases.push_back(
         {.basis = "sh2", .grid = 7, .parts = {1, 2, 1}, .bounces = all, .form = SweepForm::planes});
-    cases.push_back(
-        {.basis = "bins24", .grid = 8, .parts = {2, 2}, .bounces = Bounces::two, .form = SweepForm::planes});
+    cases.push_back({.basis = "bins24",
+                     .grid = 8,
+                     .parts = {2, 2},
+                     .bounces = Bounces::two,
+                     .form = SweepForm::planes});
     cases.push_back({.basis = "srbf8v2", .grid = 1, .parts = {1}, .bounces = all});
-    cases.push_back({.basis = "sh3", .grid = 7, .parts = {1, 2}, .bounces = Bounces::two, .medium = true});
+    cases.push_back(
+        {.basis = "sh3", .grid = 7, .parts = {1, 2}, .bounces = Bounces::two, .medium = true});
     for (const std::string& name : basis_names())
       cases.push_back({.basis = name, .grid = 6, .parts = {2, 1}, .bounces = all});
   }

@@ -32,11 +32,12 @@ struct SweepProblem {
   float medium_scale = 1;
 };
 
-/// `cost` is that of one cascade with a dark border, one bounce and no medium; its time includes the links'
-/// transmittance.
+/// `cost` is that of one cascade with a dark border, one bounce and no medium; its time includes
+/// the links' transmittance.
 Job sweep_job(Session& session, const SweepProblem& problem, const Share& share = not_shared);
 
-/// A problem with random light, blockers and reflectors, and lights in the medium if the options have one.
+/// A problem with random light, blockers and reflectors, and lights in the medium if the options
+/// have one.
 SweepProblem random_sweep(const std::shared_ptr<const Basis>& basis, const Transport& transport,
                           const SweepOptions& options);
 

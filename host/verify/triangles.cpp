@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Blockers, reflectors and visibility: kernels against CPU references on random triangles of all sizes, textured and
-// masked.
+// Blockers, reflectors and visibility: kernels against CPU references on random triangles of all
+// sizes, textured and masked.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,12 +46,14 @@ Deviation compare_blockers(Session& session, const VolumeFormat& format) {
   const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
   Volume geometry(session, {kGrid + 1, 3, 1}, "check: blockers", format);
-  VoxelField(session, buffers, blocker_masks(buffers, kGrid, 1, format)).update(0, kCells, geometry);
+  VoxelField(session, buffers, blocker_masks(buffers, kGrid, 1, format))
+      .update(0, kCells, geometry);
   const std::vector<float> found = geometry.read(session);
   const reference::BlockerBounds expected = reference::voxelize_blockers(scene, kCells);
   Deviation result{0, tolerance("blockers", format.storage)};
   for (std::size_t at = 0; at < found.size(); ++at) {
-    const double share = found[at], lower = expected.lower.values[at], upper = expected.upper.values[at];
+    const double share = found[at], lower = expected.lower.values[at],
+                 upper = expected.upper.values[at];
     result.take(std::max(lower - share, share - upper), [&] {
       return fmt::format("corner {} axis {}: {}, expected {} to {}", sample_of(at, kGrid + 1),
                          at / (found.size() / 3), share, lower, upper);
@@ -64,7 +66,8 @@ Deviation compare_reflectors(Session& session, const VolumeFormat& format) {
   const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
   Volume reflectors(session, {kGrid, kCellFaces, 3}, "check: reflectors", format);
-  VoxelField(session, buffers, reflector_masks(buffers, kGrid, format)).update(0, kCells, reflectors);
+  VoxelField(session, buffers, reflector_masks(buffers, kGrid, format))
+      .update(0, kCells, reflectors);
   const std::vector<float> found = reflectors.read(session);
   const reference::ReflectingAreas expected = reference::voxelize_reflectors(scene, kCells);
   Deviation result{0, tolerance("reflectors", format.storage)};
@@ -72,8 +75,9 @@ Deviation compare_reflectors(Session& session, const VolumeFormat& format) {
     const double wanted = expected.areas.values[at], tolerated = expected.tolerance.values[at];
     result.take(std::abs(found[at] - wanted) - tolerated, [&] {
       const std::size_t plane = at / (kGrid * kGrid * kGrid);
-      return fmt::format("cell {} side {} channel {}: {:.6g}, expected {:.6g}", sample_of(at, kGrid),
-                         plane % kCellFaces, plane / kCellFaces, found[at], wanted);
+      return fmt::format("cell {} side {} channel {}: {:.6g}, expected {:.6g}",
+                         sample_of(at, kGrid), plane % kCellFaces, plane / kCellFaces, found[at],
+                         wanted);
     });
   }
   return result;
@@ -95,8 +99,8 @@ Deviation compare_visibility(Session& session) {
                        upper = expected.upper[point];
     const unsigned wrong = (lower & ~bits) | (bits & ~upper);
     result.take(std::popcount(wrong), [&] {
-      return fmt::format("cube {} point {}: {:08b}, expected {:08b} to {:08b}", sample_of(point / 64, kGrid),
-                         point % 64, bits, lower, upper);
+      return fmt::format("cube {} point {}: {:08b}, expected {:08b} to {:08b}",
+                         sample_of(point / 64, kGrid), point % 64, bits, lower, upper);
     });
   }
   return result;

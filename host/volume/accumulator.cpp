@@ -6,7 +6,8 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kLocalX = 64;  // texels of a row; on a CPU, images are no faster with 3-D work-groups
+// Texels of a row; on a CPU, images are no faster with 3-D work-groups.
+constexpr std::size_t kLocalX = 64;
 
 ProgramSource source_of(const VolumeShape& shape, Storage storage) {
   ProgramSource source{"volume/convert.cl", {}, coefficient_text(shape.coefficients)};
@@ -25,7 +26,8 @@ Volume& Accumulator::spare_of(const Volume& sum) {
   for (const auto& spare : spares_) {
     if (spare->shape() == sum.shape() && spare->format() == sum.format()) return *spare;
   }
-  spares_.push_back(std::make_unique<Volume>(session_, sum.shape(), "spare volume of a sum", sum.format()));
+  spares_.push_back(
+      std::make_unique<Volume>(session_, sum.shape(), "spare volume of a sum", sum.format()));
   return *spares_.back();
 }
 

@@ -29,15 +29,16 @@ class PlaneStage {
   Kernel from_image_, to_image_;
 };
 
-/// Lets launches add to volumes. Buffers are updated in place. OpenCL 1.2 cannot read and write an image in one launch.
-/// add() therefore writes a spare image and swaps the two; add_to_cells() copies the image to a PlaneStage and back.
-/// Spares and planes are allocated on first use and shared by all volumes of a shape and format.
+/// Lets launches add to volumes. Buffers are updated in place. OpenCL 1.2 cannot read and write an
+/// image in one launch. add() therefore writes a spare image and swaps the two; add_to_cells()
+/// copies the image to a PlaneStage and back. Spares and planes are allocated on first use and
+/// shared by all volumes of a shape and format.
 class Accumulator {
  public:
   explicit Accumulator(Session& session) : session_(session) {}
 
-  /// Calls launch(current, next), whose kernel reads every cell of `current` = `sum` and writes that cell of `next`.
-  /// `sum` then holds `next`.
+  /// Calls launch(current, next), whose kernel reads every cell of `current` = `sum` and writes
+  /// that cell of `next`. `sum` then holds `next`.
   template <typename Launch>
   void add(Volume& sum, Launch launch) {
     if (sum.format().layout != Layout::image) {
@@ -49,8 +50,8 @@ class Accumulator {
     std::swap(sum, spare);
   }
 
-  /// Calls launch(cells) with a copy of `sum` in cells_format(), of which a kernel may change any cells. `sum` then holds
-  /// the result.
+  /// Calls launch(cells) with a copy of `sum` in cells_format(), of which a kernel may change any
+  /// cells. `sum` then holds the result.
   template <typename Launch>
   void add_to_cells(Volume& sum, Launch launch) {
     if (sum.format().layout != Layout::image) {

@@ -8,7 +8,8 @@
 namespace clpv {
 namespace {
 
-/// Calls visit(index of the stored number, index in host order) for every coefficient of every cell.
+/// Calls visit(index of the stored number, index in host order) for every coefficient of every
+/// cell.
 template <typename Visit>
 void for_each_number(const VolumeFormat& format, const VolumeShape& shape, Visit visit) {
   std::size_t host = 0;
@@ -16,7 +17,8 @@ void for_each_number(const VolumeFormat& format, const VolumeShape& shape, Visit
     for (int i = 0; i < shape.coefficients; ++i) {
       for (int z = 0; z < shape.n; ++z) {
         for (int y = 0; y < shape.n; ++y) {
-          for (int x = 0; x < shape.n; ++x) visit(stored_index(format, shape, channel, i, x, y, z), host++);
+          for (int x = 0; x < shape.n; ++x)
+            visit(stored_index(format, shape, channel, i, x, y, z), host++);
         }
       }
     }
@@ -35,7 +37,8 @@ Volume::Volume(Session& session, const VolumeShape& shape, const std::string& wh
     : shape_(shape), format_(format), bytes_(stored_bytes(format, shape)) {
   require_supported(session.device(), format, shape);
   if (format.layout == Layout::image) {
-    const cl::ImageFormat texel(CL_RGBA, format.storage == Storage::float16 ? CL_HALF_FLOAT : CL_FLOAT);
+    const cl::ImageFormat texel(CL_RGBA,
+                                format.storage == Storage::float16 ? CL_HALF_FLOAT : CL_FLOAT);
     image_ = session.image(texel, region(shape), bytes_, what);
   } else {
     buffer_ = session.buffer(bytes_, what);
@@ -54,8 +57,8 @@ void Volume::clear(Session& session) {
     return;
   }
   cl::Event event;
-  session.queue().enqueueFillImage(image_.handle(), cl_float4{{0, 0, 0, 0}}, {0, 0, 0}, region(shape_),
-                                   nullptr, &event);
+  session.queue().enqueueFillImage(image_.handle(), cl_float4{{0, 0, 0, 0}}, {0, 0, 0},
+                                   region(shape_), nullptr, &event);
   session.timeline().add(event);
 }
 
@@ -76,7 +79,8 @@ void Volume::copy_from(Session& session, const Volume& from) {
 void Volume::read_stored(Session& session, void* numbers) const {
   if (format_.layout == Layout::image) {
     session.timeline().wait([&] {
-      session.queue().enqueueReadImage(image_.handle(), CL_TRUE, {0, 0, 0}, region(shape_), 0, 0, numbers);
+      session.queue().enqueueReadImage(image_.handle(), CL_TRUE, {0, 0, 0}, region(shape_), 0, 0,
+                                       numbers);
     });
   } else {
     session.timeline().wait(
@@ -87,7 +91,8 @@ void Volume::read_stored(Session& session, void* numbers) const {
 void Volume::write_stored(Session& session, const void* numbers) {
   if (format_.layout == Layout::image) {
     session.timeline().wait([&] {
-      session.queue().enqueueWriteImage(image_.handle(), CL_TRUE, {0, 0, 0}, region(shape_), 0, 0, numbers);
+      session.queue().enqueueWriteImage(image_.handle(), CL_TRUE, {0, 0, 0}, region(shape_), 0, 0,
+                                        numbers);
     });
   } else {
     session.timeline().wait(
@@ -114,8 +119,9 @@ std::vector<float> Volume::read(Session& session) const {
 
 void Volume::write(Session& session, const std::vector<float>& values) {
   const auto give = [&](auto numbers, const auto& narrowed) {
-    for_each_number(format_, shape_,
-                    [&](std::size_t to, std::size_t from) { numbers[to] = narrowed(values.at(from)); });
+    for_each_number(format_, shape_, [&](std::size_t to, std::size_t from) {
+      numbers[to] = narrowed(values.at(from));
+    });
     write_stored(session, numbers.data());
   };
   const std::size_t stored = stored_numbers(format_, shape_);
@@ -134,8 +140,9 @@ void require_fit(const Volume& volume, const VolumeShape& shape, const VolumeFor
   }
   const VolumeShape& found = volume.shape();
   if (found != shape) {
-    throw Error(ExitCode::run_time, "{}: found a volume of {}^3 x {} x {} values, allowed: {}^3 x {} x {}",
-                what, found.n, found.coefficients, found.channels, shape.n, shape.coefficients,
+    throw Error(ExitCode::run_time,
+                "{}: found a volume of {}^3 x {} x {} values, allowed: {}^3 x {} x {}", what,
+                found.n, found.coefficients, found.channels, shape.n, shape.coefficients,
                 shape.channels);
   }
 }

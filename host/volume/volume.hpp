@@ -10,12 +10,12 @@
 
 namespace clpv {
 
-/// Volume of n^3 cells with zeros around each channel in every layout, so that stencils need no bounds checks.
-/// Initially zero.
+/// Volume of n^3 cells with zeros around each channel in every layout, so that stencils need no
+/// bounds checks. Initially zero.
 class Volume {
  public:
-  /// Throws Error(device) "unsupported: ..." if the device cannot hold such a volume, Error(run_time) if its memory does
-  /// not suffice. `what` names the volume in errors.
+  /// Throws Error(device) "unsupported: ..." if the device cannot hold such a volume,
+  /// Error(run_time) if its memory does not suffice. `what` names the volume in errors.
   Volume(Session& session, const VolumeShape& shape, const std::string& what,
          const VolumeFormat& format = {});
 
@@ -28,7 +28,8 @@ class Volume {
   void clear(Session& session);
   /// Copies `from`. Throws Error(run_time) unless it has the same shape and format.
   void copy_from(Session& session, const Volume& from);
-  /// Returns all numbers in host order: [channel][coefficient][z][y][x], as in a .npy of shape (channels, N, z, y, x).
+  /// Returns all numbers in host order: [channel][coefficient][z][y][x], as in a .npy of shape
+  /// (channels, N, z, y, x).
   std::vector<float> read(Session& session) const;
   /// Writes all numbers from host order.
   void write(Session& session, const std::vector<float>& values);
@@ -44,7 +45,8 @@ class Volume {
   Image3D image_;  ///< empty otherwise
 };
 
-/// Throws Error(run_time) unless `volume` has the shape and format that the stage `what` is built for.
+/// Throws Error(run_time) unless `volume` has the shape and format that the stage `what` is built
+/// for.
 void require_fit(const Volume& volume, const VolumeShape& shape, const VolumeFormat& format,
                  const char* what);
 

@@ -76,21 +76,23 @@ std::optional<std::string> unsupported(const Device& device, const VolumeFormat&
                       max_y = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_HEIGHT>(),
                       max_z = device.handle.getInfo<CL_DEVICE_IMAGE3D_MAX_DEPTH>();
     if (extent.x <= max_x && extent.y <= max_y && extent.z <= max_z) return std::nullopt;
-    return fmt::format("an image of {} x {} x {} texels; at most {} x {} x {}", extent.x, extent.y, extent.z,
-                       max_x, max_y, max_z);
+    return fmt::format("an image of {} x {} x {} texels; at most {} x {} x {}", extent.x, extent.y,
+                       extent.z, max_x, max_y, max_z);
   }
-  const std::size_t limit = std::numeric_limits<std::int32_t>::max(), numbers = stored_numbers(format, shape);
+  const std::size_t limit = std::numeric_limits<std::int32_t>::max(),
+                    numbers = stored_numbers(format, shape);
   if (numbers > limit) {
     const double share = static_cast<double>(limit) / static_cast<double>(numbers);
-    return fmt::format("a volume of {} numbers at grid {}; kernels address at most {}: grid {}", numbers,
-                       shape.n, limit, static_cast<int>(shape.n * std::cbrt(share)));
+    return fmt::format("a volume of {} numbers at grid {}; kernels address at most {}: grid {}",
+                       numbers, shape.n, limit, static_cast<int>(shape.n * std::cbrt(share)));
   }
   return std::nullopt;
 }
 
 void require_supported(const Device& device, const VolumeFormat& format, const VolumeShape& shape) {
   if (const auto reason = unsupported(device, format, shape)) {
-    throw Error(ExitCode::device, "{} on {} is unsupported: {}", format_name(format), device.name, *reason);
+    throw Error(ExitCode::device, "{} on {} is unsupported: {}", format_name(format), device.name,
+                *reason);
   }
 }
 
@@ -109,7 +111,8 @@ int accesses_per_cell(const VolumeFormat& format, int coefficients) {
 }
 
 std::size_t bytes_per_cell(const VolumeFormat& format, int coefficients) {
-  const int numbers = format.layout == Layout::image ? kTexel * texels_per_cell(coefficients) : coefficients;
+  const int numbers =
+      format.layout == Layout::image ? kTexel * texels_per_cell(coefficients) : coefficients;
   return size(numbers) * number_bytes(format.storage);
 }
 
@@ -128,7 +131,8 @@ std::size_t stored_numbers(const VolumeFormat& format, const VolumeShape& shape)
       return extent.x * extent.y * extent.z * kTexel;
     }
     case Layout::tiled:
-      return (channels * size(shape.n + 2) * size(shape.n + 2) * blocks_per_row(shape) + 1) * kTile * n;
+      return (channels * size(shape.n + 2) * size(shape.n + 2) * blocks_per_row(shape) + 1) *
+             kTile * n;
     case Layout::aos:
       return padded(channels * bordered_cells(shape) * n);
     case Layout::soa:
@@ -141,8 +145,8 @@ std::size_t stored_bytes(const VolumeFormat& format, const VolumeShape& shape) {
   return stored_numbers(format, shape) * number_bytes(format.storage);
 }
 
-std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, int channel, int coefficient,
-                         int x, int y, int z) {
+std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, int channel,
+                         int coefficient, int x, int y, int z) {
   const std::size_t n = size(shape.coefficients), i = size(coefficient), rows = size(shape.n + 2);
   const std::size_t row = (size(channel) * rows + size(z + 1)) * rows + size(y + 1);
   switch (format.layout) {
@@ -153,7 +157,8 @@ std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, i
       return ((tz * extent.y + ty) * extent.x + size(x)) * kTexel + i % kTexel;
     }
     case Layout::tiled:
-      return ((row * blocks_per_row(shape) + 1 + size(x / kTile)) * n + i) * kTile + size(x % kTile);
+      return ((row * blocks_per_row(shape) + 1 + size(x / kTile)) * n + i) * kTile +
+             size(x % kTile);
     case Layout::aos:
       return (row * row_pitch(shape) + size(x + 1)) * n + i;
     case Layout::soa:

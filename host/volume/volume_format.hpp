@@ -25,10 +25,11 @@ std::size_t number_bytes(Storage storage);
 std::string format_name(const VolumeFormat& format);  ///< "soa/float"
 std::vector<VolumeFormat> all_formats();              ///< every layout with every storage
 
-/// Returns the reason why the device cannot hold volumes of this format: "no 3-D image writes (cl_khr_3d_image_writes)".
-/// Nothing if it can.
+/// Returns the reason why the device cannot hold volumes of this format: "no 3-D image writes
+/// (cl_khr_3d_image_writes)". Nothing if it can.
 std::optional<std::string> unsupported(const Device& device, const VolumeFormat& format);
-/// The same for a volume of this shape: "an image of 33 x 98 x 2100 texels; at most 2048 x 2048 x 2048".
+/// The same for a volume of this shape: "an image of 33 x 98 x 2100 texels; at most 2048 x 2048 x
+/// 2048".
 std::optional<std::string> unsupported(const Device& device, const VolumeFormat& format,
                                        const VolumeShape& shape);
 /// Throws Error(device) "unsupported: ..." if either function returns a reason.
@@ -54,9 +55,9 @@ ImageExtent image_extent(const VolumeShape& shape);
 std::size_t stored_numbers(const VolumeFormat& format, const VolumeShape& shape);
 std::size_t stored_bytes(const VolumeFormat& format, const VolumeShape& shape);
 
-/// Index of a cell's coefficient among the stored numbers; the host's counterpart of the address functions in
-/// kernels/volume/.
-std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, int channel, int coefficient,
-                         int x, int y, int z);
+/// Index of a cell's coefficient among the stored numbers; the host's counterpart of the address
+/// functions in kernels/volume/.
+std::size_t stored_index(const VolumeFormat& format, const VolumeShape& shape, int channel,
+                         int coefficient, int x, int y, int z);
 
 }  // namespace clpv

@@ -15,15 +15,16 @@ namespace clpv {
 /// Meaning of the values: linear in light, or sRGB-encoded for a display (0 to 1).
 enum class Encoding { linear, srgb };
 
-/// Image of `width` x `height` pixels. Row 0 is the top row. Channels are interleaved:
-/// pixels[(y * width + x) * channels.size() + c].
-/// Layers follow OpenEXR: channel "indirect.R" is R of layer "indirect"; a channel without a dot belongs to layer "".
-/// Alpha ("A") is 1 on surfaces and 0 in the background.
+/// Image of `width` x `height` pixels. Row 0 is the top row. Channels are interleaved: pixels[(y *
+/// width + x) * channels.size() + c]. Layers follow OpenEXR: channel "indirect.R" is R of layer
+/// "indirect"; a channel without a dot belongs to layer "". Alpha ("A") is 1 on surfaces and 0 in
+/// the background.
 struct Image {
   int width = 0, height = 0;
   std::vector<std::string> channels;
   std::vector<float> pixels;
-  std::map<std::string, std::string> metadata;  ///< options that the image was rendered with, by name
+  /// Options that the image was rendered with, by name.
+  std::map<std::string, std::string> metadata;
   Encoding encoding = Encoding::linear;
 
   std::size_t pixel_count() const {
@@ -32,13 +33,17 @@ struct Image {
   float& at(int x, int y, std::size_t channel) {
     return pixels[(static_cast<std::size_t>(y) * width + x) * channels.size() + channel];
   }
-  float at(int x, int y, std::size_t channel) const { return const_cast<Image*>(this)->at(x, y, channel); }
-  std::optional<std::size_t> channel(std::string_view name) const;  ///< index of a channel; empty if absent
+  float at(int x, int y, std::size_t channel) const {
+    return const_cast<Image*>(this)->at(x, y, channel);
+  }
+  /// Index of a channel; empty if absent.
+  std::optional<std::size_t> channel(std::string_view name) const;
 };
 
-/// Writes a linear image with channels R, G, B and optionally A. .exr: 32-bit floats, with metadata. .png: values times
-/// 2^exposure [EV], through the ACES tone curve, sRGB-encoded. The file is complete or absent. Throws Error: usage (another
-/// extension), run_time (the file cannot be written).
+/// Writes a linear image with channels R, G, B and optionally A. .exr: 32-bit floats, with
+/// metadata. .png: values times 2^exposure [EV], through the ACES tone curve, sRGB-encoded. The
+/// file is complete or absent. Throws Error: usage (another extension), run_time (the file cannot
+/// be written).
 void save_image(const std::filesystem::path& path, const Image& image, float exposure = 0);
 
 }  // namespace clpv

@@ -26,12 +26,13 @@ struct Material {
     bool operator==(const Texture&) const = default;
   };
 
-  std::array<double, 4> base_colour{1, 1, 1,
-                                    1};  ///< linear albedo and alpha, 0..1; times texture and vertex colour
-  std::array<double, 3> emission{};      ///< radiance of the front [W/m^2/sr], 0..1e9
+  std::array<double, 4> base_colour{
+      1, 1, 1, 1};  ///< linear albedo and alpha, 0..1; times texture and vertex colour
+  std::array<double, 3> emission{};  ///< radiance of the front [W/m^2/sr], 0..1e9
   std::optional<Texture> texture{};
-  std::optional<double> alpha_cutoff{};  ///< 0..1: where alpha is less, there is a hole; none: no holes
-  bool double_sided = false;             ///< visible, and emissive, from both sides
+  /// 0..1: where alpha is less, there is a hole; none: no holes.
+  std::optional<double> alpha_cutoff{};
+  bool double_sided = false;  ///< visible, and emissive, from both sides
   bool operator==(const Material&) const = default;
 };
 
@@ -43,15 +44,16 @@ inline constexpr Transform kIdentity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, 
 /// Triangles in memory, which add_mesh() copies.
 struct Mesh {
   std::span<const std::array<float, 3>> positions;  ///< of vertices [m], y up
-  std::span<const std::array<std::uint32_t, 3>>
-      triangles;                                    ///< vertices, counter-clockwise seen from the front
+  /// Vertices, counter-clockwise seen from the front.
+  std::span<const std::array<std::uint32_t, 3>> triangles;
   std::span<const std::array<float, 3>> normals{};  ///< of vertices, of any length
   std::span<const std::array<float, 2>> uvs{};      ///< texture coordinates of vertices
   std::span<const std::array<float, 4>> colours{};  ///< linear, of vertices; times the material's
-  bool smooth =
-      false;  ///< without normals: means of the triangles' normals, weighted by angle; else flat, as in glTF
+  bool smooth = false;  ///< without normals: means of the triangles' normals, weighted by angle;
+                        ///< else flat, as in glTF
   Material material{};
-  bool moves = false;  ///< will move: its first move then needs no new memory (Scene::set_positions)
+  /// Will move: its first move then needs no new memory (Scene::set_positions).
+  bool moves = false;
 };
 
 }  // namespace clpv

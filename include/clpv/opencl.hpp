@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// OpenCL objects: a renderer in a context and queue of the caller, and its results as device memory (docs/api.md, 'OpenCL').
+// OpenCL objects: a renderer in a context and queue of the caller, and its results as device memory
+// (docs/api.md, 'OpenCL').
 #pragma once
 
 #include <CL/cl.h>
@@ -10,9 +11,10 @@
 
 namespace clpv::opencl {
 
-/// Where a Renderer works. It retains both while it lives. The queue is in-order; it may be shared with the caller's commands, which
-/// then run in the order of the calls. Without a queue the renderer makes one for the context's only device. Without a context it is
-/// the queue's. Stage times need a queue with profiling; else Stats has zeros.
+/// Where a Renderer works. It retains both while it lives. The queue is in-order; it may be shared
+/// with the caller's commands, which then run in the order of the calls. Without a queue the
+/// renderer makes one for the context's only device. Without a context it is the queue's. Stage
+/// times need a queue with profiling; else Stats has zeros.
 struct Queue {
   cl_context context = nullptr;
   cl_command_queue queue = nullptr;
@@ -39,28 +41,34 @@ class Event {
   cl_event event_;
 };
 
-/// Buffers of a frame, of width x height pixels, row 0 at the top. They belong to the renderer: valid until its next call that
-/// renders, or retained by the caller (clRetainMemObject), who then sees what later calls write.
+/// Buffers of a frame, of width x height pixels, row 0 at the top. They belong to the renderer:
+/// valid until its next call that renders, or retained by the caller (clRetainMemObject), who then
+/// sees what later calls write.
 struct Frame {
   int width = 0, height = 0;
-  cl_mem image = nullptr;       ///< float4 R, G, B, A of the view that was asked for, linear; without a sky
+  /// Float4 R, G, B, A of the view that was asked for, linear; without a sky.
+  cl_mem image = nullptr;
   cl_mem irradiance = nullptr;  ///< float4 E of red, green, blue [W/m^2], and 0, of indirect light
   cl_mem depth = nullptr;       ///< float [m] along the viewing direction; 0 without a surface
   cl_mem normals = nullptr;     ///< float4 unit normal, and 0; 0 without a surface
   Event done;                   ///< of the whole frame
 };
 
-/// Light of all cascades for a caller's kernel: the arguments CLPV_RADIANCE of Renderer::lookup_source(), in its order. Buffers
-/// belong to the renderer like those of Frame.
+/// Light of all cascades for a caller's kernel: the arguments CLPV_RADIANCE of
+/// Renderer::lookup_source(), in its order. Buffers belong to the renderer like those of Frame.
 struct Volumes {
-  cl_mem grids = nullptr;     ///< ClpvGrid of each cascade, finest first (clpv/kernels/shared/grid.h): 32 bytes
+  /// ClpvGrid of each cascade, finest first (clpv/kernels/shared/grid.h): 32 bytes.
+  cl_mem grids = nullptr;
   cl_uint cascades = 0;
   cl_float unit = 0;          ///< radiant intensity of a stored 1 [W/sr]
-  cl_mem packed = nullptr;    ///< float [cascade][z][y][x][5][2][4]: pair, coefficient of the pair; red, green, blue, 0
-  cl_mem occluded = nullptr;  ///< uchar [cascade][z][y][x][4][4][4], bits of occluded cells; null with gather all: no argument
+  cl_mem packed = nullptr;    ///< float [cascade][z][y][x][5][2][4]: pair, coefficient of the pair;
+                              ///< red, green, blue, 0
+  cl_mem occluded = nullptr;  ///< uchar [cascade][z][y][x][4][4][4], bits of occluded cells; null
+                              ///< with gather all: no argument
 };
 
-/// A G-buffer of the caller (clpv::GBuffer) in buffers of the renderer's context. Larger buffers are allowed.
+/// A G-buffer of the caller (clpv::GBuffer) in buffers of the renderer's context. Larger buffers
+/// are allowed.
 struct GBuffer {
   int width = 0, height = 0;    ///< 1 to 16384
   cl_mem normals = nullptr;     ///< float4 per pixel, of any length, w unused

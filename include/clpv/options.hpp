@@ -17,8 +17,8 @@ struct OptionDescription {
   std::string value;    ///< default, or the value given
 };
 
-/// Options set by the user. Their order does not matter: single options override a preset. An option that is not set has the
-/// scene's value (number and size of cascades), else its default.
+/// Options set by the user. Their order does not matter: single options override a preset. An
+/// option that is not set has the scene's value (number and size of cascades), else its default.
 class Options {
  public:
   /// Sets one option. Throws Error(usage) for an unknown name or a value that is not allowed.

@@ -13,18 +13,20 @@ namespace clpv {
 
 struct TraceOptions {
   int width = 960, height = 540;  ///< 1 to 16384
-  int bounces = 1;                ///< maximum number of reflections between light and visible surface; 0: all
-  std::uint32_t samples = 0;      ///< paths per pixel, up to 2^24; 0: as many as `noise` needs
-  double noise = 0.02;            ///< relative standard error of the indirect light at which tracing stops
-  std::uint64_t seed = 1;         ///< the same seed gives the same image
-  int threads = 0;                ///< 0: one per processor
-  double seconds = 0;             ///< time in the scene's animation [s]
-  std::function<void(double)> progress;  ///< receives the estimated progress in [0, 1], from one thread at a time
+  int bounces = 1;  ///< maximum number of reflections between light and visible surface; 0: all
+  std::uint32_t samples = 0;  ///< paths per pixel, up to 2^24; 0: as many as `noise` needs
+  double noise = 0.02;     ///< relative standard error of the indirect light at which tracing stops
+  std::uint64_t seed = 1;  ///< the same seed gives the same image
+  int threads = 0;         ///< 0: one per processor
+  double seconds = 0;      ///< time in the scene's animation [s]
+  /// Receives the estimated progress in [0, 1], from one thread at a time.
+  std::function<void(double)> progress;
 };
 
-/// Traces the image that Renderer::render() of the same view and camera estimates: diffuse surfaces, hard shadows, one ray per
-/// pixel through its centre, R, G, B, A. Metadata has `spp_traced`, `noise_reached` and the camera. Throws Error: usage (camera,
-/// options out of range), bad_input (a scene without surface or light). Thread-safe.
+/// Traces the image that Renderer::render() of the same view and camera estimates: diffuse
+/// surfaces, hard shadows, one ray per pixel through its centre, R, G, B, A. Metadata has
+/// `spp_traced`, `noise_reached` and the camera. Throws Error: usage (camera, options out of
+/// range), bad_input (a scene without surface or light). Thread-safe.
 Image pathtrace(const Scene& scene, View view, const CameraChoice& camera = {},
                 const TraceOptions& options = {});
 

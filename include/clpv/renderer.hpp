@@ -31,117 +31,140 @@ struct GBuffer;
 class Event;
 }  // namespace opencl
 
-/// Quantity that an image shows: radiance [W/m^2/sr] (full = direct + indirect), irradiance of indirect light [W/m^2], albedo, unit
-/// normal, or depth [m]. Lux and candela of a scene count 1:1 as W/m^2 and W/sr. medium: radiance that the scene's medium
-/// scatters towards the camera, which full includes. cells: irradiance, with the cells of the finest cascade as small spheres that
+/// Quantity that an image shows: radiance [W/m^2/sr] (full = direct + indirect), irradiance of
+/// indirect light [W/m^2], albedo, unit normal, or depth [m]. Lux and candela of a scene count 1:1
+/// as W/m^2 and W/sr. medium: radiance that the scene's medium scatters towards the camera, which
+/// full includes. cells: irradiance, with the cells of the finest cascade as small spheres that
 /// show the irradiance on surfaces of every direction there; pathtrace() has no such view.
 enum class View { full, direct, indirect, irradiance, albedo, normal, depth, medium, cells };
 
 /// Cost of the last frame.
 struct Stats {
-  /// Device time by stage ("rasterize-camera", "propagate", ...), summed over cascades and lights [ms]. All stages are there; 0:
-  /// not run, since its result was cached or the options do not need it.
+  /// Device time by stage ("rasterize-camera", "propagate", ...), summed over cascades and lights
+  /// [ms]. All stages are there; 0: not run, since its result was cached or the options do not need
+  /// it.
   std::map<std::string, double> stages;
-  double frame_ms = 0;                ///< wall time of render(), the read-back of the image included
-  double host_ms = 0;                 ///< of it the host's work to enqueue the frame, without waits
-  unsigned launches = 0;              ///< kernels, fills and copies of the device
-  unsigned waits = 0;                 ///< times that the host waited for the device, the read-back included
-  double build_ms = 0;                ///< time so far for compiling programs or loading them
+  double frame_ms = 0;    ///< wall time of render(), the read-back of the image included
+  double host_ms = 0;     ///< of it the host's work to enqueue the frame, without waits
+  unsigned launches = 0;  ///< kernels, fills and copies of the device
+  unsigned waits = 0;     ///< times that the host waited for the device, the read-back included
+  double build_ms = 0;    ///< time so far for compiling programs or loading them
   std::size_t device_bytes = 0;       ///< device memory in use
   std::size_t peak_device_bytes = 0;  ///< maximum so far
 };
 
-/// Light of one cascade after propagation, on the host. A cell is a cube; its light is radiant intensity
-///   I(w) = sum_i c_i b_i(w) [W/sr],   b_i: functions of `basis`, w: direction in which light travels
-/// After a sweep (option transport) the basis is `sh3` whatever light was injected in, and the radiance about the cell's centre is
-/// L(w) = I(w) / cell^2 [W/m^2/sr].
+/// Light of one cascade after propagation, on the host. A cell is a cube; its light is radiant
+/// intensity
+///   I(w) = sum_i c_i b_i(w) [W/sr],   b_i: functions of `basis`, w: direction in which light
+///                                     travels
+/// After a sweep (option transport) the basis is `sh3` whatever light was injected in, and the
+/// radiance about the cell's centre is L(w) = I(w) / cell^2 [W/m^2/sr].
 struct LightVolume {
-  Vec3 origin{};           ///< minimum corner [m]
-  double cell = 0;         ///< edge of a cell [m]
-  int n = 0;               ///< cells along each axis
-  int coefficients = 0;    ///< N
-  std::string basis;       ///< name of the basis of the coefficients
+  Vec3 origin{};              ///< minimum corner [m]
+  double cell = 0;            ///< edge of a cell [m]
+  int n = 0;                  ///< cells along each axis
+  int coefficients = 0;       ///< N
+  std::string basis;          ///< name of the basis of the coefficients
   std::vector<float> values;  ///< [channel][i][z][y][x]: red, green, blue; N coefficients; cells
 };
 
-/// Surfaces that the caller's pixels show: a G-buffer, one value per pixel, row 0 first. It has positions, from any kind of camera,
-/// or depths of a Camera. A pixel has no surface, and no light, if its normal is 0, its depth is not positive, or a number of it is
-/// not finite.
+/// Surfaces that the caller's pixels show: a G-buffer, one value per pixel, row 0 first. It has
+/// positions, from any kind of camera, or depths of a Camera. A pixel has no surface, and no light,
+/// if its normal is 0, its depth is not positive, or a number of it is not finite.
 struct GBuffer {
-  int width = 0, height = 0;                             ///< 1 to 16384
-  std::span<const std::array<float, 3>> normals;         ///< of any length, on the side that is seen
+  int width = 0, height = 0;                      ///< 1 to 16384
+  std::span<const std::array<float, 3>> normals;  ///< of any length, on the side that is seen
   std::span<const std::array<float, 3>> positions = {};  ///< [m]
-  std::span<const float> depths = {};                    ///< [m] along the camera's viewing direction, row 0 at the top
+  std::span<const float> depths =
+      {};  ///< [m] along the camera's viewing direction, row 0 at the top
 };
 
-/// Renders frames of one scene with one set of options. Owns an OpenCL context, compiled programs and all memory of a frame,
-/// and shares the scene. Results that do not change are cached from frame to frame. Thread-safe: calls from several threads run one
-/// after the other; for parallel frames use one Renderer per thread.
+/// Renders frames of one scene with one set of options. Owns an OpenCL context, compiled programs
+/// and all memory of a frame, and shares the scene. Results that do not change are cached from
+/// frame to frame. Thread-safe: calls from several threads run one after the other; for parallel
+/// frames use one Renderer per thread.
 class Renderer {
  public:
-  /// `device`: an index, "PLATFORM:DEVICE", or a part of the name; empty: CLPV_DEVICE, else the first device that clpv can
-  /// use. Loads compiled programs from the user's cache. Throws Error: usage (options), device (no device matches),
-  /// run_time (out of memory; the message says what would fit).
-  explicit Renderer(const Scene& scene, const Options& options = {}, const std::string& device = {});
-  /// The same in a context and queue of the caller. Throws Error: usage (no or another context, an out-of-order queue, several
-  /// devices without a queue), device (a device that lacks a capability).
+  /// `device`: an index, "PLATFORM:DEVICE", or a part of the name; empty: CLPV_DEVICE, else the
+  /// first device that clpv can use. Loads compiled programs from the user's cache. Throws Error:
+  /// usage (options), device (no device matches), run_time (out of memory; the message says what
+  /// would fit).
+  explicit Renderer(const Scene& scene, const Options& options = {},
+                    const std::string& device = {});
+  /// The same in a context and queue of the caller. Throws Error: usage (no or another context, an
+  /// out-of-order queue, several devices without a queue), device (a device that lacks a
+  /// capability).
   Renderer(const Scene& scene, const Options& options, const opencl::Queue& queue);
   ~Renderer();  ///< waits for its commands; stores compiled programs in the user's cache
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Renders one frame at time `seconds` [s] through a camera of the scene, by name, or any other. Cascades surround its eye; for
-  /// a model without a scene file their size is that for the scene's cameras unless option cascade-size is set. Returns a linear
-  /// image of --width x --height pixels with channels R, G, B, A, all options in its metadata. A frame does not depend on earlier
-  /// frames. Throws Error: usage (no such camera, a bad one, seconds out of range), bad_input (animation leads out of bounds),
-  /// run_time (memory).
+  /// Renders one frame at time `seconds` [s] through a camera of the scene, by name, or any other.
+  /// Cascades surround its eye; for a model without a scene file their size is that for the scene's
+  /// cameras unless option cascade-size is set. Returns a linear image of --width x --height pixels
+  /// with channels R, G, B, A, all options in its metadata. A frame does not depend on earlier
+  /// frames. Throws Error: usage (no such camera, a bad one, seconds out of range), bad_input
+  /// (animation leads out of bounds), run_time (memory).
   Image render(View view = View::full, const CameraChoice& camera = {}, double seconds = 0);
 
-  /// Another view of the last frame, without rendering it again. Throws Error(usage) before the first frame.
+  /// Another view of the last frame, without rendering it again. Throws Error(usage) before the
+  /// first frame.
   Image show(View view);
 
-  /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on each pixel of `surfaces` at time `seconds` [s], with
-  /// the near field, as View::irradiance has it: a frame for a G-buffer of another renderer. Makes no image; show() keeps the last
-  /// frame's. Cascades surround the camera's eye; depths are those of its view of width x height square pixels. The near
-  /// field interpolates between a pixel and its neighbours in the image that lie on its surface (docs/api.md).
-  /// Throws Error: usage (sizes, camera, seconds; option blockers seen), run_time (memory).
-  std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const CameraChoice& camera, double seconds = 0);
+  /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on each pixel of
+  /// `surfaces` at time `seconds` [s], with the near field, as View::irradiance has it: a frame for
+  /// a G-buffer of another renderer. Makes no image; show() keeps the last frame's. Cascades
+  /// surround the camera's eye; depths are those of its view of width x height square pixels. The
+  /// near field interpolates between a pixel and its neighbours in the image that lie on its
+  /// surface (docs/api.md). Throws Error: usage (sizes, camera, seconds; option blockers seen),
+  /// run_time (memory).
+  std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const CameraChoice& camera,
+                                          double seconds = 0);
   /// The same for positions, with cascades about `eye` [m] and all lights of the scene.
-  std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const Vec3& eye, double seconds = 0);
+  std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const Vec3& eye,
+                                          double seconds = 0);
 
-  /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on a surface at `position` [m] with `normal` (of any
-  /// length), visible or not. Uses the volumes of the last frame or light(), without option near; 0 outside of its cascades. Computed on
-  /// the device. Throws Error(usage) before the first frame, and for a position that is not finite or a normal of length 0.
+  /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on a surface at
+  /// `position` [m] with `normal` (of any length), visible or not. Uses the volumes of the last
+  /// frame or light(), without option near; 0 outside of its cascades. Computed on the device.
+  /// Throws Error(usage) before the first frame, and for a position that is not finite or a normal
+  /// of length 0.
   std::array<double, 3> irradiance(const Vec3& position, const Vec3& normal);
 
-  /// The same for many points. Throws Error(usage) also for different numbers of positions and normals, with the first bad index.
+  /// The same for many points. Throws Error(usage) also for different numbers of positions and
+  /// normals, with the first bad index.
   std::vector<std::array<float, 3>> irradiance(std::span<const std::array<float, 3>> positions,
                                                std::span<const std::array<float, 3>> normals);
 
-  /// Returns the radiance of indirect light [W/m^2/sr], red, green and blue, at each of `positions` [m], of light that travels
-  /// along the direction (of any length) of the same index: what an eye there sees that looks the other way. Interpolates the
-  /// volumes of the last frame, without option near; 0 outside of its cascades. Negative where nine harmonics undershoot.
-  /// Computed on the device. Throws Error(usage) before the first frame, without transport sweep, for layout image with gather
-  /// all, and for vectors as irradiance() does.
+  /// Returns the radiance of indirect light [W/m^2/sr], red, green and blue, at each of `positions`
+  /// [m], of light that travels along the direction (of any length) of the same index: what an eye
+  /// there sees that looks the other way. Interpolates the volumes of the last frame, without
+  /// option near; 0 outside of its cascades. Negative where nine harmonics undershoot. Computed on
+  /// the device. Throws Error(usage) before the first frame, without transport sweep, for layout
+  /// image with gather all, and for vectors as irradiance() does.
   std::vector<std::array<float, 3>> radiance(std::span<const std::array<float, 3>> positions,
                                              std::span<const std::array<float, 3>> directions);
 
-  /// Reads back the light of the last frame or light(), finest cascade first. Throws Error(usage) before the first frame.
+  /// Reads back the light of the last frame or light(), finest cascade first. Throws Error(usage)
+  /// before the first frame.
   std::vector<LightVolume> volumes();
 
-  /// Like render(), but enqueues the frame and returns its device memory without waiting for all of it (docs/api.md says for what it
-  /// waits). Throws Error(usage) also for View::cells.
-  opencl::Frame enqueue(View view = View::full, const CameraChoice& camera = {}, double seconds = 0);
-  /// Like light(), from and to device memory. Throws Error(usage) also for an object that is no buffer of the renderer's context or
-  /// is too small.
-  opencl::Event enqueue_light(const opencl::GBuffer& surfaces, const CameraChoice& camera, double seconds = 0);
+  /// Like render(), but enqueues the frame and returns its device memory without waiting for all of
+  /// it (docs/api.md says for what it waits). Throws Error(usage) also for View::cells.
+  opencl::Frame enqueue(View view = View::full, const CameraChoice& camera = {},
+                        double seconds = 0);
+  /// Like light(), from and to device memory. Throws Error(usage) also for an object that is no
+  /// buffer of the renderer's context or is too small.
+  opencl::Event enqueue_light(const opencl::GBuffer& surfaces, const CameraChoice& camera,
+                              double seconds = 0);
   opencl::Event enqueue_light(const opencl::GBuffer& surfaces, const Vec3& eye, double seconds = 0);
 
   /// Light of the last frame or light() for a caller's kernel. Throws Error(usage) as radiance().
   opencl::Volumes device_volumes();
-  /// OpenCL C 1.2 for the start of a caller's program: clpv_irradiance(CLPV_PASS_RADIANCE, position, normal) and
-  /// clpv_radiance(CLPV_PASS_RADIANCE, position, direction), for kernels with the parameters CLPV_RADIANCE
-  /// (kernels/gather/lookup.h). One text for all frames of a renderer. Throws Error(usage) for options as radiance().
+  /// OpenCL C 1.2 for the start of a caller's program: clpv_irradiance(CLPV_PASS_RADIANCE,
+  /// position, normal) and clpv_radiance(CLPV_PASS_RADIANCE, position, direction), for kernels with
+  /// the parameters CLPV_RADIANCE (kernels/gather/lookup.h). One text for all frames of a renderer.
+  /// Throws Error(usage) for options as radiance().
   std::string lookup_source() const;
 
   /// Size, basis, transport and device in one line.

@@ -17,66 +17,74 @@ namespace clpv {
 /// x, y, z in world space, y up; or red, green, blue.
 using Vec3 = std::array<double, 3>;
 
-/// Perspective camera: Camera{.eye = {0, 1, 3}, .target = {0, 1, 0}}. Functions that take one throw Error(usage), which names
-/// member, value found and value allowed, for numbers that are not finite or out of range, an eye that is its target, and an
-/// `up` along the viewing direction.
+/// Perspective camera: Camera{.eye = {0, 1, 3}, .target = {0, 1, 0}}. Functions that take one throw
+/// Error(usage), which names member, value found and value allowed, for numbers that are not finite
+/// or out of range, an eye that is its target, and an `up` along the viewing direction.
 struct Camera {
-  Vec3 eye{}, target{0, 0, -1};      ///< [m], within +-1e7; only the direction of `target` matters
-  Vec3 up{0, 1, 0};                  ///< of any length; need not be perpendicular to the viewing direction
+  Vec3 eye{}, target{0, 0, -1};  ///< [m], within +-1e7; only the direction of `target` matters
+  Vec3 up{0, 1, 0};  ///< of any length; need not be perpendicular to the viewing direction
   double vertical_fov_degrees = 60;  ///< 0.01 to 179.9
   double near = 0.05;                ///< nearest visible depth [m], 1e-6 to 1e7
   std::string name{};                ///< in the scene's list of cameras
   std::string light{};               ///< name of the only light for this camera; empty: all lights
 };
 
-/// Name of one of the scene's cameras, empty for the first; or a camera that the scene need not have.
+/// Name of one of the scene's cameras, empty for the first; or a camera that the scene need not
+/// have.
 using CameraChoice = std::variant<std::string, Camera>;
 
 enum class LightKind : unsigned { directional, spot, point };
 
-/// Light without extent. Photometric units count 1:1 as radiometric ones: 1 lx as 1 W/m^2, 1 cd as 1 W/sr. Errors as for Camera.
+/// Light without extent. Photometric units count 1:1 as radiometric ones: 1 lx as 1 W/m^2, 1 cd as
+/// 1 W/sr. Errors as for Camera.
 struct Light {
   LightKind kind = LightKind::directional;
-  Vec3 position{};          ///< [m]; unused if directional
+  Vec3 position{};           ///< [m]; unused if directional
   Vec3 direction{0, -1, 0};  ///< in which light travels, of any length; unused if point
-  Vec3 intensity{1, 1, 1};  ///< directional: irradiance across the direction [W/m^2]; others: radiant intensity [W/sr]
-  double range = 0;         ///< [m], no light beyond it; 0: unlimited
-  double inner_cone_degrees = 0, outer_cone_degrees = 45;  ///< spot: full and no light at this angle; inner < outer <= 90
+  Vec3 intensity{1, 1, 1};   ///< directional: irradiance across the direction [W/m^2]; others:
+                             ///< radiant intensity [W/sr]
+  double range = 0;          ///< [m], no light beyond it; 0: unlimited
+  /// Spot: full and no light at this angle; inner < outer <= 90.
+  double inner_cone_degrees = 0, outer_cone_degrees = 45;
   std::string name{};
 };
 
 /// Fog or dust in a box, homogeneous. Errors as for Camera.
 struct Medium {
   Vec3 scattering{}, absorption{};  ///< of red, green and blue [1/m], 0 to 1e6
-  double anisotropy = 0;            ///< of Henyey and Greenstein's phase function, -0.9 to 0.9; above 0: forwards
-  std::optional<std::array<Vec3, 2>> box{};  ///< lower and upper corner [m]; none: the scene's bounding box
+  /// Of Henyey and Greenstein's phase function, -0.9 to 0.9; above 0: forwards.
+  double anisotropy = 0;
+  /// Lower and upper corner [m]; none: the scene's bounding box.
+  std::optional<std::array<Vec3, 2>> box{};
 };
 
-/// Scene of a scene file (.json), a glTF model (.gltf, .glb), or of meshes in memory. Copies share the data and its changes. Thread-safe:
-/// a change waits for frames in progress, and shows in the next frame of all renderers of the scene.
+/// Scene of a scene file (.json), a glTF model (.gltf, .glb), or of meshes in memory. Copies share
+/// the data and its changes. Thread-safe: a change waits for frames in progress, and shows in the
+/// next frame of all renderers of the scene.
 class Scene {
  public:
   /// A scene without meshes. Without set_cameras() and set_lights() it has a camera that frames its
   /// meshes, and a sun, as a model has.
   Scene();
 
-  /// `model` replaces the model of the scene file; empty: no replacement. Files are untrusted: sizes are checked before
-  /// allocation, and only files in the folders of model and scene file are read. Throws Error(bad_input) with file, place, value found and value
-  /// allowed.
+  /// `model` replaces the model of the scene file; empty: no replacement. Files are untrusted:
+  /// sizes are checked before allocation, and only files in the folders of model and scene file are
+  /// read. Throws Error(bad_input) with file, place, value found and value allowed.
   explicit Scene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
   /// Cameras (at least one) and lights, at 0 s if they are animated.
   std::vector<Camera> cameras() const;
   std::vector<Light> lights() const;
 
-  /// Replace all cameras or all lights; they are then no longer animated. To change or add one, change the list of cameras()
-  /// or lights(). Frames recompute only what depends on a changed light. A camera whose only light is gone gets all lights.
-  /// Throw Error(usage): see Camera and Light; no camera, more than 1024 cameras or 64 lights, two of one name.
+  /// Replace all cameras or all lights; they are then no longer animated. To change or add one,
+  /// change the list of cameras() or lights(). Frames recompute only what depends on a changed
+  /// light. A camera whose only light is gone gets all lights. Throw Error(usage): see Camera and
+  /// Light; no camera, more than 1024 cameras or 64 lights, two of one name.
   void set_cameras(const std::vector<Camera>& cameras);
   void set_lights(const std::vector<Light>& lights);
 
-  /// The medium with its box, or none. After a change, the next frame of each renderer allocates its memory again. Throws
-  /// Error(usage): see Medium.
+  /// The medium with its box, or none. After a change, the next frame of each renderer allocates
+  /// its memory again. Throws Error(usage): see Medium.
   std::optional<Medium> medium() const;
   void set_medium(const std::optional<Medium>& medium);
 
@@ -92,16 +100,17 @@ class Scene {
 
   /// Moves the vertices of a mesh, at all of its places, or one of its places. Normals that the
   /// mesh was given stay without `normals`. The next frame of each renderer recomputes what
-  /// animation recomputes; at the first move of a mesh without Mesh::moves, and after an addition or
-  /// removal, also its memory and what it caches. Throw as add_mesh().
+  /// animation recomputes; at the first move of a mesh without Mesh::moves, and after an addition
+  /// or removal, also its memory and what it caches. Throw as add_mesh().
   void set_positions(int mesh, std::span<const std::array<float, 3>> positions,
                      std::span<const std::array<float, 3>> normals = {});
   void set_transform(int mesh, const Transform& transform);
 
-  bool moves() const;                        ///< returns true if anything in it is animated
-  std::vector<std::string> notes() const;    ///< one sentence for each thing skipped or added by the loader and not replaced
-  std::array<Vec3, 2> bounds() const;        ///< lower and upper corner of the bounding box at 0 s [m]
-  double exposure() const;                   ///< [EV], for save_image()
+  bool moves() const;  ///< returns true if anything in it is animated
+  std::vector<std::string> notes()
+      const;  ///< one sentence for each thing skipped or added by the loader and not replaced
+  std::array<Vec3, 2> bounds() const;  ///< lower and upper corner of the bounding box at 0 s [m]
+  double exposure() const;             ///< [EV], for save_image()
 
   struct Contents;
   const Contents& contents() const { return *contents_; }

@@ -6,7 +6,8 @@
 
 namespace clpv {
 
-/// Returns the version of the linked library, such as "0.2.0". Cached ground truths are valid for one version.
+/// Returns the version of the linked library, such as "0.2.0". Cached ground truths are valid for
+/// one version.
 std::string version();
 
 }  // namespace clpv

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Weights of cascades at W points, and the points in their cells (docs/method.md, 'Gathering').
 //
-// A cascade has the weight min(1, d / CLPV_BLEND), d the distance [cells] of p from the boundary of the cube about the
-// eye; a coarser cascade gets the weight that finer ones leave. Light is therefore continuous, also when a grid moves by
-// a cell, and 0 outside all cascades.
+// A cascade has the weight min(1, d / CLPV_BLEND), d the distance [cells] of p from the boundary of
+// the cube about the eye; a coarser cascade gets the weight that finer ones leave. Light is
+// therefore continuous, also when a grid moves by a cell, and 0 outside all cascades.
 //
 // From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET.
 #pragma once
@@ -39,8 +39,8 @@ CLPV_INLINE realW cascade_share(const ClpvGrid grid, const Vec position) {
 }
 
 // The points position + offset * s * lift [m] in a cascade, s its cell.
-CLPV_INLINE void find_cascade_points(const ClpvGrid grid, const Vec position, const realW offset, const Vec lift,
-                                     SamplePoints* points) {
+CLPV_INLINE void find_cascade_points(const ClpvGrid grid, const Vec position, const realW offset,
+                                     const Vec lift, SamplePoints* points) {
   const Vec at = vec_times(vec_minus(position, vec_of(grid.origin)), (realW)(1.0f / grid.cell));
   const Vec lifted = vec_add_scaled(at, offset, lift);
   find_sample_points(vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f), points);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Gathers the irradiance of every surface that the camera sees from the accumulated volumes of all cascades.
+// Gathers the irradiance of every surface that the camera sees from the accumulated volumes of all
+// cascades.
 //
 //   E = 4 I(-n) / s^2           steps
 //   E = alpha(-n) . c / s^2     sweep
@@ -7,26 +8,32 @@
 // not below 0, with the coefficients c interpolated trilinearly at p + offset s n. docs/method.md,
 // 'Gathering'; cascades.h has the weights of cascades.
 //
-// In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
+// In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS
+//                         positions [m]
 //       grids       ClpvGrid of each of `cascades` cascades, finest first
 //       unit        [W/sr] of a stored 1
-//       CLPV_GATHERED_VOLUMES   accumulated volumes: packed records and occlusion bits (CLPV_PACKED 1), or images
+//       CLPV_GATHERED_VOLUMES   accumulated volumes: packed records and occlusion bits (CLPV_PACKED
+//                               1), or images
 // Out:  irradiance  E [W/m^2] per pixel
-// A work-item processes W pixels of a row: coordinates in lanes, then pixel by pixel, since each reads its own
-// cells.
+// A work-item processes W pixels of a row: coordinates in lanes, then pixel by pixel, since each
+// reads its own cells.
 //
 // gather_packed.h and gather_image.h define
-//   CLPV_GATHERED, Sampled                        type of a cascade's volume; coefficients at a point
-//   SamplePoints, find_sample_points(at, &points) W points [cells] from the first centre, clamped to the grid
-//   float sample_cells(volume, points, i, &s)      trilinear at point i, to be multiplied by the result
+//   CLPV_GATHERED, Sampled                        type of a cascade's volume; coefficients at a
+//                                                 point
+//   SamplePoints, find_sample_points(at, &points) W points [cells] from the first centre, clamped
+//   to the grid
+//   float sample_cells(volume, points, i, &s)      trilinear at point i, to be multiplied by the
+//                                                  result
 //   float4 weigh(weights, sampled)           weights . coefficients for each channel, and 0
-// From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET, CLPV_FACE_TRANSPORT (0: swept light), and
-// CLPV_FROM_TABLE 1: functions come from a look-up table, the last argument.
+// From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET, CLPV_FACE_TRANSPORT (0: swept
+// light), and CLPV_FROM_TABLE 1: functions come from a look-up table, the last argument.
 #include "gather/cascades.h"
 #include "raster/surface_row.h"
 
 // g(n): 4 b(-n), or alpha(-n) for swept light.
-CLPV_INLINE Coefficients gather_weights(const float x, const float y, const float z CLPV_AND_TABLE) {
+CLPV_INLINE Coefficients gather_weights(const float x, const float y,
+                                        const float z CLPV_AND_TABLE) {
 #if !CLPV_FACE_TRANSPORT
   return cosine_integrals(-x, -y, -z);
 #elif CLPV_FROM_TABLE
@@ -61,17 +68,20 @@ CLPV_INLINE void add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GAT
   g->remaining *= 1.0f - share;
   if (no_lane(weight > ZERO)) return;
   SamplePoints points;
-  find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), g->surfaces.normal, &points);
+  find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), g->surfaces.normal,
+                      &points);
   float shares[W];
   store_lanes(weight, shares);
   for (int i = 0; i < W; ++i) {
-    if (shares[i] > 0.0f) g->sums[i] += shares[i] * volume_irradiance(volume, &points, i, g->weights[i]);
+    if (shares[i] > 0.0f)
+      g->sums[i] += shares[i] * volume_irradiance(volume, &points, i, g->weights[i]);
   }
 }
 
-__kernel void gather(const ClpvView view, __global const Place* places, __global const float4* normals,
-                     __global const ClpvGrid* grids, const uint cascades, const float unit, __global float4* irradiance
-                     CLPV_GATHERED_VOLUMES CLPV_AND_TABLE) {
+__kernel void gather(const ClpvView view, __global const Place* places,
+                     __global const float4* normals, __global const ClpvGrid* grids,
+                     const uint cascades, const float unit,
+                     __global float4* irradiance CLPV_GATHERED_VOLUMES CLPV_AND_TABLE) {
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   Gathering g;

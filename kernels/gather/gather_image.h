@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Samples accumulated volumes in images, by the device's filter or from texels (volume/image.h), for gather.cl.
+// Samples accumulated volumes in images, by the device's filter or from texels (volume/image.h),
+// for gather.cl.
 //
-// OpenCL 1.2 has no arrays of images: CLPV_EACH_CASCADE(DO), from the host, writes DO(0) DO(1) ... for each cascade,
-// each with its own parameter and code.
+// OpenCL 1.2 has no arrays of images: CLPV_EACH_CASCADE(DO), from the host, writes DO(0) DO(1) ...
+// for each cascade, each with its own parameter and code.
 #pragma once
 
 #include "volume/light.h"

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Samples accumulated volumes in packed records (pack.cl), weighted by the visibility of cells, for gather.cl.
+// Samples accumulated volumes in packed records (pack.cl), weighted by the visibility of cells, for
+// gather.cl.
 //
-//   w_i' = w_i v_i / sum_j w_j v_j,   w trilinear weights of the eight cells, v their visible shares
+//   w_i' = w_i v_i / sum_j w_j v_j,   w trilinear weights of the eight cells, v their visible
+//                                     shares
 //
 // docs/method.md, 'Gathering'.
-// A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b 0)(r g b 0). The eight cells about a point
-// are read as whole vectors.
+// A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b 0)(r g b 0). The eight
+// cells about a point are read as whole vectors.
 //
 // From the host: CLPV_PAIRS.
 #pragma once
@@ -31,8 +33,8 @@ typedef struct {
 #endif
 } PackedCascade;
 
-// W points: number of the lowest of the eight cells about each, and its position between their centres in [0, 1];
-// with CLPV_VISIBLE the same for the sample points of visibility.cl.
+// W points: number of the lowest of the eight cells about each, and its position between their
+// centres in [0, 1]; with CLPV_VISIBLE the same for the sample points of visibility.cl.
 typedef struct {
   int number[W];
   float x[W], y[W], z[W];
@@ -65,11 +67,15 @@ CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
 #endif
 }
 
-// Trilinear weights of the eight corners about a point (x, y, z) in [0, 1]^3; corner bits: 1 x, 2 y, 4 z.
+// Trilinear weights of the eight corners about a point (x, y, z) in [0, 1]^3; corner bits: 1 x, 2
+// y, 4 z.
 CLPV_INLINE float8 corner_weights(const float x, const float y, const float z) {
-  const float8 along_x = fma((float8)(-1, 1, -1, 1, -1, 1, -1, 1), (float8)(x), (float8)(1, 0, 1, 0, 1, 0, 1, 0));
-  const float8 along_y = fma((float8)(-1, -1, 1, 1, -1, -1, 1, 1), (float8)(y), (float8)(1, 1, 0, 0, 1, 1, 0, 0));
-  const float8 along_z = fma((float8)(-1, -1, -1, -1, 1, 1, 1, 1), (float8)(z), (float8)(1, 1, 1, 1, 0, 0, 0, 0));
+  const float8 along_x =
+      fma((float8)(-1, 1, -1, 1, -1, 1, -1, 1), (float8)(x), (float8)(1, 0, 1, 0, 1, 0, 1, 0));
+  const float8 along_y =
+      fma((float8)(-1, -1, 1, 1, -1, -1, 1, 1), (float8)(y), (float8)(1, 1, 0, 0, 1, 1, 0, 0));
+  const float8 along_z =
+      fma((float8)(-1, -1, -1, -1, 1, 1, 1, 1), (float8)(z), (float8)(1, 1, 1, 1, 0, 0, 0, 0));
   return along_x * along_y * along_z;
 }
 
@@ -77,24 +83,27 @@ CLPV_INLINE float8 corner_weights(const float x, const float y, const float z) {
 // Visible share of all weight below which all cells count.
 __constant const float min_visible = 1.0f / 64.0f;
 
-// Visible shares of the eight cells: their bits at eight sample points, interpolated trilinearly so that light is
-// continuous, and constant beyond the outermost points.
+// Visible shares of the eight cells: their bits at eight sample points, interpolated trilinearly so
+// that light is continuous, and constant beyond the outermost points.
 CLPV_INLINE float8 visible_shares(__global const uchar* at, const float8 weights) {
   const int8 bit = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
   float8 visible = 0.0f;
-#define CLPV_ADD_POINT(i, next) visible += ((int8)((int)at[next]) & bit) != 0 ? (float8)(0.0f) : (float8)(weights.s##i);
+#define CLPV_ADD_POINT(i, next) \
+  visible += ((int8)((int)at[next]) & bit) != 0 ? (float8)(0.0f) : (float8)(weights.s##i);
   CLPV_ADD_POINT(0, 0) CLPV_ADD_POINT(1, 1) CLPV_ADD_POINT(2, 4) CLPV_ADD_POINT(3, 5)
   CLPV_ADD_POINT(4, 16) CLPV_ADD_POINT(5, 17) CLPV_ADD_POINT(6, 20) CLPV_ADD_POINT(7, 21)
 #undef CLPV_ADD_POINT
   return visible;
 }
 
-// Multiplies the weights of cells by their visible shares and returns the factor that normalises them. If less than
-// min_visible is visible, the weights do not change.
-CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoints* points, const int i,
-                                   float8* weights) {
-  const float8 from = corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
-  const float8 visible = *weights * visible_shares(cascade.occluded + points->visibility_point[i], from);
+// Multiplies the weights of cells by their visible shares and returns the factor that normalises
+// them. If less than min_visible is visible, the weights do not change.
+CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoints* points,
+                                   const int i, float8* weights) {
+  const float8 from =
+      corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
+  const float8 visible =
+      *weights * visible_shares(cascade.occluded + points->visibility_point[i], from);
   const float4 four = visible.lo + visible.hi;
   const float total = four.x + four.y + four.z + four.w;
   if (!(total > min_visible)) return 1.0f;
@@ -103,7 +112,8 @@ CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoin
 }
 #endif
 
-CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* points, const int i, Sampled* r) {
+CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* points, const int i,
+                               Sampled* r) {
   __global const float8* v = cascade.cells + points->number[i] * CLPV_PAIRS;
   float8 w = corner_weights(points->x[i], points->y[i], points->z[i]);
   float scale = 1.0f;
@@ -112,8 +122,9 @@ CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* 
 #endif
 #pragma unroll
   for (int j = 0; j < CLPV_PAIRS; ++j)
-    r->pair[j] = w.s0 * v[j] + w.s1 * v[j + CLPV_DX] + w.s2 * v[j + CLPV_DY] + w.s3 * v[j + CLPV_DX + CLPV_DY] +
-                 w.s4 * v[j + CLPV_DZ] + w.s5 * v[j + CLPV_DX + CLPV_DZ] + w.s6 * v[j + CLPV_DY + CLPV_DZ] +
+    r->pair[j] = w.s0 * v[j] + w.s1 * v[j + CLPV_DX] + w.s2 * v[j + CLPV_DY] +
+                 w.s3 * v[j + CLPV_DX + CLPV_DY] + w.s4 * v[j + CLPV_DZ] +
+                 w.s5 * v[j + CLPV_DX + CLPV_DZ] + w.s6 * v[j + CLPV_DY + CLPV_DZ] +
                  w.s7 * v[j + CLPV_DX + CLPV_DY + CLPV_DZ];
   return scale;
 }

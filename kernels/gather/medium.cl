@@ -17,7 +17,8 @@
 //   In, out: scattered             in-scattered light, three planes; medium_volumes initialises it
 // medium_volumes
 //   In:      view, depths, medium, CLPV_RADIANCE
-//   Out:     ends                  where each ray leaves the medium or meets a surface [m]; 0 if it is never in the medium
+//   Out:     ends                  where each ray leaves the medium or meets a surface [m]; 0 if it
+//                                  is never in the medium
 //            scattered
 // medium_blur
 //   In:      ends, scattered;   Out: blurred: mean over five by five pixels of similar ends
@@ -53,10 +54,12 @@ CLPV_INLINE void find_plane_rays(const ClpvView view, const PlaneRow r,
   a->end = a->inside ? a->end : ZERO;
 }
 
-// Place in (0, 1) of each pixel's point within its interval: the ordered dither of a 4 x 4 tile (Bayer 1973).
+// Place in (0, 1) of each pixel's point within its interval: the ordered dither of a 4 x 4 tile
+// (Bayer 1973).
 CLPV_INLINE realW place_in_interval(const PlaneRow r) {
   const uint y = (uint)r.y;
-  const uintW x = as_uintW(r.x + lane_numbers()), across = (x ^ y) & 1u, beyond = ((x ^ y) >> 1) & 1u;
+  const uintW x = as_uintW(r.x + lane_numbers()), across = (x ^ y) & 1u,
+              beyond = ((x ^ y) >> 1) & 1u;
   const uintW place = 8u * across + 4u * (y & 1u) + 2u * beyond + ((y >> 1) & 1u);
   return (to_realW(as_intW(place)) + 0.5f) * (1.0f / 16.0f);
 }
@@ -90,8 +93,9 @@ __kernel void medium_light(const ClpvView view, __global const float* depths, co
   store_plane_vectors(vec_add_scaled(before, ONE, added), scattered, r.plane, r.at);
 }
 
-__kernel void medium_volumes(const ClpvView view, __global const float* depths, const ClpvMedium medium,
-                             __global float* ends, __global float* scattered, CLPV_RADIANCE) {
+__kernel void medium_volumes(const ClpvView view, __global const float* depths,
+                             const ClpvMedium medium, __global float* ends,
+                             __global float* scattered, CLPV_RADIANCE) {
   const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   AirRays a;
@@ -106,8 +110,8 @@ __kernel void medium_volumes(const ClpvView view, __global const float* depths, 
     find_air_point(&a, medium, place, k, CLPV_VOLUME_STEPS, &p);
     const Vec share = air_share(&p, medium, ZERO);
     RadianceField field;
-    sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(a.origin, p.at, a.direction), ZERO, a.direction, a.inside,
-                    &field);
+    sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(a.origin, p.at, a.direction), ZERO,
+                    a.direction, a.inside, &field);
     float red[W], green[W], blue[W];
     for (int i = 0; i < W; ++i) {
       Coefficients y = basis_functions(-w.x[i], -w.y[i], -w.z[i]);
@@ -123,15 +127,16 @@ __kernel void medium_volumes(const ClpvView view, __global const float* depths, 
                       r.plane, r.at);
 }
 
-// Weight of pixels whose rays end at `other`, for rays that end at `end`: 1 for equal ends; 0 outside the medium.
+// Weight of pixels whose rays end at `other`, for rays that end at `end`: 1 for equal ends; 0
+// outside the medium.
 CLPV_INLINE realW similarity(const realW end, const realW other) {
   const realW off = fabs(end - other), most = end > other ? end : other;
   const realW weight = 1.0f - off / (same_end * most);
   return other > ZERO ? (weight > ZERO ? weight : ZERO) : ZERO;
 }
 
-__kernel void medium_blur(const ClpvView view, __global const float* ends, __global const float* scattered,
-                          __global float* blurred) {
+__kernel void medium_blur(const ClpvView view, __global const float* ends,
+                          __global const float* scattered, __global float* blurred) {
   const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   const realW end = load_lanes(ends + r.at);
@@ -150,8 +155,8 @@ __kernel void medium_blur(const ClpvView view, __global const float* ends, __glo
                       r.at);
 }
 
-// Spreads pixels over W pixels of the camera: on each the near pixel at its left, or with `right` the nearest one at its
-// right. They are loaded from widen_from() on.
+// Spreads pixels over W pixels of the camera: on each the near pixel at its left, or with `right`
+// the nearest one at its right. They are loaded from widen_from() on.
 static inline uint widen_from(const uint px, const bool right) {
   return (px + (W == 1 && right ? 1u : 0u)) / 2;
 }
@@ -164,8 +169,8 @@ CLPV_INLINE realW widen(const realW v, const bool right) {
 }
 
 __kernel void medium_add(const ClpvView view, __global const float* depths, const ClpvMedium medium,
-                         __global const float* ends, __global const float* blurred, const uint alone,
-                         __global float4* image) {
+                         __global const float* ends, __global const float* blurred,
+                         const uint alone, __global float4* image) {
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   const uint first = p.py * view.width + p.px;
@@ -178,8 +183,9 @@ __kernel void medium_add(const ClpvView view, __global const float* depths, cons
   for (uint corner = 0; corner < 4; ++corner) {
     const bool right = corner % 2 == 1;
     const uint at = r.at - p.px + widen_from(p.px, right) + (corner / 2) * (p.py % 2) * r.pitch;
-    const realW end = load_lanes(ends + at), red = load_lanes(blurred + at), green = load_lanes(blurred + r.plane + at),
-                 blue = load_lanes(blurred + 2 * r.plane + at);
+    const realW end = load_lanes(ends + at), red = load_lanes(blurred + at),
+                green = load_lanes(blurred + r.plane + at),
+                blue = load_lanes(blurred + 2 * r.plane + at);
     const Vec light = vec(widen(red, right), widen(green, right), widen(blue, right));
     const realW weight =
         similarity(a.end, widen(end, right)) + (corner == 0 ? unlike_weight : 0.0f);
@@ -189,7 +195,8 @@ __kernel void medium_add(const ClpvView view, __global const float* depths, cons
   const VecLanes added = unpack(a.inside, vec_times(sum, 1.0f / weights));
   const VecLanes kept = unpack((intW)(-1), medium_transmittance(medium, a.end - a.start));
   for (uint i = 0; i < p.count; ++i) {
-    const float4 light = (float4)(added.x[i], added.y[i], added.z[i], 0.0f), before = image[first + i];
+    const float4 light = (float4)(added.x[i], added.y[i], added.z[i], 0.0f),
+                 before = image[first + i];
     image[first + i] = alone ? (float4)(light.x, light.y, light.z, 1.0f)
                              : before * (float4)(kept.x[i], kept.y[i], kept.z[i], 1.0f) + light;
   }

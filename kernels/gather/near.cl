@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Near field: rays find light from surfaces nearer than R, which replaces the volumes' (docs/method.md, 'Near field').
+// Near field: rays find light from surfaces nearer than R, which replaces the volumes'
+// (docs/method.md, 'Near field').
 //
-//   D = (pi / K) sum_k d(w_k)                                [W/m^2], w_k cosine-distributed about the normal n
+//   D = (pi / K) sum_k d(w_k)                                [W/m^2], w_k cosine-distributed about
+//                                                            the normal n
 //   d(w) = L_hit - L(p + h s n, -w)                          if a surface is met along w within R
-//   d(w) = q (L(p + h s n + R w, -w) - L(p + h s n, -w))     else, q the weight of the correction (miss_weight)
+//   d(w) = q (L(p + h s n + R w, -w) - L(p + h s n, -w))     else, q the weight of the correction
+//                                                            (miss_weight)
 //
 // h: CLPV_GATHER_OFFSET. R and s: edge of a cell of the cascades at p, blended like their light.
 // near_trace.cl finds hits, near_light.cl their radiance; radiance.h has L. near_filter.cl adds D
@@ -22,18 +25,19 @@
 // Minimum ratio of arriving to leaving irradiance at which misses get full weight.
 __constant const float least_arriving = 0.5f;
 
-// Weight in [0, 1] of the correction for rays that miss. Nine harmonics of light that leaves a bright surface are
-// not 0 towards it: where more leaves than arrives, the correction would be the difference of two such errors.
-// (x, y, z) = n.
-CLPV_INLINE float miss_weight(const Sampled* field, const float4 arriving, const float x, const float y, const float z) {
+// Weight in [0, 1] of the correction for rays that miss. Nine harmonics of light that leaves a
+// bright surface are not 0 towards it: where more leaves than arrives, the correction would be the
+// difference of two such errors. (x, y, z) = n.
+CLPV_INLINE float miss_weight(const Sampled* field, const float4 arriving, const float x,
+                              const float y, const float z) {
   const float4 leaving = field_irradiance(field, -x, -y, -z);
   const float in = arriving.x + arriving.y + arriving.z, out = leaving.x + leaving.y + leaving.z;
   return in >= least_arriving * out ? 1.0f : in / (least_arriving * out);
 }
 
-__kernel void near(const ClpvView view, __global const float* points, __global const realW* directions,
-                   __global const float* distances, __global const float* radiances, __global float* light,
-                   CLPV_RADIANCE) {
+__kernel void near(const ClpvView view, __global const float* points,
+                   __global const realW* directions, __global const float* distances,
+                   __global const float* radiances, __global float* light, CLPV_RADIANCE) {
   const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   NearPoints p;
@@ -44,7 +48,8 @@ __kernel void near(const ClpvView view, __global const float* points, __global c
     return;
   }
   RadianceField here, there;
-  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.normal, lit, &here);
+  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.normal, lit,
+                  &here);
   const VecLanes n = unpack(lit, p.normal);
   float trusts[W], x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {
@@ -63,7 +68,8 @@ __kernel void near(const ClpvView view, __global const float* points, __global c
     const Vec w = find_near_directions(directions, r, &p, k);
     const intW hit = load_lanes(distances + k * r.plane + r.at) < (realW)(INFINITY);
     const intW missed = lit & (hit == 0) & (trust > ZERO);
-    sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), ZERO, p.normal, missed, &there);
+    sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), ZERO, p.normal, missed,
+                    &there);
     const VecLanes back = unpack(lit, vec_times(w, (realW)(-1.0f)));
     float shares[W];
     store_lanes(lit ? (hit ? ONE : trust) : ZERO, shares);

@@ -2,20 +2,23 @@
 // Averages the near field along surfaces and adds it to the irradiance (near.cl).
 //
 // near_blur
-//   A window of five by five pixels, with half weight at its edges, counts each pixel of a tile once: (1/2 1 1 1 1/2)
-//   along both axes. Pixels count if they are on the same surface (near_surface.h).
+//   A window of five by five pixels, with half weight at its edges, counts each pixel of a tile
+//   once: (1/2 1 1 1 1/2) along both axes. Pixels count if they are on the same surface
+//   (near_surface.h).
 //   In:      points        near_layout.h; light: D and E of near.cl
 //   Out:     blurred       their means
 // near_widen
-//   Averages three by three blurred pixels, every third along both axes, which makes the window one of eleven by eleven.
-//   Pixels count by the same rules if they are also nearer than 0.2 R, so that the window stays small where pixels are
-//   far apart.
+//   Averages three by three blurred pixels, every third along both axes, which makes the window one
+//   of eleven by eleven. Pixels count by the same rules if they are also nearer than 0.2 R, so that
+//   the window stays small where pixels are far apart.
 //   In:      points, blurred
 //   Out:     widened       their means
 // near_add
-//   Interpolates D and E bilinearly between pixels of both layers on the same surface. Without one it takes the mean of
-//   those in the four by four blocks around, on the same surface or else on any.
-//   In:      places, normals       the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
+//   Interpolates D and E bilinearly between pixels of both layers on the same surface. Without one
+//   it takes the mean of those in the four by four blocks around, on the same surface or else on
+//   any.
+//   In:      places, normals       the camera's surface (surface_row.h): depths [m], or with
+//                                  CLPV_POINTS positions [m]
 //            points, widened
 //   In, out: irradiance    E [W/m^2] per pixel of the camera:
 //     E = E_gathered + mean D                             mean D >= 0, per channel
@@ -34,7 +37,8 @@ typedef struct {
   realW weight;
 } WeightedSum;
 
-CLPV_INLINE void add_weighted(const Vec difference, const Vec gathered, const realW weight, WeightedSum* sum) {
+CLPV_INLINE void add_weighted(const Vec difference, const Vec gathered, const realW weight,
+                              WeightedSum* sum) {
   sum->difference = vec_add_scaled(sum->difference, weight, difference);
   sum->gathered = vec_add_scaled(sum->gathered, weight, gathered);
   sum->weight += weight;
@@ -53,8 +57,8 @@ static inline WeightedSum no_sum(void) {
   return none;
 }
 
-__kernel void near_blur(const ClpvView view, __global const float* points, __global const float* light,
-                        __global float* blurred) {
+__kernel void near_blur(const ClpvView view, __global const float* points,
+                        __global const float* light, __global float* blurred) {
   const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   NearSurfaces here;
@@ -74,8 +78,8 @@ __kernel void near_blur(const ClpvView view, __global const float* points, __glo
   store_means(sum, r, blurred);
 }
 
-__kernel void near_widen(const ClpvView view, __global const float* points, __global const float* blurred,
-                         __global float* widened) {
+__kernel void near_widen(const ClpvView view, __global const float* points,
+                         __global const float* blurred, __global float* widened) {
   const PlaneRow r = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(r)) return;
   NearSurfaces here;
@@ -88,7 +92,8 @@ __kernel void near_widen(const ClpvView view, __global const float* points, __gl
       NearSurfaces n;
       load_near_surfaces(points, r.plane, at, &n);
       const Vec apart = vec_minus(n.position, here.position);
-      const intW near = (vec_dot(apart, apart) < far * far) & same_surface(n, here.position, here.normal);
+      const intW near =
+          (vec_dot(apart, apart) < far * far) & same_surface(n, here.position, here.normal);
       add_weighted(load_plane_vectors(blurred + CLPV_NEAR_DIFFERENCE * r.plane, r.plane, at),
                    load_plane_vectors(blurred + CLPV_NEAR_GATHERED * r.plane, r.plane, at),
                    near ? ONE : ZERO, &sum);
@@ -97,8 +102,8 @@ __kernel void near_widen(const ClpvView view, __global const float* points, __gl
   store_means(sum, r, widened);
 }
 
-// Share of light that stays where D < 0, of the share `left` = (mean E + mean D) / mean E: never 0, though nine harmonics
-// may leave less than nothing.
+// Share of light that stays where D < 0, of the share `left` = (mean E + mean D) / mean E: never 0,
+// though nine harmonics may leave less than nothing.
 CLPV_INLINE realW darkened(const realW left) {
   return left > dark_share ? left : dark_share * dark_share / (2.0f * dark_share - left);
 }
@@ -114,9 +119,11 @@ CLPV_INLINE realW clamp_positive(const realW v) {
 }
 
 #if CLPV_PLANE_LAYERS > 1
-// Adds near pixels on the surfaces of W pixels of the camera, or on any: those from `first` on, spread over them.
-CLPV_INLINE void add_spread(__global const float* points, __global const float* widened, const uint plane, const uint first,
-                            const bool right, const Surfaces s, const bool any, const realW weight, WeightedSum* sum) {
+// Adds near pixels on the surfaces of W pixels of the camera, or on any: those from `first` on,
+// spread over them.
+CLPV_INLINE void add_spread(__global const float* points, __global const float* widened,
+                            const uint plane, const uint first, const bool right, const Surfaces s,
+                            const bool any, const realW weight, WeightedSum* sum) {
   const uint at = spread_from(first, right);
   if (lane_bits(load_lanes(points + CLPV_NEAR_REACH * plane + at) > ZERO) == 0u) return;
   NearSurfaces n;
@@ -141,7 +148,8 @@ CLPV_INLINE void interpolate_light(const ClpvView view, const PixelRow p, const 
     for (uint corner = 0; corner < 4; ++corner) {
       const bool right = corner % 2 == 1, below = corner / 2 == 1;
       const realW weight = (right ? across : ONE - across) * (below ? down : 1.0f - down);
-      add_spread(points, widened, r.plane, first + layer * second + (below ? r.pitch : 0u), right, s, false, weight, sum);
+      add_spread(points, widened, r.plane, first + layer * second + (below ? r.pitch : 0u), right,
+                 s, false, weight, sum);
     }
   }
   for (uint any = 0; any < 2; ++any) {
@@ -159,8 +167,9 @@ CLPV_INLINE void interpolate_light(const ClpvView view, const PixelRow p, const 
 }
 #endif
 
-__kernel void near_add(const ClpvView view, __global const Place* places, __global const float4* normals,
-                       __global const float* points, __global const float* widened, __global float4* irradiance) {
+__kernel void near_add(const ClpvView view, __global const Place* places,
+                       __global const float4* normals, __global const float* points,
+                       __global const float* widened, __global float4* irradiance) {
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   Surfaces s;
@@ -177,10 +186,14 @@ __kernel void near_add(const ClpvView view, __global const Place* places, __glob
   const intW lit = (s.depth > ZERO) & (mean.weight > ZERO);
   const realW scale = lit ? 1.0f / mean.weight : ZERO;
   const Vec d = vec_times(mean.difference, scale), e = vec_times(mean.gathered, scale);
-  const VecLanes added = unpack(lit, vec(clamp_positive(d.x), clamp_positive(d.y), clamp_positive(d.z))),
-                 factor = unpack((intW)(-1), vec(darkening_factor(d.x, e.x), darkening_factor(d.y, e.y), darkening_factor(d.z, e.z)));
+  const VecLanes added = unpack(lit,
+                                vec(clamp_positive(d.x), clamp_positive(d.y), clamp_positive(d.z))),
+                 factor =
+                     unpack((intW)(-1), vec(darkening_factor(d.x, e.x), darkening_factor(d.y, e.y),
+                                            darkening_factor(d.z, e.z)));
   for (uint i = 0; i < p.count; ++i) {
-    irradiance[s.first + i] = irradiance[s.first + i] * (float4)(factor.x[i], factor.y[i], factor.z[i], 1.0f) +
-                              (float4)(added.x[i], added.y[i], added.z[i], 0.0f);
+    irradiance[s.first + i] =
+        irradiance[s.first + i] * (float4)(factor.x[i], factor.y[i], factor.z[i], 1.0f) +
+        (float4)(added.x[i], added.y[i], added.z[i], 0.0f);
   }
 }

@@ -20,7 +20,8 @@ static inline uint find_near_tile(const ClpvView view) {
   return x < across && y < down ? y * across + x : no_tile;
 }
 
-// Largest number of hits of a tile. They lie in groups of W, whose numbers have rows (shared/near.h).
+// Largest number of hits of a tile. They lie in groups of W, whose numbers have rows
+// (shared/near.h).
 enum { CLPV_TILE_HITS = W * CLPV_PLANE_TILE * CLPV_NEAR_RAYS };
 
 // Points of W pixels.
@@ -29,8 +30,8 @@ typedef struct {
   realW reach;
 } NearPoints;
 
-// Loads points. The tangents make an orthonormal frame without a branch (Duff et al., 'Building an Orthonormal Basis,
-// Revisited', JCGT 6(1), 2017).
+// Loads points. The tangents make an orthonormal frame without a branch (Duff et al., 'Building an
+// Orthonormal Basis, Revisited', JCGT 6(1), 2017).
 CLPV_INLINE void load_near_points(__global const float* points, const PlaneRow r, NearPoints* p) {
   p->position = load_plane_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
   p->normal = load_plane_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
@@ -48,12 +49,13 @@ enum {
   CLPV_DIRECTION_VECTORS = CLPV_DIRECTIONS / W,
 };
 
-// Unit directions of ray k of W pixels. `directions`: about +z, by row of the tile, ray and axis; the four pixels of
-// a tile's row twice.
+// Unit directions of ray k of W pixels. `directions`: about +z, by row of the tile, ray and axis;
+// the four pixels of a tile's row twice.
 CLPV_INLINE Vec find_near_directions(__global const realW* directions, const PlaneRow r,
                                      const NearPoints* p, const uint k) {
   const uint row = ((uint)r.y % CLPV_PLANE_TILE * CLPV_NEAR_RAYS + k) * 3 * CLPV_DIRECTION_VECTORS;
   __global const realW* about_z = directions + row + (uint)r.x % CLPV_DIRECTIONS / W;
-  const Vec w = vec(about_z[0], about_z[CLPV_DIRECTION_VECTORS], about_z[2 * CLPV_DIRECTION_VECTORS]);
+  const Vec w =
+      vec(about_z[0], about_z[CLPV_DIRECTION_VECTORS], about_z[2 * CLPV_DIRECTION_VECTORS]);
   return vec_blend(w, p->tangent, p->bitangent, p->normal);
 }

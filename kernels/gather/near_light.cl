@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Radiance of the surfaces that rays of the near field hit, towards the rays' origins.
 //
-//   L_hit = L_emitted + albedo / pi (E_direct + E_volume)      [W/m^2/sr]; E_volume only with more than one bounce
+//   L_hit = L_emitted + albedo / pi (E_direct + E_volume)      [W/m^2/sr]; E_volume only with more
+//                                                              than one bounce
 //
-// All surfaces reflect on both sides; emissive ones emit from the front, and from the back if double sided. Textures are
-// filtered over the width of a ray's cone, CLPV_NEAR_CONE times its length. A ray that leaves below the plane of its own
-// triangle (the interpolated normal differs from the triangle's) carries no light.
+// All surfaces reflect on both sides; emissive ones emit from the front, and from the back if
+// double sided. Textures are filtered over the width of a ray's cone, CLPV_NEAR_CONE times its
+// length. A ray that leaves below the plane of its own triangle (the interpolated normal differs
+// from the triangle's) carries no light.
 //
 // In:      points, counts, hits   near_layout.h, near_trace.cl
 //          CLPV_SCENE          the scene
@@ -13,8 +15,8 @@
 //   near_light:   light, views, count, which, map   a light and one of its shadow maps (shadow.h)
 //   near_reflect: CLPV_RADIANCE                     volumes (radiance.h)
 // In, out: radiances           three planes for each k, of the rays that hit
-// A work-item processes W hits of a tile. From the host: CLPV_TEXTURED, CLPV_COLOURED, CLPV_EMISSIVE,
-// CLPV_NEAR_CONE, and with CLPV_NEAR_REFLECT 1 what radiance.h needs.
+// A work-item processes W hits of a tile. From the host: CLPV_TEXTURED, CLPV_COLOURED,
+// CLPV_EMISSIVE, CLPV_NEAR_CONE, and with CLPV_NEAR_REFLECT 1 what radiance.h needs.
 #include "gather/near_layout.h"
 #include "raster/scene_triangles.h"
 #include "raster/shadow.h"
@@ -31,8 +33,9 @@ typedef struct {
 } HitSurface;
 
 // The surfaces of this work-item's hits. Returns false if there are none.
-CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* points, __global const uint* counts,
-                                   __global const realW* hits, CLPV_SCENE, HitSurface* s) {
+CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* points,
+                                   __global const uint* counts, __global const realW* hits,
+                                   CLPV_SCENE, HitSurface* s) {
   const uint tile = find_near_tile(view), first = get_global_id(2) * W;
   if (tile == no_tile || first >= counts[tile]) return false;
   hits += (tile * CLPV_TILE_HITS + first) / W * CLPV_HIT_ROWS;
@@ -43,8 +46,9 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
               pixel = listed ? as_uintW(hits[CLPV_HIT_PIXEL]) : zero;
   s->radiance = as_uintW(hits[CLPV_HIT_RADIANCE]);
   const uint plane = plane_size(view);
-  const Vec origin = vec((realW)CLPV_GATHER(points, pixel), (realW)CLPV_GATHER(points, pixel + plane),
-                         (realW)CLPV_GATHER(points, pixel + 2 * plane));
+  const Vec origin =
+      vec((realW)CLPV_GATHER(points, pixel), (realW)CLPV_GATHER(points, pixel + plane),
+          (realW)CLPV_GATHER(points, pixel + 2 * plane));
   const realW reach = (realW)CLPV_GATHER(points + CLPV_NEAR_REACH * plane, pixel);
   TriangleLanes t;
   load_triangles(CLPV_PASS_SCENE, triangle, &t);
@@ -53,7 +57,8 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   const Vec w = vec(1.0f - u - v, u, v);
   const Vec edge1 = vec_minus(b.position, a.position), edge2 = vec_minus(c.position, a.position);
   const Vec across = vec_cross(edge1, edge2);
-  const realW area2 = sqrt(vec_dot(across, across)), height = vec_dot(vec_minus(origin, a.position), across);
+  const realW area2 = sqrt(vec_dot(across, across)),
+              height = vec_dot(vec_minus(origin, a.position), across);
   const intW back = height < ZERO;
   // Rays start CLPV_NEAR_LIFT R above their own triangle.
   s->hit = listed & (fabs(height) > 2.0f * CLPV_NEAR_LIFT * reach * area2);
@@ -85,8 +90,9 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
 }
 
 // Adds radiance, 0 outside the mask `lit`.
-CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const intW lit, const Vec radiance, const uint fresh,
-                              __global const uint* counts, __global float* radiances) {
+CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const intW lit,
+                              const Vec radiance, const uint fresh, __global const uint* counts,
+                              __global float* radiances) {
   const uint plane = plane_size(view);
   const uint left = counts[find_near_tile(view)] - get_global_id(2) * W;
   const VecLanes added = unpack(lit, radiance);
@@ -100,26 +106,28 @@ CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const int
   }
 }
 
-#define CLPV_NEAR_HITS                                                                                              \
-  const ClpvView view, __global const float *points, __global const uint *counts, __global const realW *hits,      \
-      CLPV_SCENE, const uint fresh, __global float *radiances
+#define CLPV_NEAR_HITS                                                            \
+  const ClpvView view, __global const float *points, __global const uint *counts, \
+      __global const realW *hits, CLPV_SCENE, const uint fresh, __global float *radiances
 #define CLPV_PASS_HITS view, points, counts, hits, CLPV_PASS_SCENE
 
 #if !CLPV_NEAR_REFLECT
 
-__kernel void near_light(CLPV_NEAR_HITS, const ClpvLight light, __global const ClpvView* views, const uint count,
-                         const uint which, __global const float* map) {
+__kernel void near_light(CLPV_NEAR_HITS, const ClpvLight light, __global const ClpvView* views,
+                         const uint count, const uint which, __global const float* map) {
   HitSurface s;
   if (!load_hit_surfaces(CLPV_PASS_HITS, &s)) return;
   const ShadowMap shadow = {views, count, which, map};
   intW lit = s.hit;
   const Vec irradiance = shadowed_irradiance(light, shadow, s.position, s.normal, &lit);
-  add_radiance(view, s, lit, vec_times(vec_product(s.albedo, irradiance), (realW)(M_1_PI_F)), fresh, counts, radiances);
+  add_radiance(view, s, lit, vec_times(vec_product(s.albedo, irradiance), (realW)(M_1_PI_F)), fresh,
+               counts, radiances);
 }
 
 __kernel void near_emit(CLPV_NEAR_HITS) {
   HitSurface s;
-  if (load_hit_surfaces(CLPV_PASS_HITS, &s)) add_radiance(view, s, s.hit, s.emitted, fresh, counts, radiances);
+  if (load_hit_surfaces(CLPV_PASS_HITS, &s))
+    add_radiance(view, s, s.hit, s.emitted, fresh, counts, radiances);
 }
 
 #else
@@ -128,7 +136,8 @@ __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
   HitSurface s;
   if (!load_hit_surfaces(CLPV_PASS_HITS, &s)) return;
   RadianceField field;
-  sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), s.normal, s.hit, &field);
+  sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), s.normal, s.hit,
+                  &field);
   const VecLanes n = unpack(s.hit, s.normal);
   float x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {
@@ -136,7 +145,8 @@ __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
     x[i] = e.x, y[i] = e.y, z[i] = e.z;
   }
   const Vec irradiance = vec(load_lanes(x), load_lanes(y), load_lanes(z));
-  add_radiance(view, s, s.hit, vec_times(vec_product(s.albedo, irradiance), (realW)(M_1_PI_F)), fresh, counts, radiances);
+  add_radiance(view, s, s.hit, vec_times(vec_product(s.albedo, irradiance), (realW)(M_1_PI_F)),
+               fresh, counts, radiances);
 }
 
 #endif

@@ -2,11 +2,14 @@
 // Points of the near field's pixels (near_layout.h).
 //
 // near_points
-//   First layer: of each block of CLPV_PLANE_STEP x CLPV_PLANE_STEP pixels the first. Empties all other points.
+//   First layer: of each block of CLPV_PLANE_STEP x CLPV_PLANE_STEP pixels the first. Empties all
+//   other points.
 // near_others
-//   Second layer: of each block the first pixel whose surface no near pixel of the four by four blocks around it has.
+//   Second layer: of each block the first pixel whose surface no near pixel of the four by four
+//   blocks around it has.
 //
-// In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS positions [m]
+// In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS
+//                         positions [m]
 //       grids             ClpvGrid of each cascade
 // Out:  points                planes of shared/near.h, with their border
 // A work-item processes W near pixels of a row.
@@ -15,7 +18,8 @@
 #include "raster/surface_row.h"
 
 // Cell of the cascades at W positions [m], blended like their light; 0 outside the mask `wanted`.
-CLPV_INLINE realW find_reach(__global const ClpvGrid* grids, const uint cascades, const Vec position, const intW wanted) {
+CLPV_INLINE realW find_reach(__global const ClpvGrid* grids, const uint cascades,
+                             const Vec position, const intW wanted) {
   realW reach = ZERO, remaining = wanted ? ONE : ZERO;
   for (uint c = 0; c < cascades; ++c) {
     const ClpvGrid grid = grids[c];
@@ -33,8 +37,9 @@ typedef struct {
 } CameraPixels;
 
 // Loads the pixels (x, y), of those in the mask `inside`.
-CLPV_INLINE void load_camera_pixels(const ClpvView view, __global const Place* places, __global const float4* normals,
-                                    const intW x, const int y, const intW inside, CameraPixels* c) {
+CLPV_INLINE void load_camera_pixels(const ClpvView view, __global const Place* places,
+                                    __global const float4* normals, const intW x, const int y,
+                                    const intW inside, CameraPixels* c) {
   const uintW pixel = inside ? as_uintW(y * (int)view.width + x) : (uintW)(0u);
   Rows rows;
 #if CLPV_POINTS
@@ -51,7 +56,8 @@ CLPV_INLINE void load_camera_pixels(const ClpvView view, __global const Place* p
   gather_rows(normals, pixel, &rows);
   c->seen = inside & (depth > ZERO);
   c->position = vec_masked(c->seen, position);
-  c->normal = vec_masked(c->seen, vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z)));
+  c->normal =
+      vec_masked(c->seen, vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z)));
 }
 
 CLPV_INLINE void store_points(const PlaneRow r, const Vec position, const Vec normal,
@@ -61,8 +67,9 @@ CLPV_INLINE void store_points(const PlaneRow r, const Vec position, const Vec no
   store_lanes(reach, points + CLPV_NEAR_REACH * r.plane + r.at);
 }
 
-__kernel void near_points(const ClpvView view, __global const Place* places, __global const float4* normals,
-                          __global const ClpvGrid* grids, const uint cascades, __global float* points) {
+__kernel void near_points(const ClpvView view, __global const Place* places,
+                          __global const float4* normals, __global const ClpvGrid* grids,
+                          const uint cascades, __global float* points) {
   const PlaneRow r = find_plane_row(view, (int)get_global_id(0) - CLPV_PLANE_COLUMNS / W,
                                   (int)get_global_id(1) - CLPV_PLANE_ROWS);
   if ((uint)(r.x + CLPV_PLANE_COLUMNS) >= r.pitch || r.y >= (int)r.height + CLPV_PLANE_ROWS) return;
@@ -88,8 +95,9 @@ CLPV_INLINE intW on_no_surface(__global const float* points, const PlaneRow r, c
   return wanted;
 }
 
-__kernel void near_others(const ClpvView view, __global const Place* places, __global const float4* normals,
-                          __global const ClpvGrid* grids, const uint cascades, __global float* points) {
+__kernel void near_others(const ClpvView view, __global const Place* places,
+                          __global const float4* normals, __global const ClpvGrid* grids,
+                          const uint cascades, __global float* points) {
   const PlaneRow first = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(first) || first.y >= (int)plane_pixels(view.height)) return;
   const intW x = (first.x + lane_numbers()) * CLPV_PLANE_STEP;
@@ -108,7 +116,8 @@ __kernel void near_others(const ClpvView view, __global const Place* places, __g
       found |= wanted;
       position = vec(wanted ? c.position.x : position.x, wanted ? c.position.y : position.y,
                      wanted ? c.position.z : position.z);
-      normal = vec(wanted ? c.normal.x : normal.x, wanted ? c.normal.y : normal.y, wanted ? c.normal.z : normal.z);
+      normal = vec(wanted ? c.normal.x : normal.x, wanted ? c.normal.y : normal.y,
+                   wanted ? c.normal.z : normal.z);
     }
   }
   const PlaneRow second =

@@ -13,7 +13,8 @@ typedef struct {
   realW reach;
 } NearSurfaces;
 
-CLPV_INLINE void load_near_surfaces(__global const float* points, const uint plane, const uint at, NearSurfaces* s) {
+CLPV_INLINE void load_near_surfaces(__global const float* points, const uint plane, const uint at,
+                                    NearSurfaces* s) {
   s->position = load_plane_vectors(points + CLPV_NEAR_POSITION * plane, plane, at);
   s->normal = load_plane_vectors(points + CLPV_NEAR_NORMAL * plane, plane, at);
   s->reach = load_lanes(points + CLPV_NEAR_REACH * plane + at);
@@ -26,8 +27,8 @@ CLPV_INLINE intW same_surface(const NearSurfaces s, const Vec position, const Ve
 }
 
 #if CLPV_PLANE_LAYERS > 1
-// Spreads pixels over W pixels of the camera from a multiple of W on: on each the near pixel at its left, or with `right`
-// the next one. They are loaded from spread_from() on.
+// Spreads pixels over W pixels of the camera from a multiple of W on: on each the near pixel at its
+// left, or with `right` the next one. They are loaded from spread_from() on.
 static inline uint spread_from(const uint first, const bool right) {
   return W == 1 && right ? first + 1u : first;
 }

@@ -2,8 +2,10 @@
 // Traces the rays of the near field against the scene's triangles.
 //
 // In:   points, directions   near_layout.h
-//       nodes, leaves        tree of the triangles (gather/triangle_tree.h); CLPV_SCENE: the scene, for masked materials
-// Out:  distances            per ray: distance of the hit [m], INFINITY without one; a plane for each k
+//       nodes, leaves        tree of the triangles (gather/triangle_tree.h); CLPV_SCENE: the scene,
+//                            for masked materials
+// Out:  distances            per ray: distance of the hit [m], INFINITY without one; a plane for
+//                            each k
 //       counts, hits         per tile: number of hits, and their list (near_layout.h)
 // A work-item traces the rays of a tile, which share an entry to the tree.
 #include "gather/near_layout.h"
@@ -13,19 +15,21 @@
 #include "gather/tree_lists.h"
 
 // Widens the bounds along an axis by half balls of radius `reach` about W points.
-CLPV_INLINE void add_half_balls(const intW lit, const realW at, const realW normal, const realW reach, const int axis,
-                                Box* box) {
+CLPV_INLINE void add_half_balls(const intW lit, const realW at, const realW normal,
+                                const realW reach, const int axis, Box* box) {
   const realW square = 1.0f - normal * normal, sine = sqrt(square > ZERO ? square : ZERO);
   const realW before = normal > ZERO ? sine : ONE, after = normal < ZERO ? sine : ONE;
   const realW far = (realW)(CLPV_TREE_FAR);
-  const float lower = min_lane(lit ? at - before * reach : far), upper = -min_lane(lit ? -(at + after * reach) : far);
+  const float lower = min_lane(lit ? at - before * reach : far),
+              upper = -min_lane(lit ? -(at + after * reach) : far);
   box->lower[axis] = lower < box->lower[axis] ? lower : box->lower[axis];
   box->upper[axis] = upper > box->upper[axis] ? upper : box->upper[axis];
 }
 
 // Box about the rays of a tile.
 CLPV_INLINE void box_of_tile(const ClpvView view, __global const float* points, Box* box) {
-  for (int axis = 0; axis < 3; ++axis) box->lower[axis] = CLPV_TREE_FAR, box->upper[axis] = -CLPV_TREE_FAR;
+  for (int axis = 0; axis < 3; ++axis)
+    box->lower[axis] = CLPV_TREE_FAR, box->upper[axis] = -CLPV_TREE_FAR;
   for (int y = 0; y < CLPV_PLANE_TILE; ++y) {
     const PlaneRow r =
         find_plane_row(view, get_global_id(0), get_global_id(1) * CLPV_PLANE_TILE + y);
@@ -63,9 +67,10 @@ CLPV_INLINE void add_hits(const PlaneRow r, const uint k, const realW reach, con
 #if W == 1
 __attribute__((reqd_work_group_size(CLPV_STACK_SIDE, CLPV_STACK_SIDE, 1)))
 #endif
-__kernel void near_trace(const ClpvView view, __global const float* points, __global const realW* directions,
-                         __global const realW* nodes, __global const realW* leaves, CLPV_SCENE,
-                         __global float* distances, __global uint* counts, __global float* hits) {
+__kernel void near_trace(const ClpvView view, __global const float* points,
+                         __global const realW* directions, __global const realW* nodes,
+                         __global const realW* leaves, CLPV_SCENE, __global float* distances,
+                         __global uint* counts, __global float* hits) {
 #if W == 1
   __local uint stacked_nodes[CLPV_STACKS];
   __local uchar stacked_children[CLPV_STACKS];
@@ -100,7 +105,8 @@ __kernel void near_trace(const ClpvView view, __global const float* points, __gl
       trace_ray(tree, stack, CLPV_PASS_SCENE, &rays);
 #endif
       const realW distance = load_lanes(rays.distance);
-      store_lanes(distance < p.reach ? distance : (realW)(INFINITY), distances + k * r.plane + r.at);
+      store_lanes(distance < p.reach ? distance : (realW)(INFINITY),
+                  distances + k * r.plane + r.at);
       add_hits(r, k, p.reach, &rays, list, &count);
     }
   }

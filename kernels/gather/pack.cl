@@ -19,15 +19,17 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void pack(
   CLPV_RETURN_OUTSIDE(x, y);
   const Coefficients r = light_load(volume, 0, x, y, z), g = light_load(volume, 1, x, y, z),
                      b = light_load(volume, 2, x, y, z);
-  __global float8* record = packed + (size_t)(first + (z * CLPV_GRID + y) * CLPV_GRID + x) * CLPV_PAIRS;
+  __global float8* record =
+      packed + (size_t)(first + (z * CLPV_GRID + y) * CLPV_GRID + x) * CLPV_PAIRS;
   const int cells = min(W, CLPV_GRID - x);
   for (int lane = 0; lane < W; ++lane, record += CLPV_PAIRS) {
     if (lane >= cells) break;
 #pragma unroll
     for (int j = 0; j < CLPV_PAIRS; ++j) {
       const int even = 2 * j, odd = even + 1;
-      record[j] = (float8)(number_at(&r, even, lane), number_at(&g, even, lane), number_at(&b, even, lane), 0.0f,
-                           number_at(&r, odd, lane), number_at(&g, odd, lane), number_at(&b, odd, lane), 0.0f);
+      record[j] = (float8)(number_at(&r, even, lane), number_at(&g, even, lane),
+                           number_at(&b, even, lane), 0.0f, number_at(&r, odd, lane),
+                           number_at(&g, odd, lane), number_at(&b, odd, lane), 0.0f);
     }
   }
 }

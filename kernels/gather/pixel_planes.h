@@ -56,7 +56,8 @@ static inline bool row_has_pixels(const PlaneRow r) {
 
 // Vectors from three planes.
 CLPV_INLINE Vec load_plane_vectors(__global const float* planes, const uint plane, const uint at) {
-  return vec(load_lanes(planes + at), load_lanes(planes + plane + at), load_lanes(planes + 2 * plane + at));
+  return vec(load_lanes(planes + at), load_lanes(planes + plane + at),
+             load_lanes(planes + 2 * plane + at));
 }
 CLPV_INLINE void store_plane_vectors(const Vec v, __global float* planes, const uint plane,
                                      const uint at) {

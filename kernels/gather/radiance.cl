@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Computes the radiance of swept light at points, one direction for each (radiance.h has the formula).
+// Computes the radiance of swept light at points, one direction for each (radiance.h has the
+// formula).
 //
 // In:   view                 only its size: the points fill an image
 //       places               positions [m]
@@ -10,8 +11,9 @@
 #include "gather/radiance.h"
 #include "raster/surface_row.h"
 
-__kernel void radiance(const ClpvView view, __global const float4* places, __global const float4* directions,
-                       __global float4* radiances, CLPV_RADIANCE) {
+__kernel void radiance(const ClpvView view, __global const float4* places,
+                       __global const float4* directions, __global float4* radiances,
+                       CLPV_RADIANCE) {
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   Surfaces s;

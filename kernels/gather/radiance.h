@@ -7,7 +7,8 @@
 // c is interpolated trilinearly, cells that p cannot see left out; C is a mean over cascades by
 // their shares.
 //
-// L may be negative: it is the projection of the light on nine harmonics. docs/method.md, 'The sweep', 'Gathering'.
+// L may be negative: it is the projection of the light on nine harmonics. docs/method.md, 'The
+// sweep', 'Gathering'.
 #pragma once
 
 #include "gather/cascades.h"
@@ -26,8 +27,8 @@ typedef struct {
   Sampled at[W];
 } RadianceField;
 
-CLPV_INLINE void add_field(const PackedCascade cascade, const SamplePoints* points, const realW weight,
-                           RadianceField* field) {
+CLPV_INLINE void add_field(const PackedCascade cascade, const SamplePoints* points,
+                           const realW weight, RadianceField* field) {
   float weights[W];
   store_lanes(weight, weights);
   for (int i = 0; i < W; ++i) {
@@ -39,10 +40,10 @@ CLPV_INLINE void add_field(const PackedCascade cascade, const SamplePoints* poin
   }
 }
 
-// C at the points position + offset * s * lift of each cascade, s its cell; cascades have their shares at `position`. 0
-// outside the mask `wanted`.
-CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW offset, const Vec lift,
-                                 const intW wanted, RadianceField* field) {
+// C at the points position + offset * s * lift of each cascade, s its cell; cascades have their
+// shares at `position`. 0 outside the mask `wanted`.
+CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW offset,
+                                 const Vec lift, const intW wanted, RadianceField* field) {
   realW remaining = wanted ? (realW)(unit) : ZERO;
   for (int i = 0; i < W; ++i) {
 #pragma unroll
@@ -62,11 +63,13 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
 }
 
 // L(p, w) for each channel, and 0; (x, y, z) = w.
-CLPV_INLINE float4 radiance_along(const Sampled* field, const float x, const float y, const float z) {
+CLPV_INLINE float4 radiance_along(const Sampled* field, const float x, const float y,
+                                  const float z) {
   return weigh(basis_functions(x, y, z), *field);
 }
 
 // E(p, n) for each channel, and 0; (x, y, z) = n.
-CLPV_INLINE float4 field_irradiance(const Sampled* field, const float x, const float y, const float z) {
+CLPV_INLINE float4 field_irradiance(const Sampled* field, const float x, const float y,
+                                    const float z) {
   return max(weigh(cosine_integrals(-x, -y, -z), *field), 0.0f);
 }

@@ -20,7 +20,8 @@ typedef struct {
 CLPV_INLINE uint find_overlaps(__global const realW* node, const Box box) {
   intW overlaps = (intW)(-1);
   for (int a = 0; a < 3; ++a)
-    overlaps &= (node[CLPV_TREE_LOWER + a] <= box.upper[a]) & (node[CLPV_TREE_UPPER + a] >= box.lower[a]);
+    overlaps &=
+        (node[CLPV_TREE_LOWER + a] <= box.upper[a]) & (node[CLPV_TREE_UPPER + a] >= box.lower[a]);
   return lane_bits(overlaps);
 }
 
@@ -38,7 +39,8 @@ CLPV_INLINE void enter_tree(const Tree tree, const Box box, Entry* entry) {
   children[0] = 0;
   uint count = 1, next = 0;
   for (uint step = 0; step < CLPV_ENTRY_STEPS && next < count; ++step) {
-    __global const realW* node = tree.nodes + (size_t)(uint)max(children[next], 0) * CLPV_TREE_NODE_ROWS;
+    __global const realW* node =
+        tree.nodes + (size_t)(uint)max(children[next], 0) * CLPV_TREE_NODE_ROWS;
     uint overlaps = find_overlaps(node, box), lane = next, free = count;
     if (children[next] < 0 || count - 1 + popcount(overlaps) > CLPV_TREE_WIDTH) {
       ++next;
@@ -54,7 +56,8 @@ CLPV_INLINE void enter_tree(const Tree tree, const Box box, Entry* entry) {
     for (; overlaps != 0; lane = free++) {
       const uint child = lowest_bit(overlaps);
       overlaps &= overlaps - 1u;
-      for (int row = 0; row < CLPV_TREE_CHILDREN; ++row) rows[row][lane] = ((__global const float*)(node + row))[child];
+      for (int row = 0; row < CLPV_TREE_CHILDREN; ++row)
+        rows[row][lane] = ((__global const float*)(node + row))[child];
       children[lane] = ((__global const int*)(node + CLPV_TREE_CHILDREN))[child];
     }
   }
@@ -71,18 +74,18 @@ enum {
 };
 
 // Adds the children in the mask `bits` of a node for ray i.
-#define CLPV_ADD_CHILDREN(memory, node, bits, i)                                                        \
-  for (uint rest = bits; rest != 0; rest &= rest - 1u) {                                                \
-    const int child = ((memory const int*)((node) + CLPV_TREE_CHILDREN))[lowest_bit(rest)];            \
-    const uint inner = child >= 0;                                                                      \
-    nodes[node_count] = (uint)child << CLPV_RAY_BITS | i;                                               \
-    leaves[leaf_count] = (uint)~child << CLPV_RAY_BITS | i;                                             \
-    node_count += inner;                                                                                \
-    leaf_count += 1u - inner;                                                                           \
+#define CLPV_ADD_CHILDREN(memory, node, bits, i)                                            \
+  for (uint rest = bits; rest != 0; rest &= rest - 1u) {                                    \
+    const int child = ((memory const int*)((node) + CLPV_TREE_CHILDREN))[lowest_bit(rest)]; \
+    const uint inner = child >= 0;                                                          \
+    nodes[node_count] = (uint)child << CLPV_RAY_BITS | i;                                   \
+    leaves[leaf_count] = (uint)~child << CLPV_RAY_BITS | i;                                 \
+    node_count += inner;                                                                    \
+    leaf_count += 1u - inner;                                                               \
   }
 
-// Finds the nearest triangle of each ray. Nodes are visited in the order in which they were found; once the list is
-// long the last first, for which the rest of the array suffices.
+// Finds the nearest triangle of each ray. Nodes are visited in the order in which they were found;
+// once the list is long the last first, for which the rest of the array suffices.
 CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Rays* rays) {
   uint nodes[CLPV_LIST + CLPV_TREE_WIDTH * CLPV_TREE_DEPTH], leaves[CLPV_LIST + CLPV_TREE_WIDTH];
   uint visited = 0, node_count = 0, leaf_count = 0, masked_count = 0;
@@ -102,8 +105,8 @@ CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Ray
       CLPV_ADD_CHILDREN(__global, node, bits, i)
     }
     for (uint j = 0; j < leaf_count; ++j) {
-      __global const realW* leaf =
-          tree.leaves + (size_t)(leaves[j] >> CLPV_RAY_BITS) * (CLPV_TREE_LEAF_ROWS * CLPV_TREE_VECTORS);
+      __global const realW* leaf = tree.leaves + (size_t)(leaves[j] >> CLPV_RAY_BITS) *
+                                                     (CLPV_TREE_LEAF_ROWS * CLPV_TREE_VECTORS);
       for (uint at = 0; at < CLPV_TREE_VECTORS; ++at)
         test_triangles(leaf + at, leaves[j] % W, CLPV_PASS_SCENE, rays, &masked, &masked_count);
     }

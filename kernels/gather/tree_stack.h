@@ -4,9 +4,9 @@
 
 #include "gather/triangle_tree.h"
 
-// Nodes of whose children a ray has yet to visit those in a bit mask. Work-groups are CLPV_STACK_SIDE^2 work-items. Each has a
-// stack of CLPV_TREE_DEPTH in local memory, since GPUs keep private arrays in scratch memory. Entries of neighbouring work-items
-// are neighbours.
+// Nodes of whose children a ray has yet to visit those in a bit mask. Work-groups are
+// CLPV_STACK_SIDE^2 work-items. Each has a stack of CLPV_TREE_DEPTH in local memory, since GPUs
+// keep private arrays in scratch memory. Entries of neighbouring work-items are neighbours.
 enum {
   CLPV_STACK_SIDE = 8,
   CLPV_STACK_STEP = CLPV_STACK_SIDE * CLPV_STACK_SIDE,
@@ -35,7 +35,8 @@ CLPV_INLINE void trace_ray(const Tree tree, const Stack stack, CLPV_SCENE, Rays*
     unvisited &= unvisited - 1u;
     const int child = as_int(node[CLPV_TREE_CHILDREN * CLPV_TREE_WIDTH + lane]);
     if (child < 0) {
-      __global const realW* leaf = tree.leaves + (size_t)(uint)~child * (CLPV_TREE_LEAF_ROWS * CLPV_TREE_WIDTH);
+      __global const realW* leaf =
+          tree.leaves + (size_t)(uint)~child * (CLPV_TREE_LEAF_ROWS * CLPV_TREE_WIDTH);
       for (uint i = 0; i < CLPV_TREE_WIDTH; ++i)
         test_triangles(leaf + i, 0, CLPV_PASS_SCENE, rays, &masked, &masked_count);
       continue;
@@ -46,6 +47,7 @@ CLPV_INLINE void trace_ray(const Tree tree, const Stack stack, CLPV_SCENE, Rays*
       ++depth;
     }
     at = (uint)child;
-    unvisited = boxes_hit(tree.nodes + (size_t)at * (CLPV_TREE_NODE_ROWS * CLPV_TREE_WIDTH), rays, 0);
+    unvisited =
+        boxes_hit(tree.nodes + (size_t)at * (CLPV_TREE_NODE_ROWS * CLPV_TREE_WIDTH), rays, 0);
   }
 }

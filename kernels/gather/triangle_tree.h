@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Nearest triangle along a ray: a tree of bounding boxes with eight children per node (shared/tree.h).
+// Nearest triangle along a ray: a tree of bounding boxes with eight children per node
+// (shared/tree.h).
 //
-// A ray tests the eight boxes of a node, or the eight triangles of a leaf, W at a time. Triangles: Moeller and Trumbore
-// 1997, 'Fast, minimum storage ray-triangle intersection'. Both sides are hit; holes of masked materials are not.
-// tree_lists.h and tree_stack.h walk through the tree.
+// A ray tests the eight boxes of a node, or the eight triangles of a leaf, W at a time. Triangles:
+// Moeller and Trumbore 1997, 'Fast, minimum storage ray-triangle intersection'. Both sides are hit;
+// holes of masked materials are not. tree_lists.h and tree_stack.h walk through the tree.
 #pragma once
 
 #include "raster/scene_triangles.h"
@@ -33,7 +34,8 @@ CLPV_INLINE void set_ray_axis(const int axis, const realW from, const realW alon
   store_lanes(from, rays->from[axis]);
   store_lanes(along, rays->along[axis]);
   store_lanes(1.0f / (fabs(along) > fabs(least) ? along : least), rays->inverse[axis]);
-  store_lanes(along < ZERO ? (uintW)(CLPV_TREE_UPPER + axis) : (uintW)(CLPV_TREE_LOWER + axis), rays->near_row[axis]);
+  store_lanes(along < ZERO ? (uintW)(CLPV_TREE_UPPER + axis) : (uintW)(CLPV_TREE_LOWER + axis),
+              rays->near_row[axis]);
 }
 
 // Rays without hits; those of reach 0 have none.
@@ -59,19 +61,20 @@ CLPV_INLINE void clip_to_slabs(const Rays* rays, const uint i, const int axis, c
 
 // Defines a function that returns a bit mask of the children of a node in `memory` whose boxes ray
 // i meets before its hit.
-#define CLPV_BOXES_HIT(name, memory)                                                                                  \
-  CLPV_INLINE uint name(memory const realW* node, const Rays* rays, const uint i) {                                   \
-    uint bits = 0;                                                                                                    \
-    for (uint at = 0; at < CLPV_TREE_VECTORS; ++at) {                                                                 \
-      realW enter = ZERO, leave = (realW)(rays->distance[i]);                                                         \
-      _Pragma("unroll") for (int a = 0; a < 3; ++a) {                                                                 \
-        const uint near = rays->near_row[a][i], far = CLPV_TREE_LOWER + CLPV_TREE_UPPER + 2 * a - near;               \
-        clip_to_slabs(rays, i, a, node[near * CLPV_TREE_VECTORS + at], node[far * CLPV_TREE_VECTORS + at], &enter,    \
-                      &leave);                                                                                        \
-      }                                                                                                               \
-      bits |= lane_bits(enter <= leave * box_margin) << (at * W);                                                     \
-    }                                                                                                                 \
-    return bits;                                                                                                      \
+#define CLPV_BOXES_HIT(name, memory)                                                \
+  CLPV_INLINE uint name(memory const realW* node, const Rays* rays, const uint i) { \
+    uint bits = 0;                                                                  \
+    for (uint at = 0; at < CLPV_TREE_VECTORS; ++at) {                               \
+      realW enter = ZERO, leave = (realW)(rays->distance[i]);                       \
+      _Pragma("unroll") for (int a = 0; a < 3; ++a) {                               \
+        const uint near = rays->near_row[a][i],                                     \
+                   far = CLPV_TREE_LOWER + CLPV_TREE_UPPER + 2 * a - near;          \
+        clip_to_slabs(rays, i, a, node[near * CLPV_TREE_VECTORS + at],              \
+                      node[far * CLPV_TREE_VECTORS + at], &enter, &leave);          \
+      }                                                                             \
+      bits |= lane_bits(enter <= leave * box_margin) << (at * W);                   \
+    }                                                                               \
+    return bits;                                                                    \
   }
 CLPV_BOXES_HIT(boxes_hit, __global)
 
@@ -98,8 +101,9 @@ CLPV_RARE intW find_holes(const uintW triangle, const realW u, const realW v, CL
   gather_rows(materials, 3u * im, &base);
   gather_rows(materials + 1, 3u * im, &factors);
   gather_rows(materials + 2, 3u * im, &maps);
-  const realW alpha = CLPV_COLUMN(base, w) * vertex_alpha *
-                       sample_alpha(textures, texels, as_uintW(CLPV_COLUMN(maps, x)) * CLPV_TEXTURE_LEVELS, uv);
+  const realW alpha =
+      CLPV_COLUMN(base, w) * vertex_alpha *
+      sample_alpha(textures, texels, as_uintW(CLPV_COLUMN(maps, x)) * CLPV_TEXTURE_LEVELS, uv);
   return alpha < CLPV_COLUMN(factors, w);
 }
 
@@ -109,8 +113,8 @@ typedef struct {
   uint triangle[W], ray[W];
 } MaskedHits;
 
-CLPV_INLINE void take_hit(Rays* rays, const uint i, const float distance, const float u, const float v,
-                          const uint triangle) {
+CLPV_INLINE void take_hit(Rays* rays, const uint i, const float distance, const float u,
+                          const float v, const uint triangle) {
   rays->distance[i] = distance;
   rays->u[i] = u;
   rays->v[i] = v;
@@ -119,8 +123,8 @@ CLPV_INLINE void take_hit(Rays* rays, const uint i, const float distance, const 
 
 CLPV_INLINE void take_masked(const MaskedHits* masked, const uint count, CLPV_SCENE, Rays* rays) {
   if (count == 0) return;
-  const uint holes = lane_bits(find_holes(load_lanes(masked->triangle), load_lanes(masked->u), load_lanes(masked->v),
-                                          CLPV_PASS_SCENE));
+  const uint holes = lane_bits(find_holes(load_lanes(masked->triangle), load_lanes(masked->u),
+                                          load_lanes(masked->v), CLPV_PASS_SCENE));
   for (uint j = 0; j < count; ++j) {
     const uint i = masked->ray[j];
     if ((holes >> j & 1u) == 0u && masked->distance[j] < rays->distance[i])
@@ -134,11 +138,12 @@ CLPV_INLINE Vec load_leaf(__global const realW* leaf, const int row) {
              leaf[(row + 2) * CLPV_TREE_VECTORS]);
 }
 
-// Takes the nearest of W triangles of a leaf if it is nearer than the hit of ray i. On a tie, the first
-// triangle wins.
-CLPV_INLINE void test_triangles(__global const realW* leaf, const uint i, CLPV_SCENE, Rays* rays, MaskedHits* masked,
-                           uint* masked_count) {
-  const Vec along = vec((realW)(rays->along[0][i]), (realW)(rays->along[1][i]), (realW)(rays->along[2][i]));
+// Takes the nearest of W triangles of a leaf if it is nearer than the hit of ray i. On a tie, the
+// first triangle wins.
+CLPV_INLINE void test_triangles(__global const realW* leaf, const uint i, CLPV_SCENE, Rays* rays,
+                                MaskedHits* masked, uint* masked_count) {
+  const Vec along =
+      vec((realW)(rays->along[0][i]), (realW)(rays->along[1][i]), (realW)(rays->along[2][i]));
   const Vec edge1 = load_leaf(leaf, CLPV_TREE_EDGE1), edge2 = load_leaf(leaf, CLPV_TREE_EDGE2);
   const Vec origin =
       vec((realW)(rays->from[0][i]), (realW)(rays->from[1][i]), (realW)(rays->from[2][i]));
@@ -147,7 +152,8 @@ CLPV_INLINE void test_triangles(__global const realW* leaf, const uint i, CLPV_S
   const realW scale = ONE / vec_dot(edge1, across);
   const realW u = vec_dot(from, across) * scale, v = vec_dot(along, around) * scale,
                distance = vec_dot(edge2, around) * scale;
-  intW met = (u >= ZERO) & (v >= ZERO) & (u + v <= ONE) & (distance > ZERO) & (distance < (realW)(rays->distance[i]));
+  intW met = (u >= ZERO) & (v >= ZERO) & (u + v <= ONE) & (distance > ZERO) &
+             (distance < (realW)(rays->distance[i]));
   if (no_lane(met)) return;
   const uintW triangle = as_uintW(leaf[CLPV_TREE_TRIANGLES * CLPV_TREE_VECTORS]);
   const intW unsure = met & ((triangle & CLPV_TREE_MASKED) != 0u);
@@ -169,5 +175,6 @@ CLPV_INLINE void test_triangles(__global const realW* leaf, const uint i, CLPV_S
   const float nearest = min_lane(reached);
   const uint lane = lowest_bit(lane_bits(reached == (realW)(nearest)));
   if (nearest < rays->distance[i])
-    take_hit(rays, i, nearest, ((const float*)&u)[lane], ((const float*)&v)[lane], ((const uint*)&triangle)[lane]);
+    take_hit(rays, i, nearest, ((const float*)&u)[lane], ((const float*)&v)[lane],
+             ((const uint*)&triangle)[lane]);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Surfels add blocking to a geometry volume; blockers of two sources that see the same surfaces are merged (docs/method.md,
-// 'Blockers').
+// Surfels add blocking to a geometry volume; blockers of two sources that see the same surfaces are
+// merged (docs/method.md, 'Blockers').
 //
 //   CLPV_BLOCKS_BY_AREA 1:   |n_x|, |n_y|, |n_z|; the larger of each area
 //                       0:   the lobe about the normal; the lobe of the larger mean
@@ -12,7 +12,8 @@
 
 CLPV_INLINE Coefficients project_blockers(const Coefficients a) { return a; }
 
-CLPV_INLINE Coefficients surfel_blocker(const float x, const float y, const float z CLPV_AND_TABLE) {
+CLPV_INLINE Coefficients surfel_blocker(const float x, const float y,
+                                        const float z CLPV_AND_TABLE) {
   const Coefficients areas = {{fabs(x), fabs(y), fabs(z)}};
   return areas;
 }
@@ -30,7 +31,8 @@ __constant const float integrals[CLPV_N] = CLPV_INTEGRALS;
 
 CLPV_INLINE Coefficients project_blockers(const Coefficients a) { return project_sum(a); }
 
-CLPV_INLINE Coefficients surfel_blocker(const float x, const float y, const float z CLPV_AND_TABLE) {
+CLPV_INLINE Coefficients surfel_blocker(const float x, const float y,
+                                        const float z CLPV_AND_TABLE) {
   return lobe_integrals(x, y, z CLPV_PASS_TABLE);
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Keys of cells, by which injection sorts texels (find_cells.cl, sort_by_cell.cl, inject.cl).
 //
-// Cell (x, y, z) of n^3 has the key (z n + y) n + x. Geometry volumes have n + 1 corners along each axis instead of n
-// cells.
+// Cell (x, y, z) of n^3 has the key (z n + y) n + x. Geometry volumes have n + 1 corners along each
+// axis instead of n cells.
 #pragma once
 
 #include "shared/sort.h"
 
-// Shift [cells] that is added to a point before its coordinates are rounded down: corners lie half a cell off the
-// centres.
+// Shift [cells] that is added to a point before its coordinates are rounded down: corners lie half
+// a cell off the centres.
 #if CLPV_GEOMETRY
 #define CLPV_KEYS(cells) ((cells) + 1)
 #define CLPV_CELL_SHIFT 0.5f

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
 // Finds the cell of each texel of a surface: the first step of injection (inject.cl).
 //
-//   light:     cell of p + n s / 2       half a cell off the surface, so that a surface does not light itself
-//   blocking:  corner nearest to p       B = A / (max(|n.w|, 0.1) s^2): blocked share of a surfel; its footprint A
-//                                        along w is that of stride x stride texels
+//   light:     cell of p + n s / 2       half a cell off the surface, so that a surface does not
+//                                        light itself
+//   blocking:  corner nearest to p       B = A / (max(|n.w|, 0.1) s^2): blocked share of a surfel;
+//                                        its footprint A along w is that of stride x stride texels
 //
 // docs/method.md, 'Injection' and 'Blockers'.
 //
 // In:   depths   [m]; with CLPV_POINTS positions [m] instead (emit.cl)
 //       normals; colours: flux [W], see surface.h for colour_scale
-//       stride   blocking: subsampling; a texel represents stride x stride texels (shared/thinned.h)
-// Out:  keys    key of the cell of each texel (cell_keys.h); CLPV_NO_CELL for texels that are empty, dark, outside the
-//               grid or not finite
+//       stride   blocking: subsampling; a texel represents stride x stride texels
+//                (shared/thinned.h)
+// Out:  keys    key of the cell of each texel (cell_keys.h); CLPV_NO_CELL for texels that are
+//               empty, dark, outside the grid or not finite
 //       shares  blocking: B of each texel
-// A work-item processes a strip of CLPV_STRIP texels of a row. Compilers vectorise this loop on CPUs, given scalars in
-// memory and no floor(); across work-items they would combine y and z first.
+// A work-item processes a strip of CLPV_STRIP texels of a row. Compilers vectorise this loop on
+// CPUs, given scalars in memory and no floor(); across work-items they would combine y and z first.
 // From the host: CLPV_GEOMETRY (0 light, 1 blocking), CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER.
 #include "inject/cell_keys.h"
 #include "shared/grid.h"
@@ -23,7 +25,8 @@
 
 #define CLPV_MIN_COSINE 0.1f  // bounds the area of a surfel that is seen edge-on
 
-// Conditions are ints joined by &, without branches, and of scalars: Oclgrind 21.10 fails on comparisons of float3.
+// Conditions are ints joined by &, without branches, and of scalars: Oclgrind 21.10 fails on
+// comparisons of float3.
 static inline int in_grid(const float n, const float x, const float y, const float z) {
   return (x >= 0.0f) & (y >= 0.0f) & (z >= 0.0f) & (x < n) & (y < n) & (z < n);
 }
@@ -34,8 +37,9 @@ static inline int not_zero(const float x, const float y, const float z) {
   return (x != 0.0f) | (y != 0.0f) | (z != 0.0f);
 }
 
-static inline float blocked_share(const ClpvView view, const ClpvGrid grid, const float px, const float py,
-                                  const float depth, const float3 normal, const uint stride) {
+static inline float blocked_share(const ClpvView view, const ClpvGrid grid, const float px,
+                                  const float py, const float depth, const float3 normal,
+                                  const uint stride) {
   const float3 ray = pixel_ray(view, px, py);
   const float cosine = fabs(normal.x * ray.x + normal.y * ray.y + normal.z * ray.z);
   return (stride * stride) * pixel_footprint(view, px, py, depth) /
@@ -48,10 +52,12 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
 #else
                          __global const float* restrict depths,
 #endif
-                         __global const SurfaceTexel* restrict normals, __global const SurfaceTexel* restrict colours,
-                         const float colour_scale, __global uint* restrict keys
+                         __global const SurfaceTexel* restrict normals,
+                         __global const SurfaceTexel* restrict colours, const float colour_scale,
+                         __global uint* restrict keys
 #if CLPV_GEOMETRY
-                         , __global float* restrict shares, const uint stride
+                         ,
+                         __global float* restrict shares, const uint stride
 #endif
 ) {
 #if !CLPV_GEOMETRY
@@ -65,18 +71,22 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
   const uint n = CLPV_KEYS(grid.n);
   const float per_metre = 1.0f / grid.cell;
   for (uint column = first; column < last; ++column) {
-    const uint px = CLPV_TAKEN_TEXEL(column, stride), texel = py * view.width + px, i = row * width + column;
+    const uint px = CLPV_TAKEN_TEXEL(column, stride), texel = py * view.width + px,
+               i = row * width + column;
     const float3 normal = load_normal(normals, texel);
 #if CLPV_POINTS
     const float depth = 1.0f;
-    const float3 position = (float3)(positions[4 * texel], positions[4 * texel + 1], positions[4 * texel + 2]);
+    const float3 position =
+        (float3)(positions[4 * texel], positions[4 * texel + 1], positions[4 * texel + 2]);
 #else
     const float depth = depths[texel];
     const float3 position = surface_position(view, (float)px, (float)py, depth);
 #endif
-    float x = (position.x - grid.origin[0]) * per_metre, y = (position.y - grid.origin[1]) * per_metre,
+    float x = (position.x - grid.origin[0]) * per_metre,
+          y = (position.y - grid.origin[1]) * per_metre,
           z = (position.z - grid.origin[2]) * per_metre;
-    int valid = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) & not_zero(normal.x, normal.y, normal.z);
+    int valid = (depth > 0.0f) & all_finite(normal.x, normal.y, normal.z) &
+                not_zero(normal.x, normal.y, normal.z);
 #if CLPV_GEOMETRY
     shares[i] = blocked_share(view, grid, (float)px, (float)py, depth, normal, stride);
 #else

@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: MIT
-// Injects the texels of a surface into a volume, as light or as blockers: sums over each cell's sorted texels.
+// Injects the texels of a surface into a volume, as light or as blockers: sums over each cell's
+// sorted texels.
 //
 //   light (CLPV_GEOMETRY 0):     c += (P / pi) c(n)
 //   blocking (CLPV_GEOMETRY 1):  c = merge(c, sum B b(n))
 //
-// docs/method.md, 'Injection' and 'Blockers'; Kaplanyan and Dachsbacher 2010. P [W] is the flux of a texel's virtual
-// point light, c(n) the clamped cosine about its normal, B the blocked share (find_cells.cl) and b(n) the function of
-// host/basis/blocking.hpp. c(n) = A^-1 alpha(n) is linear in alpha: a cell sums weighted alphas, and A^-1 is applied
-// once per cell. Sources of blockers see the same walls, so merge_blockers takes a maximum.
+// docs/method.md, 'Injection' and 'Blockers'; Kaplanyan and Dachsbacher 2010. P [W] is the flux of
+// a texel's virtual point light, c(n) the clamped cosine about its normal, B the blocked share
+// (find_cells.cl) and b(n) the function of host/basis/blocking.hpp. c(n) = A^-1 alpha(n) is linear
+// in alpha: a cell sums weighted alphas, and A^-1 is applied once per cell. Sources of blockers see
+// the same walls, so merge_blockers takes a maximum.
 //
 //   find_cells.cl    cell of each texel
 //   sort_by_cell.cl  texels sorted by cell
-//   sum_segments     sums of segments: up to `length` texels of a cell, counted from the cell's first texel
+//   sum_segments     sums of segments: up to `length` texels of a cell, counted from the cell's
+//                    first texel
 //   join_segments    sums of the cells that have several segments
 //
 // A cell's sum depends only on its own texels, bit by bit.
 //
 // In:      sorted, count  (key, texel) of the sorted texels, and their number (sort_by_cell.cl)
-//          normals, colours, colour_scale   surface texels, flux [W] (surface.h); blocking: normals and shares
+//          normals, colours, colour_scale   surface texels, flux [W] (surface.h); blocking: normals
+//                                           and shares
 //          width, stride  blocking: texels of a row, and the subsampling (shared/thinned.h)
 // In, out: volume         light or geometry volume
 //          partials, firsts   sums and first texels of the cells with several segments
 // From the host: CLPV_GRID, CLPV_GEOMETRY, CLPV_UNIT_FLUX, CLPV_SURFACE_PAPER, and the text of
-// host/codegen/inject_source.hpp. With rotated lobes the look-up table is the last argument of sum_segments
-// (CLPV_AND_TABLE).
+// host/codegen/inject_source.hpp. With rotated lobes the look-up table is the last argument of
+// sum_segments (CLPV_AND_TABLE).
 #include "inject/cell_keys.h"
 #include "volume/coefficients.h"
 #if CLPV_GEOMETRY
@@ -37,15 +41,18 @@
 
 #define CLPV_NO_SEGMENT 0xffffffffu
 
-// Parameters of the surface that texels are read from. Blocking takes every stride-th texel (shared/thinned.h) of rows of
-// `width`, each with its share (find_cells.cl); light takes every texel.
+// Parameters of the surface that texels are read from. Blocking takes every stride-th texel
+// (shared/thinned.h) of rows of `width`, each with its share (find_cells.cl); light takes every
+// texel.
 #if CLPV_GEOMETRY
-#define CLPV_TEXELS \
-  __global const SurfaceTexel *normals, __global const float *shares, const uint width, const uint stride
+#define CLPV_TEXELS                                                                     \
+  __global const SurfaceTexel *normals, __global const float *shares, const uint width, \
+      const uint stride
 #define CLPV_PASS_TEXELS normals, shares, width, stride
 #else
-#define CLPV_TEXELS \
-  __global const SurfaceTexel *normals, __global const SurfaceTexel *colours, const float colour_scale
+#define CLPV_TEXELS                                                           \
+  __global const SurfaceTexel *normals, __global const SurfaceTexel *colours, \
+      const float colour_scale
 #define CLPV_PASS_TEXELS normals, colours, colour_scale
 #endif
 
@@ -66,7 +73,8 @@ static inline uint taken_index(const uint width, const uint i, const uint stride
 
 static inline Sums add_texel(Sums sums, const uint texel, CLPV_TEXELS CLPV_AND_TABLE) {
   const float3 n = load_normal(normals, taken_index(width, texel, stride));
-  sums.channel[0] = add_scaled(sums.channel[0], shares[texel], surfel_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
+  sums.channel[0] =
+      add_scaled(sums.channel[0], shares[texel], surfel_blocker(n.x, n.y, n.z CLPV_PASS_TABLE));
   return sums;
 }
 
@@ -106,7 +114,8 @@ static inline Sums add_stored(Sums sums, __global const float* partials, const u
   return sums;
 }
 
-// Index of the first sorted texel of cell `key`, by binary search in [0, before]. Texel `before` belongs to the cell.
+// Index of the first sorted texel of cell `key`, by binary search in [0, before]. Texel `before`
+// belongs to the cell.
 static inline uint first_of_cell(__global const uint2* sorted, const uint key, const uint before) {
   uint low = 0, high = before;
   while (low < high) {
@@ -120,7 +129,8 @@ static inline uint first_of_cell(__global const uint2* sorted, const uint key, c
   return low;
 }
 
-// Index at which the first segment of a block starts: where a cell starts, or a whole number of segments later.
+// Index at which the first segment of a block starts: where a cell starts, or a whole number of
+// segments later.
 static inline uint first_segment(__global const uint2* sorted, const uint total, const uint length,
                                  const uint block, bool* starts_cell) {
   uint at = block * length;
@@ -134,12 +144,14 @@ static inline uint first_segment(__global const uint2* sorted, const uint total,
   return at;
 }
 
-// Sums the segments that start in a block of `length` sorted texels; a work-item per block. A cell of one segment is
-// delivered at once. Of a longer cell, firsts[block] is the index of its first texel; partials[2 block + 1] holds the
-// sums of its first segment, partials[2 block] those of a later one. At most one of each starts in a block.
-__kernel void sum_segments(__global const uint2* sorted, __global const uint* count, const uint length,
-                           const uint blocks, CLPV_TEXELS, CLPV_VOLUME_OUT volume,
-                           __global float* partials, __global uint* firsts CLPV_AND_TABLE) {
+// Sums the segments that start in a block of `length` sorted texels; a work-item per block. A cell
+// of one segment is delivered at once. Of a longer cell, firsts[block] is the index of its first
+// texel; partials[2 block + 1] holds the sums of its first segment, partials[2 block] those of a
+// later one. At most one of each starts in a block.
+__kernel void sum_segments(__global const uint2* sorted, __global const uint* count,
+                           const uint length, const uint blocks, CLPV_TEXELS,
+                           CLPV_VOLUME_OUT volume, __global float* partials,
+                           __global uint* firsts CLPV_AND_TABLE) {
   const uint block = get_global_id(0);
   if (block >= blocks) return;
   firsts[block] = CLPV_NO_SEGMENT;
@@ -165,10 +177,11 @@ __kernel void sum_segments(__global const uint2* sorted, __global const uint* co
   }
 }
 
-// Delivers the cells of several segments; a work-item per block, for the cell whose first segment starts in it.
-__kernel void join_segments(__global const uint2* sorted, __global const uint* count, const uint length,
-                            const uint blocks, CLPV_VOLUME_OUT volume, __global const float* partials,
-                            __global const uint* firsts) {
+// Delivers the cells of several segments; a work-item per block, for the cell whose first segment
+// starts in it.
+__kernel void join_segments(__global const uint2* sorted, __global const uint* count,
+                            const uint length, const uint blocks, CLPV_VOLUME_OUT volume,
+                            __global const float* partials, __global const uint* firsts) {
   const uint block = get_global_id(0);
   if (block >= blocks) return;
   uint at = firsts[block];

@@ -5,8 +5,9 @@
 //
 // A^-1 is two triangular systems: a float A^-1 would have 20x the rounding error for srbf14.
 //
-// From the host (host/codegen/inject_source.cpp): CLPV_ROTATED, cosine_integrals(x, y, z) or with CLPV_ROTATED
-// rotated_integrals(x, y, z CLPV_PASS_TABLE), CLPV_FLUX_WEIGHTS, CLPV_GRAM_LOWER (L) and CLPV_GRAM_INVERSE_DIAGONAL.
+// From the host (host/codegen/inject_source.cpp): CLPV_ROTATED, cosine_integrals(x, y, z) or with
+// CLPV_ROTATED rotated_integrals(x, y, z CLPV_PASS_TABLE), CLPV_FLUX_WEIGHTS, CLPV_GRAM_LOWER (L)
+// and CLPV_GRAM_INVERSE_DIAGONAL.
 #pragma once
 
 #include "volume/coefficients.h"
@@ -16,7 +17,8 @@ __constant const float gram_lower[CLPV_N][CLPV_N] = CLPV_GRAM_LOWER;
 __constant const float gram_inverse_diagonal[CLPV_N] = CLPV_GRAM_INVERSE_DIAGONAL;
 
 // alpha of the lobe about the unit normal (x, y, z).
-CLPV_INLINE Coefficients lobe_integrals(const float x, const float y, const float z CLPV_AND_TABLE) {
+CLPV_INLINE Coefficients lobe_integrals(const float x, const float y,
+                                        const float z CLPV_AND_TABLE) {
 #if CLPV_ROTATED
   return rotated_integrals(x, y, z CLPV_PASS_TABLE);
 #else

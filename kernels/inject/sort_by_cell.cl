@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Sorts the texels of a surface by cell: a stable radix sort of two passes, low and high digit, without atomics. Sums
-// of a cell's texels are then deterministic (docs/method.md, 'Injection').
+// Sorts the texels of a surface by cell: a stable radix sort of two passes, low and high digit,
+// without atomics. Sums of a cell's texels are then deterministic (docs/method.md, 'Injection').
 //
 //   count_runs, sum_digits, place_digits, scatter_runs        low digit: texels -> runs
 //   count_texels, sum_digits, place_digits, scatter_texels    high digit: runs -> sorted texels
 //
-// Neighbouring texels mostly belong to one cell. The first pass sorts runs of them, which are far fewer than texels;
-// the second splits them again.
+// Neighbouring texels mostly belong to one cell. The first pass sorts runs of them, which are far
+// fewer than texels; the second splits them again.
 //
 // In:   keys    cell of each texel, or CLPV_NO_CELL (cell_keys.h)
-// Out:  sorted  (key, texel) of each texel that has a cell, two words each; the host reads their number from `total`
-// counts[digit][chunk] holds the number of elements of a chunk with a digit, then the index of the first of them. The
-// host zeroes it.
+// Out:  sorted  (key, texel) of each texel that has a cell, two words each; the host reads their
+//               number from `total`
+// counts[digit][chunk] holds the number of elements of a chunk with a digit, then the index of the
+// first of them. The host zeroes it.
 #include "shared/sort.h"
 
 // A run starts where the key changes, and at every multiple of CLPV_LONGEST_RUN.
@@ -19,7 +20,8 @@ static inline bool starts_run(const uint texel, const uint key, const uint previ
   return key != CLPV_NO_CELL && (key != previous || texel % CLPV_LONGEST_RUN == 0);
 }
 
-static inline uint run_length(__global const uint* keys, const uint texels, const uint first, const uint key) {
+static inline uint run_length(__global const uint* keys, const uint texels, const uint first,
+                              const uint key) {
   const uint stop = min(texels, first - first % CLPV_LONGEST_RUN + CLPV_LONGEST_RUN);
   uint end = first + 1;
   while (end < stop && keys[end] == key) ++end;
@@ -27,8 +29,8 @@ static inline uint run_length(__global const uint* keys, const uint texels, cons
 }
 
 // First pass, histogram. A work-item counts `chunk` texels, a multiple of CLPV_LONGEST_RUN.
-__kernel void count_runs(__global const uint* keys, const uint texels, const uint chunk, const uint chunks,
-                         const uint low_bits, __global uint* counts) {
+__kernel void count_runs(__global const uint* keys, const uint texels, const uint chunk,
+                         const uint chunks, const uint low_bits, __global uint* counts) {
   const uint c = get_global_id(0);
   if (c >= chunks) return;
   const uint last = min((c + 1) * chunk, texels);
@@ -41,10 +43,11 @@ __kernel void count_runs(__global const uint* keys, const uint texels, const uin
   }
 }
 
-// First pass, scatter. runs[2 i]: key; runs[2 i + 1]: first texel and length. Not a uint2: Oclgrind 21.10 reports a
-// false error for its store.
-__kernel void scatter_runs(__global const uint* keys, const uint texels, const uint chunk, const uint chunks,
-                           const uint low_bits, __global uint* counts, __global uint* runs) {
+// First pass, scatter. runs[2 i]: key; runs[2 i + 1]: first texel and length. Not a uint2: Oclgrind
+// 21.10 reports a false error for its store.
+__kernel void scatter_runs(__global const uint* keys, const uint texels, const uint chunk,
+                           const uint chunks, const uint low_bits, __global uint* counts,
+                           __global uint* runs) {
   const uint c = get_global_id(0);
   if (c >= chunks) return;
   const uint last = min((c + 1) * chunk, texels);
@@ -62,8 +65,9 @@ __kernel void scatter_runs(__global const uint* keys, const uint texels, const u
 }
 
 // Second pass, histogram of texels. A work-item counts `chunk` runs.
-__kernel void count_texels(__global const uint* runs, __global const uint* run_count, const uint chunk,
-                           const uint chunks, const uint low_bits, __global uint* counts) {
+__kernel void count_texels(__global const uint* runs, __global const uint* run_count,
+                           const uint chunk, const uint chunks, const uint low_bits,
+                           __global uint* counts) {
   const uint c = get_global_id(0);
   if (c >= chunks) return;
   const uint last = min((c + 1) * chunk, run_count[0]);
@@ -73,9 +77,9 @@ __kernel void count_texels(__global const uint* runs, __global const uint* run_c
 }
 
 // Second pass, scatter. sorted[2 i]: key; sorted[2 i + 1]: texel.
-__kernel void scatter_texels(__global const uint* runs, __global const uint* run_count, const uint chunk,
-                             const uint chunks, const uint low_bits, __global uint* counts,
-                             __global uint* sorted) {
+__kernel void scatter_texels(__global const uint* runs, __global const uint* run_count,
+                             const uint chunk, const uint chunks, const uint low_bits,
+                             __global uint* counts, __global uint* sorted) {
   const uint c = get_global_id(0);
   if (c >= chunks) return;
   const uint last = min((c + 1) * chunk, run_count[0]);
@@ -102,8 +106,8 @@ __kernel void sum_digits(__global const uint* counts, const uint chunks, const u
   totals[digit] = sum;
 }
 
-// Prefix sum, second half: counts become the index of each chunk's first element with a digit. total[0]: number of
-// elements.
+// Prefix sum, second half: counts become the index of each chunk's first element with a digit.
+// total[0]: number of elements.
 __kernel void place_digits(__global uint* counts, const uint chunks, const uint digits,
                            __global const uint* totals, __global uint* total) {
   const uint digit = get_global_id(0);

@@ -24,14 +24,16 @@ typedef struct {
   float base_alpha, cutoff;
 } Mask;
 
-CLPV_INLINE void load_mask_corner(__global const ClpvVertex* vertex, Vec* position, Uv* uv, realW* alpha) {
+CLPV_INLINE void load_mask_corner(__global const ClpvVertex* vertex, Vec* position, Uv* uv,
+                                  realW* alpha) {
   *position = vec_load(vertex->position);
   uv->u = (realW)(vertex->uv[0]);
   uv->v = (realW)(vertex->uv[1]);
   *alpha = (realW)(vertex->colour[3]);
 }
 
-CLPV_INLINE void load_mask(const ClpvView view, const uint triangle, const Scene scene, Mask* mask) {
+CLPV_INLINE void load_mask(const ClpvView view, const uint triangle, const Scene scene,
+                           Mask* mask) {
   const ClpvTriangle t = scene.triangles[triangle];
   __global const ClpvMaterial* material = scene.materials + t.material;
   Vec a, b, c;
@@ -50,11 +52,12 @@ static inline realW blended(const Vec w, const realW a, const realW b, const rea
 }
 
 // Mask of the pixels from (px, py) on whose alpha, at `depth` [m], reaches the cutoff: no hole.
-CLPV_INLINE intW solid(const ClpvView view, const Mask* mask, const float px, const float py, const realW depth,
-                       __global const uint* texels) {
+CLPV_INLINE intW solid(const ClpvView view, const Mask* mask, const float px, const float py,
+                       const realW depth, __global const uint* texels) {
   const realW x = px + to_realW(lane_numbers());
   const Vec w = weights_at(view, mask->face, mask->weights, x, (realW)(py), depth);
-  const Uv uv = {blended(w, mask->a.u, mask->b.u, mask->c.u), blended(w, mask->a.v, mask->b.v, mask->c.v)};
+  const Uv uv = {blended(w, mask->a.u, mask->b.u, mask->c.u),
+                 blended(w, mask->a.v, mask->b.v, mask->c.v)};
   const realW alpha = mask->base_alpha * blended(w, mask->alpha_a, mask->alpha_b, mask->alpha_c) *
                        sample_level_alpha(mask->level, texels, uv);
   return alpha >= mask->cutoff;

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Sorts the entries of rasterize.cl by tile and depth slice: a counting sort, whose counts rasterize.cl has made.
+// Sorts the entries of rasterize.cl by tile and depth slice: a counting sort, whose counts
+// rasterize.cl has made.
 //
 //   sum_slices     totals = number of entries of each chunk of CLPV_SLICE_CHUNK slices
-//   scan_slices    slice_counts -> slice_starts, in place: exclusive prefix sum; one more number is the end of the last
-//                  slice
+//   scan_slices    slice_counts -> slice_starts, in place: exclusive prefix sum; one more number is
+//                  the end of the last slice
 //   bin_entries    entries -> binned: index in the list of triangles, smallest key (two words each)
 #include "shared/raster.h"
 
-__kernel void sum_slices(const uint slices, __global const uint* slice_counts, __global uint* totals) {
+__kernel void sum_slices(const uint slices, __global const uint* slice_counts,
+                         __global uint* totals) {
   const uint chunk = get_global_id(0), first = chunk * CLPV_SLICE_CHUNK;
   if (first >= slices) return;
   const uint end = min(first + CLPV_SLICE_CHUNK, slices);
@@ -16,7 +18,8 @@ __kernel void sum_slices(const uint slices, __global const uint* slice_counts, _
   totals[chunk] = sum;
 }
 
-__kernel void scan_slices(const uint slices, __global uint* slice_starts, __global const uint* totals) {
+__kernel void scan_slices(const uint slices, __global uint* slice_starts,
+                          __global const uint* totals) {
   const uint chunk = get_global_id(0), first = chunk * CLPV_SLICE_CHUNK;
   if (first >= slices) return;
   const uint end = min(first + CLPV_SLICE_CHUNK, slices);
@@ -30,9 +33,11 @@ __kernel void scan_slices(const uint slices, __global uint* slice_starts, __glob
   if (end == slices) slice_starts[slices] = at;
 }
 
-// A work-group sorts CLPV_ENTRY_GROUP entries. Returns at once if a list overflowed, since the lists then have gaps.
-__kernel void bin_entries(__global const uint* counts, const uint most_listed, const uint most_entered,
-                          __global const uint* entries, __global const uint* slice_starts, __global uint2* binned) {
+// A work-group sorts CLPV_ENTRY_GROUP entries. Returns at once if a list overflowed, since the
+// lists then have gaps.
+__kernel void bin_entries(__global const uint* counts, const uint most_listed,
+                          const uint most_entered, __global const uint* entries,
+                          __global const uint* slice_starts, __global uint2* binned) {
   const uint end = counts[CLPV_ENTERED], group = get_group_id(0) * CLPV_ENTRY_GROUP;
   if (group >= end || end > most_entered || counts[CLPV_ENTERED_TOO_MANY] > 0) return;
   if (counts[CLPV_LISTED] > most_listed) return;

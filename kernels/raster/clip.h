@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Clips a triangle against the near plane and the guard band (Sutherland and Hodgman 1974).
 //
-// A point is (x, y, w, z): along right and up [m], the divisor of its screen position (perspective: the depth;
-// orthographic: 1), and the depth. Two triangles that share an edge must clip it at the same point, to the bit.
-// Intersections are therefore computed from the corner inside to the one outside, and FP_CONTRACT is off (project.h).
+// A point is (x, y, w, z): along right and up [m], the divisor of its screen position (perspective:
+// the depth; orthographic: 1), and the depth. Two triangles that share an edge must clip it at the
+// same point, to the bit. Intersections are therefore computed from the corner inside to the one
+// outside, and FP_CONTRACT is off (project.h).
 #pragma once
 
 #include "raster/project.h"
 
 enum { CLPV_CLIP_PLANES = 5 };
 
-// A polygon of CLPV_CLIP_CORNERS corners, of which CLPV_CORNER(k) is the k-th. Corners are indexed at run time: GPUs keep
-// such a private array in scratch memory, so with one lane polygons lie in local memory, corners of a work-group's
-// CLPV_CLIP_GROUP work-items next to each other.
+// A polygon of CLPV_CLIP_CORNERS corners, of which CLPV_CORNER(k) is the k-th. Corners are indexed
+// at run time: GPUs keep such a private array in scratch memory, so with one lane polygons lie in
+// local memory, corners of a work-group's CLPV_CLIP_GROUP work-items next to each other.
 enum { CLPV_CLIP_GROUP = 64 };
 #if W == 1
 #define CLPV_POLYGON __local
@@ -37,10 +38,11 @@ static inline float clip_distance(const ClpvView view, const float4 p, const int
   return CLPV_IS_ORTHOGRAPHIC(view) ? 1.0f : p.w - view.near_depth;
 }
 
-// Clips a convex polygon of `count` corners to the positive side of a plane. Returns the number of corners. Works in place,
-// since corner i + 1 is read before the i-th step writes at most i + 2 corners. Rounding may make more than that of an edge
-// within the plane; they are dropped.
-static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON float4* polygon, const int count, const int plane) {
+// Clips a convex polygon of `count` corners to the positive side of a plane. Returns the number of
+// corners. Works in place, since corner i + 1 is read before the i-th step writes at most i + 2
+// corners. Rounding may make more than that of an edge within the plane; they are dropped.
+static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON float4* polygon, const int count,
+                                const int plane) {
   int kept = 0;
   const float4 first = polygon[0];
   float4 a = first;
@@ -53,7 +55,8 @@ static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON float4* polygo
       const float4 inside = da >= 0.0f ? a : b, outside = da >= 0.0f ? b : a;
       const float di = da >= 0.0f ? da : db, dd = da >= 0.0f ? db : da;
       float4 hit = inside + (outside - inside) * (di / (di - dd));
-      if (plane == CLPV_CLIP_PLANES - 1) hit.zw = CLPV_IS_ORTHOGRAPHIC(view) ? hit.zw : (float2)(view.near_depth);
+      if (plane == CLPV_CLIP_PLANES - 1)
+        hit.zw = CLPV_IS_ORTHOGRAPHIC(view) ? hit.zw : (float2)(view.near_depth);
       polygon[CLPV_CORNER(kept++)] = hit;
     }
     a = b;
@@ -61,11 +64,12 @@ static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON float4* polygo
   return kept;
 }
 
-// Clips the triangle that is the first three corners of `polygon`. Returns the number of corners; 0 if nothing is left. The
-// near plane comes first, since the guard planes intersect in the eye.
+// Clips the triangle that is the first three corners of `polygon`. Returns the number of corners; 0
+// if nothing is left. The near plane comes first, since the guard planes intersect in the eye.
 static inline int clip_polygon(const ClpvView view, CLPV_POLYGON float4* polygon) {
   int count = 3;
-  for (int plane = CLPV_CLIP_PLANES - 1; plane >= 0; --plane) count = clip_by_plane(view, polygon, count, plane);
+  for (int plane = CLPV_CLIP_PLANES - 1; plane >= 0; --plane)
+    count = clip_by_plane(view, polygon, count, plane);
   return count < 3 ? 0 : count;
 }
 
@@ -78,7 +82,8 @@ typedef struct {
   float key[CLPV_CLIP_CORNERS + W];
 } Outline;
 
-static inline void project_polygon(const ClpvView view, const float4* polygon, const int corners, Outline* outline) {
+static inline void project_polygon(const ClpvView view, const float4* polygon, const int corners,
+                                   Outline* outline) {
   for (int k = 0; k < CLPV_CLIP_CORNERS + W; ++k) {
     const float4 at = polygon[k < corners ? k : 0];
     const ViewPoint point = {(realW)(at.x), (realW)(at.y), (realW)(at.w), (realW)(at.z)};
@@ -92,13 +97,15 @@ static inline void project_polygon(const ClpvView view, const float4* polygon, c
 // Corners k to k + W - 1.
 static inline ScreenCorner outline_corners(const ClpvView view, const Outline* outline,
                                            const int k) {
-  const ScreenCorner corner = {load_lanes(outline->x + k), load_lanes(outline->y + k), load_lanes(outline->key + k)};
+  const ScreenCorner corner = {load_lanes(outline->x + k), load_lanes(outline->y + k),
+                               load_lanes(outline->key + k)};
   return corner;
 }
 
 // The first corner, W times.
 static inline ScreenCorner outline_apex(const ClpvView view, const Outline* outline) {
-  const ScreenCorner corner = {(intW)(outline->x[0]), (intW)(outline->y[0]), (realW)(outline->key[0])};
+  const ScreenCorner corner = {(intW)(outline->x[0]), (intW)(outline->y[0]),
+                               (realW)(outline->key[0])};
   return corner;
 }
 

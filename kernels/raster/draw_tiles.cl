@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: MIT
-// Finds the nearest triangle of each pixel: depth test of the triangles that rasterize.cl listed for a tile.
+// Finds the nearest triangle of each pixel: depth test of the triangles that rasterize.cl listed
+// for a tile.
 //
-//   inside: no edge function e_i(x, y) is negative;   key(x, y) = key + x key_x + y key_y, smaller is nearer
+//   inside: no edge function e_i(x, y) is negative;   key(x, y) = key + x key_x + y key_y, smaller
+//                                                     is nearer
 //
-// Tiled rasterisation with integer edge functions (Pineda 1988, 'A parallel algorithm for polygon rasterization';
-// docs/method.md, 'Rasterize'). A pixel keeps the smallest key, and of equal keys the smallest triangle number: results
-// do not depend on the order of the lists.
+// Tiled rasterisation with integer edge functions (Pineda 1988, 'A parallel algorithm for polygon
+// rasterization'; docs/method.md, 'Rasterize'). A pixel keeps the smallest key, and of equal keys
+// the smallest triangle number: results do not depend on the order of the lists.
 //
 // In:      list          ClpvRasterTriangle of the view
 //          starts        index in `binned` of the first entry of each slice of each tile
 //          binned        entries: index in `list`, smallest key
-//          counts        CLPV_LISTED and so on. With more entries than most_entered, `starts` and `binned` are
-//                        incomplete: every tile then draws the whole list, which is slow
+//          counts        CLPV_LISTED and so on. With more entries than most_entered, `starts` and
+//                        `binned` are incomplete: every tile then draws the whole list, which is
+//                        slow
 //          fresh         1: tiles start empty; 0: they continue from `keys` and `seen`
 //          vertices, triangles, materials, textures, texels   the scene, for masked materials
-// In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers per row of a tile,
-//                        CLPV_TILE rows per tile, tiles row by row; INFINITY and UINT_MAX for empty pixels
-// A work-item draws W columns of a tile: with W 8 all of it, with W 1 a work-group draws eight tiles.
+// In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers
+//                        per row of a tile, CLPV_TILE rows per tile, tiles row by row; INFINITY and
+//                        UINT_MAX for empty pixels
+// A work-item draws W columns of a tile: with W 8 all of it, with W 1 a work-group draws eight
+// tiles.
 #include "lanes.h"
 #include "prefetch.h"
 #include "raster/alpha_mask.h"
@@ -25,8 +30,9 @@
 #include "raster/triangle.h"
 #include "shared/loops.h"
 
-// A work-item's columns while it draws: keys and triangles, rows CLPV_PITCH apart. They are indexed at run time, so with one
-// lane they lie in local memory, columns of a work-group next to each other (GPUs keep private arrays in scratch memory).
+// A work-item's columns while it draws: keys and triangles, rows CLPV_PITCH apart. They are indexed
+// at run time, so with one lane they lie in local memory, columns of a work-group next to each
+// other (GPUs keep private arrays in scratch memory).
 #if W == 1
 #define CLPV_GROUP 64
 #define CLPV_PITCH CLPV_GROUP
@@ -42,13 +48,16 @@ typedef struct {
   float far_key;
 } Tile;
 
-// Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: of a masked material; unused for others.
-CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r, const uint kind,
-                      const bool masked, const Mask* mask, __global const uint* texels) {
+// Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: of a masked material;
+// unused for others.
+CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r,
+                      const uint kind, const bool masked, const Mask* mask,
+                      __global const uint* texels) {
   const realW column = to_realW(lane_numbers());
   const uint triangle = kind & CLPV_TRIANGLE_INDEX;
   const int first_x = (int)(r->first & 0xffffu), first_y = (int)(r->first >> 16);
-  const int top = max(first_y - tile.y, 0), bottom = min((int)(r->last >> 16) - tile.y, CLPV_TILE - 1);
+  const int top = max(first_y - tile.y, 0),
+            bottom = min((int)(r->last >> 16) - tile.y, CLPV_TILE - 1);
   Edges edges;
   edges_at(r, tile.x, tile.y + top, &edges);
   const realW key_left = r->key + r->key_x * (column + (float)(tile.x - first_x));
@@ -75,7 +84,8 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
   }
 }
 
-CLPV_RARE void draw_masked(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r, const uint kind,
+CLPV_RARE void draw_masked(const ClpvView view, const Tile tile,
+                           __global const ClpvRasterTriangle* r, const uint kind,
                            const Scene scene) {
   Mask mask;
   load_mask(view, kind & CLPV_TRIANGLE_INDEX, scene, &mask);
@@ -92,8 +102,8 @@ static inline float farthest_of(CLPV_COLUMNS const realW* keys) {
   return -min_lane(-largest);
 }
 
-CLPV_INLINE void draw_listed(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r,
-                             const Scene scene) {
+CLPV_INLINE void draw_listed(const ClpvView view, const Tile tile,
+                             __global const ClpvRasterTriangle* r, const Scene scene) {
   const uint kind = r->triangle;
   if (kind & CLPV_TRIANGLE_MASKED) {
     draw_masked(view, tile, r, kind, scene);
@@ -103,14 +113,16 @@ CLPV_INLINE void draw_listed(const ClpvView view, const Tile tile, __global cons
 }
 
 // Draws the `count` triangles of the list whose boxes overlap the tile.
-CLPV_RARE void draw_whole_list(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* list,
-                               const uint count, const Scene scene) {
+CLPV_RARE void draw_whole_list(const ClpvView view, const Tile tile,
+                               __global const ClpvRasterTriangle* list, const uint count,
+                               const Scene scene) {
   const int right = tile.x + W - 1, bottom = tile.y + CLPV_TILE - 1;
   for (uint first = 0; first < count; first += CLPV_LONGEST_LOOP) {
     const uint stop = min(count - first, CLPV_LONGEST_LOOP) + first;
     for (uint i = first; i < stop; ++i) {
       __global const ClpvRasterTriangle* r = list + i;
-      const bool left_of = (int)(r->last & 0xffffu) < tile.x, right_of = (int)(r->first & 0xffffu) > right;
+      const bool left_of =
+          (int)(r->last & 0xffffu)<tile.x, right_of = (int)(r->first & 0xffffu)> right;
       const bool above = (int)(r->last >> 16) < tile.y, below = (int)(r->first >> 16) > bottom;
       if (!(left_of || right_of || above || below)) draw_listed(view, tile, r, scene);
     }
@@ -121,8 +133,9 @@ CLPV_RARE void draw_whole_list(const ClpvView view, const Tile tile, __global co
 #define CLPV_DRAW_AHEAD 2
 
 // Draws the entries binned[first] to binned[end - 1].
-CLPV_INLINE void draw_binned(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* list,
-                             __global const uint2* binned, uint first, const uint end, const Scene scene) {
+CLPV_INLINE void draw_binned(const ClpvView view, const Tile tile,
+                             __global const ClpvRasterTriangle* list, __global const uint2* binned,
+                             uint first, const uint end, const Scene scene) {
   float farthest = farthest_of(tile.keys);  // triangles behind it are hidden
   for (; first < end; first += CLPV_LONGEST_LOOP) {
     const uint stop = min(end - first, CLPV_LONGEST_LOOP) + first;
@@ -139,10 +152,11 @@ CLPV_INLINE void draw_binned(const ClpvView view, const Tile tile, __global cons
 #if W == 1
 __attribute__((reqd_work_group_size(8, CLPV_GROUP / 8, 1)))
 #endif
-__kernel void draw_tiles(const ClpvView view, const uint fresh, __global const ClpvRasterTriangle* list,
-                         __global const uint* starts, __global const uint2* binned,
-                         __global const uint* counts, const uint most_entered,
-                         __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
+__kernel void draw_tiles(const ClpvView view, const uint fresh,
+                         __global const ClpvRasterTriangle* list, __global const uint* starts,
+                         __global const uint2* binned, __global const uint* counts,
+                         const uint most_entered, __global const ClpvVertex* vertices,
+                         __global const ClpvTriangle* triangles,
                          __global const ClpvMaterial* materials, __global const float4* textures,
                          __global const uint* texels, __global realW* keys, __global uintW* seen) {
 #if W == 1
@@ -154,12 +168,14 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
   uintW nearest[CLPV_TILE];
   const uint column = 0;
 #endif
-  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, x = get_global_id(0) / CLPV_TILE_VECTORS,
-             y = get_global_id(1), vector = get_global_id(0) % CLPV_TILE_VECTORS;
+  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE,
+             x = get_global_id(0) / CLPV_TILE_VECTORS, y = get_global_id(1),
+             vector = get_global_id(0) % CLPV_TILE_VECTORS;
   if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
   const uint at = y * tiles_x + x;
   const Scene scene = {vertices, triangles, materials, textures, texels};
-  const Tile tile = {near_keys + column, nearest + column, (int)(x * CLPV_TILE + vector * W), (int)y * CLPV_TILE,
+  const Tile tile = {near_keys + column, nearest + column, (int)(x * CLPV_TILE + vector * W),
+                     (int)y * CLPV_TILE,
                      CLPV_IS_ORTHOGRAPHIC(view) ? view.far_depth : -1.0f / view.far_depth};
   for (int row = 0; row < CLPV_TILE; ++row) {
     tile.keys[row * CLPV_PITCH] = fresh ? (realW)(INFINITY) : keys[tile_row(at, row, vector)];
@@ -168,7 +184,8 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
   if (counts[CLPV_ENTERED] > most_entered || counts[CLPV_ENTERED_TOO_MANY] > 0) {
     draw_whole_list(view, tile, list, counts[CLPV_LISTED], scene);
   } else {
-    draw_binned(view, tile, list, binned, starts[at * CLPV_SLICES], starts[(at + 1) * CLPV_SLICES], scene);
+    draw_binned(view, tile, list, binned, starts[at * CLPV_SLICES], starts[(at + 1) * CLPV_SLICES],
+                scene);
   }
   for (int row = 0; row < CLPV_TILE; ++row) {
     keys[tile_row(at, row, vector)] = tile.keys[row * CLPV_PITCH];
@@ -177,7 +194,8 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, __global const C
 }
 
 // Only depths: a shadow map. One work-item a row of a tile.
-__kernel void resolve_depth(const ClpvView view, __global const realW* keys, __global float* depths) {
+__kernel void resolve_depth(const ClpvView view, __global const realW* keys,
+                            __global float* depths) {
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   store_depth(view, p, keys[p.row], depths);

@@ -22,22 +22,24 @@ typedef struct {
 } TileRange;
 
 static inline TileRange tiles_of(const RasterWords* words, const int lane) {
-  const uint first = (uint)words->word[CLPV_FIRST_WORD][lane], last = (uint)words->word[CLPV_LAST_WORD][lane];
+  const uint first = (uint)words->word[CLPV_FIRST_WORD][lane],
+             last = (uint)words->word[CLPV_LAST_WORD][lane];
   const TileRange tiles = {(int)(first & 0xffffu) / CLPV_TILE, (int)(last & 0xffffu) / CLPV_TILE,
                        (int)(first >> 16) / CLPV_TILE, (int)(last >> 16) / CLPV_TILE};
   return tiles;
 }
 
-// Depth slice of a triangle with this smallest key. Orthographic: slices of equal depth; perspective: one per doubling
-// of the depth.
+// Depth slice of a triangle with this smallest key. Orthographic: slices of equal depth;
+// perspective: one per doubling of the depth.
 static inline uint slice_of(const ClpvView view, const float nearest) {
-  if (CLPV_IS_ORTHOGRAPHIC(view)) return (uint)clamp(nearest * (CLPV_SLICES / view.far_depth), 0.0f, CLPV_SLICES - 1.0f);
+  if (CLPV_IS_ORTHOGRAPHIC(view))
+    return (uint)clamp(nearest * (CLPV_SLICES / view.far_depth), 0.0f, CLPV_SLICES - 1.0f);
   return (uint)clamp((as_int(-1.0f / nearest) - as_int(view.near_depth)) >> 23, 0, CLPV_SLICES - 1);
 }
 
 // Writes an entry for triangle `index` of the list, as the next one of a tile's slice.
-static inline void enter(__global uint* entry, const uint slice, const uint index, const uint nearest,
-                         volatile __global uint* slice_counts) {
+static inline void enter(__global uint* entry, const uint slice, const uint index,
+                         const uint nearest, volatile __global uint* slice_counts) {
   entry[0] = slice;
   entry[1] = atomic_inc(slice_counts + slice);
   entry[2] = index;
@@ -45,16 +47,19 @@ static inline void enter(__global uint* entry, const uint slice, const uint inde
 }
 
 // Edge function of side i of a triangle at pixel (px, py).
-static inline Edge side_of(const RasterWords* words, const int i, const int lane, const int px, const int py) {
-  return edge_between(words->word[i][lane], words->word[4 + i][lane], words->word[i + 1][lane], words->word[5 + i][lane],
-                      px, py);
+static inline Edge side_of(const RasterWords* words, const int i, const int lane, const int px,
+                           const int py) {
+  return edge_between(words->word[i][lane], words->word[4 + i][lane], words->word[i + 1][lane],
+                      words->word[5 + i][lane], px, py);
 }
 
-// Writes entries of a triangle from `at` on, one for each tile of its box that it may cover. Returns the index after
-// the last one.
-static inline uint enter_all(const ClpvView view, const RasterWords* words, const int lane, const uint index, uint at,
-                             __global uint* entries, volatile __global uint* slice_counts) {
-  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE, nearest = (uint)words->word[CLPV_NEAREST_WORD][lane];
+// Writes entries of a triangle from `at` on, one for each tile of its box that it may cover.
+// Returns the index after the last one.
+static inline uint enter_all(const ClpvView view, const RasterWords* words, const int lane,
+                             const uint index, uint at, __global uint* entries,
+                             volatile __global uint* slice_counts) {
+  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE,
+             nearest = (uint)words->word[CLPV_NEAREST_WORD][lane];
   const uint slice = slice_of(view, as_float(nearest));
   const TileRange tiles = tiles_of(words, lane);
   if (tiles.left == tiles.right && tiles.top == tiles.bottom) {
@@ -63,7 +68,8 @@ static inline uint enter_all(const ClpvView view, const RasterWords* words, cons
     return at + 1;
   }
   const int left = tiles.left * CLPV_TILE, top = tiles.top * CLPV_TILE;
-  // Scalars rather than arrays, which compilers write in 8-byte and read in 16-byte units: a store-forwarding stall.
+  // Scalars rather than arrays, which compilers write in 8-byte and read in 16-byte units: a
+  // store-forwarding stall.
   const Edge a = side_of(words, 0, lane, left, top), b = side_of(words, 1, lane, left, top),
              c = side_of(words, 2, lane, left, top);
   long a_left = largest_in_tile(a), b_left = largest_in_tile(b), c_left = largest_in_tile(c);
@@ -74,21 +80,24 @@ static inline uint enter_all(const ClpvView view, const RasterWords* words, cons
         enter(entries + CLPV_ENTRY_WORDS * at++, (y * tiles_x + x) * CLPV_SLICES + slice, index,
               nearest, slice_counts);
       }
-      a_here += CLPV_TILE * a.step_x, b_here += CLPV_TILE * b.step_x, c_here += CLPV_TILE * c.step_x;
+      a_here += CLPV_TILE * a.step_x, b_here += CLPV_TILE * b.step_x,
+          c_here += CLPV_TILE * c.step_x;
     }
     a_left += CLPV_TILE * a.step_y, b_left += CLPV_TILE * b.step_y, c_left += CLPV_TILE * c.step_y;
   }
   return at;
 }
 
-// Reserves `wanted` entries and returns the index of the first. CLPV_ENTERED_TOO_MANY counts overflows of 32 bits.
+// Reserves `wanted` entries and returns the index of the first. CLPV_ENTERED_TOO_MANY counts
+// overflows of 32 bits.
 static inline uint take_entries(volatile __global uint* counts, const uint wanted) {
   const uint at = atomic_add(counts + CLPV_ENTERED, wanted);
   if (at + wanted < at) atomic_inc(counts + CLPV_ENTERED_TOO_MANY);
   return at;
 }
 
-// Appends the triangles of the lanes in `mask`, with their entries. Beyond a capacity it only counts them.
+// Appends the triangles of the lanes in `mask`, with their entries. Beyond a capacity it only
+// counts them.
 CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const intW mask,
                             volatile __global uint* counts, const Capacity capacity,
                             __global ClpvRasterTriangle* list, __global uint* entries,

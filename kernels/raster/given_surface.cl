@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Takes a G-buffer that a caller made, as a surface (surface_row.h).
 //
-// In:   given_places, given_normals   depths [m], or with CLPV_POINTS positions [m] (w unused); normals of any length (w unused)
+// In:   given_places, given_normals   depths [m], or with CLPV_POINTS positions [m] (w unused);
+//                                     normals of any length (w unused)
 // Out:  places, normals               positions have w = 1; normals are unit vectors
-// A pixel has no surface, and depth or w 0, if its depth is not positive, if its normal is 0, or if a number of it is not finite. Normals of unit
-// length, but for rounding, do not change. A work-item takes one of `count` pixels.
+// A pixel has no surface, and depth or w 0, if its depth is not positive, if its normal is 0, or if
+// a number of it is not finite. Normals of unit length, but for rounding, do not change. A
+// work-item takes one of `count` pixels.
 #include "raster/surface_row.h"
 
 // Largest difference of a unit normal's square from 1.
@@ -26,8 +28,9 @@ CLPV_INLINE float4 unit_normal(const float4 n) {
   return (float4)(scale * x, scale * y, scale * z, 0.0f);
 }
 
-__kernel void given_surface(const uint count, __global const Place* given_places, __global const float4* given_normals,
-                            __global Place* places, __global float4* normals) {
+__kernel void given_surface(const uint count, __global const Place* given_places,
+                            __global const float4* given_normals, __global Place* places,
+                            __global float4* normals) {
   const uint i = get_global_id(0);
   if (i >= count) return;
   const Place place = given_places[i];

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Irradiance from a light, without occlusion (shared/light.h). Direct light and RSMs share this definition of cone,
-// range and distance.
+// Irradiance from a light, without occlusion (shared/light.h). Direct light and RSMs share this
+// definition of cone, range and distance.
 //
-//   E = I cone^2 / max(d, d_min)^2      spot and point lights, 0 beyond the range;   E: constant for directional lights
+//   E = I cone^2 / max(d, d_min)^2      spot and point lights, 0 beyond the range;   E: constant
+//                                                                                    for
+//                                                                                    directional
+//                                                                                    lights
 //   E T                                 with CLPV_MEDIUM: T of the path to the light (medium.h)
 #pragma once
 
@@ -14,9 +17,10 @@
 #include "gather/medium.h"
 #endif
 
-// Irradiance [W/m^2] at `position` [m] on a plane across the ray, before attenuation; 0 for an unknown kind. `towards`: unit
-// vector to the light. `to_light` [m]: distance of the light.
-static inline Vec clear_irradiance(const ClpvLight light, const Vec position, Vec* towards, realW* to_light) {
+// Irradiance [W/m^2] at `position` [m] on a plane across the ray, before attenuation; 0 for an
+// unknown kind. `towards`: unit vector to the light. `to_light` [m]: distance of the light.
+static inline Vec clear_irradiance(const ClpvLight light, const Vec position, Vec* towards,
+                                   realW* to_light) {
   const Vec intensity = vec_of(light.intensity), direction = vec_of(light.direction);
   if (light.kind == CLPV_LIGHT_DIRECTIONAL) {
     *towards = vec(-direction.x, -direction.y, -direction.z);
@@ -32,7 +36,8 @@ static inline Vec clear_irradiance(const ClpvLight light, const Vec position, Ve
   if (light.kind != CLPV_LIGHT_SPOT && light.kind != CLPV_LIGHT_POINT) return vec(ZERO, ZERO, ZERO);
   realW attenuation = 1.0f / (distance * distance);
   if (light.kind == CLPV_LIGHT_SPOT) {
-    const realW in_cone = light.cone_offset - light.cone_scale * vec_dot_unfused(*towards, direction);
+    const realW in_cone =
+        light.cone_offset - light.cone_scale * vec_dot_unfused(*towards, direction);
     const realW cone = in_cone > ZERO ? (in_cone < ONE ? in_cone : ONE) : ZERO;
     attenuation *= cone * cone;
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Projects points of the scene to the screen, W at a time (lanes.h).
 //
-// Two triangles that share a corner must project it to the same place, to the bit, in any lane: FP_CONTRACT is off.
+// Two triangles that share a corner must project it to the same place, to the bit, in any lane:
+// FP_CONTRACT is off.
 #pragma once
 
 #pragma OPENCL FP_CONTRACT OFF

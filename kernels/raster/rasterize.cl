@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Sets up the triangles of a view for rasterisation: projects, culls and clips them, and lists the tiles that each may
-// cover (docs/method.md, 'Rasterize').
+// Sets up the triangles of a view for rasterisation: projects, culls and clips them, and lists the
+// tiles that each may cover (docs/method.md, 'Rasterize').
 //
 //   set_up           triangles of the clusters in view
 //   set_up_clipped   those that cross the near plane or the guard band, which set_up defers
 //
-// bin_tiles.cl then sorts the entries by tile, draw_tiles.cl finds the nearest triangle of each pixel, and resolve.cl
-// evaluates its surface.
+// bin_tiles.cl then sorts the entries by tile, draw_tiles.cl finds the nearest triangle of each
+// pixel, and resolve.cl evaluates its surface.
 //
-// In:      vertices, triangles, materials   the scene, in rows of float4: three per vertex, one per triangle
-//          clusters  numbers of the clusters in view, `count` from `first` on; last: number of triangles of the scene
+// In:      vertices, triangles, materials   the scene, in rows of float4: three per vertex, one per
+//                                           triangle
+//          clusters  numbers of the clusters in view, `count` from `first` on; last: number of
+//                    triangles of the scene
 //          cull      1: drop back faces of one-sided materials
-// Out:     list      ClpvRasterTriangle of those that may cover the centre of a pixel, in no particular order
-//          entries   CLPV_ENTRY_WORDS words for each listed triangle and tile of 8 x 8 pixels that it may cover
+// Out:     list      ClpvRasterTriangle of those that may cover the centre of a pixel, in no
+//                    particular order
+//          entries   CLPV_ENTRY_WORDS words for each listed triangle and tile of 8 x 8 pixels that
+//                    it may cover
 //          to_clip   numbers of the triangles that set_up defers
-// In, out: counts    CLPV_LISTED and so on. They count beyond the capacities most_listed and most_entered as well: the
-//                    host then enlarges the lists and starts again, or draw_tiles draws without entries.
+// In, out: counts    CLPV_LISTED and so on. They count beyond the capacities most_listed and
+//                    most_entered as well: the host then enlarges the lists and starts again, or
+//                    draw_tiles draws without entries.
 //          slice_counts   number of entries of each slice of each tile
 // A work-item of set_up takes W triangles.
 #include "raster/clip.h"
@@ -52,11 +57,12 @@ static inline void defer(const intW lanes, const uintW triangle, volatile __glob
   }
 }
 
-__kernel void set_up(const ClpvView view, __global const uint* clusters, const uint first, const uint count,
-                     const uint last, const uint cull, __global const float4* vertices,
-                     __global const float4* triangles, __global const ClpvMaterial* materials,
-                     volatile __global uint* counts, const uint most_listed,
-                     __global ClpvRasterTriangle* list, const uint most_entered, __global uint* entries,
+__kernel void set_up(const ClpvView view, __global const uint* clusters, const uint first,
+                     const uint count, const uint last, const uint cull,
+                     __global const float4* vertices, __global const float4* triangles,
+                     __global const ClpvMaterial* materials, volatile __global uint* counts,
+                     const uint most_listed, __global ClpvRasterTriangle* list,
+                     const uint most_entered, __global uint* entries,
                      volatile __global uint* slice_counts, __global uint* to_clip) {
   const uint item = get_global_id(0), cluster = item / (CLPV_CLUSTER / W);
   if (cluster >= count) return;
@@ -90,10 +96,11 @@ __kernel void set_up(const ClpvView view, __global const uint* clusters, const u
 __attribute__((reqd_work_group_size(CLPV_CLIP_GROUP, 1, 1)))
 #endif
 __kernel void set_up_clipped(const ClpvView view, const uint cull, __global const float4* vertices,
-                             __global const float4* triangles, __global const ClpvMaterial* materials,
-                             volatile __global uint* counts, const uint most_listed, __global ClpvRasterTriangle* list,
-                             const uint most_entered, __global uint* entries, volatile __global uint* slice_counts,
-                             __global uint* to_clip) {
+                             __global const float4* triangles,
+                             __global const ClpvMaterial* materials, volatile __global uint* counts,
+                             const uint most_listed, __global ClpvRasterTriangle* list,
+                             const uint most_entered, __global uint* entries,
+                             volatile __global uint* slice_counts, __global uint* to_clip) {
 #if W == 1
   __local float4 polygons[CLPV_CLIP_CORNERS * CLPV_CLIP_GROUP];
   __local float4* polygon = polygons + get_local_id(0);
@@ -118,7 +125,8 @@ __kernel void set_up_clipped(const ClpvView view, const uint cull, __global cons
       const ScreenTriangles fan = {outline_apex(view, &outline), outline_corners(view, &outline, k),
                                    outline_corners(view, &outline, k + 1), face, (uintW)(triangle),
                                    (uintW)(materials[t.w].flags)};
-      append(view, fan, k + 1 + lane < corners, cull, counts, capacity, list, entries, slice_counts);
+      append(view, fan, k + 1 + lane < corners, cull, counts, capacity, list, entries,
+             slice_counts);
     }
   }
 }

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Evaluates the surface of each pixel from the triangle that draw_tiles.cl found: depth, normal, albedo and emission
-// for the camera, flux for a reflective shadow map.
+// Evaluates the surface of each pixel from the triangle that draw_tiles.cl found: depth, normal,
+// albedo and emission for the camera, flux for a reflective shadow map.
 //
-//   P = albedo E A      [W]   E the light's irradiance across the ray, A the texel's footprint      (docs/method.md,
-//                                                                                                   'Rasterize')
+//   P = albedo E A      [W]   E the light's irradiance across the ray, A the texel's footprint
 //
-// Reflective shadow maps: Dachsbacher and Stamminger 2005.
+// docs/method.md, 'Rasterize'. Reflective shadow maps: Dachsbacher and Stamminger 2005.
 //
 // In:   keys, seen    depth key and triangle of each pixel (draw_tiles.cl)
-//       vertices, triangles, materials, textures, texels   the scene, in rows of float4 (shared/mesh.h)
+//       vertices, triangles, materials, textures, texels   the scene, in rows of float4
+//                                                          (shared/mesh.h)
 //       colour_scale  Surface::colour_scale: flux [W] of a stored 1
 // Out:  depths        [m] along the view's forward axis, 0 for empty pixels
-//       normals       unit, towards the viewer; colours: albedo; emissives: radiance [W/m^2/sr]; fluxes: P [W]
-// A work-item evaluates W pixels of a row. It selects instead of branching: empty pixels evaluate triangle
-// 0, and materials without a texture have a white one. From the host: CLPV_ORTHOGRAPHIC, CLPV_SURFACE_PAPER,
-// CLPV_TEXTURED (the scene has textures), CLPV_COLOURED (vertex colours other than 1), CLPV_EMISSIVE (emissive
-// materials), CLPV_FROM_LIGHT (1: resolve_rsm, 0: resolve_camera).
+//       normals       unit, towards the viewer; colours: albedo; emissives: radiance [W/m^2/sr];
+//                     fluxes: P [W]
+// A work-item evaluates W pixels of a row. It selects instead of branching: empty pixels evaluate
+// triangle 0, and materials without a texture have a white one. From the host: CLPV_ORTHOGRAPHIC,
+// CLPV_SURFACE_PAPER, CLPV_TEXTURED (the scene has textures), CLPV_COLOURED (vertex colours other
+// than 1), CLPV_EMISSIVE (emissive materials), CLPV_FROM_LIGHT (1: resolve_rsm, 0: resolve_camera).
 #include "lanes.h"
 #include "raster/lighting.h"
 #include "raster/scene_triangles.h"
@@ -34,8 +35,8 @@ typedef struct {
 } PixelSurface;
 
 // Change of uv on a face for a step of `by` [m] across the view, from pixel to pixel.
-static inline Uv uv_step(const Face face, const Weights weights, const Vec along, const Vec by, const Uv uv1,
-                         const Uv uv2) {
+static inline Uv uv_step(const Face face, const Weights weights, const Vec along, const Vec by,
+                         const Uv uv1, const Uv uv2) {
   const Vec on_face = vec_add_scaled(by, -vec_dot(face.normal, by), along);
   const realW w1 = vec_dot(on_face, weights.gradient1), w2 = vec_dot(on_face, weights.gradient2);
   const Uv step = {w1 * uv1.u + w2 * uv2.u, w1 * uv1.v + w2 * uv2.v};
@@ -43,8 +44,8 @@ static inline Uv uv_step(const Face face, const Weights weights, const Vec along
 }
 
 // Evaluates the surface of each lane's triangle at `depth` [m] behind its pixel.
-CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const realW depth, const uintW triangle,
-                                  CLPV_SCENE, PixelSurface* surface) {
+CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const realW depth,
+                                  const uintW triangle, CLPV_SCENE, PixelSurface* surface) {
   TriangleLanes t;
   load_triangles(CLPV_PASS_SCENE, triangle, &t);
   const VertexAttributes a = t.a, b = t.b, c = t.c;
@@ -56,7 +57,8 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const r
   const realW facing = vec_dot(face.normal, ray);
 
   const realW towards_viewer = facing > ZERO ? (realW)(-1.0f) : ONE;
-  surface->normal = normal_towards(vec_times(face.normal, towards_viewer), vec_blend(w, a.normal, b.normal, c.normal));
+  surface->normal = normal_towards(vec_times(face.normal, towards_viewer),
+                                   vec_blend(w, a.normal, b.normal, c.normal));
   surface->albedo = material.base_colour;
 #if CLPV_EMISSIVE
   surface->emissive = material.emissive;
@@ -75,17 +77,21 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const r
   const Uv step_y = uv_step(face, weights, along, down, uv1, uv2);
   apply_texture(textures, texels, material.texture, uv, step_x, step_y, &surface->albedo);
 #if CLPV_EMISSIVE
-  apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y, &surface->emissive);
+  apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y,
+                &surface->emissive);
 #endif
 #endif
 }
 
-// Evaluates the surfaces of W pixels and stores their depths. `hit`: mask of the pixels that are not empty.
-CLPV_INLINE void resolve(const ClpvView view, const PixelRow p, __global const realW* keys, __global const uintW* seen,
-                         CLPV_SCENE, __global float* depths, intW* hit, PixelSurface* surface) {
+// Evaluates the surfaces of W pixels and stores their depths. `hit`: mask of the pixels that are
+// not empty.
+CLPV_INLINE void resolve(const ClpvView view, const PixelRow p, __global const realW* keys,
+                         __global const uintW* seen, CLPV_SCENE, __global float* depths, intW* hit,
+                         PixelSurface* surface) {
   const realW key = keys[p.row];
   *hit = key < (realW)(INFINITY);
-  evaluate_surface(view, p, hit_depth(view, key), *hit ? seen[p.row] : (uintW)(0u), CLPV_PASS_SCENE, surface);
+  evaluate_surface(view, p, hit_depth(view, key), *hit ? seen[p.row] : (uintW)(0u), CLPV_PASS_SCENE,
+                   surface);
   store_depth(view, p, key, depths);
 }
 
@@ -94,8 +100,9 @@ CLPV_INLINE void resolve(const ClpvView view, const PixelRow p, __global const r
 __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
                              __global const uintW* seen, __global const float4* vertices,
                              __global const float4* triangles, __global const float4* materials,
-                             __global const float4* textures, __global const uint* texels, __global float* depths,
-                             __global SurfaceTexel* normals, __global SurfaceTexel* colours
+                             __global const float4* textures, __global const uint* texels,
+                             __global float* depths, __global SurfaceTexel* normals,
+                             __global SurfaceTexel* colours
 #if CLPV_EMISSIVE
                              ,
                              __global float4* emissives
@@ -121,9 +128,9 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
 __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global const realW* keys,
                           __global const uintW* seen, __global const float4* vertices,
                           __global const float4* triangles, __global const float4* materials,
-                          __global const float4* textures, __global const uint* texels, __global float* depths,
-                          __global SurfaceTexel* normals, __global SurfaceTexel* fluxes,
-                          const float colour_scale) {
+                          __global const float4* textures, __global const uint* texels,
+                          __global float* depths, __global SurfaceTexel* normals,
+                          __global SurfaceTexel* fluxes, const float colour_scale) {
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
@@ -135,7 +142,8 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global c
                                  row_footprints(view, p, depth));
   const uint first = p.py * view.width + p.px;
   store_normals(p, vec_masked(hit, surface.normal), normals + first);
-  store_colours(p, vec_masked(hit, vec_product(surface.albedo, incident)), colour_scale, fluxes + first);
+  store_colours(p, vec_masked(hit, vec_product(surface.albedo, incident)), colour_scale,
+                fluxes + first);
 }
 
 #endif

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Attributes of W triangles of the scene: corners, materials and textures (shared/mesh.h).
 //
-// From the host: CLPV_COLOURED (vertex colours other than 1) and CLPV_EMISSIVE (emissive materials).
+// From the host: CLPV_COLOURED (vertex colours other than 1) and CLPV_EMISSIVE (emissive
+// materials).
 #pragma once
 
 #include "lanes.h"
@@ -15,9 +16,10 @@
 #endif
 
 // Parameters of the scene's buffers, in rows of float4.
-#define CLPV_SCENE                                                                                     \
-  __global const float4 *vertices, __global const float4 *triangles, __global const float4 *materials, \
-      __global const float4 *textures, __global const uint *texels
+#define CLPV_SCENE                                                       \
+  __global const float4 *vertices, __global const float4 *triangles,     \
+      __global const float4 *materials, __global const float4 *textures, \
+      __global const uint *texels
 #define CLPV_PASS_SCENE vertices, triangles, materials, textures, texels
 
 // Attributes of one corner of each lane's triangle.
@@ -27,7 +29,8 @@ typedef struct {
   Vec colour;
 } VertexAttributes;
 
-CLPV_INLINE void load_corner(__global const float4* vertices, const uintW index, VertexAttributes* corner) {
+CLPV_INLINE void load_corner(__global const float4* vertices, const uintW index,
+                             VertexAttributes* corner) {
   Rows first, second;
   gather_rows(vertices, 3u * index, &first);
   gather_rows(vertices + 1, 3u * index, &second);
@@ -47,7 +50,8 @@ typedef struct {
   uintW texture, emissive_texture, flags;
 } MaterialLanes;
 
-CLPV_INLINE void load_material(__global const float4* materials, const uintW index, MaterialLanes* material) {
+CLPV_INLINE void load_material(__global const float4* materials, const uintW index,
+                               MaterialLanes* material) {
   Rows base, textures;
   gather_rows(materials, 3u * index, &base);
   gather_rows(materials + 2, 3u * index, &textures);
@@ -57,7 +61,8 @@ CLPV_INLINE void load_material(__global const float4* materials, const uintW ind
 #if CLPV_EMISSIVE
   Rows emissive;
   gather_rows(materials + 1, 3u * index, &emissive);
-  material->emissive = vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
+  material->emissive =
+      vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
   material->emissive_texture = as_uintW(CLPV_COLUMN(textures, y));
 #endif
 }
@@ -77,13 +82,14 @@ CLPV_INLINE void load_triangles(CLPV_SCENE, const uintW number, TriangleLanes* t
   load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), &t->material);
 }
 
-// Interpolated normal of length 1, flipped to the side of `front`. Near a silhouette the interpolated normal itself may
-// point to the other side.
+// Interpolated normal of length 1, flipped to the side of `front`. Near a silhouette the
+// interpolated normal itself may point to the other side.
 static inline Vec normal_towards(const Vec front, const Vec interpolated) {
   const intW usable = vec_dot(interpolated, interpolated) > ZERO;
   const Vec normal = vec(usable ? interpolated.x : front.x, usable ? interpolated.y : front.y,
                          usable ? interpolated.z : front.z);
-  return vec_times(normal, (vec_dot(normal, front) < ZERO ? -ONE : ONE) / sqrt(vec_dot(normal, normal)));
+  return vec_times(normal,
+                   (vec_dot(normal, front) < ZERO ? -ONE : ONE) / sqrt(vec_dot(normal, normal)));
 }
 
 CLPV_INLINE void apply_texture(__global const float4* textures, __global const uint* texels,

@@ -23,7 +23,8 @@ typedef struct {
 static inline intW smallest(const intW a, const intW b, const intW c) { return min(a, min(b, c)); }
 static inline intW largest(const intW a, const intW b, const intW c) { return max(a, max(b, c)); }
 
-// First pixel whose centre is at or after a sub-pixel coordinate, and last pixel whose centre is at or before it.
+// First pixel whose centre is at or after a sub-pixel coordinate, and last pixel whose centre is at
+// or before it.
 static inline intW first_centre(const intW at) { return (at + CLPV_SUBPIXELS / 2 - 1) >> 8; }
 static inline intW last_centre(const intW at) { return (at - CLPV_SUBPIXELS / 2) >> 8; }
 
@@ -49,13 +50,14 @@ static inline intW winding(const ScreenTriangles t) {
   return clockwise ? (intW)(1) : (other ? (intW)(-1) : (intW)(0));
 }
 
-// Edge function at the upper left pixel of a box of at most 2 x 2 pixels, and its change across the box. 0 in lanes
-// outside `tiny`, whose coordinates may not fit 32 bits.
+// Edge function at the upper left pixel of a box of at most 2 x 2 pixels, and its change across the
+// box. 0 in lanes outside `tiny`, whose coordinates may not fit 32 bits.
 typedef struct {
   intW value, step_x, step_y;
 } TinyEdge;
 
-static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, const Box box, const intW tiny) {
+static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, const Box box,
+                                 const intW tiny) {
   const intW dx = (q.x - p.x) & tiny, dy = (q.y - p.y) & tiny;
   const intW to_x = (box.left * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.x) & tiny;
   const intW to_y = (box.top * CLPV_SUBPIXELS + CLPV_SUBPIXELS / 2 - p.y) & tiny;
@@ -67,13 +69,14 @@ static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, con
   return edge;
 }
 
-// Mask of the triangles with a box of at most 2 x 2 pixels that cover none of its centres. Exact; about 33 % of them
-// miss.
+// Mask of the triangles with a box of at most 2 x 2 pixels that cover none of its centres. Exact;
+// about 33 % of them miss.
 static inline intW misses(const ScreenTriangles t, const Box box) {
   const intW tiny = all_bits(box.small & (box.right - box.left <= 1) & (box.bottom - box.top <= 1));
   const TinyEdge e0 = tiny_edge(t.a, t.b, box, tiny), e1 = tiny_edge(t.b, t.c, box, tiny),
                  e2 = tiny_edge(t.c, t.a, box, tiny);
-  const intW right0 = e0.value + e0.step_x, right1 = e1.value + e1.step_x, right2 = e2.value + e2.step_x;
+  const intW right0 = e0.value + e0.step_x, right1 = e1.value + e1.step_x,
+             right2 = e2.value + e2.step_x;
   const intW out = (e0.value | e1.value | e2.value) & (right0 | right1 | right2) &
                    (e0.value + e0.step_y | e1.value + e1.step_y | e2.value + e2.step_y) &
                    (right0 + e0.step_y | right1 + e1.step_y | right2 + e2.step_y);
@@ -81,12 +84,15 @@ static inline intW misses(const ScreenTriangles t, const Box box) {
 }
 
 // Converts to the words of ClpvRasterTriangle.
-CLPV_INLINE void write_words(const ClpvView view, const ScreenTriangles t, const Box box, RasterWords* words) {
-  const realW nearest = fmin(t.a.key, fmin(t.b.key, t.c.key)), farthest = fmax(t.a.key, fmax(t.b.key, t.c.key));
+CLPV_INLINE void write_words(const ClpvView view, const ScreenTriangles t, const Box box,
+                             RasterWords* words) {
+  const realW nearest = fmin(t.a.key, fmin(t.b.key, t.c.key)),
+              farthest = fmax(t.a.key, fmax(t.b.key, t.c.key));
   const Vec plane = find_key_plane(view, t.face, to_realW(box.left), to_realW(box.top));
   const intW edge_on = (isfinite(plane.x) & isfinite(plane.y) & isfinite(plane.z)) == 0;
-  const uintW kinds = (box.giant ? (uintW)(CLPV_TRIANGLE_GIANT) : (uintW)(0u)) |
-                      ((t.flags & CLPV_MATERIAL_MASKED) != 0u ? (uintW)(CLPV_TRIANGLE_MASKED) : (uintW)(0u));
+  const uintW kinds =
+      (box.giant ? (uintW)(CLPV_TRIANGLE_GIANT) : (uintW)(0u)) |
+      ((t.flags & CLPV_MATERIAL_MASKED) != 0u ? (uintW)(CLPV_TRIANGLE_MASKED) : (uintW)(0u));
   store_lanes(t.a.x, words->word[0]);
   store_lanes(t.b.x, words->word[1]);
   store_lanes(t.c.x, words->word[2]);
@@ -105,9 +111,11 @@ CLPV_INLINE void write_words(const ClpvView view, const ScreenTriangles t, const
   store_lanes(as_intW(t.triangle | kinds), words->word[15]);
 }
 
-// Appends the triangles of the lanes in `mask`, except those that cover no pixel's centre and culled back faces.
-CLPV_INLINE void append(const ClpvView view, ScreenTriangles t, intW mask, const uint cull, volatile __global uint* counts,
-                        const Capacity capacity, __global ClpvRasterTriangle* list, __global uint* entries,
+// Appends the triangles of the lanes in `mask`, except those that cover no pixel's centre and
+// culled back faces.
+CLPV_INLINE void append(const ClpvView view, ScreenTriangles t, intW mask, const uint cull,
+                        volatile __global uint* counts, const Capacity capacity,
+                        __global ClpvRasterTriangle* list, __global uint* entries,
                         volatile __global uint* slice_counts) {
   const intW wound = winding(t);
   const intW one_sided = (t.flags & CLPV_MATERIAL_DOUBLE_SIDED) == 0u;

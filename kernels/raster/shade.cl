@@ -6,7 +6,8 @@
 // light_surfaces
 //   In:      depths [m], normals   the camera's surface (surface.h)
 //            light, views, count   the light and its views; count 0: no shadows
-//            which, map            the view whose receivers to light, and its shadow map: depths [m]
+//            which, map            the view whose receivers to light, and its shadow map: depths
+//                                  [m]
 //            fresh                 1: overwrite `direct`; 0: add to it
 //   In, out: direct                E_direct [W/m^2] per pixel
 //   A work-item lights W pixels of a row.
@@ -18,8 +19,9 @@
 #include "raster/surface.h"
 #include "raster/surface_row.h"
 
-__kernel void light_surfaces(const ClpvView camera, __global const float* depths, __global const float4* normals,
-                             const ClpvLight light, __global const ClpvView* views, const uint count, const uint which,
+__kernel void light_surfaces(const ClpvView camera, __global const float* depths,
+                             __global const float4* normals, const ClpvLight light,
+                             __global const ClpvView* views, const uint count, const uint which,
                              __global const float* map, const uint fresh, __global float4* direct) {
   const PixelRow p = find_pixel_row(camera);
   if (p.count == 0) return;
@@ -37,8 +39,8 @@ __kernel void light_surfaces(const ClpvView camera, __global const float* depths
 
 __kernel void shade(const uint show, const uint pixels, __global const float* depths,
                     __global const SurfaceTexel* normals, __global const SurfaceTexel* albedos,
-                    __global const float4* emissive, __global const float4* direct, __global const float4* indirect,
-                    __global float4* image) {
+                    __global const float4* emissive, __global const float4* direct,
+                    __global const float4* indirect, __global float4* image) {
   const uint pixel = get_global_id(0);
   if (pixel >= pixels) return;
   const float depth = depths[pixel];
@@ -52,7 +54,8 @@ __kernel void shade(const uint show, const uint pixels, __global const float* de
     shown += albedo * M_1_PI_F * direct[pixel].xyz;
     if (emissive) shown += emissive[pixel].xyz;
   }
-  if (show == CLPV_SHOW_FULL || show == CLPV_SHOW_INDIRECT) shown += albedo * M_1_PI_F * indirect[pixel].xyz;
+  if (show == CLPV_SHOW_FULL || show == CLPV_SHOW_INDIRECT)
+    shown += albedo * M_1_PI_F * indirect[pixel].xyz;
   if (show == CLPV_SHOW_IRRADIANCE) shown = indirect[pixel].xyz;
   if (show == CLPV_SHOW_ALBEDO) shown = albedo;
   if (show == CLPV_SHOW_NORMAL) shown = load_normal(normals, pixel);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Irradiance of a light with shadow maps on W surfaces, for shade.cl and near_light.cl, and whether it reaches
-// points in the air, for media.
+// Irradiance of a light with shadow maps on W surfaces, for shade.cl and near_light.cl, and whether
+// it reaches points in the air, for media.
 //
-// The shadow filter has 4 x 4 taps: a box of three texels at any sub-texel position, hence the weight clamp(2 -
-// |distance|, 0, 1) per texel and axis. Each texel's depth is compared with the depth of the receiver's tangent plane
-// at that texel. A flat receiver of any slope then does not shadow itself. A lift along the normal (shared/shade.h)
-// covers rounding, interpolated normals and corners; occluders closer than the lift cast no shadow.
+// The shadow filter has 4 x 4 taps: a box of three texels at any sub-texel position, hence the
+// weight clamp(2 - |distance|, 0, 1) per texel and axis. Each texel's depth is compared with the
+// depth of the receiver's tangent plane at that texel. A flat receiver of any slope then does not
+// shadow itself. A lift along the normal (shared/shade.h) covers rounding, interpolated normals and
+// corners; occluders closer than the lift cast no shadow.
 #pragma once
 
 #include "lanes.h"
@@ -14,7 +15,8 @@
 #include "shared/view.h"
 #include "vec.h"
 
-// W receivers in a shadow map, with their lifted tangent planes. At the texel (dx, dy) from the receiver a plane
+// W receivers in a shadow map, with their lifted tangent planes. At the texel (dx, dy) from the
+// receiver a plane
 // has depth d with d (a + per_depth g) = b - (1 - per_depth) g,  g = dx slope_x + dy slope_y.
 typedef struct {
   realW x, y;  // pixel coordinates
@@ -24,15 +26,16 @@ typedef struct {
   float per_depth;  // 1: perspective, 0: orthographic
 } Receivers;
 
-// Sets up receivers. `offset`: from the light's eye to the surfaces [m]; `cosine`: between normal and direction to the
-// light.
-CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec normal, const realW cosine,
-                                Receivers* r) {
+// Sets up receivers. `offset`: from the light's eye to the surfaces [m]; `cosine`: between normal
+// and direction to the light.
+CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec normal,
+                                const realW cosine, Receivers* r) {
   const Vec right = vec_of(view.right), up = vec_of(view.up), forward = vec_of(view.forward);
   const realW scale = view.orthographic != 0.0f ? ONE : vec_dot_unfused(offset, forward);
   const realW sx = vec_dot_unfused(offset, right) / scale, sy = vec_dot_unfused(offset, up) / scale;
   const float width = (float)view.width, height = (float)view.height;
-  const float edge_x = 2.0f * view.half_width / width, edge_y = -2.0f * view.half_height / height;  // at depth 1
+  // At depth 1.
+  const float edge_x = 2.0f * view.half_width / width, edge_y = -2.0f * view.half_height / height;
   const realW square = 1.0f - cosine * cosine;
   const realW sine = sqrt(square > ZERO ? square : ZERO);
   const realW lift = scale * edge_x * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
@@ -48,15 +51,16 @@ CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec
   r->depth = r->b / r->a;
 }
 
-// First texel of the filter of each of W receivers along an axis, and its distance [texels] from the filter's
-// centre.
+// First texel of the filter of each of W receivers along an axis, and its distance [texels] from
+// the filter's centre.
 typedef struct {
   intW first;
   realW distance;
 } Taps;
 
 static inline Taps find_taps(const realW texel, const int size) {
-  const realW lowest = (realW)(-(float)CLPV_SHADOW_TAPS), highest = (realW)((float)(size + CLPV_SHADOW_TAPS));
+  const realW lowest = (realW)(-(float)CLPV_SHADOW_TAPS),
+              highest = (realW)((float)(size + CLPV_SHADOW_TAPS));
   const realW at = texel > lowest ? (texel < highest ? texel : highest) : lowest;
   const intW whole = to_intW(at), below = to_realW(whole) > at ? whole - 1 : whole;
   Taps t;
@@ -80,19 +84,24 @@ typedef struct {
 static inline float8 side_by_side(const float4 a, const float4 b) {
   return (float8)(a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
 }
-static inline float8 two_rows(const float2 a) { return (float8)(a.x, a.x, a.x, a.x, a.y, a.y, a.y, a.y); }
+static inline float8 two_rows(const float2 a) {
+  return (float8)(a.x, a.x, a.x, a.x, a.y, a.y, a.y, a.y);
+}
 
-// Filter weights of the occluding texels of two rows; 0 for the others. `d`: depths of the texels [m].
-CLPV_INLINE float8 blocked_weights(const Receiver r, const float8 d, const float2 dy, const float8 wx, const float2 wy) {
+// Filter weights of the occluding texels of two rows; 0 for the others. `d`: depths of the texels
+// [m].
+CLPV_INLINE float8 blocked_weights(const Receiver r, const float8 d, const float2 dy,
+                                   const float8 wx, const float2 wy) {
   const float8 weights = wx * two_rows(wy);
   const float8 g = side_by_side(r.dx, r.dx) * r.slope_x + two_rows(dy) * r.slope_y;
   const int8 before = d * (r.a + r.per_depth * g) > r.b - (1.0f - r.per_depth) * g;
   return select((float8)(0.0f), weights, (d > 0.0f) & before & (d < r.depth));
 }
 
-// Weight of a receiver's occluding texels; `whole`: weight of all of its texels, 0 outside the map. `row`: first row of
-// the filter.
-CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, const uint width, float* whole) {
+// Weight of a receiver's occluding texels; `whole`: weight of all of its texels, 0 outside the map.
+// `row`: first row of the filter.
+CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, const uint width,
+                                 float* whole) {
   const float4 wx = tap_weights(r.dx), wy = tap_weights(r.dy), one = 1.0f;
   const float8 upper = side_by_side(vload4(0, row), vload4(0, row + width));
   const float8 lower = side_by_side(vload4(0, row + 2 * width), vload4(0, row + 3 * width));
@@ -103,8 +112,10 @@ CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, co
   return dot(blocked, one);
 }
 
-// Visible share of the light at W receivers in [0, 1]; 1 outside the map and outside the mask `lit`.
-CLPV_INLINE realW find_visibility(const ClpvView view, __global const float* map, const Receivers r, const intW lit) {
+// Visible share of the light at W receivers in [0, 1]; 1 outside the map and outside the mask
+// `lit`.
+CLPV_INLINE realW find_visibility(const ClpvView view, __global const float* map, const Receivers r,
+                                  const intW lit) {
   const Taps tx = find_taps(r.x, (int)view.width), ty = find_taps(r.y, (int)view.height);
   int wanted[W], first[W];
   float distance_x[W], distance_y[W], slope_x[W], slope_y[W];
@@ -118,17 +129,19 @@ CLPV_INLINE realW find_visibility(const ClpvView view, __global const float* map
   for (int i = 0; i < W; ++i) {
     blocked[i] = whole[i] = 0.0f;
     if (!wanted[i]) continue;
-    const Receiver receiver = {step + distance_x[i], step + distance_y[i], slope_x[i], slope_y[i], a[i], b[i], depth[i],
-                               r.per_depth};
+    const Receiver receiver = {
+        step + distance_x[i], step + distance_y[i], slope_x[i], slope_y[i], a[i], b[i], depth[i],
+        r.per_depth};
     blocked[i] = blocked_weight(receiver, map + first[i], view.width, whole + i);
   }
   const realW all = load_lanes(whole);
   return all > ZERO ? ONE - load_lanes(blocked) / all : ONE;
 }
 
-// Mask of the points that view `which` covers: among views sharing an eye, the one facing `offset` most
-// directly; on a tie, the first.
-CLPV_INLINE intW view_covers(__global const ClpvView* views, const uint count, const uint which, const Vec offset) {
+// Mask of the points that view `which` covers: among views sharing an eye, the one facing `offset`
+// most directly; on a tie, the first.
+CLPV_INLINE intW view_covers(__global const ClpvView* views, const uint count, const uint which,
+                             const Vec offset) {
   const ClpvView mine = views[which];
   const realW along = vec_dot_unfused(offset, vec_of(mine.forward));
   intW seen = (intW)(-1);
@@ -148,10 +161,10 @@ typedef struct {
   __global const float* map;  // depths [m]
 } ShadowMap;
 
-// Irradiance [W/m^2] of a light on the surfaces that its view covers. `lit`: mask of the surfaces to light; becomes that
-// of the lit ones, outside which the result is undefined.
-CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shadow, const Vec position,
-                                    const Vec normal, intW* lit) {
+// Irradiance [W/m^2] of a light on the surfaces that its view covers. `lit`: mask of the surfaces
+// to light; becomes that of the lit ones, outside which the result is undefined.
+CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shadow,
+                                    const Vec position, const Vec normal, intW* lit) {
   Vec towards;
   Vec irradiance = light_irradiance(light, position, &towards);
   const realW cosine = vec_dot_unfused(normal, towards);
@@ -166,8 +179,8 @@ CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shado
   return vec_times(irradiance, find_visibility(view, shadow.map, r, *lit));
 }
 
-// 1 where the light reaches points in the air, else 0: the nearest texel of its map. 0 too where another view of the light covers
-// them.
+// 1 where the light reaches points in the air, else 0: the nearest texel of its map. 0 too where
+// another view of the light covers them.
 CLPV_INLINE realW light_reaches(const ShadowMap shadow, const Vec position) {
   if (shadow.count == 0) return ONE;
   const ClpvView view = shadow.views[shadow.which];
@@ -175,12 +188,17 @@ CLPV_INLINE realW light_reaches(const ShadowMap shadow, const Vec position) {
   const realW depth = vec_dot_unfused(offset, vec_of(view.forward));
   const realW scale = view.orthographic != 0.0f ? ONE : depth;
   const float width = (float)view.width, height = (float)view.height;
-  const realW x = (vec_dot_unfused(offset, vec_of(view.right)) / (scale * view.half_width) + 1.0f) * (0.5f * width);
-  const realW y = (1.0f - vec_dot_unfused(offset, vec_of(view.up)) / (scale * view.half_height)) * (0.5f * height);
-  const intW in_map = (x >= ZERO) & (y >= ZERO) & (x < (realW)(width)) & (y < (realW)(height)) & (depth > ZERO);
+  const realW x = (vec_dot_unfused(offset, vec_of(view.right)) / (scale * view.half_width) + 1.0f) *
+                  (0.5f * width);
+  const realW y = (1.0f - vec_dot_unfused(offset, vec_of(view.up)) / (scale * view.half_height)) *
+                  (0.5f * height);
+  const intW in_map =
+      (x >= ZERO) & (y >= ZERO) & (x < (realW)(width)) & (y < (realW)(height)) & (depth > ZERO);
   const uintW texel = in_map ? to_uintW(y) * view.width + to_uintW(x) : (uintW)(0u);
   const realW nearest = (realW)CLPV_GATHER(shadow.map, texel);
   const intW blocked = in_map & (nearest > ZERO) & (nearest < depth);
   const realW lit = blocked ? ZERO : ONE;
-  return shadow.count > 1 ? (view_covers(shadow.views, shadow.count, shadow.which, offset) ? lit : ZERO) : lit;
+  return shadow.count > 1
+             ? (view_covers(shadow.views, shadow.count, shadow.which, offset) ? lit : ZERO)
+             : lit;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Surfaces of a view, pixel by pixel: position, ray and footprint (shared/view.h), and stored normal and colour.
+// Surfaces of a view, pixel by pixel: position, ray and footprint (shared/view.h), and stored
+// normal and colour.
 //
 //   position = eye + d forward + s_x right + s_y up      (times d in perspective)
 //
-// CLPV_SURFACE_PAPER 1: normals and colours are 8-bit normalised integers, the paper's RSM format; 0: float4.
-// Arithmetic is scalar so that work-items vectorise (lanes.h); float3 only returns results.
+// CLPV_SURFACE_PAPER 1: normals and colours are 8-bit normalised integers, the paper's RSM format;
+// 0: float4. Arithmetic is scalar so that work-items vectorise (lanes.h); float3 only returns
+// results.
 #pragma once
 
 #include "shared/view.h"
@@ -19,8 +21,8 @@ typedef uchar4 SurfaceTexel;
 typedef float4 SurfaceTexel;
 #endif
 
-// Nonzero for an orthographic view. The literal CLPV_ORTHOGRAPHIC (0 or 1) from the host specialises a kernel for one
-// kind of view.
+// Nonzero for an orthographic view. The literal CLPV_ORTHOGRAPHIC (0 or 1) from the host
+// specialises a kernel for one kind of view.
 #ifdef CLPV_ORTHOGRAPHIC
 #define CLPV_IS_ORTHOGRAPHIC(view) CLPV_ORTHOGRAPHIC
 #else
@@ -34,7 +36,8 @@ static inline float2 screen_point(const ClpvView view, const float px, const flo
 }
 
 // Point [m] at `depth` [m] behind pixel (px, py).
-static inline float3 surface_position(const ClpvView view, const float px, const float py, const float depth) {
+static inline float3 surface_position(const ClpvView view, const float px, const float py,
+                                      const float depth) {
   const float2 s = screen_point(view, px, py);
   const float scale = view.orthographic != 0.0f ? 1.0f : depth;
   const float sx = scale * s.x, sy = scale * s.y;
@@ -46,16 +49,20 @@ static inline float3 surface_position(const ClpvView view, const float px, const
 // Unit direction of a pixel's ray, away from the eye.
 static inline float3 pixel_ray(const ClpvView view, const float px, const float py) {
   const float2 s = screen_point(view, px, py);
-  const float sx = view.orthographic != 0.0f ? 0.0f : s.x, sy = view.orthographic != 0.0f ? 0.0f : s.y;
+  const float sx = view.orthographic != 0.0f ? 0.0f : s.x,
+              sy = view.orthographic != 0.0f ? 0.0f : s.y;
   const float scale = rsqrt(1.0f + sx * sx + sy * sy);
 #define CLPV_ALONG(a) (scale * (view.forward[a] + sx * view.right[a] + sy * view.up[a]))
   return (float3)(CLPV_ALONG(0), CLPV_ALONG(1), CLPV_ALONG(2));
 #undef CLPV_ALONG
 }
 
-// Footprint [m^2] of a pixel across its ray: distance^2 times the pixel's solid angle in perspective.
-static inline float pixel_footprint(const ClpvView view, const float px, const float py, const float depth) {
-  const float pixel = 4.0f * view.half_width * view.half_height / ((float)view.width * (float)view.height);
+// Footprint [m^2] of a pixel across its ray: distance^2 times the pixel's solid angle in
+// perspective.
+static inline float pixel_footprint(const ClpvView view, const float px, const float py,
+                                    const float depth) {
+  const float pixel =
+      4.0f * view.half_width * view.half_height / ((float)view.width * (float)view.height);
   if (view.orthographic != 0.0f) return pixel;
   const float2 s = screen_point(view, px, py);
   return depth * depth * pixel * rsqrt(1.0f + s.x * s.x + s.y * s.y);
@@ -74,8 +81,8 @@ static inline float3 load_normal(__global const SurfaceTexel* normals, const uin
 #endif
 }
 
-// `scale`: value of a stored 1 (largest flux of a texel of the light [W]; 1 for albedo). Used by the 8-bit format
-// alone.
+// `scale`: value of a stored 1 (largest flux of a texel of the light [W]; 1 for albedo). Used by
+// the 8-bit format alone.
 static inline float3 load_colour(__global const SurfaceTexel* colours, const uint pixel,
                                  const float scale) {
 #if CLPV_SURFACE_PAPER

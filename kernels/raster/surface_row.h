@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Surfaces of W pixels of a row at a time: position, footprint, load and store (surface.h has the formulas).
+// Surfaces of W pixels of a row at a time: position, footprint, load and store (surface.h has the
+// formulas).
 #pragma once
 
 #include "lanes.h"
@@ -30,7 +31,8 @@ static inline Vec row_positions(const ClpvView view, const PixelRow p, const rea
 
 // Footprints [m^2] of the pixels across their rays.
 static inline realW row_footprints(const ClpvView view, const PixelRow p, const realW depth) {
-  const float pixel = 4.0f * view.half_width * view.half_height / ((float)view.width * (float)view.height);
+  const float pixel =
+      4.0f * view.half_width * view.half_height / ((float)view.width * (float)view.height);
   if (view.orthographic != 0.0f) return (realW)(pixel);
   const ScreenPoints s = find_screen_points(view, p);
   return depth * depth * pixel * rsqrt(1.0f + s.x * s.x + s.y * s.y);
@@ -44,8 +46,9 @@ typedef struct {
 } Surfaces;
 
 // Loads the surfaces of W pixels. Lanes outside the view repeat the last pixel.
-static inline void load_surfaces(const ClpvView view, const PixelRow p, __global const float* depths,
-                                 __global const float4* normals, Surfaces* s) {
+static inline void load_surfaces(const ClpvView view, const PixelRow p,
+                                 __global const float* depths, __global const float4* normals,
+                                 Surfaces* s) {
   s->first = p.py * view.width + p.px;
   const uintW pixel = s->first + min(as_uintW(lane_numbers()), (uintW)(p.count - 1));
   Rows rows;
@@ -95,31 +98,37 @@ typedef realW channelW;
 
 #if W == 8
 
-// Interleaved lanes, and interleaved pairs of lanes, of two vectors; compilers turn these into shuffles.
-#define CLPV_INTERLEAVE(a, b, i, j, k, l) ((channelW)(a.s##i, b.s##i, a.s##j, b.s##j, a.s##k, b.s##k, a.s##l, b.s##l))
+// Interleaved lanes, and interleaved pairs of lanes, of two vectors; compilers turn these into
+// shuffles.
+#define CLPV_INTERLEAVE(a, b, i, j, k, l) \
+  ((channelW)(a.s##i, b.s##i, a.s##j, b.s##j, a.s##k, b.s##k, a.s##l, b.s##l))
 #define CLPV_INTERLEAVE_PAIRS(a, b, i, j, k, l) \
   ((channelW)(a.s##i, a.s##j, b.s##i, b.s##j, a.s##k, a.s##l, b.s##k, b.s##l))
 
 // Stores `count` texels of four numbers from `to` on.
-CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW y, const channelW z, const channelW w,
-                              __global SurfaceTexel* to) {
-  const channelW left_xy = CLPV_INTERLEAVE(x, y, 0, 1, 2, 3), left_zw = CLPV_INTERLEAVE(z, w, 0, 1, 2, 3);
-  const channelW right_xy = CLPV_INTERLEAVE(x, y, 4, 5, 6, 7), right_zw = CLPV_INTERLEAVE(z, w, 4, 5, 6, 7);
-  const channelW twos[4] = {
-      CLPV_INTERLEAVE_PAIRS(left_xy, left_zw, 0, 1, 2, 3), CLPV_INTERLEAVE_PAIRS(left_xy, left_zw, 4, 5, 6, 7),
-      CLPV_INTERLEAVE_PAIRS(right_xy, right_zw, 0, 1, 2, 3), CLPV_INTERLEAVE_PAIRS(right_xy, right_zw, 4, 5, 6, 7)};
+CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW y,
+                              const channelW z, const channelW w, __global SurfaceTexel* to) {
+  const channelW left_xy = CLPV_INTERLEAVE(x, y, 0, 1, 2, 3),
+                 left_zw = CLPV_INTERLEAVE(z, w, 0, 1, 2, 3);
+  const channelW right_xy = CLPV_INTERLEAVE(x, y, 4, 5, 6, 7),
+                 right_zw = CLPV_INTERLEAVE(z, w, 4, 5, 6, 7);
+  const channelW twos[4] = {CLPV_INTERLEAVE_PAIRS(left_xy, left_zw, 0, 1, 2, 3),
+                            CLPV_INTERLEAVE_PAIRS(left_xy, left_zw, 4, 5, 6, 7),
+                            CLPV_INTERLEAVE_PAIRS(right_xy, right_zw, 0, 1, 2, 3),
+                            CLPV_INTERLEAVE_PAIRS(right_xy, right_zw, 4, 5, 6, 7)};
   __global Channel* numbers = (__global Channel*)to;
   if (count == W) {
     for (int i = 0; i < 4; ++i) vstore8(twos[i], i, numbers);
     return;
   }
-  for (uint i = 0; i < count; ++i) vstore4(i % 2 == 0 ? twos[i / 2].lo : twos[i / 2].hi, i, numbers);
+  for (uint i = 0; i < count; ++i)
+    vstore4(i % 2 == 0 ? twos[i / 2].lo : twos[i / 2].hi, i, numbers);
 }
 
 #elif W == 1
 
-CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW y, const channelW z, const channelW w,
-                              __global SurfaceTexel* to) {
+CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW y,
+                              const channelW z, const channelW w, __global SurfaceTexel* to) {
   if (count == W) *to = (SurfaceTexel)(x, y, z, w);
 }
 
@@ -135,10 +144,12 @@ CLPV_INLINE void store_normals(const PixelRow p, const Vec n, __global SurfaceTe
 }
 
 // `scale`: as in load_colour().
-CLPV_INLINE void store_colours(const PixelRow p, const Vec c, const float scale, __global SurfaceTexel* to) {
+CLPV_INLINE void store_colours(const PixelRow p, const Vec c, const float scale,
+                               __global SurfaceTexel* to) {
 #if CLPV_SURFACE_PAPER
   const float byte = 255.0f / scale;
-  store_texels(p.count, to_bytes(c.x * byte), to_bytes(c.y * byte), to_bytes(c.z * byte), (bytesW)(255), to);
+  store_texels(p.count, to_bytes(c.x * byte), to_bytes(c.y * byte), to_bytes(c.z * byte),
+               (bytesW)(255), to);
 #else
   store_texels(p.count, c.x, c.y, c.z, ONE, to);
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Filtered look-ups in the scene's textures (shared/mesh.h), W at a time: bilinear and trilinear, with sRGB decoded
-// before filtering.
+// Filtered look-ups in the scene's textures (shared/mesh.h), W at a time: bilinear and trilinear,
+// with sRGB decoded before filtering.
 #pragma once
 
 #include "lanes.h"
@@ -35,8 +35,8 @@ CLPV_INLINE void load_level_for_all(__global const float4* table, const uint ent
   level->wrap = (uintW)(row.w);
 }
 
-// Wraps a coordinate to [0, 1] by repeating, mirroring or clamping. NaN and coordinates beyond the range of int become
-// 0.
+// Wraps a coordinate to [0, 1] by repeating, mirroring or clamping. NaN and coordinates beyond the
+// range of int become 0.
 static inline realW fold_coordinate(const realW u, const uintW wrap) {
   const realW whole = to_realW(to_intW(u));
   const realW repeated = u - (whole > u ? whole - ONE : whole);
@@ -76,13 +76,16 @@ typedef struct {
   realW x, y;
 } TexelQuad;
 
-CLPV_INLINE void load_texel_quad(const Level level, __global const uint* texels, const Uv uv, TexelQuad* quad) {
+CLPV_INLINE void load_texel_quad(const Level level, __global const uint* texels, const Uv uv,
+                                 TexelQuad* quad) {
   const TexelPair x = find_texel_pair(uv.u, level.width, level.wrap & 15u);
   const TexelPair y = find_texel_pair(uv.v, level.height, level.wrap >> 4);
-  const uintW upper = level.offset + y.first * level.width, lower = level.offset + y.second * level.width;
+  const uintW upper = level.offset + y.first * level.width,
+              lower = level.offset + y.second * level.width;
   const uintW at00 = upper + x.first, at01 = upper + x.second, at10 = lower + x.first,
               at11 = lower + x.second;
-  // Volatile keeps LLVM from gather instructions, which are slower than scalar loads on processors with mitigations.
+  // Volatile keeps LLVM from gather instructions, which are slower than scalar loads on processors
+  // with mitigations.
   volatile __global const uint* each = texels;
   quad->texel00 = (uintW)CLPV_GATHER(each, at00);
   quad->texel01 = (uintW)CLPV_GATHER(each, at01);
@@ -97,8 +100,8 @@ static inline realW filter_quad(const TexelQuad f, const realW a, const realW b,
   return lerp(lerp(a, b, f.x), lerp(c, d, f.x), f.y);
 }
 
-// Decodes sRGB bytes to linear light, within 5e-7; 255 is exact. The part ((x + 0.055) / 1.055)^2.4 is a polynomial in
-// sqrt(x).
+// Decodes sRGB bytes to linear light, within 5e-7; 255 is exact. The part ((x + 0.055) / 1.055)^2.4
+// is a polynomial in sqrt(x).
 static inline realW decode_srgb(const uintW byte) {
   const realW x = to_realW(as_intW(byte)) * (1.0f / 255.0f), s = sqrt(x);
   realW linear = -0.0757972151f + s * 0.0097230114f;
@@ -119,8 +122,8 @@ CLPV_INLINE realW filter_channel(const TexelQuad f, const uint shift) {
 }
 
 // Bilinear look-up in one entry of the table: linear colour.
-CLPV_INLINE void sample_bilinear(__global const float4* table, __global const uint* texels, const uintW entry,
-                                 const Uv uv, Vec* colour) {
+CLPV_INLINE void sample_bilinear(__global const float4* table, __global const uint* texels,
+                                 const uintW entry, const Uv uv, Vec* colour) {
   Level level;
   load_level(table, entry, &level);
   TexelQuad f;
@@ -149,23 +152,25 @@ CLPV_INLINE realW sample_alpha(__global const float4* table, __global const uint
   return sample_level_alpha(level, texels, uv);
 }
 
-// Mip level for a squared step of `square` texels^2 from pixel to pixel: log2 of the step, piecewise linear in the
-// square (error below 0.05 levels). Level 0 is the texture itself.
+// Mip level for a squared step of `square` texels^2 from pixel to pixel: log2 of the step,
+// piecewise linear in the square (error below 0.05 levels). Level 0 is the texture itself.
 static inline realW find_mip_level(const realW square) {
   const realW highest = (realW)(CLPV_TEXTURE_LEVELS - 1.0f);
   const realW level = 0.5f * (to_realW(as_intW(square)) * (1.0f / 8388608.0f) - 127.0f);
   return level > ZERO ? (level < highest ? level : highest) : ZERO;
 }
 
-// Trilinear look-up. `step_x`, `step_y`: change of uv from pixel to pixel; the longer step selects the mip level.
+// Trilinear look-up. `step_x`, `step_y`: change of uv from pixel to pixel; the longer step selects
+// the mip level.
 CLPV_INLINE void sample_trilinear(__global const float4* table, __global const uint* texels,
-                                  const uintW texture, const Uv uv, const Uv step_x, const Uv step_y,
-                                  Vec* colour) {
+                                  const uintW texture, const Uv uv, const Uv step_x,
+                                  const Uv step_y, Vec* colour) {
   const uintW finest = texture * CLPV_TEXTURE_LEVELS;
   Level whole;
   load_level(table, finest, &whole);
   const realW width = to_realW(as_intW(whole.width)), height = to_realW(as_intW(whole.height));
-  const realW xu = step_x.u * width, xv = step_x.v * height, yu = step_y.u * width, yv = step_y.v * height;
+  const realW xu = step_x.u * width, xv = step_x.v * height, yu = step_y.u * width,
+              yv = step_y.v * height;
   const realW x2 = xu * xu + xv * xv, y2 = yu * yu + yv * yv;
   const realW level = find_mip_level(x2 > y2 ? x2 : y2);
   const intW fine = to_intW(level);

@@ -27,7 +27,8 @@ static inline PixelRow find_pixel_row(const ClpvView view) {
   p.px = column * W;
   p.py = get_global_id(1);
   p.count = p.px < view.width && p.py < view.height ? min(view.width - p.px, (uint)W) : 0;
-  p.row = tile_row(p.py / CLPV_TILE * tiles + column / CLPV_TILE_VECTORS, p.py % CLPV_TILE, column % CLPV_TILE_VECTORS);
+  p.row = tile_row(p.py / CLPV_TILE * tiles + column / CLPV_TILE_VECTORS, p.py % CLPV_TILE,
+                   column % CLPV_TILE_VECTORS);
   p.x = (float)p.px + to_realW(lane_numbers());
   p.y = (realW)((float)p.py);
   return p;
@@ -44,7 +45,8 @@ static inline realW stored_depth(const ClpvView view, const realW key) {
   return key == (realW)(INFINITY) ? ZERO : depth > near ? depth : near;
 }
 
-static inline void store_depth(const ClpvView view, const PixelRow p, const realW key, __global float* depths) {
+static inline void store_depth(const ClpvView view, const PixelRow p, const realW key,
+                               __global float* depths) {
   float stored[W];
   store_lanes(stored_depth(view, key), stored);
   for (uint i = 0; i < p.count; ++i) depths[p.py * view.width + p.px + i] = stored[i];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Intersection of a pixel's ray with a triangle of the scene: depth key and barycentric weights.
 //
-// W triangles, or one W times (vec.h). Coordinates are relative to the eye and built from edges, so that small
-// triangles far from the origin keep their precision.
+// W triangles, or one W times (vec.h). Coordinates are relative to the eye and built from edges, so
+// that small triangles far from the origin keep their precision.
 #pragma once
 
 #include "shared/mesh.h"
@@ -48,13 +48,15 @@ static inline Vec along_ray(const ClpvView view, const realW px, const realW py)
 
 // Vector from the eye to the point at `depth` [m] behind a pixel.
 static inline Vec to_point(const ClpvView view, const realW px, const realW py, const realW depth) {
-  if (CLPV_IS_ORTHOGRAPHIC(view)) return vec_add_scaled(across_view(view, px, py), depth, vec_of(view.forward));
+  if (CLPV_IS_ORTHOGRAPHIC(view))
+    return vec_add_scaled(across_view(view, px, py), depth, vec_of(view.forward));
   return vec_times(along_ray(view, px, py), depth);
 }
 
-// Key (ClpvRasterTriangle) of the face's plane at pixel (px, py), and its change per pixel along x and y. Not finite
-// for a plane that is seen edge-on.
-static inline Vec find_key_plane(const ClpvView view, const Face face, const realW px, const realW py) {
+// Key (ClpvRasterTriangle) of the face's plane at pixel (px, py), and its change per pixel along x
+// and y. Not finite for a plane that is seen edge-on.
+static inline Vec find_key_plane(const ClpvView view, const Face face, const realW px,
+                                 const realW py) {
   const realW right = vec_dot(face.normal, vec_of(view.right)) * pixel_step_x(view);
   const realW down = vec_dot(face.normal, vec_of(view.up)) * pixel_step_y(view);
   if (CLPV_IS_ORTHOGRAPHIC(view)) {
@@ -66,7 +68,8 @@ static inline Vec find_key_plane(const ClpvView view, const Face face, const rea
   return vec(vec_dot(face.normal, along_ray(view, px, py)) * scale, right * scale, down * scale);
 }
 
-// Barycentric weights of the second and third vertex as functions of position: weight = (point - corner) . gradient.
+// Barycentric weights of the second and third vertex as functions of position: weight = (point -
+// corner) . gradient.
 typedef struct {
   Vec gradient1, gradient2;  // 0 for a triangle without area
 } Weights;
@@ -80,10 +83,10 @@ static inline Weights find_weights(const Face face) {
   return weights;
 }
 
-// Weights of all three vertices at `depth` [m] behind a pixel, clamped to the triangle: snapping to the sub-pixel grid
-// can cover pixel centres just outside.
-static inline Vec weights_at(const ClpvView view, const Face face, const Weights weights, const realW px,
-                             const realW py, const realW depth) {
+// Weights of all three vertices at `depth` [m] behind a pixel, clamped to the triangle: snapping to
+// the sub-pixel grid can cover pixel centres just outside.
+static inline Vec weights_at(const ClpvView view, const Face face, const Weights weights,
+                             const realW px, const realW py, const realW depth) {
   const Vec offset = vec_minus(to_point(view, px, py, depth), face.corner);
   realW w1 = vec_dot(offset, weights.gradient1), w2 = vec_dot(offset, weights.gradient2);
   w1 = w1 > ZERO ? w1 : ZERO;

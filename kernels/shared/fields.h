@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// List of the structs that host and kernels share, with the members whose offsets must agree (sizes.cl).
+// List of the structs that host and kernels share, with the members whose offsets must agree
+// (sizes.cl).
 //
-// CLPV_EACH_SHARED(SIZE, OFFSET) writes SIZE(type) and OFFSET(type, field) in a fixed order. Include the headers of the
-// structs before: host and kernels name them by different paths.
+// CLPV_EACH_SHARED(SIZE, OFFSET) writes SIZE(type) and OFFSET(type, field) in a fixed order.
+// Include the headers of the structs before: host and kernels name them by different paths.
 #pragma once
 
 // clang-format off
@@ -31,7 +32,7 @@
     OFFSET(ClpvView, height) OFFSET(ClpvView, far_depth)                                           \
   SIZE(ClpvSweepBin) OFFSET(ClpvSweepBin, plane_sign) OFFSET(ClpvSweepBin, row_sign)               \
     OFFSET(ClpvSweepBin, column_sign) OFFSET(ClpvSweepBin, plane_axis)                             \
-    OFFSET(ClpvSweepBin, row_axis) OFFSET(ClpvSweepBin, column_axis) OFFSET(ClpvSweepBin, links)    \
+    OFFSET(ClpvSweepBin, row_axis) OFFSET(ClpvSweepBin, column_axis) OFFSET(ClpvSweepBin, links)   \
     OFFSET(ClpvSweepBin, transposed) OFFSET(ClpvSweepBin, plane) OFFSET(ClpvSweepBin, row)         \
   SIZE(ClpvSweepDirection) OFFSET(ClpvSweepDirection, taps) OFFSET(ClpvSweepDirection, share)      \
     OFFSET(ClpvSweepDirection, from_coarser) OFFSET(ClpvSweepDirection, coarser)                   \

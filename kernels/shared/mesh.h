@@ -10,8 +10,8 @@ enum {
   CLPV_WRAP_MIRROR,
 };
 
-// Bits of ClpvMaterial::flags. Holes: texels with alpha below alpha_cutoff. Double sided: visible from
-// both sides; the normal is flipped towards the viewer.
+// Bits of ClpvMaterial::flags. Holes: texels with alpha below alpha_cutoff. Double sided: visible
+// from both sides; the normal is flipped towards the viewer.
 #define CLPV_MATERIAL_MASKED 1u
 #define CLPV_MATERIAL_DOUBLE_SIDED 2u
 
@@ -37,12 +37,13 @@ typedef struct {
   unsigned int unused;
 } ClpvMaterial;
 
-// Mip levels of every texture in the table; the level of 1 x 1 texels repeats. Level l of texture t is entry
-// t * CLPV_TEXTURE_LEVELS + l. The maximum side is 2^(CLPV_TEXTURE_LEVELS - 1).
+// Mip levels of every texture in the table; the level of 1 x 1 texels repeats. Level l of texture t
+// is entry t * CLPV_TEXTURE_LEVELS + l. The maximum side is 2^(CLPV_TEXTURE_LEVELS - 1).
 enum { CLPV_TEXTURE_LEVELS = 16 };
 
 typedef struct {
-  unsigned int offset;  // of texel (0, 0) in the texel buffer: 4 bytes per texel, RGB in sRGB encoding, linear alpha
+  unsigned int offset;  // of texel (0, 0) in the texel buffer: 4 bytes per texel, RGB in sRGB
+                        // encoding, linear alpha
   unsigned int width, height;
   unsigned int wrap;  // CLPV_WRAP_* of u, plus 16 times that of v
 } ClpvTexture;

@@ -2,7 +2,8 @@
 // Layout of the near field's buffers (near_layout.h), shared by host and kernels.
 #pragma once
 
-// Planes of points, one number per pixel: position [m], normal, and reach R [m], 0 without a surface in a cascade.
+// Planes of points, one number per pixel: position [m], normal, and reach R [m], 0 without a
+// surface in a cascade.
 enum {
   CLPV_NEAR_POSITION = 0,
   CLPV_NEAR_NORMAL = 3,
@@ -17,8 +18,8 @@ enum {
   CLPV_NEAR_LIGHT_PLANES = 6,
 };
 
-// Rows of W hits: weights of the triangle's second and third vertex, distance [m], the triangle (uint), its pixel in a
-// plane (uint), and the ray's place among the radiances (uint).
+// Rows of W hits: weights of the triangle's second and third vertex, distance [m], the triangle
+// (uint), its pixel in a plane (uint), and the ray's place among the radiances (uint).
 enum {
   CLPV_HIT_U,
   CLPV_HIT_V,

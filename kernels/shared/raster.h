@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Data of the rasteriser's kernels: outcodes of vertices, triangles set up for drawing, entries and counters; shared by
-// host and kernels.
+// Data of the rasteriser's kernels: outcodes of vertices, triangles set up for drawing, entries and
+// counters; shared by host and kernels.
 #pragma once
 
 enum {
   CLPV_SUBPIXELS = 256,  // vertices snap to 1/256 pixel
-  CLPV_TILE =
-      8,  // pixels along each edge of a tile; with eight lanes a work-item draws a tile (draw_tiles.cl)
+  CLPV_TILE = 8,  // pixels along each edge of a tile; with eight lanes a work-item draws a tile
+                  // (draw_tiles.cl)
 };
 
-// Guard band [pixels]: triangles that reach farther are clipped. Coordinates in 1/CLPV_SUBPIXELS pixel then stay below
-// 2^29, and products of two differences fit 64 bits.
+// Guard band [pixels]: triangles that reach farther are clipped. Coordinates in 1/CLPV_SUBPIXELS
+// pixel then stay below 2^29, and products of two differences fit 64 bits.
 #define CLPV_GUARD_PIXELS 1048576.0f
 
 // Most corners of a clipped triangle: each of five planes adds one.
 enum { CLPV_CLIP_CORNERS = 8 };
 
-// Outcodes of a vertex. A triangle whose corners all share one of the first six bits is invisible. A triangle with a
-// corner that has one of the last two bits is clipped.
+// Outcodes of a vertex. A triangle whose corners all share one of the first six bits is invisible.
+// A triangle with a corner that has one of the last two bits is clipped.
 enum {
   CLPV_LEFT = 1,
   CLPV_RIGHT = 2,
@@ -41,9 +41,10 @@ enum { CLPV_GIANT_PIXELS = 131072 };
 #define CLPV_TRIANGLE_INDEX 0x3fffffffu
 
 typedef struct {
-  int x[4], y[4];            // corners [1/CLPV_SUBPIXELS pixel], clockwise on the screen; the fourth is the first
-  float key, key_x, key_y;   // depth key at pixel `first`, and its change per pixel; linear, smaller is nearer:
-                             // depth in orthographic views, -1 / depth in perspective
+  // Corners [1/CLPV_SUBPIXELS pixel], clockwise on the screen; the fourth is the first.
+  int x[4], y[4];
+  float key, key_x, key_y;  // depth key at pixel `first`, and its change per pixel; linear, smaller
+                            // is nearer: depth in orthographic views, -1 / depth in perspective
   float nearest, farthest;   // smallest and largest key of the corners
   unsigned int first, last;  // first and last pixel that it may cover: x + 65536 y
   unsigned int triangle;     // index and flags as above
@@ -57,7 +58,8 @@ enum {
   CLPV_RASTER_WORDS = 16,
 };
 
-// Counters of a pass: triangles listed, triangles to clip, entries, and overflows of 32 bits in the number of entries.
+// Counters of a pass: triangles listed, triangles to clip, entries, and overflows of 32 bits in the
+// number of entries.
 enum {
   CLPV_LISTED,
   CLPV_TO_CLIP,
@@ -66,11 +68,12 @@ enum {
   CLPV_RASTER_COUNTERS,
 };
 
-// Depth slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most hidden ones are skipped.
+// Depth slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most
+// hidden ones are skipped.
 enum { CLPV_SLICES = 8 };
 
-// An entry has four uint32 words: slice of a tile or CLPV_NO_SLICE, number within the slice, index of the triangle in
-// the list, and its smallest key. Sorted entries keep the last two.
+// An entry has four uint32 words: slice of a tile or CLPV_NO_SLICE, number within the slice, index
+// of the triangle in the list, and its smallest key. Sorted entries keep the last two.
 #define CLPV_NO_SLICE 0xffffffffu
 enum {
   CLPV_ENTRY_WORDS = 4,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Per-face sums of voxelised albedo: reflectors.cl writes them, face_albedo.cl reads them; shared by host and kernels.
+// Per-face sums of voxelised albedo: reflectors.cl writes them, face_albedo.cl reads them; shared
+// by host and kernels.
 #pragma once
 
 // Face directions of a light cell: +x, -x, +y, -y, +z, -z. uint32 words of a face: 64 coverage bits
@@ -11,5 +12,6 @@ enum {
   CLPV_FACE_ALBEDO = 3,
 };
 
-// Fixed-point value of albedo 1 in those sums. 2^14 triangles that each cover the whole face fit into 32 bits.
+// Fixed-point value of albedo 1 in those sums. 2^14 triangles that each cover the whole face fit
+// into 32 bits.
 #define CLPV_ALBEDO_UNIT 4096.0f

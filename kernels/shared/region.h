@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Region of a cascade that is voxelised again, as a union of boxes, shared by host and kernels (docs/method.md,
-// 'Incremental voxelisation').
+// Region of a cascade that is voxelised again, as a union of boxes, shared by host and kernels
+// (docs/method.md, 'Incremental voxelisation').
 //
-// Positions count from `base`, a point near the cascade that stays fixed while the cascade moves. A triangle then has
-// the same coordinates, to the bit, wherever the cascade is, and masks of cells outside the region stay valid.
+// Positions count from `base`, a point near the cascade that stays fixed while the cascade moves. A
+// triangle then has the same coordinates, to the bit, wherever the cascade is, and masks of cells
+// outside the region stay valid.
 #pragma once
 
 #define CLPV_REGION_BOXES 8

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Quantities that an image can show, and the shadow filter, shared by host and kernels. Images are RGBA with alpha 1 on
-// surfaces and all 0 elsewhere; the first two show a sky, with alpha 1, and the first a medium.
+// Quantities that an image can show, and the shadow filter, shared by host and kernels. Images are
+// RGBA with alpha 1 on surfaces and all 0 elsewhere; the first two show a sky, with alpha 1, and
+// the first a medium.
 #pragma once
 
 enum {
@@ -17,7 +18,7 @@ enum {
   CLPV_SHADOW_TAPS = 4,  // texels along each side of the shadow filter; no map may be smaller
 };
 
-// Lift of a receiver along its normal [texels of the shadow map at its depth]: a constant, and a part times the sine of
-// the light's angle to the normal.
+// Lift of a receiver along its normal [texels of the shadow map at its depth]: a constant, and a
+// part times the sine of the light's angle to the normal.
 #define CLPV_SHADOW_LIFT_FLAT 0.25f
 #define CLPV_SHADOW_LIFT_SLOPED 0.5f

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bins, directions and halo of a sweep, and the sizes of its buffers (host/basis/sweep.hpp), shared by host and
-// kernels.
+// Bins, directions and halo of a sweep, and the sizes of its buffers (host/basis/sweep.hpp), shared
+// by host and kernels.
 #pragma once
 
 enum {
@@ -8,10 +8,11 @@ enum {
   CLPV_AXIS_BINS = 8,  // bins swept across x, which come first; as many across y, then z
 };
 
-// A bin of directions. Light travels from plane to plane, within a plane from row to row, and within a row from column
-// to column.
+// A bin of directions. Light travels from plane to plane, within a plane from row to row, and
+// within a row from column to column.
 typedef struct {
-  int plane_sign, row_sign, column_sign;  // 1: light travels towards larger numbers; -1: towards smaller ones
+  // 1: light travels towards larger numbers; -1: towards smaller ones.
+  int plane_sign, row_sign, column_sign;
   int plane_axis, row_axis, column_axis;  // 0 x, 1 y, 2 z
   int links[4];  // transmittance volumes of the links from the cells offset by 0, u, v, and u and v
   int transposed;  // 1: sources are in the volumes across x; 0: in those across z (sweep_source.cl)
@@ -20,7 +21,8 @@ typedef struct {
 
 typedef struct {
   float taps[4];       // t of the same four cells; their sum is 1
-  float share;         // Omega_d / (|w_m| Omega_b): solid angles of direction and bin, component across planes
+  float share;  // Omega_d / (|w_m| Omega_b): solid angles of direction and bin, component across
+                // planes
   float from_coarser;  // D here for 1 of the coarser cascade's D
   int coarser;         // part of the bin that contains this direction in the coarser cascade
   float attenuation[3];  // exp(-sigma_t s / |w_m|) of a medium, by channel; 1 without one
@@ -32,11 +34,13 @@ typedef struct {
 typedef struct {
   int first[3];   // lowest cell of the box that holds them
   int side;       // cells along each edge of the box; 0: no finer cascade
-  int layers[6];  // lower one of two layers across x, y, z, each for light towards larger, smaller numbers
+  int layers[6];  // lower one of two layers across x, y, z, each for light towards larger, smaller
+                  // numbers
 } ClpvSweepHalo;
 
-// Sizes in numbers for a grid of n cells along each axis: of a row, a plane and a volume of planes (sweep_layout.h),
-// and of a row (pitch), a plane and a volume with a border of one cell on every side.
+// Sizes in numbers for a grid of n cells along each axis: of a row, a plane and a volume of planes
+// (sweep_layout.h), and of a row (pitch), a plane and a volume with a border of one cell on every
+// side.
 enum {
   CLPV_SWEEP_LINE = 32,  // padding after each plane and each volume
   CLPV_SWEEP_FIRST =
@@ -49,8 +53,8 @@ enum {
 #define CLPV_SWEEP_BORDERED_PLANE_OF(n) (((n) + 2) * CLPV_SWEEP_PITCH_OF(n) + CLPV_SWEEP_FIRST)
 #define CLPV_SWEEP_BORDERED_VOLUME_OF(n) (((n) + 2) * CLPV_SWEEP_BORDERED_PLANE_OF(n))
 
-// Sizes of a halo: cells along an edge; numbers of a row and of a face, which has two layers of side x side cells.
-// Loads of eight may read past the end of a row, hence the padding.
+// Sizes of a halo: cells along an edge; numbers of a row and of a face, which has two layers of
+// side x side cells. Loads of eight may read past the end of a row, hence the padding.
 #define CLPV_SWEEP_HALO_SIDE_OF(n) (((n) + 1) / 2 + 3)
 #define CLPV_SWEEP_HALO_PITCH_OF(side) (((side) + 7) / 8 * 8 + 8)
 #define CLPV_SWEEP_HALO_FACE_OF(side) (2 * (side)*CLPV_SWEEP_HALO_PITCH_OF(side) + 8)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Subsampling of a surface for injection, shared by host and kernels: every stride-th texel of every stride-th row. Each
-// is the centre of the stride x stride texels that it represents.
+// Subsampling of a surface for injection, shared by host and kernels: every stride-th texel of
+// every stride-th row. Each is the centre of the stride x stride texels that it represents.
 #pragma once
 
 // Number of texels taken of `texels` along a row or column.

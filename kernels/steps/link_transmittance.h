@@ -6,8 +6,8 @@
 //   B = sum_i c_i b_i(-w)         one-sided
 //
 // B is the blocking potential along the link, B_a or c_i a mean over the corners of the face, edge
-// or corner that it passes. A sweep has links from 26 neighbours, steps have 30: six neighbours with five
-// faces each. docs/method.md, 'Blockers'. From the host
+// or corner that it passes. A sweep has links from 26 neighbours, steps have 30: six neighbours
+// with five faces each. docs/method.md, 'Blockers'. From the host
 // (host/codegen/transmittance_source.cpp): CLPV_LINKS, struct Links, and for each link
 // CLPV_LINK_SIDES, the side of the cell that it passes (-1, 0 or 1 along each axis), and
 // CLPV_LINK_BLOCKED, half the weights of the blockers' numbers, divided by the number of corners.
@@ -27,17 +27,21 @@ CLPV_INLINE realW pick_side(const int side, const realW lower, const realW upper
 CLPV_INLINE realW sum_corners(const Coefficients* corners, const int link, const int i) {
   realW edges[4];
 #pragma unroll
-  for (int e = 0; e < 4; ++e) edges[e] = pick_side(link_sides[3 * link], corners[2 * e].c[i], corners[2 * e + 1].c[i]);
-  return pick_side(link_sides[3 * link + 2], pick_side(link_sides[3 * link + 1], edges[0], edges[1]),
+  for (int e = 0; e < 4; ++e)
+    edges[e] = pick_side(link_sides[3 * link], corners[2 * e].c[i], corners[2 * e + 1].c[i]);
+  return pick_side(link_sides[3 * link + 2],
+                   pick_side(link_sides[3 * link + 1], edges[0], edges[1]),
                    pick_side(link_sides[3 * link + 1], edges[2], edges[3]));
 }
 
-// 1 - clamp(2 h, 0, 1) is 1/2 + |1/2 - h| - |h|: comparisons would trigger LLVM's SLP vectoriser, which prevents
-// vectorisation of work-items on CPUs.
-CLPV_INLINE Links find_transmittance(CLPV_VOLUME_IN blockers, const int x, const int y, const int z) {
+// 1 - clamp(2 h, 0, 1) is 1/2 + |1/2 - h| - |h|: comparisons would trigger LLVM's SLP vectoriser,
+// which prevents vectorisation of work-items on CPUs.
+CLPV_INLINE Links find_transmittance(CLPV_VOLUME_IN blockers, const int x, const int y,
+                                     const int z) {
   Coefficients corners[8];
 #pragma unroll
-  for (int c = 0; c < 8; ++c) corners[c] = geometry_load(blockers, 0, x + (c & 1), y + (c >> 1 & 1), z + (c >> 2));
+  for (int c = 0; c < 8; ++c)
+    corners[c] = geometry_load(blockers, 0, x + (c & 1), y + (c >> 1 & 1), z + (c >> 2));
   Links links;
 #pragma unroll
   for (int link = 0; link < CLPV_LINKS; ++link) {
@@ -45,7 +49,8 @@ CLPV_INLINE Links find_transmittance(CLPV_VOLUME_IN blockers, const int x, const
 #pragma unroll
     for (int i = 0; i < CLPV_N; ++i)
       if (link_blocked[link][i] != 0.0f)
-        half_blocked = fma((realW)(link_blocked[link][i]), sum_corners(corners, link, i), half_blocked);
+        half_blocked =
+            fma((realW)(link_blocked[link][i]), sum_corners(corners, link, i), half_blocked);
     links.c[link] = 0.5f + (fabs(0.5f - half_blocked) - fabs(half_blocked));
   }
   return links;

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Propagates light by one step, into every cell from its six neighbours, and adds it to the sum of all steps.
+// Propagates light by one step, into every cell from its six neighbours, and adds it to the sum of
+// all steps.
 //
 //   F = max(0, Omega_f I(w_f)) T_f      for the five visible faces f of each neighbour
 //   I(w) = sum_i c_i b_i(w)
 //   c += (F / pi) c(n_f)
 //
-// Kaplanyan and Dachsbacher 2010, 'Cascaded light propagation volumes'; docs/method.md, 'Propagation'.
+// Kaplanyan and Dachsbacher 2010, 'Cascaded light propagation volumes'; docs/method.md,
+// 'Propagation'.
 //
 // In:   source         light of the previous step (the injected field at first) [W/sr]
 //       sum_so_far     sum of the previous steps, which may be the same memory as `sum`
 //       transmittance  with CLPV_BLOCKING: T of each link into a cell (transmittance.cl)
-//       least          with CLPV_BLOCKING: lower bound of T: 1 in the first step, which is not blocked, else 0
+//       least          with CLPV_BLOCKING: lower bound of T: 1 in the first step, which is not
+//                      blocked, else 0
 // Out:  target         light of this step [W/sr]
 //       sum            sum_so_far + target
-// A work-item computes W cells of a row in one channel, or in all three with CLPV_LOBES_AT_RUN_TIME.
+// A work-item computes W cells of a row in one channel, or in all three with
+// CLPV_LOBES_AT_RUN_TIME.
 //
-// From the host (host/codegen/transport_source.cpp), for face 5 k + f of the neighbour that light reaches along axis k,
-// axes in the order +x, -x, +y, -y, +z, -z:
+// From the host (host/codegen/transport_source.cpp), for face 5 k + f of the neighbour that light
+// reaches along axis k, axes in the order +x, -x, +y, -y, +z, -z:
 //   CLPV_FACE_FLUX     half of Omega_f b_i(w_f) for each function of the basis
 //   CLPV_FACE_NORMAL   axis of the face's outward normal
 //   CLPV_LOBES         c(n) / pi for a normal along each axis
@@ -37,8 +41,8 @@ __constant const int face_normal[CLPV_AXES * CLPV_SEEN_FACES] = CLPV_FACE_NORMAL
 __constant const float lobes[CLPV_AXES][CLPV_N] = CLPV_LOBES;
 
 // Loads the cell that light reaches cell (x, y, z) from along axis k.
-CLPV_INLINE Coefficients load_upstream(CLPV_VOLUME_IN source, const int channel, const int k, const int x, const int y,
-                                       const int z) {
+CLPV_INLINE Coefficients load_upstream(CLPV_VOLUME_IN source, const int channel, const int k,
+                                       const int x, const int y, const int z) {
   const int back = k % 2 == 0 ? -1 : 1;
   return light_load(source, channel, x + (k / 2 == 0 ? back : 0), y + (k / 2 == 1 ? back : 0),
                     z + (k / 2 == 2 ? back : 0));
@@ -48,8 +52,8 @@ typedef struct {
   realW face[CLPV_SEEN_FACES];
 } SeenFaces;
 
-// Half of Omega_f I(w_f) [W] for the five faces that a cell sees of the neighbour along axis k. One function at a time,
-// so that five sums grow side by side.
+// Half of Omega_f I(w_f) [W] for the five faces that a cell sees of the neighbour along axis k. One
+// function at a time, so that five sums grow side by side.
 CLPV_INLINE SeenFaces half_fluxes_to(const int k, const Coefficients from) {
   SeenFaces half_flux;
 #pragma unroll
@@ -65,7 +69,8 @@ CLPV_INLINE SeenFaces half_fluxes_to(const int k, const Coefficients from) {
   return half_flux;
 }
 
-// max(0, 2 h) without a comparison, which would trigger LLVM's SLP vectoriser and prevent that of work-items.
+// max(0, 2 h) without a comparison, which would trigger LLVM's SLP vectoriser and prevent that of
+// work-items.
 CLPV_INLINE realW positive_flux(const realW half_flux) {
   return half_flux + fabs(half_flux);
 }
@@ -77,10 +82,13 @@ CLPV_INLINE realW positive_flux(const realW half_flux) {
 #include "steps/run_time_lobes.h"
 #else
 
-// Light that cell (x, y, z) gains from its six neighbours. `t`: transmittance of the link to each face.
-CLPV_INLINE Coefficients gain_light(CLPV_VOLUME_IN source, const int channel, const int x, const int y, const int z
+// Light that cell (x, y, z) gains from its six neighbours. `t`: transmittance of the link to each
+// face.
+CLPV_INLINE Coefficients gain_light(CLPV_VOLUME_IN source, const int channel, const int x,
+                                    const int y, const int z
 #if CLPV_BLOCKING
-                                    , const Links t
+                                    ,
+                                    const Links t
 #endif
 ) {
   realW arriving[CLPV_AXES];  // flux [W] through the faces with a normal along each axis
@@ -106,10 +114,12 @@ CLPV_INLINE Coefficients gain_light(CLPV_VOLUME_IN source, const int channel, co
 }
 #endif
 
-CLPV_INLINE void store_step(const Coefficients gained, CLPV_VOLUME_OUT target, CLPV_VOLUME_IN sum_so_far,
-                            CLPV_VOLUME_OUT sum, const int channel, const int x, const int y, const int z) {
+CLPV_INLINE void store_step(const Coefficients gained, CLPV_VOLUME_OUT target,
+                            CLPV_VOLUME_IN sum_so_far, CLPV_VOLUME_OUT sum, const int channel,
+                            const int x, const int y, const int z) {
   light_store(target, channel, x, y, z, gained);
-  light_store(sum, channel, x, y, z, add_coefficients(light_load(sum_so_far, channel, x, y, z), gained));
+  light_store(sum, channel, x, y, z,
+              add_coefficients(light_load(sum_so_far, channel, x, y, z), gained));
 }
 
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagate_step(
@@ -121,22 +131,27 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagat
     , __global const float4* normals, __global const float4* links CLPV_AND_TABLE CLPV_AND_FUNCTIONS
 #endif
 ) {
-  const int x = W * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2) % CLPV_GRID;
+  const int x = W * (int)get_global_id(0), y = (int)get_global_id(1),
+            z = (int)get_global_id(2) % CLPV_GRID;
   CLPV_RETURN_OUTSIDE(x, y);
 #if CLPV_BLOCKING
   Links t = transmittance_load(transmittance, 0, x, y, z);
 #pragma unroll
-  for (int face = 0; face < CLPV_AXES * CLPV_SEEN_FACES; ++face) t.c[face] = max(t.c[face], (realW)(least));
+  for (int face = 0; face < CLPV_AXES * CLPV_SEEN_FACES; ++face)
+    t.c[face] = max(t.c[face], (realW)(least));
 #define CLPV_PASS_LINKS , t
 #else
 #define CLPV_PASS_LINKS
 #endif
 #if CLPV_LOBES_AT_RUN_TIME
   Coefficients gained[3];
-  gain_with_lobes(source, x, y, z, normals, links, gained CLPV_PASS_LINKS CLPV_PASS_TABLE CLPV_PASS_FUNCTIONS);
-  for (int channel = 0; channel < 3; ++channel) store_step(gained[channel], target, sum_so_far, sum, channel, x, y, z);
+  gain_with_lobes(source, x, y, z, normals, links,
+                  gained CLPV_PASS_LINKS CLPV_PASS_TABLE CLPV_PASS_FUNCTIONS);
+  for (int channel = 0; channel < 3; ++channel)
+    store_step(gained[channel], target, sum_so_far, sum, channel, x, y, z);
 #else
   const int channel = (int)get_global_id(2) / CLPV_GRID;
-  store_step(gain_light(source, channel, x, y, z CLPV_PASS_LINKS), target, sum_so_far, sum, channel, x, y, z);
+  store_step(gain_light(source, channel, x, y, z CLPV_PASS_LINKS), target, sum_so_far, sum, channel,
+             x, y, z);
 #endif
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Propagation step with lobes computed at run time, at the cost of the paper's Table 1 (docs/paper/table1.md).
+// Propagation step with lobes computed at run time, at the cost of the paper's Table 1
+// (docs/paper/table1.md).
 //
 //   c += sum_f (F_f / pi) A^-1 alpha(n_f),   F_f the flux through face f, n_f its normal
 //
-// Each face rotates (or projects) a lobe to its normal, once for all channels. With CLPV_EVALUATE_AT_RUN_TIME the flux,
-// too, uses basis functions evaluated along the link. Normals and links are read from memory, so that compilers cannot
-// fold them; look-up tables are arguments. From the host: CLPV_UNIT_FLUX, CLPV_EVALUATE_AT_RUN_TIME,
-// functions_of_link(link), the functions times the solid angle, and the text of host/codegen/inject_source.hpp.
+// Each face rotates (or projects) a lobe to its normal, once for all channels. With
+// CLPV_EVALUATE_AT_RUN_TIME the flux, too, uses basis functions evaluated along the link. Normals
+// and links are read from memory, so that compilers cannot fold them; look-up tables are arguments.
+// From the host: CLPV_UNIT_FLUX, CLPV_EVALUATE_AT_RUN_TIME, functions_of_link(link), the functions
+// times the solid angle, and the text of host/codegen/inject_source.hpp.
 #pragma once
 
 #include "inject/lobe.h"
@@ -22,13 +24,16 @@ CLPV_INLINE Coefficients run_time_lobe(const float4 normal CLPV_AND_TABLE) {
   return project_sum(scale_coefficients(scale, alpha));
 }
 
-// Light that cell (x, y, z) gains from its six neighbours in each channel: first all fluxes, then the lobes of all faces.
+// Light that cell (x, y, z) gains from its six neighbours in each channel: first all fluxes, then
+// the lobes of all faces.
 CLPV_INLINE void gain_with_lobes(CLPV_VOLUME_IN source, const int x, const int y, const int z,
-                                 __global const float4* normals, __global const float4* links, Coefficients* gained
+                                 __global const float4* normals, __global const float4* links,
+                                 Coefficients* gained
 #if CLPV_BLOCKING
-                                 , const Links t
+                                 ,
+                                 const Links t
 #endif
-                                 CLPV_AND_TABLE CLPV_AND_FUNCTIONS) {
+                                     CLPV_AND_TABLE CLPV_AND_FUNCTIONS) {
 #if CLPV_EVALUATE_AT_RUN_TIME
   Coefficients along[CLPV_AXES * CLPV_SEEN_FACES];
   for (int face = 0; face < CLPV_AXES * CLPV_SEEN_FACES; ++face)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Computes the transmittance of each link into a cell from the blockers at its corners (link_transmittance.h).
+// Computes the transmittance of each link into a cell from the blockers at its corners
+// (link_transmittance.h).
 //
 //   T = 1 - clamp(B, 0, 1)      (docs/method.md, 'Blockers')
 //

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Linear interpolation from a coarser cascade to a finer one, whose cells are half as wide.
 //
-// Along an axis, u is the number of a finer cell from the coarser grid's origin. Its centre is (u - 1/2) / 2 coarser
-// cells from the first coarser centre, always 1/4 of a cell off one, so that its two neighbours have the weights 3/4
-// and 1/4.
+// Along an axis, u is the number of a finer cell from the coarser grid's origin. Its centre is (u -
+// 1/2) / 2 coarser cells from the first coarser centre, always 1/4 of a cell off one, so that its
+// two neighbours have the weights 3/4 and 1/4.
 #pragma once
 
 #include "sweep/sweep_layout.h"

@@ -3,7 +3,8 @@
 //
 //   D_a = sum_b Omega_b max(0, -w_b.a) L_b s^2      (docs/method.md, 'More bounces')
 //
-// From the host (host/codegen/sweep_source.cpp): CLPV_INCIDENT, Omega_b max(0, -w_b.a) for each face and bin.
+// From the host (host/codegen/sweep_source.cpp): CLPV_INCIDENT, Omega_b max(0, -w_b.a) for each
+// face and bin.
 #pragma once
 
 #include "shared/reflectors.h"
@@ -22,7 +23,8 @@ CLPV_INLINE FaceFluxes incident_flux(const Bins bins) {
     flux.c[a] = 0.0f;
 #pragma unroll
     for (int b = 0; b < CLPV_SWEEP_BINS; ++b)
-      if (incident_weights[a][b] != 0.0f) flux.c[a] = fma((realW)(incident_weights[a][b]), bins.c[b], flux.c[a]);
+      if (incident_weights[a][b] != 0.0f)
+        flux.c[a] = fma((realW)(incident_weights[a][b]), bins.c[b], flux.c[a]);
   }
   return flux;
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Bins that mirror one another, as sums and differences: projection and scattering, which mirrors leave as they are, then
-// have few products.
+// Bins that mirror one another, as sums and differences: projection and scattering, which mirrors
+// leave as they are, then have few products.
 //
-// The eight bins 8a, ..., 8a + 7 lie about axis a, and differ in the signs of their components: bits 0, 1 and 2 of the
-// index are those of axes a + 1, a + 2 and a (modulo 3).
+// The eight bins 8a, ..., 8a + 7 lie about axis a, and differ in the signs of their components:
+// bits 0, 1 and 2 of the index are those of axes a + 1, a + 2 and a (modulo 3).
 #pragma once
 
 #include "sweep/sweep_tiles.h"
 
-// Replaces the bins of each axis by their sums and differences: number 8a + k is the sum over j of (-1)^|j & k| L_(8a + j),
-// |n| the number of bits (a Walsh-Hadamard transform).
+// Replaces the bins of each axis by their sums and differences: number 8a + k is the sum over j of
+// (-1)^|j & k| L_(8a + j), |n| the number of bits (a Walsh-Hadamard transform).
 CLPV_INLINE Bins fold_bins(const Bins bins) {
   Bins r = bins;
 #pragma unroll
@@ -25,7 +25,8 @@ CLPV_INLINE Bins fold_bins(const Bins bins) {
   return r;
 }
 
-// Number, among the eight of an axis, of the sum that mirrors of x, y and z (bits 0, 1 and 2 of `odd`) negate.
+// Number, among the eight of an axis, of the sum that mirrors of x, y and z (bits 0, 1 and 2 of
+// `odd`) negate.
 CLPV_INLINE int folded_number(const int axis, const int odd) {
   return ((odd | odd << 3) >> (axis + 1) % 3) & 7;
 }

@@ -1,32 +1,39 @@
 // SPDX-License-Identifier: MIT
-// Sweeps whole bins through a cascade, for CPUs: a work-item takes one bin of directions through all planes, upstream
-// to downstream.
+// Sweeps whole bins through a cascade, for CPUs: a work-item takes one bin of directions through
+// all planes, upstream to downstream.
 //
 //   D = I + sum_k t_k T_k D_k,   L s^2 = sum_d share_d D_d
 //
-// Discrete ordinates by short characteristics (sweep_cell.h; docs/method.md, 'The sweep'). Within a plane the row
-// farthest downstream comes first. Each plane therefore overwrites the previous one in place and stays in cache.
+// Discrete ordinates by short characteristics (sweep_cell.h; docs/method.md, 'The sweep'). Within a
+// plane the row farthest downstream comes first. Each plane therefore overwrites the previous one
+// in place and stays in cache.
 //
-// Volumes have CLPV_GRID^3 numbers, laid out as in sweep_layout.h; an ordinate is a direction and channel.
-// In:   coefficients, means, sources, lit   injected light I [W/sr] and where it is (BinSweep, sweep_source.cl)
+// Volumes have CLPV_GRID^3 numbers, laid out as in sweep_layout.h; an ordinate is a direction and
+// channel.
+// In:   coefficients, means, sources, lit   injected light I [W/sr] and where it is (BinSweep,
+//                                           sweep_source.cl)
 //       links              T in [0, 1], a volume for each axis and link
-//       border             D [W/sr] in the cells beside the grid, for each ordinate (sweep_border.h); unused if `dark`
-//       plane_buffer       D [W/sr] in the plane upstream of the grid, for each ordinate; unused if `dark`
+//       border             D [W/sr] in the cells beside the grid, for each ordinate
+//                          (sweep_border.h); unused if `dark`
+//       plane_buffer       D [W/sr] in the plane upstream of the grid, for each ordinate; unused if
+//                          `dark`
 // Out:  plane_buffer       D in the last plane
 //       sums               L s^2 [W/sr] of 3 channels and 24 bins
-//       halo_light         D [W/sr] in the cells of `halo`: the boundary condition of the next finer cascade
+//       halo_light         D [W/sr] in the cells of `halo`: the boundary condition of the next
+//                          finer cascade
 // dark: 1 if no light enters at the border
 #include "prefetch.h"
 #include "shared/sweep.h"
 #include "sweep/sweep_cell.h"
 
 // Stores eight numbers of the halo; cells outside the grid are dark.
-CLPV_INLINE void store_halo(const realW light, const int first, CLPV_BUFFER_OUT halo_light, const int at) {
+CLPV_INLINE void store_halo(const realW light, const int first, CLPV_BUFFER_OUT halo_light,
+                            const int at) {
   const intW i = first + lane_numbers();
   write_numbers(halo_light, at, select(ZERO, light, i >= 0 && i < CLPV_GRID));
 }
-CLPV_INLINE void store_halo_row(const ClpvSweepHalo halo, __global const float* d, const int row, const int column,
-                                CLPV_BUFFER_OUT halo_light, const int at) {
+CLPV_INLINE void store_halo_row(const ClpvSweepHalo halo, __global const float* d, const int row,
+                                const int column, CLPV_BUFFER_OUT halo_light, const int at) {
   for (int i = 0; i < halo.side; i += W)
     store_halo(load_lanes(d + plane_index(row, column + i)), column + i, halo_light, at + i);
 }
@@ -42,8 +49,8 @@ CLPV_INLINE void store_halo_column(const ClpvSweepHalo halo, __global const floa
 }
 
 // Stores the halo's cells of a plane. `d`: the ordinate's plane buffer.
-CLPV_INLINE void store_halo_plane(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate, const int plane,
-                                  __global const float* d) {
+CLPV_INLINE void store_halo_plane(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate,
+                                  const int plane, __global const float* d) {
   const ClpvSweepBin bin = s->bin;
   const int p = plane - halo_first(halo, bin.plane_axis);
   if (p < 0 || p >= halo.side) return;
@@ -66,7 +73,8 @@ CLPV_INLINE void store_halo_plane(const BinSweep* s, const ClpvSweepHalo halo, c
   }
 }
 
-// Ends a plane: stores its part of the halo, and copies the boundary condition that the next plane reads.
+// Ends a plane: stores its part of the halo, and copies the boundary condition that the next plane
+// reads.
 CLPV_INLINE void end_plane(const BinSweep* s, const ClpvSweepHalo halo, const int dark,
                            __global float* plane_buffer, const int plane) {
   const int first = CLPV_ORDINATE(s->number, 0, 0);
@@ -79,8 +87,8 @@ CLPV_INLINE void end_plane(const BinSweep* s, const ClpvSweepHalo halo, const in
   }
 }
 
-// Prefetches a row of the next plane in all volumes. Hardware prefetch stops at the end of a page, and two planes of
-// 32 x 32 halves fill one.
+// Prefetches a row of the next plane in all volumes. Hardware prefetch stops at the end of a page,
+// and two planes of 32 x 32 halves fill one.
 CLPV_INLINE void prefetch_row(const BinSweep* s, const int plane, const int row) {
   const ClpvSweepBin bin = s->bin;
   const int next = clamp(plane + bin.plane_sign, 0, CLPV_GRID - 1);
@@ -88,16 +96,17 @@ CLPV_INLINE void prefetch_row(const BinSweep* s, const int plane, const int row)
     const int at = sweep_index(next, row, column);
     for (int channel = 0; channel < 3; ++channel)
       CLPV_PREFETCH(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME + at);
-    for (int k = 0; k < 4 && CLPV_BLOCKING; ++k) CLPV_PREFETCH(s->links + bin.links[k] * CLPV_SWEEP_VOLUME + at);
+    for (int k = 0; k < 4 && CLPV_BLOCKING; ++k)
+      CLPV_PREFETCH(s->links + bin.links[k] * CLPV_SWEEP_VOLUME + at);
   }
 }
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(
     __constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
     __constant const int* coefficients, __constant const float* means, CLPV_BUFFER_IN sources,
-    __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border, const ClpvSweepHalo halo,
-    __global float* plane_buffer, CLPV_BUFFER_OUT sums, CLPV_BUFFER_OUT halo_light,
-    const int dark CLPV_MEDIUM_PARAMETER) {
+    __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,
+    const ClpvSweepHalo halo, __global float* plane_buffer, CLPV_BUFFER_OUT sums,
+    CLPV_BUFFER_OUT halo_light, const int dark CLPV_MEDIUM_PARAMETER) {
   const int b = (int)get_global_id(0);
   const ClpvSweepBin bin = bins[b];
   const BinSweep s = CLPV_BIN_SWEEP(b);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Sets the boundary condition of a cascade from the next coarser cascade: light along each direction in the cells just
-// outside the grid, interpolated trilinearly.
+// Sets the boundary condition of a cascade from the next coarser cascade: light along each
+// direction in the cells just outside the grid, interpolated trilinearly.
 //
 //   D = from_coarser D_coarser      (radiance is equal in both: D = L s^2 |w_m|)
 //
 // docs/method.md, 'The sweep'; from_coarser is in ClpvSweepDirection.
 //
 // In:   halo_light    D_coarser [W/sr] in the cells of `halo` (sweep_border.h)
-//       dx, dy, dz    offset of the grid's origin from the coarser one's, in finer cells (coarse_to_fine.h)
+//       dx, dy, dz    offset of the grid's origin from the coarser one's, in finer cells
+//                     (coarse_to_fine.h)
 // Out:  plane_buffer  D [W/sr] in the plane upstream of the grid, from number `upstream` on
 //       border        D [W/sr] in the rows and columns upstream of each plane
 // A work-item computes W cells of a row of one face, from the cell before the grid on.
@@ -16,14 +17,18 @@
 #include "sweep/sweep_layout.h"
 #include "sweep/sweep_border.h"
 
-__kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
-                           CLPV_BUFFER_IN halo_light, const ClpvSweepHalo halo, const int dx, const int dy,
-                           const int dz, __global float* plane_buffer, const int upstream, CLPV_BUFFER_OUT border) {
-  const int column = W * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1, face = (int)get_global_id(2) % 3;
+__kernel void sweep_border(__constant const ClpvSweepBin* bins,
+                           __constant const ClpvSweepDirection* directions,
+                           CLPV_BUFFER_IN halo_light, const ClpvSweepHalo halo, const int dx,
+                           const int dy, const int dz, __global float* plane_buffer,
+                           const int upstream, CLPV_BUFFER_OUT border) {
+  const int column = W * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1,
+            face = (int)get_global_id(2) % 3;
   const int ordinate = (int)get_global_id(2) / 3, b = ordinate / (3 * CLPV_PARTS);
   if (column > CLPV_GRID || row > CLPV_GRID) return;
   const ClpvSweepBin bin = bins[b];
-  __constant const ClpvSweepDirection* direction = directions + b * CLPV_PARTS + ordinate % CLPV_PARTS;
+  __constant const ClpvSweepDirection* direction =
+      directions + b * CLPV_PARTS + ordinate % CLPV_PARTS;
   const bool plane_face = face == CLPV_BORDER_PLANE, row_face = face == CLPV_BORDER_ROW;
   const int across = plane_face ? bin.plane_axis : (row_face ? bin.row_axis : bin.column_axis);
   const int sign = plane_face ? bin.plane_sign : (row_face ? bin.row_sign : bin.column_sign);
@@ -47,7 +52,8 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins, __constant const
                    tc * direction->from_coarser * interpolate_rows(light, 1, pitch, next, tr, tl);
 #endif
   if (plane_face) {
-    store_lanes(in, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + plane_index(row, column));
+    store_lanes(
+        in, plane_buffer + upstream + ordinate * CLPV_BORDERED_PLANE + plane_index(row, column));
   } else {
     write_numbers(border, border_index(ordinate, face, row, column), in);
   }

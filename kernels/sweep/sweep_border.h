@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Memory layout of the boundary condition of a sweep: the border of a cascade, and the halo that a coarser cascade
-// stores for a finer one.
+// Memory layout of the boundary condition of a sweep: the border of a cascade, and the halo that a
+// coarser cascade stores for a finer one.
 //
-// An ordinate is a direction and channel. Each has three upstream faces: the plane before the first one, which goes
-// into the plane buffer, and per plane the row and the column upstream, which go into `border`. `border` stores the
-// rows and columns of a bin's ordinates plane by plane, in the order in which sweep_bin reads them.
+// An ordinate is a direction and channel. Each has three upstream faces: the plane before the first
+// one, which goes into the plane buffer, and per plane the row and the column upstream, which go
+// into `border`. `border` stores the rows and columns of a bin's ordinates plane by plane, in the
+// order in which sweep_bin reads them.
 #pragma once
 
 #include "shared/sweep.h"
@@ -19,8 +20,8 @@ enum {
   CLPV_BORDER_COLUMN,
 };
 
-// Index in `border` of cell `at` (-1 to CLPV_GRID) of the row or column upstream of a plane. Groups of eight start at
-// cell -1.
+// Index in `border` of cell `at` (-1 to CLPV_GRID) of the row or column upstream of a plane. Groups
+// of eight start at cell -1.
 CLPV_INLINE int border_index(const int ordinate, const int face, const int plane, const int at) {
   const int per_bin = 3 * CLPV_PARTS, planes = ordinate / per_bin * (CLPV_GRID + 2) + plane + 1;
   const int side = 2 * (planes * per_bin + ordinate % per_bin) + face - CLPV_BORDER_ROW;
@@ -44,10 +45,10 @@ CLPV_INLINE int halo_layer(const ClpvSweepHalo halo, const int axis, const int s
                   : along_axis(axis, halo.layers[1], halo.layers[3], halo.layers[5]);
 }
 
-// Index in a halo. (i, j) is (row, column) in CLPV_BORDER_PLANE, (plane, column) in CLPV_BORDER_ROW and (plane, row) in
-// CLPV_BORDER_COLUMN.
-CLPV_INLINE int halo_index(const ClpvSweepHalo halo, const int ordinate, const int face, const int layer, const int i,
-                           const int j) {
+// Index in a halo. (i, j) is (row, column) in CLPV_BORDER_PLANE, (plane, column) in CLPV_BORDER_ROW
+// and (plane, row) in CLPV_BORDER_COLUMN.
+CLPV_INLINE int halo_index(const ClpvSweepHalo halo, const int ordinate, const int face,
+                           const int layer, const int i, const int j) {
   return (ordinate * 3 + face) * CLPV_SWEEP_HALO_FACE_OF(halo.side) +
          (layer * halo.side + i) * CLPV_SWEEP_HALO_PITCH_OF(halo.side) + j;
 }

@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: MIT
-// One step of a sweep: W cells of a plane, all channels and all directions of a bin. Both forms of the sweep
-// use it (sweep_bins.cl, sweep_planes.cl).
+// One step of a sweep: W cells of a plane, all channels and all directions of a bin. Both forms of
+// the sweep use it (sweep_bins.cl, sweep_planes.cl).
 //
-//   D = I + sum_k t_k T_k D_k                               k: the four cells of the previous plane that light comes from
+//   D = I + sum_k t_k T_k D_k                               k: the four cells of the previous plane
+//                                                           that light comes from
 //   t = (1-t_u)(1-t_v), t_u(1-t_v), (1-t_u)t_v, t_u t_v      of these cells
 //   t_u = |w_u| / |w_m|
 //   I_w = sum_i c_i (1 / Omega) Int_part b_i dw             I of direction w
 //   L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b)            d: the directions of bin b
 //
-// Discrete ordinates by short characteristics (docs/method.md, 'The sweep'). D [W/sr] is the light along a direction, I
-// [W/sr] the injected light, with add_cosine_rest() for harmonics, T_k in [0, 1] the transmittance of the link from cell k.
-// ClpvSweepDirection has t and the share Omega_d / (|w_m| Omega_b), BinSweep the means of the basis
-// functions over a direction's part of a bin.
+// Discrete ordinates by short characteristics (docs/method.md, 'The sweep'). D [W/sr] is the light
+// along a direction, I [W/sr] the injected light, with add_cosine_rest() for harmonics, T_k in [0,
+// 1] the transmittance of the link from cell k. ClpvSweepDirection has t and the share Omega_d /
+// (|w_m| Omega_b), BinSweep the means of the basis functions over a direction's part of a bin.
 //
-// With CLPV_MEDIUM, light from the previous plane is attenuated in each channel, and the medium scatters light into it:
+// With CLPV_MEDIUM, light from the previous plane is attenuated in each channel, and the medium
+// scatters light into it:
 //
 //   D = I + (1 - f a) sum_k t_k T_k D_k + |w_m| a (f J) s^2,   a = 1 - exp(-sigma_t s / |w_m|)
 //
-// f is the part in the medium of a cell, J s^2 [W/sr] the source function of the bin (sweep_medium.cl); f and f J are
-// means of the cell and its neighbour upstream along m.
+// f is the part in the medium of a cell, J s^2 [W/sr] the source function of the bin
+// (sweep_medium.cl); f and f J are means of the cell and its neighbour upstream along m.
 //
-// From the host: CLPV_PARTS directions of a bin, CLPV_SOURCES coefficients stored per channel, CLPV_EMITTING of them that a bin's
-// light depends on, CLPV_BLOCKING, CLPV_MEDIUM, CLPV_COSINE_REST.
+// From the host: CLPV_PARTS directions of a bin, CLPV_SOURCES coefficients stored per channel,
+// CLPV_EMITTING of them that a bin's light depends on, CLPV_BLOCKING, CLPV_MEDIUM,
+// CLPV_COSINE_REST.
 #pragma once
 
 #include "shared/sweep.h"
@@ -34,16 +37,18 @@ typedef struct {
   int number;  // of the bin, 0 to CLPV_SWEEP_BINS - 1
   ClpvSweepBin bin;
   __constant const ClpvSweepDirection* directions;  // CLPV_PARTS of them
-  __constant const int* coefficients;               // the CLPV_EMITTING coefficients that the bin's light depends on
-  __constant const float* means;                    // of their functions, CLPV_EMITTING for each direction
-  CLPV_BUFFER_IN sources;                           // c of 3 channels and CLPV_SOURCES coefficients (sweep_source.cl)
-  __global const uchar* lit;                        // 1 for each CLPV_SOURCE_LANES cells that hold sources
+  __constant const int*
+      coefficients;               // the CLPV_EMITTING coefficients that the bin's light depends on
+  __constant const float* means;  // of their functions, CLPV_EMITTING for each direction
+  CLPV_BUFFER_IN sources;         // c of 3 channels and CLPV_SOURCES coefficients (sweep_source.cl)
+  __global const uchar* lit;      // 1 for each CLPV_SOURCE_LANES cells that hold sources
   CLPV_BUFFER_IN links;                             // T, a volume for each axis and link
-  CLPV_BUFFER_IN border;                            // D in the cells beside the grid (sweep_border.h)
+  CLPV_BUFFER_IN border;  // D in the cells beside the grid (sweep_border.h)
   CLPV_BUFFER_OUT sums;                             // L s^2, a volume for each channel and bin
   CLPV_BUFFER_OUT halo_light;                       // D in the cells of the halo (sweep_border.h)
 #if CLPV_MEDIUM
-  __global const float* inside;                     // part in the medium of each cell along x, y and z, rows with border
+  __global const float*
+      inside;  // part in the medium of each cell along x, y and z, rows with border
   CLPV_BUFFER_IN scattered;                         // J s^2, a volume for each channel and bin
 #endif
 } BinSweep;
@@ -57,18 +62,14 @@ typedef struct {
 #endif
 
 // A BinSweep of bin b, from the kernel's parameters and its `bin`, by their names.
-#define CLPV_BIN_SWEEP(b)                                                                                     \
-  {b,                                                                                                         \
-   bin,                                                                                                       \
-   directions + (b)*CLPV_PARTS,                                                                               \
-   coefficients + (b)*CLPV_EMITTING,                                                                          \
-   means + (b)*CLPV_PARTS * CLPV_EMITTING,                                                                    \
-   sources + bin.transposed * 3 * CLPV_SOURCES * CLPV_SWEEP_VOLUME,                                           \
-   lit + bin.transposed * CLPV_SWEEP_VOLUME / CLPV_SOURCE_LANES,                                              \
-   links,                                                                                                     \
-   border,                                                                                                    \
-   sums,                                                                                                      \
-   halo_light CLPV_MEDIUM_MEMBER}
+#define CLPV_BIN_SWEEP(b)                                                                 \
+  {                                                                                       \
+    b, bin, directions + (b)*CLPV_PARTS, coefficients + (b)*CLPV_EMITTING,                \
+        means + (b)*CLPV_PARTS *CLPV_EMITTING,                                            \
+        sources + bin.transposed * 3 * CLPV_SOURCES *CLPV_SWEEP_VOLUME,                   \
+        lit + bin.transposed *CLPV_SWEEP_VOLUME / CLPV_SOURCE_LANES, links, border, sums, \
+        halo_light CLPV_MEDIUM_MEMBER                                                     \
+  }
 
 // Returns true if any of W cells holds sources.
 CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
@@ -79,8 +80,10 @@ CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
 #endif
 }
 
-// Adds I to D in cells that hold sources, and to `sum`. `planes`: D of the bin's first ordinate in these cells.
-CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float* planes, realW* sum) {
+// Adds I to D in cells that hold sources, and to `sum`. `planes`: D of the bin's first ordinate in
+// these cells.
+CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float* planes,
+                             realW* sum) {
   for (int channel = 0; channel < 3; ++channel) {
     realW injected[CLPV_PARTS];
 #pragma unroll
@@ -93,7 +96,8 @@ CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float
         injected[part] = fma((realW)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
     }
 #if CLPV_COSINE_REST
-    add_cosine_rest(s->means, s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME, source, injected);
+    add_cosine_rest(s->means, s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME, source,
+                    injected);
 #endif
 #pragma unroll
     for (int part = 0; part < CLPV_PARTS; ++part) {
@@ -111,9 +115,10 @@ CLPV_INLINE int inside_index(const int axis, const int i) {
 }
 #endif
 
-// `from`: plane buffer of the previous plane; `to`: plane buffer of this one, which may be the same.
-CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __global float* to, const int plane,
-                             const int row, const int column) {
+// `from`: plane buffer of the previous plane; `to`: plane buffer of this one, which may be the
+// same.
+CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __global float* to,
+                             const int plane, const int row, const int column) {
   const ClpvSweepBin bin = s->bin;
   const int at = sweep_index(plane, row, column);
   const int here = CLPV_ORDINATE(s->number, 0, 0) * CLPV_BORDERED_PLANE + plane_index(row, column);
@@ -129,7 +134,8 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
 #endif
 #if CLPV_MEDIUM
   const int upstream = plane - bin.plane_sign;
-  const int scattered_upstream = upstream < 0 || upstream >= CLPV_GRID ? at : sweep_index(upstream, row, column);
+  const int scattered_upstream =
+      upstream < 0 || upstream >= CLPV_GRID ? at : sweep_index(upstream, row, column);
   const realW across = 0.5f * s->inside[inside_index(bin.row_axis, row)] *
                            load_lanes(s->inside + inside_index(bin.column_axis, column));
   const realW inside = across * s->inside[inside_index(bin.plane_axis, plane)],
@@ -137,7 +143,8 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
   realW scattered[3];
 #pragma unroll
   for (int channel = 0; channel < 3; ++channel) {
-    CLPV_BUFFER_IN volume = s->scattered + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME;
+    CLPV_BUFFER_IN volume =
+        s->scattered + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME;
     scattered[channel] = inside * read_numbers(volume, at) +
                          inside_upstream * read_numbers(volume, scattered_upstream);
   }
@@ -162,7 +169,8 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
       d = fma(t[3], load_lanes(from3 + ordinate), d);
 #if CLPV_MEDIUM
       const realW lost = 1.0f - s->directions[part].attenuation[channel];
-      d = fma(lost, s->directions[part].cosine * scattered[channel] - (inside + inside_upstream) * d, d);
+      d = fma(lost,
+              s->directions[part].cosine * scattered[channel] - (inside + inside_upstream) * d, d);
 #endif
       store_lanes(d, to + here + ordinate);
       sum[channel] = fma((realW)(s->directions[part].share), d, sum[channel]);
@@ -179,16 +187,16 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
 // Row or column upstream of the grid.
 CLPV_INLINE int upstream_of_grid(const int sign) { return sign > 0 ? -1 : CLPV_GRID; }
 
-// Copy the boundary condition of a plane from the border into the plane buffer, where the next plane reads it:
-// W cells of the row upstream, and of the column upstream (one cell with one lane).
-CLPV_INLINE void copy_border_row(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
-                                 const int column) {
+// Copy the boundary condition of a plane from the border into the plane buffer, where the next
+// plane reads it: W cells of the row upstream, and of the column upstream (one cell with one lane).
+CLPV_INLINE void copy_border_row(const BinSweep* s, __global float* planes, const int ordinate,
+                                 const int plane, const int column) {
   planes += ordinate * CLPV_BORDERED_PLANE + plane_index(upstream_of_grid(s->bin.row_sign), column);
   store_lanes(read_numbers(s->border, border_index(ordinate, CLPV_BORDER_ROW, plane, column)),
               planes);
 }
-CLPV_INLINE void copy_border_column(const BinSweep* s, __global float* planes, const int ordinate, const int plane,
-                                    const int row) {
+CLPV_INLINE void copy_border_column(const BinSweep* s, __global float* planes, const int ordinate,
+                                    const int plane, const int row) {
   const realW light =
       read_numbers(s->border, border_index(ordinate, CLPV_BORDER_COLUMN, plane, row));
   planes += ordinate * CLPV_BORDERED_PLANE + plane_index(row, upstream_of_grid(s->bin.column_sign));

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Projects the result of a sweep on nine spherical harmonics: the accumulated light volume that gathering reads.
+// Projects the result of a sweep on nine spherical harmonics: the accumulated light volume that
+// gathering reads.
 //
-//   c = P (L_b s^2)_b,   P (9 x 24) the projection of light that is constant over each bin      (docs/method.md, 'The
-//                                                                                               sweep')
+//   c = P (L_b s^2)_b,   P (9 x 24) the projection of light that is constant over each bin
+//
+// docs/method.md, 'The sweep'.
 //
 // In:   sums         L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
 // Out:  accumulated  nine coefficients per cell and channel [W/sr], any layout
-//       incident     with CLPV_WITH_INCIDENT: flux [W] on the six faces of each cell, a bordered volume for each
-//                    channel and face; bounces of the next finer cascade read it (bounce.cl)
-// From the host (host/codegen/sweep_source.cpp): CLPV_PROJECTION, P by folded bins (mirrored_bins.h), and with CLPV_WITH_INCIDENT the text for
-// face_fluxes.h. A work-item computes a tile of W x W cells of a slice and channel.
+//       incident     with CLPV_WITH_INCIDENT: flux [W] on the six faces of each cell, a bordered
+//                    volume for each channel and face; bounces of the next finer cascade read it
+//                    (bounce.cl)
+// From the host (host/codegen/sweep_source.cpp): CLPV_PROJECTION, P by folded bins
+// (mirrored_bins.h), and with CLPV_WITH_INCIDENT the text for face_fluxes.h. A work-item computes a
+// tile of W x W cells of a slice and channel.
 #ifndef CLPV_WITH_INCIDENT
 #define CLPV_WITH_INCIDENT 0
 #endif

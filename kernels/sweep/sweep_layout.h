@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Memory layout of a sweep: one volume of planes for each bin or link (sizes: shared/sweep.h), and planes with a
-// border.
+// Memory layout of a sweep: one volume of planes for each bin or link (sizes: shared/sweep.h), and
+// planes with a border.
 //
-// A volume belongs to an axis and stores the planes across it one after another, so that a direction walks through
-// memory from one end to the other. (plane, row, column) is (z, y, x) across z, (y, z, x) across y and (x, z, y) across
-// x. Padding of CLPV_SWEEP_LINE numbers after each plane and volume keeps a cell's numbers of several volumes in
-// different cache sets.
+// A volume belongs to an axis and stores the planes across it one after another, so that a
+// direction walks through memory from one end to the other. (plane, row, column) is (z, y, x)
+// across z, (y, z, x) across y and (x, z, y) across x. Padding of CLPV_SWEEP_LINE numbers after
+// each plane and volume keeps a cell's numbers of several volumes in different cache sets.
 #pragma once
 
 #include "lanes.h"
@@ -18,7 +18,8 @@ enum {
   CLPV_SWEEP_VOLUME = CLPV_SWEEP_VOLUME_OF(CLPV_GRID),
 };
 
-// Plane buffers, and volumes that a finer cascade interpolates, have a border of one cell on every side.
+// Plane buffers, and volumes that a finer cascade interpolates, have a border of one cell on every
+// side.
 enum {
   CLPV_SWEEP_PITCH = CLPV_SWEEP_PITCH_OF(CLPV_GRID),
   CLPV_BORDERED_PLANE = CLPV_SWEEP_BORDERED_PLANE_OF(CLPV_GRID),

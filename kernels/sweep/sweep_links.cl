@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Computes the transmittance of each link into a cell for the sweep: 1 minus the blocking potential.
+// Computes the transmittance of each link into a cell for the sweep: 1 minus the blocking
+// potential.
 //
 //   T = 1 - clamp(B, 0, 1)      (docs/method.md, 'Blockers')
 //
 // In:   blockers       geometry volume, samples at the cells' corners
-// Out:  transmittance  T in [0, 1], a volume for each axis and link that directions across it use (sweep_layout.h)
-// From the host (host/codegen/transmittance_source.cpp, sweep_source.cpp): the text for link_transmittance.h, and
-// CLPV_VOLUME_LINKS, the link of each volume: CLPV_AXIS_LINKS across x, then as many across y and z.
-// A work-item computes a tile of W x W cells of a slice.
+// Out:  transmittance  T in [0, 1], a volume for each axis and link that directions across it use
+//                      (sweep_layout.h)
+// From the host (host/codegen/transmittance_source.cpp, sweep_source.cpp): the text for
+// link_transmittance.h, and CLPV_VOLUME_LINKS, the link of each volume: CLPV_AXIS_LINKS across x,
+// then as many across y and z. A work-item computes a tile of W x W cells of a slice.
 #include "volume/coefficients.h"
 #include "steps/link_transmittance.h"
 #include "sweep/sweep_tiles.h"
@@ -34,5 +36,6 @@ __kernel void sweep_links(CLPV_VOLUME_IN blockers, CLPV_BUFFER_OUT transmittance
                        zero_outside(x, links.c[volume_links[across_z]]));
     }
   }
-  for (int v = 0; v < CLPV_AXIS_LINKS; ++v) store_x_tile(transmittance + v * CLPV_SWEEP_VOLUME, tiles[v], x, y, z);
+  for (int v = 0; v < CLPV_AXIS_LINKS; ++v)
+    store_x_tile(transmittance + v * CLPV_SWEEP_VOLUME, tiles[v], x, y, z);
 }

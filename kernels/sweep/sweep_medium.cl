@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: MIT
-// Light that a medium scatters in the cells of a cascade: the source function J s^2 [W/sr] that a sweep reads
-// (sweep_cell.h; docs/method.md, 'Media').
+// Light that a medium scatters in the cells of a cascade: the source function J s^2 [W/sr] that a
+// sweep reads (sweep_cell.h; docs/method.md, 'Media').
 //
-//   J_b = sigma_s / sigma_t (sum over lights of p_b(w) E + sum over bins b' of M_bb' L_b')   [W/m^2/sr]
+//   J_b = sigma_s / sigma_t (sum over lights of p_b(w) E + sum over bins b' of M_bb' L_b')
+//   [W/m^2/sr]
 //
-// E [W/m^2]: irradiance of a light, mean over eight points of the cell that lie in the medium; p_b [1/sr]: phase
-// function from the light's direction w to the mean direction of bin b, over all bins scaled to an integral of 1;
-// M (24 x 24): means of the phase function from bin to bin (host/basis/sweep.hpp).
+// E [W/m^2]: irradiance of a light, mean over eight points of the cell that lie in the medium; p_b
+// [1/sr]: phase function from the light's direction w to the mean direction of bin b, over all bins
+// scaled to an integral of 1; M (24 x 24): means of the phase function from bin to bin
+// (host/basis/sweep.hpp).
 //
 // scatter_lights    adds the first sum for one light and one of its shadow maps
-//   In:      grid, light, views, count, which, map   light scaled as volumes are; maps as in shade.cl
+//   In:      grid, light, views, count, which, map   light scaled as volumes are; maps as in
+//                                                    shade.cl
 //            bins          mean direction of each bin
 //   In, out: sources       J s^2 of 3 channels and 24 bins (sweep_layout.h)
 // scatter_swept     adds the second sum, of swept light
 //   In:      lit           J s^2 of the lights
 //            swept         L s^2 [W/sr], as written by a sweep
 //   Out:     sources
-// From the host (host/codegen/sweep_source.cpp): CLPV_SCATTERING, M by folded bins (mirrored_bins.h). A work-item computes
-// a tile of W x W cells of a slice; in scatter_swept of a channel.
+// From the host (host/codegen/sweep_source.cpp): CLPV_SCATTERING, M by folded bins
+// (mirrored_bins.h). A work-item computes a tile of W x W cells of a slice; in scatter_swept of a
+// channel.
 #include "lanes.h"
 #include "gather/medium.h"
 #include "raster/shadow.h"
@@ -31,10 +35,11 @@ typedef struct {
   realW x, y, z;
 } LitRow;
 
-// Mean irradiance of the part of cell (x, y, z) in the medium, for each channel. A point in a cell with a spot or point
-// light counts as at least a quarter of the cell's edge away.
-CLPV_INLINE void cell_irradiance(const ClpvGrid grid, const ClpvLight light, const ShadowMap shadow, const int x,
-                                 const int y, const int z, float* red, float* green, float* blue) {
+// Mean irradiance of the part of cell (x, y, z) in the medium, for each channel. A point in a cell
+// with a spot or point light counts as at least a quarter of the cell's edge away.
+CLPV_INLINE void cell_irradiance(const ClpvGrid grid, const ClpvLight light, const ShadowMap shadow,
+                                 const int x, const int y, const int z, float* red, float* green,
+                                 float* blue) {
   const ClpvMedium medium = light.medium;
   const float cell = grid.cell;
   const float lower[3] = {grid.origin[0] + cell * (float)x, grid.origin[1] + cell * (float)y,
@@ -45,8 +50,9 @@ CLPV_INLINE void cell_irradiance(const ClpvGrid grid, const ClpvLight light, con
   for (int point = 0; point < 8; point += W) {
     const intW corner = point + lane_numbers();
     const Vec at = vec(to_realW(corner & 1), to_realW(corner >> 1 & 1), to_realW(corner >> 2));
-#define CLPV_POINT(axis, c) \
-  clamp(lower[axis] + cell * (0.25f + 0.5f * at.c), (realW)(medium.lower[axis]), (realW)(medium.upper[axis]))
+#define CLPV_POINT(axis, c)                                                      \
+  clamp(lower[axis] + cell * (0.25f + 0.5f * at.c), (realW)(medium.lower[axis]), \
+        (realW)(medium.upper[axis]))
     const Vec points = vec(CLPV_POINT(0, x), CLPV_POINT(1, y), CLPV_POINT(2, z));
 #undef CLPV_POINT
     Vec towards;
@@ -58,13 +64,14 @@ CLPV_INLINE void cell_irradiance(const ClpvGrid grid, const ClpvLight light, con
       share *= near < ONE ? near : ONE;
     }
     irradiance = vec_times(irradiance, share);
-    *red += sum_lanes(irradiance.x), *green += sum_lanes(irradiance.y), *blue += sum_lanes(irradiance.z);
+    *red += sum_lanes(irradiance.x), *green += sum_lanes(irradiance.y),
+        *blue += sum_lanes(irradiance.z);
   }
 }
 
 // Fills the lit rows of the tile from cell (x, y, z) on; returns whether any cell is lit.
-CLPV_INLINE bool light_tile(const ClpvGrid grid, const ClpvLight light, const ShadowMap shadow, const int x, const int y,
-                            const int z, LitRow* rows) {
+CLPV_INLINE bool light_tile(const ClpvGrid grid, const ClpvLight light, const ShadowMap shadow,
+                            const int x, const int y, const int z, LitRow* rows) {
   float brightest = 0.0f;
   for (int r = 0; r < W; ++r) {
     float red[W], green[W], blue[W], along_x[W], along_y[W],
@@ -101,8 +108,8 @@ CLPV_INLINE void add_to_row(CLPV_BUFFER_OUT volume, const int at, const realW ad
 }
 
 // Adds the tile from cell (x, y, z) on, whose rows lie along x, to a bin's volume.
-CLPV_INLINE void add_tile(CLPV_BUFFER_OUT volume, const int bin, const SweepTile tile, const int x, const int y,
-                          const int z) {
+CLPV_INLINE void add_tile(CLPV_BUFFER_OUT volume, const int bin, const SweepTile tile, const int x,
+                          const int y, const int z) {
   if (bin < CLPV_AXIS_BINS) {
     const SweepTile columns = transpose_tile(tile);
     for (int r = 0; r < W && x + r < CLPV_GRID; ++r)
@@ -113,9 +120,10 @@ CLPV_INLINE void add_tile(CLPV_BUFFER_OUT volume, const int bin, const SweepTile
     add_to_row(volume, bin_index(bin, x, y + r, z), tile.row[r]);
 }
 
-__kernel void scatter_lights(const ClpvGrid grid, const ClpvLight light, __global const ClpvView* views,
-                             const uint count, const uint which, __global const float* map,
-                             __constant const float4* bins, CLPV_BUFFER_OUT sources) {
+__kernel void scatter_lights(const ClpvGrid grid, const ClpvLight light,
+                             __global const ClpvView* views, const uint count, const uint which,
+                             __global const float* map, __constant const float4* bins,
+                             CLPV_BUFFER_OUT sources) {
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1), z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   const ShadowMap shadow = {views, count, which, map};
@@ -142,7 +150,8 @@ __kernel void scatter_lights(const ClpvGrid grid, const ClpvLight light, __globa
 
 __constant const float scattering[3][CLPV_SWEEP_BINS] = CLPV_SCATTERING;
 
-// M L. Light that mirrors of x, y and z leave as it is or negate (`odd`) scatters into light of the same kind.
+// M L. Light that mirrors of x, y and z leave as it is or negate (`odd`) scatters into light of the
+// same kind.
 CLPV_INLINE Bins scatter_bins(const Bins swept) {
   const Bins folded = fold_bins(swept);
   Bins scattered;
@@ -189,5 +198,6 @@ __kernel void scatter_swept(const ClpvMedium medium, CLPV_BUFFER_IN lit, CLPV_BU
       }
     }
   }
-  for (int b = 0; b < CLPV_AXIS_BINS; ++b) store_x_tile(sources + first + b * CLPV_SWEEP_VOLUME, tiles[b], x, y, z);
+  for (int b = 0; b < CLPV_AXIS_BINS; ++b)
+    store_x_tile(sources + first + b * CLPV_SWEEP_VOLUME, tiles[b], x, y, z);
 }

@@ -1,28 +1,32 @@
 // SPDX-License-Identifier: MIT
-// Sweeps one plane of every bin through a cascade, for GPUs: a launch per plane, upstream to downstream; a work-item
-// takes W cells of a plane and bin.
+// Sweeps one plane of every bin through a cascade, for GPUs: a launch per plane, upstream to
+// downstream; a work-item takes W cells of a plane and bin.
 //
 //   D = I + sum_k t_k T_k D_k,   L s^2 = sum_d share_d D_d
 //
-// Discrete ordinates by short characteristics (sweep_cell.h; docs/method.md, 'The sweep'). Planes of even and odd
-// number have separate plane buffers, since work-items run in any order.
+// Discrete ordinates by short characteristics (sweep_cell.h; docs/method.md, 'The sweep'). Planes
+// of even and odd number have separate plane buffers, since work-items run in any order.
 //
-// Volumes have CLPV_GRID^3 numbers, laid out as in sweep_layout.h; an ordinate is a direction and channel.
-// In:   coefficients, means, sources, lit   injected light I [W/sr] and where it is (BinSweep, sweep_source.cl)
+// Volumes have CLPV_GRID^3 numbers, laid out as in sweep_layout.h; an ordinate is a direction and
+// channel.
+// In:   coefficients, means, sources, lit   injected light I [W/sr] and where it is (BinSweep,
+//                                           sweep_source.cl)
 //       links              T in [0, 1], a volume for each axis and link
-//       border             D [W/sr] in the cells beside the grid, for each ordinate (sweep_border.h)
-//       plane_buffer       D [W/sr] in the previous plane, for each ordinate: even planes, then odd ones; before step 0
-//                          the odd ones hold the plane upstream of the grid
+//       border             D [W/sr] in the cells beside the grid, for each ordinate
+//                          (sweep_border.h)
+//       plane_buffer       D [W/sr] in the previous plane, for each ordinate: even planes, then odd
+//                          ones; before step 0 the odd ones hold the plane upstream of the grid
 //       step               number of the plane along the bin's direction, 0 to CLPV_GRID - 1
 // Out:  plane_buffer       D in this plane
 //       sums               L s^2 [W/sr] of 3 channels and 24 bins
-//       halo_light         D [W/sr] in the cells of `halo`: the boundary condition of the next finer cascade
+//       halo_light         D [W/sr] in the cells of `halo`: the boundary condition of the next
+//                          finer cascade
 #include "shared/sweep.h"
 #include "sweep/sweep_cell.h"
 
 // Stores a cell in each face of the halo that it belongs to.
-CLPV_INLINE void store_halo_cell(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate, const int3 cell,
-                                 const float d) {
+CLPV_INLINE void store_halo_cell(const BinSweep* s, const ClpvSweepHalo halo, const int ordinate,
+                                 const int3 cell, const float d) {
   const ClpvSweepBin bin = s->bin;
   const int p = cell.z - halo_first(halo, bin.plane_axis),
             r = cell.y - halo_first(halo, bin.row_axis),
@@ -39,17 +43,21 @@ CLPV_INLINE void store_halo_cell(const BinSweep* s, const ClpvSweepHalo halo, co
     write_number(s->halo_light, halo_index(halo, ordinate, CLPV_BORDER_COLUMN, layer, p, r), d);
 }
 
-__kernel void sweep_plane(__constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
-                          __constant const int* coefficients, __constant const float* means, CLPV_BUFFER_IN sources,
-                          __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,
-                          const ClpvSweepHalo halo, __global float* plane_buffer, CLPV_BUFFER_OUT sums,
+__kernel void sweep_plane(__constant const ClpvSweepBin* bins,
+                          __constant const ClpvSweepDirection* directions,
+                          __constant const int* coefficients, __constant const float* means,
+                          CLPV_BUFFER_IN sources, __global const uchar* lit, CLPV_BUFFER_IN links,
+                          CLPV_BUFFER_IN border, const ClpvSweepHalo halo,
+                          __global float* plane_buffer, CLPV_BUFFER_OUT sums,
                           CLPV_BUFFER_OUT halo_light, const int step CLPV_MEDIUM_PARAMETER) {
-  const int column = W * (int)get_global_id(0), row = (int)get_global_id(1), b = (int)get_global_id(2);
+  const int column = W * (int)get_global_id(0), row = (int)get_global_id(1),
+            b = (int)get_global_id(2);
   if (column >= CLPV_GRID || row >= CLPV_GRID) return;
   const ClpvSweepBin bin = bins[b];
   const BinSweep s = CLPV_BIN_SWEEP(b);
   const int plane = bin.plane_sign > 0 ? step : CLPV_GRID - 1 - step;
-  const int planes = CLPV_ORDINATE(CLPV_SWEEP_BINS, 0, 0) * CLPV_BORDERED_PLANE;  // numbers in all even planes
+  // Numbers in all even planes.
+  const int planes = CLPV_ORDINATE(CLPV_SWEEP_BINS, 0, 0) * CLPV_BORDERED_PLANE;
   __global float* to = plane_buffer + (step % 2) * planes;
   __global const float* from = plane_buffer + (1 - step % 2) * planes;
   sweep_cells(&s, from, to, plane, row, column);

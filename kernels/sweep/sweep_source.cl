@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Copies injected light into the layout of a sweep (sweep_layout.h) and marks the rows of cells that hold any: few do,
-// and a sweep reads sources only in those rows (sweep_cell.h).
+// Copies injected light into the layout of a sweep (sweep_layout.h) and marks the rows of cells
+// that hold any: few do, and a sweep reads sources only in those rows (sweep_cell.h).
 //
 // In:   injected  light volume [W/sr], any basis and layout
-// Out:  sources   coefficients [W/sr], CLPV_N volumes of each of 3 channels across z, then the same across x. A volume
-//                 across z has its rows along x, and serves bins across y too. Dark tiles are not written.
-//       lit       1 for each W cells of a row that hold light in any channel, else 0; of a volume across z,
-//                 then of one across x
+// Out:  sources   coefficients [W/sr], CLPV_N volumes of each of 3 channels across z, then the same
+//                 across x. A volume across z has its rows along x, and serves bins across y too.
+//                 Dark tiles are not written.
+//       lit       1 for each W cells of a row that hold light in any channel, else 0; of a volume
+//                 across z, then of one across x
 // A work-item copies a tile of W x W cells of a slice.
 #include "volume/coefficients.h"
 #include "lanes.h"
@@ -26,8 +27,8 @@ CLPV_INLINE realW sum_light(CLPV_VOLUME_IN injected, const int x, const int y, c
 }
 
 // Copies a channel of a tile, across z and across x.
-CLPV_INLINE void copy_tile(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, const int channel, const int x,
-                           const int y, const int z) {
+CLPV_INLINE void copy_tile(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, const int channel,
+                           const int x, const int y, const int z) {
   CLPV_BUFFER_OUT across_z = sources + channel * CLPV_N * CLPV_SWEEP_VOLUME;
   CLPV_BUFFER_OUT across_x = across_z + 3 * CLPV_N * CLPV_SWEEP_VOLUME;
   SweepTile tiles[CLPV_N];
@@ -43,7 +44,8 @@ CLPV_INLINE void copy_tile(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, con
 #pragma unroll
     for (int i = 0; i < CLPV_N; ++i) tiles[i].row[r] = c.c[i];
   }
-  for (int i = 0; i < CLPV_N; ++i) store_x_tile(across_x + i * CLPV_SWEEP_VOLUME, tiles[i], x, y, z);
+  for (int i = 0; i < CLPV_N; ++i)
+    store_x_tile(across_x + i * CLPV_SWEEP_VOLUME, tiles[i], x, y, z);
 }
 
 __kernel void sweep_source(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, __global uchar* lit) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Tiles of W x W cells, which convert between rows along x and volumes across any axis (sweep_layout.h). Volumes across
-// y and z store rows along x; those across x store rows along y, so that tiles of them are transposed.
+// Tiles of W x W cells, which convert between rows along x and volumes across any axis
+// (sweep_layout.h). Volumes across y and z store rows along x; those across x store rows along y,
+// so that tiles of them are transposed.
 #pragma once
 
 #include "sweep/sweep_layout.h"
@@ -10,8 +11,9 @@ typedef struct {
 } SweepTile;
 
 #if W == 8
-#define CLPV_COLUMN_OF_ROWS(s)                                                                                  \
-  ((realW)(a.row[0].s, a.row[1].s, a.row[2].s, a.row[3].s, a.row[4].s, a.row[5].s, a.row[6].s, a.row[7].s))
+#define CLPV_COLUMN_OF_ROWS(s)                                                                 \
+  ((realW)(a.row[0].s, a.row[1].s, a.row[2].s, a.row[3].s, a.row[4].s, a.row[5].s, a.row[6].s, \
+           a.row[7].s))
 CLPV_INLINE SweepTile transpose_tile(const SweepTile a) {
   const SweepTile t = {{CLPV_COLUMN_OF_ROWS(s0), CLPV_COLUMN_OF_ROWS(s1), CLPV_COLUMN_OF_ROWS(s2),
                         CLPV_COLUMN_OF_ROWS(s3), CLPV_COLUMN_OF_ROWS(s4), CLPV_COLUMN_OF_ROWS(s5),
@@ -28,14 +30,16 @@ CLPV_INLINE realW zero_outside(const int x, const realW value) {
   return x + lane_numbers() < CLPV_GRID ? value : ZERO;
 }
 
-// Numbers of W cells in each bin. The first CLPV_AXIS_BINS bins are swept across x, then follow those across y and z.
+// Numbers of W cells in each bin. The first CLPV_AXIS_BINS bins are swept across x, then follow
+// those across y and z.
 typedef struct {
   realW c[CLPV_SWEEP_BINS];
 } Bins;
 
-// Loads the tile from cell (x, y, z) on of every bin across x, transposed: rows lie along x. `volumes`: one for each
-// bin.
-CLPV_INLINE void load_x_bins(CLPV_BUFFER_IN volumes, const int x, const int y, const int z, SweepTile* tiles) {
+// Loads the tile from cell (x, y, z) on of every bin across x, transposed: rows lie along x.
+// `volumes`: one for each bin.
+CLPV_INLINE void load_x_bins(CLPV_BUFFER_IN volumes, const int x, const int y, const int z,
+                             SweepTile* tiles) {
   for (int b = 0; b < CLPV_AXIS_BINS; ++b) {
     SweepTile columns;
     for (int r = 0; r < W; ++r) {
@@ -53,8 +57,8 @@ CLPV_INLINE int bin_index(const int b, const int x, const int y, const int z) {
 }
 
 // All bins of the cells from (x, y, z) on, which are row r of `tiles`.
-CLPV_INLINE Bins load_bins(CLPV_BUFFER_IN volumes, const SweepTile* tiles, const int r, const int x, const int y,
-                           const int z) {
+CLPV_INLINE Bins load_bins(CLPV_BUFFER_IN volumes, const SweepTile* tiles, const int r, const int x,
+                           const int y, const int z) {
   Bins bins;
 #pragma unroll
   for (int b = 0; b < CLPV_AXIS_BINS; ++b) bins.c[b] = tiles[b].row[r];
@@ -64,9 +68,10 @@ CLPV_INLINE Bins load_bins(CLPV_BUFFER_IN volumes, const SweepTile* tiles, const
   return bins;
 }
 
-// Stores the tile from cell (x, y, z) on, whose rows lie along x, into a volume across x: transposed.
-CLPV_INLINE void store_x_tile(CLPV_BUFFER_OUT volume, const SweepTile tile, const int x, const int y,
-                              const int z) {
+// Stores the tile from cell (x, y, z) on, whose rows lie along x, into a volume across x:
+// transposed.
+CLPV_INLINE void store_x_tile(CLPV_BUFFER_OUT volume, const SweepTile tile, const int x,
+                              const int y, const int z) {
   const SweepTile columns = transpose_tile(tile);
   for (int r = 0; r < W; ++r) {
     if (x + r >= CLPV_GRID) break;

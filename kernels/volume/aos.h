@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Volume layout `aos`, array of structures: coefficients of a sample are adjacent; samples are ordered by channel, z,
-// y, x, with a border of one zero sample on every side. Part of the template instance.h; buffer.h defines the
-// functions.
+// Volume layout `aos`, array of structures: coefficients of a sample are adjacent; samples are
+// ordered by channel, z, y, x, with a border of one zero sample on every side. Part of the template
+// instance.h; buffer.h defines the functions.
 #define CLPV_NEXT 1                  // step to the next coefficient
 #define CLPV_LANE CLPV_VOLUME_COUNT  // step to the next cell along x
 
-CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x, const int y, const int z) {
-  const int rows = CLPV_VOLUME_N + 2,
-            pitch = (CLPV_VOLUME_N + 7) / 8 * 8 + 2;  // padded for eight lanes
+CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x, const int y,
+                                                 const int z) {
+  // Padded for eight lanes.
+  const int rows = CLPV_VOLUME_N + 2, pitch = (CLPV_VOLUME_N + 7) / 8 * 8 + 2;
   return (((channel * rows + (z + 1)) * rows + (y + 1)) * pitch + (x + 1)) * CLPV_VOLUME_COUNT;
 }
 
 #if W == 8
-// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed. PoCL 7.1 compiles
-// a loop of loads wrongly, and PoCL 3.1 slowly.
+// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed. PoCL 7.1
+// compiles a loop of loads wrongly, and PoCL 3.1 slowly.
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN volume,
                                                                  const int at, const int x) {
   float8 rows[CLPV_VOLUME_COUNT];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Load and store of volumes in buffers, for the layouts soa.h, aos.h and tiled.h. Part of the template instance.h.
+// Load and store of volumes in buffers, for the layouts soa.h, aos.h and tiled.h. Part of the
+// template instance.h.
 //
 // A layout defines
 //   NAME_address(channel, x, y, z)     index of coefficient 0
@@ -14,8 +15,8 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_eight)(CLPV_BUFFER_OUT volume, co
 }
 #endif
 
-CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume, const int channel, const int x,
-                                                           const int y, const int z) {
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume, const int channel,
+                                                           const int x, const int y, const int z) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
 #if W == 8
   return CLPV_PASTE(CLPV_VOLUME, load_eight)(volume, at, x);
@@ -27,8 +28,9 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume
 #endif
 }
 
-CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const int channel, const int x, const int y,
-                                                const int z, const CLPV_VOLUME_CELL cell) {
+CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const int channel,
+                                                const int x, const int y, const int z,
+                                                const CLPV_VOLUME_CELL cell) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
 #if W == 8
 #if CLPV_VOLUME_N % 8  // PoCL compiles even a dead branch, to a thousand instructions

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Arithmetic on the N numbers of a cell: coefficients of the basis, and in some programs numbers of a blocker, of six
-// faces, or nine harmonics. Loops over them are unrolled, so that they stay in registers.
+// Arithmetic on the N numbers of a cell: coefficients of the basis, and in some programs numbers of
+// a blocker, of six faces, or nine harmonics. Loops over them are unrolled, so that they stay in
+// registers.
 //
-// From the host (coefficient_text), since generated text before this file uses them: CLPV_N, type Coefficient (realW,
-// or float where one cell is read at a time) and struct Coefficients, an array c of them.
+// From the host (coefficient_text), since generated text before this file uses them: CLPV_N, type
+// Coefficient (realW, or float where one cell is read at a time) and struct Coefficients, an array
+// c of them.
 #pragma once
 
 CLPV_INLINE Coefficients zero_coefficients(void) {
@@ -21,7 +23,8 @@ CLPV_INLINE Coefficients add_coefficients(const Coefficients a, const Coefficien
 }
 
 // a + s b
-CLPV_INLINE Coefficients add_scaled(const Coefficients a, const Coefficient s, const Coefficients b) {
+CLPV_INLINE Coefficients add_scaled(const Coefficients a, const Coefficient s,
+                                    const Coefficients b) {
   Coefficients r;
 #pragma unroll
   for (int i = 0; i < CLPV_N; ++i) r.c[i] = fma(s, b.c[i], a.c[i]);
@@ -54,7 +57,8 @@ CLPV_INLINE Coefficients add_row(const Coefficients sum, const Coefficient facto
 }
 
 // Adds constant . a, without the products of zeros.
-CLPV_INLINE Coefficient add_product(const Coefficient sum, __constant const float* constants, const Coefficients a) {
+CLPV_INLINE Coefficient add_product(const Coefficient sum, __constant const float* constants,
+                                    const Coefficients a) {
   Coefficient r = sum;
 #pragma unroll
   for (int i = 0; i < CLPV_N; ++i)

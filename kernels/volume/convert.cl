@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Converts a volume between an image and planes in a buffer (layout soa), for stages that change a few cells in place:
-// in OpenCL 1.2 a kernel either reads or writes an image.
+// Converts a volume between an image and planes in a buffer (layout soa), for stages that change a
+// few cells in place: in OpenCL 1.2 a kernel either reads or writes an image.
 //
 //   image_to_planes    planes = image
 //   planes_to_image    image = planes
 //
-// Both have the same storage, CLPV_GRID^3 samples and three channels or one. A work-item converts a sample of a
-// channel; channels are stacked along z. CLPV_LAYOUT is CLPV_IMAGE.
+// Both have the same storage, CLPV_GRID^3 samples and three channels or one. A work-item converts a
+// sample of a channel; channels are stacked along z. CLPV_LAYOUT is CLPV_IMAGE.
 #include "volume/light.h"
 #include "volume/numbers.h"
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Volume layout `image`: one 3-D image of RGBA texels with four coefficients each. Part of the template instance.h.
+// Volume layout `image`: one 3-D image of RGBA texels with four coefficients each. Part of the
+// template instance.h.
 //
-// A single image holds all: OpenCL 1.2 guarantees 8 writable images per kernel. Groups of four coefficients are stacked
-// along z and channels along y, with a texel of zeros between them; the sampler's border is zero as well. The host sees
-// to it that a kernel either reads or writes an image.
-#define CLPV_STEP (CLPV_VOLUME_N + 1)                // step to the next channel, and to the next four coefficients
+// A single image holds all: OpenCL 1.2 guarantees 8 writable images per kernel. Groups of four
+// coefficients are stacked along z and channels along y, with a texel of zeros between them; the
+// sampler's border is zero as well. The host sees to it that a kernel either reads or writes an
+// image.
+#define CLPV_STEP \
+  (CLPV_VOLUME_N + 1)  // step to the next channel, and to the next four coefficients
 #define CLPV_FOURS ((CLPV_VOLUME_COUNT + 3) / 4)
 
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(__read_only image3d_t volume,
@@ -12,7 +15,8 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(__read_only image3d_t
                                                            const int y, const int z) {
   float4 texels[CLPV_FOURS];
   for (int four = 0; four < CLPV_FOURS; ++four) {
-    texels[four] = read_imagef(volume, nearest_sampler, (int4)(x, y + channel * CLPV_STEP, z + four * CLPV_STEP, 0));
+    texels[four] = read_imagef(volume, nearest_sampler,
+                               (int4)(x, y + channel * CLPV_STEP, z + four * CLPV_STEP, 0));
   }
   CLPV_VOLUME_CELL cell;
 #pragma unroll
@@ -33,8 +37,9 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(__write_only image3d_t volume, c
 }
 
 #ifdef CLPV_FILTERED
-// Trilinear sample at a point in units of samples, sample 0 at 0.0; points are clamped to the outermost samples.
-// CLPV_FILTERED 1: by the device's filter, one read per four coefficients; 0: from eight texels.
+// Trilinear sample at a point in units of samples, sample 0 at 0.0; points are clamped to the
+// outermost samples. CLPV_FILTERED 1: by the device's filter, one read per four coefficients; 0:
+// from eight texels.
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(__read_only image3d_t volume,
                                                              const int channel, const float x,
                                                              const float y, const float z) {
@@ -44,7 +49,8 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(__read_only image3d
 #if CLPV_FILTERED
   for (int four = 0; four < CLPV_FOURS; ++four) {
     texels[four] = read_imagef(volume, linear_sampler,
-                               (float4)(px + 0.5f, py + (channel * CLPV_STEP + 0.5f), pz + (four * CLPV_STEP + 0.5f), 0.0f));
+                               (float4)(px + 0.5f, py + (channel * CLPV_STEP + 0.5f),
+                                        pz + (four * CLPV_STEP + 0.5f), 0.0f));
   }
 #else
   const float fx = floor(px), fy = floor(py), fz = floor(pz);
@@ -53,9 +59,11 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(__read_only image3d
   for (int four = 0; four < CLPV_FOURS; ++four) {
     const int iz = (int)fz + four * CLPV_STEP;
     // At the last sample the neighbour beyond is zero and has weight 0.
-#define CLPV_AT(dx, dy, dz) read_imagef(volume, nearest_sampler, (int4)(ix + (dx), iy + (dy), iz + (dz), 0))
+#define CLPV_AT(dx, dy, dz) \
+  read_imagef(volume, nearest_sampler, (int4)(ix + (dx), iy + (dy), iz + (dz), 0))
 #define CLPV_ROW(dy, dz) mix(CLPV_AT(0, dy, dz), CLPV_AT(1, dy, dz), tx)
-    texels[four] = mix(mix(CLPV_ROW(0, 0), CLPV_ROW(1, 0), ty), mix(CLPV_ROW(0, 1), CLPV_ROW(1, 1), ty), tz);
+    texels[four] =
+        mix(mix(CLPV_ROW(0, 0), CLPV_ROW(1, 0), ty), mix(CLPV_ROW(0, 1), CLPV_ROW(1, 1), ty), tz);
 #undef CLPV_ROW
 #undef CLPV_AT
   }

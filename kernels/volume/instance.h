@@ -5,8 +5,8 @@
 // Parameters: define before each inclusion, which undefines them
 //   CLPV_VOLUME         prefix of the functions below (light, geometry, ...)
 //   CLPV_VOLUME_N       samples along each axis, a literal; default: CLPV_GRID
-//   CLPV_VOLUME_CELL    struct with an array c of the numbers of a sample and channel, and CLPV_VOLUME_COUNT, number of
-//                       them; default: Coefficients and CLPV_N
+//   CLPV_VOLUME_CELL    struct with an array c of the numbers of a sample and channel, and
+//                       CLPV_VOLUME_COUNT, number of them; default: Coefficients and CLPV_N
 // It defines
 //   CELL NAME_load(in, channel, x, y, z)               x, y, z in -1..n; the border is 0
 //   void NAME_store(out, channel, x, y, z, cell)       x, y, z in 0..n-1

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Memory layouts of volumes, and what every instance of the template instance.h needs once.
 //
-// Literals: CLPV_LAYOUT, one of the four names below; CLPV_STORAGE_HALF 1: numbers of 16 bits, with arithmetic in
-// single precision.
+// Literals: CLPV_LAYOUT, one of the four names below; CLPV_STORAGE_HALF 1: numbers of 16 bits, with
+// arithmetic in single precision.
 #pragma once
 
 #define CLPV_SOA 0
@@ -25,9 +25,11 @@
 #pragma OPENCL EXTENSION cl_khr_3d_image_writes : enable
 #define CLPV_VOLUME_IN __read_only image3d_t
 #define CLPV_VOLUME_OUT __write_only image3d_t
-__constant sampler_t nearest_sampler = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_NEAREST;
+__constant sampler_t nearest_sampler =
+    CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_NEAREST;
 #ifdef CLPV_FILTERED
-__constant sampler_t linear_sampler = CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_LINEAR;
+__constant sampler_t linear_sampler =
+    CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_LINEAR;
 #endif
 #else
 #include "volume/numbers.h"

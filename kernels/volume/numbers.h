@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Storage of numbers in buffers: float or half. Halves are converted by core OpenCL C 1.2, always eight at a time: PoCL
-// 3.1 has one instruction for eight, and 1,900 for a single one.
+// Storage of numbers in buffers: float or half. Halves are converted by core OpenCL C 1.2, always
+// eight at a time: PoCL 3.1 has one instruction for eight, and 1,900 for a single one.
 #pragma once
 
 #include "lanes.h"
@@ -14,7 +14,8 @@
 #define CLPV_BUFFER_OUT __global CLPV_NUMBER*
 
 #if CLPV_STORAGE_HALF
-// Conversion through a private vector: PoCL 3.1 assumes 16-byte alignment in vload_half8 and vstore_half8.
+// Conversion through a private vector: PoCL 3.1 assumes 16-byte alignment in vload_half8 and
+// vstore_half8.
 CLPV_INLINE float8 halves_to_floats(const ushort8 bits) {
   return vload_half8(0, (const half*)&bits);
 }

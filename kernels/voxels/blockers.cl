@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: MIT
-// Voxelises blockers: for each corner of the light cells and each axis, marks the part of a square that triangles
-// cover.
+// Voxelises blockers: for each corner of the light cells and each axis, marks the part of a square
+// that triangles cover.
 //
-//   B_a = share of the square s x s across a, about the corner, that triangles inside the cube s^3 about the corner
-//   cover
+//   B_a = share of the square s x s across a, about the corner, that triangles inside the cube s^3
+//   about the corner cover
 //
-// (docs/method.md, 'Blockers'.) 8 x 8 lines along the axis sample the square. Bit 8 row + column is set if a triangle
-// intersects the line inside the cube. Bits are set by atomic_or: overlapping triangles count once, and results do not
-// depend on their order. blocked_areas.cl counts the bits.
+// (docs/method.md, 'Blockers'.) 8 x 8 lines along the axis sample the square. Bit 8 row + column is
+// set if a triangle intersects the line inside the cube. Bits are set by atomic_or: overlapping
+// triangles count once, and results do not depend on their order. blocked_areas.cl counts the bits.
 //
-// In:   triangles of the scene in `clusters` (region.h); region: the corners to voxelise; textures, texels (texture.h)
-// Out:  masks    CLPV_BLOCKER_WORDS uint32 words per corner (shared/blockers.h), cleared in the region before
+// In:   triangles of the scene in `clusters` (region.h); region: the corners to voxelise; textures,
+//       texels (texture.h)
+// Out:  masks    CLPV_BLOCKER_WORDS uint32 words per corner (shared/blockers.h), cleared in the
+//                region before
 //       cascade  number of the cascade whose masks to write
-// A work-item voxelises a triangle. The integer part of w (voxelize_triangle.h) is the number of the corner.
-// From the host: CLPV_GRID, CLPV_MASKED.
+// A work-item voxelises a triangle. The integer part of w (voxelize_triangle.h) is the number of
+// the corner. From the host: CLPV_GRID, CLPV_MASKED.
 #include "voxels/voxelize_triangle.h"
 #include "shared/blockers.h"
 
 // Sets the bits of W samples from (u, v) on along a row, one word for each corner that they lie at.
-CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks, const uint axis, const int u,
-                         const int v, const intW covered, const realW w) {
+CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks, const uint axis,
+                         const int u, const int v, const intW covered, const realW w) {
   const int2 cells = cells_along(region, axis);
   const intW cell = to_intW(w + 1.0f) - 1;  // floor(w); a negative number for w below 0
   const intW lowest = covered ? cell : (intW)(cells.y + 1), highest = covered ? cell : (intW)(-1);
@@ -28,24 +30,27 @@ CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks
   for (int k = first; k <= last; ++k) {
     const uint bits = lane_bits(covered & (cell == k));
     if (bits == 0) continue;
-    const uint number = find_region_cell(region, axis, u / CLPV_VOXEL_SAMPLES, v / CLPV_VOXEL_SAMPLES, k, CLPV_GRID + 1);
+    const uint number = find_region_cell(region, axis, u / CLPV_VOXEL_SAMPLES,
+                                         v / CLPV_VOXEL_SAMPLES, k, CLPV_GRID + 1);
     if (number == no_cell) continue;
     atomic_or(masks + number * CLPV_BLOCKER_WORDS + 2u * axis + row / 4,
               bits << (8 * (row % 4) + u % CLPV_VOXEL_SAMPLES));
   }
 }
 
-__kernel void voxelize_blockers(const ClpvRegion region, __global const uint* clusters, const uint first_cluster,
-                                const uint cluster_count, const uint triangle_count,
-                                __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                                __global const ClpvMaterial* materials, __global const float4* textures,
-                                __global const uint* texels, __global uint* masks, const uint cascade) {
+__kernel void voxelize_blockers(const ClpvRegion region, __global const uint* clusters,
+                                const uint first_cluster, const uint cluster_count,
+                                const uint triangle_count, __global const ClpvVertex* vertices,
+                                __global const ClpvTriangle* triangles,
+                                __global const ClpvMaterial* materials,
+                                __global const float4* textures, __global const uint* texels,
+                                __global uint* masks, const uint cascade) {
   const uint number = triangle_number(clusters, first_cluster, cluster_count, triangle_count);
   if (number >= triangle_count) return;
   const ClpvTriangle triangle = triangles[number];
   __global uint* mine = masks + (size_t)cascade * CLPV_BLOCKER_MASKS;
-  __global const ClpvVertex* const corner[3] = {vertices + triangle.vertex[0], vertices + triangle.vertex[1],
-                                                vertices + triangle.vertex[2]};
+  __global const ClpvVertex* const corner[3] = {
+      vertices + triangle.vertex[0], vertices + triangle.vertex[1], vertices + triangle.vertex[2]};
 #if CLPV_MASKED
   __global const ClpvMaterial* material = materials + triangle.material;
   const bool masked = (material->flags & CLPV_MATERIAL_MASKED) != 0;

@@ -12,7 +12,8 @@ __constant const float first_point = 0.125f;  // of the points along an axis [ce
 __constant const float last_point = 0.875f;
 enum { CLPV_LAYERS = 4 };  // layers of points in a cube, across z
 
-// Points of a layer are tested at once: with eight lanes all 16, with one lane a row of 4, which takes fewer registers.
+// Points of a layer are tested at once: with eight lanes all 16, with one lane a row of 4, which
+// takes fewer registers.
 #if W == 1
 typedef float4 Points;
 typedef int4 PointBits;
@@ -46,15 +47,18 @@ typedef struct {
 
 static inline float l1_norm(const float3 a) { return fabs(a.x) + fabs(a.y) + fabs(a.z); }
 
-// Maximum over the points of a layer, without the term of the layer's z. The points' square is centred at 1/2.
+// Maximum over the points of a layer, without the term of the layer's z. The points' square is
+// centred at 1/2.
 static inline realW layer_maximum(const Linear f) {
   const float to_side = 0.5f * (last_point - first_point);
-  return 0.5f * (f.gradient.x + f.gradient.y) + to_side * (fabs(f.gradient.x) + fabs(f.gradient.y)) + f.offset;
+  return 0.5f * (f.gradient.x + f.gradient.y) +
+         to_side * (fabs(f.gradient.x) + fabs(f.gradient.y)) + f.offset;
 }
 
-// sign det(a - c, b - c, x - c) + tolerance, for each centre c. The gradient is (a - c) x (b - c) = a x b - c x (b -
-// a).
-CLPV_INLINE Linear edge_determinant(const float3 a, const float3 b, const int first, const realW sign) {
+// sign det(a - c, b - c, x - c) + tolerance, for each centre c. The gradient is (a - c) x (b - c) =
+// a x b - c x (b - a).
+CLPV_INLINE Linear edge_determinant(const float3 a, const float3 b, const int first,
+                                    const realW sign) {
   const float3 moment = cross(a, b), edge = b - a;
   const Vec c = find_centres(first);
   const Linear f = {
@@ -65,18 +69,19 @@ CLPV_INLINE Linear edge_determinant(const float3 a, const float3 b, const int fi
   return f;
 }
 
-// The plane's function and the three determinants, for each centre: a triangle occludes a centre from a point where
-// none is negative.
+// The plane's function and the three determinants, for each centre: a triangle occludes a centre
+// from a point where none is negative.
 enum { CLPV_TESTS = 4 };
 typedef struct {
   float x[CLPV_TESTS][W], y[CLPV_TESTS][W];
   float z[CLPV_TESTS][W], offset[CLPV_TESTS][W];
 } OcclusionTests;
 
-// Sets up the tests of a triangle for W centres, and for each layer the candidates: bits of the centres
-// that it may occlude from any point there.
-CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2, const float3 normal,
-                              const int first, OcclusionTests* tests, uint candidates[CLPV_LAYERS]) {
+// Sets up the tests of a triangle for W centres, and for each layer the candidates: bits of the
+// centres that it may occlude from any point there.
+CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2,
+                              const float3 normal, const int first, OcclusionTests* tests,
+                              uint candidates[CLPV_LAYERS]) {
   const Vec c = find_centres(first);
   const realW x = v0.x - c.x, y = v0.y - c.y, z = v0.z - c.z;
   const realW distance = normal.x * x + normal.y * y + normal.z * z;
@@ -85,7 +90,8 @@ CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2,
       vec(sign * normal.x, sign * normal.y, sign * normal.z),
       -sign * (normal.x * c.x + normal.y * c.y + normal.z * c.z) - fabs(distance)};
   const Linear f[CLPV_TESTS] = {plane, edge_determinant(v0, v1, first, sign),
-                                edge_determinant(v1, v2, first, sign), edge_determinant(v2, v0, first, sign)};
+                                edge_determinant(v1, v2, first, sign),
+                                edge_determinant(v2, v0, first, sign)};
   // Segments to upper centres lie above the layer, those to lower centres below it.
   const float lowest = fmin(v0.z, fmin(v1.z, v2.z)) - edge_tolerance;
   const float highest = fmax(v0.z, fmax(v1.z, v2.z)) + edge_tolerance;
@@ -94,9 +100,11 @@ CLPV_INLINE void set_up_tests(const float3 v0, const float3 v1, const float3 v2,
   for (int layer = 0; layer < CLPV_LAYERS; ++layer) {
     const float at = first_point + 0.25f * (float)layer;
     const intW may = (distance != ZERO) & (at * f[0].gradient.z + maximum0 >= ZERO) &
-                     (at * f[1].gradient.z + maximum1 >= ZERO) & (at * f[2].gradient.z + maximum2 >= ZERO) &
+                     (at * f[1].gradient.z + maximum1 >= ZERO) &
+                     (at * f[2].gradient.z + maximum2 >= ZERO) &
                      (at * f[3].gradient.z + maximum3 >= ZERO);
-    candidates[layer] = lane_bits(may) << first & ((at <= highest ? 0xf0u : 0u) | (at >= lowest ? 0x0fu : 0u));
+    candidates[layer] =
+        lane_bits(may) << first & ((at <= highest ? 0xf0u : 0u) | (at >= lowest ? 0x0fu : 0u));
   }
 #pragma unroll
   for (int test = 0; test < CLPV_TESTS; ++test) {
@@ -117,8 +125,8 @@ CLPV_INLINE PointBits passes(const OcclusionTests* tests, const int test, const 
 }
 
 // Bits of the candidates that the triangle occludes, for each of these points.
-CLPV_INLINE PointBits find_occluded(const OcclusionTests* tests, const int first, uint candidates, const float y,
-                                    const float z) {
+CLPV_INLINE PointBits find_occluded(const OcclusionTests* tests, const int first, uint candidates,
+                                    const float y, const float z) {
   PointBits occluded = (PointBits)(0);
   while (candidates != 0) {
     const int corner = 31 - (int)clz(candidates), lane = W == 1 ? 0 : corner - first;

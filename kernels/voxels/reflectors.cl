@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Voxelises albedo per face direction: for each light cell and each of its six faces, sums the coverage and the albedo
-// of the triangles that count towards it.
+// Voxelises albedo per face direction: for each light cell and each of its six faces, sums the
+// coverage and the albedo of the triangles that count towards it.
 //
-//   share of axis a = |n_a| / (|n_x| + |n_y| + |n_z|),   n the triangle's normal      (docs/method.md, 'More bounces')
+//   share of axis a = |n_a| / (|n_x| + |n_y| + |n_z|),   n the triangle's normal (docs/method.md,
+//                                                                                     'More
+//                                                                                     bounces')
 //
-// A triangle counts towards the three faces nearest to n, and its back towards the three opposite ones. As virtual
-// point lights do, faces emit and receive half a cell off the surface along its normal; across an axis that is a whole
-// number of samples.
+// A triangle counts towards the three faces nearest to n, and its back towards the three opposite
+// ones. As virtual point lights do, faces emit and receive half a cell off the surface along its
+// normal; across an axis that is a whole number of samples.
 //
-// Each axis is a raster of 8 x 8 samples per face (voxelize_triangle.h). Albedo is looked up once per row of samples,
-// at the centre of the covered ones. Sums are integers, by atomic_add and atomic_or: results do not depend on the order
-// of triangles.
+// Each axis is a raster of 8 x 8 samples per face (voxelize_triangle.h). Albedo is looked up once
+// per row of samples, at the centre of the covered ones. Sums are integers, by atomic_add and
+// atomic_or: results do not depend on the order of triangles.
 //
-// In:   triangles of the scene in `clusters` (region.h); region: the cells to voxelise; textures, texels (texture.h)
-// Out:  faces  CLPV_CELL_FACES x CLPV_FACE_WORDS uint32 words per cell (shared/reflectors.h), zeroed before
-// A work-item voxelises a triangle. From the host: CLPV_GRID, CLPV_MASKED, CLPV_TEXTURED, CLPV_COLOURED.
+// In:   triangles of the scene in `clusters` (region.h); region: the cells to voxelise; textures,
+//       texels (texture.h)
+// Out:  faces  CLPV_CELL_FACES x CLPV_FACE_WORDS uint32 words per cell (shared/reflectors.h),
+//              zeroed before
+// A work-item voxelises a triangle. From the host: CLPV_GRID, CLPV_MASKED, CLPV_TEXTURED,
+// CLPV_COLOURED.
 #include "shared/reflectors.h"
 #include "voxels/face_samples.h"
 
@@ -25,9 +30,11 @@ static inline uint fixed_sum(const realW count, const realW share) {
   return sum_lanes_uint(each);
 }
 
-// Adds the samples of cell k in column i and row j to its face. `weight`: the triangle's share of the axis.
-CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* surface, const FaceSamples* samples,
-                          const int i, const int j, const int k, const float weight, __global volatile uint* face) {
+// Adds the samples of cell k in column i and row j to its face. `weight`: the triangle's share of
+// the axis.
+CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* surface,
+                          const FaceSamples* samples, const int i, const int j, const int k,
+                          const float weight, __global volatile uint* face) {
   float count[CLPV_VOXEL_SAMPLES], middle[CLPV_VOXEL_SAMPLES];
   uint words[2] = {0, 0}, total = 0;
   for (int row = 0; row < CLPV_VOXEL_SAMPLES; ++row) {
@@ -65,16 +72,17 @@ CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* sur
 
 // Adds a triangle, projected along an axis and moved to where it emits and receives, to the faces
 // of one `direction`: 0 towards larger numbers, 1 towards smaller ones.
-CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle* t, const TriangleSurface* surface,
-                              const uint axis, const uint direction, const float weight,
-                              __global volatile uint* faces) {
+CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle* t,
+                              const TriangleSurface* surface, const uint axis, const uint direction,
+                              const float weight, __global volatile uint* faces) {
   const int2 cells = cells_along(region, axis), across = cells_along(region, (axis + 1) % 3),
              above = cells_along(region, (axis + 2) % 3);
   if (t->farthest < (float)cells.x || t->nearest >= (float)(cells.y + 1)) return;
   const int2 columns = voxel_range(across.x, across.y, t->u[0], t->u[1], t->u[2]);
   const int2 rows = voxel_range(above.x, above.y, t->v[0], t->v[1], t->v[2]);
   if (columns.x > columns.y) return;
-  for (int j = rows.x / CLPV_VOXEL_SAMPLES; rows.x <= rows.y && j <= rows.y / CLPV_VOXEL_SAMPLES; ++j) {
+  for (int j = rows.x / CLPV_VOXEL_SAMPLES; rows.x <= rows.y && j <= rows.y / CLPV_VOXEL_SAMPLES;
+       ++j) {
     for (int i = columns.x / CLPV_VOXEL_SAMPLES; i <= columns.y / CLPV_VOXEL_SAMPLES; ++i) {
       FaceSamples samples;
       find_face_samples(t, surface, i, j, rows, cells, &samples);
@@ -88,8 +96,10 @@ CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle*
   }
 }
 
-// Moves a triangle half a cell along `normal`, and from the corners' cells of voxelize_triangle.h to light cells.
-static inline ProjectedTriangle offset_triangle(const ProjectedTriangle* from, const float3 normal) {
+// Moves a triangle half a cell along `normal`, and from the corners' cells of voxelize_triangle.h
+// to light cells.
+static inline ProjectedTriangle offset_triangle(const ProjectedTriangle* from,
+                                                const float3 normal) {
   ProjectedTriangle t = *from;
   const float u = rint(0.5f * CLPV_VOXEL_SAMPLES * normal.x) - CLPV_VOXEL_SAMPLES / 2;
   const float v = rint(0.5f * CLPV_VOXEL_SAMPLES * normal.y) - CLPV_VOXEL_SAMPLES / 2;
@@ -104,11 +114,13 @@ static inline ProjectedTriangle offset_triangle(const ProjectedTriangle* from, c
   return t;
 }
 
-__kernel void voxelize_reflectors(const ClpvRegion region, __global const uint* clusters, const uint first_cluster,
-                                  const uint cluster_count, const uint triangle_count,
-                                  __global const ClpvVertex* vertices, __global const ClpvTriangle* triangles,
-                                  __global const ClpvMaterial* materials, __global const float4* textures,
-                                  __global const uint* texels, __global uint* faces) {
+__kernel void voxelize_reflectors(const ClpvRegion region, __global const uint* clusters,
+                                  const uint first_cluster, const uint cluster_count,
+                                  const uint triangle_count, __global const ClpvVertex* vertices,
+                                  __global const ClpvTriangle* triangles,
+                                  __global const ClpvMaterial* materials,
+                                  __global const float4* textures, __global const uint* texels,
+                                  __global uint* faces) {
   const uint number = triangle_number(clusters, first_cluster, cluster_count, triangle_count);
   if (number >= triangle_count) return;
   const ClpvTriangle triangle = triangles[number];

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Projects a triangle along an axis of a cascade's grid and samples it, 8 x 8 samples per cell (blockers.cl,
-// reflectors.cl).
+// Projects a triangle along an axis of a cascade's grid and samples it, 8 x 8 samples per cell
+// (blockers.cl, reflectors.cl).
 //
-// Coordinates: u and v along the two axes after the axis of projection, in samples; w along the axis, in cells. All
-// three count from half a cell before the region's base. A sample within voxel_tolerance outside an
-// edge is covered, so that triangles that share an edge leave no gap despite rounding.
+// Coordinates: u and v along the two axes after the axis of projection, in samples; w along the
+// axis, in cells. All three count from half a cell before the region's base. A sample within
+// voxel_tolerance outside an edge is covered, so that triangles that share an edge leave no gap
+// despite rounding.
 #pragma once
 
 #include "lanes.h"
@@ -36,17 +37,20 @@ typedef struct {
 } GridCorners;
 
 // Returns false for a triangle outside the region, extended by half a cell on every side.
-static inline bool find_grid_corners(const ClpvRegion* region, __global const ClpvVertex* const corner[3],
+static inline bool find_grid_corners(const ClpvRegion* region,
+                                     __global const ClpvVertex* const corner[3],
                                      GridCorners* corners) {
   const float per_sample = CLPV_VOXEL_SAMPLES / region->cell;
   bool within = true;
   for (int axis = 0; axis < 3; ++axis) {
     float* at = corners->at[axis];
     for (int i = 0; i < 3; ++i) {
-      at[i] = (corner[i]->position[axis] - region->base[axis]) * per_sample + CLPV_VOXEL_SAMPLES / 2;
+      at[i] =
+          (corner[i]->position[axis] - region->base[axis]) * per_sample + CLPV_VOXEL_SAMPLES / 2;
       at[i] = clamp(at[i], -voxel_limit, voxel_limit);
     }
-    const int first = region->first[axis] + region->all.low[axis], end = region->first[axis] + region->all.high[axis] + 2;
+    const int first = region->first[axis] + region->all.low[axis],
+              end = region->first[axis] + region->all.high[axis] + 2;
     within = within && fmax(at[0], fmax(at[1], at[2])) >= (float)(CLPV_VOXEL_SAMPLES * first) &&
              fmin(at[0], fmin(at[1], at[2])) < (float)(CLPV_VOXEL_SAMPLES * end);
   }
@@ -54,7 +58,8 @@ static inline bool find_grid_corners(const ClpvRegion* region, __global const Cl
 }
 
 // Returns false for a triangle that is seen edge-on or has no area.
-static inline bool project_triangle(const GridCorners* corners, const uint axis, ProjectedTriangle* t) {
+static inline bool project_triangle(const GridCorners* corners, const uint axis,
+                                    ProjectedTriangle* t) {
   float w[3];
   for (int i = 0; i < 3; ++i) {
     t->u[i] = corners->at[(axis + 1) % 3][i];
@@ -80,8 +85,10 @@ static inline bool project_triangle(const GridCorners* corners, const uint axis,
   return fabs(area) > 0.0f && fabs(t->w_u) <= voxel_limit && fabs(t->w_v) <= voxel_limit;
 }
 
-// First and last sample between three coordinates, within cells `first` to `last`, counted from the base.
-static inline int2 voxel_range(const int first, const int last, const float a, const float b, const float c) {
+// First and last sample between three coordinates, within cells `first` to `last`, counted from the
+// base.
+static inline int2 voxel_range(const int first, const int last, const float a, const float b,
+                               const float c) {
   const float from = ceil(fmin(a, fmin(b, c)) - 0.5f - voxel_tolerance);
   const float to = floor(fmax(a, fmax(b, c)) - 0.5f + voxel_tolerance);
   return (int2)((int)fmax(from, (float)(CLPV_VOXEL_SAMPLES * first)),
@@ -121,7 +128,8 @@ typedef struct {
   realW w1, w2;
 } BarycentricWeights;
 
-static inline BarycentricWeights voxel_weights(const ProjectedTriangle* t, const realW u, const realW v) {
+static inline BarycentricWeights voxel_weights(const ProjectedTriangle* t, const realW u,
+                                               const realW v) {
   const realW from = u - t->u[0], row = v - t->v[0];
   realW w1 = (from * (t->v[2] - t->v[0]) - row * (t->u[2] - t->u[0])) * t->inverse_area;
   realW w2 = (row * (t->u[1] - t->u[0]) - from * (t->v[1] - t->v[0])) * t->inverse_area;
@@ -134,7 +142,7 @@ static inline BarycentricWeights voxel_weights(const ProjectedTriangle* t, const
 }
 
 // Vertex attribute `field`, interpolated between corners.
-#define CLPV_BLEND(weights, corner, field)                                                          \
+#define CLPV_BLEND(weights, corner, field)                                                         \
   ((1.0f - (weights).w1 - (weights).w2) * (corner)[0]->field + (weights).w1 * (corner)[1]->field + \
    (weights).w2 * (corner)[2]->field)
 
@@ -143,7 +151,8 @@ static inline BarycentricWeights voxel_weights(const ProjectedTriangle* t, const
 CLPV_INLINE intW voxel_solid(const ProjectedTriangle* t, __global const ClpvVertex* const corner[3],
                              __global const ClpvMaterial* material, __global const float4* textures,
                              __global const uint* texels, const float u, const float v) {
-  const BarycentricWeights w = voxel_weights(t, u + 0.5f + to_realW(lane_numbers()), (realW)(v + 0.5f));
+  const BarycentricWeights w =
+      voxel_weights(t, u + 0.5f + to_realW(lane_numbers()), (realW)(v + 0.5f));
   const Uv uv = {CLPV_BLEND(w, corner, uv[0]), CLPV_BLEND(w, corner, uv[1])};
   const uintW finest = (uintW)(material->texture * CLPV_TEXTURE_LEVELS);
   const realW alpha = material->base_colour[3] * CLPV_BLEND(w, corner, colour[3]) *

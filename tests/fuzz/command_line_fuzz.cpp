@@ -30,9 +30,10 @@ std::vector<clpv::Command> commands_named_in(const std::vector<std::string>& arg
   const auto all = clpv::all_commands();
   std::vector<clpv::Command> named;
   std::ranges::copy_if(all, std::back_inserter(named), [&](const clpv::Command& command) {
-    return std::ranges::any_of(arguments.begin() + 1, arguments.end(), [&](const std::string& argument) {
-      return argument.find(command.name) != std::string::npos;
-    });
+    return std::ranges::any_of(arguments.begin() + 1, arguments.end(),
+                               [&](const std::string& argument) {
+                                 return argument.find(command.name) != std::string::npos;
+                               });
   });
   return named.empty() ? std::vector(all.begin(), all.end()) : named;
 }

@@ -20,7 +20,8 @@ const char* name_for(std::string_view bytes) {
   return "image.exr";
 }
 
-void hold_against_header(const clpv::Image& image, const char* name, std::span<const unsigned char> bytes) {
+void hold_against_header(const clpv::Image& image, const char* name,
+                         std::span<const unsigned char> bytes) {
   const clpv::DeclaredImage declared = clpv::read_exr_header(name, bytes);
   // Channels of one name count once for OpenEXR.
   if (declared.width != image.width || declared.height != image.height ||

@@ -30,7 +30,8 @@ inline std::string textured() {
   return model.dump();
 }
 
-inline constexpr std::string_view kUnderSky = R"({"model": "textured.gltf", "sky": {"map": "sky.hdr"}})";
+inline constexpr std::string_view kUnderSky =
+    R"({"model": "textured.gltf", "sky": {"map": "sky.hdr"}})";
 
 /// The files that URIs may name. An input that names one must not end there: they are read here,
 /// and must not be rejected.

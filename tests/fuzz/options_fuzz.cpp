@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Values of every render option, drawn from the option table by the input's bytes: resolved for a scene, with basis and
-// transport, without a device.
+// Values of every render option, drawn from the option table by the input's bytes: resolved for a
+// scene, with basis and transport, without a device.
 #include "pipeline/frame/scene_options.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/support/random_options.hpp"
@@ -10,7 +10,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::size_t next = 0;
   test::Choices choices([&](std::size_t end) -> std::size_t {
     std::size_t value = 0;
-    for (std::size_t range = 1; range < end && next < size; range *= 256) value = value * 256 + data[next++];
+    for (std::size_t range = 1; range < end && next < size; range *= 256)
+      value = value * 256 + data[next++];
     return value % end;
   });
   OptionValues given;

@@ -28,9 +28,9 @@ using Random = std::mt19937_64;
 
 /// As binary files and as texts write them.
 constexpr std::array<std::string_view, 14> kEdges = {
-    {std::string_view("\0", 1), "\x7f", "\x80", "\xff", std::string_view("\0\0\0\0", 4), "\xff\xff\xff\xff",
-     "\xff\xff\xff\x7f", std::string_view("\0\0\0\x80", 4), "-1", "0", "1e999", "nan", "4294967296",
-     "18446744073709551615"}};
+    {std::string_view("\0", 1), "\x7f", "\x80", "\xff", std::string_view("\0\0\0\0", 4),
+     "\xff\xff\xff\xff", "\xff\xff\xff\x7f", std::string_view("\0\0\0\x80", 4), "-1", "0", "1e999",
+     "nan", "4294967296", "18446744073709551615"}};
 constexpr std::size_t kMaxSpan = 64;
 
 std::size_t below(std::size_t end, Random& random) {
@@ -45,7 +45,8 @@ std::string_view span_of(std::string_view text, Random& random) {
 /// In place of as many bytes, or of those of a number in digits, or of none.
 void put(std::string& text, std::string_view piece, Random& random) {
   const std::size_t start = below(text.size() + 1, random);
-  const std::size_t digits = std::min(text.find_first_not_of("0123456789", start), text.size()) - start;
+  const std::size_t digits =
+      std::min(text.find_first_not_of("0123456789", start), text.size()) - start;
   const std::array<std::size_t, 3> lengths = {piece.size(), digits, 0};
   text.replace(start, lengths[below(lengths.size(), random)], piece);
 }
@@ -53,7 +54,8 @@ void put(std::string& text, std::string_view piece, Random& random) {
 void change(std::string& text, std::span<const std::string> inputs, Random& random) {
   switch (below(5, random)) {
     case 0:
-      if (!text.empty()) text[below(text.size(), random)] ^= static_cast<char>(1 << below(8, random));
+      if (!text.empty())
+        text[below(text.size(), random)] ^= static_cast<char>(1 << below(8, random));
       break;
     case 1:
       put(text, kEdges[below(kEdges.size(), random)], random);
@@ -75,7 +77,8 @@ void change(std::string& text, std::span<const std::string> inputs, Random& rand
 /// repeated or of another input.
 std::string mutant(std::span<const std::string> inputs, Random& random) {
   std::string text = inputs[below(inputs.size(), random)];
-  for (std::size_t changes = 1 + below(4, random); changes > 0; --changes) change(text, inputs, random);
+  for (std::size_t changes = 1 + below(4, random); changes > 0; --changes)
+    change(text, inputs, random);
   return text;
 }
 
@@ -83,7 +86,8 @@ constexpr const char* kInHand = "in_hand";
 
 std::vector<std::string> corpus_in(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<std::string> corpus;
   for (const fs::path& file : files) corpus.push_back(clpv::test::read_file(file));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs gather.cl and radiance.cl at points, whose number fills no row, and light() on a G-buffer of positions and of depths, some of
-// them no surface: points SCENE.
+// Runs gather.cl and radiance.cl at points, whose number fills no row, and light() on a G-buffer of
+// positions and of depths, some of them no surface: points SCENE.
 #include <cmath>
 
 #include "clpv/renderer.hpp"
@@ -31,6 +31,7 @@ int main(int, char** arguments) {
   directions[3] = {0, 0, 0}, points[4][0] = NAN;
   std::vector<float> depths(12 * 9, 1.5f);
   depths[5] = -INFINITY;
-  renderer.light({.width = 12, .height = 9, .normals = directions, .positions = points}, clpv::Vec3{0, 1, 1});
+  renderer.light({.width = 12, .height = 9, .normals = directions, .positions = points},
+                 clpv::Vec3{0, 1, 1});
   renderer.light({.width = 12, .height = 9, .normals = directions, .depths = depths}, "");
 }

@@ -13,8 +13,9 @@ int main() {
   const auto basis = make_basis("sh3");
   const Transport transport = make_transport(TransportKind::sweep, *basis, {}, Blocking::areas);
   const Sky sky = constant_sky(glm::vec3(1));
-  Sweeper sweeper(session, *basis, transport,
-                  {.grid = kGrid, .parts = {1, 1}, .blocking = true, .form = SweepForm::planes, .sky = &sky});
+  Sweeper sweeper(
+      session, *basis, transport,
+      {.grid = kGrid, .parts = {1, 1}, .blocking = true, .form = SweepForm::planes, .sky = &sky});
   const Volume light(session, {kGrid, basis->size(), 3}, "light"),
       blockers(session, {kGrid + 1, 3, 1}, "blockers");
   Volume swept(session, {kGrid, swept_basis()->size(), 3}, "swept");

@@ -2,9 +2,11 @@
 // A device that fails on command: preloaded (LD_PRELOAD) before the OpenCL loader, it passes every
 // call on, but for one.
 //
-//   CLPV_SHIM=CALL:N:CODE    the N-th call (from 1; * is every one) of clCreateBuffer, ... returns that OpenCL code
+//   CLPV_SHIM=CALL:N:CODE    the N-th call (from 1; * is every one) of clCreateBuffer, ... returns
+//                            that OpenCL code
 //   CLPV_SHIM_COMPILER=no    devices have no compiler
-//   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that were not released
+//   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that
+//                            were not released
 //
 // "memory" is a call's name for all that allocate, "enqueue" for all that put work on the queue.
 #include <CL/cl.h>
@@ -73,15 +75,18 @@ __attribute__((destructor)) void report() {
 
 extern "C" {
 
-cl_int clGetDeviceInfo(cl_device_id device, cl_device_info info, size_t size, void* value, size_t* needed) {
+cl_int clGetDeviceInfo(cl_device_id device, cl_device_info info, size_t size, void* value,
+                       size_t* needed) {
   CLPV_NEXT(clGetDeviceInfo);
   const cl_int code = call(device, info, size, value, needed);
-  const bool hidden = info == CL_DEVICE_COMPILER_AVAILABLE && std::getenv("CLPV_SHIM_COMPILER") != nullptr;
+  const bool hidden =
+      info == CL_DEVICE_COMPILER_AVAILABLE && std::getenv("CLPV_SHIM_COMPILER") != nullptr;
   if (hidden && code == CL_SUCCESS && value != nullptr) *static_cast<cl_bool*>(value) = CL_FALSE;
   return code;
 }
 
-cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
+cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host,
+                      cl_int* error) {
   CLPV_MAY_FAIL("memory", clCreateBuffer);
   return failed ? rejected(error, code) : counted(call(context, flags, size, host, error));
 }
@@ -112,29 +117,32 @@ cl_int clReleaseMemObject(cl_mem memory) {
 
 cl_context clCreateContext(const cl_context_properties* properties, cl_uint count,
                            const cl_device_id* devices,
-                           void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*), void* user,
-                           cl_int* error) {
+                           void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*),
+                           void* user, cl_int* error) {
   CLPV_MAY_FAIL("context", clCreateContext);
   if (!failed) return call(properties, count, devices, notify, user, error);
   if (error != nullptr) *error = code;
   return nullptr;
 }
 
-cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
-                      void(CL_CALLBACK* notify)(cl_program, void*), void* user) {
+cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices,
+                      const char* options, void(CL_CALLBACK* notify)(cl_program, void*),
+                      void* user) {
   CLPV_MAY_FAIL("build", clBuildProgram);
   return failed ? code : call(program, count, devices, options, notify, user);
 }
 
 cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
-                              const size_t* offset, const size_t* global, const size_t* local, cl_uint waits,
-                              const cl_event* events, cl_event* event) {
+                              const size_t* offset, const size_t* global, const size_t* local,
+                              cl_uint waits, const cl_event* events, cl_event* event) {
   CLPV_MAY_FAIL("enqueue", clEnqueueNDRangeKernel);
-  return failed ? code : call(queue, kernel, dimensions, offset, global, local, waits, events, event);
+  return failed ? code
+                : call(queue, kernel, dimensions, offset, global, local, waits, events, event);
 }
 
 cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset,
-                           size_t size, void* to, cl_uint waits, const cl_event* events, cl_event* event) {
+                           size_t size, void* to, cl_uint waits, const cl_event* events,
+                           cl_event* event) {
   CLPV_MAY_FAIL("enqueue", clEnqueueReadBuffer);
   return failed ? code : call(queue, memory, blocking, offset, size, to, waits, events, event);
 }
@@ -146,11 +154,12 @@ cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem memory, cl_bool block
   return failed ? code : call(queue, memory, blocking, offset, size, from, waits, events, event);
 }
 
-cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem memory, const void* pattern, size_t pattern_size,
-                           size_t offset, size_t size, cl_uint waits, const cl_event* events,
-                           cl_event* event) {
+cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem memory, const void* pattern,
+                           size_t pattern_size, size_t offset, size_t size, cl_uint waits,
+                           const cl_event* events, cl_event* event) {
   CLPV_MAY_FAIL("enqueue", clEnqueueFillBuffer);
-  return failed ? code : call(queue, memory, pattern, pattern_size, offset, size, waits, events, event);
+  return failed ? code
+                : call(queue, memory, pattern, pattern_size, offset, size, waits, events, event);
 }
 
 cl_int clFinish(cl_command_queue queue) {

@@ -54,7 +54,9 @@ struct GltfBuilder {
   static int component_type(std::int16_t) { return 5122; }
   static int component_type(std::uint16_t) { return 5123; }
   static int component_type(std::uint32_t) { return 5125; }
-  static int components(const std::string& type) { return type == "SCALAR" ? 1 : type.back() - '0'; }
+  static int components(const std::string& type) {
+    return type == "SCALAR" ? 1 : type.back() - '0';
+  }
 
   template <typename T>
   int accessor(const std::string& type, const std::vector<T>& values, bool normalized = false) {
@@ -85,14 +87,16 @@ struct GltfBuilder {
 
   /// The triangle (0,0,0), (1,0,0), (0,1,0), facing +z, without normals.
   json& triangle(json more = json::object()) {
-    return mesh({{"POSITION", accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0})}}, std::move(more));
+    return mesh({{"POSITION", accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0})}},
+                std::move(more));
   }
 
   /// A square at y = 0, facing up, of twice that edge round the origin, without normals.
   json& square(float half) {
     const int corners =
         accessor<float>("VEC3", {-half, 0, -half, -half, 0, half, half, 0, half, half, 0, -half});
-    return mesh({{"POSITION", corners}}, {{"indices", accessor<std::uint8_t>("SCALAR", {0, 1, 2, 0, 2, 3})}});
+    return mesh({{"POSITION", corners}},
+                {{"indices", accessor<std::uint8_t>("SCALAR", {0, 1, 2, 0, 2, 3})}});
   }
 
   void finish(const std::string& uri) {
@@ -101,7 +105,8 @@ struct GltfBuilder {
     if (!uri.empty()) document["buffers"][0]["uri"] = uri;
   }
 
-  std::filesystem::path write(const TemporaryFolder& folder, const std::string& name = "model.gltf") {
+  std::filesystem::path write(const TemporaryFolder& folder,
+                              const std::string& name = "model.gltf") {
     finish("model.bin");
     folder.write("model.bin", binary);
     return folder.write(name, document.dump());
@@ -122,7 +127,8 @@ struct GltfBuilder {
       return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(value)});
     };
     std::string out = "glTF" + word(2) + word(12 + 8 + text.size() + 8 + data.size());
-    return out + word(text.size()) + "JSON" + text + word(data.size()) + std::string("BIN\0", 4) + data;
+    return out + word(text.size()) + "JSON" + text + word(data.size()) + std::string("BIN\0", 4) +
+           data;
   }
 };
 
@@ -144,7 +150,8 @@ inline glm::vec3 normal(const SceneData& scene, std::size_t triangle, int corner
 /// Unit, to the side from which the corners are counter-clockwise.
 inline glm::vec3 face_normal(const SceneData& scene, std::size_t triangle) {
   const glm::vec3 a = position(scene, triangle, 0);
-  return glm::normalize(glm::cross(position(scene, triangle, 1) - a, position(scene, triangle, 2) - a));
+  return glm::normalize(
+      glm::cross(position(scene, triangle, 1) - a, position(scene, triangle, 2) - a));
 }
 
 MATCHER_P2(IsNear, wanted, tolerance, "") {
@@ -175,7 +182,8 @@ struct GltfTest : ::testing::Test {
     folder.write(name, decode_base64(image_base64));
     const int image = model.add("images", {{"uri", name}});
     const int texture = model.add("textures", {{"source", image}});
-    model.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+    model.add("materials",
+              {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
     return model.document["materials"].back();
   }
 
@@ -202,7 +210,8 @@ struct BadInputTest : GltfTest {
   void wear(const std::string& uri) {
     model.document["images"] = {{{"uri", uri}}};
     model.document["textures"] = {{{"source", 0}}};
-    model.document["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    model.document["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
     model.document["meshes"][0]["primitives"][0]["material"] = 0;
     model.document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
         model.accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
@@ -224,9 +233,10 @@ struct AnimationTest : BadInputTest {
     const std::string type = path == "rotation" ? "VEC4" : path == "weights" ? "SCALAR" : "VEC3";
     animation["channels"].push_back(
         {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
-    animation["samplers"].push_back({{"input", model.accessor<float>("SCALAR", times)},
-                                     {"output", model.accessor<T>(type, values, !std::is_same_v<T, float>)},
-                                     {"interpolation", interpolation}});
+    animation["samplers"].push_back(
+        {{"input", model.accessor<float>("SCALAR", times)},
+         {"output", model.accessor<T>(type, values, !std::is_same_v<T, float>)},
+         {"interpolation", interpolation}});
     return animation;
   }
 
@@ -251,7 +261,8 @@ inline std::filesystem::path write_moving_scene(const TemporaryFolder& folder) {
   const json channel = {{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}};
   model.add("animations", {{"samplers", {sampler}}, {"channels", {channel}}});
   model.write(folder);
-  return folder.write("moving.json", R"({"model": "model.gltf", "cascades": {"count": 2, "size_metres": 4},
+  return folder.write("moving.json",
+                      R"({"model": "model.gltf", "cascades": {"count": 2, "size_metres": 4},
     "cameras": [{"name": "walk", "target": [0, 0.4, 0], "keys": [
       {"time": 0, "eye": [0, 1.5, 3]}, {"time": 1, "eye": [1, 1, 2.5]}]}],
     "lights": [{"name": "sun", "kind": "directional", "illuminance_lux": 10, "keys": [

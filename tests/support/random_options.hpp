@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Random values of render options, drawn from the ranges in the option table, for tests and fuzzing.
+// Random values of render options, drawn from the ranges in the option table, for tests and
+// fuzzing.
 #pragma once
 
 #include <fmt/format.h>
@@ -45,8 +46,10 @@ class Choices {
 /// Upper bounds of options that only cost time or memory.
 using Caps = std::map<std::string, double>;
 
-/// Returns a value that the option table allows: at an end of the range, or inside it; "" for a file.
-inline std::string drawn_value(const OptionDescription& option, Choices& choices, const Caps& caps) {
+/// Returns a value that the option table allows: at an end of the range, or inside it; "" for a
+/// file.
+inline std::string drawn_value(const OptionDescription& option, Choices& choices,
+                               const Caps& caps) {
   const std::string& allowed = option.allowed;
   if (allowed.find('|') != std::string::npos) {
     std::vector<std::string> names;
@@ -62,8 +65,10 @@ inline std::string drawn_value(const OptionDescription& option, Choices& choices
   const std::string_view between = open ? kBelow : std::string_view("..");
   const std::size_t start = open ? kAbove.size() : 0, middle = allowed.find(between);
   if (middle == std::string::npos) return {};
-  const auto minimum = parse_number<double>(std::string_view(allowed).substr(start, middle - start)),
-             maximum = parse_number<double>(std::string_view(allowed).substr(middle + between.size()));
+  const auto minimum =
+                 parse_number<double>(std::string_view(allowed).substr(start, middle - start)),
+             maximum =
+                 parse_number<double>(std::string_view(allowed).substr(middle + between.size()));
   if (!minimum || !maximum) return {};
   const double first = *minimum + (open ? kInside : 0), end = *maximum - (open ? kInside : 0);
   const auto cap = caps.find(option.name);

@@ -28,7 +28,8 @@ inline std::string read_file(const std::filesystem::path& path) {
 inline Outcome run(const std::string& command) {
   const TemporaryFolder folder;
   const auto out = folder.path() / "out", err = folder.path() / "err";
-  const int status = std::system(("( " + command + " ) >" + out.string() + " 2>" + err.string()).c_str());
+  const int status =
+      std::system(("( " + command + " ) >" + out.string() + " 2>" + err.string()).c_str());
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return {code, read_file(out), read_file(err)};
 }
@@ -36,7 +37,8 @@ inline Outcome run(const std::string& command) {
 /// "POCL_CACHE_DIR=... ", for a process whose XDG_CACHE_HOME is empty: PoCL would compile all
 /// kernels again there.
 inline std::string usual_kernels() {
-  if (const char* set = std::getenv("POCL_CACHE_DIR")) return std::string("POCL_CACHE_DIR=") + set + " ";
+  if (const char* set = std::getenv("POCL_CACHE_DIR"))
+    return std::string("POCL_CACHE_DIR=") + set + " ";
   if (const char* cache = std::getenv("XDG_CACHE_HOME"))
     return std::string("POCL_CACHE_DIR=") + cache + "/pocl/kcache ";
   const char* home = std::getenv("HOME");

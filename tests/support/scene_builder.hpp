@@ -9,7 +9,8 @@
 
 namespace clpv::test {
 
-inline unsigned add_material(SceneData& scene, const glm::vec3& albedo = glm::vec3(1), unsigned flags = 0) {
+inline unsigned add_material(SceneData& scene, const glm::vec3& albedo = glm::vec3(1),
+                             unsigned flags = 0) {
   ClpvMaterial material{};
   for (int i = 0; i < 3; ++i) material.base_colour[i] = albedo[i];
   material.base_colour[3] = 1;
@@ -21,13 +22,14 @@ inline unsigned add_material(SceneData& scene, const glm::vec3& albedo = glm::ve
 
 inline unsigned add_vertex(SceneData& scene, const glm::vec3& p, const glm::vec3& normal,
                            const glm::vec2& uv = glm::vec2(0)) {
-  scene.vertices.push_back({{p.x, p.y, p.z}, {normal.x, normal.y, normal.z}, {uv.x, uv.y}, {1, 1, 1, 1}});
+  scene.vertices.push_back(
+      {{p.x, p.y, p.z}, {normal.x, normal.y, normal.z}, {uv.x, uv.y}, {1, 1, 1, 1}});
   return static_cast<unsigned>(scene.vertices.size() - 1);
 }
 
 /// Counter-clockwise a, b, c as its front is seen; its own three vertices with the face's normal.
-inline void add_triangle(SceneData& scene, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
-                         unsigned material) {
+inline void add_triangle(SceneData& scene, const glm::vec3& a, const glm::vec3& b,
+                         const glm::vec3& c, unsigned material) {
   const glm::vec3 across = glm::cross(b - a, c - a);
   const glm::vec3 normal = glm::length(across) > 0 ? glm::normalize(across) : glm::vec3(0, 1, 0);
   const unsigned first = add_vertex(scene, a, normal);
@@ -38,8 +40,8 @@ inline void add_triangle(SceneData& scene, const glm::vec3& a, const glm::vec3& 
 
 /// The parallelogram corner, corner + u, corner + u + v, corner + v, its front towards u x v; uv
 /// from (0, 0) to (1, 1).
-inline void add_quad(SceneData& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v,
-                     unsigned material) {
+inline void add_quad(SceneData& scene, const glm::vec3& corner, const glm::vec3& u,
+                     const glm::vec3& v, unsigned material) {
   const glm::vec3 normal = glm::normalize(glm::cross(u, v));
   const unsigned first = add_vertex(scene, corner, normal, {0, 0});
   add_vertex(scene, corner + u, normal, {1, 0});
@@ -63,11 +65,13 @@ inline void add_box(SceneData& scene, const glm::vec3& low, float edge, unsigned
 inline SceneCamera camera_at(const glm::vec3& eye, const glm::vec3& along) {
   SceneCamera camera;
   camera.eye = eye, camera.forward = glm::normalize(along);
-  camera.up = glm::normalize(glm::cross(glm::cross(camera.forward, glm::vec3(0, 1, 0)), camera.forward));
+  camera.up =
+      glm::normalize(glm::cross(glm::cross(camera.forward, glm::vec3(0, 1, 0)), camera.forward));
   return camera;
 }
 
-inline ClpvLight directional_light(const glm::vec3& direction, const glm::vec3& irradiance = glm::vec3(1)) {
+inline ClpvLight directional_light(const glm::vec3& direction,
+                                   const glm::vec3& irradiance = glm::vec3(1)) {
   const glm::vec3 d = glm::normalize(direction);
   ClpvLight light{};
   light.kind = CLPV_LIGHT_DIRECTIONAL;
@@ -85,7 +89,8 @@ inline ClpvLight point_light(const glm::vec3& position, const glm::vec3& intensi
 }
 
 /// As glTF's cone: full intensity inside `inner`, none beyond `outer` [rad].
-inline ClpvLight spot_light(const glm::vec3& position, const glm::vec3& direction, float inner, float outer) {
+inline ClpvLight spot_light(const glm::vec3& position, const glm::vec3& direction, float inner,
+                            float outer) {
   ClpvLight light = point_light(position);
   const glm::vec3 d = glm::normalize(direction);
   light.kind = CLPV_LIGHT_SPOT;

@@ -15,8 +15,8 @@ inline const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json",
 
 /// Options of a small frame by few steps, for starts of the program that need any frame.
 inline const std::string kSmallSteps =
-    " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2 "
-    "--transport sampled --gather all --blockers seen ";
+    " --width 12 --height 9 --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 "
+    "--basis sh2 --transport sampled --gather all --blockers seen ";
 
 inline std::filesystem::path scene_file(const std::string& name) {
   return std::filesystem::path(CLPV_SOURCE_DIR) / "scenes" / name;
@@ -25,9 +25,10 @@ inline std::filesystem::path scene_file(const std::string& name) {
 /// Model of Crytek Sponza (a file or folder that CLPV_SPONZA names); empty if it is absent.
 inline std::filesystem::path sponza() {
   const char* given = std::getenv("CLPV_SPONZA");
-  std::filesystem::path path = given != nullptr && *given != '\0'
-                                   ? std::filesystem::path(given)
-                                   : std::filesystem::path(CLPV_SOURCE_DIR) / "../shared/scenes/sponza";
+  std::filesystem::path path =
+      given != nullptr && *given != '\0'
+          ? std::filesystem::path(given)
+          : std::filesystem::path(CLPV_SOURCE_DIR) / "../shared/scenes/sponza";
   if (std::filesystem::is_directory(path)) path /= "Sponza.gltf";
   return std::filesystem::exists(path) ? path : std::filesystem::path();
 }

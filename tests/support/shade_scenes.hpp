@@ -38,11 +38,11 @@ inline void set(float v[3], const glm::dvec3& value) {
   for (int i = 0; i < 3; ++i) v[i] = static_cast<float>(value[i]);
 }
 
-inline ClpvView view_of(const glm::dvec3& eye, const glm::dvec3& forward, bool orthographic, double half,
-                        unsigned side) {
+inline ClpvView view_of(const glm::dvec3& eye, const glm::dvec3& forward, bool orthographic,
+                        double half, unsigned side) {
   const glm::dvec3 f = glm::normalize(forward);
-  const glm::dvec3 r =
-      glm::normalize(glm::cross(f, std::abs(f.z) < 0.9 ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0)));
+  const glm::dvec3 r = glm::normalize(
+      glm::cross(f, std::abs(f.z) < 0.9 ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0)));
   ClpvView view{};
   set(view.eye, eye), set(view.forward, f), set(view.right, r), set(view.up, glm::cross(r, f));
   view.orthographic = orthographic ? 1.0f : 0.0f;
@@ -55,8 +55,8 @@ inline ClpvView view_of(const glm::dvec3& eye, const glm::dvec3& forward, bool o
 /// Parameter t of the first hit of the ray `origin` + t `direction`; 0 without a hit at t > 0.
 using Geometry = std::function<double(const glm::dvec3& origin, const glm::dvec3& direction)>;
 
-inline double plane_at(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& normal,
-                       double height) {
+inline double plane_at(const glm::dvec3& origin, const glm::dvec3& direction,
+                       const glm::dvec3& normal, double height) {
   const double t = (height - glm::dot(normal, origin)) / glm::dot(normal, direction);
   return std::isfinite(t) && t > 0 ? t : 0;
 }
@@ -70,7 +70,8 @@ inline ShadowMap cast(const ClpvView& view, const Geometry& geometry) {
   for (unsigned y = 0; y < view.height; ++y) {
     for (unsigned x = 0; x < view.width; ++x) {
       const glm::dvec3 at0 = reference::surface_position(view, x, y, 0);
-      const glm::dvec3 ray = reference::surface_position(view, x, y, 1) - at0;  // advances depth by 1
+      // Advances depth by 1.
+      const glm::dvec3 ray = reference::surface_position(view, x, y, 1) - at0;
       map.depth.push_back(static_cast<float>(geometry(at0, ray)));
     }
   }
@@ -113,12 +114,14 @@ inline SurfaceImage floor_image() {
 inline const glm::vec3 kChannels(1, 2, 3);  // of every light: channels must not be mixed up
 
 inline MappedLight sun(const glm::dvec3& direction, double irradiance) {
-  return {test::directional_light(glm::vec3(direction), static_cast<float>(irradiance) * kChannels), {}};
+  return {test::directional_light(glm::vec3(direction), static_cast<float>(irradiance) * kChannels),
+          {}};
 }
 
 inline MappedLight sun(const glm::dvec3& direction, double irradiance, const Geometry& casting) {
   MappedLight light = sun(direction, irradiance);
-  const ClpvView view = view_of(-30.0 * glm::normalize(direction), direction, true, kMapHalf, kTexels);
+  const ClpvView view =
+      view_of(-30.0 * glm::normalize(direction), direction, true, kMapHalf, kTexels);
   light.maps = {cast(view, casting)};
   return light;
 }
@@ -132,9 +135,11 @@ inline const std::array<glm::dvec3, 6> kDirections = {glm::dvec3(1, 0, 0), glm::
                                                       glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)};
 
 /// E of each pixel, by the kernels: whether a surface shadows itself is a matter of float32.
-inline std::vector<glm::vec4> lit_colours(const SurfaceImage& image, const std::vector<MappedLight>& lights) {
+inline std::vector<glm::vec4> lit_colours(const SurfaceImage& image,
+                                          const std::vector<MappedLight>& lights) {
   const std::size_t pixels = image.depth.size();
-  const Buffer irradiance = test_session().upload(std::vector<cl_float4>(pixels), "test: irradiance");
+  const Buffer irradiance =
+      test_session().upload(std::vector<cl_float4>(pixels), "test: irradiance");
   Buffer shown = test_session().buffer(pixels * sizeof(glm::vec4), "test: image");
   const Surface camera = upload_surface(test_session(), image);
   Shader shader(test_session());
@@ -156,7 +161,8 @@ inline void expect_lit(const SurfaceImage& image, const MappedLight& light,
   for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
     const double wanted = expected(point_of(image, pixel));
     for (int c = 0; c < 3; ++c)
-      ASSERT_NEAR(e[pixel][c], wanted * double{kChannels[c]}, 3 * kFloat * scale) << "pixel " << pixel;
+      ASSERT_NEAR(e[pixel][c], wanted * double{kChannels[c]}, 3 * kFloat * scale)
+          << "pixel " << pixel;
   }
 }
 

@@ -31,11 +31,13 @@ inline std::vector<std::pair<double, double>> gauss(int n, double from, double t
     double x = std::cos(std::numbers::pi * (i + 0.75) / (n + 0.5)), slope = 1;
     for (int k = 0; k < 50; ++k) {
       double p = 1, before = 0;
-      for (int l = 1; l <= n; ++l) before = std::exchange(p, ((2 * l - 1) * x * p - (l - 1) * before) / l);
+      for (int l = 1; l <= n; ++l)
+        before = std::exchange(p, ((2 * l - 1) * x * p - (l - 1) * before) / l);
       slope = n * (before - x * p) / (1 - x * x);
       x -= p / slope;
     }
-    rule.emplace_back(from + (to - from) * (1 + x) / 2, (to - from) / ((1 - x * x) * slope * slope));
+    rule.emplace_back(from + (to - from) * (1 + x) / 2,
+                      (to - from) / ((1 - x * x) * slope * slope));
   }
   return rule;
 }
@@ -59,9 +61,10 @@ inline std::vector<Node> sphere(const glm::dvec3& z = {0, 0, 1}, int order = 24)
       for (const auto& [azimuth, azimuth_weight] : rule) {
         const double theta = angle + (octant & 1 ? std::numbers::pi / 2 : 0);
         const double phi = azimuth + (octant >> 1) * std::numbers::pi / 2;
-        nodes.push_back({std::sin(theta) * (std::cos(phi) * frame.first + std::sin(phi) * frame.second) +
-                             std::cos(theta) * z,
-                         angle_weight * azimuth_weight * std::sin(theta)});
+        nodes.push_back(
+            {std::sin(theta) * (std::cos(phi) * frame.first + std::sin(phi) * frame.second) +
+                 std::cos(theta) * z,
+             angle_weight * azimuth_weight * std::sin(theta)});
       }
     }
   }
@@ -69,21 +72,23 @@ inline std::vector<Node> sphere(const glm::dvec3& z = {0, 0, 1}, int order = 24)
 }
 
 /// The unit square round `centre` across the unit `normal`, as directions seen from the origin.
-inline std::vector<Node> square(const glm::dvec3& centre, const glm::dvec3& normal, int order = 20) {
+inline std::vector<Node> square(const glm::dvec3& centre, const glm::dvec3& normal,
+                                int order = 20) {
   const auto [u, v] = across(normal);
   std::vector<Node> nodes;
   for (const auto& [s, s_weight] : gauss(order, -0.5, 0.5)) {
     for (const auto& [t, t_weight] : gauss(order, -0.5, 0.5)) {
       const glm::dvec3 p = centre + s * u + t * v;
       const double distance = glm::length(p);
-      nodes.push_back(
-          {p / distance, s_weight * t_weight * std::abs(glm::dot(p, normal)) / std::pow(distance, 3)});
+      nodes.push_back({p / distance, s_weight * t_weight * std::abs(glm::dot(p, normal)) /
+                                         std::pow(distance, 3)});
     }
   }
   return nodes;
 }
 
-inline double integral(const std::vector<Node>& nodes, const std::function<double(const glm::dvec3&)>& f) {
+inline double integral(const std::vector<Node>& nodes,
+                       const std::function<double(const glm::dvec3&)>& f) {
   double sum = 0;
   for (const Node& node : nodes) sum += node.weight * f(node.w);
   return sum;

@@ -17,7 +17,8 @@ inline constexpr float kOpen = std::numeric_limits<float>::infinity();
 /// A view along `forward`, its half extents the tangents of half the fields of view.
 inline ClpvView view_of(glm::vec3 eye, glm::vec3 forward, glm::vec3 up, float half, unsigned width,
                         unsigned height) {
-  const glm::vec3 f = glm::normalize(forward), r = glm::normalize(glm::cross(f, up)), u = glm::cross(r, f);
+  const glm::vec3 f = glm::normalize(forward), r = glm::normalize(glm::cross(f, up)),
+                  u = glm::cross(r, f);
   ClpvView view{};
   for (int i = 0; i < 3; ++i) {
     view.eye[i] = eye[i], view.right[i] = r[i], view.up[i] = u[i], view.forward[i] = f[i];

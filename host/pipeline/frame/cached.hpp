@@ -7,8 +7,8 @@
 
 namespace clpv {
 
-/// Identifies the inputs of a result: a Fingerprint of versions and values. It omits options and materials, which are
-/// constant for a frame.
+/// Identifies the inputs of a result: a Fingerprint of versions and values. It omits options and
+/// materials, which are constant for a frame.
 using CacheKey = std::uint64_t;
 
 /// Key of a result whose memory stores the last computed value.

@@ -10,19 +10,21 @@
 namespace clpv {
 namespace {
 
-// The coarsest cascade usually has 32 cells along each axis. The 26 around the eye receive full light, and the next two
-// fade out. 24 cells leave room for moving parts.
+// The coarsest cascade usually has 32 cells along each axis. The 26 around the eye receive full
+// light, and the next two fade out. 24 cells leave room for moving parts.
 constexpr double kRoom = 32.0 / 24;
-constexpr double kFarTooLarge =
-    4;  // relative to the smallest edge that encloses the scene: it spans 1 of 4 cells
+// Relative to the smallest edge that encloses the scene: it spans 1 of 4 cells.
+constexpr double kFarTooLarge = 4;
 
-constexpr double kAligned = 1e-2;  // [finer cells]: float32 rounding of origins about 100 cells away
+// [finer cells]: float32 rounding of origins about 100 cells away.
+constexpr double kAligned = 1e-2;
 
 /// Distance of floats at the grid's corner that is farthest from the coordinates' origin [m].
 double resolution(const ClpvGrid& grid) {
   double farthest = 0;
   for (const float origin : grid.origin)
-    farthest = std::max({farthest, -double{origin}, origin + static_cast<double>(grid.n) * grid.cell});
+    farthest =
+        std::max({farthest, -double{origin}, origin + static_cast<double>(grid.n) * grid.cell});
   const auto corner = static_cast<float>(farthest);
   return std::nextafter(corner, std::numeric_limits<float>::infinity()) - corner;
 }
@@ -33,11 +35,10 @@ void require_resolved(const std::vector<ClpvGrid>& grids, double size) {
     const double cell = grids[c].cell,
                  least = resolution(grids[std::min(c + 1, grids.size() - 1)]) / kAligned;
     if (cell >= least) continue;
-    throw Error(
-        ExitCode::usage,
-        "cascade-size: found {:.4g}, with which cascade {} has cells of {:.4g} m, too small for float "
-        "coordinates at this camera; allowed here: {:.4g} or more",
-        size, c, cell, size * least / cell);
+    throw Error(ExitCode::usage,
+                "cascade-size: found {:.4g}, with which cascade {} has cells of {:.4g} m, too "
+                "small for float coordinates at this camera; allowed here: {:.4g} or more",
+                size, c, cell, size * least / cell);
   }
 }
 
@@ -66,7 +67,8 @@ double fitting_cascade_size(const SceneData& scene, int count, double size) {
   return just > 0 && (size < just || size > kFarTooLarge * just) ? just : size;
 }
 
-bool cascades_meet(const SceneData& scene, const glm::vec3& eye, int count, double size, int cells) {
+bool cascades_meet(const SceneData& scene, const glm::vec3& eye, int count, double size,
+                   int cells) {
   const ClpvGrid grid = cascade_grids(eye, count, size, cells).back();
   const glm::vec3 lower(grid.origin[0], grid.origin[1], grid.origin[2]);
   const glm::vec3 upper = lower + grid.cell * static_cast<float>(cells);
@@ -82,7 +84,8 @@ bool cascades_meet(const SceneData& scene, const glm::vec3& eye, int count, doub
 }
 
 bool reaches(const ClpvGrid& grid, const glm::dvec3& position) {
-  const glm::dvec3 off = glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
+  const glm::dvec3 off =
+      glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
   return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(grid.n) * double{grid.cell})));
 }
 

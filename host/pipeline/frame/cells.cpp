@@ -30,8 +30,8 @@ std::optional<double> hit(const CellRay& ray, const glm::dvec3& centre) {
   return t > 0 ? std::optional(t) : std::nullopt;
 }
 
-/// Walks through the cells of a grid in the order of the ray (Amanatides and Woo 1987) up to t = `end`. Calls
-/// visit(cell) until it returns true.
+/// Walks through the cells of a grid in the order of the ray (Amanatides and Woo 1987) up to t =
+/// `end`. Calls visit(cell) until it returns true.
 template <typename Visit>
 void walk(const CellRay& ray, int n, double end, const Visit& visit) {
   double enter = 0, leave = end;
@@ -51,7 +51,8 @@ void walk(const CellRay& ray, int n, double end, const Visit& visit) {
   for (int i = 0; i < 3; ++i) {
     cell[i] = std::clamp(static_cast<int>(std::floor(start[i])), 0, n - 1);
     step[i] = ray.along[i] < 0 ? -1 : 1;
-    next[i] = ray.along[i] == 0 ? kInfinity : (cell[i] + (step[i] > 0) - ray.from[i]) / ray.along[i];
+    next[i] =
+        ray.along[i] == 0 ? kInfinity : (cell[i] + (step[i] > 0) - ray.from[i]) / ray.along[i];
     delta[i] = ray.along[i] == 0 ? kInfinity : std::abs(1 / ray.along[i]);
   }
   while (!visit(cell)) {
@@ -66,15 +67,16 @@ void walk(const CellRay& ray, int n, double end, const Visit& visit) {
 
 }  // namespace
 
-CellSpheres visible_spheres(const ClpvView& view, const std::vector<float>& depth, const ClpvGrid& grid) {
+CellSpheres visible_spheres(const ClpvView& view, const std::vector<float>& depth,
+                            const ClpvGrid& grid) {
   CellSpheres found;
   const double cell_edge = grid.cell;
   const glm::dvec3 origin = vector(grid.origin), eye = (vector(view.eye) - origin) / cell_edge;
   for (std::size_t pixel = 0; pixel < depth.size(); ++pixel) {
     const double sx = (2 * (pixel % view.width + 0.5) / view.width - 1) * double{view.half_width},
                  sy = (1 - 2 * (pixel / view.width + 0.5) / view.height) * double{view.half_height};
-    const CellRay ray{eye,
-                      (vector(view.forward) + sx * vector(view.right) + sy * vector(view.up)) / cell_edge};
+    const CellRay ray{
+        eye, (vector(view.forward) + sx * vector(view.right) + sy * vector(view.up)) / cell_edge};
     const double end = depth[pixel] > 0 ? double{depth[pixel]} : kInfinity;
     walk(ray, static_cast<int>(grid.n), end, [&](const glm::ivec3& cell) {
       const glm::dvec3 centre = glm::dvec3(cell) + 0.5;

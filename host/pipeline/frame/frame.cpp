@@ -38,12 +38,13 @@ std::vector<glm::vec4> first_points(const std::vector<float>& image, std::size_t
   return values;
 }
 
-/// A sky is far brighter than the interior behind walls, so leaks along diagonal links are most visible with a sky.
+/// A sky is far brighter than the interior behind walls, so leaks along diagonal links are most
+/// visible with a sky.
 constexpr double kClosedUnderASky = 0.75;
 
 /// Returns `options` after checking that they, the scene and the device allow a frame.
-const RenderOptions& checked(const Session& session, const SceneData& scene, const RenderOptions& options,
-                             const Basis& basis) {
+const RenderOptions& checked(const Session& session, const SceneData& scene,
+                             const RenderOptions& options, const Basis& basis) {
   validate(options, scene);
   require_supported(session.device(), options.format(), light_shape(options, basis));
   return options;
@@ -71,7 +72,8 @@ Frame::Frame(Session& session, const SceneData& scene, const RenderOptions& opti
       shader_(session, buffers_.medium),
       lights_(session, scene, buffers_, rasterizer_, options_),
       cascades_(session, scene, buffers_, options_, *basis_, swept_.get(), transport_, lights_) {
-  if (options.traces_near()) near_.emplace(session, gathered(), scene, buffers_, near_options(options));
+  if (options.traces_near())
+    near_.emplace(session, gathered(), scene, buffers_, near_options(options));
   if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options));
   const std::size_t pixels = std::size_t(options.width) * options.height;
   irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
@@ -103,13 +105,15 @@ std::vector<ClpvGrid> Frame::grids_about(const glm::vec3& eye) const {
 void Frame::gather(const Surface& surface, CacheKey rays, Buffer& irradiance) {
   timed(Pass::gather, [&] { gatherer_.gather(surface, light(), irradiance); });
   if (!near_) return;
-  near_hits_.update(rays, [&] { timed(Pass::near_trace, [&] { near_->trace(surface, gatherer_); }); });
+  near_hits_.update(rays,
+                    [&] { timed(Pass::near_trace, [&] { near_->trace(surface, gatherer_); }); });
   timed(Pass::near, [&] { near_->add(surface, gatherer_, lights_.shadowed(), irradiance); });
 }
 
 void Frame::rasterize_camera(const SceneCamera& camera) {
   const ClpvView view = camera_view(camera, options_.width, options_.height);
-  if (!camera_surface_) camera_surface_ = make_surface(session_, view, RsmFormat::float32, buffers_.emissive);
+  if (!camera_surface_)
+    camera_surface_ = make_surface(session_, view, RsmFormat::float32, buffers_.emissive);
   camera_surface_->view = view;
   rasterizer_.rasterize_camera(*camera_surface_);
 }
@@ -125,20 +129,26 @@ void Frame::require_lookups(const char* what) const {
                 name_of(options_.transport));
   }
   if (!gatherer_.packs()) {
-    throw Error(ExitCode::usage,
-                "{}: found layout 'image' with gather 'all', allowed: gather 'visible', or another layout",
-                what);
+    throw Error(
+        ExitCode::usage,
+        "{}: found layout 'image' with gather 'all', allowed: gather 'visible', or another layout",
+        what);
   }
 }
 
 std::string Frame::lookup_source() const {
   require_lookups("lookup source");
-  return program_text(with_radiance({"gather/lookup.h", {}, {}}, *swept_, gather_options(options_))) +
+  return program_text(
+             with_radiance({"gather/lookup.h", {}, {}}, *swept_, gather_options(options_))) +
          "#line 1 \"kernel\"\n";
 }
 
 CacheKey Frame::seen_by_rays(const std::vector<ClpvGrid>& grids) const {
-  return Fingerprint().add(camera_surface_->view).add(grids).add(buffers_.clusters->instant()).value();
+  return Fingerprint()
+      .add(camera_surface_->view)
+      .add(grids)
+      .add(buffers_.clusters->instant())
+      .value();
 }
 
 void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
@@ -151,7 +161,8 @@ void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
   for (int cascade = options_.cascades; cascade-- > 0;) cascades_.update(cascade, observer);
   const std::vector<ShadowedLight> shadowed = lights_.shadowed();
   gather(*camera_surface_, seen_by_rays(grids), irradiance_);
-  if (medium_) timed(Pass::medium, [&] { medium_->scatter(*camera_surface_, gatherer_, shadowed); });
+  if (medium_)
+    timed(Pass::medium, [&] { medium_->scatter(*camera_surface_, gatherer_, shadowed); });
   timed(Pass::shade, [&] {
     shader_.light(*camera_surface_, shadowed);
     show(Show::full);
@@ -161,7 +172,8 @@ void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
 
 const Buffer& Frame::light(const SceneCamera& camera, const GivenPixels& pixels) {
   if (blocked_by_view(options_)) {
-    throw Error(ExitCode::usage, "light: found blockers '{}', which a frame's G-buffer makes, allowed: scene",
+    throw Error(ExitCode::usage,
+                "light: found blockers '{}', which a frame's G-buffer makes, allowed: scene",
                 name_of(options_.blockers));
   }
   session_.timeline().clear();
@@ -190,8 +202,8 @@ void Frame::show(Show view) {
 
 std::vector<float> Frame::irradiance_on(const SurfaceImage& surfaces) {
   const std::size_t numbers = surfaces.normal.size() * 4;
-  const Surface there =
-      upload_surface(session_, {surfaces.view, surfaces.depth, surfaces.normal, {}, {}, surfaces.position});
+  const Surface there = upload_surface(
+      session_, {surfaces.view, surfaces.depth, surfaces.normal, {}, {}, surfaces.position});
   Buffer irradiance = session_.buffer(numbers * sizeof(float), "irradiance on given surfaces");
   gatherer_.gather(there, light(), irradiance);
   return session_.read<float>(irradiance, numbers);
@@ -202,7 +214,8 @@ std::vector<glm::vec4> Frame::irradiance_at(std::vector<glm::vec4> positions,
   require_light("irradiance");
   const std::size_t count = positions.size();
   if (count == 0) return {};
-  return first_points(irradiance_on(image_of_points(std::move(positions), std::move(normals))), count);
+  return first_points(irradiance_on(image_of_points(std::move(positions), std::move(normals))),
+                      count);
 }
 
 std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
@@ -217,9 +230,9 @@ std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
   const std::size_t numbers = points.position.size() * 4;
   Buffer radiances = session_.buffer(numbers * sizeof(float), "radiance at points");
   if (!radiance_) {
-    radiance_.emplace(session_,
-                      with_radiance({"gather/radiance.cl", {}, {}}, *swept_, gather_options(options_)),
-                      "radiance");
+    radiance_.emplace(
+        session_, with_radiance({"gather/radiance.cl", {}, {}}, *swept_, gather_options(options_)),
+        "radiance");
   }
   radiance_->set(points.view, places, vectors, radiances);
   gatherer_.add_radiance(*radiance_);
@@ -240,7 +253,8 @@ std::vector<SurfaceImage> Frame::read_rsms(int cascade) {
 
 const Buffer& Frame::image(Show view) {
   if (view == Show::medium && !medium_)
-    throw Error(ExitCode::usage, "view: found 'medium' of a scene without a medium; allowed: the others");
+    throw Error(ExitCode::usage,
+                "view: found 'medium' of a scene without a medium; allowed: the others");
   if (view != shown_) show(view);
   return image_;
 }
@@ -254,13 +268,15 @@ std::vector<float> Frame::read(Show view) {
         [this](auto positions, auto normals) {
           return irradiance_at(std::move(positions), std::move(normals));
         },
-        seen, session_.read<float>(camera_surface_->depth, std::size_t{seen.width} * seen.height), image);
+        seen, session_.read<float>(camera_surface_->depth, std::size_t{seen.width} * seen.height),
+        image);
     return image;
   }
   std::vector<float> image =
       session_.read<float>(this->image(view), std::size_t(options_.width) * options_.height * 4);
   if (scene_.sky && shows_sky(view)) {
-    paint_sky(*scene_.sky, view == Show::full ? scene_.medium : std::nullopt, camera_surface_->view, image);
+    paint_sky(*scene_.sky, view == Show::full ? scene_.medium : std::nullopt, camera_surface_->view,
+              image);
   } else if (medium_ && shows_medium(view)) {
     for (std::size_t i = 3; i < image.size(); i += 4) image[i] = 1;
   }

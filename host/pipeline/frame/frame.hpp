@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A frame: runs all pipeline stages in order, for one scene and one set of options (docs/method.md, 'The frame').
+// A frame: runs all pipeline stages in order, for one scene and one set of options (docs/method.md,
+// 'The frame').
 #pragma once
 
 #include <memory>
@@ -25,30 +26,35 @@
 
 namespace clpv {
 
-/// Holds all device memory of a frame. Call render() any number of times, for one or several cameras.
+/// Holds all device memory of a frame. Call render() any number of times, for one or several
+/// cameras.
 class Frame {
  public:
-  /// Throws Error(usage) for contradictory options (validate), Error(device) for volumes too large for the device, and
-  /// Error(run_time) if device memory does not suffice.
+  /// Throws Error(usage) for contradictory options (validate), Error(device) for volumes too large
+  /// for the device, and Error(run_time) if device memory does not suffice.
   Frame(Session& session, const SceneData& scene, const RenderOptions& options);
   Frame(const Frame&) = delete;  // stages hold references to other members
   Frame& operator=(const Frame&) = delete;
 
-  /// Call when the scene may have changed its time (MovingScene). The next frame shows the new time.
+  /// Call when the scene may have changed its time (MovingScene). The next frame shows the new
+  /// time.
   void scene_moved();
 
-  /// Enqueues the stages whose results are not cached. Clears the session's timeline and records the stages on it.
-  /// Shaded views are complete once the queue has finished. The result is bit-identical whatever was rendered before.
-  /// `observer` receives the volumes of each cascade. It waits for the device, so omit it in timed frames.
+  /// Enqueues the stages whose results are not cached. Clears the session's timeline and records
+  /// the stages on it. Shaded views are complete once the queue has finished. The result is
+  /// bit-identical whatever was rendered before. `observer` receives the volumes of each cascade.
+  /// It waits for the device, so omit it in timed frames.
   void render(const SceneCamera& camera, const CascadeObserver& observer = {});
 
-  /// Enqueues the irradiance of indirect light, with the near field, on surfaces that a caller gives, from cascades about the
-  /// camera's eye. As render(), but makes no image. Returns float4 per pixel [W/m^2], 0 without a surface; valid until the next
-  /// call. Throws Error(usage) for blockers that the frame's G-buffer makes.
+  /// Enqueues the irradiance of indirect light, with the near field, on surfaces that a caller
+  /// gives, from cascades about the camera's eye. As render(), but makes no image. Returns float4
+  /// per pixel [W/m^2], 0 without a surface; valid until the next call. Throws Error(usage) for
+  /// blockers that the frame's G-buffer makes.
   const Buffer& light(const SceneCamera& camera, const GivenPixels& pixels);
 
-  /// For benchmarks. After invalidate_light() the next frame recomputes all lighting, including shadow maps and what rays
-  /// of the near field hit. After invalidate() it recomputes everything, including blockers and visibility.
+  /// For benchmarks. After invalidate_light() the next frame recomputes all lighting, including
+  /// shadow maps and what rays of the near field hit. After invalidate() it recomputes everything,
+  /// including blockers and visibility.
   void invalidate_light();
   void invalidate();
 
@@ -61,15 +67,21 @@ class Frame {
   /// Rasterizer::draw_ahead() of the next frames.
   void draw_ahead(bool ahead) { rasterizer_.draw_ahead(ahead); }
 
-  /// Irradiance [W/m^2] from the last render's light on arbitrary surfaces, in the format of Gatherer, without the near field.
+  /// Irradiance [W/m^2] from the last render's light on arbitrary surfaces, in the format of
+  /// Gatherer, without the near field.
   std::vector<float> irradiance_on(const SurfaceImage& surfaces);
-  /// The same at points: position [m] and unit normal of each; one value per point. Throws Error(usage) before the first render.
-  std::vector<glm::vec4> irradiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> normals);
-  /// Radiance [W/m^2/sr] at positions [m], of light that travels along the unit vector of each; may be negative. Throws
-  /// Error(usage) before the first render, without a sweep, and if gathering reads images.
-  std::vector<glm::vec4> radiance_at(std::vector<glm::vec4> positions, std::vector<glm::vec4> directions);
+  /// The same at points: position [m] and unit normal of each; one value per point. Throws
+  /// Error(usage) before the first render.
+  std::vector<glm::vec4> irradiance_at(std::vector<glm::vec4> positions,
+                                       std::vector<glm::vec4> normals);
+  /// Radiance [W/m^2/sr] at positions [m], of light that travels along the unit vector of each; may
+  /// be negative. Throws Error(usage) before the first render, without a sweep, and if gathering
+  /// reads images.
+  std::vector<glm::vec4> radiance_at(std::vector<glm::vec4> positions,
+                                     std::vector<glm::vec4> directions);
 
-  /// The text for lookups by a caller's kernel (kernels/gather/lookup.h). Throws Error(usage) for options as radiance_at().
+  /// The text for lookups by a caller's kernel (kernels/gather/lookup.h). Throws Error(usage) for
+  /// options as radiance_at().
   std::string lookup_source() const;
   /// Throws Error(usage) for such options; `what` opens the message.
   void require_lookups(const char* what) const;
@@ -82,7 +94,8 @@ class Frame {
   /// One view of the last render as RGBA float, top row first.
   std::vector<float> read(Show view);
 
-  /// One view of the last render on the device, float4 per pixel, without what read() paints: sky and cells.
+  /// One view of the last render on the device, float4 per pixel, without what read() paints: sky
+  /// and cells.
   const Buffer& image(Show view);
   const Buffer& irradiance() const { return irradiance_; }
 
@@ -98,7 +111,8 @@ class Frame {
     stage();
   }
   std::vector<ClpvGrid> grids_about(const glm::vec3& eye) const;
-  /// Gathers the light of the cascades on a surface. `rays`: key of what the near field's rays depend on.
+  /// Gathers the light of the cascades on a surface. `rays`: key of what the near field's rays
+  /// depend on.
   void gather(const Surface& surface, CacheKey rays, Buffer& irradiance);
   void rasterize_camera(const SceneCamera& camera);
   void require_light(const char* what) const;

@@ -23,9 +23,10 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
       lights_(lights),
       injector_(session, basis, inject_options(options, transport.unit_flux_lobes)),
       injected_(volumes(injected_volumes(options), light_shape(options, basis), "injected light")),
-      accumulated_(
-          volumes(options.cascades, light_shape(options, swept ? *swept : basis), "accumulated light")),
-      geometry_(volumes(geometry_volumes(options), geometry_shape(options, basis), "geometry volume")),
+      accumulated_(volumes(options.cascades, light_shape(options, swept ? *swept : basis),
+                           "accumulated light")),
+      geometry_(
+          volumes(geometry_volumes(options), geometry_shape(options, basis), "geometry volume")),
       reflected_(volumes(options.bounces == Bounces::one ? 0 : options.cascades,
                          {options.grid, kCellFaces, 3}, "reflectors")),
       links_(options.cascades),
@@ -49,7 +50,8 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
 } catch (const TooLarge& error) {
   throw Error(
       error.code(), "{}; grid: found {}, and at most {} can fit", error.what(), options.grid,
-      static_cast<int>(options.grid * std::cbrt(error.share)));  // all that cascades have grows with its cube
+      static_cast<int>(options.grid *
+                       std::cbrt(error.share)));  // all that cascades have grows with its cube
 }
 
 std::vector<FrameCascades::CachedVolume> FrameCascades::volumes(int count, const VolumeShape& shape,
@@ -60,7 +62,8 @@ std::vector<FrameCascades::CachedVolume> FrameCascades::volumes(int count, const
   return made;
 }
 
-FrameCascades::CachedVolume& FrameCascades::of_cascade(std::vector<CachedVolume>& volumes, int cascade) {
+FrameCascades::CachedVolume& FrameCascades::of_cascade(std::vector<CachedVolume>& volumes,
+                                                       int cascade) {
   return volumes[std::min<std::size_t>(cascade, volumes.size() - 1)];
 }
 
@@ -90,8 +93,10 @@ FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
   Fingerprint accumulated;
   accumulated.add(keys.injected).add(keys.geometry);
   if (reflectors_) accumulated.add(keys.reflected);
-  // A sweep reads border light from the next coarser cascade, and stores the halo of the next finer one.
-  if (sweeper_) accumulated.add(sweeper_->halo(cascade, grids_)).add(scene_.sky ? lights_.scale() : 0.0f);
+  // A sweep reads border light from the next coarser cascade, and stores the halo of the next finer
+  // one.
+  if (sweeper_)
+    accumulated.add(sweeper_->halo(cascade, grids_)).add(scene_.sky ? lights_.scale() : 0.0f);
   if (sweeper_ && cascade + 1 < options_.cascades) accumulated.add(keys_[cascade + 1].accumulated);
   keys.accumulated = accumulated.value();
   return keys;
@@ -122,13 +127,15 @@ void FrameCascades::inject_geometry(int cascade, Volume& geometry) {
   lights_.rasterize_rsms(cascade);
   const StageScope scope(session_, {Pass::inject_geometry, cascade});
   geometry.clear(session_);
-  for (const Surface* rsm : lights_.rsms(cascade)) injector_.inject_geometry(*rsm, grids_[cascade], geometry);
+  for (const Surface* rsm : lights_.rsms(cascade))
+    injector_.inject_geometry(*rsm, grids_[cascade], geometry);
   injector_.inject_geometry(*camera_, grids_[cascade], geometry, options_.blocker_stride);
 }
 
 void FrameCascades::update_links(int cascade) {
   if (const Volume* blockers = geometry(cascade))
-    links_[cascade].update(keys_[cascade].geometry, [&] { sweeper_->set_blockers(cascade, *blockers); });
+    links_[cascade].update(keys_[cascade].geometry,
+                           [&] { sweeper_->set_blockers(cascade, *blockers); });
 }
 
 void FrameCascades::update_reflectors(int cascade) {
@@ -159,7 +166,8 @@ void FrameCascades::propagate(int cascade) {
     const Volume& injected = *of_cascade(injected_, cascade).volume;
     const StageScope scope(session_, {Pass::propagate, cascade});
     if (propagator_)
-      return propagator_->propagate({injected, geometry(cascade), *accumulated.volume}, options_.iterations);
+      return propagator_->propagate({injected, geometry(cascade), *accumulated.volume},
+                                    options_.iterations);
     update_links(cascade);
     SweepInput input{static_cast<std::size_t>(cascade), grids_, injected, lights_.scale()};
     if (scene_.medium) input.lights = scaled(lights_.shadowed(), lights_.scale());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cascades of a frame: their volumes, and the stages that compute them. Each result is cached with a key over its
-// inputs and recomputed only when the key changes.
+// Cascades of a frame: their volumes, and the stages that compute them. Each result is cached with
+// a key over its inputs and recomputed only when the key changes.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,8 @@
 
 namespace clpv {
 
-/// Volumes of one cascade after its propagation. Accumulated light uses the basis Frame::gathered().
+/// Volumes of one cascade after its propagation. Accumulated light uses the basis
+/// Frame::gathered().
 struct CascadeVolumes {
   int cascade;
   const ClpvGrid& grid;
@@ -42,7 +43,8 @@ class FrameCascades {
                 const RenderOptions& options, const Basis& basis, const Basis* swept,
                 const Transport& transport, FrameLights& lights);
 
-  /// Sets the cascade grids and the camera's G-buffer, which blocked_by_view() needs; else it may be null. Call for each frame, after preparing its lights.
+  /// Sets the cascade grids and the camera's G-buffer, which blocked_by_view() needs; else it may
+  /// be null. Call for each frame, after preparing its lights.
   void prepare(const std::vector<ClpvGrid>& grids, const Surface* camera);
 
   /// Updates the light of a cascade. Call for the coarsest cascade first.
@@ -52,7 +54,8 @@ class FrameCascades {
   GatheredLight light() const;
 
  private:
-  /// A volume and the key of its contents. There is one per cascade, or one that all cascades share in turn.
+  /// A volume and the key of its contents. There is one per cascade, or one that all cascades share
+  /// in turn.
   struct CachedVolume {
     std::unique_ptr<Volume> volume;
     Cached cached;
@@ -87,9 +90,10 @@ class FrameCascades {
   std::optional<Propagator> propagator_;  ///< one of the two
   std::optional<Sweeper> sweeper_;
   std::vector<CachedVolume> injected_, accumulated_;
-  std::vector<CachedVolume> geometry_;         ///< none without occlusion
-  std::vector<CachedVolume> reflected_;        ///< face albedos; none with one bounce
-  std::vector<Cached> links_, visible_cells_;  ///< contents of the sweeper and of visibility_, per cascade
+  std::vector<CachedVolume> geometry_;   ///< none without occlusion
+  std::vector<CachedVolume> reflected_;  ///< face albedos; none with one bounce
+  /// Contents of the sweeper and of visibility_, per cascade.
+  std::vector<Cached> links_, visible_cells_;
   std::vector<ClpvGrid> grids_;
   std::vector<Keys> keys_;
   const Surface* camera_ = nullptr;

@@ -37,10 +37,12 @@ double FrameEmission::max_flux(double cell) {
 void FrameEmission::prepare(const std::vector<ClpvGrid>& grids, float scale, unsigned epoch) {
   Fingerprint wanted;
   for (const ClpvGrid& grid : grids) wanted.add(grid.origin).add(grid.cell);
-  planned_.update(wanted.add(instant()).value(), [&] { plan_ = plan_emission(scene_, triangles_, grids); });
+  planned_.update(wanted.add(instant()).value(),
+                  [&] { plan_ = plan_emission(scene_, triangles_, grids); });
   if (plan_.coarsened > coarsened_) {
-    spdlog::warn("emissive surfaces: points {} times as far apart as usual, so that there are at most {}",
-                 1 << plan_.coarsened, kMaxEmittedPoints);
+    spdlog::warn(
+        "emissive surfaces: points {} times as far apart as usual, so that there are at most {}",
+        1 << plan_.coarsened, kMaxEmittedPoints);
     coarsened_ = plan_.coarsened;
   }
   scale_ = scale;

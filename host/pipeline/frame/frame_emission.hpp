@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Emissive surfaces of a frame: caches their virtual point lights until the surfaces or the required density change.
+// Emissive surfaces of a frame: caches their virtual point lights until the surfaces or the
+// required density change.
 #pragma once
 
 #include <vector>
@@ -12,13 +13,15 @@ namespace clpv {
 
 class FrameEmission {
  public:
-  /// All arguments must outlive this object. `scene` has emissive triangles; `buffers` hold it at its current time.
+  /// All arguments must outlive this object. `scene` has emissive triangles; `buffers` hold it at
+  /// its current time.
   FrameEmission(Session& session, const SceneData& scene, const SceneBuffers& buffers);
 
   /// Returns max_emitted_flux() of the scene at its current time [W].
   double max_flux(double cell);
 
-  /// Plans the points for cascades at `grids`, with their flux multiplied by `scale`. A new `epoch` recomputes them.
+  /// Plans the points for cascades at `grids`, with their flux multiplied by `scale`. A new `epoch`
+  /// recomputes them.
   void prepare(const std::vector<ClpvGrid>& grids, float scale, unsigned epoch);
 
   /// Updates the points.

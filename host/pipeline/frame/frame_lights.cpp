@@ -83,7 +83,8 @@ void FrameLights::rasterize_shadows() {
     // Shadow maps depend only on the views, not on intensity.
     lit.shadow_cached.update(key_of({}, lit.shadow.views), [&] {
       const StageScope scope(session_, {Pass::rasterize_shadow, {}, lit.index});
-      session_.reserve(lit.shadow.view_table, lit.shadow.views.size() * sizeof(ClpvView), "views of a light");
+      session_.reserve(lit.shadow.view_table, lit.shadow.views.size() * sizeof(ClpvView),
+                       "views of a light");
       session_.write(lit.shadow.view_table, lit.shadow.views);
       lit.shadow.depths.resize(lit.shadow.views.size());
       for (std::size_t v = 0; v < lit.shadow.views.size(); ++v) {
@@ -154,8 +155,8 @@ std::vector<ShadowedLight> FrameLights::shadowed() const {
   return all;
 }
 
-float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
-                  double other) {
+float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights,
+                  float coarsest_cell, double other) {
   double flux = other;
   for (const ClpvLight& light : lights) flux += max_flux(light, static_cast<double>(coarsest_cell));
   if (format.storage != Storage::float16 || !(flux > 0)) return 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lights of a frame: caches shadow maps, reflective shadow maps (RSMs) and points on emissive surfaces until light,
-// view or scene change.
+// Lights of a frame: caches shadow maps, reflective shadow maps (RSMs) and points on emissive
+// surfaces until light, view or scene change.
 #pragma once
 
 #include <optional>
@@ -26,13 +26,14 @@ namespace clpv {
 class FrameLights {
  public:
   /// All arguments must outlive this object. `buffers` hold `scene` at its current time.
-  FrameLights(Session& session, const SceneData& scene, const SceneBuffers& buffers, Rasterizer& rasterizer,
-              const RenderOptions& options);
+  FrameLights(Session& session, const SceneData& scene, const SceneBuffers& buffers,
+              Rasterizer& rasterizer, const RenderOptions& options);
 
   /// Prepares the lights of `camera` at the scene's current time, for cascades at `grids`.
   void prepare(const SceneCamera& camera, const std::vector<ClpvGrid>& grids);
 
-  /// Update the shadow maps, the RSMs of a cascade, or its RSMs and the points on emissive surfaces.
+  /// Update the shadow maps, the RSMs of a cascade, or its RSMs and the points on emissive
+  /// surfaces.
   void rasterize_shadows();
   void rasterize_rsms(int cascade);
   void update_sources(int cascade);
@@ -76,7 +77,8 @@ class FrameLights {
   void find_lights(const SceneCamera& camera);
   void find_scale(const ClpvGrid& coarsest);
   CacheKey key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const;
-  void rasterize(const Lit& lit, const std::vector<ClpvView>& views, std::vector<Surface>& surfaces);
+  void rasterize(const Lit& lit, const std::vector<ClpvView>& views,
+                 std::vector<Surface>& surfaces);
 
   Session& session_;
   const SceneData& scene_;
@@ -91,12 +93,13 @@ class FrameLights {
   unsigned epoch_ = 0;  ///< part of every key
 };
 
-/// Returns the scale of stored light: a power of two for 16-bit storage, 1 for float32. 16-bit numbers end at 65504
-/// and lose precision below 6e-5, while lights may be given in lux. With this scale, a cell of `coarsest_cell` [m] that
-/// receives all light of the brightest source stores about 256 W/sr. Cells of each finer cascade store a quarter of it.
-/// This leaves room for light that propagation adds, and for values a million times smaller.
-/// `other`: upper bound of the flux that all other sources send through such a cell [W] (max_emitted_flux).
-float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights, float coarsest_cell,
-                  double other = 0);
+/// Returns the scale of stored light: a power of two for 16-bit storage, 1 for float32. 16-bit
+/// numbers end at 65504 and lose precision below 6e-5, while lights may be given in lux. With this
+/// scale, a cell of `coarsest_cell` [m] that receives all light of the brightest source stores
+/// about 256 W/sr. Cells of each finer cascade store a quarter of it. This leaves room for light
+/// that propagation adds, and for values a million times smaller. `other`: upper bound of the flux
+/// that all other sources send through such a cell [W] (max_emitted_flux).
+float light_scale(const VolumeFormat& format, const std::vector<ClpvLight>& lights,
+                  float coarsest_cell, double other = 0);
 
 }  // namespace clpv

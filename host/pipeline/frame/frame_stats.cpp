@@ -46,7 +46,8 @@ void FrameStats::add_energy(Session& session, const Frame& frame, const CascadeV
 nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json& options) const {
   nlohmann::json energy = nlohmann::json::array();
   for (const Energy& e : energies_) {
-    energy.push_back({{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
+    energy.push_back(
+        {{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
   }
   const auto median_of = [&](const auto& part) {
     std::vector<double> values;

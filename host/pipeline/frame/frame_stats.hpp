@@ -11,12 +11,14 @@
 
 namespace clpv {
 
-/// Collects the statistics of one `clpv render`. Times are wall times unless the timer of a stage is "event".
+/// Collects the statistics of one `clpv render`. Times are wall times unless the timer of a stage
+/// is "event".
 class FrameStats {
  public:
   void begin_startup() { mark_ = Clock::now(); }
-  void end_startup();                      ///< device opened, programs built, scene uploaded
-  void end_first_frame(Session& session);  ///< the first launches compile kernels for their work-group sizes
+  void end_startup();  ///< device opened, programs built, scene uploaded
+  /// The first launches compile kernels for their work-group sizes.
+  void end_first_frame(Session& session);
   /// Sets the times of the timed frames, of one camera. The statistics report their medians.
   void set_times(FrameTimes times) { times_ = std::move(times); }
   void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes);

@@ -31,7 +31,8 @@ std::vector<FrameTimes::Series> FrameTimes::stages() const {
     for (const StageTime& time : frames_[frame]) {
       auto found = std::ranges::find(all, time.mark, &Series::mark);
       if (found == all.end())
-        found = all.insert(found, {time.mark, time.from_events, std::vector<double>(frames_.size(), 0.0)});
+        found = all.insert(found,
+                           {time.mark, time.from_events, std::vector<double>(frames_.size(), 0.0)});
       found->ms[frame] += time.ms;
     }
   }
@@ -58,8 +59,8 @@ bool FrameTimes::from_events() const {
   return std::ranges::all_of(stages(), &Series::from_events);
 }
 
-FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& camera, int frames, int warm_up,
-                          const std::function<void()>& after) {
+FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& camera, int frames,
+                          int warm_up, const std::function<void()>& after) {
   using Clock = std::chrono::steady_clock;
   FrameTimes times;
   for (int i = -warm_up; i < frames; ++i) {
@@ -91,11 +92,11 @@ nlohmann::json to_json(const std::vector<StageTime>& times) {
 std::vector<StageTime> stage_times_from_json(const nlohmann::json& json) {
   std::vector<StageTime> times;
   for (const nlohmann::json& stage : json) {
-    times.push_back(
-        {{named<Pass>("stage", stage.at("stage").get<std::string>()),
-          stage.at("cascade").get<std::optional<int>>(), stage.at("light").get<std::optional<int>>()},
-         stage.at("ms"),
-         stage.at("timer") == "event"});
+    times.push_back({{named<Pass>("stage", stage.at("stage").get<std::string>()),
+                      stage.at("cascade").get<std::optional<int>>(),
+                      stage.at("light").get<std::optional<int>>()},
+                     stage.at("ms"),
+                     stage.at("timer") == "event"});
   }
   return times;
 }

@@ -49,10 +49,11 @@ class FrameTimes {
   std::vector<FrameCost> costs_;
 };
 
-/// Renders `frames` frames that recompute all lighting, after `warm_up` others, and waits for each. `after`, if not null, is
-/// called after each frame, before its times are read: launches in it count.
-FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& camera, int frames, int warm_up,
-                          const std::function<void()>& after = {});
+/// Renders `frames` frames that recompute all lighting, after `warm_up` others, and waits for each.
+/// `after`, if not null, is called after each frame, before its times are read: launches in it
+/// count.
+FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& camera, int frames,
+                          int warm_up, const std::function<void()>& after = {});
 
 /// A list of {stage, cascade, light, ms, timer}.
 nlohmann::json to_json(const std::vector<StageTime>& times);

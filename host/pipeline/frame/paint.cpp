@@ -27,7 +27,8 @@ void paint_sky(const Sky& sky, const std::optional<ClpvMedium>& medium, const Cl
         const double far = std::numeric_limits<double>::infinity();
         seen *= transmittance(*medium, medium_part(*medium, vector(view.eye), along, far));
       }
-      for (int channel = 0; channel < 3; ++channel) pixel[channel] += static_cast<float>(seen[channel]);
+      for (int channel = 0; channel < 3; ++channel)
+        pixel[channel] += static_cast<float>(seen[channel]);
       pixel[3] = 1;
     }
   }

@@ -22,7 +22,8 @@ std::string cascade_macro(std::size_t cascades) {
   return text + "\n";
 }
 
-void add_literals(Literals& literals, const Basis& basis, const GatherOptions& options, bool packed) {
+void add_literals(Literals& literals, const Basis& basis, const GatherOptions& options,
+                  bool packed) {
   literals.integer("CLPV_GRID", options.grid)
       .flag("CLPV_PACKED", packed)
       .flag("CLPV_VISIBLE", options.gather == Gathering::visible)
@@ -39,13 +40,15 @@ ProgramSource source_of(const Basis& basis, TransportKind transport, const Gathe
     add_format_literals(source.literals, options.format, 8);  // pixels; cells are read one by one
     source.literals.flag("CLPV_FILTERED", options.filtered);
   }
-  source.generated = table.macros() + gather_source(basis, transport, options.lobes, table.exists());
+  source.generated =
+      table.macros() + gather_source(basis, transport, options.lobes, table.exists());
   return source;
 }
 
 }  // namespace
 
-ProgramSource with_radiance(ProgramSource source, const Basis& swept, const GatherOptions& options) {
+ProgramSource with_radiance(ProgramSource source, const Basis& swept,
+                            const GatherOptions& options) {
   add_literals(source.literals, swept, options, true);
   source.generated = radiance_source(swept);
   return source;
@@ -93,7 +96,8 @@ void Gatherer::reserve(std::size_t cascades) {
   session_.reserve(grids_, cascades * sizeof(ClpvGrid), "gather's grids");
   if (!packs() || cascades <= packed_keys_.size()) return;
   const std::size_t n = options_.grid, pairs = pairs_;
-  session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8), "gather's packed volumes");
+  session_.reserve(packed_, cascades * n * n * n * pairs * sizeof(cl_float8),
+                   "gather's packed volumes");
   packed_keys_.assign(cascades, std::nullopt);
 }
 
@@ -117,7 +121,8 @@ void Gatherer::gather(const Surface& camera, const GatheredLight& light, Buffer&
   scale_ = light.scale;
   occluded_ = light.occluded;
   Kernel& kernel = gather_kernel(cascades_, camera.points());
-  kernel.set(camera.view, camera.places(), camera.normal, grids_, cascades_, 1 / scale_, irradiance);
+  kernel.set(camera.view, camera.places(), camera.normal, grids_, cascades_, 1 / scale_,
+             irradiance);
   if (packs()) {
     pack(light);
     kernel.add(packed_);

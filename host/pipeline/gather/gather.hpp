@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `gather`: computes the irradiance of every pixel from volumes and the camera's G-buffer (kernels/gather/gather.cl).
+// Stage `gather`: computes the irradiance of every pixel from volumes and the camera's G-buffer
+// (kernels/gather/gather.cl).
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -28,21 +29,22 @@ ProgramSource with_radiance(ProgramSource source, const Basis& swept, const Gath
 struct GatheredLight {
   std::vector<ClpvGrid> grids;
   std::vector<const Volume*> accumulated;  ///< one per grid
-  float scale = 1;                         ///< factor by which the volumes scale the light (light_scale)
-  Buffer occluded = {};                    ///< of `grids`, for Gathering::visible: VoxelField::masks()
-  std::vector<std::uint64_t> keys = {};    ///< of the volumes' contents; empty: unknown
+  float scale = 1;       ///< factor by which the volumes scale the light (light_scale)
+  Buffer occluded = {};  ///< of `grids`, for Gathering::visible: VoxelField::masks()
+  std::vector<std::uint64_t> keys = {};  ///< of the volumes' contents; empty: unknown
 };
 
-/// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces). c is the volume, sampled trilinearly
-/// `gather_offset` cells off the surface. Negative E is clamped to 0.
+/// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces). c is the volume,
+/// sampled trilinearly `gather_offset` cells off the surface. Negative E is clamped to 0.
 ///
-/// The cascade weights depend only on the surface point. Cascade i takes the share
-/// m_i = min(1, cells to its boundary / blend_cells) of the weight left by finer ones. The boundary is that of a cube
-/// around the eye (ClpvGrid::middle). Light is therefore continuous across cascades and under camera motion. It fades
-/// out towards the boundary of the coarsest cascade and is 0 outside.
+/// The cascade weights depend only on the surface point. Cascade i takes the share m_i = min(1,
+/// cells to its boundary / blend_cells) of the weight left by finer ones. The boundary is that of a
+/// cube around the eye (ClpvGrid::middle). Light is therefore continuous across cascades and under
+/// camera motion. It fades out towards the boundary of the coarsest cascade and is 0 outside.
 class Gatherer {
  public:
-  Gatherer(Session& session, const Basis& basis, TransportKind transport, const GatherOptions& options);
+  Gatherer(Session& session, const Basis& basis, TransportKind transport,
+           const GatherOptions& options);
 
   /// `camera` has format float32; points without a view are allowed.
   /// `irradiance`: float4 per pixel, E of red, green, blue [W/m^2] and 0; all 0 without a surface.
@@ -57,11 +59,14 @@ class Gatherer {
   const Buffer& occluded() const { return occluded_; }  ///< empty for Gathering::all
   float unit() const { return 1 / scale_; }             ///< [W/sr] of a stored 1
 
-  /// Returns true if volumes are packed. Images are sampled directly, unless gathering selects single cells or another stage
-  /// needs packed volumes.
-  bool packs() const { return options_.format.layout != Layout::image || sees() || options_.packed; }
+  /// Returns true if volumes are packed. Images are sampled directly, unless gathering selects
+  /// single cells or another stage needs packed volumes.
+  bool packs() const {
+    return options_.format.layout != Layout::image || sees() || options_.packed;
+  }
 
-  /// Adds the arguments CLPV_RADIANCE (kernels/gather/radiance.h): the packed volumes of the last gather().
+  /// Adds the arguments CLPV_RADIANCE (kernels/gather/radiance.h): the packed volumes of the last
+  /// gather().
   void add_radiance(Kernel& kernel) const;
 
  private:

@@ -51,7 +51,8 @@ void MediumLight::scatter(const Surface& camera, const Gatherer& gatherer,
                           const std::vector<ShadowedLight>& lights) {
   const ClpvView& view = camera.view;
   reserve(view);
-  const cl::NDRange rows(items_along(session_, medium_pixels(view.width)), medium_pixels(view.height));
+  const cl::NDRange rows(items_along(session_, medium_pixels(view.width)),
+                         medium_pixels(view.height));
   volumes_.set(view, camera.depth, medium_, ends_, scattered_);
   gatherer.add_radiance(volumes_);
   volumes_.launch(rows, pixel_group(session_));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `medium`: computes the light that a medium scatters towards the camera (kernels/gather/medium.cl).
+// Stage `medium`: computes the light that a medium scatters towards the camera
+// (kernels/gather/medium.cl).
 #pragma once
 
 #include <vector>
@@ -16,13 +17,18 @@ namespace clpv {
 
 class MediumLight {
  public:
-  /// `basis`: of the gathered light, swept_basis(). `medium`: that of all lights given to scatter().
-  MediumLight(Session& session, const Basis& basis, const ClpvMedium& medium, const MediumOptions& options);
+  /// `basis`: of the gathered light, swept_basis(). `medium`: that of all lights given to
+  /// scatter().
+  MediumLight(Session& session, const Basis& basis, const ClpvMedium& medium,
+              const MediumOptions& options);
 
-  /// Computes the scattered light before `camera`: of `lights`, and of the volumes that `gatherer` gathered last.
-  void scatter(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights);
+  /// Computes the scattered light before `camera`: of `lights`, and of the volumes that `gatherer`
+  /// gathered last.
+  void scatter(const Surface& camera, const Gatherer& gatherer,
+               const std::vector<ShadowedLight>& lights);
 
-  /// Adds the light of the last scatter() to an image of `camera`, which the medium attenuates. `alone`: replaces the image.
+  /// Adds the light of the last scatter() to an image of `camera`, which the medium attenuates.
+  /// `alone`: replaces the image.
   void add(const Surface& camera, bool alone, Buffer& image);
 
  private:

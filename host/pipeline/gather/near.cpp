@@ -27,7 +27,8 @@ unsigned tiles_down(unsigned rows) {
   return (rows + CLPV_PLANE_TILE - 1) / CLPV_PLANE_TILE;
 }
 
-ProgramSource near_source(const char* file, const SceneBuffers& buffers, const NearOptions& options) {
+ProgramSource near_source(const char* file, const SceneBuffers& buffers,
+                          const NearOptions& options) {
   ProgramSource source{file, {}, {}};
   source.literals.integer("CLPV_PLANE_STEP", options.step)
       .integer("CLPV_PLANE_LAYERS", layers(options.step))
@@ -73,31 +74,34 @@ NearField::NearField(Session& session, const Basis& basis, const SceneData& scen
       trace_(session, near_source("gather/near_trace.cl", buffers, options), "near_trace"),
       light_(session, near_source("gather/near_light.cl", buffers, options), "near_light"),
       emit_(session, near_source("gather/near_light.cl", buffers, options), "near_emit"),
-      near_(session, with_radiance(near_source("gather/near.cl", buffers, options), basis, options.gather),
+      near_(session,
+            with_radiance(near_source("gather/near.cl", buffers, options), basis, options.gather),
             "near"),
       blur_(session, near_source("gather/near_filter.cl", buffers, options), "near_blur"),
       widen_(session, near_source("gather/near_filter.cl", buffers, options), "near_widen"),
-      points_source_(
-          with_radiance(near_source("gather/near_points.cl", buffers, options), basis, options.gather)),
+      points_source_(with_radiance(near_source("gather/near_points.cl", buffers, options), basis,
+                                   options.gather)),
       filter_source_(near_source("gather/near_filter.cl", buffers, options)) {
   pixel_kernels(false);
   if (options.reflects) {
     reflect_.emplace(session,
-                     reflecting(with_radiance(near_source("gather/near_light.cl", buffers, options), basis,
-                                              options.gather)),
+                     reflecting(with_radiance(near_source("gather/near_light.cl", buffers, options),
+                                              basis, options.gather)),
                      "near_reflect");
   }
   directions_ = session.upload(direction_rows(options.rays), "directions of the near field");
 }
 
 NearField::PixelKernels& NearField::pixel_kernels(bool points) {
-  if (const auto found = pixel_kernels_.find(points); found != pixel_kernels_.end()) return found->second;
+  if (const auto found = pixel_kernels_.find(points); found != pixel_kernels_.end())
+    return found->second;
   ProgramSource of_points = points_source_, of_filter = filter_source_;
   if (points) {
     of_points.literals.flag("CLPV_POINTS", true);
     of_filter.literals.flag("CLPV_POINTS", true);
   }
-  PixelKernels made{{session_, of_points, "near_points"}, std::nullopt, {session_, of_filter, "near_add"}};
+  PixelKernels made{
+      {session_, of_points, "near_points"}, std::nullopt, {session_, of_filter, "near_add"}};
   if (layers(options_.step) > 1) made.others.emplace(session_, of_points, "near_others");
   return pixel_kernels_.emplace(points, std::move(made)).first->second;
 }
@@ -115,7 +119,8 @@ void NearField::move() {
 
 void NearField::upload_tree() {
   session_.reserve(nodes_, tree_->nodes().size() * sizeof(TreeRow), "tree of triangles");
-  session_.reserve(leaves_, tree_->leaves().size() * sizeof(TreeRow), "leaves of the tree of triangles");
+  session_.reserve(leaves_, tree_->leaves().size() * sizeof(TreeRow),
+                   "leaves of the tree of triangles");
   session_.write(nodes_, tree_->nodes());
   session_.write(leaves_, tree_->leaves());
 }
@@ -131,13 +136,15 @@ void NearField::reserve(const ClpvView& view) {
   const std::size_t tiles = items_along(session_, width) * tiles_down(height),
                     lanes = session_.device().lanes;
   session_.reserve(counts_, tiles * sizeof(cl_uint), "hits of the near field");
-  const std::size_t hits = tiles * lanes * CLPV_PLANE_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
+  const std::size_t hits =
+      tiles * lanes * CLPV_PLANE_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
   session_.reserve(hits_, hits, "hits of the near field");
   session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
   session_.reserve(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers, "near field");
   session_.reserve(blurred_, CLPV_NEAR_LIGHT_PLANES * numbers, "blurred near field");
-  session_.fill_zero(hits_,
-                     hits);  // read, but not used, behind the last hit of a tile, as radiances without a hit
+  session_.fill_zero(
+      hits_,
+      hits);  // read, but not used, behind the last hit of a tile, as radiances without a hit
   session_.fill_zero(radiances_, 3 * options_.rays * numbers);
   session_.fill_zero(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers);  // borders stay 0
   session_.fill_zero(blurred_, CLPV_NEAR_LIGHT_PLANES * numbers);
@@ -145,15 +152,17 @@ void NearField::reserve(const ClpvView& view) {
 }
 
 Kernel& NearField::set_hits(Kernel& kernel, const ClpvView& view, bool fresh) {
-  return kernel.set(view, points_, counts_, hits_, buffers_.vertices, buffers_.triangles, buffers_.materials,
-                    buffers_.textures, buffers_.texels, cl_uint{fresh}, radiances_);
+  return kernel.set(view, points_, counts_, hits_, buffers_.vertices, buffers_.triangles,
+                    buffers_.materials, buffers_.textures, buffers_.texels, cl_uint{fresh},
+                    radiances_);
 }
 
 void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
                            const std::vector<ShadowedLight>& lights) {
   const ClpvView& view = camera.view;
   const cl::NDRange rays(items_along(session_, near_pixels(view.width, options_.step)),
-                         tiles_down(near_rows(view.height, options_.step)), CLPV_PLANE_TILE * options_.rays);
+                         tiles_down(near_rows(view.height, options_.step)),
+                         CLPV_PLANE_TILE * options_.rays);
   const cl::NDRange group(8, session_.device().lanes == 8 ? 1 : 8, 1);
   bool fresh = true;
   if (buffers_.emissive || lights.empty()) {
@@ -179,23 +188,27 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
   const cl::NDRange with_border(items_along(session_, CLPV_PLANE_PITCH_OF(width)),
                                 height + 2 * CLPV_PLANE_ROWS);
   PixelKernels& pixels = pixel_kernels(camera.points());
-  pixels.first.set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
+  pixels.first
+      .set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
       .launch(with_border, pixel_group(session_));
   if (pixels.others) {
-    pixels.others->set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
+    pixels.others
+        ->set(view, camera.places(), camera.normal, gatherer.grids(), gatherer.cascades(), points_)
         .launch(cl::NDRange(items_along(session_, width), near_pixels(view.height, options_.step)),
                 pixel_group(session_));
   }
-  // With eight lanes, a work-item alone in its group: the lists of several would not fit into the first-level cache.
-  const cl::NDRange group = session_.device().lanes == 8 ? cl::NDRange(1, 1) : pixel_group(session_);
+  // With eight lanes, a work-item alone in its group: the lists of several would not fit into the
+  // first-level cache.
+  const cl::NDRange group =
+      session_.device().lanes == 8 ? cl::NDRange(1, 1) : pixel_group(session_);
   trace_
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
            buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
       .launch(cl::NDRange(items_along(session_, width), tiles_down(height)), group);
 }
 
-void NearField::add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-                    Buffer& irradiance) {
+void NearField::add(const Surface& camera, const Gatherer& gatherer,
+                    const std::vector<ShadowedLight>& lights, Buffer& irradiance) {
   const ClpvView& view = camera.view;
   light_hits(camera, gatherer, lights);
   const cl::NDRange rows(items_along(session_, near_pixels(view.width, options_.step)),

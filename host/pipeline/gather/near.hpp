@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `near`: traces rays for light from surfaces nearer than a cell, and replaces the volumes' (kernels/gather/near.cl).
+// Stage `near`: traces rays for light from surfaces nearer than a cell, and replaces the volumes'
+// (kernels/gather/near.cl).
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -24,28 +25,30 @@ class NearField {
  public:
   /// `basis`: of the gathered light. `scene` must outlive this object; it and `buffers` must be at
   /// the same time. Starts a thread that builds the tree of triangles.
-  NearField(Session& session, const Basis& basis, const SceneData& scene, const SceneBuffers& buffers,
-            const NearOptions& options);
+  NearField(Session& session, const Basis& basis, const SceneData& scene,
+            const SceneBuffers& buffers, const NearOptions& options);
 
-  /// Waits for the tree and uploads it, once. Call before the scene changes; trace() calls it. Throws Error(run_time) if
-  /// Embree fails or device memory does not suffice.
+  /// Waits for the tree and uploads it, once. Call before the scene changes; trace() calls it.
+  /// Throws Error(run_time) if Embree fails or device memory does not suffice.
   void finish();
 
   /// Call after positions of the scene changed.
   void move();
 
-  /// Traces the rays of what `camera` sees (points without a view are allowed), in the grids that `gatherer` gathered from last. Hits stay valid while
-  /// camera, triangles and grids are the same.
+  /// Traces the rays of what `camera` sees (points without a view are allowed), in the grids that
+  /// `gatherer` gathered from last. Hits stay valid while camera, triangles and grids are the same.
   void trace(const Surface& camera, const Gatherer& gatherer);
 
-  /// Corrects the irradiance that `gatherer` gathered last for `camera`, by the hits of the last trace().
-  void add(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights,
-           Buffer& irradiance);
+  /// Corrects the irradiance that `gatherer` gathered last for `camera`, by the hits of the last
+  /// trace().
+  void add(const Surface& camera, const Gatherer& gatherer,
+           const std::vector<ShadowedLight>& lights, Buffer& irradiance);
 
  private:
   void upload_tree();
   void reserve(const ClpvView& view);
-  void light_hits(const Surface& camera, const Gatherer& gatherer, const std::vector<ShadowedLight>& lights);
+  void light_hits(const Surface& camera, const Gatherer& gatherer,
+                  const std::vector<ShadowedLight>& lights);
   Kernel& set_hits(Kernel& kernel, const ClpvView& view, bool fresh);
   struct PixelKernels {  ///< those that read the camera's surface
     Kernel first;

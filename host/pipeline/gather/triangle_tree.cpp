@@ -28,7 +28,8 @@ struct BuiltNode {
   std::vector<std::uint32_t> triangles;  ///< of a leaf
 };
 
-/// Callbacks of the builder. One thread builds, so the pool needs no lock and the tree is always the same.
+/// Callbacks of the builder. One thread builds, so the pool needs no lock and the tree is always
+/// the same.
 using Pool = std::deque<BuiltNode>;
 
 void* create_node(RTCThreadLocalAllocator, unsigned count, void* pool) {
@@ -75,14 +76,12 @@ Bounds bounds_of_triangle(const SceneData& scene, std::uint32_t triangle) {
 }
 
 /// Splits the box about a triangle, or about a part of one.
-void split(const RTCBuildPrimitive* part, unsigned axis, float position, RTCBounds* before, RTCBounds* after,
-           void*) {
+void split(const RTCBuildPrimitive* part, unsigned axis, float position, RTCBounds* before,
+           RTCBounds* after, void*) {
   *before = *after = {part->lower_x, part->lower_y, part->lower_z, 0,
                       part->upper_x, part->upper_y, part->upper_z, 0};
-  float *const upper[] = {&before->upper_x, &before->upper_y, &before->upper_z}, *const lower[] = {
-                                                                                     &after->lower_x,
-                                                                                     &after->lower_y,
-                                                                                     &after->lower_z};
+  float *const upper[] = {&before->upper_x, &before->upper_y, &before->upper_z},
+               *const lower[] = {&after->lower_x, &after->lower_y, &after->lower_z};
   *upper[axis] = *lower[axis] = position;
 }
 
@@ -97,8 +96,8 @@ BuiltNode* build(const SceneData& scene, const std::vector<std::uint32_t>& trian
   const std::unique_ptr<std::remove_pointer_t<RTCDevice>, void (*)(RTCDevice)> device(
       rtcNewDevice("threads=1,set_affinity=0"), rtcReleaseDevice);
   if (!device) check_embree(nullptr, false);
-  const std::unique_ptr<std::remove_pointer_t<RTCBVH>, void (*)(RTCBVH)> tree(rtcNewBVH(device.get()),
-                                                                              rtcReleaseBVH);
+  const std::unique_ptr<std::remove_pointer_t<RTCBVH>, void (*)(RTCBVH)> tree(
+      rtcNewBVH(device.get()), rtcReleaseBVH);
   check_embree(device.get(), tree != nullptr);
   const RTCBuildQuality quality = quality_for(triangles.size(), moves, limits);
   const bool parts = quality == RTC_BUILD_QUALITY_HIGH;
@@ -106,7 +105,8 @@ BuiltNode* build(const SceneData& scene, const std::vector<std::uint32_t>& trian
   primitives.reserve(parts ? triangles.size() * 5 / 4 : triangles.size());
   for (const std::uint32_t triangle : triangles) {
     const Bounds b = bounds_of_triangle(scene, triangle);
-    primitives.push_back({b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, triangle});
+    primitives.push_back(
+        {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, triangle});
   }
   if (parts) primitives.resize(triangles.size() * 5 / 4);
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
@@ -169,7 +169,8 @@ void append_leaf(const SceneData& scene, std::span<const std::uint32_t> triangle
     }
     const bool masked =
         (scene.materials[scene.triangles[triangle].material].flags & CLPV_MATERIAL_MASKED) != 0;
-    rows[CLPV_TREE_TRIANGLES][lane] = std::bit_cast<float>(triangle | (masked ? CLPV_TREE_MASKED : 0u));
+    rows[CLPV_TREE_TRIANGLES][lane] =
+        std::bit_cast<float>(triangle | (masked ? CLPV_TREE_MASKED : 0u));
   }
 }
 
@@ -178,7 +179,8 @@ struct Flattener {
   const SceneData& scene;
   std::vector<TreeRow>&nodes, &leaves;
 
-  /// Returns the number of the child, and sorts triangles of leaves, whose order the builder does not define.
+  /// Returns the number of the child, and sorts triangles of leaves, whose order the builder does
+  /// not define.
   int append(BuiltNode& built, int depth) const {
     if (depth > CLPV_TREE_DEPTH)
       throw Error(ExitCode::run_time, "tree of triangles: more than {} levels", CLPV_TREE_DEPTH);
@@ -220,7 +222,8 @@ void TriangleTree::move(const SceneData& scene) {
 }
 
 /// Adds a tree of triangles as child `lane` of the root.
-void TriangleTree::add(const SceneData& scene, const std::vector<std::uint32_t>& triangles, int lane) {
+void TriangleTree::add(const SceneData& scene, const std::vector<std::uint32_t>& triangles,
+                       int lane) {
   if (triangles.empty()) return;
   Pool pool;
   BuiltNode* root = build(scene, triangles, lane == kMoving, limits_, pool);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tree of bounding boxes over the triangles of a scene, for rays on the device (kernels/gather/triangle_tree.h). Built by
-// Embree's builder on the host, without OpenCL.
+// Tree of bounding boxes over the triangles of a scene, for rays on the device
+// (kernels/gather/triangle_tree.h). Built by Embree's builder on the host, without OpenCL.
 #pragma once
 
 #include <array>
@@ -16,8 +16,9 @@ namespace clpv {
 /// A row: eight numbers, float or 32-bit integer as kernels/shared/tree.h says.
 using TreeRow = std::array<float, CLPV_TREE_WIDTH>;
 
-/// Largest numbers of triangles for the slower builders, whose boxes overlap less: by surface area with triangles cut in
-/// parts, and by surface area. More triangles are sorted along a Morton curve.
+/// Largest numbers of triangles for the slower builders, whose boxes overlap less: by surface area
+/// with triangles cut in parts, and by surface area. More triangles are sorted along a Morton
+/// curve.
 struct TreeLimits {
   std::size_t parts = 500'000, areas = 1'000'000;
 };
@@ -28,7 +29,8 @@ class TriangleTree {
   /// Throws Error(run_time) if Embree fails.
   explicit TriangleTree(const SceneData& scene, const TreeLimits& limits = {});
 
-  /// Rebuilds the tree of the moving triangles (SceneData::moving). The scene has the same triangles as before.
+  /// Rebuilds the tree of the moving triangles (SceneData::moving). The scene has the same
+  /// triangles as before.
   void move(const SceneData& scene);
 
   const std::vector<TreeRow>& nodes() const {

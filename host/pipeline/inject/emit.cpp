@@ -32,8 +32,8 @@ void Emitter::emit(const EmissionPlan& plan, float scale) {
   session_.write(parts_, plan.parts);
   emit_
       .set(parts_, static_cast<cl_uint>(plan.parts.size()), cl_uint{plan.points}, places, scale,
-           scene_.vertices, scene_.triangles, scene_.materials, cl_uint{scene_.white}, scene_.textures,
-           scene_.texels, points_.position, points_.normal, points_.colour)
+           scene_.vertices, scene_.triangles, scene_.materials, cl_uint{scene_.white},
+           scene_.textures, scene_.texels, points_.position, points_.normal, points_.colour)
       .launch(cl::NDRange(places), kEmitGroup);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `emit`: converts emissive triangles to virtual point lights (kernels/inject/emit.cl; docs/method.md, 'Emissive
-// surfaces').
+// Stage `emit`: converts emissive triangles to virtual point lights (kernels/inject/emit.cl;
+// docs/method.md, 'Emissive surfaces').
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@
 
 namespace clpv {
 
-/// Places the points of a plan on a scene's triangles. Deterministic: a point depends only on its index in the plan.
+/// Places the points of a plan on a scene's triangles. Deterministic: a point depends only on its
+/// index in the plan.
 class Emitter {
  public:
   /// `scene` must not change.

@@ -9,11 +9,13 @@
 namespace clpv {
 namespace {
 
-// Short segments give many work-items even if one wall fills the view. There are still few enough for one work-item to
-// join the segments of a cell.
+// Short segments give many work-items even if one wall fills the view. There are still few enough
+// for one work-item to join the segments of a cell.
 constexpr std::size_t kMinSegment = 32, kMaxBlocks = 16384;
-constexpr std::size_t kCpuStrip = 32;  // texels that a work-item assigns to cells; a CPU vectorises over them
-const cl::NDRange kSegments(16);  // few, long work-items: small groups spread them over all compute units
+// Texels that a work-item assigns to cells; a CPU vectorises over them.
+constexpr std::size_t kCpuStrip = 32;
+// Few, long work-items: small groups spread them over all compute units.
+const cl::NDRange kSegments(16);
 
 std::size_t segment_length(std::size_t texels) {
   std::size_t length = kMinSegment;
@@ -44,8 +46,9 @@ bool Injector::looks_up(Kind kind) const {
 Injector::Kernels Injector::make_kernels(const Variant& variant) const {
   const Kind kind = variant.kind;
   const bool light = kind == Kind::light;
-  const Literals both =
-      Literals().flag("CLPV_GEOMETRY", !light).flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
+  const Literals both = Literals()
+                            .flag("CLPV_GEOMETRY", !light)
+                            .flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
   ProgramSource find{"inject/find_cells.cl", both, {}}, sum{"inject/inject.cl", both, {}};
   find.literals.number("CLPV_STRIP", strip_).flag("CLPV_POINTS", variant.points);
   sum.literals.integer("CLPV_GRID", options_.grid).flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);
@@ -68,13 +71,15 @@ void Injector::reserve(std::size_t texels) {
   const std::size_t coefficients = basis_.size();
   const std::size_t blocks = block_count(texels);
   session_.reserve(shares_, texels * sizeof(cl_float), "injection, texels");
-  session_.reserve(partials_, 2 * blocks * 3 * coefficients * sizeof(cl_float), "injection, partial sums");
+  session_.reserve(partials_, 2 * blocks * 3 * coefficients * sizeof(cl_float),
+                   "injection, partial sums");
   session_.reserve(firsts_, blocks * sizeof(cl_uint), "injection, segments");
 }
 
-void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume) {
-  accumulator_.add_to_cells(volume,
-                            [&](const Volume& cells) { inject_cells(kind, surface, grid, stride, cells); });
+void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
+                      Volume& volume) {
+  accumulator_.add_to_cells(
+      volume, [&](const Volume& cells) { inject_cells(kind, surface, grid, stride, cells); });
 }
 
 void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
@@ -87,8 +92,8 @@ void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& g
   reserve(texels);
   const bool points = surface.position.exists();
   Kernels& kernel = kernels({kind, surface.format, points});
-  kernel.find_cells.set(surface.view, grid, points ? surface.position : surface.depth, surface.normal,
-                        surface.colour, surface.colour_scale, sorter_.keys());
+  kernel.find_cells.set(surface.view, grid, points ? surface.position : surface.depth,
+                        surface.normal, surface.colour, surface.colour_scale, sorter_.keys());
   if (!light) kernel.find_cells.add(shares_, step);
   kernel.find_cells.launch(cl::NDRange((width + strip_ - 1) / strip_, height),
                            strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
@@ -115,10 +120,11 @@ void Injector::inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& li
   inject(Kind::light, rsm, grid, 1, light);
 }
 
-void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry, int stride) {
+void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry,
+                               int stride) {
   if (stride < 1) throw Error(ExitCode::usage, "inject: stride {} is not at least 1", stride);
-  require_fit(geometry, {options_.grid + 1, blocking_size(options_.blocking, basis_), 1}, options_.format,
-              "injection of blockers");
+  require_fit(geometry, {options_.grid + 1, blocking_size(options_.blocking, basis_), 1},
+              options_.format, "injection of blockers");
   inject(Kind::geometry, surface, grid, stride, geometry);
 }
 

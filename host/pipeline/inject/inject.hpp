@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Injection: converts surfaces to light and blockers in the cells of volumes (docs/method.md, 'Injection').
+// Injection: converts surfaces to light and blockers in the cells of volumes (docs/method.md,
+// 'Injection').
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -20,21 +21,23 @@
 
 namespace clpv {
 
-/// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell sums its texels in surface
-/// order. Scratch memory grows to the largest surface injected.
+/// Injects into volumes of one basis and grid size. Deterministic to the bit: every cell sums its
+/// texels in surface order. Scratch memory grows to the largest surface injected.
 class Injector {
  public:
   Injector(Session& session, const Basis& basis, const InjectOptions& options);
 
-  /// Adds the virtual point lights of an RSM or an Emitter to `light` [W/sr]: `grid` cells, 3 channels.
-  /// Texels that are empty, dark, not finite or outside the grid add nothing.
+  /// Adds the virtual point lights of an RSM or an Emitter to `light` [W/sr]: `grid` cells, 3
+  /// channels. Texels that are empty, dark, not finite or outside the grid add nothing.
   void inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light);
 
-  /// Merges `surface`, an RSM or a G-buffer, into `geometry`: grid + 1 samples along each axis, 1 channel, in the
-  /// representation of `blocking`. Surfaces may share walls, so a sample keeps the blocking share of larger mean.
-  /// For areas it keeps the larger value of each number.
-  /// `stride`: subsampling of the pixels along each axis, at least 1. Each sampled pixel represents its neighbours.
-  void inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry, int stride = 1);
+  /// Merges `surface`, an RSM or a G-buffer, into `geometry`: grid + 1 samples along each axis, 1
+  /// channel, in the representation of `blocking`. Surfaces may share walls, so a sample keeps the
+  /// blocking share of larger mean. For areas it keeps the larger value of each number. `stride`:
+  /// subsampling of the pixels along each axis, at least 1. Each sampled pixel represents its
+  /// neighbours.
+  void inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry,
+                       int stride = 1);
 
  private:
   enum class Kind { light, geometry };

@@ -6,7 +6,8 @@
 namespace clpv {
 namespace {
 
-std::optional<std::vector<float>> table_of(const Basis& basis, const LobeOptions& options, TableUse use) {
+std::optional<std::vector<float>> table_of(const Basis& basis, const LobeOptions& options,
+                                           TableUse use) {
   if (basis.centres().empty()) return std::nullopt;
   if (use == TableUse::lobes) {
     if (options.kind != LobeKind::rotate) return std::nullopt;
@@ -18,11 +19,12 @@ std::optional<std::vector<float>> table_of(const Basis& basis, const LobeOptions
 
 void require_image(const Device& device, std::size_t entries) {
   if (!device.images)
-    throw Error(ExitCode::device, "evaluate image: {} has no images; allowed: exact, buffer", device.name);
+    throw Error(ExitCode::device, "evaluate image: {} has no images; allowed: exact, buffer",
+                device.name);
   const std::size_t most = device.handle.getInfo<CL_DEVICE_IMAGE_MAX_BUFFER_SIZE>();
   if (entries > most) {
-    throw Error(ExitCode::device, "evaluate image: {} entries; an image of a buffer on {} holds {}", entries,
-                device.name, most);
+    throw Error(ExitCode::device, "evaluate image: {} entries; an image of a buffer on {} holds {}",
+                entries, device.name, most);
   }
 }
 
@@ -48,7 +50,8 @@ std::string LookupTable::macros(const TableName& name) const {
   if (!values_) return no_macros(name);
   const bool image = storage_ == TableStorage::image;
   return fmt::format(
-      "#define CLPV_AND_{0} , {1} {2}\n#define CLPV_PASS_{0} , {2}\n#define CLPV_TABLE_READ(table, i) {3}\n",
+      "#define CLPV_AND_{0} , {1} {2}\n#define CLPV_PASS_{0} , {2}\n#define CLPV_TABLE_READ(table, "
+      "i) {3}\n",
       name.macro, image ? "__read_only image1d_buffer_t" : "__global const float*", name.argument,
       image ? "read_imagef(table, i).x" : "(table)[i]");
 }

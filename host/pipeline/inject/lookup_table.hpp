@@ -18,17 +18,18 @@ namespace clpv {
 /// Contents of a look-up table: lobes or basis functions.
 enum class TableUse { lobes, functions };
 
-/// An optional table that is a kernel's last argument, or the second to last of two. Kernels access it by the macros
-/// that macros() defines; the names of the macros follow the name of the table:
+/// An optional table that is a kernel's last argument, or the second to last of two. Kernels access
+/// it by the macros that macros() defines; the names of the macros follow the name of the table:
 ///   CLPV_AND_TABLE               ", TYPE table" at the end of a parameter list, or nothing
 ///   CLPV_PASS_TABLE              ", table" at the end of a call, or nothing
 ///   CLPV_TABLE_READ(table, i)    entry i
 class LookupTable {
  public:
-  /// Creates no table if `options` disable it or the basis has no centres. Throws Error(usage) for a size out of range,
-  /// and Error(device) with the reason for an image that the device cannot create.
-  LookupTable(Session& session, const Basis& basis, const LobeOptions& options, TableStorage storage,
-              TableUse use);
+  /// Creates no table if `options` disable it or the basis has no centres. Throws Error(usage) for
+  /// a size out of range, and Error(device) with the reason for an image that the device cannot
+  /// create.
+  LookupTable(Session& session, const Basis& basis, const LobeOptions& options,
+              TableStorage storage, TableUse use);
 
   bool exists() const { return values_.has_value(); }
   std::string macros(const TableName& name = {}) const;

@@ -15,8 +15,8 @@ static_assert(1u << CLPV_RUN_BITS == CLPV_LONGEST_RUN);
 
 constexpr std::size_t kMaxTexels = std::size_t{1}
                                    << (32 - CLPV_RUN_BITS);  // limit of the bits in a run's entry
-// Enough chunks to occupy a GPU, with a small table of counts. Each is long enough to amortise its column. A
-// work-item processes a chunk in one loop.
+// Enough chunks to occupy a GPU, with a small table of counts. Each is long enough to amortise its
+// column. A work-item processes a chunk in one loop.
 constexpr std::size_t kMaxChunks = 512, kMinChunk = 256,
                       kLongestChunk = CLPV_LONGEST_LOOP / CLPV_LONGEST_RUN * CLPV_LONGEST_RUN;
 // Few, long work-items: small groups spread them over all compute units.
@@ -42,7 +42,8 @@ CellSorter::CellSorter(Session& session)
 
 void CellSorter::reserve(std::size_t texels) {
   if (texels > kMaxTexels) {
-    throw Error(ExitCode::run_time, "a surface of {} texels; injection sorts at most {}", texels, kMaxTexels);
+    throw Error(ExitCode::run_time, "a surface of {} texels; injection sorts at most {}", texels,
+                kMaxTexels);
   }
   session_.reserve(keys_, texels * sizeof(cl_uint), "sort by cell, keys");
   session_.reserve(runs_, texels * sizeof(cl_uint2), "sort by cell, runs");
@@ -61,21 +62,25 @@ void CellSorter::add_up(const Buffer& count, cl_uint digits, cl_uint chunks) {
 
 void CellSorter::sort(std::size_t texels, std::size_t cells) {
   const cl_uint bits = std::bit_width(std::max<std::size_t>(cells, 2) - 1);
-  const cl_uint low_bits = (bits + 1) / 2, low_digits = 1u << low_bits, high_digits = 1u << (bits - low_bits);
+  const cl_uint low_bits = (bits + 1) / 2, low_digits = 1u << low_bits,
+                high_digits = 1u << (bits - low_bits);
   const cl_uint chunk = std::min(
-      kLongestChunk, round_up(std::max(kMinChunk, (texels + kMaxChunks - 1) / kMaxChunks), CLPV_LONGEST_RUN));
+      kLongestChunk,
+      round_up(std::max(kMinChunk, (texels + kMaxChunks - 1) / kMaxChunks), CLPV_LONGEST_RUN));
   const cl_uint count = texels;
   const cl_uint chunks = (count + chunk - 1) / chunk;
   reserve_counts(low_digits, chunks);
 
   session_.fill_zero(counts_, std::size_t{low_digits} * chunks * sizeof(cl_uint));
-  count_runs_.set(keys_, count, chunk, chunks, low_bits, counts_).launch(cl::NDRange(chunks), kLocal);
+  count_runs_.set(keys_, count, chunk, chunks, low_bits, counts_)
+      .launch(cl::NDRange(chunks), kLocal);
   add_up(run_count_, low_digits, chunks);
   scatter_runs_.set(keys_, count, chunk, chunks, low_bits, counts_, runs_)
       .launch(cl::NDRange(chunks), kLocal);
 
   session_.fill_zero(counts_, std::size_t{high_digits} * chunks * sizeof(cl_uint));
-  count_texels_.set(runs_, run_count_, chunk, chunks, low_bits, counts_).launch(cl::NDRange(chunks), kLocal);
+  count_texels_.set(runs_, run_count_, chunk, chunks, low_bits, counts_)
+      .launch(cl::NDRange(chunks), kLocal);
   add_up(count_, high_digits, chunks);
   scatter_texels_.set(runs_, run_count_, chunk, chunks, low_bits, counts_, sorted_)
       .launch(cl::NDRange(chunks), kLocal);

@@ -15,7 +15,8 @@ class CellSorter {
  public:
   explicit CellSorter(Session& session);
 
-  /// Allocates memory for surfaces of up to `texels`. Throws Error(run_time) for more than 2^28 of them.
+  /// Allocates memory for surfaces of up to `texels`. Throws Error(run_time) for more than 2^28 of
+  /// them.
   void reserve(std::size_t texels);
 
   /// Input: the cell of each texel, or CLPV_NO_CELL; uint. The caller writes it before sort().

@@ -14,8 +14,8 @@ namespace clpv {
 /// Pixels of a caller on the device, row 0 first.
 struct GivenPixels {
   unsigned width = 0, height = 0;
-  bool points =
-      false;  ///< places are float4 positions [m], w unused; else float depths [m] along the view's forward axis
+  bool points = false;  ///< places are float4 positions [m], w unused; else float depths [m] along
+                        ///< the view's forward axis
   Buffer places;
   Buffer normals;  ///< float4, of any length, w unused
 };
@@ -24,8 +24,9 @@ class GivenSurface {
  public:
   explicit GivenSurface(Session& session) : session_(session) {}
 
-  /// Returns the surface with unit normals, in format float32 without colours; valid until the next call. Pixels with a depth that
-  /// is not positive, a normal of length 0, or a number that is not finite have no surface.
+  /// Returns the surface with unit normals, in format float32 without colours; valid until the next
+  /// call. Pixels with a depth that is not positive, a normal of length 0, or a number that is not
+  /// finite have no surface.
   const Surface& take(const ClpvView& view, const GivenPixels& pixels);
 
  private:

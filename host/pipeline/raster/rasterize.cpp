@@ -12,8 +12,9 @@ namespace clpv {
 namespace {
 
 constexpr std::size_t kRasterGroup = 64;
-constexpr std::size_t kClippers = 1024;  // work-items that share the triangles to be clipped, usually none
-constexpr std::size_t kMostAhead = std::size_t{1} << 22;      // triangles (256 MiB); longer lists wait
+// Work-items that share the triangles to be clipped, usually none.
+constexpr std::size_t kClippers = 1024;
+constexpr std::size_t kMostAhead = std::size_t{1} << 22;  // triangles (256 MiB); longer lists wait
 constexpr std::size_t kClippedParts = CLPV_CLIP_CORNERS - 2;  // triangles that one can become
 constexpr std::size_t kSpare = 4;  // lists grow by an extra 1/4, since cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
@@ -30,7 +31,8 @@ unsigned padded_pixels(const ClpvView& view) {
   return tile_count(view) * CLPV_TILE * CLPV_TILE;
 }
 
-/// Returns the largest possible flux of a texel of `view` [W]: albedo 1, at the centre, where texels subtend most.
+/// Returns the largest possible flux of a texel of `view` [W]: albedo 1, at the centre, where
+/// texels subtend most.
 float largest_flux(const ClpvLight& light, const ClpvView& view) {
   const double texel =
       4.0 * view.half_width * view.half_height / (static_cast<double>(view.width) * view.height);
@@ -61,7 +63,8 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
 
 void Rasterizer::reserve_list(std::size_t count) {
   if (count <= list_room()) return;
-  session_.reserve(listed_, (count + count / kSpare) * sizeof(ClpvRasterTriangle), "triangles to draw");
+  session_.reserve(listed_, (count + count / kSpare) * sizeof(ClpvRasterTriangle),
+                   "triangles to draw");
 }
 
 cl_uint Rasterizer::list_room() const {
@@ -118,7 +121,8 @@ Rasterizer::VisibleClusters Rasterizer::list_clusters(const ClpvView& view) {
   return counted;
 }
 
-/// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of their tiles.
+/// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of
+/// their tiles.
 void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) {
   const cl_uint cull = drawing.culls_back_faces() ? 1 : 0;
   session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
@@ -126,12 +130,12 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
   if (count == 0) return;
   set_up_
       .set(drawing.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices,
-           scene_.triangles, scene_.materials, counts_, list_room(), listed_, entry_room(), entries_,
-           slice_counts_, to_clip_)
+           scene_.triangles, scene_.materials, counts_, list_room(), listed_, entry_room(),
+           entries_, slice_counts_, to_clip_)
       .launch(count * (std::size_t{CLPV_CLUSTER} / session_.device().lanes), kRasterGroup);
   set_up_clipped_
-      .set(drawing.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_, list_room(),
-           listed_, entry_room(), entries_, slice_counts_, to_clip_)
+      .set(drawing.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
+           list_room(), listed_, entry_room(), entries_, slice_counts_, to_clip_)
       .launch(kClippers, kRasterGroup);
 }
 
@@ -146,8 +150,8 @@ void Rasterizer::bin(const ClpvView& view) {
       .launch(groups * kRasterGroup, kRasterGroup);
 }
 
-/// Lists the triangles of a range of clusters by tile, and grows lists that are too short. Returns false if a list
-/// would exceed its limit.
+/// Lists the triangles of a range of clusters by tile, and grows lists that are too short. Returns
+/// false if a list would exceed its limit.
 bool Rasterizer::list(const Drawing& drawing, unsigned first, unsigned count) {
   for (;;) {
     set_up(drawing, first, count);
@@ -167,7 +171,8 @@ bool Rasterizer::list(const Drawing& drawing, unsigned first, unsigned count) {
 bool Rasterizer::list_ahead(const Drawing& drawing, const VisibleClusters& visible) {
   take_counts();
   const std::size_t most = CLPV_CLUSTER * (visible.count + (kClippedParts - 1) * visible.clipped);
-  if (!ahead_ || !drawn_.contains(drawing.kind) || most > kMostAhead || entered_ > max_listed_) return false;
+  if (!ahead_ || !drawn_.contains(drawing.kind) || most > kMostAhead || entered_ > max_listed_)
+    return false;
   reserve_list(most);
   reserve_entries(entered_);
   set_up(drawing, 0, visible.count);
@@ -185,8 +190,8 @@ void Rasterizer::take_counts() {
   }
 }
 
-/// Draws a range of clusters. `fresh`: starts from an empty surface, else adds to it. Halves the range if the tile
-/// lists would exceed their limit.
+/// Draws a range of clusters. `fresh`: starts from an empty surface, else adds to it. Halves the
+/// range if the tile lists would exceed their limit.
 void Rasterizer::draw(const Drawing& drawing, unsigned first, unsigned count, bool fresh) {
   if (list(drawing, first, count)) return draw_tiles(drawing.view, fresh);
   draw(drawing, first, count / 2, fresh);
@@ -195,15 +200,17 @@ void Rasterizer::draw(const Drawing& drawing, unsigned first, unsigned count, bo
 
 void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
   draw_tiles_
-      .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, counts_, entry_room(), scene_.vertices,
-           scene_.triangles, scene_.materials, scene_.textures, scene_.texels, keys_, seen_)
+      .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, counts_, entry_room(),
+           scene_.vertices, scene_.triangles, scene_.materials, scene_.textures, scene_.texels,
+           keys_, seen_)
       .launch(cl::NDRange(tiles_along(view.width) * (CLPV_TILE / session_.device().lanes),
                           tiles_along(view.height)),
               pixel_group(session_));
 }
 
 void Rasterizer::clear(Surface& surface) {
-  const std::size_t texel = surface.format == RsmFormat::paper ? sizeof(cl_uchar4) : sizeof(cl_float4);
+  const std::size_t texel =
+      surface.format == RsmFormat::paper ? sizeof(cl_uchar4) : sizeof(cl_float4);
   const std::size_t count = std::size_t{surface.view.width} * surface.view.height;
   session_.fill_zero(surface.depth, count * sizeof(cl_float));
   session_.fill_zero(surface.normal, count * texel);
@@ -223,8 +230,8 @@ void Rasterizer::rasterize_camera(Surface& surface) {
                             .from_light = false,
                             .paper = surface.format == RsmFormat::paper,
                             .emissive = emissive});
-  kernel.set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
-             scene_.texels, surface.depth, surface.normal, surface.colour);
+  kernel.set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
+             scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour);
   if (emissive) kernel.add(surface.emissive);
   kernel.launch(items_of(session_, view), pixel_group(session_));
 }
@@ -238,8 +245,9 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
            .from_light = true,
            .paper = surface.format == RsmFormat::paper,
            .emissive = false})
-      .set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
-           scene_.texels, surface.depth, surface.normal, surface.colour, surface.colour_scale)
+      .set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
+           scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
+           surface.colour_scale)
       .launch(items_of(session_, view), pixel_group(session_));
 }
 

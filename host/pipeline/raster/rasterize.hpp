@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Rasterises a scene into reflective shadow maps, the camera's G-buffer and shadow maps.
 //
-// Vertices snap to 1/256 pixel, so edges are exact in integers and follow the top-left rule. Triangles that share an
-// edge therefore neither skip a pixel nor draw one twice. At equal depth the triangle that comes first in the scene
-// wins. Results are deterministic to the byte.
+// Vertices snap to 1/256 pixel, so edges are exact in integers and follow the top-left rule.
+// Triangles that share an edge therefore neither skip a pixel nor draw one twice. At equal depth
+// the triangle that comes first in the scene wins. Results are deterministic to the byte.
 #pragma once
 
 #include <compare>
@@ -21,23 +21,27 @@ namespace clpv {
 
 class Rasterizer {
  public:
-  /// Capacity of the triangle lists of all tiles, in entries of 4 bytes. Larger scenes (hundreds of screen-filling
-  /// layers) are drawn in several passes of at least one triangle cluster each; the result is the same.
+  /// Capacity of the triangle lists of all tiles, in entries of 4 bytes. Larger scenes (hundreds of
+  /// screen-filling layers) are drawn in several passes of at least one triangle cluster each; the
+  /// result is the same.
   static constexpr std::size_t kMaxListed = std::size_t{1} << 25;
 
   /// `scene` must not change while the rasteriser exists. Its handles are copied, not its contents.
   Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed = kMaxListed);
 
-  /// Renders the camera's G-buffer from `surface.view`: depth, normal, albedo and, if the surface has it, emission.
-  /// Culls back faces unless their material is double-sided. Filters textures trilinearly.
+  /// Renders the camera's G-buffer from `surface.view`: depth, normal, albedo and, if the surface
+  /// has it, emission. Culls back faces unless their material is double-sided. Filters textures
+  /// trilinearly.
   void rasterize_camera(Surface& surface);
 
-  /// Renders a reflective shadow map of `light` from `surface.view`: depth, normal, colour. Colour is the flux [W] of
-  /// the virtual point light of each texel: albedo x irradiance x footprint (kernels/raster/lighting.h). Both sides of every
-  /// triangle are lit. In format paper it sets Surface::colour_scale to the largest possible flux of a texel.
+  /// Renders a reflective shadow map of `light` from `surface.view`: depth, normal, colour. Colour
+  /// is the flux [W] of the virtual point light of each texel: albedo x irradiance x footprint
+  /// (kernels/raster/lighting.h). Both sides of every triangle are lit. In format paper it sets
+  /// Surface::colour_scale to the largest possible flux of a texel.
   void rasterize_rsm(const ClpvLight& light, Surface& surface);
 
-  /// Renders only depth [m], 0 without a surface, into view.width x view.height floats. Both sides cast shadows.
+  /// Renders only depth [m], 0 without a surface, into view.width x view.height floats. Both sides
+  /// cast shadows.
   void rasterize_shadow(const ClpvView& view, Buffer& depth);
 
   /// Sets whether views are drawn without waiting for the device. Waiting, the host reads how many
@@ -87,10 +91,12 @@ class Rasterizer {
   std::map<Resolving, Kernel> resolve_;
   Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, resolve_depth_;
   bool ahead_ = false;
-  std::set<Kind> drawn_;                                           ///< kinds of views drawn so far
-  std::size_t entered_ = 0;                                        ///< largest number of entries so far
-  std::deque<std::shared_ptr<const Session::Arriving>> counting_;  ///< counters of views drawn ahead
-  Buffer clusters_, listed_, to_clip_, counts_, entries_, slice_counts_, totals_, binned_, keys_, seen_;
+  std::set<Kind> drawn_;     ///< kinds of views drawn so far
+  std::size_t entered_ = 0;  ///< largest number of entries so far
+  /// Counters of views drawn ahead.
+  std::deque<std::shared_ptr<const Session::Arriving>> counting_;
+  Buffer clusters_, listed_, to_clip_, counts_, entries_, slice_counts_, totals_, binned_, keys_,
+      seen_;
 };
 
 }  // namespace clpv

@@ -18,18 +18,20 @@ void require(bool holds, const std::string& message) {
 
 /// Kernels do not check indices, so this rejects invalid ones of any scene.
 void check_indices(const SceneData& scene) {
-  require(scene.triangles.size() <= CLPV_TRIANGLE_INDEX && scene.vertices.size() <= CLPV_TRIANGLE_INDEX,
-          fmt::format("{}: {} triangles and {} vertices; allowed: below 2^30 each", scene.path,
-                      scene.triangles.size(), scene.vertices.size()));
+  require(
+      scene.triangles.size() <= CLPV_TRIANGLE_INDEX && scene.vertices.size() <= CLPV_TRIANGLE_INDEX,
+      fmt::format("{}: {} triangles and {} vertices; allowed: below 2^30 each", scene.path,
+                  scene.triangles.size(), scene.vertices.size()));
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
     const Triangle& t = scene.triangles[i];
     const unsigned top = std::max({t.vertex[0], t.vertex[1], t.vertex[2]});
     require(top < scene.vertices.size() && t.material < scene.materials.size(),
-            fmt::format("{}: triangle {} uses vertex {} of {} and material {} of {}", scene.path, i, top,
-                        scene.vertices.size(), t.material, scene.materials.size()));
+            fmt::format("{}: triangle {} uses vertex {} of {} and material {} of {}", scene.path, i,
+                        top, scene.vertices.size(), t.material, scene.materials.size()));
   }
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    for (const unsigned texture : {scene.materials[i].texture, scene.materials[i].emissive_texture}) {
+    for (const unsigned texture :
+         {scene.materials[i].texture, scene.materials[i].emissive_texture}) {
       require(texture == CLPV_NO_TEXTURE || texture < scene.textures.size(),
               fmt::format("{}: material {} uses texture {} of {}", scene.path, i, texture,
                           scene.textures.size()));
@@ -39,10 +41,10 @@ void check_indices(const SceneData& scene) {
 
 void check_texture(const SceneData& scene, const Texture& texture) {
   constexpr std::uint32_t kLargest = 1u << (CLPV_TEXTURE_LEVELS - 1);
-  require(
-      texture.width >= 1 && texture.height >= 1 && texture.width <= kLargest && texture.height <= kLargest,
-      fmt::format("{}: texture {} is {} x {}; allowed: 1 to {} along each side", scene.path, texture.name,
-                  texture.width, texture.height, kLargest));
+  require(texture.width >= 1 && texture.height >= 1 && texture.width <= kLargest &&
+              texture.height <= kLargest,
+          fmt::format("{}: texture {} is {} x {}; allowed: 1 to {} along each side", scene.path,
+                      texture.name, texture.width, texture.height, kLargest));
   require(texture.rgba.size() == std::size_t{4} * texture.width * texture.height,
           fmt::format("{}: texture {} has {} bytes for {} x {} texels", scene.path, texture.name,
                       texture.rgba.size(), texture.width, texture.height));
@@ -64,8 +66,8 @@ void append(TextureTable& table, const std::vector<Texture>& chain) {
     const std::size_t count = std::size_t{texture.width} * texture.height;
     require(offset + count <= std::numeric_limits<std::uint32_t>::max(),
             "more than 2^32 texels in all textures");
-    table.levels.push_back(
-        {static_cast<unsigned>(offset), texture.width, texture.height, texture.wrap_u + 16 * texture.wrap_v});
+    table.levels.push_back({static_cast<unsigned>(offset), texture.width, texture.height,
+                            texture.wrap_u + 16 * texture.wrap_v});
     table.texels.resize(offset + count);
     std::memcpy(&table.texels[offset], texture.rgba.data(), texture.rgba.size());
   }
@@ -150,9 +152,11 @@ void upload_moving(Session& session, const SceneData& scene, SceneBuffers& buffe
   const std::vector<MeshRange> changed = buffers.clusters->move(scene);
   if (changed.empty()) return;
   for (const MeshRange& part : changed) {
-    session.write(buffers.vertices, std::span(scene.vertices).subspan(part.first_vertex, part.vertices),
+    session.write(buffers.vertices,
+                  std::span(scene.vertices).subspan(part.first_vertex, part.vertices),
                   part.first_vertex);
-    session.write(buffers.triangles, std::span(scene.triangles).subspan(part.first_triangle, part.triangles),
+    session.write(buffers.triangles,
+                  std::span(scene.triangles).subspan(part.first_triangle, part.triangles),
                   part.first_triangle);
   }
   buffers.bounds = bounds_of_all(scene.vertices);

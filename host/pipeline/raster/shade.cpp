@@ -22,13 +22,14 @@ std::size_t pixels_of(const Surface& surface) {
 
 void require_fit(const ShadowedLight& shadowed) {
   if (shadowed.views.size() != shadowed.depths.size()) {
-    throw Error(ExitCode::run_time, "shade: {} shadow maps for {} views of a light", shadowed.depths.size(),
-                shadowed.views.size());
+    throw Error(ExitCode::run_time, "shade: {} shadow maps for {} views of a light",
+                shadowed.depths.size(), shadowed.views.size());
   }
   for (const ClpvView& view : shadowed.views) {
     if (view.width < kMinShadowTexels || view.height < kMinShadowTexels) {
-      throw Error(ExitCode::run_time, "shade: shadow map of {} x {} texels; at least {} x {} allowed",
-                  view.width, view.height, kMinShadowTexels, kMinShadowTexels);
+      throw Error(ExitCode::run_time,
+                  "shade: shadow map of {} x {} texels; at least {} x {} allowed", view.width,
+                  view.height, kMinShadowTexels, kMinShadowTexels);
     }
   }
 }
@@ -60,7 +61,8 @@ void Shader::light(const Surface& camera, const std::vector<ShadowedLight>& ligh
 }
 
 void Shader::show(Show what, const Surface& camera, const Buffer& irradiance, Buffer& image) {
-  if (pixels_of(camera) != pixels_) throw Error(ExitCode::run_time, "shade: shown before it was lit");
+  if (pixels_of(camera) != pixels_)
+    throw Error(ExitCode::run_time, "shade: shown before it was lit");
   shade_
       .set(static_cast<cl_uint>(what), static_cast<cl_uint>(pixels_), camera.depth, camera.normal,
            camera.colour, camera.emissive, direct_, irradiance, image)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `shade`: computes shadowed direct light and the images that a frame can show (kernels/raster/shade.cl).
+// Stage `shade`: computes shadowed direct light and the images that a frame can show
+// (kernels/raster/shade.cl).
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -18,13 +19,14 @@ class Shader {
   /// `medium`: lights have one.
   explicit Shader(Session& session, bool medium = false);
 
-  /// Computes the irradiance E of all lights on every surface in `camera`; show() displays it as direct light.
-  /// Throws Error(run_time) for a camera surface in format paper, a number of maps other than that of the views, or
-  /// maps smaller than the filter's 4 x 4 texels.
+  /// Computes the irradiance E of all lights on every surface in `camera`; show() displays it as
+  /// direct light. Throws Error(run_time) for a camera surface in format paper, a number of maps
+  /// other than that of the views, or maps smaller than the filter's 4 x 4 texels.
   void light(const Surface& camera, const std::vector<ShadowedLight>& lights);
 
-  /// `camera`: that of the last light() call. `irradiance`: from the volumes (Gatherer). `image`: float4 per pixel,
-  /// linear, finite RGBA; alpha is 1 on surfaces. Pixels without a surface are all 0.
+  /// `camera`: that of the last light() call. `irradiance`: from the volumes (Gatherer). `image`:
+  /// float4 per pixel, linear, finite RGBA; alpha is 1 on surfaces. Pixels without a surface are
+  /// all 0.
   void show(Show what, const Surface& camera, const Buffer& irradiance, Buffer& image);
 
  private:

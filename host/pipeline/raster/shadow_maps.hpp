@@ -13,10 +13,10 @@
 
 namespace clpv {
 
-/// A light and its shadow maps: a depth buffer per view, one float per texel, row 0 first. Depth is along the view's
-/// forward axis [m]; 0 means no surface. Several views share their eye and together cover all lit directions. A
-/// surface uses the view whose forward axis is nearest to its direction. Without a view the light casts no shadow. A
-/// surface outside the map is lit.
+/// A light and its shadow maps: a depth buffer per view, one float per texel, row 0 first. Depth is
+/// along the view's forward axis [m]; 0 means no surface. Several views share their eye and
+/// together cover all lit directions. A surface uses the view whose forward axis is nearest to its
+/// direction. Without a view the light casts no shadow. A surface outside the map is lit.
 struct ShadowedLight {
   ClpvLight light{};
   std::vector<ClpvView> views = {};
@@ -34,14 +34,16 @@ inline std::vector<ShadowedLight> scaled(std::vector<ShadowedLight> lights, floa
   return lights;
 }
 
-/// Adds a light, its views, their number, the index `which` of a map and its depths to the arguments.
+/// Adds a light, its views, their number, the index `which` of a map and its depths to the
+/// arguments.
 inline Kernel& add_shadow_map(Kernel& kernel, const ShadowedLight& shadowed, cl_uint which) {
   const cl_uint count = shadowed.views.size();
   return kernel.add(shadowed.light, shadowed.view_table, count, which,
                     count > 0 ? shadowed.depths[which] : Buffer());
 }
 
-/// Calls launch(light, which) for each shadow map of each light in order, and once for a light without one.
+/// Calls launch(light, which) for each shadow map of each light in order, and once for a light
+/// without one.
 template <typename Launch>
 void for_each_shadow_map(const std::vector<ShadowedLight>& lights, const Launch& launch) {
   for (const ShadowedLight& shadowed : lights) {

@@ -45,7 +45,8 @@ Bytes encode(const std::vector<glm::vec4>& values, float scale, float offset) {
 
 std::vector<glm::vec4> read_texels(Session& session, const Buffer& buffer, std::size_t count,
                                    RsmFormat format, float scale, float offset) {
-  if (format == RsmFormat::paper) return decode(session.read<cl_uchar4>(buffer, count), scale, offset);
+  if (format == RsmFormat::paper)
+    return decode(session.read<cl_uchar4>(buffer, count), scale, offset);
   return session.read<glm::vec4>(buffer, count);
 }
 
@@ -74,7 +75,8 @@ Surface make_surface(Session& session, const ClpvView& view, RsmFormat format, b
   surface.depth = session.buffer(count * sizeof(float), "depth of a surface");
   surface.normal = session.buffer(count * texel_bytes(format), "normals of a surface");
   surface.colour = session.buffer(count * texel_bytes(format), "colours of a surface");
-  if (with_emissive) surface.emissive = session.buffer(count * sizeof(cl_float4), "emission of a surface");
+  if (with_emissive)
+    surface.emissive = session.buffer(count * sizeof(cl_float4), "emission of a surface");
   return surface;
 }
 
@@ -83,7 +85,8 @@ SurfaceImage read_surface(Session& session, const Surface& surface) {
   SurfaceImage image;
   image.view = surface.view;
   image.normal = read_texels(session, surface.normal, count, surface.format, 2, -1);
-  image.colour = read_texels(session, surface.colour, count, surface.format, surface.colour_scale, 0);
+  image.colour =
+      read_texels(session, surface.colour, count, surface.format, surface.colour_scale, 0);
   if (surface.position.exists()) {
     image.position = session.read<glm::vec4>(surface.position, count);
     return image;
@@ -101,7 +104,8 @@ SurfaceImage read_surface(Session& session, const Surface& surface) {
   return image;
 }
 
-Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat format, float colour_scale) {
+Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat format,
+                       float colour_scale) {
   const std::size_t count = pixels(image.view);
   require_size(image.depth.size(), count, "depth");
   require_size(image.normal.size(), count, "normals");
@@ -109,7 +113,8 @@ Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat fo
   require_size(image.emissive.size(), count, "emission");
   require_size(image.position.size(), count, "positions");
   Surface surface = make_surface(session, image.view, format, !image.emissive.empty());
-  if (!image.position.empty()) surface.position = session.upload(image.position, "positions of a surface");
+  if (!image.position.empty())
+    surface.position = session.upload(image.position, "positions of a surface");
   surface.colour_scale = colour_scale;
   session.write(surface.depth, image.depth);
   write_texels(session, surface.normal, image.normal, format, 2, -1);

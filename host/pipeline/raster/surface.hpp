@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Surfaces visible in a view (an RSM or the camera's G-buffer), on the device and read back; or points without a view.
+// Surfaces visible in a view (an RSM or the camera's G-buffer), on the device and read back; or
+// points without a view.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -14,8 +15,9 @@
 
 namespace clpv {
 
-/// One value per pixel, row 0 first, on the device. Depth [m] is along the view's forward axis; 0 means no surface.
-/// `format` paper stores normal and colour in 4 bytes per pixel; float32 in 4 floats (kernels/raster/surface.h).
+/// One value per pixel, row 0 first, on the device. Depth [m] is along the view's forward axis; 0
+/// means no surface. `format` paper stores normal and colour in 4 bytes per pixel; float32 in 4
+/// floats (kernels/raster/surface.h).
 struct Surface {
   ClpvView view{};
   RsmFormat format = RsmFormat::float32;
@@ -24,8 +26,8 @@ struct Surface {
   Buffer normal;           ///< unit length, world space, towards the viewer; 0 without a surface
   Buffer colour;           ///< camera: albedo; light: flux of the virtual point light [W]
   Buffer emissive;         ///< camera only: float4, emitted radiance [W/m^2/sr]
-  /// Points without a view: float4 [m], instead of depth. Only the size of `view` is used. For gathering and the near field,
-  /// w is 1, or 0 without a surface.
+  /// Points without a view: float4 [m], instead of depth. Only the size of `view` is used. For
+  /// gathering and the near field, w is 1, or 0 without a surface.
   Buffer position;
 
   /// Kernels read positions with CLPV_POINTS 1, depths with 0.
@@ -33,16 +35,17 @@ struct Surface {
   const Buffer& places() const { return points() ? position : depth; }
 };
 
-/// Allocates a surface of the view's size for a rasteriser; contents are undefined. `with_emissive`: allocates
-/// Surface::emissive.
+/// Allocates a surface of the view's size for a rasteriser; contents are undefined.
+/// `with_emissive`: allocates Surface::emissive.
 Surface make_surface(Session& session, const ClpvView& view, RsmFormat format, bool with_emissive);
 
-/// Reads a surface and decodes paper format. Normals are 0 without a surface. The emissive field is empty without
-/// Surface::emissive.
+/// Reads a surface and decodes paper format. Normals are 0 without a surface. The emissive field is
+/// empty without Surface::emissive.
 SurfaceImage read_surface(Session& session, const Surface& surface);
-/// Uploads `image`. Empty fields stay undefined on the device; emissive is allocated only if not empty.
-Surface upload_surface(Session& session, const SurfaceImage& image, RsmFormat format = RsmFormat::float32,
-                       float colour_scale = 1);
+/// Uploads `image`. Empty fields stay undefined on the device; emissive is allocated only if not
+/// empty.
+Surface upload_surface(Session& session, const SurfaceImage& image,
+                       RsmFormat format = RsmFormat::float32, float colour_scale = 1);
 
 inline unsigned tiles_along(unsigned pixels) {
   return (pixels + CLPV_TILE - 1) / CLPV_TILE;
@@ -54,7 +57,8 @@ inline unsigned items_along(const Session& session, unsigned pixels) {
 inline cl::NDRange items_of(const Session& session, const ClpvView& view) {
   return {items_along(session, view.width), view.height};
 }
-/// Work-group of these work-items. Rows differ in work: with eight lanes, small groups balance it between cores.
+/// Work-group of these work-items. Rows differ in work: with eight lanes, small groups balance it
+/// between cores.
 inline cl::NDRange pixel_group(const Session& session) {
   return {8, session.device().lanes == 8 ? 1u : 8u};
 }

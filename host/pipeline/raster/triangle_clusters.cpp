@@ -21,7 +21,8 @@ std::uint64_t print_of(const SceneData& scene, const MeshRange& part) {
 }
 
 Bounds part_bounds(const SceneData& scene, const MeshRange& part) {
-  return bounds_of(scene.vertices, std::span(scene.triangles).subspan(part.first_triangle, part.triangles));
+  return bounds_of(scene.vertices,
+                   std::span(scene.triangles).subspan(part.first_triangle, part.triangles));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bounds of a scene's triangle clusters and of their motion, so that stages skip triangles outside a region.
+// Bounds of a scene's triangle clusters and of their motion, so that stages skip triangles outside
+// a region.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +11,12 @@
 
 namespace clpv {
 
-/// Returns the bounds of the vertices that `triangles` use, which must exist. An empty box at the origin without any.
+/// Returns the bounds of the vertices that `triangles` use, which must exist. An empty box at the
+/// origin without any.
 Bounds bounds_of(const std::vector<Vertex>& vertices, std::span<const Triangle> triangles);
 
-/// Triangle clusters: CLPV_CLUSTER consecutive triangles of a scene each; the last cluster is shorter.
+/// Triangle clusters: CLPV_CLUSTER consecutive triangles of a scene each; the last cluster is
+/// shorter.
 class TriangleClusters {
  public:
   TriangleClusters() = default;
@@ -28,7 +31,8 @@ class TriangleClusters {
   /// Version of the positions, and the boxes in which triangles moved last.
   unsigned instant() const { return instant_; }
   const std::vector<Bounds>& moved() const { return moved_; }
-  /// Treats everything as moved: the next update uses all triangles, since it is not one step ahead.
+  /// Treats everything as moved: the next update uses all triangles, since it is not one step
+  /// ahead.
   void invalidate() { instant_ += 2; }
 
   /// Returns the indices of the clusters whose bounds satisfy `wanted`, in order.

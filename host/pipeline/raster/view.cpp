@@ -59,13 +59,14 @@ glm::dvec2 span_along(const Bounds& bounds, const glm::dvec3& axis) {
   return {middle - reach, middle + reach};
 }
 
-/// Returns an orthographic view centred at (x, y) of the plane across the light, with the depths of `bounds`.
-ClpvView orthographic_view(const Axes& axes, double x, double y, double half_width, double half_height,
-                           const Bounds& bounds, int size) {
+/// Returns an orthographic view centred at (x, y) of the plane across the light, with the depths of
+/// `bounds`.
+ClpvView orthographic_view(const Axes& axes, double x, double y, double half_width,
+                           double half_height, const Bounds& bounds, int size) {
   const glm::dvec2 depths = span_along(bounds, axes.forward);
   const double margin = kSmallestMargin + kRelativeMargin * (depths.y - depths.x);
-  ClpvView view =
-      make_view(axes, x * axes.right + y * axes.up + (depths.x - margin) * axes.forward, size, size);
+  ClpvView view = make_view(axes, x * axes.right + y * axes.up + (depths.x - margin) * axes.forward,
+                            size, size);
   view.orthographic = 1;
   view.half_width = half_width;
   view.half_height = half_height;
@@ -91,7 +92,8 @@ ClpvView perspective_light_view(const Axes& axes, const ClpvLight& light, double
 /// Outer half-angle [rad] of a spot light: where cos(angle) * cone_scale + cone_offset is 0.
 double outer_angle(const ClpvLight& light) {
   if (light.cone_scale <= 0) return 3.14159265358979;  // no cone: lit in all directions
-  return std::acos(std::clamp(-static_cast<double>(light.cone_offset) / light.cone_scale, -1.0, 1.0));
+  return std::acos(
+      std::clamp(-static_cast<double>(light.cone_offset) / light.cone_scale, -1.0, 1.0));
 }
 
 bool too_wide_for_one_view(const ClpvLight& spot) {
@@ -101,10 +103,12 @@ bool too_wide_for_one_view(const ClpvLight& spot) {
 ClpvView directional_shadow_view(const ClpvLight& light, const Bounds& bounds, int size) {
   const Axes frame = light_axes(glm::normalize(vector(light.direction)));
   const glm::dvec2 across = span_along(bounds, frame.right), along = span_along(bounds, frame.up);
-  const double spare = 1 + 2.0 / size;  // one texel around the scene, for filters that read neighbours
+  // One texel around the scene, for filters that read neighbours.
+  const double spare = 1 + 2.0 / size;
   return orthographic_view(frame, 0.5 * (across.x + across.y), 0.5 * (along.x + along.y),
                            std::max(0.5 * spare * (across.y - across.x), kSmallestMargin),
-                           std::max(0.5 * spare * (along.y - along.x), kSmallestMargin), bounds, size);
+                           std::max(0.5 * spare * (along.y - along.x), kSmallestMargin), bounds,
+                           size);
 }
 
 /// A box relative to a view's eye.
@@ -115,7 +119,8 @@ class BoxOfView {
         centre_(0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper)) - vector(view.eye)),
         margin_(kRounding * (glm::length(centre_) + glm::length(half_))) {}
 
-  /// Returns true if some point p of the box, relative to the eye, may have along . p + offset >= 0.
+  /// Returns true if some point p of the box, relative to the eye, may have along . p + offset >=
+  /// 0.
   bool operator()(const glm::dvec3& along, double offset) const {
     return glm::dot(along, centre_) + glm::dot(glm::abs(along), half_) + offset >=
            -margin_ * glm::length(along);
@@ -145,17 +150,21 @@ ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, c
     throw Error(ExitCode::usage, "an RSM of {} texels along each side; allowed: 2 and more", size);
   const Axes frame = light_axes(glm::normalize(vector(light.direction)));
   const double half = 0.5 * (static_cast<double>(cascade.n) + 1) * cascade.cell;
-  const glm::dvec3 centre = vector(cascade.origin) + 0.5 * static_cast<double>(cascade.n) * cascade.cell;
+  const glm::dvec3 centre =
+      vector(cascade.origin) + 0.5 * static_cast<double>(cascade.n) * cascade.cell;
   double middle[2], half_extent[2];
   for (int axis = 0; axis < 2; ++axis) {
     const glm::dvec3 along = axis == 0 ? frame.right : frame.up;
-    const double reach = half * glm::dot(glm::abs(along), glm::dvec3(1));  // of the cube along this axis
-    const double texel = 2 * reach / (size - 1);  // one spare texel: snapping moves the window by up to one
+    // Of the cube along this axis.
+    const double reach = half * glm::dot(glm::abs(along), glm::dvec3(1));
+    // One spare texel: snapping moves the window by up to one.
+    const double texel = 2 * reach / (size - 1);
     const double first = std::floor((glm::dot(centre, along) - reach) / texel);
     middle[axis] = (first + 0.5 * size) * texel;
     half_extent[axis] = 0.5 * size * texel;
   }
-  return orthographic_view(frame, middle[0], middle[1], half_extent[0], half_extent[1], bounds, size);
+  return orthographic_view(frame, middle[0], middle[1], half_extent[0], half_extent[1], bounds,
+                           size);
 }
 
 ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds) {
@@ -165,8 +174,8 @@ ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds) {
                 outer_angle(light), kWidestSpotView);
   }
   const double tangent = std::max(std::tan(outer_angle(light)), 1e-3);
-  return perspective_light_view(light_axes(glm::normalize(vector(light.direction))), light, tangent, size,
-                                bounds);
+  return perspective_light_view(light_axes(glm::normalize(vector(light.direction))), light, tangent,
+                                size, bounds);
 }
 
 std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds& bounds) {
@@ -187,8 +196,9 @@ bool may_be_visible(const ClpvView& view, const Bounds& bounds) {
   const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
                    higher = parallel ? glm::dvec3(0) : height * forward;
   const double beside = parallel ? width : 0, above = parallel ? height : 0;
-  return reaches(wider + right, beside) && reaches(wider - right, beside) && reaches(higher + up, above) &&
-         reaches(higher - up, above) && reaches(-forward, view.far_depth) &&
+  return reaches(wider + right, beside) && reaches(wider - right, beside) &&
+         reaches(higher + up, above) && reaches(higher - up, above) &&
+         reaches(-forward, view.far_depth) &&
          (parallel || reaches(forward, -double{view.near_depth}));
 }
 
@@ -196,7 +206,8 @@ bool may_be_clipped(const ClpvView& view, const Bounds& bounds) {
   const BoxOfView reaches(view, bounds);
   const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
   const bool parallel = view.orthographic != 0;
-  const double guard = 2.0 * double{CLPV_GUARD_PIXELS}, width = guard * view.half_width / view.width,
+  const double guard = 2.0 * double{CLPV_GUARD_PIXELS},
+               width = guard * view.half_width / view.width,
                height = guard * view.half_height / view.height;
   const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
                    higher = parallel ? glm::dvec3(0) : height * forward;
@@ -210,8 +221,8 @@ bool rsm_follows_cascade(const ClpvLight& light) {
   return kind_of(light) == LightKind::directional;
 }
 
-std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,
-                                int size) {
+std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade,
+                                const Bounds& bounds, int size) {
   if (rsm_follows_cascade(light)) return {directional_rsm_view(light, cascade, bounds, size)};
   return shadow_views(light, bounds, size);
 }

@@ -12,8 +12,8 @@
 
 namespace clpv {
 
-/// Largest outer half-angle [rad] of a spot light with a single perspective view. Beyond it the outer texels grow
-/// without limit (tan), and the light uses the six views of a point light.
+/// Largest outer half-angle [rad] of a spot light with a single perspective view. Beyond it the
+/// outer texels grow without limit (tan), and the light uses the six views of a point light.
 inline constexpr double kWidestSpotView = 1.0472;  // 60 degrees
 
 /// Returns the camera's view of `width` x `height` square pixels. It has no far plane.
@@ -26,29 +26,31 @@ bool may_be_visible(const ClpvView& view, const Bounds& bounds);
 /// guard band, by a margin for rounding.
 bool may_be_clipped(const ClpvView& view, const Bounds& bounds);
 
-/// Returns a directional light's orthographic view of a cascade, with `size` texels along each side. It covers the
-/// cascade's cube plus half a cell, since virtual point lights move by as much, for any direction of the light.
-/// Texels form a lattice that is fixed in the world, in the plane across the light. While light, cascade size and
-/// `size` are constant, a moved cascade moves its window by whole texels. Depths start before `bounds`, so that all
-/// surfaces between light and cascade cast shadows.
+/// Returns a directional light's orthographic view of a cascade, with `size` texels along each
+/// side. It covers the cascade's cube plus half a cell, since virtual point lights move by as much,
+/// for any direction of the light. Texels form a lattice that is fixed in the world, in the plane
+/// across the light. While light, cascade size and `size` are constant, a moved cascade moves its
+/// window by whole texels. Depths start before `bounds`, so that all surfaces between light and
+/// cascade cast shadows.
 ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,
                               int size);
 
-/// Returns a spot light's perspective view, which covers its cone. Requires an outer half-angle up to
-/// kWidestSpotView.
+/// Returns a spot light's perspective view, which covers its cone. Requires an outer half-angle up
+/// to kWidestSpotView.
 ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds);
 
-/// Returns six square views from the light along +x, -x, +y, -y, +z, -z, which together cover every direction once.
+/// Returns six square views from the light along +x, -x, +y, -y, +z, -z, which together cover every
+/// direction once.
 std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds& bounds);
 
-/// Returns true if a light has its own reflective shadow maps per cascade. A directional light has; other lights
-/// use views of all surfaces that they light.
+/// Returns true if a light has its own reflective shadow maps per cascade. A directional light has;
+/// other lights use views of all surfaces that they light.
 bool rsm_follows_cascade(const ClpvLight& light);
 
-/// Returns the views of a light's reflective shadow maps for one cascade. A directional light or a spot light has one
-/// view. A point light, or a spot light wider than kWidestSpotView, has six.
-std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade, const Bounds& bounds,
-                                int size);
+/// Returns the views of a light's reflective shadow maps for one cascade. A directional light or a
+/// spot light has one view. A point light, or a spot light wider than kWidestSpotView, has six.
+std::vector<ClpvView> rsm_views(const ClpvLight& light, const ClpvGrid& cascade,
+                                const Bounds& bounds, int size);
 
 /// Returns the views of a light's shadow maps of the whole scene: one or six, as rsm_views().
 std::vector<ClpvView> shadow_views(const ClpvLight& light, const Bounds& bounds, int size);

@@ -18,8 +18,9 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
       basis_(basis),
       transport_(transport),
       options_(options),
-      stencil_(options.grid, options.format,
-               options.lobe_time == LobeTime::kernel ? 1 : lanes_of(session.device(), options.format)),
+      stencil_(
+          options.grid, options.format,
+          options.lobe_time == LobeTime::kernel ? 1 : lanes_of(session.device(), options.format)),
       accumulator_(session) {
   if (transport.kind == TransportKind::sweep) {
     std::vector<std::string_view> stepped;
@@ -27,7 +28,8 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
     throw Error(ExitCode::usage, "transport: found 'sweep', which takes no steps; allowed here: {}",
                 fmt::join(stepped, "|"));
   }
-  if (options.lobe_time == LobeTime::kernel) lobes_.emplace(session, basis, transport, options.table);
+  if (options.lobe_time == LobeTime::kernel)
+    lobes_.emplace(session, basis, transport, options.table);
   const VolumeShape shape{options.grid, basis.size(), 3};
   for (auto& volume : travelling_)
     volume = std::make_unique<Volume>(session, shape, "travelling light", options.format);
@@ -36,7 +38,8 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
 Kernel& Propagator::step(bool blocking) {
   std::optional<Kernel>& step = steps_[blocking ? 1 : 0];
   if (step) return *step;
-  ProgramSource program{"steps/propagate.cl", stencil_.literals(), transport_source(basis_, transport_)};
+  ProgramSource program{"steps/propagate.cl", stencil_.literals(),
+                        transport_source(basis_, transport_)};
   if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
   if (blocking) program.generated += link_text(transmitter_->transmittance().shape().coefficients);
   program.literals.flag("CLPV_BLOCKING", blocking);
@@ -46,12 +49,13 @@ Kernel& Propagator::step(bool blocking) {
 
 void Propagator::transmit(const Volume& geometry) {
   if (!transmitter_)
-    transmitter_ =
-        std::make_unique<LinkTransmittance>(session_, basis_, transport_, options_.grid, options_.format);
+    transmitter_ = std::make_unique<LinkTransmittance>(session_, basis_, transport_, options_.grid,
+                                                       options_.format);
   transmitter_->transmit(geometry);
 }
 
-void Propagator::propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step) {
+void Propagator::propagate(const PropagateVolumes& volumes, int iterations,
+                           const Observer& after_step) {
   const bool blocks = volumes.geometry != nullptr && iterations > 1;
   if (blocks) transmit(*volumes.geometry);
   if (iterations == 0) volumes.accumulated.copy_from(session_, volumes.injected);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Propagation: moves injected light through the cells of a cascade in n steps (docs/method.md, 'Propagation'; Kaplanyan
-// & Dachsbacher 2010).
+// Propagation: moves injected light through the cells of a cascade in n steps (docs/method.md,
+// 'Propagation'; Kaplanyan & Dachsbacher 2010).
 #pragma once
 
 #include <functional>
@@ -19,12 +19,13 @@
 
 namespace clpv {
 
-/// Volumes that a propagation reads and writes. The caller owns them. All have `grid` cells along each axis, and the
-/// geometry volume grid + 1 samples.
+/// Volumes that a propagation reads and writes. The caller owns them. All have `grid` cells along
+/// each axis, and the geometry volume grid + 1 samples.
 struct PropagateVolumes {
-  const Volume& injected;            ///< [W/sr], step 0
-  const Volume* geometry = nullptr;  ///< blocking potential at the cells' corners; null: nothing blocks
-  Volume& accumulated;               ///< output: injected field plus the output of every step [W/sr]
+  const Volume& injected;  ///< [W/sr], step 0
+  /// Blocking potential at the cells' corners; null: nothing blocks.
+  const Volume* geometry = nullptr;
+  Volume& accumulated;  ///< output: injected field plus the output of every step [W/sr]
 };
 
 /// Runs the propagation steps of one basis and transport, for volumes of one grid size.
@@ -36,7 +37,8 @@ class Propagator {
   /// Called after each step with its number, from 1, and the propagated light.
   using Observer = std::function<void(int step, const Volume& travelling)>;
 
-  /// The first step does not block light, since light starts on the surfaces that it was injected at.
+  /// The first step does not block light, since light starts on the surfaces that it was injected
+  /// at.
   void propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step = {});
 
   /// Transmittance; null until something has blocked.

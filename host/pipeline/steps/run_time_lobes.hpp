@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Propagation lobes computed in the kernel, 30 per cell and step, as in the paper (LobeTime::kernel). Slow, with the
-// same result as constant lobes.
+// Propagation lobes computed in the kernel, 30 per cell and step, as in the paper
+// (LobeTime::kernel). Slow, with the same result as constant lobes.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -17,7 +17,8 @@ namespace clpv {
 class RunTimeLobes {
  public:
   /// Throws Error(usage) for a transport without lobes. Otherwise throws as LookupTable does.
-  RunTimeLobes(Session& session, const Basis& basis, const Transport& transport, TableStorage storage);
+  RunTimeLobes(Session& session, const Basis& basis, const Transport& transport,
+               TableStorage storage);
 
   /// Source text before and after that of the transport.
   std::string macros() const { return table_.macros() + functions_.macros(kFunctionsTable); }
@@ -30,8 +31,8 @@ class RunTimeLobes {
   LookupTable table_, functions_;
   std::string text_;
   bool unit_flux_;
-  bool
-      evaluates_;  ///< the kernel also evaluates basis functions, at face centres; integrals over faces are constants
+  bool evaluates_;  ///< the kernel also evaluates basis functions, at face centres; integrals over
+                    ///< faces are constants
   Buffer normals_;
   Buffer links_;  ///< direction of the link through each face, and the face's solid angle
 };

@@ -10,11 +10,12 @@
 
 namespace clpv {
 
-/// Launch shape of a kernel over all cells of a grid. A work-item processes `lanes` cells along x. A work-group is a row
-/// along x, as long as the grid and at most 64 work-items.
+/// Launch shape of a kernel over all cells of a grid. A work-item processes `lanes` cells along x.
+/// A work-group is a row along x, as long as the grid and at most 64 work-items.
 class Stencil {
  public:
-  /// A grid of `grid` cells along each axis; `format`: of all volumes that the kernel accesses; `lanes`: 1 or 8.
+  /// A grid of `grid` cells along each axis; `format`: of all volumes that the kernel accesses;
+  /// `lanes`: 1 or 8.
   Stencil(int grid, const VolumeFormat& format, int lanes);
 
   /// Literals CLPV_GRID, CLPV_W, CLPV_LOCAL_X and those of the format.

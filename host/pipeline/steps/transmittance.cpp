@@ -3,8 +3,9 @@
 
 namespace clpv {
 
-LinkTransmittance::LinkTransmittance(Session& session, const Basis& basis, const Transport& transport,
-                                     int grid, const VolumeFormat& format)
+LinkTransmittance::LinkTransmittance(Session& session, const Basis& basis,
+                                     const Transport& transport, int grid,
+                                     const VolumeFormat& format)
     : LinkTransmittance(session, transmittance_source(basis, transport), grid, format) {}
 
 LinkTransmittance::LinkTransmittance(Session& session, const TransmittanceSource& source, int grid,

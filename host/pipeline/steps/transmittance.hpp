@@ -11,8 +11,8 @@
 
 namespace clpv {
 
-/// Evaluates 1 - B of every link once. Propagation steps then read numbers and evaluate no basis, so their time does
-/// not depend on the blockers.
+/// Evaluates 1 - B of every link once. Propagation steps then read numbers and evaluate no basis,
+/// so their time does not depend on the blockers.
 class LinkTransmittance {
  public:
   /// `format`: of geometry and transmittance volumes.

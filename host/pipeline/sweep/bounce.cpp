@@ -22,10 +22,12 @@ Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& optio
   extend_series_.emplace(session, program, "extend_series");
   inject_series_.emplace(session, program, "inject_series");
   inject_interpolated_.emplace(session, program, "inject_interpolated");
-  series_volume_ = std::make_unique<Volume>(session, VolumeShape{options.grid, kCellFaces, kChannels},
-                                            "series of bounces", options.format);
+  series_volume_ =
+      std::make_unique<Volume>(session, VolumeShape{options.grid, kCellFaces, kChannels},
+                               "series of bounces", options.format);
   for (std::size_t coarser = 1; coarser < options.parts.size(); ++coarser)
-    incident_.push_back(volumes_.make_bordered(kChannels * kCellFaces, "incident flux of a coarser cascade"));
+    incident_.push_back(
+        volumes_.make_bordered(kChannels * kCellFaces, "incident flux of a coarser cascade"));
 }
 
 void Bouncer::set_reflectors(std::size_t cascade, const Volume& reflectors) {
@@ -44,14 +46,15 @@ void Bouncer::extend_series(const Buffer& swept) {
   series_ = series_volume_.get();
 }
 
-void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, float share, const Volume& injected,
-                               Volume& bounced) {
-  inject_reflected_.set(swept, reflectors_[cascade]->memory(), injected.memory(), share, bounced.memory());
+void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, float share,
+                               const Volume& injected, Volume& bounced) {
+  inject_reflected_.set(swept, reflectors_[cascade]->memory(), injected.memory(), share,
+                        bounced.memory());
   volumes_.launch(inject_reflected_, kChannels);
 }
 
-void Bouncer::inject_series(const Buffer& first_swept, const Buffer& second_swept, const Volume& injected,
-                            Volume& bounced) {
+void Bouncer::inject_series(const Buffer& first_swept, const Buffer& second_swept,
+                            const Volume& injected, Volume& bounced) {
   inject_series_->set(first_swept, second_swept, reflectors_.back()->memory(), series_->memory(),
                       injected.memory(), bounced.memory());
   volumes_.launch(*inject_series_, kChannels);

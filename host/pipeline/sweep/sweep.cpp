@@ -29,7 +29,9 @@ std::size_t plane_numbers(int grid) {
 
 /// Coarser cells that the border of a finer cascade interpolates. `offset`: offset_in_coarser().
 ClpvSweepHalo halo_of(int grid, const std::array<int, 3>& offset) {
-  const auto lower = [](int u) { return (u - 1) >> 1; };  // CLPV_LOWER of kernels/sweep/coarse_to_fine.h
+  const auto lower = [](int u) {
+    return (u - 1) >> 1;
+  };  // CLPV_LOWER of kernels/sweep/coarse_to_fine.h
   ClpvSweepHalo halo{};
   halo.side = CLPV_SWEEP_HALO_SIDE_OF(grid);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -43,7 +45,8 @@ ClpvSweepHalo halo_of(int grid, const std::array<int, 3>& offset) {
 /// Bytes of the halo light that a cascade stores for the next finer one.
 std::size_t halo_bytes(const SweepOptions& options, int parts) {
   const std::size_t side = CLPV_SWEEP_HALO_SIDE_OF(options.grid);
-  return 3 * 3 * directions_of(parts) * CLPV_SWEEP_HALO_FACE_OF(side) * number_bytes(options.format.storage);
+  return 3 * 3 * directions_of(parts) * CLPV_SWEEP_HALO_FACE_OF(side) *
+         number_bytes(options.format.storage);
 }
 
 bool within(const ClpvSweepHalo& halo, int grid) {
@@ -68,24 +71,28 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
       volumes_(session, options.grid, options.format),
       source_(session, volumes_.program("sweep/sweep_source.cl", coefficient_text(basis.size())),
               "sweep_source"),
-      collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_text()), "sweep_collect") {
+      collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_text()),
+               "sweep_collect") {
   const std::size_t plane = plane_numbers(options.grid) * sizeof(float);
   const std::size_t ordinates =
       3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
   bins_ = session.upload(sweep_bin_table(options.grid), "bins to sweep");
   sources_ = volumes_.make(2 * 3 * basis.size(), "sources of the sweep");
-  lit_ = zeroed_buffer(session, 2 * CLPV_SWEEP_VOLUME_OF(std::size_t(options.grid)) / volumes_.lanes(),
-                       "lit rows of the sweep");
+  lit_ =
+      zeroed_buffer(session, 2 * CLPV_SWEEP_VOLUME_OF(std::size_t(options.grid)) / volumes_.lanes(),
+                    "lit rows of the sweep");
   swept_ = volumes_.make(3 * kSweepBins, "sums of the sweep");
-  plane_buffer_ =
-      zeroed_buffer(session, (whole_bins() ? 1 : 2) * ordinates * plane, "plane buffer of the sweep");
-  border_ = zeroed_buffer(session,
-                          2 * ordinates * plane_numbers(options.grid) * number_bytes(options.format.storage),
-                          "boundary condition of the sweep");
+  plane_buffer_ = zeroed_buffer(session, (whole_bins() ? 1 : 2) * ordinates * plane,
+                                "plane buffer of the sweep");
+  border_ = zeroed_buffer(
+      session, 2 * ordinates * plane_numbers(options.grid) * number_bytes(options.format.storage),
+      "boundary condition of the sweep");
   if (options.blocking)
     transmittance_.emplace(
-        session, volumes_.program("sweep/sweep_links.cl", sweep_links_text(basis, transport)), "sweep_links");
-  if (options.medium) medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
+        session, volumes_.program("sweep/sweep_links.cl", sweep_links_text(basis, transport)),
+        "sweep_links");
+  if (options.medium)
+    medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
   make_cascades(basis);
   if (options.bounces == Bounces::one) return;
   const bool series = options.bounces == Bounces::all && !scatters(options.medium);
@@ -108,12 +115,14 @@ void Sweeper::make_cascades(const Basis& basis) {
     const bool coarsest = c + 1 == count;
     std::vector<SweepStep> plan = sweep_plan(options_.bounces, scatters(options_.medium), coarsest);
     const bool has_few = !std::ranges::all_of(plan, &SweepStep::all_directions);
-    Cascade cascade{std::move(plan),
-                    make_directions(basis, options_.parts[c], coarsest ? 0 : options_.parts[c + 1], c > 0),
-                    {},
-                    volumes_.make(links, "transmittance of the sweep's links")};
+    Cascade cascade{
+        std::move(plan),
+        make_directions(basis, options_.parts[c], coarsest ? 0 : options_.parts[c + 1], c > 0),
+        {},
+        volumes_.make(links, "transmittance of the sweep's links")};
     if (has_few)
-      cascade.few = make_directions(basis, kBounceParts, coarsest ? 0 : kBounceParts, finer_has_few);
+      cascade.few =
+          make_directions(basis, kBounceParts, coarsest ? 0 : kBounceParts, finer_has_few);
     finer_has_few = has_few;
     cascades_.push_back(std::move(cascade));
   }
@@ -146,27 +155,28 @@ bool Sweeper::whole_bins() const {
 Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int coarser,
                                              bool feeds_finer) const {
   const SweepMeans means = sweep_means(basis, parts);
-  Directions made{
-      parts,
-      coarser,
-      feeds_finer,
-      session_.upload(sweep_direction_table(parts, coarser), "directions to sweep"),
-      session_.upload(means.coefficients, "coefficients of the sweep's bins"),
-      session_.upload(means.means, "means of the basis's functions"),
-      Kernel(session_, sweep_program(basis.size(), means, parts), whole_bins() ? "sweep_bin" : "sweep_plane"),
-      zeroed_buffer(session_, feeds_finer ? halo_bytes(options_, parts) : sizeof(float),
-                    "boundary light of a finer cascade"),
-      {},
-      {}};
+  Directions made{parts,
+                  coarser,
+                  feeds_finer,
+                  session_.upload(sweep_direction_table(parts, coarser), "directions to sweep"),
+                  session_.upload(means.coefficients, "coefficients of the sweep's bins"),
+                  session_.upload(means.means, "means of the basis's functions"),
+                  Kernel(session_, sweep_program(basis.size(), means, parts),
+                         whole_bins() ? "sweep_bin" : "sweep_plane"),
+                  zeroed_buffer(session_, feeds_finer ? halo_bytes(options_, parts) : sizeof(float),
+                                "boundary light of a finer cascade"),
+                  {},
+                  {}};
   if (coarser > 0) {
-    ProgramSource border = border_program("sweep/sweep_border.cl", options_, parts, session_.device().lanes);
+    ProgramSource border =
+        border_program("sweep/sweep_border.cl", options_, parts, session_.device().lanes);
     border.literals.integer("CLPV_COARSER_PARTS", coarser * coarser);
     made.border.emplace(session_, border, "sweep_border");
   } else if (options_.sky != nullptr) {
     made.sky = session_.upload(swept_sky(*options_.sky, parts), "boundary light of the sky");
-    made.sky_border.emplace(session_,
-                            border_program("sweep/sweep_sky.cl", options_, parts, session_.device().lanes),
-                            "sweep_sky");
+    made.sky_border.emplace(
+        session_, border_program("sweep/sweep_sky.cl", options_, parts, session_.device().lanes),
+        "sweep_sky");
   }
   return made;
 }
@@ -175,7 +185,8 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int 
 void Sweeper::enter_medium(std::size_t cascade, const ClpvGrid& grid) {
   if (!medium_) return;
   const auto attenuate_along = [&](const Directions& directions) {
-    std::vector<ClpvSweepDirection> table = sweep_direction_table(directions.parts, directions.coarser);
+    std::vector<ClpvSweepDirection> table =
+        sweep_direction_table(directions.parts, directions.coarser);
     attenuate(table, directions.parts, *options_.medium, double{grid.cell});
     session_.write(directions.table, table);
   };
@@ -209,7 +220,8 @@ void Sweeper::sweep(const SweepInput& input, Volume& accumulated) {
   collect(input.cascade, accumulated);
 }
 
-/// Sweeps the light of a step with its boundary condition, and stores the halo of the next finer cascade.
+/// Sweeps the light of a step with its boundary condition, and stores the halo of the next finer
+/// cascade.
 void Sweeper::run(const SweepStep& step, const SweepInput& input) {
   Cascade& cascade = cascades_[input.cascade];
   Directions& directions = step.all_directions ? cascade.all : *cascade.few;
@@ -242,8 +254,8 @@ const Volume& Sweeper::light_of(const SweepStep& step, const SweepInput& input) 
       bouncer_->inject_series(last_swept_, swept_, input.injected, *bounced_);
       break;
     case SweptLight::interpolated:
-      bouncer_->inject_interpolated(c, offset_in_coarser(input.grids[c + 1], input.grids[c]), input.injected,
-                                    *bounced_);
+      bouncer_->inject_interpolated(c, offset_in_coarser(input.grids[c + 1], input.grids[c]),
+                                    input.injected, *bounced_);
       break;
   }
   return *bounced_;
@@ -255,8 +267,8 @@ void Sweeper::set_sources(const Volume& light) {
   volumes_.launch(source_, 1);
 }
 
-/// Sets the boundary condition of a cascade from the next coarser one, or from the sky. Returns false, and sets
-/// nothing, if no light enters.
+/// Sets the boundary condition of a cascade from the next coarser one, or from the sky. Returns
+/// false, and sets nothing, if no light enters.
 bool Sweeper::light_border(bool all_directions, const SweepInput& input) {
   const std::size_t c = input.cascade;
   const auto directions_in = [&](std::size_t cascade) -> Directions& {
@@ -270,8 +282,9 @@ bool Sweeper::light_border(bool all_directions, const SweepInput& input) {
       whole_bins() ? 0 : 3 * directions_of(directions.parts) * plane_numbers(options_.grid);
   if (directions.border) {
     const std::array<int, 3> offset = offset_in_coarser(input.grids[c + 1], input.grids[c]);
-    kernel.set(bins_, directions.table, directions_in(c + 1).halo_light, halo_of(options_.grid, offset),
-               offset[0], offset[1], offset[2], plane_buffer_, upstream, border_);
+    kernel.set(bins_, directions.table, directions_in(c + 1).halo_light,
+               halo_of(options_.grid, offset), offset[0], offset[1], offset[2], plane_buffer_,
+               upstream, border_);
   } else {
     const float cell = input.grids[c].cell;
     kernel.set(directions.sky, input.sky_scale * (cell * cell), plane_buffer_, upstream, border_);
@@ -288,12 +301,12 @@ ClpvSweepHalo Sweeper::halo(std::size_t cascade, const std::vector<ClpvGrid>& gr
 }
 
 /// Launches the sweep of a cascade into swept_. `lit`: light_border() has set light at the border.
-void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSweepHalo& halo, bool lit,
-                     bool scattered) {
+void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSweepHalo& halo,
+                     bool lit, bool scattered) {
   const auto set = [&](cl_int last) {
-    directions.sweep.set(bins_, directions.table, directions.coefficients, directions.means, sources_, lit_,
-                         cascades_[cascade].links, border_, halo, plane_buffer_, swept_,
-                         directions.halo_light, last);
+    directions.sweep.set(bins_, directions.table, directions.coefficients, directions.means,
+                         sources_, lit_, cascades_[cascade].links, border_, halo, plane_buffer_,
+                         swept_, directions.halo_light, last);
     if (medium_) medium_->add_to(directions.sweep, cascade, scattered);
   };
   if (whole_bins()) {
@@ -316,7 +329,8 @@ void Sweeper::darken_border(const Directions& directions) {
   session_.fill_zero(plane_buffer_, 2 * planes * sizeof(float));
 }
 
-/// Projects swept light on harmonics, and stores the incident flux that the next finer cascade interpolates.
+/// Projects swept light on harmonics, and stores the incident flux that the next finer cascade
+/// interpolates.
 void Sweeper::collect(std::size_t cascade, Volume& accumulated) {
   const Buffer* incident = bouncer_ ? bouncer_->incident(cascade) : nullptr;
   Kernel& kernel = incident != nullptr ? *collect_with_incident_ : collect_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stage `sweep`: transports the injected light of all cascades in one pass over the grid per direction
-// (kernels/sweep/; docs/method.md, 'The sweep').
+// Stage `sweep`: transports the injected light of all cascades in one pass over the grid per
+// direction (kernels/sweep/; docs/method.md, 'The sweep').
 #pragma once
 
 #include <memory>
@@ -29,45 +29,50 @@ struct SweepInput {
   std::size_t cascade;
   const std::vector<ClpvGrid>& grids;  ///< of all cascades, finest first
   const Volume& injected;
-  float sky_scale = 1;                     ///< number that volumes store for 1 W/sr
-  std::vector<ShadowedLight> lights = {};  ///< those that a medium scatters, scaled like the volumes
+  float sky_scale = 1;  ///< number that volumes store for 1 W/sr
+  std::vector<ShadowedLight> lights =
+      {};  ///< those that a medium scatters, scaled like the volumes
 };
 
-/// Sweeps the cascades of a frame, coarsest first. Deterministic to the bit for any number of compute units.
+/// Sweeps the cascades of a frame, coarsest first. Deterministic to the bit for any number of
+/// compute units.
 class Sweeper {
  public:
-  /// `basis`: of injected light; results are in swept_basis(). `transport`: TransportKind::sweep, which also gives
-  /// the blocking mode.
-  Sweeper(Session& session, const Basis& basis, const Transport& transport, const SweepOptions& options);
+  /// `basis`: of injected light; results are in swept_basis(). `transport`: TransportKind::sweep,
+  /// which also gives the blocking mode.
+  Sweeper(Session& session, const Basis& basis, const Transport& transport,
+          const SweepOptions& options);
 
-  /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3 samples.
+  /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3
+  /// samples.
   void set_blockers(std::size_t cascade, const Volume& geometry);
 
-  /// Sets the reflectors of a cascade at `grid` (VoxelField), for SweepOptions::bounces other than one. `reflectors`
-  /// must outlive the sweeper. With all bounces, computes their series from the reflectors and the links.
+  /// Sets the reflectors of a cascade at `grid` (VoxelField), for SweepOptions::bounces other than
+  /// one. `reflectors` must outlive the sweeper. With all bounces, computes their series from the
+  /// reflectors and the links.
   void set_reflectors(std::size_t cascade, const ClpvGrid& grid, const Volume& reflectors);
 
-  /// Sweeps a cascade after the next coarser one. Writes light of swept_basis(), as radiance times s^2, to
-  /// `accumulated`. Throws Error(run_time) for grids that are not nested.
+  /// Sweeps a cascade after the next coarser one. Writes light of swept_basis(), as radiance times
+  /// s^2, to `accumulated`. Throws Error(run_time) for grids that are not nested.
   void sweep(const SweepInput& input, Volume& accumulated);
 
   /// Cells of a cascade whose light a sweep stores for the next finer one; empty for the finest.
   ClpvSweepHalo halo(std::size_t cascade, const std::vector<ClpvGrid>& grids) const;
 
-  /// Returns true if a launch sweeps whole bins (kernels/sweep/sweep_bins.cl), false if it sweeps a plane
-  /// (kernels/sweep/sweep_planes.cl).
+  /// Returns true if a launch sweeps whole bins (kernels/sweep/sweep_bins.cl), false if it sweeps a
+  /// plane (kernels/sweep/sweep_planes.cl).
   bool whole_bins() const;
 
  private:
   /// Directions of one cascade, their kernels and light at its border.
   struct Directions {
-    int parts, coarser;          ///< parts of the bins of this cascade and of the next coarser one; 0: none
-    bool feeds_finer;            ///< stores border light for the next finer cascade
-    Buffer table;                ///< ClpvSweepDirection
+    int parts, coarser;  ///< parts of the bins of this cascade and of the next coarser one; 0: none
+    bool feeds_finer;    ///< stores border light for the next finer cascade
+    Buffer table;        ///< ClpvSweepDirection
     Buffer coefficients, means;  ///< SweepMeans
     Kernel sweep;
-    Buffer halo_light;                 ///< border light of the next finer cascade
-    std::optional<Kernel> border;      ///< border light from the coarser cascade; none for the coarsest
+    Buffer halo_light;             ///< border light of the next finer cascade
+    std::optional<Kernel> border;  ///< border light from the coarser cascade; none for the coarsest
     std::optional<Kernel> sky_border;  ///< border light from the sky; for the coarsest under a sky
     Buffer sky = {};                   ///< swept_sky()
   };
@@ -94,7 +99,8 @@ class Sweeper {
   SweepOptions options_;
   SweepVolumes volumes_;
   Buffer bins_, sources_, lit_;  ///< sources_, lit_: sweep_source.cl
-  Buffer swept_, last_swept_;    ///< results of the last two sweeps; last_swept_: only for SweptLight::series
+  /// Results of the last two sweeps; last_swept_: only for SweptLight::series.
+  Buffer swept_, last_swept_;
   Buffer plane_buffer_, border_;
   Kernel source_, collect_;
   std::optional<Kernel> transmittance_, collect_with_incident_;

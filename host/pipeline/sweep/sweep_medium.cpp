@@ -34,8 +34,8 @@ bool scatters(const std::optional<ClpvMedium>& medium) {
   return medium && std::ranges::any_of(medium->scattering, [](float sigma) { return sigma > 0; });
 }
 
-SweepMedium::SweepMedium(Session& session, const SweepVolumes& volumes, const ClpvMedium& medium, int grid,
-                         std::size_t cascades)
+SweepMedium::SweepMedium(Session& session, const SweepVolumes& volumes, const ClpvMedium& medium,
+                         int grid, std::size_t cascades)
     : session_(session),
       volumes_(volumes),
       medium_(medium),
@@ -63,7 +63,8 @@ void SweepMedium::scatter_lights(const ClpvGrid& grid, const std::vector<Shadowe
 }
 
 void SweepMedium::scatter_swept(const Buffer& swept) {
-  if (!of_swept_.exists()) of_swept_ = volumes_.make(kSourceVolumes, "light that the medium scatters");
+  if (!of_swept_.exists())
+    of_swept_ = volumes_.make(kSourceVolumes, "light that the medium scatters");
   scatter_swept_.set(medium_, of_lights_, swept, of_swept_);
   volumes_.launch(scatter_swept_, 3);
 }

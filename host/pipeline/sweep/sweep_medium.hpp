@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The medium of a sweep: where each cascade lies in it, and the light that it scatters in the cells of a cascade
-// (kernels/sweep/sweep_medium.cl; docs/method.md, 'Media').
+// The medium of a sweep: where each cascade lies in it, and the light that it scatters in the cells
+// of a cascade (kernels/sweep/sweep_medium.cl; docs/method.md, 'Media').
 #pragma once
 
 #include <optional>
@@ -31,8 +31,8 @@ class SweepMedium {
   /// The same of the lights of the last scatter_lights(), and of light swept in the same cascade.
   void scatter_swept(const Buffer& swept);
 
-  /// Adds the medium to the arguments of a sweep of a cascade. `swept`: with the light of the last scatter_swept(), not of the
-  /// lights only.
+  /// Adds the medium to the arguments of a sweep of a cascade. `swept`: with the light of the last
+  /// scatter_swept(), not of the lights only.
   void add_to(Kernel& sweep, std::size_t cascade, bool swept) const;
 
  private:

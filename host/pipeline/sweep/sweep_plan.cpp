@@ -23,7 +23,8 @@ std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters, bool coarsest)
       return {{.light = SweptLight::injected, .all_directions = true}};
     case Bounces::two:
       if (scatters) return scattering_plan(1);
-      return {{.light = SweptLight::injected}, {.light = SweptLight::reflected, .all_directions = true}};
+      return {{.light = SweptLight::injected},
+              {.light = SweptLight::reflected, .all_directions = true}};
     case Bounces::all:
       if (scatters) return scattering_plan(kFurtherBounces + 2);
       if (!coarsest) return {{.light = SweptLight::interpolated, .all_directions = true}};

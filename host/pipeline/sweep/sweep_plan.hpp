@@ -8,8 +8,8 @@
 
 namespace clpv {
 
-/// Light that a sweep starts from. I: injected light; R: reflectors; D: incident flux of the last sweep, D_1 of the one
-/// before it.
+/// Light that a sweep starts from. I: injected light; R: reflectors; D: incident flux of the last
+/// sweep, D_1 of the one before it.
 enum class SweptLight {
   injected,        ///< I
   reflected,       ///< I + R D
@@ -25,8 +25,8 @@ struct SweepStep {
   bool scattered = false;       ///< true: a medium scatters the last sweep's light too
 };
 
-/// The last step has all directions, and its result is the light of the cascade. `scatters`: there is a medium that
-/// scatters light.
+/// The last step has all directions, and its result is the light of the cascade. `scatters`: there
+/// is a medium that scatters light.
 std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters, bool coarsest);
 
 }  // namespace clpv

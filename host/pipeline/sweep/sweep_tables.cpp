@@ -11,7 +11,8 @@
 namespace clpv {
 namespace {
 
-constexpr double kAligned = 1e-2;  // [finer cells]: float32 rounding of origins about 100 cells away
+// [finer cells]: float32 rounding of origins about 100 cells away.
+constexpr double kAligned = 1e-2;
 
 }  // namespace
 
@@ -36,7 +37,8 @@ std::vector<ClpvSweepBin> sweep_bin_table(int grid) {
 }
 
 std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_parts) {
-  const std::vector<SweepBin> bins = sweep_bins(parts), coarser = sweep_bins(std::max(coarser_parts, 1));
+  const std::vector<SweepBin> bins = sweep_bins(parts),
+                              coarser = sweep_bins(std::max(coarser_parts, 1));
   constexpr double kArea = 0.25;  // area of a finer cell's face, relative to a coarser one's
   std::vector<ClpvSweepDirection> table;
   for (std::size_t b = 0; b < bins.size(); ++b) {
@@ -58,12 +60,14 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
   return table;
 }
 
-void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedium& medium, double cell) {
+void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedium& medium,
+               double cell) {
   std::size_t i = 0;
   for (const SweepBin& bin : sweep_bins(parts)) {
     for (const SweepDirection& d : bin.directions) {
       for (int c = 0; c < 3; ++c)
-        table[i].attenuation[c] = static_cast<float>(std::exp(-double{medium.extinction[c]} * cell / d.flux));
+        table[i].attenuation[c] =
+            static_cast<float>(std::exp(-double{medium.extinction[c]} * cell / d.flux));
       ++i;
     }
   }
@@ -104,7 +108,8 @@ SweepMeans sweep_means(const Basis& basis, int parts) {
     used[bin].resize(table.emitting, kNone);
     for (const int i : used[bin]) table.coefficients.push_back(i == kNone ? 0 : i);
     for (int part = 0; part < of_bin; ++part) {
-      for (const int i : used[bin]) table.means.push_back(i == kNone ? 0 : means(bin * of_bin + part, i));
+      for (const int i : used[bin])
+        table.means.push_back(i == kNone ? 0 : means(bin * of_bin + part, i));
     }
   }
   return table;
@@ -112,8 +117,8 @@ SweepMeans sweep_means(const Basis& basis, int parts) {
 
 std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& finer) {
   if (std::abs(coarser.cell / double{finer.cell} - 2) > kAligned) {
-    throw Error(ExitCode::run_time, "cascades: cells of {} m in cells of {} m; halves allowed", finer.cell,
-                coarser.cell);
+    throw Error(ExitCode::run_time, "cascades: cells of {} m in cells of {} m; halves allowed",
+                finer.cell, coarser.cell);
   }
   const int most = static_cast<int>(finer.n) + 1;
   std::array<int, 3> offset{};
@@ -122,8 +127,8 @@ std::array<int, 3> offset_in_coarser(const ClpvGrid& coarser, const ClpvGrid& fi
     const double whole = std::round(cells);
     if (std::abs(cells - whole) > kAligned || whole < -1 || whole > most) {
       throw Error(ExitCode::run_time,
-                  "cascades: along axis {} the finer grid starts {} of its cells into the coarser one; whole "
-                  "numbers -1..{} allowed",
+                  "cascades: along axis {} the finer grid starts {} of its cells into the coarser "
+                  "one; whole numbers -1..{} allowed",
                   axis, cells, most);
     }
     offset[axis] = whole;

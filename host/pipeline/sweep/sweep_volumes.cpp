@@ -43,9 +43,10 @@ Buffer SweepVolumes::make(std::size_t count, const char* what) const {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   const std::size_t numbers = count * CLPV_SWEEP_VOLUME_OF(std::size_t(grid_));
   if (numbers > kMost)
-    throw TooLarge(Error(ExitCode::device, "unsupported: {} of {} numbers; kernels address at most {}", what,
-                         numbers, kMost),
-                   static_cast<double>(kMost) / static_cast<double>(numbers));
+    throw TooLarge(
+        Error(ExitCode::device, "unsupported: {} of {} numbers; kernels address at most {}", what,
+              numbers, kMost),
+        static_cast<double>(kMost) / static_cast<double>(numbers));
   return zeroed_buffer(session_, numbers * number_bytes(format_.storage), what);
 }
 

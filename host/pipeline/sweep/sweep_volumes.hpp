@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Allocates volumes of planes and launches their tile kernels (kernels/sweep/sweep_tiles.h); shared by the sweep stages.
+// Allocates volumes of planes and launches their tile kernels (kernels/sweep/sweep_tiles.h); shared
+// by the sweep stages.
 #pragma once
 
 #include <string>
@@ -22,8 +23,8 @@ class SweepVolumes {
   /// Launches a kernel over the tiles of all slices and `channels` channels.
   void launch(Kernel& kernel, int channels) const;
 
-  /// Allocates `count` zeroed volumes, without and with a border. Throws Error(device) "unsupported: ..." for more
-  /// than kernels can address.
+  /// Allocates `count` zeroed volumes, without and with a border. Throws Error(device)
+  /// "unsupported: ..." for more than kernels can address.
   Buffer make(std::size_t count, const char* what) const;
   Buffer make_bordered(std::size_t count, const char* what) const;
 

@@ -6,14 +6,16 @@
 
 namespace clpv {
 
-VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades, const VolumeFormat& format) {
-  VoxelKind kind{.what = "masks of triangles that block",
-                 .shape = {grid + 1, grid + 1, CLPV_BLOCKER_WORDS, static_cast<std::size_t>(cascades)},
-                 .max_triangles = 1u << 20,
-                 .program = {"voxels/blockers.cl", {}, {}},
-                 .kernel = "voxelize_blockers",
-                 .volume_program = {"voxels/blocked_areas.cl", {}, coefficient_text(3)},
-                 .volume_kernel = "blocked_areas"};
+VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades,
+                        const VolumeFormat& format) {
+  VoxelKind kind{
+      .what = "masks of triangles that block",
+      .shape = {grid + 1, grid + 1, CLPV_BLOCKER_WORDS, static_cast<std::size_t>(cascades)},
+      .max_triangles = 1u << 20,
+      .program = {"voxels/blockers.cl", {}, {}},
+      .kernel = "voxelize_blockers",
+      .volume_program = {"voxels/blocked_areas.cl", {}, coefficient_text(3)},
+      .volume_kernel = "blocked_areas"};
   kind.program.literals.integer("CLPV_GRID", grid).flag("CLPV_MASKED", scene.masked);
   kind.volume_program.literals.integer("CLPV_GRID", grid);
   add_format_literals(kind.volume_program.literals, format);

@@ -10,7 +10,8 @@ constexpr std::size_t kPoints = 64;  // points per cube between cell centres, on
 
 VoxelKind visibility_masks(int grid, int cascades) {
   // One cube between centres for each cell except the last ones.
-  const VoxelMaskShape shape{grid, grid - 1, kPoints / sizeof(cl_uint), static_cast<std::size_t>(cascades)};
+  const VoxelMaskShape shape{grid, grid - 1, kPoints / sizeof(cl_uint),
+                             static_cast<std::size_t>(cascades)};
   VoxelKind kind{.what = "cells occluded by triangles",
                  .shape = shape,
                  .max_triangles = 1u << 20,

@@ -8,15 +8,15 @@
 namespace clpv {
 namespace {
 
-// Reach of triangles beyond a box of cells [cells]. Lit points, corner cells and cubes between centres are offset by
-// half a cell; the rest is a margin for rounding.
+// Reach of triangles beyond a box of cells [cells]. Lit points, corner cells and cubes between
+// centres are offset by half a cell; the rest is a margin for rounding.
 constexpr double kReach = 0.51;
 // Bases are this many grids apart; the base is constant while a cascade moves within that distance.
 constexpr int kGridsApart = 4;
 constexpr std::size_t kMaskGroup = 64;  // work-items per group
 
-/// Returns the position of a grid. Its first cell is at least two grids from the base along each axis, so that cell
-/// indices nearby are not negative.
+/// Returns the position of a grid. Its first cell is at least two grids from the base along each
+/// axis, so that cell indices nearby are not negative.
 ClpvRegion place_of(const ClpvGrid& grid) {
   ClpvRegion place{};
   place.cell = grid.cell;
@@ -46,7 +46,8 @@ Bounds reach_of(const ClpvRegion& region, const ClpvBox& box) {
   return reach;
 }
 
-/// Returns the part of a box within cells [0, valid) along each axis; none if they do not intersect.
+/// Returns the part of a box within cells [0, valid) along each axis; none if they do not
+/// intersect.
 std::optional<ClpvBox> within(ClpvBox box, int valid) {
   for (int a = 0; a < 3; ++a) {
     box.low[a] = std::max(box.low[a], 0);
@@ -59,7 +60,8 @@ std::optional<ClpvBox> within(ClpvBox box, int valid) {
 const ProgramSource kMasks{"voxels/voxel_masks.cl", {}, {}};
 
 bool meet(const Bounds& a, const Bounds& b) {
-  return glm::all(glm::lessThanEqual(a.lower, b.upper)) && glm::all(glm::lessThanEqual(b.lower, a.upper));
+  return glm::all(glm::lessThanEqual(a.lower, b.upper)) &&
+         glm::all(glm::lessThanEqual(b.lower, a.upper));
 }
 
 }  // namespace
@@ -75,15 +77,19 @@ VoxelField::VoxelField(Session& session, const SceneBuffers& scene, VoxelKind ki
       kind_(std::move(kind)),
       states_(kind_.shape.cascades),
       masks_(session.buffer(kind_.shape.bytes(), kind_.what)),
-      clusters_(session.buffer(std::max<std::size_t>(scene.clusters->bounds().size(), 1) * sizeof(cl_uint),
-                               kind_.what + ": clusters")),
+      clusters_(session.buffer(
+          std::max<std::size_t>(scene.clusters->bounds().size(), 1) * sizeof(cl_uint),
+          kind_.what + ": clusters")),
       voxelize_(session, kind_.program, kind_.kernel),
       move_(session, kMasks, "move_masks"),
       clear_(session, kMasks, "clear_masks") {
-  if (!kind_.volume_kernel.empty()) volume_.emplace(session, kind_.volume_program, kind_.volume_kernel);
-  if (kind_.shape.valid == 0) session_.fill_zero(masks_, kind_.shape.bytes());  // no other code writes them
+  if (!kind_.volume_kernel.empty())
+    volume_.emplace(session, kind_.volume_program, kind_.volume_kernel);
+  if (kind_.shape.valid == 0)
+    session_.fill_zero(masks_, kind_.shape.bytes());  // no other code writes them
   if (kind_.shape.cascades > 1)
-    spare_ = session.buffer(kind_.shape.words_a_cascade() * sizeof(cl_uint), kind_.what + ": moved");
+    spare_ =
+        session.buffer(kind_.shape.words_a_cascade() * sizeof(cl_uint), kind_.what + ": moved");
 }
 
 void VoxelField::update(std::size_t cascade, const ClpvGrid& grid) {
@@ -92,8 +98,8 @@ void VoxelField::update(std::size_t cascade, const ClpvGrid& grid) {
   const unsigned step = std::max(kind_.max_triangles / CLPV_CLUSTER, 1u);
   for (cl_uint first = 0; first < near_; first += step) {
     const cl_uint count = std::min(near_ - first, step);
-    voxelize_.set(*region, clusters_, first, count, scene_.triangle_count, scene_.vertices, scene_.triangles,
-                  scene_.materials);
+    voxelize_.set(*region, clusters_, first, count, scene_.triangle_count, scene_.vertices,
+                  scene_.triangles, scene_.materials);
     if (kind_.textured) voxelize_.add(scene_.textures, scene_.texels);
     voxelize_.add(masks_);
     if (kind_.indexed) voxelize_.add(slot(cascade));
@@ -106,7 +112,8 @@ void VoxelField::update(std::size_t cascade, const ClpvGrid& grid, Volume& volum
   Kernel& kernel = volume_.value().set(masks_);
   if (kind_.indexed) kernel.add(slot(cascade));
   const std::size_t cells = kind_.shape.cells;
-  kernel.add(volume.memory()).launch(cl::NDRange(cells, cells, cells), cl::NDRange(kMaskGroup, 1, 1));
+  kernel.add(volume.memory())
+      .launch(cl::NDRange(cells, cells, cells), cl::NDRange(kMaskGroup, 1, 1));
 }
 
 cl_uint VoxelField::slot(std::size_t cascade) const {
@@ -133,10 +140,11 @@ ClpvRegion VoxelField::whole(ClpvRegion place) const {
   return place;
 }
 
-/// Returns the cells whose voxel masks are stale. These are all cells if old and new grids share none, if a grid moved
-/// and only one cascade is stored, or if more than one time step passed.
+/// Returns the cells whose voxel masks are stale. These are all cells if old and new grids share
+/// none, if a grid moved and only one cascade is stored, or if more than one time step passed.
 ClpvRegion VoxelField::stale_cells(const State& state, ClpvRegion place) const {
-  if (!same_base(state.place, place) || scene_.clusters->instant() - state.instant > 1) return whole(place);
+  if (!same_base(state.place, place) || scene_.clusters->instant() - state.instant > 1)
+    return whole(place);
   for (int a = 0; a < 3; ++a) {
     place.moved[a] = place.first[a] - state.place.first[a];
     const bool movable = spare_.exists() && std::abs(place.moved[a]) < kind_.shape.valid;
@@ -192,12 +200,14 @@ void VoxelField::add_box(ClpvRegion& region, const ClpvBox& box) const {
 
 /// Moves the masks that stay valid, and clears those to recompute.
 void VoxelField::clear(std::size_t cascade, const ClpvRegion& region) {
-  const std::size_t bytes = kind_.shape.words_a_cascade() * sizeof(cl_uint), from = slot(cascade) * bytes;
+  const std::size_t bytes = kind_.shape.words_a_cascade() * sizeof(cl_uint),
+                    from = slot(cascade) * bytes;
   const std::size_t along = kind_.shape.cells;
   const auto words = static_cast<cl_int>(kind_.shape.words);
   const cl::NDRange cells(along, along, along), group(kMaskGroup, 1, 1);
   if (is_whole(region)) return session_.fill_zero(masks_, bytes, from);
-  if (std::any_of(region.moved, region.moved + 3, [](int cells_moved) { return cells_moved != 0; })) {
+  if (std::any_of(region.moved, region.moved + 3,
+                  [](int cells_moved) { return cells_moved != 0; })) {
     move_.set(region, kind_.shape.cells, kind_.shape.valid, words, masks_, slot(cascade), spare_)
         .launch(cells, group);
     session_.copy(spare_, masks_, bytes, from);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Incremental voxelisation: recomputes voxel masks only in cells that are new to a cascade or where triangles moved
-// (kernels/voxels/voxel_masks.cl).
+// Incremental voxelisation: recomputes voxel masks only in cells that are new to a cascade or where
+// triangles moved (kernels/voxels/voxel_masks.cl).
 #pragma once
 
 #include <optional>
@@ -18,23 +18,25 @@ namespace clpv {
 
 /// Shape of a cascade's masks: 32-bit words, a fixed number per cell, cells along x first.
 struct VoxelMaskShape {
-  int cells;          ///< along each axis
-  int valid;          ///< number of leading cells along each axis that may hold masks; the others hold zeros
-  std::size_t words;  ///< words per cell
+  int cells;  ///< along each axis
+  int valid;  ///< number of leading cells along each axis that may hold masks; the others hold
+              ///< zeros
+  std::size_t words;     ///< words per cell
   std::size_t cascades;  ///< number of stored cascades; 1: masks of the last updated cascade only
 
   std::size_t words_a_cascade() const;
   std::size_t bytes() const { return words_a_cascade() * cascades * sizeof(cl_uint); }
 };
 
-/// Kind of masks that triangles set in the cells of cascades: blocker_masks(), reflector_masks() or visibility_masks().
+/// Kind of masks that triangles set in the cells of cascades: blocker_masks(), reflector_masks() or
+/// visibility_masks().
 struct VoxelKind {
   std::string what;  ///< for errors
   VoxelMaskShape shape;
   unsigned max_triangles;  ///< of one launch, since larger launches take seconds on some devices
-  /// Kernel that sets masks of a region's cells from triangles in any order. Its arguments are the region, the clusters
-  /// (triangle_number of kernels/voxels/region.h), the scene's triangles, its textures if `textured`, the masks,
-  /// and the index of the cascade's masks if `indexed`.
+  /// Kernel that sets masks of a region's cells from triangles in any order. Its arguments are the
+  /// region, the clusters (triangle_number of kernels/voxels/region.h), the scene's triangles, its
+  /// textures if `textured`, the masks, and the index of the cascade's masks if `indexed`.
   ProgramSource program;
   std::string kernel;
   bool textured = true, indexed = true;
@@ -43,11 +45,12 @@ struct VoxelKind {
   std::string volume_kernel = {};
 };
 
-/// Masks that triangles set in the cells of cascades, and the volumes that follow from them. Deterministic: the order
-/// of triangles does not matter.
+/// Masks that triangles set in the cells of cascades, and the volumes that follow from them.
+/// Deterministic: the order of triangles does not matter.
 class VoxelField {
  public:
-  /// `scene` must not change except by upload_moving(). Throws Error(run_time) if device memory does not suffice.
+  /// `scene` must not change except by upload_moving(). Throws Error(run_time) if device memory
+  /// does not suffice.
   VoxelField(Session& session, const SceneBuffers& scene, VoxelKind kind);
 
   /// Updates a cascade's masks for the position of `grid` and the current scene.
