@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A PyOpenCL kernel that reads clpv's volumes: indirect light on a plane of points, without a copy through the host.
+"""A PyOpenCL kernel that reads clpv's volumes: indirect light on a plane of points, without a copy
+through the host.
 
     python3 examples/lookup.py [scenes/cornell.json]
 """
@@ -21,7 +22,9 @@ __kernel void light_plane(const float height, const float size, __global float4*
 
 def memory(argument):
     """Memory that clpv returned, as pyopencl has it; numbers as they are."""
-    return cl.MemoryObject.from_int_ptr(argument, retain=True) if isinstance(argument, int) else argument
+    if not isinstance(argument, int):
+        return argument
+    return cl.MemoryObject.from_int_ptr(argument, retain=True)
 
 
 def main(path="scenes/cornell.json"):
@@ -43,7 +46,9 @@ def main(path="scenes/cornell.json"):
     # The frame's own image, on the device too.
     image = np.empty((frame.height, frame.width, 4), np.float32)
     cl.enqueue_copy(queue, image, memory(frame.image))
-    print(f"image: mean {image[..., :3].mean():.4f}; light on the plane: {looked_up[..., :3].mean(axis=(0, 1))} W/m^2")
+    print(
+        f"image: mean {image[..., :3].mean():.4f}; light on the plane: {looked_up[..., :3].mean(axis=(0, 1))} W/m^2"
+    )
 
     z, x = (np.mgrid[:n, :n] + 0.5) * size / n
     points = np.stack([x, np.full_like(x, height), z], axis=-1)

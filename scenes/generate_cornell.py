@@ -1,16 +1,19 @@
-#!/usr/bin/env python3
+# !/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes cornell, cornell_lamp and empty_room, .glb and .json, beside itself: the Cornell box, by its published corners.
+"""Writes cornell, cornell_lamp and empty_room, .glb and .json, beside itself: the Cornell box, by
+its published corners.
 
-Python's standard library only; the same bytes every time. `generate_cornell.py [FOLDER]` writes into FOLDER instead.
+Python's standard library only; the same bytes every time. `generate_cornell.py [FOLDER]` writes
+into FOLDER instead.
 
-Millimetres, as published (Cornell University Program of Computer Graphics, "The Cornell Box: Data"): the open front
-is at z = 0, the red wall at x = 552.8, the green one at x = 0. The reflectances are the published spectra's usual
-linear RGB. In `cornell` the ceiling's lamp is left out: the light comes through the open front, from two sides, because a
-single direction could reach only one of the two coloured walls. `cornell_lamp` has the lamp, and no other light. Its walls get a thickness (not published: they have none
-there), since light falls on them from outside too. `empty_room` is `cornell` without blocks and with walls along the
-axes: light on the simplest surfaces, which tests compare with path tracing as cells get smaller.
-"""
+Millimetres, as published (Cornell University Program of Computer Graphics, "The Cornell Box:
+Data"): the open front is at z = 0, the red wall at x = 552.8, the green one at x = 0. The
+reflectances are the published spectra's usual linear RGB. In `cornell` the ceiling's lamp is left
+out: the light comes through the open front, from two sides, because a single direction could reach
+only one of the two coloured walls. `cornell_lamp` has the lamp, and no other light. Its walls get a
+thickness (not published: they have none there), since light falls on them from outside too.
+`empty_room` is `cornell` without blocks and with walls along the axes: light on the simplest
+surfaces, which tests compare with path tracing as cells get smaller. """
 import json
 import os
 import sys
@@ -33,13 +36,14 @@ CEILING = ROOM[1][1]
 RIGHT = 552.8  # wall of the empty room
 LAMP = [(343, 548.8, 227), (343, 548.8, 332), (213, 548.8, 332), (213, 548.8, 227)]
 LAMP_REFLECTANCE = (0.78, 0.78, 0.78)
-# The published spectrum, 0 at 400 nm, 8 at 500, 15.6 at 600 and 18.4 at 700, by the CIE's 1931 observer as linear sRGB, its
-# white that of an even spectrum, as for the reflectances.
+# The published spectrum, 0 at 400 nm, 8 at 500, 15.6 at 600 and 18.4 at 700, by the CIE's 1931
+# observer as linear sRGB, its white that of an even spectrum, as for the reflectances.
 LAMP_RADIANCE = (17.2, 11.5, 3.0)
 
 WALL = 80  # thickness: over a cell of the finest cascade
 
-# The blocks' footprints, counter-clockwise seen from above (from +y, x to the right and z down), and heights.
+# The blocks' footprints, counter-clockwise seen from above (from +y, x to the right and z down),
+# and heights.
 BLOCKS = {
     "short block": ([(130, 65), (82, 225), (240, 272), (290, 114)], 165),
     "tall block": ([(423, 247), (265, 296), (314, 456), (472, 406)], 330),
@@ -67,7 +71,8 @@ def room(lamp, empty):
 
 
 def outside(empty):
-    """The walls' outer faces, and the rim of the opening; the red wall leans a little, and the rim follows it."""
+    """The walls' outer faces, and the rim of the opening; the red wall leans a little, and the rim
+    follows it."""
     mesh = Mesh()
     x0, x1, y0, y1, z1 = -WALL, 556 + WALL, -WALL, 548.8 + WALL, 559.2 + WALL
     mesh.box("white", (x0, y0, 0), (x1, y1, z1), "-z")
@@ -93,12 +98,17 @@ def scene_file(stem):
     front = {"eye": [278, 273, -180], "target": [278, 273, 280], "vertical_fov_degrees": 75}
     cameras = [
         {"name": "front", **front},
-        {"name": "published", "eye": [278, 273, -800], "target": [278, 273, 0], "vertical_fov_degrees": 39.3},
+        {
+            "name": "published", "eye": [278, 273, -800], "target": [278, 273, 0],
+            "vertical_fov_degrees": 39.3
+        },
     ]
     cascades = {"count": 2, "size_metres": 2.0}
     if stem == "cornell_lamp":
-        return {"model": "cornell_lamp.glb", "metres_per_unit": 0.001, "exposure": 2.0, "cameras": cameras,
-                "lights": [], "cascades": cascades}
+        return {
+            "model": "cornell_lamp.glb", "metres_per_unit": 0.001, "exposure": 2.0,
+            "cameras": cameras, "lights": [], "cascades": cascades
+        }
     return {
         "model": stem + ".glb",
         "metres_per_unit": 0.001,
@@ -109,8 +119,14 @@ def scene_file(stem):
             {"name": "green", **front, "light": "onto green"},
         ],
         "lights": [
-            {"name": "onto red", "kind": "directional", "direction": [0.5, -0.6, 0.6], "illuminance_lux": 4.0},
-            {"name": "onto green", "kind": "directional", "direction": [-0.5, -0.6, 0.6], "illuminance_lux": 4.0},
+            {
+                "name": "onto red", "kind": "directional", "direction": [0.5, -0.6, 0.6],
+                "illuminance_lux": 4.0
+            },
+            {
+                "name": "onto green", "kind": "directional", "direction": [-0.5, -0.6, 0.6],
+                "illuminance_lux": 4.0
+            },
         ],
         "cascades": cascades,
     }

@@ -7,27 +7,36 @@
     image.save("cornell.png")
     image.array.mean(axis=(0, 1))        # float32, (height, width, 4)
 
-Lengths are metres, y is up. Illuminance in lux counts 1:1 as W/m^2, luminous intensity in candela as W/sr.
+Lengths are metres, y is up. Illuminance in lux counts 1:1 as W/m^2, luminous intensity in candela
+as W/sr.
 
-    Scene, Camera, Light, Medium         a scene file, glTF model or meshes, and what can be changed in it
+    Scene, Camera, Light, Medium         a scene file, glTF model or meshes, and what can be changed
+                                         in it
     Material                             surface of a mesh
-    Renderer, options(), devices()       frames on an OpenCL device: render, light, irradiance, volumes, stats
-    DeviceFrame, DeviceVolumes           results as OpenCL memory, for pyopencl; DeviceEvent: when they are complete
+    Renderer, options(), devices()       frames on an OpenCL device: render, light, irradiance,
+                                         volumes, stats
+    DeviceFrame, DeviceVolumes           results as OpenCL memory, for pyopencl; DeviceEvent: when
+                                         they are complete
     Image, read_image, compare           images as arrays, files, errors
     pathtrace                            ground truth on the CPU
     Basis, bases()                       functions on the sphere
-    clpv.search                          python3 -m clpv.search N: centres of radial functions (needs SciPy)
-    clpv.score                           python3 -m clpv.score DIR: errors of images by any renderer; works without the native module
+    clpv.search                          python3 -m clpv.search N: centres of radial functions
+                                         (needs SciPy)
+    clpv.score                           python3 -m clpv.score DIR: errors of images by any
+                                         renderer; works without the native module
     clpv.draw                            charts (needs matplotlib); works without the native module
-    clpv.view                            python3 -m clpv.view SCENE: viewer in the browser (needs viser)
+    clpv.view                            python3 -m clpv.view SCENE: viewer in the browser (needs
+                                         viser)
     Error, UsageError, InputError, DeviceError, ResourceError, ValidationError
 """
 import importlib
 
-__all__ = ["Basis", "Camera", "Comparison", "DeviceError", "DeviceEvent", "DeviceFrame", "DeviceVolumes", "Error", "Image",
-           "InputError", "Light", "Material", "Medium", "Renderer",
-           "ResourceError", "Scene", "UsageError", "ValidationError", "Volume", "bases", "compare", "devices", "options",
-           "pathtrace", "read_image"]
+__all__ = [
+    "Basis", "Camera", "Comparison", "DeviceError", "DeviceEvent", "DeviceFrame", "DeviceVolumes",
+    "Error", "Image", "InputError", "Light", "Material", "Medium", "Renderer", "ResourceError",
+    "Scene", "UsageError", "ValidationError", "Volume", "bases", "compare", "devices", "options",
+    "pathtrace", "read_image"
+]
 
 
 def __getattr__(name):

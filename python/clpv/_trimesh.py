@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Scenes of trimesh's meshes (Scene.from_trimesh). Imports trimesh only where its objects are given."""
+"""Scenes of trimesh's meshes (Scene.from_trimesh). Imports trimesh only where its objects are
+given."""
 import numpy
 
 import clpv
@@ -21,7 +22,8 @@ def _look(mesh):
     """Arguments of add_mesh() for a mesh's colours or texture."""
     visual = mesh.visual
     if visual.kind == "texture" and visual.uv is not None:
-        material = visual.material.to_simple() if hasattr(visual.material, "to_simple") else visual.material
+        material = visual.material.to_simple() if hasattr(visual.material,
+                                                          "to_simple") else visual.material
         if material.image is not None:
             texture = numpy.asarray(material.image.convert("RGBA"))
             return {"uvs": visual.uv * (1, -1) + (0, 1), "material": clpv.Material(texture=texture)}
@@ -37,7 +39,9 @@ def scene_of_trimesh(given):
     if isinstance(given, trimesh.Trimesh):
         given = trimesh.Scene(given)
     if not isinstance(given, trimesh.Scene):
-        raise TypeError(f"from_trimesh: found {type(given).__name__}, allowed: trimesh.Trimesh or trimesh.Scene")
+        raise TypeError(
+            f"from_trimesh: found {type(given).__name__}, allowed: trimesh.Trimesh or trimesh.Scene"
+        )
     scene, numbers = clpv.Scene(), {}
     for node in given.graph.nodes_geometry:
         transform, name = given.graph[node]
@@ -47,5 +51,6 @@ def scene_of_trimesh(given):
         if name in numbers:
             scene.add_instance(numbers[name], transform)
         else:
-            numbers[name] = scene.add_mesh(mesh.vertices, mesh.faces, transform=transform, **_look(mesh))
+            numbers[name] = scene.add_mesh(mesh.vertices, mesh.faces, transform=transform,
+                                           **_look(mesh))
     return scene

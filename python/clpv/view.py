@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Viewer in the browser: python3 -m clpv.view SCENE [--model PATH] [--port N] [--host ADDRESS]
 
-Drag to look round, W A S D Q E to walk, the wheel to move, R to return to the scene's camera. Frames
-are small while the camera moves, sharp when it rests, and then nearer to path tracing.
-Needs viser: python3 -m pip install viser==1.1.1 (in a virtual environment with
---system-site-packages).
+Drag to look round, W A S D Q E to walk, the wheel to move, R to return to the scene's camera.
+Frames are small while the camera moves, sharp when it rests, and then nearer to path tracing. Needs
+viser: python3 -m pip install viser==1.1.1 (in a virtual environment with --system-site-packages).
 """
 import argparse
 import collections
@@ -18,17 +17,19 @@ import clpv
 from clpv import view_gate
 
 VIEWS = "full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"
-STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "blockers", "visibility", "propagate",
-          "gather", "near-trace", "near", "medium", "shade")
+STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "blockers",
+          "visibility", "propagate", "gather", "near-trace", "near", "medium", "shade")
 # Frames of a view that rests: seconds without a change, height [pixels], rays of the near field.
 LEVELS = (0, 288, "2"), (0.3, 720, "4"), (1, 720, "64")
 MAX_RENDERERS = 4     # kept, by size and options
 RATE_SPAN = 1.0       # [s] of motion that the frame rate is measured over
-PIVOT = 0.03          # distance from the eye to the point that a drag turns the camera about, of the scene's diagonal
+# Distance from the eye to the point that a drag turns the camera about, of the scene's diagonal.
+PIVOT = 0.03
 
 
 def size_of(height, aspect):
-    """Width and height of a frame; multiples of 8, so that small changes of the window need no new renderer."""
+    """Width and height of a frame; multiples of 8, so that small changes of the window need no new
+    renderer."""
     return max(64, min(1920, 8 * round(height * aspect / 8))), height
 
 
@@ -59,7 +60,8 @@ class Renderers:
         if key not in self.kept:
             while len(self.kept) >= MAX_RENDERERS:
                 self.kept.popitem(last=False)
-            self.kept[key] = clpv.Renderer(self.scene, self.device, width=size[0], height=size[1], **options)
+            self.kept[key] = clpv.Renderer(self.scene, self.device, width=size[0], height=size[1],
+                                           **options)
         self.kept.move_to_end(key)
         return self.kept[key]
 
@@ -87,10 +89,12 @@ class Controls:
         gui = server.gui
 
         def choice(name, values, initial):
-            return gate.allow(gui.add_dropdown(name, values, initial_value=initial), lambda value: value in values)
+            return gate.allow(gui.add_dropdown(name, values, initial_value=initial),
+                              lambda value: value in values)
 
         def checkbox(name, initial=False):
-            return gate.allow(gui.add_checkbox(name, initial_value=initial), lambda value: isinstance(value, bool))
+            return gate.allow(gui.add_checkbox(name, initial_value=initial),
+                              lambda value: isinstance(value, bool))
 
         def slider(name, low, high, step, initial, **more):
             return gate.allow(gui.add_slider(name, low, high, step, initial_value=initial, **more),
@@ -111,28 +115,34 @@ class Controls:
             self.lux = slider("illuminance [lx]", 0, 50, 0.5, 10)
         names = [camera.name for camera in scene.cameras]
         self.camera = choice("camera", names, names[0])
-        self.back = gate.allow(gui.add_button("return to the camera (R)"), lambda value: isinstance(value, bool))
+        self.back = gate.allow(gui.add_button("return to the camera (R)"),
+                               lambda value: isinstance(value, bool))
         gui.add_markdown("W A S D Q E walk, through walls too; R returns to the camera.")
-        for control in (self.view, self.basis, self.transport, self.near, self.exposure, self.time, self.sun, self.azimuth,
-                        self.elevation, self.lux):
+        for control in (self.view, self.basis, self.transport, self.near, self.exposure, self.time,
+                        self.sun, self.azimuth, self.elevation, self.lux):
             control.on_update(lambda _: changed())
 
     def options(self, rays):
         steps = {} if self.transport.value == "sweep" else {"bounces": "1"}
-        near = {"near_rays": rays} if self.near.value and self.transport.value == "sweep" else {"near": "off"}
+        near = {"near_rays": rays
+                } if self.near.value and self.transport.value == "sweep" else {"near": "off"}
         return {"basis": self.basis.value, "transport": self.transport.value, **steps, **near}
 
     def scene_lights(self):
         if not self.sun.value:
             return self.lights
-        return [clpv.Light(direction=sun_direction(self.azimuth.value, self.elevation.value), intensity=self.lux.value,
-                           name="sun")]
+        return [
+            clpv.Light(direction=sun_direction(self.azimuth.value, self.elevation.value),
+                       intensity=self.lux.value, name="sun")
+        ]
 
     def show(self, stats, size, rate):
-        rows = "\n".join(f"| {stage} | {stats[stage]:.1f} |" for stage in STAGES if stats[stage] > 0)
-        self.status.content = (f"{size[0]} x {size[1]}, {rate} frames/s in motion, "
-                               f"{stats['device_bytes'] / 2**20:.0f} MiB\n\n| stage | ms |\n|---|---|\n{rows}\n"
-                               f"| frame | {stats['frame']:.1f} |")
+        rows = "\n".join(f"| {stage} | {stats[stage]:.1f} |" for stage in STAGES
+                         if stats[stage] > 0)
+        self.status.content = (
+            f"{size[0]} x {size[1]}, {rate} frames/s in motion, "
+            f"{stats['device_bytes'] / 2**20:.0f} MiB\n\n| stage | ms |\n|---|---|\n{rows}\n"
+            f"| frame | {stats['frame']:.1f} |")
 
 
 class Client:
@@ -147,8 +157,12 @@ class Client:
 
 
 def next_client(clients, now):
-    """The client with the fewest levels whose next one is due, of these the one that waits longest; or None."""
-    due = [client for client in clients if client.shown < len(LEVELS) and now - client.changed >= LEVELS[client.shown][0]]
+    """The client with the fewest levels whose next one is due, of these the one that waits longest;
+    or None."""
+    due = [
+        client for client in clients
+        if client.shown < len(LEVELS) and now - client.changed >= LEVELS[client.shown][0]
+    ]
     return min(due, key=lambda client: (client.shown, client.served), default=None)
 
 
@@ -178,7 +192,8 @@ class Viewer:
         view.fov = math.radians(camera.fov)
 
     def jump(self, event):
-        camera = next(each for each in self.scene.cameras if each.name == self.controls.camera.value)
+        camera = next(each for each in self.scene.cameras
+                      if each.name == self.controls.camera.value)
         if event.client is not None:
             self.place(event.client.camera, camera)
 
@@ -217,8 +232,10 @@ class Viewer:
         size = size_of(height, handle.camera.aspect)
         self.update_lights()
         renderer = self.renderers.get(size, self.controls.options(rays))
-        image = renderer.render(self.controls.view.value, camera_of(handle), time=self.controls.time.value)
-        handle.scene.set_background_image(image.display(self.controls.exposure.value)[..., :3], format="jpeg", jpeg_quality=85)
+        image = renderer.render(self.controls.view.value, camera_of(handle),
+                                time=self.controls.time.value)
+        handle.scene.set_background_image(
+            image.display(self.controls.exposure.value)[..., :3], format="jpeg", jpeg_quality=85)
         handle.flush()
         self.frames += 1
         if client.changed == changed:  # else it is old already
@@ -237,10 +254,12 @@ class Viewer:
             return
         try:
             self.draw(client)
-        except clpv.Error as error:  # such as options that exclude each other: shown until the next change
+        except clpv.Error as error:
+            # Such as options that exclude each other: shown until the next change.
             client.shown = len(LEVELS)
             self.controls.status.content = f"**{error}**"
-        except Exception as error:  # of this client alone: one that left while it was drawn for, for example
+        except Exception as error:
+            # Of this client alone: one that left while it was drawn for, for example.
             self.disconnect(client.handle)
             print(f"clpv.view: lost a client: {error!r}", file=sys.stderr)
 
@@ -255,19 +274,25 @@ def require_free(host, port):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="python3 -m clpv.view", description="Shows a scene in the browser.")
+    parser = argparse.ArgumentParser(prog="python3 -m clpv.view",
+                                     description="Shows a scene in the browser.")
     parser.add_argument("scene", help="scene file (.json) or model (.gltf, .glb)")
     parser.add_argument("--model", help="model file instead of the scene file's")
-    parser.add_argument("--device", default="", help="OpenCL device: an index, or a part of its name")
-    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: %(default)s, this machine only); whoever reaches it controls the viewer")
-    parser.add_argument("--port", type=int, default=8080, choices=range(1, 65536), metavar="1..65535",
-                        help="(default: %(default)s)")
+    parser.add_argument("--device", default="",
+                        help="OpenCL device: an index, or a part of its name")
+    parser.add_argument(
+        "--host", default="127.0.0.1", help=
+        "address to listen on (default: %(default)s, this machine only); whoever reaches it controls the viewer"
+    )
+    parser.add_argument("--port", type=int, default=8080, choices=range(1, 65536),
+                        metavar="1..65535", help="(default: %(default)s)")
     given = parser.parse_args(arguments)
     try:
         import viser  # noqa: F401
     except ImportError:
-        sys.exit("clpv.view: viser is not installed; in a virtual environment: python3 -m pip install "
-                 f"viser=={view_gate.VISER}")
+        sys.exit(
+            "clpv.view: viser is not installed; in a virtual environment: python3 -m pip install "
+            f"viser=={view_gate.VISER}")
     require_free(given.host, given.port)
     try:
         scene = clpv.Scene(given.scene, given.model)

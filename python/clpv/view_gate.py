@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Gate of the viewer (clpv.view): admits requests of its own page, and its messages with valid values.
+"""Gate of the viewer (clpv.view): admits requests of its own page, and its messages with valid
+values.
 
 viser itself accepts any Host and Origin, sets any attribute of a control, and opens a public tunnel
 on a client's request. The gate depends on viser's inner parts, hence on its version.

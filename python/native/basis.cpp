@@ -18,11 +18,12 @@ glm::dvec3 unit(const double* v) {
   const glm::dvec3 w(v[0], v[1], v[2]);
   const double length = glm::length(w);
   if (length > 0 && std::isfinite(length)) return w / length;
-  throw Error(ExitCode::usage, "direction: found ({}, {}, {}), allowed: finite numbers, not all 0", w.x, w.y,
-              w.z);
+  throw Error(ExitCode::usage, "direction: found ({}, {}, {}), allowed: finite numbers, not all 0",
+              w.x, w.y, w.z);
 }
 
-std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth, const py::object& centres) {
+std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth,
+                            const py::object& centres) {
   if (centres.is_none())
     return make_basis(name, bandwidth.is_none() ? kDefaultLambda : bandwidth.cast<double>());
   const DoubleArray given = vectors<DoubleArray>(centres, "centres");
@@ -31,11 +32,12 @@ std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth
   if (bandwidth.is_none()) return make_basis_from_centres(name, all);
   const DoubleArray lambdas = real_array<DoubleArray>(bandwidth, "bandwidth");
   if (lambdas.ndim() == 0) return make_basis_from_centres(name, all, *lambdas.data());
-  return make_basis_from_centres(name, all,
-                                 std::vector<double>(lambdas.data(), lambdas.data() + lambdas.size()));
+  return make_basis_from_centres(
+      name, all, std::vector<double>(lambdas.data(), lambdas.data() + lambdas.size()));
 }
 
-/// Applies `values_at(w, out)`, which writes `count` numbers, to each direction of an array (..., 3).
+/// Applies `values_at(w, out)`, which writes `count` numbers, to each direction of an array (...,
+/// 3).
 template <typename Values>
 py::array_t<double> at_each(const py::object& directions, int count, const Values& values_at) {
   const DoubleArray given = vectors<DoubleArray>(directions, "directions");
@@ -70,25 +72,29 @@ py::array_t<double> directions(const Basis& basis) {
   return found;
 }
 
-/// A^-1 Int b f dw by quadrature. Takes values, not a function: Python's exit ends daemon threads that run Python code below C++.
+/// A^-1 Int b f dw by quadrature. Takes values, not a function: Python's exit ends daemon threads
+/// that run Python code below C++.
 py::array_t<double> project(const Basis& basis, const py::object& given) {
   const std::vector<QuadratureNode> nodes = quadrature(basis, octants());
   const DoubleArray values = real_array<DoubleArray>(given, "values");
   if (values.ndim() != 1 || values.shape(0) != static_cast<py::ssize_t>(nodes.size())) {
     throw py::value_error("values: found shape " + std::string(py::str(values.attr("shape"))) +
-                          ", allowed: (" + std::to_string(nodes.size()) + ",), one for each of directions()");
+                          ", allowed: (" + std::to_string(nodes.size()) +
+                          ",), one for each of directions()");
   }
   std::vector<double> moments(static_cast<std::size_t>(basis.size()));
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const std::vector<double> b = basis.evaluate(nodes[k].w);
-    for (std::size_t i = 0; i < b.size(); ++i) moments[i] += nodes[k].weight * values.data()[k] * b[i];
+    for (std::size_t i = 0; i < b.size(); ++i)
+      moments[i] += nodes[k].weight * values.data()[k] * b[i];
   }
   return vector_array(basis.gram_inverse() * moments);
 }
 
 /// None: exact lobes; else those of the paper, by a table of that size.
 LobeOptions lobe_options(const std::optional<int>& table_size) {
-  return table_size ? LobeOptions{.kind = LobeKind::rotate, .table_size = *table_size} : LobeOptions{};
+  return table_size ? LobeOptions{.kind = LobeKind::rotate, .table_size = *table_size}
+                    : LobeOptions{};
 }
 
 double energy(const Basis& basis, int steps, const std::string& transport,
@@ -112,8 +118,9 @@ py::dict lobe(const Basis& basis, const py::object& axis, const py::object& give
     c.assign(array.data(), array.data() + array.size());
   }
   const LobeQuality quality = lobe_quality(basis, c, d);
-  return py::dict(py::arg("relative_l2") = quality.relative_l2, py::arg("minimum") = quality.minimum,
-                  py::arg("flux") = quality.flux, py::arg("peak_error_degrees") = quality.peak_error_degrees);
+  return py::dict(py::arg("relative_l2") = quality.relative_l2,
+                  py::arg("minimum") = quality.minimum, py::arg("flux") = quality.flux,
+                  py::arg("peak_error_degrees") = quality.peak_error_degrees);
 }
 
 }  // namespace
@@ -123,14 +130,15 @@ void add_basis(py::module_& module) {
   py::class_<Basis> type(
       module, "Basis",
       "Basis(name='sh2', bandwidth=None, centres=None): N functions b_i on the unit sphere.\n\n"
-      "bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre; centres: array "
-      "(N, 3), for\n"
+      "bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre; "
+      "centres: array (N, 3), for\n"
       "radial functions of one's own. Directions may have any length.");
   type.def(py::init(&make), py::arg("name") = "sh2", py::arg("bandwidth") = py::none(),
            py::arg("centres") = py::none());
   type.def_property_readonly("name", &Basis::name);
   type.def("__len__", &Basis::size);
-  type.def_property_readonly("condition", &Basis::condition, "Condition number of the Gram matrix.");
+  type.def_property_readonly("condition", &Basis::condition,
+                             "Condition number of the Gram matrix.");
   type.def_property_readonly(
       "integrals", [](const Basis& b) { return vector_array(b.integrals()); },
       "Array (N,): integral of each function.");
@@ -165,23 +173,29 @@ void add_basis(py::module_& module) {
         });
       },
       py::arg("axes"), py::arg("table_size") = py::none(),
-      "clamped_cosine(axes (..., 3), table_size=None) -> float64 array (..., N): projection of max(0, w . axis), exact,\n"
-      "or along +z and rotated through a table of that many entries as in the paper (0: without a table).");
+      "clamped_cosine(axes (..., 3), table_size=None) -> float64 array (..., N): projection of "
+      "max(0, w . axis), exact,\n"
+      "or along +z and rotated through a table of that many entries as in the paper (0: without a "
+      "table).");
   type.def_property_readonly(
       "mean_error", [](const Basis& b) { return mean_relative_l2(b, Lobes(b, {})); },
       "Mean relative L2 error of exactly projected clamped cosines over all axes.");
   type.def("energy", &energy, py::arg("steps"), py::arg("transport") = "sampled",
            py::arg("table_size") = py::none(),
-           "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source after `steps` steps of\n"
-           "propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for clamped_cosine().");
+           "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source "
+           "after `steps` steps of\n"
+           "propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for "
+           "clamped_cosine().");
   type.def("directions", &directions,
-           "directions() -> float64 array (K, 3): directions at which project() takes values of a function.");
+           "directions() -> float64 array (K, 3): directions at which project() takes values of a "
+           "function.");
   type.def("project", &project, py::arg("values"),
-           "project(values (K,)) -> float64 array (N,): least-squares projection of a function that has these\n"
+           "project(values (K,)) -> float64 array (N,): least-squares projection of a function "
+           "that has these\n"
            "values at directions().");
   type.def("lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
-           "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) against the "
-           "clamped\n"
+           "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) "
+           "against the clamped\n"
            "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
 }
 

@@ -37,7 +37,8 @@ Image image_from(const py::object& given, std::optional<std::vector<std::string>
   image.width = static_cast<int>(array.shape(1));
   image.channels = channels ? std::move(*channels) : usual_channels(array.shape(2));
   if (static_cast<py::ssize_t>(image.channels.size()) != array.shape(2)) {
-    throw Error(ExitCode::usage, "channels: found {} names, allowed: {}, as many as the array has channels",
+    throw Error(ExitCode::usage,
+                "channels: found {} names, allowed: {}, as many as the array has channels",
                 image.channels.size(), array.shape(2));
   }
   if (encoding != "linear" && encoding != "srgb")
@@ -60,7 +61,8 @@ std::vector<py::ssize_t> shape_of(const Image& image) {
 
 /// An Image as it is; anything else as an array of a linear image.
 Image given_image(const py::object& given) {
-  return py::isinstance<Image>(given) ? given.cast<Image>() : image_from(given, std::nullopt, "linear");
+  return py::isinstance<Image>(given) ? given.cast<Image>()
+                                      : image_from(given, std::nullopt, "linear");
 }
 
 void add_comparison(py::module_& module) {
@@ -68,16 +70,21 @@ void add_comparison(py::module_& module) {
       module, "Comparison",
       "Errors of an image against its reference, over the colour channels. None: undefined.");
   type.def_readonly("rmse", &Comparison::rmse, "Root mean square error.");
-  type.def_readonly("nrmse", &Comparison::nrmse, "rmse over the root mean square of the reference.");
+  type.def_readonly("nrmse", &Comparison::nrmse,
+                    "rmse over the root mean square of the reference.");
   type.def_readonly("relative_mse", &Comparison::relative_mse, "Mean of (a - b)^2 / (b^2 + 0.01).");
-  type.def_readonly("psnr_db", &Comparison::psnr_db, "Peak signal-to-noise ratio with peak 1 [dB].");
+  type.def_readonly("psnr_db", &Comparison::psnr_db,
+                    "Peak signal-to-noise ratio with peak 1 [dB].");
   type.def_readonly("max_error", &Comparison::max_error);
   type.def_readonly("max_error_at", &Comparison::max_error_at, "x, y from the top left corner.");
-  type.def_readonly("mean_luminance", &Comparison::mean_luminance, "Of the image and of the reference.");
+  type.def_readonly("mean_luminance", &Comparison::mean_luminance,
+                    "Of the image and of the reference.");
   type.def_readonly("identical", &Comparison::identical);
-  type.def_readonly("valid_pixels", &Comparison::valid_pixels, "Pixels with alpha above 0 in both.");
+  type.def_readonly("valid_pixels", &Comparison::valid_pixels,
+                    "Pixels with alpha above 0 in both.");
   type.def_readonly("nrmse_valid", &Comparison::nrmse_valid, "nrmse over valid pixels.");
-  type.def_readonly("best_gain", &Comparison::best_gain, "Factor on the image with the least error.");
+  type.def_readonly("best_gain", &Comparison::best_gain,
+                    "Factor on the image with the least error.");
   type.def_readonly("nrmse_best_gain", &Comparison::nrmse_best_gain, "nrmse with that factor.");
   type.def_readonly("energy_ratio", &Comparison::energy_ratio,
                     "Sum of the image over that of the reference.");
@@ -85,7 +92,8 @@ void add_comparison(py::module_& module) {
                     "Mean FLIP, what an observer sees, 0 to 1 (Andersson et al. 2020).");
   type.def("__repr__", [](const Comparison& c) {
     return fmt::format("Comparison(rmse={}, nrmse={}, identical={})", c.rmse,
-                       c.nrmse ? fmt::format("{}", *c.nrmse) : "None", c.identical ? "True" : "False");
+                       c.nrmse ? fmt::format("{}", *c.nrmse) : "None",
+                       c.identical ? "True" : "False");
   });
   module.def(
       "compare",
@@ -94,27 +102,30 @@ void add_comparison(py::module_& module) {
         return interruptible([&] { return compare(a, b, exposure); });
       },
       py::arg("image"), py::arg("reference"), py::arg("exposure") = 0.0f,
-      "compare(image, reference, exposure=0.0) -> Comparison. Both: an Image, or an array (height, width, channels).\n"
+      "compare(image, reference, exposure=0.0) -> Comparison. Both: an Image, or an array (height, "
+      "width, channels).\n"
       "exposure [EV]: of linear images, for FLIP.\n"
-      "Raises InputError for other sizes, channels or encodings, and for values that are not finite.");
+      "Raises InputError for other sizes, channels or encodings, and for values that are not "
+      "finite.");
 }
 
 }  // namespace
 
 void add_image(py::module_& module) {
-  py::class_<Image> type(module, "Image", py::buffer_protocol(),
-                         "Image(array, channels=None, encoding='linear'): copies an array (height, width, "
-                         "channels) of real numbers.\n\n"
-                         "numpy.asarray(image) and image.array are float32 views of its pixels, row 0 on "
-                         "top, without a copy; they keep\n"
-                         "the image alive.");
+  py::class_<Image> type(
+      module, "Image", py::buffer_protocol(),
+      "Image(array, channels=None, encoding='linear'): copies an array (height, width, "
+      "channels) of real numbers.\n\n"
+      "numpy.asarray(image) and image.array are float32 views of its pixels, row 0 on top, without "
+      "a copy; they keep\n"
+      "the image alive.");
   type.def(py::init(&image_from), py::arg("array"), py::arg("channels") = py::none(),
            py::arg("encoding") = "linear");
   type.def_buffer([](Image& image) {
     const auto shape = shape_of(image);
     const py::ssize_t value = sizeof(float);
-    return py::buffer_info(image.pixels.data(), value, py::format_descriptor<float>::format(), 3, shape,
-                           {shape[1] * shape[2] * value, shape[2] * value, value});
+    return py::buffer_info(image.pixels.data(), value, py::format_descriptor<float>::format(), 3,
+                           shape, {shape[1] * shape[2] * value, shape[2] * value, value});
   });
   type.def_property_readonly(
       "array",
@@ -130,7 +141,8 @@ void add_image(py::module_& module) {
       "Names, such as 'R' or 'indirect.R' of layer 'indirect'.");
   type.def_readonly("metadata", &Image::metadata, "Dict of the options that it was rendered with.");
   type.def_property_readonly(
-      "encoding", [](const Image& image) { return image.encoding == Encoding::srgb ? "srgb" : "linear"; },
+      "encoding",
+      [](const Image& image) { return image.encoding == Encoding::srgb ? "srgb" : "linear"; },
       "'linear' in light, or 'srgb'.");
   type.def(
       "save",
@@ -138,8 +150,8 @@ void add_image(py::module_& module) {
         without_gil([&] { save_image(path, image, exposure); });
       },
       py::arg("path"), py::arg("exposure") = 0.0f,
-      "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with metadata, .png "
-      "tone-mapped\n"
+      "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with "
+      "metadata, .png tone-mapped\n"
       "(ACES) after multiplication by 2^exposure [EV].");
   type.def(
       "display",
@@ -153,24 +165,29 @@ void add_image(py::module_& module) {
         return bytes;
       },
       py::arg("exposure") = 0.0f,
-      "uint8 array (height, width, channels), tone-mapped and sRGB-encoded as save() does for .png.");
+      "uint8 array (height, width, channels), tone-mapped and sRGB-encoded as save() does for "
+      ".png.");
   type.def(
       "_repr_png_",
       [](const Image& image) -> py::object {
         if (!shows_colour(image)) return py::none();
-        const auto bytes =
-            png_bytes(image.encoding == Encoding::srgb ? image : display_image(image, 0, ToneMap::aces));
+        const auto bytes = png_bytes(
+            image.encoding == Encoding::srgb ? image : display_image(image, 0, ToneMap::aces));
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
       },
       "_repr_png_() -> bytes: how notebooks show it, as save() does; None without R, G, B.");
   type.def("__repr__", [](const Image& image) {
-    return fmt::format("Image({} x {}, {}, {})", image.width, image.height, fmt::join(image.channels, " "),
+    return fmt::format("Image({} x {}, {}, {})", image.width, image.height,
+                       fmt::join(image.channels, " "),
                        image.encoding == Encoding::srgb ? "srgb" : "linear");
   });
   module.def(
       "read_image",
-      [](const std::filesystem::path& path) { return interruptible([&] { return read_image(path); }); },
-      py::arg("path"), "Reads an .exr, .png or .hdr file with all its channels -> Image. Raises InputError.");
+      [](const std::filesystem::path& path) {
+        return interruptible([&] { return read_image(path); });
+      },
+      py::arg("path"),
+      "Reads an .exr, .png or .hdr file with all its channels -> Image. Raises InputError.");
   add_comparison(module);
 }
 

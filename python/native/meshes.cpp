@@ -9,14 +9,15 @@
 namespace clpv::python {
 namespace {
 
-/// Numbers of a mesh, of which the caller may do anything after the call: always a copy, or one that NumPy keeps unchanged
-/// while the GIL is held.
+/// Numbers of a mesh, of which the caller may do anything after the call: always a copy, or one
+/// that NumPy keeps unchanged while the GIL is held.
 template <typename T, std::size_t n>
 using Rows = std::vector<std::array<T, n>>;
 
-/// Rejects an array of another kind of numbers ("fiu") or shape, before a conversion allocates memory.
-py::array checked(const char* function, const char* name, const py::object& given, std::string_view kinds,
-                  std::initializer_list<py::ssize_t> columns) {
+/// Rejects an array of another kind of numbers ("fiu") or shape, before a conversion allocates
+/// memory.
+py::array checked(const char* function, const char* name, const py::object& given,
+                  std::string_view kinds, std::initializer_list<py::ssize_t> columns) {
   const auto array = real_array<py::array>(given, name);
   if (kinds.find(array.dtype().kind()) == std::string_view::npos) {
     throw py::type_error(fmt::format("{}: {}: found an array of {}, allowed: {}", function, name,
@@ -42,7 +43,8 @@ py::array checked(const char* function, const char* name, const py::object& give
 /// Rows of n floats; missing columns are 1.
 template <std::size_t n>
 Rows<float, n> floats(const char* function, const char* name, const py::object& given,
-                      std::initializer_list<py::ssize_t> columns = {n}, std::string_view kinds = "fiu") {
+                      std::initializer_list<py::ssize_t> columns = {n},
+                      std::string_view kinds = "fiu") {
   if (given.is_none()) return {};
   const FloatArray array = FloatArray::ensure(checked(function, name, given, kinds, columns));
   if (!array) throw py::error_already_set();
@@ -97,7 +99,8 @@ std::optional<Material::Texture> texture_of(const py::object& given) {
            fmt::format("(height, width, 4), 1 to {} pixels per side", side));
   }
   if (bytes) {
-    const auto values = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
+    const auto values =
+        py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
     return Material::Texture{static_cast<std::uint32_t>(array.shape(1)),
                              static_cast<std::uint32_t>(array.shape(0)),
                              {values.data(), values.data() + values.size()}};
@@ -155,9 +158,11 @@ std::unique_ptr<GivenMesh> given_mesh(const py::object& positions, const py::obj
 }
 
 int add_mesh(Scene& scene, const py::object& positions, const py::object& triangles,
-             const py::object& normals, const py::object& uvs, const py::object& colours, bool smooth,
-             const std::optional<Material>& material, const py::object& transform, bool moves) {
-  const auto given = given_mesh(positions, triangles, normals, uvs, colours, smooth, material, moves);
+             const py::object& normals, const py::object& uvs, const py::object& colours,
+             bool smooth, const std::optional<Material>& material, const py::object& transform,
+             bool moves) {
+  const auto given =
+      given_mesh(positions, triangles, normals, uvs, colours, smooth, material, moves);
   const Transform at = transform_of("add_mesh", transform);
   return without_gil([&] { return scene.add_mesh(given->mesh, at); });
 }
@@ -165,16 +170,18 @@ int add_mesh(Scene& scene, const py::object& positions, const py::object& triang
 }  // namespace
 
 void add_material(py::module_& module) {
-  py::class_<Material> type(module, "Material",
-                            "Diffuse surface of a mesh. Immutable. Values are checked where it is used.\n\n"
-                            "base_colour: linear red, green, blue and optionally alpha, or one number, 0 to "
-                            "1; emission: radiance of the front\n"
-                            "[W/m^2/sr], three numbers or one; texture: array (height, width, 4), uint8 with "
-                            "sRGB-encoded colour, or floats, linear;\n"
-                            "alpha_cutoff: alpha below which there are holes; double_sided: visible, and "
-                            "emissive, from both sides.");
-  type.def(py::init([](const py::object& base_colour, const py::object& emission, const py::object& texture,
-                       std::optional<double> alpha_cutoff, bool double_sided) {
+  py::class_<Material> type(
+      module, "Material",
+      "Diffuse surface of a mesh. Immutable. Values are checked where it is used.\n\n"
+      "base_colour: linear red, green, blue and optionally alpha, or one number, 0 to 1; emission: "
+      "radiance of the front\n"
+      "[W/m^2/sr], three numbers or one; texture: array (height, width, 4), uint8 with "
+      "sRGB-encoded colour, or floats, linear;\n"
+      "alpha_cutoff: alpha below which there are holes; double_sided: visible, and emissive, from "
+      "both sides.");
+  type.def(py::init([](const py::object& base_colour, const py::object& emission,
+                       const py::object& texture, std::optional<double> alpha_cutoff,
+                       bool double_sided) {
              return Material{base_colour_of(base_colour), colour_of(emission), texture_of(texture),
                              alpha_cutoff, double_sided};
            }),
@@ -202,53 +209,58 @@ void add_material(py::module_& module) {
   type.def("__repr__", [](const Material& m) {
     const auto& c = m.base_colour;
     return fmt::format(
-        "Material(base_colour=({}, {}, {}, {}), emission=({}, {}, {}), texture={}, alpha_cutoff={}, "
+        "Material(base_colour=({}, {}, {}, {}), emission=({}, {}, {}), texture={}, "
+        "alpha_cutoff={}, "
         "double_sided={})",
         c[0], c[1], c[2], c[3], m.emission[0], m.emission[1], m.emission[2],
         m.texture ? fmt::format("{} x {}", m.texture->width, m.texture->height) : "None",
-        m.alpha_cutoff ? fmt::format("{}", *m.alpha_cutoff) : "None", m.double_sided ? "True" : "False");
+        m.alpha_cutoff ? fmt::format("{}", *m.alpha_cutoff) : "None",
+        m.double_sided ? "True" : "False");
   });
 }
 
 void add_meshes(py::class_<Scene>& type) {
   const auto arguments = [](const auto& define, const auto& function, const char* doc) {
     define(function, py::arg("positions"), py::arg("triangles"), py::kw_only(),
-           py::arg("normals") = py::none(), py::arg("uvs") = py::none(), py::arg("colours") = py::none(),
-           py::arg("smooth") = false, py::arg("material") = py::none(), py::arg("transform") = py::none(),
+           py::arg("normals") = py::none(), py::arg("uvs") = py::none(),
+           py::arg("colours") = py::none(), py::arg("smooth") = false,
+           py::arg("material") = py::none(), py::arg("transform") = py::none(),
            py::arg("moves") = false, doc);
   };
-  arguments(
-      [&](const auto&... all) { type.def("add_mesh", all...); }, &add_mesh,
-      "add_mesh(positions, triangles, *, ...) -> int: a number for the mesh, which is not used again.\n\n"
-      "positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise seen from the front; "
-      "normals (n, "
-      "3), of any\nlength; uvs: texture coordinates (n, 2), v = 0 in the first row; colours: linear floats "
-      "(n, 3) or (n, "
-      "4), 0 to 1. Without\nnormals: flat ones, as in glTF, or, if smooth, means of the triangles' normals, "
-      "weighted by "
-      "angle. material: None for white;\ntransform: array (4, 4) to the world, which multiplies columns (x, "
-      "y, z, 1). "
-      "moves: it will move, so its\nfirst move needs no new memory (set_positions()). The arrays are copied. "
-      "Raises InputError with array, index, value found and\nvalue allowed.");
+  arguments([&](const auto&... all) { type.def("add_mesh", all...); }, &add_mesh,
+            "add_mesh(positions, triangles, *, ...) -> int: a number for the mesh, which is not "
+            "used again.\n\n"
+            "positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise seen "
+            "from the front; normals (n, "
+            "3), of any\nlength; uvs: texture coordinates (n, 2), v = 0 in the first row; colours: "
+            "linear floats (n, 3) or (n, "
+            "4), 0 to 1. Without\nnormals: flat ones, as in glTF, or, if smooth, means of the "
+            "triangles' normals, "
+            "weighted by angle. material: None for white;\ntransform: array (4, 4) to the world, "
+            "which multiplies columns (x, "
+            "y, z, 1). moves: it will move, so its\nfirst move needs no new memory "
+            "(set_positions()). The arrays are copied. Raises InputError with array, index, value "
+            "found and\nvalue allowed.");
   arguments([&](const auto&... all) { type.def_static("from_arrays", all...); },
             [](const py::object& positions, const py::object& triangles, const py::object& normals,
                const py::object& uvs, const py::object& colours, bool smooth,
                const std::optional<Material>& material, const py::object& transform, bool moves) {
               Scene scene;
-              add_mesh(scene, positions, triangles, normals, uvs, colours, smooth, material, transform, moves);
+              add_mesh(scene, positions, triangles, normals, uvs, colours, smooth, material,
+                       transform, moves);
               return scene;
             },
-            "from_arrays(positions, triangles, *, ...) -> Scene of one mesh, number 0, as add_mesh() "
-            "describes it.");
+            "from_arrays(positions, triangles, *, ...) -> Scene of one mesh, number 0, as "
+            "add_mesh() describes it.");
   type.def_static(
       "from_trimesh",
       [](const py::object& given) {
         return py::module_::import("clpv._trimesh").attr("scene_of_trimesh")(given);
       },
       py::arg("given"),
-      "from_trimesh(given) -> Scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, instances, "
-      "colours and "
-      "base-colour\ntextures.");
+      "from_trimesh(given) -> Scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, "
+      "instances, "
+      "colours and base-colour\ntextures.");
   type.def(
       "add_instance",
       [](Scene& scene, int mesh, const py::object& transform) {
@@ -256,7 +268,8 @@ void add_meshes(py::class_<Scene>& type) {
         return without_gil([&] { return scene.add_instance(mesh, at); });
       },
       py::arg("mesh"), py::arg("transform"),
-      "add_instance(mesh, transform) -> int: the same mesh at another place; its vertices are shared.");
+      "add_instance(mesh, transform) -> int: the same mesh at another place; its vertices are "
+      "shared.");
   type.def(
       "remove_mesh", [](Scene& scene, int mesh) { without_gil([&] { scene.remove_mesh(mesh); }); },
       py::arg("mesh"), "remove_mesh(mesh): removes a mesh from one of its places.");
@@ -268,11 +281,11 @@ void add_meshes(py::class_<Scene>& type) {
         without_gil([&] { scene.set_positions(mesh, moved, turned); });
       },
       py::arg("mesh"), py::arg("positions"), py::arg("normals") = py::none(),
-      "set_positions(mesh, positions, normals=None): moves its vertices, at all of its places. Normals that "
-      "were given "
-      "stay without\n`normals`. The next frame of each renderer recomputes what animation recomputes; at the\n"
-      "first move of a mesh added without `moves`, and after an addition or removal, also its memory and what "
-      "it caches.");
+      "set_positions(mesh, positions, normals=None): moves its vertices, at all of its places. "
+      "Normals that were given stay without\n`normals`. The next frame of each renderer recomputes "
+      "what animation recomputes; at the\n"
+      "first move of a mesh added without `moves`, and after an addition or removal, also its "
+      "memory and what it caches.");
   type.def(
       "set_transform",
       [](Scene& scene, int mesh, const py::object& transform) {

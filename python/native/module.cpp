@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The Python module clpv._native: a thin layer over include/clpv. python/clpv/__init__.py has its documentation.
+// The Python module clpv._native: a thin layer over include/clpv. python/clpv/__init__.py has its
+// documentation.
 #include "module.hpp"
 
 #include <unistd.h>
@@ -16,7 +17,8 @@ namespace clpv::python {
 
 namespace {
 
-PyObject* new_error(py::module_& module, const char* name, const char* doc, const py::tuple& bases) {
+PyObject* new_error(py::module_& module, const char* name, const char* doc,
+                    const py::tuple& bases) {
   const std::string full = std::string("clpv.") + name;
   PyObject* made = PyErr_NewExceptionWithDoc(full.c_str(), doc, bases.ptr(), nullptr);
   if (made == nullptr) throw py::error_already_set();
@@ -48,8 +50,8 @@ struct Errors {
 Errors errors;  // filled once, by add_errors
 
 // State of this process, guarded by the GIL.
-int running = 0;        // RunningCalls
-bool exiting = false;   // Python's exit has begun
+int running = 0;       // RunningCalls
+bool exiting = false;  // Python's exit has begun
 std::thread::id exiting_thread;
 pid_t device_user = 0;  // process that called note_device_use() first; a fork copies it
 constexpr std::chrono::milliseconds kPoll{5};
@@ -66,14 +68,16 @@ void end_running_calls() {
   }
 }
 
-/// Makes copy and pickle name the class; Python's own pickling of some protocols makes objects without a value.
+/// Makes copy and pickle name the class; Python's own pickling of some protocols makes objects
+/// without a value.
 void reject_pickling(py::module_& module) {
   for (const auto& [key, value] : py::dict(module.attr("__dict__"))) {
     if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
     const auto name = "clpv." + key.cast<std::string>();
     value.attr("__reduce_ex__") = py::cpp_function(
         [name](const py::object&, int) -> py::object {
-          throw py::type_error(name + " cannot be copied or pickled; pass the arguments that make it");
+          throw py::type_error(name +
+                               " cannot be copied or pickled; pass the arguments that make it");
         },
         py::is_method(value));
   }
@@ -89,8 +93,8 @@ RunningCall::RunningCall() {
   if (exiting) throw Error(ExitCode::run_time, "clpv: Python is exiting");
   if (forked_from_device_use()) {
     throw Error(ExitCode::run_time,
-                "clpv: this process was forked from one that used clpv; allowed: multiprocessing's start "
-                "method 'spawn' or 'forkserver'");
+                "clpv: this process was forked from one that used clpv; allowed: multiprocessing's "
+                "start method 'spawn' or 'forkserver'");
   }
   ++running;
 }
@@ -109,20 +113,21 @@ bool forked_from_device_use() {
 
 void add_errors(py::module_& module) {
   const auto builtin = [](PyObject* type) { return py::reinterpret_borrow<py::object>(type); };
-  errors.base =
-      new_error(module, "Error", "Any failure of clpv; str() names place, value found and value allowed.",
-                py::make_tuple(builtin(PyExc_Exception)));
+  errors.base = new_error(module, "Error",
+                          "Any failure of clpv; str() names place, value found and value allowed.",
+                          py::make_tuple(builtin(PyExc_Exception)));
   const py::object base = builtin(errors.base);
   const auto add = [&](const char* name, const char* doc, PyObject* also) {
     return new_error(module, name, doc, py::make_tuple(base, builtin(also)));
   };
   errors.usage = add("UsageError", "Unknown option or value out of range.", PyExc_ValueError);
   errors.bad_input = add("InputError", "Invalid scene, image, or other input.", PyExc_ValueError);
-  errors.device =
-      add("DeviceError", "No OpenCL device, or one without a required capability.", PyExc_RuntimeError);
+  errors.device = add("DeviceError", "No OpenCL device, or one without a required capability.",
+                      PyExc_RuntimeError);
   errors.run_time =
       add("ResourceError", "Out of memory, or a file that cannot be written.", PyExc_RuntimeError);
-  errors.validation = add("ValidationError", "A result differs from its reference.", PyExc_RuntimeError);
+  errors.validation =
+      add("ValidationError", "A result differs from its reference.", PyExc_RuntimeError);
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
@@ -163,8 +168,8 @@ py::list devices() {
 PYBIND11_MODULE(_native, module) {
   using namespace clpv::python;
   clpv::set_log_level(false, 0);  // to stderr
-  // pybind11 looks NumPy up in a static variable that it sets while the GIL may change hands: two threads
-  // whose first arrays meet there wait for each other without end. Here is one thread.
+  // pybind11 looks NumPy up in a static variable that it sets while the GIL may change hands: two
+  // threads whose first arrays meet there wait for each other without end. Here is one thread.
   py::dtype::of<float>();
   module.doc() = "Native part of clpv.";
   module.attr("__version__") = clpv::version();
@@ -177,8 +182,9 @@ PYBIND11_MODULE(_native, module) {
   reject_pickling(module);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_running_calls));
   module.def("options", &all_options,
-             "options() -> list of dict: name, help, allowed values and default of each option of Renderer.");
-  module.def(
-      "devices", &devices,
-      "devices() -> list of dict: all OpenCL devices; clpv can use those whose list `missing` is empty.");
+             "options() -> list of dict: name, help, allowed values and default of each option of "
+             "Renderer.");
+  module.def("devices", &devices,
+             "devices() -> list of dict: all OpenCL devices; clpv can use those whose list "
+             "`missing` is empty.");
 }

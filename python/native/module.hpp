@@ -35,7 +35,8 @@ void add_basis(py::module_& module);
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Converts anything that NumPy accepts as an array of real numbers; copies only if it must. Throws TypeError otherwise.
+/// Converts anything that NumPy accepts as an array of real numbers; copies only if it must. Throws
+/// TypeError otherwise.
 template <typename Array>
 Array real_array(const py::object& given, const char* what) {
   const py::array any = py::array::ensure(given);
@@ -54,8 +55,8 @@ template <typename Array>
 Array vectors(const py::object& given, const char* what) {
   Array array = real_array<Array>(given, what);
   if (array.ndim() > 0 && array.shape(array.ndim() - 1) == 3) return array;
-  throw py::value_error(std::string(what) + ": found shape " + std::string(py::str(array.attr("shape"))) +
-                        ", allowed: (..., 3)");
+  throw py::value_error(std::string(what) + ": found shape " +
+                        std::string(py::str(array.attr("shape"))) + ", allowed: (..., 3)");
 }
 
 /// The shape of vectors(), with the last axis replaced.
@@ -66,10 +67,12 @@ inline std::vector<py::ssize_t> shape_with_last(const py::array& vectors, py::ss
 }
 
 /// An array that owns `values`, without a copy.
-inline py::array_t<float> array_of(std::vector<float> values, const std::vector<py::ssize_t>& shape) {
+inline py::array_t<float> array_of(std::vector<float> values,
+                                   const std::vector<py::ssize_t>& shape) {
   auto owned = std::make_unique<std::vector<float>>(std::move(values));
   const float* data = owned->data();
-  const py::capsule owner(owned.release(), [](void* p) { delete static_cast<std::vector<float>*>(p); });
+  const py::capsule owner(owned.release(),
+                          [](void* p) { delete static_cast<std::vector<float>*>(p); });
   return py::array_t<float>(shape, data, owner);
 }
 
@@ -80,9 +83,10 @@ inline py::tuple tuple_of(const Vec3& v) {
   return py::make_tuple(v[0], v[1], v[2]);
 }
 
-/// A call that releases the GIL. Exists while the GIL is held, before and after. Python's exit waits for all of them: a thread that
-/// asked for the GIL later would be ended inside C++, which aborts the process. The constructor throws Error(run_time) once Python
-/// exits, and in a process forked from one that has used a device, whose threads a fork does not copy.
+/// A call that releases the GIL. Exists while the GIL is held, before and after. Python's exit
+/// waits for all of them: a thread that asked for the GIL later would be ended inside C++, which
+/// aborts the process. The constructor throws Error(run_time) once Python exits, and in a process
+/// forked from one that has used a device, whose threads a fork does not copy.
 class RunningCall {
  public:
   RunningCall();
@@ -104,9 +108,10 @@ auto without_gil(const Action& action) {
   return action();
 }
 
-/// Runs `work` on another thread without the GIL, so that Python can handle signals meanwhile. After Ctrl-C the work ends at its
-/// next step, and the signal's exception is raised. `poll` runs with the GIL, on the caller's thread, now and then and at the end; an
-/// exception of it ends the work too.
+/// Runs `work` on another thread without the GIL, so that Python can handle signals meanwhile.
+/// After Ctrl-C the work ends at its next step, and the signal's exception is raised. `poll` runs
+/// with the GIL, on the caller's thread, now and then and at the end; an exception of it ends the
+/// work too.
 template <typename Work, typename Poll>
 auto interruptible(const Work& work, const Poll& poll) {
   const RunningCall call;
@@ -143,7 +148,8 @@ auto interruptible(const Work& work) {
   return interruptible(work, [] {});
 }
 
-/// Converts arguments of type T. Unlike pybind11's, rejects objects made by __new__ without __init__, which hold no T.
+/// Converts arguments of type T. Unlike pybind11's, rejects objects made by __new__ without
+/// __init__, which hold no T.
 template <typename T>
 class InitialisedCaster : public py::detail::type_caster_base<T> {
  public:

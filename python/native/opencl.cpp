@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// OpenCL objects: frames, light and volumes as device memory, by integers that pyopencl's from_int_ptr() takes.
+// OpenCL objects: frames, light and volumes as device memory, by integers that pyopencl's
+// from_int_ptr() takes.
 #include "clpv/opencl.hpp"
 
 #include "module.hpp"
@@ -16,11 +17,14 @@ struct PythonFrame {
 
 namespace pybind11::detail {
 template <>
-class type_caster<clpv::opencl::Event> : public clpv::python::InitialisedCaster<clpv::opencl::Event> {};
+class type_caster<clpv::opencl::Event>
+    : public clpv::python::InitialisedCaster<clpv::opencl::Event> {};
 template <>
-class type_caster<clpv::python::PythonFrame> : public clpv::python::InitialisedCaster<clpv::python::PythonFrame> {};
+class type_caster<clpv::python::PythonFrame>
+    : public clpv::python::InitialisedCaster<clpv::python::PythonFrame> {};
 template <>
-class type_caster<clpv::opencl::Volumes> : public clpv::python::InitialisedCaster<clpv::opencl::Volumes> {};
+class type_caster<clpv::opencl::Volumes>
+    : public clpv::python::InitialisedCaster<clpv::opencl::Volumes> {};
 }  // namespace pybind11::detail
 
 namespace clpv::python {
@@ -29,25 +33,31 @@ namespace {
 /// A handle as an integer; None for null.
 template <typename Handle>
 py::object number_of(Handle handle) {
-  return handle == nullptr ? py::object(py::none()) : py::int_(reinterpret_cast<std::uintptr_t>(handle));
+  return handle == nullptr ? py::object(py::none())
+                           : py::int_(reinterpret_cast<std::uintptr_t>(handle));
 }
 
 void wait_for(const opencl::Event& event) {
   const cl_int code = interruptible([&] { return event.wait(); });
   if (code != CL_SUCCESS)
-    throw Error(ExitCode::run_time, "wait: the device's commands failed with OpenCL error {}", code);
+    throw Error(ExitCode::run_time, "wait: the device's commands failed with OpenCL error {}",
+                code);
 }
 
 void add_classes(py::module_& module) {
-  py::class_<opencl::Event> event(module, "DeviceEvent", "Completion of commands that were enqueued.");
+  py::class_<opencl::Event> event(module, "DeviceEvent",
+                                  "Completion of commands that were enqueued.");
   event.def_property_readonly(
       "int_ptr", [](const opencl::Event& e) { return number_of(e.get()); },
-      "The cl_event, for pyopencl.Event.from_int_ptr(int_ptr, retain=True). It lives as long as this object.");
-  event.def("wait", &wait_for, "wait(): waits for the commands. Raises ResourceError if they failed.");
+      "The cl_event, for pyopencl.Event.from_int_ptr(int_ptr, retain=True). It lives as long as "
+      "this object.");
+  event.def("wait", &wait_for,
+            "wait(): waits for the commands. Raises ResourceError if they failed.");
 
   py::class_<PythonFrame> frame(
       module, "DeviceFrame",
-      "Device memory of a frame: integers for pyopencl.MemoryObject.from_int_ptr(number, retain=True), row 0 at the top.\n\n"
+      "Device memory of a frame: integers for pyopencl.MemoryObject.from_int_ptr(number, "
+      "retain=True), row 0 at the top.\n\n"
       "The renderer's next call that renders overwrites it.");
   frame.def_property_readonly(
       "width", [](const PythonFrame& f) { return f.frame.width; }, "Pixels of a row.");
@@ -72,9 +82,9 @@ void add_classes(py::module_& module) {
       "wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
       "wait(): waits for the frame. Raises ResourceError if it failed.");
 
-  py::class_<opencl::Volumes> volumes(
-      module, "DeviceVolumes",
-      "Light for a kernel: arguments CLPV_RADIANCE of Renderer.lookup_source(), in the order of arguments().");
+  py::class_<opencl::Volumes> volumes(module, "DeviceVolumes",
+                                      "Light for a kernel: arguments CLPV_RADIANCE of "
+                                      "Renderer.lookup_source(), in the order of arguments().");
   volumes.def(
       "arguments",
       [](const opencl::Volumes& v) {
@@ -87,7 +97,8 @@ void add_classes(py::module_& module) {
         if (v.occluded != nullptr) all.append(number_of(v.occluded));
         return py::tuple(all);
       },
-      "arguments() -> (grids, cascades, unit, packed[, occluded]): memory as integers, a numpy.uint32 and a numpy.float32.");
+      "arguments() -> (grids, cascades, unit, packed[, occluded]): memory as integers, a "
+      "numpy.uint32 and a numpy.float32.");
 }
 
 }  // namespace
@@ -100,21 +111,28 @@ void add_opencl(py::module_& module) {
   };
   add(
       "enqueue",
-      [](Renderer& renderer, const std::string& view, const std::optional<CameraChoice>& camera, double time) {
+      [](Renderer& renderer, const std::string& view, const std::optional<CameraChoice>& camera,
+         double time) {
         const View what = named<View>("view", view);
-        return interruptible(
-            [&] { return PythonFrame{renderer.enqueue(what, camera.value_or(CameraChoice()), time)}; });
+        return interruptible([&] {
+          return PythonFrame{renderer.enqueue(what, camera.value_or(CameraChoice()), time)};
+        });
       },
-      py::keep_alive<0, 1>(), py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("time") = 0.0,
-      "enqueue(view='full', camera=None, time=0.0) -> DeviceFrame: render() without reading the image back.\n\n"
+      py::keep_alive<0, 1>(), py::arg("view") = "full", py::arg("camera") = py::none(),
+      py::arg("time") = 0.0,
+      "enqueue(view='full', camera=None, time=0.0) -> DeviceFrame: render() without reading the "
+      "image back.\n\n"
       "Does not wait for all of the frame (docs/api.md); not for view 'cells'.");
   add(
       "enqueue_light",
-      [](Renderer& renderer, int width, int height, const py::object& normals, const py::object& positions,
-         const py::object& depths, const py::object& irradiance, const std::optional<Vec3>& eye,
-         const std::optional<CameraChoice>& camera, double time) {
-        if (eye && camera) throw py::value_error("light: found eye and camera, allowed: one of both");
-        const opencl::GBuffer surfaces{width, height, handle_of<cl_mem>(normals, "normals"),
+      [](Renderer& renderer, int width, int height, const py::object& normals,
+         const py::object& positions, const py::object& depths, const py::object& irradiance,
+         const std::optional<Vec3>& eye, const std::optional<CameraChoice>& camera, double time) {
+        if (eye && camera)
+          throw py::value_error("light: found eye and camera, allowed: one of both");
+        const opencl::GBuffer surfaces{width,
+                                       height,
+                                       handle_of<cl_mem>(normals, "normals"),
                                        handle_of<cl_mem>(positions, "positions"),
                                        handle_of<cl_mem>(depths, "depths"),
                                        handle_of<cl_mem>(irradiance, "irradiance")};
@@ -123,21 +141,25 @@ void add_opencl(py::module_& module) {
                      : renderer.enqueue_light(surfaces, camera.value_or(CameraChoice()), time);
         });
       },
-      py::keep_alive<0, 1>(), py::arg("width"), py::arg("height"), py::kw_only(), py::arg("normals"),
-      py::arg("positions") = py::none(), py::arg("depths") = py::none(), py::arg("irradiance"),
-      py::arg("eye") = py::none(), py::arg("camera") = py::none(), py::arg("time") = 0.0,
-      "enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...) -> DeviceEvent: light() in device "
-      "memory.\n\n"
-      "Buffers of the renderer's context, as pyopencl's or integers: normals and positions float4 per pixel (w unused), or "
-      "depths\nfloat; irradiance receives float4. Raises UsageError for others, and for buffers that are too small.");
+      py::keep_alive<0, 1>(), py::arg("width"), py::arg("height"), py::kw_only(),
+      py::arg("normals"), py::arg("positions") = py::none(), py::arg("depths") = py::none(),
+      py::arg("irradiance"), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
+      py::arg("time") = 0.0,
+      "enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...) -> "
+      "DeviceEvent: light() in device memory.\n\n"
+      "Buffers of the renderer's context, as pyopencl's or integers: normals and positions float4 "
+      "per pixel (w unused), or depths\nfloat; irradiance receives float4. Raises UsageError for "
+      "others, and for buffers that are too small.");
   add(
-      "device_volumes", [](Renderer& renderer) { return interruptible([&] { return renderer.device_volumes(); }); },
+      "device_volumes",
+      [](Renderer& renderer) { return interruptible([&] { return renderer.device_volumes(); }); },
       py::keep_alive<0, 1>(),
-      "device_volumes() -> DeviceVolumes of the last frame or light(). Raises UsageError as radiance().");
+      "device_volumes() -> DeviceVolumes of the last frame or light(). Raises UsageError as "
+      "radiance().");
   add(
       "lookup_source", [](const Renderer& renderer) { return renderer.lookup_source(); },
-      "lookup_source() -> str: OpenCL C for the start of a program, clpv_irradiance() and clpv_radiance() at a point for kernels "
-      "with\nthe parameters CLPV_RADIANCE (docs/api.md).");
+      "lookup_source() -> str: OpenCL C for the start of a program, clpv_irradiance() and "
+      "clpv_radiance() at a point for kernels with\nthe parameters CLPV_RADIANCE (docs/api.md).");
 }
 
 }  // namespace clpv::python

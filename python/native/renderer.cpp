@@ -4,8 +4,8 @@
 
 #include <atomic>
 
-#include "clpv/pathtrace.hpp"
 #include "clpv/opencl.hpp"
+#include "clpv/pathtrace.hpp"
 #include "module.hpp"
 #include "opencl_handle.hpp"
 #include "options/show.hpp"
@@ -20,7 +20,8 @@ struct PythonVolume {
 
 namespace {
 
-/// In a forked child the driver's threads are missing: releasing its objects there could wait for them without end.
+/// In a forked child the driver's threads are missing: releasing its objects there could wait for
+/// them without end.
 struct ReleaseUnlessForked {
   void operator()(Renderer* renderer) const {
     if (!forked_from_device_use()) delete renderer;
@@ -61,8 +62,8 @@ py::dict dict_of(const Stats& stats) {
   return all;
 }
 
-using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(std::span<const std::array<float, 3>>,
-                                                                 std::span<const std::array<float, 3>>);
+using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(
+    std::span<const std::array<float, 3>>, std::span<const std::array<float, 3>>);
 
 std::span<const std::array<float, 3>> as_span(const FloatArray& array) {
   return {reinterpret_cast<const std::array<float, 3>*>(array.data()),
@@ -72,20 +73,24 @@ std::span<const std::array<float, 3>> as_span(const FloatArray& array) {
 py::array_t<float> array_of_vectors(const std::vector<std::array<float, 3>>& values,
                                     const std::vector<py::ssize_t>& shape) {
   py::array_t<float> result(shape);
-  if (!values.empty()) std::memcpy(result.mutable_data(), values.data(), values.size() * sizeof(values[0]));
+  if (!values.empty())
+    std::memcpy(result.mutable_data(), values.data(), values.size() * sizeof(values[0]));
   return result;
 }
 
 /// Calls `function` for points and a vector of each; `what` names the vectors.
 py::array_t<float> at_points(Renderer& renderer, OfPoints function, const py::object& points,
                              const py::object& given, const char* what) {
-  const FloatArray positions = vectors<FloatArray>(points, "points"), along = vectors<FloatArray>(given, what);
+  const FloatArray positions = vectors<FloatArray>(points, "points"),
+                   along = vectors<FloatArray>(given, what);
   const auto shape = shape_with_last(positions, 3);
   if (shape != shape_with_last(along, 3)) {
-    throw py::value_error(std::string(what) + ": found shape " + std::string(py::str(along.attr("shape"))) +
-                          ", allowed: that of points, " + std::string(py::str(positions.attr("shape"))));
+    throw py::value_error(
+        std::string(what) + ": found shape " + std::string(py::str(along.attr("shape"))) +
+        ", allowed: that of points, " + std::string(py::str(positions.attr("shape"))));
   }
-  const auto found = interruptible([&] { return (renderer.*function)(as_span(positions), as_span(along)); });
+  const auto found =
+      interruptible([&] { return (renderer.*function)(as_span(positions), as_span(along)); });
   return array_of_vectors(found, shape);
 }
 
@@ -95,10 +100,11 @@ py::array_t<float> light(Renderer& renderer, const py::object& normals, const py
                          const std::optional<CameraChoice>& camera, double time) {
   const FloatArray n = vectors<FloatArray>(normals, "normals");
   const auto require_image = [&](const py::array& array, py::ssize_t axes, const char* what) {
-    if (array.ndim() == axes && array.shape(0) == n.shape(0) && array.shape(1) == n.shape(1)) return;
+    if (array.ndim() == axes && array.shape(0) == n.shape(0) && array.shape(1) == n.shape(1))
+      return;
     throw py::value_error(fmt::format("{}: found shape {}, allowed: ({}, {}{})", what,
-                                      std::string(py::str(array.attr("shape"))), n.shape(0), n.shape(1),
-                                      axes == 3 ? ", 3" : ""));
+                                      std::string(py::str(array.attr("shape"))), n.shape(0),
+                                      n.shape(1), axes == 3 ? ", 3" : ""));
   };
   if (n.ndim() != 3) {
     throw py::value_error("normals: found shape " + std::string(py::str(n.attr("shape"))) +
@@ -123,7 +129,8 @@ py::array_t<float> light(Renderer& renderer, const py::object& normals, const py
     surfaces.depths = std::span(d.data(), static_cast<std::size_t>(d.size()));
   }
   const auto found = interruptible([&] {
-    return eye ? renderer.light(surfaces, *eye, time) : renderer.light(surfaces, camera_choice(camera), time);
+    return eye ? renderer.light(surfaces, *eye, time)
+               : renderer.light(surfaces, camera_choice(camera), time);
   });
   return array_of_vectors(found, shape_with_last(n, 3));
 }
@@ -131,7 +138,8 @@ py::array_t<float> light(Renderer& renderer, const py::object& normals, const py
 std::vector<PythonVolume> volumes(Renderer& renderer) {
   std::vector<PythonVolume> all;
   for (LightVolume& volume : interruptible([&] { return renderer.volumes(); })) {
-    auto values = array_of(std::move(volume.values), {3, volume.coefficients, volume.n, volume.n, volume.n});
+    auto values =
+        array_of(std::move(volume.values), {3, volume.coefficients, volume.n, volume.n, volume.n});
     all.push_back({std::move(volume), std::move(values)});
   }
   return all;
@@ -150,7 +158,8 @@ namespace clpv::python {
 namespace {
 
 void add_volume(py::module_& module) {
-  py::class_<PythonVolume> type(module, "Volume", "Light of one cascade after propagation: n^3 cubic cells.");
+  py::class_<PythonVolume> type(module, "Volume",
+                                "Light of one cascade after propagation: n^3 cubic cells.");
   type.def_property_readonly(
       "origin", [](const PythonVolume& v) { return tuple_of(v.volume.origin); },
       "Minimum corner x, y, z [m].");
@@ -162,11 +171,13 @@ void add_volume(py::module_& module) {
   type.def_readonly(
       "coefficients", &PythonVolume::coefficients,
       "float32 array (3, N, z, y, x): red, green, blue; N coefficients c_i of radiant intensity\n"
-      "I(w) = sum_i c_i b_i(w) [W/sr], w the direction in which light travels. After a sweep I / cell^2\n"
+      "I(w) = sum_i c_i b_i(w) [W/sr], w the direction in which light travels. After a sweep I / "
+      "cell^2\n"
       "is the radiance [W/m^2/sr] about the cell's centre.");
   type.def("__repr__", [](const PythonVolume& v) {
     return fmt::format("Volume(origin=({}, {}, {}), cell={}, n={}, basis='{}')", v.volume.origin[0],
-                       v.volume.origin[1], v.volume.origin[2], v.volume.cell, v.volume.n, v.volume.basis);
+                       v.volume.origin[1], v.volume.origin[2], v.volume.cell, v.volume.n,
+                       v.volume.basis);
   });
 }
 
@@ -176,14 +187,16 @@ void add_renderer(py::module_& module) {
   add_volume(module);
   py::class_<Renderer, std::unique_ptr<Renderer, ReleaseUnlessForked>> type(
       module, "Renderer",
-      "Renderer(scene, device='', *, context=None, queue=None, **options): renders frames of one scene on one OpenCL "
-      "device.\n\n"
-      "device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the first usable "
-      "one.\n"
-      "context, queue: of pyopencl, or their int_ptr; the renderer works there. The queue is in-order.\n"
-      "options: those of `clpv render` with _ for - (and lambda_); options() lists them. bool is on or off.\n"
-      "Results that do not change are cached from frame to frame. Calls from several threads run one after "
-      "the other.\n"
+      "Renderer(scene, device='', *, context=None, queue=None, **options): renders frames of one "
+      "scene on one OpenCL device.\n\n"
+      "device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the "
+      "first usable one.\n"
+      "context, queue: of pyopencl, or their int_ptr; the renderer works there. The queue is "
+      "in-order.\n"
+      "options: those of `clpv render` with _ for - (and lambda_); options() lists them. bool is "
+      "on or off.\n"
+      "Results that do not change are cached from frame to frame. Calls from several threads run "
+      "one after the other.\n"
       "Raises UsageError, DeviceError, ResourceError.");
   type.def(py::init([](const Scene& scene, const std::string& device, const py::object& context,
                        const py::object& queue, const py::kwargs& given) {
@@ -194,8 +207,9 @@ void add_renderer(py::module_& module) {
              if (!own && !device.empty())
                throw py::value_error("found a device and a context or queue, allowed: one of both");
              note_device_use();
-             return interruptible(
-                 [&] { return own ? Renderer(scene, options, device) : Renderer(scene, options, where); });
+             return interruptible([&] {
+               return own ? Renderer(scene, options, device) : Renderer(scene, options, where);
+             });
            }),
            py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
            py::arg("queue") = py::none());
@@ -207,60 +221,76 @@ void add_renderer(py::module_& module) {
         return interruptible([&] { return renderer.render(what, camera_choice(camera), time); });
       },
       py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("time") = 0.0,
-      "render(view='full', camera=None, time=0.0) -> Image (height, width, 4), linear R, G, B, A.\n\n"
-      "view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or cells: irradiance with\n"
+      "render(view='full', camera=None, time=0.0) -> Image (height, width, 4), linear R, G, B, "
+      "A.\n\n"
+      "view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or "
+      "cells: irradiance with\n"
       "the finest cascade's cells as spheres;\n"
-      "camera: a Camera, or the name of one of the scene (None: its first); time [s] of an animated scene.");
+      "camera: a Camera, or the name of one of the scene (None: its first); time [s] of an "
+      "animated scene.");
   type.def(
       "show",
       [](Renderer& renderer, const std::string& view) {
         const View what = named<View>("view", view);
         return interruptible([&] { return renderer.show(what); });
       },
-      py::arg("view"), "show(view) -> Image: another view of the last frame, without rendering it again.");
-  type.def("light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
-           py::arg("depths") = py::none(), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
-           py::arg("time") = 0.0,
-           "light(normals, *, positions=None, depths=None, eye=None, camera=None, time=0.0) -> float32 array (height, width, "
-           "3).\n\n"
-           "Irradiance of indirect light [W/m^2] on the pixels of a G-buffer, with the near field, as view 'irradiance' has "
-           "it: normals\n(height, width, 3) of any length; positions [m] of their shape, or depths (height, width) [m] of "
-           "`camera`, a Camera or a\nname (None: the scene's first). Cascades surround `eye`, or the camera's. Pixels "
-           "with a normal of 0, a depth that is not\npositive or a number that is not finite have no surface, and no light.");
-  type.def("irradiance",
-           [](Renderer& renderer, const py::object& points, const py::object& normals) {
-             return at_points(renderer, &Renderer::irradiance, points, normals, "normals");
-           },
-           py::arg("points"), py::arg("normals"),
-           "irradiance(points, normals) -> float32 array of their shape: indirect light [W/m^2], red, green, "
-           "blue.\n\n"
-           "points [m] and normals (of any length): arrays (..., 3). Of the last frame's volumes, without "
-           "option near;\n"
-           "0 outside of the cascades. Computed on the device.");
-  type.def("radiance",
-           [](Renderer& renderer, const py::object& points, const py::object& directions) {
-             return at_points(renderer, &Renderer::radiance, points, directions, "directions");
-           },
-           py::arg("points"), py::arg("directions"),
-           "radiance(points, directions) -> float32 array of their shape: indirect light [W/m^2/sr], red, green, blue.\n\n"
-           "points [m] and directions in which the light travels (of any length): arrays (..., 3). As irradiance(), of the "
-           "last\nframe's volumes, on the device; negative where nine harmonics undershoot. Raises UsageError without "
-           "transport 'sweep',\nand for layout 'image' with gather 'all'.");
-  type.def("__repr__", [](const Renderer& renderer) { return "Renderer(" + renderer.description() + ")"; });
-  type.def("volumes", &volumes, "volumes() -> list of Volume of the last frame, finest cascade first.");
+      py::arg("view"),
+      "show(view) -> Image: another view of the last frame, without rendering it again.");
+  type.def(
+      "light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
+      py::arg("depths") = py::none(), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
+      py::arg("time") = 0.0,
+      "light(normals, *, positions=None, depths=None, eye=None, camera=None, time=0.0) -> float32 "
+      "array (height, width, "
+      "3).\n\n"
+      "Irradiance of indirect light [W/m^2] on the pixels of a G-buffer, with the near field, as "
+      "view 'irradiance' has it: normals\n(height, width, 3) of any length; positions [m] of their "
+      "shape, or depths (height, width) [m] of `camera`, a Camera or a\nname (None: the scene's "
+      "first). Cascades surround `eye`, or the camera's. Pixels with a normal of 0, a depth that "
+      "is not\npositive or a number that is not finite have no surface, and no light.");
+  type.def(
+      "irradiance",
+      [](Renderer& renderer, const py::object& points, const py::object& normals) {
+        return at_points(renderer, &Renderer::irradiance, points, normals, "normals");
+      },
+      py::arg("points"), py::arg("normals"),
+      "irradiance(points, normals) -> float32 array of their shape: indirect light [W/m^2], red, "
+      "green, "
+      "blue.\n\n"
+      "points [m] and normals (of any length): arrays (..., 3). Of the last frame's volumes, "
+      "without option near;\n"
+      "0 outside of the cascades. Computed on the device.");
+  type.def(
+      "radiance",
+      [](Renderer& renderer, const py::object& points, const py::object& directions) {
+        return at_points(renderer, &Renderer::radiance, points, directions, "directions");
+      },
+      py::arg("points"), py::arg("directions"),
+      "radiance(points, directions) -> float32 array of their shape: indirect light [W/m^2/sr], "
+      "red, green, blue.\n\n"
+      "points [m] and directions in which the light travels (of any length): arrays (..., 3). As "
+      "irradiance(), of the last\nframe's volumes, on the device; negative where nine harmonics "
+      "undershoot. Raises UsageError without transport 'sweep',\nand for layout 'image' with "
+      "gather 'all'.");
+  type.def("__repr__",
+           [](const Renderer& renderer) { return "Renderer(" + renderer.description() + ")"; });
+  type.def("volumes", &volumes,
+           "volumes() -> list of Volume of the last frame, finest cascade first.");
   type.def_property_readonly(
       "stats",
-      [](const Renderer& renderer) { return dict_of(interruptible([&] { return renderer.stats(); })); },
-      "Dict of the last frame: device time of each stage [ms] ('propagate', 'gather', ...; 0 if cached or "
-      "not needed),\n"
-      "'frame': wall time of render() [ms], 'host': the host's work in it, without waiting [ms], 'build': "
-      "compilation so far\n[ms]; numbers of 'launches' (kernels, fills and copies) and of 'waits' for the "
-      "device; 'device_bytes', 'peak_device_bytes'.");
+      [](const Renderer& renderer) {
+        return dict_of(interruptible([&] { return renderer.stats(); }));
+      },
+      "Dict of the last frame: device time of each stage [ms] ('propagate', 'gather', ...; 0 if "
+      "cached or not needed),\n"
+      "'frame': wall time of render() [ms], 'host': the host's work in it, without waiting [ms], "
+      "'build': compilation so far\n[ms]; numbers of 'launches' (kernels, fills and copies) and of "
+      "'waits' for the device; 'device_bytes', 'peak_device_bytes'.");
   module.def(
       "pathtrace",
-      [](const Scene& scene, const std::string& view, const std::optional<CameraChoice>& camera, int width,
-         int height, int bounces, std::uint32_t samples, double noise, std::uint64_t seed, int threads,
-         double time, const py::object& progress) {
+      [](const Scene& scene, const std::string& view, const std::optional<CameraChoice>& camera,
+         int width, int height, int bounces, std::uint32_t samples, double noise,
+         std::uint64_t seed, int threads, double time, const py::object& progress) {
         const View what = named<View>("view", view);
         note_device_use();
         std::atomic<double> reached{0};
@@ -272,18 +302,20 @@ void add_renderer(py::module_& module) {
           told = reached;
           progress(told);
         };
-        return interruptible([&] { return pathtrace(scene, what, camera_choice(camera), options); }, tell);
+        return interruptible([&] { return pathtrace(scene, what, camera_choice(camera), options); },
+                             tell);
       },
-      py::arg("scene"), py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("width") = 960,
-      py::arg("height") = 540, py::arg("bounces") = 1, py::arg("samples") = 0, py::arg("noise") = 0.02,
-      py::arg("seed") = 1, py::arg("threads") = 0, py::arg("time") = 0.0, py::arg("progress") = py::none(),
+      py::arg("scene"), py::arg("view") = "full", py::arg("camera") = py::none(),
+      py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = 1,
+      py::arg("samples") = 0, py::arg("noise") = 0.02, py::arg("seed") = 1, py::arg("threads") = 0,
+      py::arg("time") = 0.0, py::arg("progress") = py::none(),
       "pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.\n\n"
-      "bounces: reflections between light and visible surface, 0 for all; samples: paths per pixel, 0 for as "
-      "many as\n"
-      "`noise` (relative standard error of the indirect light) needs; threads: 0 for one per processor.\n"
-      "progress: a function that gets the estimated progress, 0 to 1, in this thread, up to 50 times a "
-      "second; what it raises "
-      "ends\nthe work.");
+      "bounces: reflections between light and visible surface, 0 for all; samples: paths per "
+      "pixel, 0 for as many as\n"
+      "`noise` (relative standard error of the indirect light) needs; threads: 0 for one per "
+      "processor.\n"
+      "progress: a function that gets the estimated progress, 0 to 1, in this thread, up to 50 "
+      "times a second; what it raises ends\nthe work.");
 }
 
 }  // namespace clpv::python

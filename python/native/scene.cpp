@@ -12,8 +12,8 @@ namespace {
 std::string repr(const py::object& object, const std::vector<const char*>& members) {
   std::string text = std::string(py::str(py::type::of(object).attr("__name__"))) + "(";
   for (std::size_t i = 0; i < members.size(); ++i) {
-    text +=
-        std::string(i > 0 ? ", " : "") + members[i] + "=" + std::string(py::repr(object.attr(members[i])));
+    text += std::string(i > 0 ? ", " : "") + members[i] + "=" +
+            std::string(py::repr(object.attr(members[i])));
   }
   return text + ")";
 }
@@ -43,15 +43,17 @@ void add_value_methods(py::class_<T>& type, const std::vector<const char*>& memb
 void add_camera(py::module_& module) {
   py::class_<Camera> type(
       module, "Camera",
-      "Perspective camera. Immutable; replace() makes another. Values are checked where it is used.\n\n"
+      "Perspective camera. Immutable; replace() makes another. Values are checked where it is "
+      "used.\n\n"
       "eye, target, up: x, y, z [m]; fov: vertical field of view [degrees];\n"
       "near: nearest visible depth [m]; light: name of its only light, empty for all.");
   type.def(py::init([](const Vec3& eye, const Vec3& target, const Vec3& up, double fov, double near,
                        std::string name, std::string light) {
              return Camera{eye, target, up, fov, near, std::move(name), std::move(light)};
            }),
-           py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0), py::arg("fov") = 60.0,
-           py::arg("near") = 0.05, py::arg("name") = "", py::arg("light") = "");
+           py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0),
+           py::arg("fov") = 60.0, py::arg("near") = 0.05, py::arg("name") = "",
+           py::arg("light") = "");
   type.def_property_readonly("eye", [](const Camera& c) { return tuple_of(c.eye); });
   type.def_property_readonly("target", [](const Camera& c) { return tuple_of(c.target); });
   type.def_property_readonly("up", [](const Camera& c) { return tuple_of(c.up); });
@@ -65,21 +67,28 @@ void add_camera(py::module_& module) {
 void add_light(py::module_& module) {
   py::class_<Light> type(
       module, "Light",
-      "Light without extent. Immutable; replace() makes another. Values are checked where it is used.\n\n"
+      "Light without extent. Immutable; replace() makes another. Values are checked where it is "
+      "used.\n\n"
       "kind: 'directional', 'spot' or 'point'; position [m]; direction in which light travels;\n"
-      "intensity: red, green, blue, or one number: illuminance [lx = W/m^2] if directional, else [cd = "
-      "W/sr];\n"
+      "intensity: red, green, blue, or one number: illuminance [lx = W/m^2] if directional, else "
+      "[cd = W/sr];\n"
       "range [m], 0 for no limit; inner_cone, outer_cone: angles of a spot [degrees].");
-  type.def(
-      py::init([](const std::string& kind, const Vec3& position, const Vec3& direction,
-                  const py::object& intensity, double range, double inner, double outer, std::string name) {
-        return Light{named<LightKind>("kind", kind), position, direction, colour_of(intensity), range, inner,
-                     outer, std::move(name)};
-      }),
-      py::arg("kind") = "directional", py::arg("position") = py::make_tuple(0, 0, 0),
-      py::arg("direction") = py::make_tuple(0, -1, 0), py::arg("intensity") = py::make_tuple(1, 1, 1),
-      py::arg("range") = 0.0, py::arg("inner_cone") = 0.0, py::arg("outer_cone") = 45.0,
-      py::arg("name") = "");
+  type.def(py::init([](const std::string& kind, const Vec3& position, const Vec3& direction,
+                       const py::object& intensity, double range, double inner, double outer,
+                       std::string name) {
+             return Light{named<LightKind>("kind", kind),
+                          position,
+                          direction,
+                          colour_of(intensity),
+                          range,
+                          inner,
+                          outer,
+                          std::move(name)};
+           }),
+           py::arg("kind") = "directional", py::arg("position") = py::make_tuple(0, 0, 0),
+           py::arg("direction") = py::make_tuple(0, -1, 0),
+           py::arg("intensity") = py::make_tuple(1, 1, 1), py::arg("range") = 0.0,
+           py::arg("inner_cone") = 0.0, py::arg("outer_cone") = 45.0, py::arg("name") = "");
   type.def_property_readonly("kind", [](const Light& l) { return std::string(name_of(l.kind)); });
   type.def_property_readonly("position", [](const Light& l) { return tuple_of(l.position); });
   type.def_property_readonly("direction", [](const Light& l) { return tuple_of(l.direction); });
@@ -88,23 +97,25 @@ void add_light(py::module_& module) {
   type.def_readonly("inner_cone", &Light::inner_cone_degrees);
   type.def_readonly("outer_cone", &Light::outer_cone_degrees);
   type.def_readonly("name", &Light::name);
-  add_value_methods(
-      type, {"kind", "position", "direction", "intensity", "range", "inner_cone", "outer_cone", "name"});
+  add_value_methods(type, {"kind", "position", "direction", "intensity", "range", "inner_cone",
+                           "outer_cone", "name"});
 }
 
 void add_medium(py::module_& module) {
-  py::class_<Medium> type(
-      module, "Medium",
-      "Homogeneous fog or dust in a box. Immutable; replace() makes another. Values are checked where it is used.\n\n"
-      "scattering, absorption: red, green, blue, or one number [1/m]; anisotropy: -0.9 to 0.9, above 0 "
-      "forwards;\n"
-      "box: lower and upper corner [m], None for the scene's bounding box.");
+  py::class_<Medium> type(module, "Medium",
+                          "Homogeneous fog or dust in a box. Immutable; replace() makes another. "
+                          "Values are checked where it is used.\n\n"
+                          "scattering, absorption: red, green, blue, or one number [1/m]; "
+                          "anisotropy: -0.9 to 0.9, above 0 forwards;\n"
+                          "box: lower and upper corner [m], None for the scene's bounding box.");
   using Box = std::optional<std::array<Vec3, 2>>;
-  type.def(py::init([](const py::object& scattering, const py::object& absorption, double anisotropy, const Box& box) {
+  type.def(py::init([](const py::object& scattering, const py::object& absorption,
+                       double anisotropy, const Box& box) {
              return Medium{colour_of(scattering), colour_of(absorption), anisotropy, box};
            }),
-           py::arg("scattering") = py::make_tuple(0, 0, 0), py::arg("absorption") = py::make_tuple(0, 0, 0),
-           py::arg("anisotropy") = 0.0, py::arg("box") = py::none());
+           py::arg("scattering") = py::make_tuple(0, 0, 0),
+           py::arg("absorption") = py::make_tuple(0, 0, 0), py::arg("anisotropy") = 0.0,
+           py::arg("box") = py::none());
   type.def_property_readonly("scattering", [](const Medium& m) { return tuple_of(m.scattering); });
   type.def_property_readonly("absorption", [](const Medium& m) { return tuple_of(m.absorption); });
   type.def_readonly("anisotropy", &Medium::anisotropy);
@@ -118,7 +129,8 @@ void add_medium(py::module_& module) {
 }  // namespace
 
 Vec3 colour_of(const py::object& given) {
-  if (!py::isinstance<py::float_>(given) && !py::isinstance<py::int_>(given)) return given.cast<Vec3>();
+  if (!py::isinstance<py::float_>(given) && !py::isinstance<py::int_>(given))
+    return given.cast<Vec3>();
   Vec3 grey{};
   grey.fill(given.cast<double>());
   return grey;
@@ -130,8 +142,8 @@ void add_scene(py::module_& module) {
   add_medium(module);
   add_material(module);
   py::class_<Scene> type(module, "Scene",
-                         "Scene(path, model=None): a scene file (.json) or a glTF model (.gltf, .glb); "
-                         "`model` replaces that of the file.\n\n"
+                         "Scene(path, model=None): a scene file (.json) or a glTF model (.gltf, "
+                         ".glb); `model` replaces that of the file.\n\n"
                          "Renderers keep its data alive. Thread-safe. Raises InputError with file, "
                          "place, value found and value allowed.");
   using Path = std::optional<std::filesystem::path>;
@@ -147,8 +159,8 @@ void add_scene(py::module_& module) {
     return without_gil([&] {
       const std::shared_lock lock(scene.contents().mutex);
       const SceneData& data = scene.contents().moving.scene();
-      return fmt::format("Scene('{}', {} triangles, {} cameras, {} lights)", data.path, data.triangles.size(),
-                         data.cameras.size(), data.lights.size());
+      return fmt::format("Scene('{}', {} triangles, {} cameras, {} lights)", data.path,
+                         data.triangles.size(), data.cameras.size(), data.lights.size());
     });
   });
   type.def_property(
@@ -159,18 +171,19 @@ void add_scene(py::module_& module) {
       "Tuple of all Cameras, at 0 s if animated. Assign a sequence to replace them.");
   type.def_property(
       "lights", [](const Scene& scene) { return py::tuple(py::cast(scene.lights())); },
-      [](Scene& scene, const std::vector<Light>& lights) { without_gil([&] { scene.set_lights(lights); }); },
-      "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame of every "
-      "renderer\n"
+      [](Scene& scene, const std::vector<Light>& lights) {
+        without_gil([&] { scene.set_lights(lights); });
+      },
+      "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame "
+      "of every renderer\n"
       "of this scene recomputes what depends on them.");
   type.def_property(
       "medium", &Scene::medium,
       [](Scene& scene, const std::optional<Medium>& medium) {
         without_gil([&] { scene.set_medium(medium); });
       },
-      "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates "
-      "its "
-      "memory again.");
+      "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene "
+      "allocates its memory again.");
   type.def_property_readonly("moves", &Scene::moves, "True if anything is animated.");
   type.def_property_readonly(
       "notes", [](const Scene& scene) { return py::tuple(py::cast(scene.notes())); },

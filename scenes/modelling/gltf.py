@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Writes meshes, nodes, materials and animations as one .glb, or as a .gltf that shares one's bytes, and PNG textures: bytes
-that depend on nothing but the input."""
+"""Writes meshes, nodes, materials and animations as one .glb, or as a .gltf that shares one's
+bytes, and PNG textures: bytes that depend on nothing but the input."""
 import base64
 import json
 import struct
@@ -27,13 +27,15 @@ class Document:
     def texture(self, png):
         """Adds a repeating texture; its index."""
         d = self._json
-        d.setdefault("samplers", [{"wrapS": 10497, "wrapT": 10497, "magFilter": 9729, "minFilter": 9987}])
+        d.setdefault("samplers",
+                     [{"wrapS": 10497, "wrapT": 10497, "magFilter": 9729, "minFilter": 9987}])
         d.setdefault("images", []).append({"bufferView": self._view(png), "mimeType": "image/png"})
         d.setdefault("textures", []).append({"source": len(d["images"]) - 1, "sampler": 0})
         return len(d["textures"]) - 1
 
     def material(self, name, colour, texture=None, double_sided=False, radiance=None):
-        """`colour`: linear reflectance, which multiplies the texture's. `radiance`: emitted, linear RGB."""
+        """`colour`: linear reflectance, which multiplies the texture's. `radiance`: emitted, linear
+        RGB."""
         pbr = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0}
         if texture is not None:
             pbr["baseColorTexture"] = {"index": texture}
@@ -43,13 +45,16 @@ class Document:
         if radiance is not None:
             strength = max(radiance)
             entry["emissiveFactor"] = [c / strength for c in radiance]
-            entry["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
+            entry["extensions"] = {
+                "KHR_materials_emissive_strength": {"emissiveStrength": strength}
+            }
             self._json["extensionsUsed"] = ["KHR_materials_emissive_strength"]
         self._materials[name] = len(self._json["materials"])
         self._json["materials"].append(entry)
 
     def mesh(self, name, mesh, materials=None):
-        """Adds a Mesh; its index, for nodes. `materials` renames some: a mesh may come in several colours."""
+        """Adds a Mesh; its index, for nodes. `materials` renames some: a mesh may come in several
+        colours."""
         primitives = []
         for material, surface in mesh.surfaces.items():
             if surface not in self._accessors_of:
@@ -68,7 +73,7 @@ class Document:
 
     def node(self, name, mesh, translation=(0, 0, 0), quarter_turns=0, factor=(1, 1, 1)):
         """Places a mesh; `quarter_turns` round y, counter-clockwise seen from above."""
-        half = {0: (0.0, 1.0), 1: (0.5 ** 0.5, 0.5 ** 0.5), 2: (1.0, 0.0), 3: (-(0.5 ** 0.5), 0.5 ** 0.5)}
+        half = {0: (0.0, 1.0), 1: (0.5**0.5, 0.5**0.5), 2: (1.0, 0.0), 3: (-(0.5**0.5), 0.5**0.5)}
         sine, cosine = half[quarter_turns % 4]
         entry = {"name": name, "mesh": mesh}
         if tuple(translation) != (0, 0, 0):
@@ -87,13 +92,17 @@ class Document:
         return index, self._json["nodes"][index].get("translation", [0, 0, 0])
 
     def animate(self, node, path, times, values, interpolation="LINEAR"):
-        """Moves a node's "translation", "rotation" or "scale" through keys; of a CUBICSPLINE three rows of values a key."""
-        animations = self._json.setdefault("animations", [{"name": "life", "samplers": [], "channels": []}])
+        """Moves a node's "translation", "rotation" or "scale" through keys; of a CUBICSPLINE three
+        rows of values a key."""
+        animations = self._json.setdefault("animations",
+                                           [{"name": "life", "samplers": [], "channels": []}])
         samplers, channels = animations[0]["samplers"], animations[0]["channels"]
         channels.append({"sampler": len(samplers), "target": {"node": node, "path": path}})
-        samplers.append({"input": self._floats([(t,) for t in times], "SCALAR", bounds=True, target=None),
-                         "output": self._floats(values, f"VEC{len(values[0])}", target=None),
-                         "interpolation": interpolation})
+        samplers.append({
+            "input": self._floats([(t, ) for t in times], "SCALAR", bounds=True, target=None),
+            "output": self._floats(values, f"VEC{len(values[0])}",
+                                   target=None), "interpolation": interpolation
+        })
 
     def write(self, path):
         """As a .glb. Returns it, for write_beside."""
@@ -109,18 +118,23 @@ class Document:
         return glb
 
     def write_beside(self, path, name, glb):
-        """As a .gltf that takes what was there when `glb` was written from that file, called `name`, and holds the rest."""
+        """As a .gltf that takes what was there when `glb` was written from that file, called
+        `name`, and holds the rest."""
         start = 12 + 8 + struct.unpack("<I", glb[12:16])[0] + 8
         shared = len(glb) - start
         views = []
         for view in self._json["bufferViews"]:
             own = view["byteOffset"] >= shared
-            views.append({**view, "buffer": 1 if own else 0,
-                          "byteOffset": view["byteOffset"] - shared if own else view["byteOffset"] + start})
+            views.append({
+                **view, "buffer": 1 if own else 0,
+                "byteOffset": view["byteOffset"] - shared if own else view["byteOffset"] + start
+            })
         rest = bytes(self._blob[shared:])
         data = "data:application/octet-stream;base64," + base64.b64encode(rest).decode()
-        document = {**self._json, "bufferViews": views,
-                    "buffers": [{"uri": name, "byteLength": len(glb)}, {"uri": data, "byteLength": len(rest)}]}
+        document = {
+            **self._json, "bufferViews": views, "buffers": [{"uri": name, "byteLength": len(glb)},
+                                                            {"uri": data, "byteLength": len(rest)}]
+        }
         with open(path, "w", encoding="utf-8", newline="\n") as file:
             json.dump(document, file, separators=(",", ":"))
             file.write("\n")
@@ -150,14 +164,15 @@ class Document:
         wide = max(indices) > 65534  # 65535 restarts a strip in some interfaces, glTF forbids it
         data = struct.pack(f"<{len(indices)}{'I' if wide else 'H'}", *indices)
         component = UNSIGNED_INT if wide else UNSIGNED_SHORT
-        return self._accessor(self._view(data, ELEMENT_ARRAY_BUFFER), component, len(indices), "SCALAR")
+        return self._accessor(self._view(data, ELEMENT_ARRAY_BUFFER), component, len(indices),
+                              "SCALAR")
 
 
 def png(width, height, palette, pixels):
     """An 8-bit palette PNG. `palette`: (r, g, b) bytes; `pixels`: one index a pixel, row by row.
 
-    The deflate stream is stored, not compressed: compressors differ from version to version, and git
-    compresses anyway.
+    The deflate stream is stored, not compressed: compressors differ from version to version, and
+    git compresses anyway.
     """
     rows = b"".join(b"\0" + bytes(pixels[y * width:(y + 1) * width]) for y in range(height))
     stream = bytearray(b"\x78\x01")
@@ -168,7 +183,10 @@ def png(width, height, palette, pixels):
     stream += struct.pack(">I", zlib.adler32(rows))
 
     def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        return struct.pack(">I", len(data)) + name + data + struct.pack(
+            ">I", zlib.crc32(name + data))
 
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)) +
-            chunk(b"PLTE", b"".join(bytes(c) for c in palette)) + chunk(b"IDAT", bytes(stream)) + chunk(b"IEND", b""))
+    return (b"\x89PNG\r\n\x1a\n" +
+            chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)) +
+            chunk(b"PLTE", b"".join(bytes(c) for c in palette)) + chunk(b"IDAT", bytes(stream)) +
+            chunk(b"IEND", b""))

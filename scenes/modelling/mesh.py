@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Triangle meshes in metres, y up, counter-clockwise seen from outside; and vectors as tuples.
 
-A Mesh keeps one list of vertices per material. Positions, normals and texture coordinates are rounded to a
-fixed step, so that the last bit of another machine's sine does not change the file.
+A Mesh keeps one list of vertices per material. Positions, normals and texture coordinates are
+rounded to a fixed step, so that the last bit of another machine's sine does not change the file.
 """
 import math
 
@@ -77,7 +77,8 @@ class Mesh:
         return sum(len(s.indices) // 3 for s in self.surfaces.values())
 
     def quad(self, material, corners, uvs=None, normals=None):
-        """A quadrilateral, corners counter-clockwise from outside. Without uvs, metric ones from the main axis."""
+        """A quadrilateral, corners counter-clockwise from outside. Without uvs, metric ones from
+        the main axis."""
         normal = normalised(cross(sub(corners[2], corners[0]), sub(corners[3], corners[1])))
         normals = normals or [normal] * 4
         uvs = uvs or [metric_uv(c, normal) for c in corners]
@@ -105,9 +106,8 @@ class Mesh:
     def grid(self, material, points, uv, closed=False, sharp_rows=()):
         """A smooth sheet through points[row][column]; uv(row, column) gives texture coordinates.
 
-        Outside is where d(row) x d(column) points. `closed` joins the last column to the first (which is repeated
-        in `points`). Across a row in `sharp_rows` the normal breaks.
-        """
+        Outside is where d(row) x d(column) points. `closed` joins the last column to the first
+        (which is repeated in `points`). Across a row in `sharp_rows` the normal breaks. """
         surface = self.surface(material)
         rows, columns = len(points), len(points[0])
         breaks = [0] + sorted(sharp_rows) + [rows - 1]
@@ -139,7 +139,9 @@ def _grid_normal(points, r, c, low, high, closed):
 
 
 def metric_uv(point, normal):
-    """Texture coordinates on the plane that faces the normal's main axis: a texture covers TEXTURE_METRES."""
+    """Texture coordinates on the plane that faces the normal's main axis: a texture covers
+    TEXTURE_METRES."""
     axis = max(range(3), key=lambda i: abs(normal[i]))
-    across, along = {0: (point[2], -point[1]), 1: (point[0], point[2]), 2: (point[0], -point[1])}[axis]
+    across, along = {0: (point[2], -point[1]), 1: (point[0], point[2]),
+                     2: (point[0], -point[1])}[axis]
     return (across / TEXTURE_METRES, along / TEXTURE_METRES)

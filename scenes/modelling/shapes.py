@@ -6,7 +6,8 @@ from modelling.mesh import Mesh
 
 
 def lathe(mesh, material, profile, segments, uv_scale=1.0, close=True):
-    """Turns profile [(radius, y)], listed from the bottom up, round the y axis; normals break at corners > 35 degrees."""
+    """Turns profile [(radius, y)], listed from the bottom up, round the y axis; normals break at
+    corners > 35 degrees."""
     rows = list(profile)
     if close:
         rows = [(0.0, rows[0][1])] + rows + [(0.0, rows[-1][1])]
@@ -24,7 +25,8 @@ def lathe(mesh, material, profile, segments, uv_scale=1.0, close=True):
         angles = [2 * math.pi * (c % segments) / segments for c in range(segments + 1)]
         points.append([(radius * math.cos(a), y, radius * math.sin(a)) for a in angles])
     girth = max(r for r, _ in rows) * 2 * math.pi
-    mesh.grid(material, points, lambda r, c: (uv_scale * girth * c / segments, -uv_scale * length[r]), True, sharp)
+    mesh.grid(material, points, lambda r, c:
+              (uv_scale * girth * c / segments, -uv_scale * length[r]), True, sharp)
 
 
 def arc(centre, radius, start, end, steps):
@@ -34,7 +36,8 @@ def arc(centre, radius, start, end, steps):
 
 
 def column(height, radius, segments, material, plinth_material):
-    """Plinth, base, a shaft that narrows, capital and abacus; stands on y = 0, ends at y = height."""
+    """Plinth, base, a shaft that narrows, capital and abacus; stands on y = 0, ends at y =
+    height."""
     mesh = Mesh()
     r, plinth, abacus = radius, 0.5 * radius, 0.35 * radius
     mesh.box(plinth_material, (-1.42 * r, 0, -1.42 * r), (1.42 * r, plinth, 1.42 * r), "-y")
@@ -42,9 +45,11 @@ def column(height, radius, segments, material, plinth_material):
     y = plinth
     profile = [(1.2 * r, y)] + arc((1.2 * r, y + 0.17 * r), 0.17 * r, -90, 90, 6)[1:]
     y += 0.34 * r
-    profile += [(1.13 * r, y), (1.13 * r, y + 0.08 * r)] + arc((1.25 * r, y + 0.2 * r), 0.15 * r, -150, -210, 3)
+    profile += [(1.13 * r, y), (1.13 * r, y + 0.08 * r)] + arc(
+        (1.25 * r, y + 0.2 * r), 0.15 * r, -150, -210, 3)
     y += 0.34 * r
-    profile += [(1.1 * r, y)] + arc((1.08 * r, y + 0.1 * r), 0.1 * r, -90, 90, 5)[1:] + [(1.0 * r, y + 0.24 * r)]
+    profile += [(1.1 * r, y)] + arc(
+        (1.08 * r, y + 0.1 * r), 0.1 * r, -90, 90, 5)[1:] + [(1.0 * r, y + 0.24 * r)]
     top = height - abacus - 0.95 * r
     for i in range(1, 8):  # a shaft that swells a little
         t = i / 8
@@ -65,19 +70,22 @@ def turned(profile, segments, material, uv_scale=1.0):
 
 
 def arch_bay(width, springing, radius, top, thickness, steps, wall, trim):
-    """A bay of an arcade's wall, from its springing to its top, centred on x = 0, across z = 0; opening `radius`.
+    """A bay of an arcade's wall, from its springing to its top, centred on x = 0, across z = 0;
+    opening `radius`.
 
-    The columns' capitals carry it. Archivolts (`trim`) stand out on both faces. Its sides join the next bays.
-    """
+    The columns' capitals carry it. Archivolts (`trim`) stand out on both faces. Its sides join the
+    next bays. """
     mesh = Mesh()
     half, z = width / 2, thickness / 2
     angles = [math.pi * i / steps for i in range(steps + 1)]
-    curve = [(radius * math.cos(a), springing + radius * math.sin(a)) for a in angles]  # right to left
+    curve = [(radius * math.cos(a), springing + radius * math.sin(a))
+             for a in angles]  # right to left
 
     def outline(x, y, angle):
         """Where the ray from the arch's centre leaves the bay's rectangle."""
         dx, dy = math.cos(angle), math.sin(angle)
-        reach = min(half / abs(dx) if abs(dx) > 1e-9 else 1e9, (top - springing) / dy if dy > 1e-9 else 1e9)
+        reach = min(half / abs(dx) if abs(dx) > 1e-9 else 1e9,
+                    (top - springing) / dy if dy > 1e-9 else 1e9)
         return (reach * dx, springing + reach * dy)
 
     corner = math.atan2(top - springing, half)
@@ -90,7 +98,8 @@ def arch_bay(width, springing, radius, top, thickness, steps, wall, trim):
         mesh.quad(wall, [(x, y, -z) for x, y, _ in reversed(front)])
     for side in (-1, 1):  # the undersides beside the opening
         x = sorted((side * radius, side * half))
-        mesh.quad(wall, [(x[0], springing, -z), (x[1], springing, -z), (x[1], springing, z), (x[0], springing, z)])
+        mesh.quad(wall, [(x[0], springing, -z), (x[1], springing, -z), (x[1], springing, z),
+                         (x[0], springing, z)])
     soffit = [[(x, y, z), (x, y, -z)] for x, y in curve]
     mesh.grid(trim, soffit, lambda r, c: (2 * c * z, radius * math.pi * r / steps))
     for side in (-1, 1):
@@ -100,12 +109,13 @@ def arch_bay(width, springing, radius, top, thickness, steps, wall, trim):
 
 def archivolt(mesh, material, springing, radius, side, z, steps):
     """A stepped band round the opening, on the face at side * z."""
-    band = [(0.0, 0.0), (0.0, 0.05), (0.12, 0.05), (0.14, 0.03), (0.24, 0.03), (0.24, 0.0)]  # (outwards, forwards) [m]
+    band = [(0.0, 0.0), (0.0, 0.05), (0.12, 0.05), (0.14, 0.03), (0.24, 0.03),
+            (0.24, 0.0)]  # (outwards, forwards) [m]
     rows = []
     for i in range(steps + 1):
         angle = math.pi * i / steps
-        rows.append([((radius + o) * math.cos(angle), springing + (radius + o) * math.sin(angle), side * (z + f))
-                     for o, f in band])
+        rows.append([((radius + o) * math.cos(angle), springing + (radius + o) * math.sin(angle),
+                      side * (z + f)) for o, f in band])
     for k in range(len(band) - 1):  # one strip an edge: the corners stay sharp
         strip = [[row[k], row[k + 1]] for row in rows]
         if side > 0:
@@ -119,7 +129,8 @@ def archivolt(mesh, material, springing, radius, side, z, steps):
 
 
 def moulding(mesh, material, profile, start, end, outward):
-    """Sweeps profile [(out, y)], bottom to top, along the level line from start to end; `outward`: unit, across it.
+    """Sweeps profile [(out, y)], bottom to top, along the level line from start to end; `outward`:
+    unit, across it.
 
     The ends are closed.
     """
@@ -127,7 +138,8 @@ def moulding(mesh, material, profile, start, end, outward):
         return (base[0] + outward[0] * o, base[1] + y, base[2] + outward[2] * o)
 
     along = (end[0] - start[0], 0, end[2] - start[2])
-    outward_is_front = along[0] * outward[2] - along[2] * outward[0] > 0  # along x up points to `outward`
+    outward_is_front = along[0] * outward[2] - along[2] * outward[
+        0] > 0  # along x up points to `outward`
     for (o0, y0), (o1, y1) in zip(profile, profile[1:]):
         corners = [at(start, o0, y0), at(end, o0, y0), at(end, o1, y1), at(start, o1, y1)]
         mesh.quad(material, corners if outward_is_front else list(reversed(corners)))
@@ -142,14 +154,16 @@ def moulding(mesh, material, profile, start, end, outward):
 
 def sheet(mesh, material, surface, columns, rows, uv):
     """Cloth: surface(u, v) for u to the right, v downwards, both in [0, 1], faces +z."""
-    points = [[surface(c / columns, 1 - r / rows) for c in range(columns + 1)] for r in range(rows + 1)]
+    points = [[surface(c / columns, 1 - r / rows) for c in range(columns + 1)]
+              for r in range(rows + 1)]
     # Rows go up, columns to the right: up x right points to -z, so turn the columns round.
     points = [list(reversed(row)) for row in points]
     mesh.grid(material, points, lambda r, c: uv(1 - c / columns, 1 - r / rows))
 
 
 def drawn_curtain(width, height, folds, depth, seed, material, columns=96, rows=20):
-    """A closed curtain: folds that deepen and wander on their way down. Hangs from y = 0 at z = 0."""
+    """A closed curtain: folds that deepen and wander on their way down. Hangs from y = 0 at z =
+    0."""
     mesh = Mesh()
     phase = 0.7 * seed
 
@@ -167,7 +181,8 @@ def drawn_curtain(width, height, folds, depth, seed, material, columns=96, rows=
 
 
 def tied_curtain(width, height, folds, depth, seed, material, columns=72, rows=28):
-    """Half a curtain drawn to the left and tied: `width` wide at its top, from x = 0 to the right."""
+    """Half a curtain drawn to the left and tied: `width` wide at its top, from x = 0 to the
+    right."""
     mesh = Mesh()
     phase = 1.3 * seed
     tie = 0.62  # share of the height where the cord is
@@ -180,8 +195,9 @@ def tied_curtain(width, height, folds, depth, seed, material, columns=72, rows=2
 
     def surface(u, v):
         span = gather(v)
-        wave = math.sin(2 * math.pi * folds * u + phase) + 0.3 * span * math.sin(2 * math.pi * 2.3 * folds * u)
-        amplitude = depth * (0.5 + 0.7 * (1 - span)) * (1 - 0.45 * math.exp(-((v - tie) / 0.06) ** 2))
+        wave = math.sin(2 * math.pi * folds * u +
+                        phase) + 0.3 * span * math.sin(2 * math.pi * 2.3 * folds * u)
+        amplitude = depth * (0.5 + 0.7 * (1 - span)) * (1 - 0.45 * math.exp(-((v - tie) / 0.06)**2))
         sag = 0.22 * u * math.sin(math.pi * min(v / tie, 1.0)) if v < tie else 0.0
         return (width * span * u, -height * v - sag, amplitude * wave)
 
@@ -190,7 +206,8 @@ def tied_curtain(width, height, folds, depth, seed, material, columns=72, rows=2
 
 
 def draped_cloth(width, height, over, seed, material, columns=40, rows=24):
-    """A cloth over a rail: from behind the rail's top edge (z = -over), forwards, and down on its front from z = 0."""
+    """A cloth over a rail: from behind the rail's top edge (z = -over), forwards, and down on its
+    front from z = 0."""
     mesh = Mesh()
     phase = 0.9 * seed
     flat = over / (over + height)  # share of the cloth's length that lies on the rail
@@ -200,11 +217,13 @@ def draped_cloth(width, height, over, seed, material, columns=40, rows=24):
         if v <= flat:
             return (x, 0.012, -over * (1 - v / flat))
         fall = (v - flat) / (1 - flat)
-        wave = math.sin(2 * math.pi * (2.5 * u + 0.15 * fall) + phase) + 0.4 * math.sin(2 * math.pi * 6.1 * u + phase)
+        wave = math.sin(2 * math.pi * (2.5 * u + 0.15 * fall) +
+                        phase) + 0.4 * math.sin(2 * math.pi * 6.1 * u + phase)
         hem = 0.05 * math.cos(2 * math.pi * 2.5 * u + phase) * fall
         # The cloth leaves the rail a little forwards, then hangs in folds that deepen.
         out = 0.05 * min(1.0, 6 * fall) + 0.035 * wave * fall
         return (x * (1 - 0.06 * fall), 0.012 - height * fall + hem, out)
 
-    sheet(mesh, material, surface, columns, rows, lambda u, v: (2.4 * width * u, 1.6 * (over + height) * v))
+    sheet(mesh, material, surface, columns, rows, lambda u, v: (2.4 * width * u, 1.6 *
+                                                                (over + height) * v))
     return mesh

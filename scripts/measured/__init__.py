@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Measured numbers: scripts/measure and scripts/reproduce measure them, scripts/tables and scripts/charts show them.
+"""Measured numbers: scripts/measure and scripts/reproduce measure them, scripts/tables and
+scripts/charts show them.
 
 rows.py has what is measured, once for both.
 """
@@ -27,9 +28,11 @@ def json_lines(document):
     members = []
     for key, value in document.items():
         if isinstance(value, dict) and value:
-            lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(each)}" for name, each in value.items())
+            lines = ",\n".join(f"{json.dumps(name)}: {json.dumps(each)}"
+                               for name, each in value.items())
             members.append(f"{json.dumps(key)}: {{\n{lines}\n}}")
         else:
             lines = isinstance(value, list) and ",\n".join(map(json.dumps, value))
-            members.append(f"{json.dumps(key)}: " + (f"[\n{lines}\n]" if lines else json.dumps(value)))
+            members.append(f"{json.dumps(key)}: " +
+                           (f"[\n{lines}\n]" if lines else json.dumps(value)))
     return "{" + ",\n".join(members) + "}\n"

@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: MIT
 """Charts of what clpv wrote.
 
-    scripts/charts errors [LABEL=]FILE.json ... -o FILE.png     error over frame time, from files of `clpv quality -o FILE.json`
-                                                                or of results/quality; a point per variant
-    scripts/charts lambda -o FILE.png                           condition, error and energy of SRBF bases over the bandwidth;
-                                                                lambdas that clpv rejects are missing. Needs a build
-    scripts/charts times DIR -o FILE.png                        times.json of `clpv sequence`: median, 95th percentile and
-                                                                maximum of each stage; time of every frame
-    scripts/charts stability [LABEL=]DIR ... -o FILE.png        stability.json of `clpv sequence --stability`
+    scripts/charts errors [LABEL=]FILE.json ... -o FILE.png     error over frame time, from files of
+                                                                `clpv quality -o FILE.json` or of
+                                                                results/quality; a point per variant
+    scripts/charts lambda -o FILE.png                           condition, error and energy of SRBF
+                                                                bases over the bandwidth; lambdas
+                                                                that clpv rejects are missing. Needs
+                                                                a build
+    scripts/charts times DIR -o FILE.png                        times.json of `clpv sequence`:
+                                                                median, 95th percentile and maximum
+                                                                of each stage; time of every frame
+    scripts/charts stability [LABEL=]DIR ... -o FILE.png        stability.json of `clpv sequence
+                                                                --stability`
 
-The error is the mean NRMSE of indirect light over all views of a file. Needs Debian's Python and the packages of scripts/setup.
-"""
+The error is the mean NRMSE of indirect light over all views of a file. Needs Debian's Python and
+the packages of scripts/setup. """
 import argparse
 import json
 import pathlib
@@ -24,7 +29,9 @@ clpv = native()
 from clpv.draw import documents, style  # noqa: E402
 
 HIGHEST = 120  # [%] errors above are worse than a black image
-VARIANT = {"options": dict, "rejected": int, "nrmse": documents.NUMBER, "frame_ms": documents.NUMBER}
+VARIANT = {
+    "options": dict, "rejected": int, "nrmse": documents.NUMBER, "frame_ms": documents.NUMBER
+}
 MINIMUM = 1e-5  # smaller changes show as this on the logarithmic axis
 BASES = ("srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 LAMBDAS = [round(0.05 * i, 2) for i in range(1, 15)]
@@ -37,30 +44,40 @@ def save(figure, output, dpi):
 
 
 def points(path, label):
-    """Returns by series, or else by `label`: (ms, NRMSE in %, varied options) of each measured variant, sorted by time."""
+    """Returns by series, or else by `label`: (ms, NRMSE in %, varied options) of each measured
+    variant, sorted by time."""
     document = documents.read(path)
-    measured = [row for row in documents.checked(document, path, "variants", {"rejected": int}) if row["rejected"] == 0]
+    measured = [
+        row for row in documents.checked(document, path, "variants", {"rejected": int})
+        if row["rejected"] == 0
+    ]
     rows = documents.checked({"variants": measured}, path, "variants", VARIANT)
     lines = {}
     for row in rows:
         options = row["options"]
         name = options.get("grid", "") if "series" in row else " ".join(map(str, options.values()))
-        lines.setdefault(row.get("series", label), []).append((row["frame_ms"], 100 * row["nrmse"], name))
+        lines.setdefault(row.get("series", label), []).append(
+            (row["frame_ms"], 100 * row["nrmse"], name))
     return [(name, sorted(line)) for name, line in lines.items()]
 
 
 def draw_errors(files, output):
     """`files`: (label, path)."""
-    series = [line for label, path in files for line in points(pathlib.Path(path), label or pathlib.Path(path).stem)]
+    series = [
+        line for label, path in files
+        for line in points(pathlib.Path(path), label or pathlib.Path(path).stem)
+    ]
     if not series:
-        raise documents.BadDocument(f"{', '.join(str(path) for _, path in files)}: no variant was measured")
+        raise documents.BadDocument(
+            f"{', '.join(str(path) for _, path in files)}: no variant was measured")
     figure, (axis,) = style.panels(1, 1, (8, 4.5))
     for i, (label, places) in enumerate(series):
-        axis.plot([p[0] for p in places], [p[1] for p in places], "o-", color=style.colour(i), label=label)
+        axis.plot([p[0] for p in places], [p[1] for p in places], "o-", color=style.colour(i),
+                  label=label)
         for x, y, name in places:
             axis.annotate(name, (x, y), textcoords="offset points", xytext=(5, 5), fontsize="small")
-    axis.set(ylim=(0, min(HIGHEST, 1.08 * max(p[1] for _, places in series for p in places))), xlabel="frame [ms]",
-             ylabel="mean NRMSE [%]")
+    axis.set(ylim=(0, min(HIGHEST, 1.08 * max(p[1] for _, places in series for p in places))),
+             xlabel="frame [ms]", ylabel="mean NRMSE [%]")
     style.logarithmic(axis.xaxis)
     axis.legend()
     save(figure, output, 110)
@@ -77,15 +94,18 @@ def described(name, bandwidth):
 
 
 def draw_lambda(output):
-    curves = {name: [point for point in (described(name, value) for value in LAMBDAS) if point] for name in BASES}
+    curves = {
+        name: [point for point in (described(name, value) for value in LAMBDAS) if point]
+        for name in BASES
+    }
     figure, panels = style.panels(3, 3, (4.27, 4.2))
     titles = {"condition": "condition number of A",
               "mean_relative_l2": "clamped cosine: relative L2 error, mean over all axes",
               "energy_sampled_24": "energy after 24 steps, sampled transport"}
     for panel, (key, title) in zip(panels, titles.items()):
         for i, (name, points) in enumerate(curves.items()):
-            panel.plot([p["lambda"] for p in points], [p[key] for p in points], marker="o", markersize=3, label=name,
-                       color=style.colour(i))
+            panel.plot([p["lambda"] for p in points], [p[key] for p in points], marker="o",
+                       markersize=3, label=name, color=style.colour(i))
         panel.set_title(title, fontsize=10)
         panel.set_xlabel("lambda")
         panel.axvline(0.25, color=style.LINE, lw=2, zorder=0)
@@ -103,8 +123,10 @@ def draw_lambda(output):
 def stage_samples(frames):
     """Returns {stage: ms of each frame}; 0 for a frame that skipped the stage."""
     stages = list(dict.fromkeys(entry["stage"] for frame in frames for entry in frame["stages"]))
-    return {stage: [sum(e["ms"] for e in frame["stages"] if e["stage"] == stage) for frame in frames]
-            for stage in stages}
+    return {
+        stage: [sum(e["ms"] for e in frame["stages"] if e["stage"] == stage) for frame in frames]
+        for stage in stages
+    }
 
 
 def read(folder, name):
@@ -119,12 +141,15 @@ def draw_times(folder, output):
     samples["frame (wall)"] = [frame["frame_ms"] for frame in frames]
     figure, (left, right) = style.panels(2, 2, (4.6, 3.4))
     names = list(samples)[::-1]
-    left.barh(names, [numpy.quantile(samples[n], 0.5) for n in names], color=style.colour(0), label="median")
+    left.barh(names, [numpy.quantile(samples[n], 0.5) for n in names], color=style.colour(0),
+              label="median")
     for marker, share, label in (("|", 0.95, "95th percentile"), ("x", 1.0, "maximum")):
-        left.plot([numpy.quantile(samples[n], share) for n in names], names, marker, color=style.INK, ls="", label=label)
+        left.plot([numpy.quantile(samples[n], share) for n in names], names, marker,
+                  color=style.INK, ls="", label=label)
     left.set(xlabel="ms", title=f"Stages of {len(frames)} frames")
     left.legend(fontsize=7)
-    right.plot([frame["time"] for frame in frames], samples["frame (wall)"], lw=1, color=style.colour(0))
+    right.plot([frame["time"] for frame in frames], samples["frame (wall)"], lw=1,
+               color=style.colour(0))
     right.set(xlabel="s", ylabel="ms", title="Every frame (wall)", ylim=(0, None))
     save(figure, output, 100)
 
@@ -134,8 +159,8 @@ def draw_stability(folders, output):
     documents_of = {label: read(folder, "stability.json") for label, folder in folders}
     for i, (label, document) in enumerate(documents_of.items()):
         frames = [f for f in document["frames"] if f["change"] is not None]
-        axis.plot([f["time"] for f in frames], [100 * max(f["change"], MINIMUM) for f in frames], lw=1, marker=".", ms=3,
-                  color=style.colour(i), label=label)
+        axis.plot([f["time"] for f in frames], [100 * max(f["change"], MINIMUM) for f in frames],
+                  lw=1, marker=".", ms=3, color=style.colour(i), label=label)
         traced = [(f["time"], 100 * f["traced"]) for f in frames if f["traced"] is not None]
         if traced:
             axis.plot(*zip(*traced), lw=1, ls="--", color=style.colour(len(folders) + i),
@@ -153,7 +178,8 @@ def labelled(given):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("chart", choices=("errors", "lambda", "times", "stability"))
     parser.add_argument("files", nargs="*", metavar="[LABEL=]FILE")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="FILE.png")
@@ -161,7 +187,8 @@ def main():
     files = [labelled(given) for given in arguments.files]
     allowed = {"lambda": range(1), "times": range(1, 2)}.get(arguments.chart, range(1, 1000))
     if len(files) not in allowed:
-        parser.error(f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
+        parser.error(
+            f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
     try:
         if arguments.chart == "errors":
             draw_errors(files, arguments.output)
@@ -170,7 +197,8 @@ def main():
         elif arguments.chart == "times":
             draw_times(files[0][1], arguments.output)
         else:
-            draw_stability([(label or pathlib.Path(path).name, path) for label, path in files], arguments.output)
+            draw_stability([(label or pathlib.Path(path).name, path) for label, path in files],
+                           arguments.output)
     except documents.BadDocument as error:
         print(error, file=sys.stderr)
         return 3

@@ -1,20 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""Numbers of the paper's claims, for docs/bases.md and docs/paper/figures.md: a function for each part of scripts/reproduce.
+"""Numbers of the paper's claims, for docs/bases.md and docs/paper/figures.md: a function for each
+part of scripts/reproduce.
 
-lobes    errors of clamped cosines in the paper's sets, in other sets that fit its description, and in searched centres
-lambdas  verdicts on lobes along +z, and on the difference of both bases' light at `curtains`, by lambda
+lobes    errors of clamped cosines in the paper's sets, in other sets that fit its description, and
+         in searched centres
+lambdas  verdicts on lobes along +z, and on the difference of both bases' light at `curtains`, by
+         lambda
 tables   errors and energies of rotated lobes, by the number of table entries
-light    difference of sh2 and srbf8v2 with `--preset paper`, and the error of both against path tracing, by steps,
-         size of the smallest cascade and texels of the RSM; camera `curtains`
-views    errors of sh2 and srbf8v2 against path tracing, paired, in four cameras under three suns, by steps and size of the
-         smallest cascade
+light    difference of sh2 and srbf8v2 with `--preset paper`, and the error of both against path
+         tracing, by steps, size of the smallest cascade and texels of the RSM; camera `curtains`
+views    errors of sh2 and srbf8v2 against path tracing, paired, in four cameras under three suns,
+         by steps and size of the smallest cascade
 texels   difference of neighbouring texels of an RSM, by size of the cascade; camera `curtains`
-shadows  contrast of indirect light on the floor with and without indirect shadows, and of path tracing; camera `columns`
-arcade   shadows of the arcade's columns and curtains in the irradiance of the wall behind it, by a sun along the nave
+shadows  contrast of indirect light on the floor with and without indirect shadows, and of path
+         tracing; camera `columns`
+arcade   shadows of the arcade's columns and curtains in the irradiance of the wall behind it, by a
+         sun along the nave
 lit      share of pixels without direct light, in each camera
 
-All but lobes and tables are of Sponza. `arguments`: model, out (folder) and quick, of scripts/reproduce.
-"""
+All but lobes and tables are of Sponza. `arguments`: model, out (folder) and quick, of
+scripts/reproduce. """
 import concurrent.futures
 import itertools
 import json
@@ -56,7 +61,8 @@ GUESSES = {
 }
 
 
-NAMED = ("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24", "bins96")
+NAMED = ("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14",
+         "bins24", "bins96")
 ALONG_Z, OBLIQUE = (0, 0, 1), (-2, 1, -3)
 OF_THE_PAPER = ("srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 LAMBDAS = 0.1, 0.25, 0.4, 0.55, 0.6
@@ -65,11 +71,14 @@ TABLE_SIZES = 256, 257, 512, 1024, 0  # 0: H is computed
 
 
 def gram(basis):
-    """A_ij: integrals of products of functions, by Gauss and Legendre in z and evenly in azimuth."""
+    """A_ij: integrals of products of functions, by Gauss and Legendre in z and evenly in
+    azimuth."""
     z, weights = np.polynomial.legendre.leggauss(64)
     azimuth = np.arange(128) * 2 * np.pi / 128
     radius = np.sqrt(1 - z ** 2)[:, None]
-    directions = np.stack((radius * np.cos(azimuth), radius * np.sin(azimuth), np.repeat(z[:, None], 128, axis=1)), axis=-1)
+    directions = np.stack(
+        (radius * np.cos(azimuth), radius * np.sin(azimuth), np.repeat(z[:, None], 128, axis=1)),
+        axis=-1)
     values = basis.evaluate(directions.reshape(-1, 3))
     return (values * np.repeat(weights * 2 * np.pi / 128, 128)[:, None]).T @ values
 
@@ -80,11 +89,15 @@ def of_lobes(bases):
         up, oblique = map(basis.lobe, (ALONG_Z, OBLIQUE))
         rotated = basis.lobe(OBLIQUE, basis.clamped_cosine(OBLIQUE, TABLE_SIZES[0]))
         scaled = basis.lobe(ALONG_Z, gram(basis) @ basis.clamped_cosine(ALONG_Z))
-        rows.append({"basis": name, "n": len(basis), "condition": basis.condition, "up": up["relative_l2"],
-                     "oblique": oblique["relative_l2"], "oblique_rotated": rotated["relative_l2"],
-                     "oblique_rotated_minimum": rotated["minimum"], "oblique_rotated_peak": rotated["peak_error_degrees"],
-                     "up_without_inverse": scaled["relative_l2"], "mean": basis.mean_error, "minimum": up["minimum"],
-                     "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)})
+        rows.append({
+            "basis": name, "n": len(basis), "condition": basis.condition, "up": up["relative_l2"],
+            "oblique": oblique["relative_l2"], "oblique_rotated": rotated["relative_l2"],
+            "oblique_rotated_minimum": rotated["minimum"],
+            "oblique_rotated_peak": rotated["peak_error_degrees"],
+            "up_without_inverse": scaled["relative_l2"], "mean": basis.mean_error,
+            "minimum": up["minimum"], "energy_sampled_8": basis.energy(8),
+            "energy_sampled_24": basis.energy(24)
+        })
     return rows
 
 
@@ -116,8 +129,9 @@ def along_z(name, value):
 
 
 def lambdas(arguments):
-    """Rules on lobes along +z by lambda, which the paper gives for one figure only: a set is worse than sh2 if its error is
-    larger, and very similar if the errors differ by a tenth of sh2's at most. Light: --preset paper, 12.5 m, 8 steps."""
+    """Rules on lobes along +z by lambda, which the paper gives for one figure only: a set is worse
+    than sh2 if its error is larger, and very similar if the errors differ by a tenth of sh2's at
+    most. Light: --preset paper, 12.5 m, 8 steps."""
     views_of = Views(arguments)
     of_sh2 = clpv.Basis("sh2").lobe(ALONG_Z)["relative_l2"]
     settings = {"preset": "paper", "cascade_size": 12.5, "iterations": 8, "lobe_time": "host"}
@@ -126,22 +140,31 @@ def lambdas(arguments):
     for value in LAMBDAS:
         errors = {name: along_z(name, value) for name in OF_THE_PAPER}
         image = views_of.image("curtains", basis="srbf8v2", lambda_=value, **settings)
-        rows.append({"lambda": value, "sh2": of_sh2, **errors,
-                     "worse": all(errors[name] > of_sh2 for name in ("srbf4", "srbf8v1", "srbf8v3")),
-                     "similar": abs(errors["srbf8v2"] - of_sh2) <= SIMILAR * of_sh2,
-                     "difference": clpv.compare(image, image_of_sh2).nrmse,
-                     "error": clpv.compare(image, views_of.truth("curtains")).nrmse})
+        rows.append({
+            "lambda": value, "sh2": of_sh2,
+            **errors, "worse": all(errors[name] > of_sh2
+                                   for name in ("srbf4", "srbf8v1", "srbf8v3")),
+            "similar": abs(errors["srbf8v2"] - of_sh2) <= SIMILAR * of_sh2,
+            "difference": clpv.compare(image, image_of_sh2).nrmse,
+            "error": clpv.compare(image, views_of.truth("curtains")).nrmse
+        })
     return rows
 
 
 def tables(_):
-    """Lobes that are rotated through tables of H: errors along +z, and energies of the transport."""
+    """Lobes that are rotated through tables of H: errors along +z, and energies of the
+    transport."""
     rows = []
-    for name, size in itertools.product((name for name in NAMED if name.startswith("srbf")), TABLE_SIZES):
+    for name, size in itertools.product((name for name in NAMED if name.startswith("srbf")),
+                                        TABLE_SIZES):
         basis = clpv.Basis(name)
         lobe = basis.lobe(ALONG_Z, basis.clamped_cosine(ALONG_Z, size))
-        row = {"basis": name, "entries": size, "up": lobe["relative_l2"], "peak_error_degrees": lobe["peak_error_degrees"],
-               "energy_sampled_8": basis.energy(8, table_size=size), "energy_sampled_24": basis.energy(24, table_size=size)}
+        row = {
+            "basis": name, "entries": size, "up": lobe["relative_l2"],
+            "peak_error_degrees": lobe["peak_error_degrees"],
+            "energy_sampled_8": basis.energy(8, table_size=size),
+            "energy_sampled_24": basis.energy(24, table_size=size)
+        }
         rows.append(row)
     return rows
 
@@ -176,12 +199,20 @@ def light(arguments):
     """Over steps, cascades and RSMs: how far apart the bases are, and how far off each is."""
     views_of = Views(arguments)
     rows = []
-    for size, texels, steps in itertools.product(SIZES, TEXELS[:1] if arguments.quick else TEXELS, STEPS):
-        images = [views_of.image("curtains", preset="paper", basis=name, cascade_size=size, rsm_size=texels, iterations=steps,
-                                 **({"lobe_time": "host"} if arguments.quick else {})) for name in BASES]
-        row = {"cascade_size": size, "rsm_size": texels, "iterations": steps,
-               "difference": clpv.compare(images[1], images[0]).nrmse,
-               **{name: clpv.compare(image, views_of.truth("curtains")).nrmse for name, image in zip(BASES, images)}}
+    for size, texels, steps in itertools.product(SIZES, TEXELS[:1] if arguments.quick else TEXELS,
+                                                 STEPS):
+        images = [
+            views_of.image("curtains", preset="paper", basis=name, cascade_size=size,
+                           rsm_size=texels, iterations=steps,
+                           **({"lobe_time": "host"} if arguments.quick else {})) for name in BASES
+        ]
+        row = {
+            "cascade_size": size, "rsm_size": texels, "iterations": steps,
+            "difference": clpv.compare(images[1], images[0]).nrmse, **{
+                name: clpv.compare(image, views_of.truth("curtains")).nrmse
+                for name, image in zip(BASES, images)
+            }
+        }
         rows.append(row)
     return rows
 
@@ -191,12 +222,15 @@ FOURTH = clpv.Camera((7.4, 1.6, -0.3), (-6.0, 2.2, -0.3), name="back")
 
 
 def views(arguments):
-    """Of each setting: both errors in every view, and mean, standard error and signs of their paired differences."""
+    """Of each setting: both errors in every view, and mean, standard error and signs of their
+    paired differences."""
     views_of = Views(arguments)
     cameras = [*views_of.scene.cameras[:3], FOURTH]
     suns = json.loads((ROOT / "scenes/sponza_other_suns.json").read_text())["lights"]
-    views_of.scene.lights = [clpv.Light(direction=sun["direction"], intensity=sun["illuminance_lux"], name=sun["name"])
-                             for sun in suns]
+    views_of.scene.lights = [
+        clpv.Light(direction=sun["direction"], intensity=sun["illuminance_lux"], name=sun["name"])
+        for sun in suns
+    ]
     views_of.scene.cameras = [camera.replace(name=f"{camera.name}-{sun['name']}", light=sun["name"])
                               for camera, sun in itertools.product(cameras, suns)]
     rows, summary = [], []
@@ -204,25 +238,37 @@ def views(arguments):
         errors = {name: {} for name in BASES}
         for name in BASES:
             # Lobes as constants give the light of run-time lobes within 2e-4, five times as fast.
-            renderer = views_of.renderer(preset="paper", lobe_time="host", basis=name, cascade_size=size, iterations=steps)
+            renderer = views_of.renderer(preset="paper", lobe_time="host", basis=name,
+                                         cascade_size=size, iterations=steps)
             for camera in (each.name for each in views_of.scene.cameras):
-                found = clpv.compare(renderer.render("indirect", camera), views_of.truth(camera, noise=NOISE_OF_PAIRS))
+                found = clpv.compare(renderer.render("indirect", camera),
+                                     views_of.truth(camera, noise=NOISE_OF_PAIRS))
                 errors[name][camera] = found.nrmse
-                rows.append({"camera": camera, "basis": name, "cascade-size": str(size), "iterations": str(steps),
-                             "nrmse": found.nrmse, "energy_ratio": found.energy_ratio})
-        apart = {camera: errors["sh2"][camera] - errors["srbf8v2"][camera] for camera in errors["sh2"]}
+                rows.append({
+                    "camera": camera, "basis": name, "cascade-size": str(size),
+                    "iterations": str(steps), "nrmse": found.nrmse,
+                    "energy_ratio": found.energy_ratio
+                })
+        apart = {
+            camera: errors["sh2"][camera] - errors["srbf8v2"][camera]
+            for camera in errors["sh2"]
+        }
         differences = np.array(list(apart.values()))
         better = int((differences > 0).sum())
-        summary.append({"cascade_size": size, "iterations": steps, "mean": differences.mean(),
-                        "standard_error": differences.std(ddof=1) / math.sqrt(len(apart)), "srbf8v2_better": better,
-                        "views": len(apart), "apart": apart})
+        summary.append({
+            "cascade_size": size, "iterations": steps, "mean": differences.mean(),
+            "standard_error": differences.std(ddof=1) / math.sqrt(len(apart)),
+            "srbf8v2_better": better, "views": len(apart), "apart": apart
+        })
     return {"summary": summary, "rows": rows}
 
 
 def shadows(arguments):
-    """Contrast of irradiance between the floor's darkest and brightest quarter in the ground truth, for every image."""
+    """Contrast of irradiance between the floor's darkest and brightest quarter in the ground truth,
+    for every image."""
     views_of = Views(arguments)
-    albedo, normal = (views_of.truth("columns", view, NOISE).array.astype(float) for view in ("albedo", "normal"))
+    albedo, normal = (views_of.truth("columns", view, NOISE).array.astype(float)
+                      for view in ("albedo", "normal"))
     albedo = albedo[..., :3].sum(axis=-1)
     floor = (normal[..., 1] > UP) & (albedo > 0)
 
@@ -230,13 +276,16 @@ def shadows(arguments):
         return image.array[..., :3].astype(float).sum(axis=-1)[floor] / albedo[floor]
 
     def contrast(light):
-        return (light[bright].mean() - light[dark].mean()) / (light[bright].mean() + light[dark].mean())
+        return (light[bright].mean() - light[dark].mean()) / (light[bright].mean() +
+                                                              light[dark].mean())
 
     irradiance, rows = on_floor(views_of.truth("columns", noise=NOISE)), []
-    dark, bright = irradiance <= np.quantile(irradiance, 0.25), irradiance >= np.quantile(irradiance, 0.75)
+    dark, bright = irradiance <= np.quantile(irradiance, 0.25), irradiance >= np.quantile(
+        irradiance, 0.75)
     rows.append({"image": "path traced", "on": contrast(irradiance), "off": None})
     variants = [{"preset": "paper", "basis": name} for name in BASES] + [{"preset": "best"}]
-    variants.append({"preset": "paper", "basis": "sh2", "grid": "64", "iterations": "16"})  # light reaches as far
+    variants.append({"preset": "paper", "basis": "sh2", "grid": "64",
+                     "iterations": "16"})  # light reaches as far
     for variant in variants:
         constant = {"lobe_time": "host"} if arguments.quick and variant["preset"] == "paper" else {}
         on, off = (contrast(on_floor(views_of.image("columns", **variant, **constant, **blockers)))
@@ -250,16 +299,19 @@ OTHER_WAY = 0.5  # cosine of the angle beyond which two normals differ
 
 
 def texels(arguments):
-    """Of neighbouring texels: mean difference of their flux over its mean, and share of pairs with other normals."""
+    """Of neighbouring texels: mean difference of their flux over its mean, and share of pairs with
+    other normals."""
     views_of = Views(arguments)
     camera = views_of.scene.cameras[0]
-    sun = np.array(next(light.direction for light in views_of.scene.lights if camera.light in ("", light.name)))
+    sun = np.array(
+        next(light.direction for light in views_of.scene.lights
+             if camera.light in ("", light.name)))
     sun /= np.linalg.norm(sun)
     renderer = views_of.renderer(width=min(TEXELS), height=min(TEXELS))
     rows = []
     for size in sorted({size * 2 ** cascade for size in SIZES for cascade in range(3)}):
-        above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0), near=0.05,
-                               fov=math.degrees(2 * math.atan(size / 2 / FROM_THE_SUN)))
+        above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0),
+                               near=0.05, fov=math.degrees(2 * math.atan(size / 2 / FROM_THE_SUN)))
         albedo = renderer.render("albedo", above).array[..., :3].astype(float)
         normal = renderer.show("normal").array[..., :3].astype(float)
         flux = albedo.sum(axis=-1) * np.clip(-(normal @ sun), 0, None)
@@ -271,14 +323,19 @@ def texels(arguments):
             fluxes += [flux[here][both]]
             cosines += [(normal[here] * normal[there]).sum(axis=-1)[both]]
         apart, cosines, fluxes = map(np.concatenate, (apart, cosines, fluxes))
-        rows.append({"size": size, "flux": apart.mean() / fluxes.mean(), "normals": (cosines < OTHER_WAY).mean()})
+        rows.append({
+            "size": size, "flux": apart.mean() / fluxes.mean(),
+            "normals": (cosines < OTHER_WAY).mean()
+        })
     return rows
 
 
-# Path tracing shows the arcade most clearly in this light, of 24 suns and both sides of the nave: sunlit floor and walls of the nave
-# shine through it, at z = -2.5 m, onto the wall behind it, at z = -6.2 m. Curtains hang between its columns.
+# Path tracing shows the arcade most clearly in this light, of 24 suns and both sides of the nave:
+# sunlit floor and walls of the nave shine through it, at z = -2.5 m, onto the wall behind it, at z
+# = -6.2 m. Curtains hang between its columns.
 ALONG_THE_NAVE = clpv.Light(direction=(0.1736, -0.9848, 0), intensity=10, name="along")
-SPACING, A_COLUMN, PERIODS, MIDDLE = 3.78, 1.2, 4, -0.7  # of the columns in x, x of one, length of the strip, its middle [m]
+# Spacing of the columns in x, x of one, length of the strip in columns, its middle [m].
+SPACING, A_COLUMN, PERIODS, MIDDLE = 3.78, 1.2, 4, -0.7
 AT_WALL, BEFORE_WALL = -6.2, 0.05  # z [m]
 STRIP = 1.5, 3.5  # y [m]
 OF_ARCADE = clpv.Camera((MIDDLE, 1.8, 1.2), (MIDDLE, 2.2, AT_WALL), name="arcade", light="along")
@@ -286,8 +343,8 @@ ACROSS, SAMPLES = 180, 2048
 
 
 def arcade(arguments):
-    """Of the wall's irradiance, over four columns: twice its mean product with -cos(2 pi (x - x_column) / spacing), over its mean.
-    Above 0: darker behind columns than behind curtains."""
+    """Of the wall's irradiance, over four columns: twice its mean product with -cos(2 pi (x -
+    x_column) / spacing), over its mean. Above 0: darker behind columns than behind curtains."""
     views_of = Views(arguments)
     views_of.scene.lights = [ALONG_THE_NAVE]
     half, y, far = PERIODS * SPACING / 2, sum(STRIP) / 2, 40
@@ -295,14 +352,17 @@ def arcade(arguments):
     wave = -2 * np.cos(2 * np.pi * (x - A_COLUMN) / SPACING)
     height = (STRIP[1] - STRIP[0]) / 2
     # From far away, through everything that is nearer than the wall's niches.
-    before = clpv.Camera((MIDDLE, y, far), (MIDDLE, y, AT_WALL), name="wall", light="along", near=far - AT_WALL - 2.4,
+    before = clpv.Camera((MIDDLE, y, far), (MIDDLE, y, AT_WALL), name="wall", light="along",
+                         near=far - AT_WALL - 2.4,
                          fov=math.degrees(2 * math.atan(height / (far - AT_WALL))))
-    traced = clpv.pathtrace(views_of.scene, "irradiance", before, ACROSS, round(ACROSS * height / half), samples=SAMPLES)
+    traced = clpv.pathtrace(views_of.scene, "irradiance", before, ACROSS,
+                            round(ACROSS * height / half), samples=SAMPLES)
     traced.save(views_of.truths / "arcade.exr")
     line = traced.array[..., :3].astype(float).sum(axis=(0, 2))
     rows = [{"image": "path traced", "on": (line * wave).mean() / line.mean(), "off": None}]
     points = [(at, y, AT_WALL + BEFORE_WALL) for at in x]
-    for variant in [{"preset": "paper", "basis": name} for name in BASES] + [{"preset": "best"}, {"grid": "64"}]:
+    for variant in [{"preset": "paper", "basis": name}
+                    for name in BASES] + [{"preset": "best"}, {"grid": "64"}]:
         constant = {"lobe_time": "host"} if variant.get("preset") == "paper" else {}
         found = []
         for blockers in ({}, {"blockers": "none"}):
@@ -326,6 +386,7 @@ def lit(arguments):
     return rows
 
 
-CLAIMS = {"lobes": lobes, "lambdas": lambdas, "tables": tables, "light": light, "views": views, "texels": texels,
-          "shadows": shadows, "arcade": arcade, "lit": lit}
-
+CLAIMS = {
+    "lobes": lobes, "lambdas": lambdas, "tables": tables, "light": light, "views": views,
+    "texels": texels, "shadows": shadows, "arcade": arcade, "lit": lit
+}

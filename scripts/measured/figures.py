@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""The paper's Figures 1 to 6 by clpv, for scripts/reproduce: contact sheets with captions, and numbers.
+"""The paper's Figures 1 to 6 by clpv, for scripts/reproduce: contact sheets with captions, and
+numbers.
 
-figure1, figure4   Sponza, camera `curtains`, by `--preset paper` and by the defaults with the paper's two bases
+figure1, figure4   Sponza, camera `curtains`, by `--preset paper` and by the defaults with the
+                   paper's two bases
 figure2, 3, 6      by `clpv basis --figures`, with both kinds of lobes
 figure5            the arcade and the wall behind it, sun along the nave, as figure1
-srbf14             srbf14 with rotated lobes and sampled transport, and with exact ones; camera `atrium`
+srbf14             srbf14 with rotated lobes and sampled transport, and with exact ones; camera
+                   `atrium`
 
-These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md describes them.
-"""
+These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md
+describes them. """
 import itertools
 import subprocess
 
@@ -37,7 +40,8 @@ SETTINGS = {
 AMPLIFY = 15  # factor of difference images, as in the paper
 EXPOSURE = 4  # of all images [EV]
 WIDTH, DPI = 12.7, 85  # sheets: inches, pixels per inch
-# A pixel counts as darker if it lost more than this share of the view's mean; smaller changes are rounding.
+# A pixel counts as darker if it lost more than this share of the view's mean; smaller changes are
+# rounding.
 DARKER = 0.02
 
 
@@ -57,7 +61,9 @@ class Frames:
         if key not in self.rendered:
             always = self.always if options.get("preset") == "paper" else {}
             renderer = clpv.Renderer(self.scene, **self.size, **{**always, **options})
-            self.rendered[key] = {"full": renderer.render("full", self.camera), "indirect": renderer.show("indirect")}
+            self.rendered[key] = {
+                "full": renderer.render("full", self.camera), "indirect": renderer.show("indirect")
+            }
         return self.rendered[key][view]
 
     def image(self, view="full", **options):
@@ -86,7 +92,9 @@ def sheet(path, title, columns, tiles):
 def pair(frames, view="full", **options):
     """Returns captioned tiles of both bases and of their difference."""
     images = [frames.image(view, basis=basis, **options) for basis in BASES]
-    frames.pairs.append((f"{frames.view}, {view}: " + ", ".join(f"{name} {value}" for name, value in options.items()), images))
+    frames.pairs.append(
+        (f"{frames.view}, {view}: " + ", ".join(f"{name} {value}"
+                                                for name, value in options.items()), images))
     return [*zip(images, BASES), (difference(*images), f"difference x{AMPLIFY}")]
 
 
@@ -95,17 +103,24 @@ def with_caption(tiles, text):
 
 
 def figure1(frames, out):
-    tiles = [tile for preset in PRESETS for tile in with_caption(pair(frames, preset=preset), f"--preset {preset}")]
+    tiles = [
+        tile for preset in PRESETS
+        for tile in with_caption(pair(frames, preset=preset), f"--preset {preset}")
+    ]
     sheet(out / "figure1.jpg", f"Figure 1: two bases by either preset ({frames.view})", 3, tiles)
 
 
 def figure4(frames, out, preset):
     tiles = []
-    for size, steps in itertools.product(SIZES, STEPS if preset == "paper" else ("no",)):  # a sweep takes none
+    for size, steps in itertools.product(SIZES, STEPS if preset == "paper" else
+                                         ("no", )):  # a sweep takes none
         given = {} if steps == "no" else {"iterations": steps}
-        tiles += with_caption(pair(frames, preset=preset, cascade_size=size, **given), f"{size:g} m, {steps} iterations")
-    sheet(out / f"figure4-{preset}.jpg",
-          f"Figure 4 by --preset {preset}: edge of the smallest cascade, propagation steps ({frames.view})", 3, tiles)
+        tiles += with_caption(pair(frames, preset=preset, cascade_size=size, **given),
+                              f"{size:g} m, {steps} iterations")
+    sheet(
+        out / f"figure4-{preset}.jpg",
+        f"Figure 4 by --preset {preset}: edge of the smallest cascade, propagation steps ({frames.view})",
+        3, tiles)
 
 
 def figure5(frames, out, preset):
@@ -114,16 +129,19 @@ def figure5(frames, out, preset):
         open_air = frames.image(view, basis="srbf8v2", preset=preset, blockers="none")
         tiles += with_caption(pair(frames, view, preset=preset), light)
         tiles.append((open_air, f"srbf8v2, {light}, no indirect shadows"))
-    sheet(out / f"figure5-{preset}.jpg", f"Figure 5 by --preset {preset}: indirect shadows ({frames.view})", 4, tiles)
+    sheet(out / f"figure5-{preset}.jpg",
+          f"Figure 5 by --preset {preset}: indirect shadows ({frames.view})", 4, tiles)
 
 
 def srbf14(frames, out):
     tiles = []
     for (setting, options), steps in itertools.product(SETTINGS.items(), STEPS):
         for size, view in itertools.product(SIZES, ("full", "indirect")):
-            pixels = frames.image(view, preset="paper", basis="srbf14", **options, cascade_size=size, iterations=steps)
+            pixels = frames.image(view, preset="paper", basis="srbf14", **options,
+                                  cascade_size=size, iterations=steps)
             tiles.append((pixels, f"{setting}, {steps} steps, {size:g} m, {view}"))
-    sheet(out / "srbf14.jpg", f"srbf14 by --preset paper, with other lobes and transport ({frames.view})", 4, tiles)
+    sheet(out / "srbf14.jpg",
+          f"srbf14 by --preset paper, with other lobes and transport ({frames.view})", 4, tiles)
 
 
 def variants():
@@ -135,26 +153,36 @@ def variants():
 
 
 def brightness(frames):
-    """Rows: mean luminance of the indirect light at both numbers of steps, and the share of pixels that the later steps darken."""
+    """Rows: mean luminance of the indirect light at both numbers of steps, and the share of pixels
+    that the later steps darken."""
     rows = []
     for variant, size in itertools.product(variants(), SIZES):
-        few, many = (frames.indirect(**variant, cascade_size=size, iterations=steps) for steps in STEPS)
+        few, many = (frames.indirect(**variant, cascade_size=size, iterations=steps)
+                     for steps in STEPS)
         darker = float((many < few - DARKER * few.mean()).mean())
-        rows.append({**variant, "cascade_size": size, "mean_8": float(few.mean()), "mean_24": float(many.mean()), "darker": darker})
+        rows.append({
+            **variant, "cascade_size": size, "mean_8": float(few.mean()),
+            "mean_24": float(many.mean()), "darker": darker
+        })
     return rows
 
 
 def basis_figures(out):
     for lobe in LOBES:
-        subprocess.run([str(CLPV), "basis", "--lobe", lobe, "--figures", str(out / f"lobes-{lobe}")], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [str(CLPV), "basis", "--lobe", lobe, "--figures",
+             str(out / f"lobes-{lobe}")], check=True, stdout=subprocess.DEVNULL)
 
 
 def paper(arguments):
-    """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness. Without a model Figures 2, 3 and 6
-    alone."""
+    """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness.
+    Without a model Figures 2, 3 and 6 alone."""
     out = arguments.out
     basis_figures(out)
-    lobe_files = [str(file.relative_to(out)) for kind in LOBES for file in sorted((out / f"lobes-{kind}").glob("*.png"))]
+    lobe_files = [
+        str(file.relative_to(out)) for kind in LOBES
+        for file in sorted((out / f"lobes-{kind}").glob("*.png"))
+    ]
     if not arguments.model:
         return {"sheets": [], "lobes": lobe_files, "rows": []}
     scene = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
@@ -165,12 +193,18 @@ def paper(arguments):
     if arguments.quick:  # the light of run-time lobes within 2e-4, five times as fast
         frames.always = shadowed.always = {"lobe_time": "host"}
     sheets = []
-    for name, made, draw in (("figure1", frames, lambda: figure1(frames, out)),
-                             *((f"figure4-{preset}", frames, lambda preset=preset: figure4(frames, out, preset)) for preset in PRESETS),
-                             *((f"figure5-{preset}", shadowed, lambda preset=preset: figure5(shadowed, out, preset)) for preset in PRESETS)):
+    for name, made, draw in (
+        ("figure1", frames, lambda: figure1(frames, out)),
+            *((f"figure4-{preset}", frames, lambda preset=preset: figure4(frames, out, preset))
+              for preset in PRESETS),
+            *((f"figure5-{preset}", shadowed, lambda preset=preset: figure5(shadowed, out, preset))
+              for preset in PRESETS)):
         made.pairs = []
         draw()
-        sheets.append({"name": name, "file": f"{name}.jpg", "pairs": [saved(out, f"{name}-{i}", *pair) for i, pair in enumerate(made.pairs)]})
+        sheets.append({
+            "name": name, "file": f"{name}.jpg",
+            "pairs": [saved(out, f"{name}-{i}", *pair) for i, pair in enumerate(made.pairs)]
+        })
     if arguments.quick:
         return {"sheets": sheets, "lobes": lobe_files, "rows": []}
     srbf14(along, out)

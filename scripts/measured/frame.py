@@ -19,7 +19,8 @@ clpv = native()  # main() builds the native module
 
 CAMERA = "nave"
 SIZE = {"width": 640, "height": 360}
-# Pictures: view, exposure over the scene's [EV], options of `clpv render`. Steps without iterations leave injected light as it is.
+# Pictures: view, exposure over the scene's [EV], options of `clpv render`. Steps without iterations
+# leave injected light as it is.
 PICTURES = {
     "direct": ("direct", 0, {}),
     "injected": ("cells", -0.5, {"transport": "sampled", "iterations": 0}),
@@ -36,14 +37,16 @@ def rsm(scene, camera):
     """What the sun's RSM of the finest cascade holds: the light that each texel reflects."""
     sun = np.array(scene.lights[0].direction)
     sun /= np.linalg.norm(sun)
-    above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0), near=0.05,
-                           fov=math.degrees(2 * math.atan(CASCADE / 2 / FROM_THE_SUN)))
+    above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0),
+                           near=0.05, fov=math.degrees(2 * math.atan(CASCADE / 2 / FROM_THE_SUN)))
     return clpv.Renderer(scene, width=SIZE["height"], height=SIZE["height"]).render("direct", above)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/images", help="output folder (default: docs/images)")
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/images",
+                        help="output folder (default: docs/images)")
     out = parser.parse_args().out
     subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
     scene = clpv.Scene(ROOT / "scenes/atrium.json")

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""Measures a device for results/, the standing benchmark of quality, or all numbers that the tables in the docs show.
+"""Measures a device for results/, the standing benchmark of quality, or all numbers that the tables
+in the docs show.
 
-    scripts/measure NAME [DEVICE]                              into results/NAME: 15 minutes on two cores
-    scripts/measure quality --model PATH/Sponza.gltf [DEVICE]  into results/quality: 13 minutes on two cores, as much again for truths
-    scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: up to two hours on two cores
+    scripts/measure NAME [DEVICE]                              into results/NAME: 15 minutes on two
+                                                               cores
+    scripts/measure quality --model PATH/Sponza.gltf [DEVICE]  into results/quality: 13 minutes on
+                                                               two cores, as much again for truths
+    scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: up to two hours on
+                                                               two cores
 
-NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. DEVICE: as --device of clpv takes it; default: the first.
-The first form runs `clpv check` and four suites of `clpv bench`. The second compares clpv and other methods at equal time with
-path tracing, and names its file after device and commit (docs/results.md). The third runs more suites, frames with --stats, and
-`clpv quality` against path tracing, and redraws the charts in docs/images; scripts/tables then writes the tables. The paper's
-numbers are those of scripts/reproduce --record. Commit and build first (scripts/build), and keep the machine free of other work. Files hold no samples and no host name.
-`clpv quality` caches ground truths, and for the docs finished cells, so a second run of it is short. The third form needs
-Debian's Python and its packages.
+NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. DEVICE: as --device of clpv takes
+it; default: the first. The first form runs `clpv check` and four suites of `clpv bench`. The second
+compares clpv and other methods at equal time with path tracing, and names its file after device and
+commit (docs/results.md). The third runs more suites, frames with --stats, and `clpv quality`
+against path tracing, and redraws the charts in docs/images; scripts/tables then writes the tables.
+The paper's numbers are those of scripts/reproduce --record. Commit and build first (scripts/build),
+and keep the machine free of other work. Files hold no samples and no host name. `clpv quality`
+caches ground truths, and for the docs finished cells, so a second run of it is short. The third
+form needs Debian's Python and its packages.
 """
 import argparse
 import datetime
@@ -33,14 +39,19 @@ PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media"]
 
 
 def output(*command):
-    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True, cwd=ROOT).stdout.strip()
+    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True,
+                          cwd=ROOT).stdout.strip()
 
 
 def run(*arguments):
-    """Returns the JSON of `clpv ARGUMENTS FILE.json`. Where that fails and leaves a file, as `clpv bench` does, goes on."""
+    """Returns the JSON of `clpv ARGUMENTS FILE.json`. Where that fails and leaves a file, as `clpv
+    bench` does, goes on."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "result.json"
-        command = [str(CLPV), *(argument.replace("FOLDER", folder) for argument in arguments), str(file)]
+        command = [
+            str(CLPV), *(argument.replace("FOLDER", folder) for argument in arguments),
+            str(file)
+        ]
         print("scripts/measure: clpv", *arguments, file=sys.stderr)
         code = subprocess.run(command, stdout=subprocess.DEVNULL, check=False, cwd=ROOT).returncode
         if code != 0:
@@ -58,9 +69,11 @@ def write(folder, name, document):
 
 
 def measure_device(folder):
-    checks = subprocess.run([str(CLPV), "check", "--format=json"], stdout=subprocess.PIPE, text=True, check=False, cwd=ROOT)
+    checks = subprocess.run([str(CLPV), "check", "--format=json"], stdout=subprocess.PIPE,
+                            text=True, check=False, cwd=ROOT)
     if checks.returncode != 0:
-        print(f"scripts/measure: clpv check did not pass: exit code {checks.returncode}", file=sys.stderr)
+        print(f"scripts/measure: clpv check did not pass: exit code {checks.returncode}",
+              file=sys.stderr)
     write(folder, "check", json.loads(checks.stdout))
     for suite, options in rows.DEVICE_SUITES.items():
         write(folder, suite, run("bench", suite, *options, "--output"))
@@ -79,65 +92,83 @@ def measured_with(device):
 
 
 def method_of(cell, options):
-    """Name of what a cell measures; None for the frame beside baselines, which another run measures."""
+    """Name of what a cell measures; None for the frame beside baselines, which another run
+    measures."""
     if options[0] == "--preset=paper":
         return "published scheme"
     near = cell["options"].get("near")
-    return {"traced": "clpv", "off": "clpv, near off"}[near] if near else cell["options"].get("baseline")
+    return {"traced": "clpv", "off": "clpv, near off"
+            }[near] if near else cell["options"].get("baseline")
 
 
 def measure_standing(folder, model):
-    """Three groups of cells: 240x135 and 960x540, each with its frame's time, and 240x135 with the time of 960x540."""
-    stats = run("render", "scenes/sponza.json", f"--model={model}", "--camera=curtains", f"--frames={FRAME_COUNT}",
-                "--output=FOLDER/frame.png", "--stats")
+    """Three groups of cells: 240x135 and 960x540, each with its frame's time, and 240x135 with the
+    time of 960x540."""
+    stats = run("render", "scenes/sponza.json", f"--model={model}", "--camera=curtains",
+                f"--frames={FRAME_COUNT}", "--output=FOLDER/frame.png", "--stats")
     time = sum(stage["ms"] for stage in stats["stages"] if stage["stage"] not in rows.SHARED)
-    groups = {"small": (rows.STANDING, "small", rows.STANDING_FRAMES + [rows.BASELINES]),
-              "small_with_time_of_large": (rows.STANDING, "small", [rows.OF_A_TIME + [f"--baseline-time={time:.1f}"]]),
-              "large": (rows.STANDING_LARGE, "large", rows.STANDING_FRAMES + [rows.BASELINES])}
-    document = {"measured": measured_with(stats["device"]), "frames": STANDING_COUNT, "time_of_large_ms": time,
-                "ground_truths": []}
+    groups = {
+        "small": (rows.STANDING, "small", rows.STANDING_FRAMES + [rows.BASELINES]),
+        "small_with_time_of_large": (rows.STANDING, "small",
+                                     [rows.OF_A_TIME + [f"--baseline-time={time:.1f}"]]),
+        "large": (rows.STANDING_LARGE, "large", rows.STANDING_FRAMES + [rows.BASELINES])
+    }
+    document = {
+        "measured": measured_with(stats["device"]), "frames": STANDING_COUNT,
+        "time_of_large_ms": time, "ground_truths": []
+    }
     for name, (scenes, size, runs) in groups.items():
         document[name] = []
         for arguments in scenes:
             for options in runs:
-                report = run("quality", *scenes_of(arguments, model), *rows.SIZES[size], *options, "--fresh",
-                             f"--frames={STANDING_COUNT}", "--output")
+                report = run("quality", *scenes_of(arguments, model), *rows.SIZES[size], *options,
+                             "--fresh", f"--frames={STANDING_COUNT}", "--output")
                 for cell in report["cells"]:
                     cell["method"] = method_of(cell, options)
                 document[name] += [cell for cell in report["cells"] if cell["method"]]
-            document["ground_truths"] += [{**truth, "file": pathlib.Path(truth["file"]).name, "size": size}
-                                          for truth in report["ground_truths"] if name != "small_with_time_of_large"]
+            document["ground_truths"] += [
+                {**truth, "file": pathlib.Path(truth["file"]).name, "size": size}
+                for truth in report["ground_truths"] if name != "small_with_time_of_large"
+            ]
     document["variants"] = measure_front(model)
     measured = document["measured"]
-    slug = re.sub("[^a-z0-9.]+", "-", f"{measured['device']} {measured['driver']} {measured['commit']}".lower())
+    slug = re.sub("[^a-z0-9.]+", "-",
+                  f"{measured['device']} {measured['driver']} {measured['commit']}".lower())
     write(folder, slug, document)
     charts.draw_errors([("", folder / f"{slug}.json")], ROOT / "docs/images/baselines.png")
 
 
 def measure_front(model):
-    """Variants of clpv by grid, and of other methods by time, with the series that each belongs to."""
+    """Variants of clpv by grid, and of other methods by time, with the series that each belongs
+    to."""
     given = [*scenes_of(rows.FRONT, model), "--fresh", "--frames=3"]
     variants = []
     for series, options in rows.FRONT_GRIDS.items():
-        variants += [{**row, "series": series} for row in run("quality", *given, "--preset=best", *options, "--output")["variants"]]
+        variants += [
+            {**row, "series": series}
+            for row in run("quality", *given, "--preset=best", *options, "--output")["variants"]
+        ]
     for time in rows.FRONT_TIMES:
         report = run("quality", *given, *rows.OF_A_TIME, f"--baseline-time={time}", "--output")
-        variants += [{**row, "series": row["options"]["baseline"]} for row in report["variants"] if "baseline" in row["options"]]
+        variants += [{**row, "series": row["options"]["baseline"]} for row in report["variants"]
+                     if "baseline" in row["options"]]
     return variants
 
 
 def measure_docs(folder, model, parts):
     """`parts`: names of files in results/docs."""
     sponza = [f"--model={model}", "--camera=curtains"]
-    tiny = run("render", "scenes/cornell.json", "--width=16", "--height=9", "--output=FOLDER/frame.png", "--stats")
+    tiny = run("render", "scenes/cornell.json", "--width=16", "--height=9",
+               "--output=FOLDER/frame.png", "--stats")
     measured = measured_with(tiny["device"])
     if "frames" in parts:
         frames = []
         for varied in rows.FRAMES.values():
             options = [f"--{name}={value}" for name, value in varied.items()]
-            stats = run("render", "scenes/sponza.json", *sponza, *options, f"--frames={FRAME_COUNT}",
-                        "--output=FOLDER/frame.png", "--stats")
-            frames.append({"given": varied, "frame_ms": stats["frame_ms"], "stages": stats["stages"]})
+            stats = run("render", "scenes/sponza.json", *sponza, *options,
+                        f"--frames={FRAME_COUNT}", "--output=FOLDER/frame.png", "--stats")
+            frames.append(
+                {"given": varied, "frame_ms": stats["frame_ms"], "stages": stats["stages"]})
         write(folder, "frames", {"measured": measured, "frames": frames})
     for suite, options in rows.DOCS_SUITES.items():
         if suite not in parts:
@@ -157,9 +188,10 @@ def measure_docs(folder, model, parts):
     if "quality-media" in parts:
         measure_media(folder, model, measured)
     if "quality-grid" in parts or "quality-grid-published" in parts:
-        charts.draw_errors([("clpv, the defaults", folder / "quality-grid.json"),
-                            ("published scheme, sh2 in buffers", folder / "quality-grid-published.json")],
-                           ROOT / "docs/images/front.png")
+        charts.draw_errors(
+            [("clpv, the defaults", folder / "quality-grid.json"),
+             ("published scheme, sh2 in buffers", folder / "quality-grid-published.json")],
+            ROOT / "docs/images/front.png")
 
 
 def search_centres(sponza):
@@ -168,7 +200,10 @@ def search_centres(sponza):
     search = [sys.executable, "-m", "clpv.search", "8", "-o"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
     clpv([*search, rows.SEARCHED], env=environment)
-    clpv([str(CLPV), "render", "scenes/sponza.json", *sponza, "--dump-normals=out/normals.json", "-o", "out/normals.png"])
+    clpv([
+        str(CLPV), "render", "scenes/sponza.json", *sponza, "--dump-normals=out/normals.json", "-o",
+        "out/normals.png"
+    ])
     clpv([*search, rows.SEARCHED_NORMALS, "--weights=out/normals.json"], env=environment)
 
 
@@ -177,13 +212,15 @@ def measure_quality(folder, name, model, measured):
     cells, variants = [], []
     given = scenes_of(arguments, model)
     if not any(argument.startswith("--preset") for argument in given):
-        given.append("--preset=best")  # bases and transports that a run does not name keep their defaults
+        given.append(
+            "--preset=best")  # bases and transports that a run does not name keep their defaults
     for options in runs:
         vary = [f"--vary={option}={value}" for option, value in options.items()]
         document = run("quality", *given, *vary, "--output")
         cells += document["cells"]
         variants += document["variants"]
-    write(folder, name, {"measured": measured, "given": arguments, "cells": cells, "variants": variants})
+    write(folder, name,
+          {"measured": measured, "given": arguments, "cells": cells, "variants": variants})
 
 
 def measure_media(folder, model, measured):
@@ -191,18 +228,25 @@ def measure_media(folder, model, measured):
     for medium, arguments, bounces, views in rows.MEDIA:
         for count in bounces:
             for view in views:
-                report = run("quality", *scenes_of(arguments, model), "--preset=best", "--spp=256", f"--bounces={count}",
-                             f"--view={view}", "--output")
-                cells += [{**cell, "medium": medium, "bounces": count, "view": view} for cell in report["cells"]]
+                report = run("quality", *scenes_of(arguments, model), "--preset=best", "--spp=256",
+                             f"--bounces={count}", f"--view={view}", "--output")
+                cells += [{**cell, "medium": medium, "bounces": count, "view": view}
+                          for cell in report["cells"]]
     write(folder, "quality-media", {"measured": measured, "cells": cells})
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("name", metavar="NAME", help="folder in results/; quality: the standing benchmark; docs: all that the docs' tables show")
-    parser.add_argument("device", metavar="DEVICE", nargs="?", help="as --device of clpv takes it (default: the first)")
-    parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models; for quality and docs")
-    parser.add_argument("--part", metavar="NAME", action="append", help="of docs: a file of results/docs, repeatable (default: all)")
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "name", metavar="NAME", help=
+        "folder in results/; quality: the standing benchmark; docs: all that the docs' tables show")
+    parser.add_argument("device", metavar="DEVICE", nargs="?",
+                        help="as --device of clpv takes it (default: the first)")
+    parser.add_argument("--model",
+                        help="Sponza's glTF, of the Khronos sample models; for quality and docs")
+    parser.add_argument("--part", metavar="NAME", action="append",
+                        help="of docs: a file of results/docs, repeatable (default: all)")
     arguments = parser.parse_intermixed_args()
     for part in arguments.part or []:
         if arguments.name != "docs" or part not in PARTS:
@@ -222,4 +266,3 @@ def main():
     else:
         measure_device(folder)
         print(f"results/{arguments.name} is written; results/README.md says how to send it")
-

@@ -5,10 +5,10 @@
 
 Builds, measures part by part, and writes index.html (one self-contained page) and parts/*.json into
 DIR (out/paper). A second run of the same commit continues: it measures the parts that it lacks.
-Without --model only lobes, tables and Figures 2, 3 and 6 run. --quick leaves out views, searches for centres, large
-RSMs and srbf14's frames, computes lobes on the host, and times each row two or three times.
---record puts the numbers into results/docs and the figures into docs/images; scripts/tables then writes the tables.
-REPRODUCING.md has the minutes of each part.
+Without --model only lobes, tables and Figures 2, 3 and 6 run. --quick leaves out views, searches
+for centres, large RSMs and srbf14's frames, computes lobes on the host, and times each row two or
+three times. --record puts the numbers into results/docs and the figures into docs/images;
+scripts/tables then writes the tables. REPRODUCING.md has the minutes of each part.
 
 Exit code 5: numbers left the tolerances of results/paper/expected.json; they are listed. Times are
 not compared. Needs the packages of scripts/setup.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What the docs' tables show: rows by title, with the options of `clpv`. scripts/measure measures these rows."""
+"""What the docs' tables show: rows by title, with the options of `clpv`. scripts/measure measures
+these rows."""
 import itertools
 
 # Sponza, camera `curtains`, 960x540: `clpv render --stats`.
@@ -32,15 +33,23 @@ QUALITY = {
     "the same, `--near-rays 64`": {"near-rays": "64"},
     "`--preset fast`": FAST,
     "`--preset fine`": FINE,
-    **{f"`--preset fast`, {grid}^3 cells": {**FAST, "grid": str(grid)} for grid in (16, 24, 48, 64)},
+    **{
+        f"`--preset fast`, {grid}^3 cells": {**FAST, "grid": str(grid)}
+        for grid in (16, 24, 48, 64)
+    },
 }
 OTHER_BASES = "sh3", "bins24", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14"
 # Parts of the method, without the near field.
 CHANGED = [{"gather": "all"}, {"blockers": "seen"}, {"blockers": "none"}, {"transport": "sampled"},
-           {"coarser-directions": "24"}, *({"directions": n, "coarser-directions": n} for n in ("24", "216")),
-           *({"basis": basis} for basis in OTHER_BASES), {"gather-offset": "0.5"}, {"storage": "float"}]
-QUALITY_PARTS = {"`" + " ".join(f"--{name} {value}" for name, value in options.items()) + "`": {**FAST, **options}
-                 for options in CHANGED}
+           {"coarser-directions": "24"},
+           *({"directions": n, "coarser-directions": n} for n in ("24", "216")),
+           *({"basis": basis} for basis in OTHER_BASES),
+           {"gather-offset": "0.5"}, {"storage": "float"}]
+QUALITY_PARTS = {
+    "`" + " ".join(f"--{name} {value}"
+                   for name, value in options.items()) + "`": {**FAST, **options}
+    for options in CHANGED
+}
 GRIDS = 16, 24, 32, 48, 64, 96, 128
 BOUNCES = {"published scheme, sh2": {**PAPER, "bounces": "1"},
            **{f"`--preset fast --bounces {n}`": {**FAST, "bounces": n} for n in ("1", "2", "all")}}
@@ -48,53 +57,80 @@ SUNS = {"published scheme, sh2": PAPER, "`--preset fast`": FAST}
 
 # The paper's lobes, exact in place of rotated through a table.
 EXACT_LOBES = {"preset": "paper", "lobe": "exact", "lobe-time": "host", "evaluate": "exact"}
-SETTINGS = [{"cascade-size": size, "iterations": steps} for size, steps in itertools.product(("12.5", "50"), ("8", "24"))]
-STEPS = {**{f"published scheme, {basis}, exact lobes": {**EXACT_LOBES, "basis": basis} for basis in ("sh2", "srbf8v2", "srbf14")},
-         "srbf14, exact transport too": {**EXACT_LOBES, "basis": "srbf14", "transport": "exact"}}
+SETTINGS = [{"cascade-size": size, "iterations": steps}
+            for size, steps in itertools.product(("12.5", "50"), ("8", "24"))]
+STEPS = {
+    **{
+        f"published scheme, {basis}, exact lobes": {**EXACT_LOBES, "basis": basis}
+        for basis in ("sh2", "srbf8v2", "srbf14")
+    }, "srbf14, exact transport too": {**EXACT_LOBES, "basis": "srbf14", "transport": "exact"}
+}
 
 # Centres that clpv.search finds: over all directions, and for the normals that Sponza's light sees.
 SEARCHED, SEARCHED_NORMALS = "out/searched8.json", "out/searched8-normals.json"
-CENTRES = {"srbf8v2": {"basis": "srbf8v2"}, "eight searched centres": {"centres": SEARCHED},
-           "the same, for Sponza's normals": {"centres": SEARCHED_NORMALS},
-           **{basis: {"basis": basis} for basis in ("srbf6", "srbf8v1", "srbf8v3", "sh3")}}  # without the near field
+CENTRES = {
+    "srbf8v2": {"basis": "srbf8v2"}, "eight searched centres": {"centres": SEARCHED},
+    "the same, for Sponza's normals": {"centres": SEARCHED_NORMALS},
+    **{basis: {"basis": basis}
+       for basis in ("srbf6", "srbf8v1", "srbf8v3", "sh3")}
+}  # without the near field
 
 # Radiance cascades beside other methods.
 CASCADE_CAMERAS = "curtains", "atrium", "columns", "front", "nave", "gallery"
-CASCADE_METHODS = ("ddgi-first", "ddgi-converged", "paths-filtered", "vpl-interleaved", "radiance-cascades",
-                   "radiance-cascades-fine")
+CASCADE_METHODS = ("ddgi-first", "ddgi-converged", "paths-filtered", "vpl-interleaved",
+                   "radiance-cascades", "radiance-cascades-fine")
 
 # Files of results/docs by `clpv quality`: scenes and options of all runs, and what each run sets.
-VIEWS = ["sponza", "cornell", "--camera=curtains", "--camera=atrium", "--camera=columns", "--camera=front"]
+VIEWS = [
+    "sponza", "cornell", "--camera=curtains", "--camera=atrium", "--camera=columns",
+    "--camera=front"
+]
 QUALITY_FILES = {
     "quality": ([*VIEWS, "--noise=0.03"], [*QUALITY.values(), *QUALITY_PARTS.values()]),
     "quality-grid": ([*VIEWS, "--noise=0.03"], [{**FAST, "grid": str(grid)} for grid in GRIDS]),
-    "quality-grid-published": ([*VIEWS, "--noise=0.03", *(f"--{name}={value}" for name, value in IN_BUFFERS.items())],
-                               [{"grid": str(grid)} for grid in GRIDS[:5]]),
-    "quality-suns": (["sponza_other_suns", "--noise=0.03"], [*QUALITY.values(), *QUALITY_PARTS.values()]),
-    "quality-scenes": (["atrium", "atrium_overcast", "sponza_overcast", "--noise=0.03"], list(SUNS.values())),
+    "quality-grid-published": ([
+        *VIEWS, "--noise=0.03", *(f"--{name}={value}" for name, value in IN_BUFFERS.items())
+    ], [{"grid": str(grid)} for grid in GRIDS[:5]]),
+    "quality-suns": (["sponza_other_suns",
+                      "--noise=0.03"], [*QUALITY.values(), *QUALITY_PARTS.values()]),
+    "quality-scenes": (["atrium", "atrium_overcast", "sponza_overcast",
+                        "--noise=0.03"], list(SUNS.values())),
     "quality-bounces": ([*VIEWS, "--noise=0.05", "--bounces=all"], list(BOUNCES.values())),
-    "quality-cascades": (["sponza", "cornell", "atrium", *(f"--camera={name}" for name in CASCADE_CAMERAS), "--noise=0.03",
-                          "--frames=3", f"--baseline={','.join(CASCADE_METHODS)}", "--baseline-time=21.9"], [{}]),
+    "quality-cascades": ([
+        "sponza", "cornell", "atrium", *(f"--camera={name}" for name in CASCADE_CAMERAS),
+        "--noise=0.03", "--frames=3", f"--baseline={','.join(CASCADE_METHODS)}",
+        "--baseline-time=21.9"
+    ], [{}]),
     "quality-lamp": (["cornell_lamp", "--noise=0.02"], [FAST]),
-    "quality-lamp-bounces": (["cornell_lamp", "--noise=0.02", "--bounces=all"], [{**FAST, "bounces": n} for n in ("1", "2", "all")]),
-    "quality-steps": (["sponza", "--camera=atrium", "--noise=0.03"],
-                      [*({**row, **setting} for row, setting in itertools.product(STEPS.values(), SETTINGS)),
-                       {**FAST, "cascade-size": "12.5"}, {**FAST, "cascade-size": "50"}]),
-    "quality-centres": ([*VIEWS, "--noise=0.03"],
-                        [*({**EXACT_LOBES, **CENTRES[name]} for name in ("srbf8v2", "sh3", "eight searched centres")),
-                         {**FAST, "centres": SEARCHED}, {**FAST, "centres": SEARCHED_NORMALS}]),
+    "quality-lamp-bounces": (["cornell_lamp", "--noise=0.02",
+                              "--bounces=all"], [{**FAST, "bounces": n}
+                                                 for n in ("1", "2", "all")]),
+    "quality-steps": (["sponza", "--camera=atrium", "--noise=0.03"], [
+        *({**row, **setting} for row, setting in itertools.product(STEPS.values(), SETTINGS)),
+        {**FAST, "cascade-size": "12.5"}, {**FAST, "cascade-size": "50"}
+    ]),
+    "quality-centres": ([*VIEWS, "--noise=0.03"], [
+        *({**EXACT_LOBES, **CENTRES[name]}
+          for name in ("srbf8v2", "sh3", "eight searched centres")), {**FAST, "centres": SEARCHED},
+        {**FAST, "centres": SEARCHED_NORMALS}
+    ]),
 }
 
 # `clpv quality` of scenes in a medium: sigma_s, sigma_a [1/m], options, numbers of bounces, views.
 MEDIA = [
-    ("0.002, 0.02", ["sponza", "--medium=0.002,0.02,0.3", "--camera=curtains", "--camera=atrium", "--camera=columns",
-                     "--width=480", "--height=270"], ["1"], ["medium"]),
-    ("0.02, 0", ["sponza", "--medium=0.02,0,0.3", "--camera=atrium"], ["1", "all"], ["medium", "indirect"]),
-    ("0.02, 0", ["atrium", "--medium=0.02,0,0.3", "--camera=nave"], ["1", "all"], ["medium", "indirect"]),
+    ("0.002, 0.02", [
+        "sponza", "--medium=0.002,0.02,0.3", "--camera=curtains", "--camera=atrium",
+        "--camera=columns", "--width=480", "--height=270"
+    ], ["1"], ["medium"]),
+    ("0.02, 0", ["sponza", "--medium=0.02,0,0.3",
+                 "--camera=atrium"], ["1", "all"], ["medium", "indirect"]),
+    ("0.02, 0", ["atrium", "--medium=0.02,0,0.3",
+                 "--camera=nave"], ["1", "all"], ["medium", "indirect"]),
     ("0.5, 0", ["cornell_fog"], ["1", "all"], ["medium", "indirect"]),
 ]
 
-# Suites of `clpv bench` and their options. "sponza" is replaced by the scene, its model and the camera `curtains`.
+# Suites of `clpv bench` and their options. "sponza" is replaced by the scene, its model and the
+# camera `curtains`.
 DEVICE_SUITES = {
     "regression": ["--repetitions=7"],
     "table1": ["--repetitions=7"],
@@ -111,11 +147,15 @@ DOCS_SUITES = {
 }
 CHARTS = {"layouts": ("layouts", "roofline"), "scaling": ("scaling",)}  # those in docs/images
 
-# The standing benchmark, results/quality: scenes and their cameras by run, then what each run measures.
-STANDING = [["sponza", "cornell", "atrium", "--camera=curtains", "--camera=atrium", "--camera=columns", "--camera=front",
-             "--camera=nave", "--camera=gallery"],
-            ["atrium_living", "--time=4"]]
-STANDING_LARGE = [["sponza", "cornell", "atrium", "--camera=curtains", "--camera=front", "--camera=nave"]]
+# The standing benchmark, results/quality: scenes and their cameras by run, then what each run
+# measures.
+STANDING = [[
+    "sponza", "cornell", "atrium", "--camera=curtains", "--camera=atrium", "--camera=columns",
+    "--camera=front", "--camera=nave", "--camera=gallery"
+], ["atrium_living", "--time=4"]]
+STANDING_LARGE = [[
+    "sponza", "cornell", "atrium", "--camera=curtains", "--camera=front", "--camera=nave"
+]]
 STANDING_FRAMES = [["--preset=best", "--vary=near=traced,off"], ["--preset=paper", "--basis=sh2"]]
 METHODS = ("paths", "paths-filtered", "vpl", "vpl-interleaved", "ddgi-first", "ddgi-converged",
            "radiance-cascades", "radiance-cascades-fine")
@@ -125,5 +165,8 @@ SIZES = {"small": ["--noise=0.03"], "large": ["--width=960", "--height=540", "--
 SHARED = "rasterize-camera", "rasterize-shadow", "shade"  # stages whose time baselines do not get
 # Error against time, for the chart: clpv by grid, other methods by their time [ms].
 FRONT = [*VIEWS, "--noise=0.03"]
-FRONT_GRIDS = {"clpv": ["--vary=grid=16,24,32,48,64"], "clpv, near off": ["--near=off", "--vary=grid=16,24,32,48,64"]}
+FRONT_GRIDS = {
+    "clpv": ["--vary=grid=16,24,32,48,64"],
+    "clpv, near off": ["--near=off", "--vary=grid=16,24,32,48,64"]
+}
 FRONT_TIMES = 5, 20, 80

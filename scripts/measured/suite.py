@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Writes the suite of views that python3 -m clpv.score scores: truths, cameras and lights for any renderer (docs/score.md).
+"""Writes the suite of views that python3 -m clpv.score scores: truths, cameras and lights for any
+renderer (docs/score.md).
 
-    scripts/suite --output DIR --model PATH/Sponza.gltf    DIR/suite.json and the files that it names, and DIR.tar
+    scripts/suite --output DIR --model PATH/Sponza.gltf    DIR/suite.json and the files that it
+                                                           names, and DIR.tar
 
-The views are those of the standing benchmark and Sponza under three other suns. Needs a built clpv and oiiotool; traces the
-ground truths that `clpv quality` has not cached, a minute of processor time each. Sponza's model is not included.
-"""
+The views are those of the standing benchmark and Sponza under three other suns. Needs a built clpv
+and oiiotool; traces the ground truths that `clpv quality` has not cached, a minute of processor
+time each. Sponza's model is not included. """
 import argparse
 import hashlib
 import json
@@ -22,31 +24,43 @@ import numpy
 from . import CLPV, ROOT
 
 SCHEMA, SIZE, NOISE = 1, (240, 135), 0.03
-SCENES = {"sponza": ["curtains", "atrium", "columns"], "cornell": ["front"], "atrium": ["nave", "curtains", "gallery"],
-          "atrium_living": ["walk"], "sponza_other_suns": []}  # cameras; none: all
+SCENES = {
+    "sponza": ["curtains", "atrium", "columns"], "cornell": ["front"],
+    "atrium": ["nave", "curtains", "gallery"], "atrium_living": ["walk"], "sponza_other_suns": []
+}  # cameras; none: all
 TIMES = {"atrium_living": 4}  # [s]
 LAYERS = "indirect", "direct", "irradiance", "depth", "normal", "albedo"
 LARGEST = 64 * 2**20  # bytes of the tar
-UNITS = {"indirect": "radiance after one bounce: albedo / pi x indirect irradiance [W/m^2/sr]",
-         "direct": "radiance: albedo / pi x irradiance from the lights [W/m^2/sr]", "irradiance": "indirect [W/m^2]",
-         "depth": "along the camera's forward axis [m]", "normal": "world space, towards the viewer, -1 to 1",
-         "albedo": "0 to 1, linear", "illuminance": "1 lux is 1 W/m^2", "length": "metres",
-         "exposure": "[EV]: FLIP compares radiance x 2^exposure after the tone curve ACES"}
-CONVENTIONS = {"colour": "linear, Rec. 709 primaries", "rows": "the first is the uppermost", "axes": "right-handed, y upwards",
-               "pixels": "one ray through the centre, no antialiasing; textures with mipmaps by the pixel's footprint",
-               "surfaces": "diffuse, also where the model has metal; they block and reflect light on both sides; cameras see "
-               "no back face of a single-sided material", "lights": "of no size; of a camera only those in its `lights`",
-               "alpha": "1 where there is a surface, else all channels are 0", "bounces": 1}
+UNITS = {
+    "indirect": "radiance after one bounce: albedo / pi x indirect irradiance [W/m^2/sr]",
+    "direct": "radiance: albedo / pi x irradiance from the lights [W/m^2/sr]",
+    "irradiance": "indirect [W/m^2]", "depth": "along the camera's forward axis [m]",
+    "normal": "world space, towards the viewer, -1 to 1", "albedo": "0 to 1, linear",
+    "illuminance": "1 lux is 1 W/m^2", "length": "metres",
+    "exposure": "[EV]: FLIP compares radiance x 2^exposure after the tone curve ACES"
+}
+CONVENTIONS = {
+    "colour": "linear, Rec. 709 primaries", "rows": "the first is the uppermost",
+    "axes": "right-handed, y upwards",
+    "pixels": "one ray through the centre, no antialiasing; textures with mipmaps by the pixel's footprint",
+    "surfaces": "diffuse, also where the model has metal; they block and reflect light on both sides; cameras see "
+    "no back face of a single-sided material",
+    "lights": "of no size; of a camera only those in its `lights`",
+    "alpha": "1 where there is a surface, else all channels are 0", "bounces": 1
+}
 
 
 def at_time(thing, time):
-    """A camera or light of a scene file with the values of its keys at a time. Raises ValueError for a camera between keys."""
+    """A camera or light of a scene file with the values of its keys at a time. Raises ValueError
+    for a camera between keys."""
     keys = thing.get("keys", [])
     values = {name: value for name, value in thing.items() if name not in ("keys", "interpolation")}
     for name in {name for key in keys for name in key} - {"time"}:
         places = [(key["time"], numpy.array(key[name], float)) for key in keys if name in key]
-        before = max((place for place in places if place[0] <= time), default=places[0], key=lambda place: place[0])
-        after = min((place for place in places if place[0] >= time), default=places[-1], key=lambda place: place[0])
+        before = max((place for place in places if place[0] <= time), default=places[0],
+                     key=lambda place: place[0])
+        after = min((place for place in places if place[0] >= time), default=places[-1],
+                    key=lambda place: place[0])
         share = (time - before[0]) / (after[0] - before[0]) if after[0] > before[0] else 0
         if share and thing.get("interpolation") == "smooth":
             raise ValueError(f"camera {thing['name']}: no key at {time} s")
@@ -54,7 +68,8 @@ def at_time(thing, time):
         if name == "direction" and share:  # along the great circle
             a, b = (v / numpy.linalg.norm(v) for v in (before[1], after[1]))
             angle = math.acos(numpy.clip(a @ b, -1, 1))
-            value = (math.sin((1 - share) * angle) * a + math.sin(share * angle) * b) / math.sin(angle)
+            value = (math.sin(
+                (1 - share) * angle) * a + math.sin(share * angle) * b) / math.sin(angle)
         values[name] = value.tolist()
     return values
 
@@ -69,12 +84,15 @@ def facing(direction, up=(0, 1, 0)):
     m = numpy.stack([x, numpy.cross(z, x), z], axis=1)
     w = math.sqrt(max(0, 1 + m[0, 0] + m[1, 1] + m[2, 2])) / 2
     if w > 1e-3:
-        return [*(numpy.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]]) / (4 * w)), w]
+        return [
+            *(numpy.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]]) / (4 * w)), w
+        ]
     i = int(numpy.argmax(numpy.diag(m)))
     j, k = (i + 1) % 3, (i + 2) % 3
     q = [0.0, 0.0, 0.0, 0.0]
     q[i] = math.sqrt(max(0, 1 + m[i, i] - m[j, j] - m[k, k])) / 2
-    q[j], q[k], q[3] = (m[i, j] + m[j, i]) / (4 * q[i]), (m[i, k] + m[k, i]) / (4 * q[i]), (m[k, j] - m[j, k]) / (4 * q[i])
+    q[j], q[k], q[3] = (m[i, j] + m[j, i]) / (4 * q[i]), (m[i, k] + m[k, i]) / (4 * q[i]), (
+        m[k, j] - m[j, k]) / (4 * q[i])
     return q
 
 
@@ -83,20 +101,33 @@ def views_gltf(scene, time=0):
     unit, nodes, cameras, lights = scene.get("metres_per_unit", 1), [], [], []
     for camera in (at_time(camera, time) for camera in scene["cameras"]):
         eye, target = numpy.array(camera["eye"], float), numpy.array(camera["target"], float)
-        nodes.append({"name": camera["name"], "camera": len(cameras), "translation": (unit * eye).tolist(),
-                      "rotation": [float(q) for q in facing(target - eye)]})
-        cameras.append({"name": camera["name"], "type": "perspective", "perspective": {
-            "yfov": math.radians(camera.get("vertical_fov_degrees", 60)), "aspectRatio": SIZE[0] / SIZE[1], "znear": 0.05}})
+        nodes.append({
+            "name": camera["name"], "camera": len(cameras), "translation": (unit * eye).tolist(),
+            "rotation": [float(q) for q in facing(target - eye)]
+        })
+        cameras.append({
+            "name": camera["name"], "type": "perspective", "perspective": {
+                "yfov": math.radians(camera.get("vertical_fov_degrees", 60)),
+                "aspectRatio": SIZE[0] / SIZE[1], "znear": 0.05
+            }
+        })
     for light in (at_time(light, time) for light in scene["lights"]):
         if light["kind"] != "directional":
-            raise ValueError(f"light {light.get('name')}: found {light['kind']}; allowed: directional")
-        nodes.append({"name": light["name"], "rotation": [float(q) for q in facing(light["direction"])],
-                      "extensions": {"KHR_lights_punctual": {"light": len(lights)}}})
-        lights.append({"name": light["name"], "type": "directional", "intensity": light["illuminance_lux"],
-                       "color": light.get("colour", [1, 1, 1])})
-    return {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes,
-            "cameras": cameras, "extensionsUsed": ["KHR_lights_punctual"],
-            "extensions": {"KHR_lights_punctual": {"lights": lights}}}
+            raise ValueError(
+                f"light {light.get('name')}: found {light['kind']}; allowed: directional")
+        nodes.append({
+            "name": light["name"], "rotation": [float(q) for q in facing(light["direction"])],
+            "extensions": {"KHR_lights_punctual": {"light": len(lights)}}
+        })
+        lights.append({
+            "name": light["name"], "type": "directional", "intensity": light["illuminance_lux"],
+            "color": light.get("colour", [1, 1, 1])
+        })
+    return {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(nodes)))}],
+        "nodes": nodes, "cameras": cameras, "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": lights}}
+    }
 
 
 def lights_of(scene, camera):
@@ -112,7 +143,10 @@ def model_files(model):
     if model.suffix == ".glb":
         return [model]
     document = json.loads(model.read_text())
-    uris = [entry["uri"] for entry in [*document.get("buffers", []), *document.get("images", [])] if "uri" in entry]
+    uris = [
+        entry["uri"] for entry in [*document.get("buffers", []), *document.get("images", [])]
+        if "uri" in entry
+    ]
     return [model, *(model.parent / uri for uri in uris if not uri.startswith("data:"))]
 
 
@@ -120,16 +154,23 @@ def ground_truths(name, cameras, model, cache):
     """Traces what is not cached. Returns rows of `clpv quality`: file, camera, noise, spp."""
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
-        subprocess.run([str(CLPV), "quality", f"scenes/{name}.json", *(f"--camera={camera}" for camera in cameras),
-                        *([f"--model={model}"] if model else []), *([f"--cache={cache}"] if cache else []),
-                        f"--time={TIMES.get(name, 0)}", f"--width={SIZE[0]}", f"--height={SIZE[1]}", f"--noise={NOISE}",
-                        "--preset=fast", "--frames=1", f"--output={report}"], check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
+        subprocess.run([
+            str(CLPV), "quality", f"scenes/{name}.json", *(f"--camera={camera}"
+                                                           for camera in cameras),
+            *([f"--model={model}"] if model else []), *([f"--cache={cache}"] if cache else []),
+            f"--time={TIMES.get(name, 0)}", f"--width={SIZE[0]}", f"--height={SIZE[1]}",
+            f"--noise={NOISE}", "--preset=fast", "--frames=1", f"--output={report}"
+        ], check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
         return json.loads(report.read_text())["ground_truths"]
 
 
 def in_halves(source, target):
     channels = ",".join(f"{layer}.{channel}" for layer in LAYERS for channel in "RGBA")
-    subprocess.run(["oiiotool", str(source), "--ch", channels, "-d", "half", "--compression", "zip", "-o", str(target)], check=True)
+    subprocess.run([
+        "oiiotool",
+        str(source), "--ch", channels, "-d", "half", "--compression", "zip", "-o",
+        str(target)
+    ], check=True)
 
 
 def add_scene(output, name, sponza, cache):
@@ -140,20 +181,29 @@ def add_scene(output, name, sponza, cache):
     if ours:
         for file in model_files(model):
             shutil.copy(file, output / "models" / file.name)
-    cameras = {camera["name"]: camera for camera in scene["cameras"] if not SCENES[name] or camera["name"] in SCENES[name]}
+    cameras = {
+        camera["name"]: camera
+        for camera in scene["cameras"] if not SCENES[name] or camera["name"] in SCENES[name]
+    }
     gltf = views_gltf({**scene, "cameras": list(cameras.values())}, TIMES.get(name, 0))
     (output / "cameras" / f"{name}.gltf").write_text(json.dumps(gltf, indent=1) + "\n")
     views = []
     for traced in ground_truths(name, cameras, None if ours else sponza, cache):
         source = pathlib.Path(traced["file"])
         in_halves(source, output / "truths" / source.name)
-        views.append({"name": f"{name}-{traced['camera']}", "scene": name, "camera": traced["camera"],
-                      "lights": lights_of(scene, cameras[traced["camera"]]), "truth": f"truths/{source.name}",
-                      "sha256": sha256(output / "truths" / source.name), "noise": traced["noise"], "paths": traced["spp"],
-                      "exposure": scene.get("exposure", 0), "width": SIZE[0], "height": SIZE[1]})
+        views.append({
+            "name": f"{name}-{traced['camera']}", "scene": name, "camera": traced["camera"],
+            "lights": lights_of(scene, cameras[traced["camera"]]), "truth": f"truths/{source.name}",
+            "sha256": sha256(output / "truths" / source.name), "noise": traced["noise"],
+            "paths": traced["spp"], "exposure": scene.get("exposure",
+                                                          0), "width": SIZE[0], "height": SIZE[1]
+        })
     hashes = {file.name: sha256(file) for file in model_files(model)}
-    return {"model": f"models/{model.name}" if ours else model.name, "included": ours, "sha256": hashes,
-            "metres_per_unit": scene.get("metres_per_unit", 1), "time": TIMES.get(name, 0), "cameras": f"cameras/{name}.gltf"}, views
+    return {
+        "model": f"models/{model.name}" if ours else model.name, "included": ours, "sha256": hashes,
+        "metres_per_unit": scene.get("metres_per_unit", 1), "time": TIMES.get(name, 0),
+        "cameras": f"cameras/{name}.gltf"
+    }, views
 
 
 def reproducible(entry):
@@ -169,10 +219,15 @@ def write_suite(output, sponza, cache, names):
     for name in names:
         scenes[name], found = add_scene(output, name, sponza, cache)
         views += found
-    whole = hashlib.sha256("".join(view["name"] + view["sha256"] for view in views).encode()).hexdigest()[:16]
-    document = {"schema": SCHEMA, "hash": whole, "units": UNITS, "conventions": CONVENTIONS, "scenes": scenes, "views": views}
+    whole = hashlib.sha256("".join(view["name"] + view["sha256"]
+                                   for view in views).encode()).hexdigest()[:16]
+    document = {
+        "schema": SCHEMA, "hash": whole, "units": UNITS, "conventions": CONVENTIONS,
+        "scenes": scenes, "views": views
+    }
     (output / "suite.json").write_text(json.dumps(document, indent=1) + "\n")
-    shutil.copytree(ROOT / "python/clpv/score", output / "clpv/score", ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
+    shutil.copytree(ROOT / "python/clpv/score", output / "clpv/score",
+                    ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
     for file in "docs/score.md", "LICENSE":
         shutil.copy(ROOT / file, output)
     packed = output.with_name(output.name + ".tar")
@@ -184,13 +239,18 @@ def write_suite(output, sponza, cache, names):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", metavar="DIR", type=pathlib.Path, required=True, help="folder of the suite; DIR.tar beside it")
-    parser.add_argument("--model", type=pathlib.Path, help="Sponza's glTF, of the Khronos sample models")
-    parser.add_argument("--scene", metavar="NAME", action="append", choices=SCENES, help="some scenes, repeatable (default: all)")
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--output", metavar="DIR", type=pathlib.Path, required=True,
+                        help="folder of the suite; DIR.tar beside it")
+    parser.add_argument("--model", type=pathlib.Path,
+                        help="Sponza's glTF, of the Khronos sample models")
+    parser.add_argument("--scene", metavar="NAME", action="append", choices=SCENES,
+                        help="some scenes, repeatable (default: all)")
     parser.add_argument("--cache", metavar="DIR", help="ground truths, as --cache of clpv quality")
     arguments = parser.parse_args()
     names = arguments.scene or list(SCENES)
     if any(name.startswith("sponza") for name in names) and not arguments.model:
         parser.error("--model: needed for Sponza")
-    write_suite(arguments.output, arguments.model and arguments.model.resolve(), arguments.cache, names)
+    write_suite(arguments.output, arguments.model and arguments.model.resolve(), arguments.cache,
+                names)

@@ -10,19 +10,27 @@ sys.path.insert(0, str(ROOT / "python"))
 
 def row(suite, stage, **fields):
     """A row of `clpv bench`; its name says nothing."""
-    return {"name": "a name", "suite": suite, "stage": stage, "status": "ok", "reason": None, "basis": "sh2", "n": 4,
-            "layout": "soa", "storage": "float", "lobe": "exact", "occlusion": False,
-            "cascade": None, "filtered": True, "axis": None, "value": None, "preset": None, "recompute": None,
-            "median": 4.25, "min": 4.0, "p95": 5.0, "flops": 1e9, "bytes": 1e8, "gflops": 20.0, **fields}
+    return {
+        "name": "a name", "suite": suite, "stage": stage, "status": "ok", "reason": None,
+        "basis": "sh2", "n": 4, "layout": "soa", "storage": "float", "lobe": "exact",
+        "occlusion": False, "cascade": None, "filtered": True, "axis": None, "value": None,
+        "preset": None, "recompute": None, "median": 4.25, "min": 4.0, "p95": 5.0, "flops": 1e9,
+        "bytes": 1e8, "gflops": 20.0, **fields
+    }
 
 
 def variant(options, **fields):
     """A variant of `clpv quality`."""
-    return {"options": options, "rejected": 0, "nrmse": 0.45, "worst_nrmse": 0.5, "energy_ratio": 1.0,
-            "frame_ms": 170.0, **fields}
+    return {
+        "options": options, "rejected": 0, "nrmse": 0.45, "worst_nrmse": 0.5, "energy_ratio": 1.0,
+        "frame_ms": 170.0, **fields
+    }
 
 
 def bench_document(*rows):
-    return {"context": {"device": "a device", "platform": "a platform", "driver": "1", "git_describe": "abc",
-                        "ceilings": {"gflops": 200.0, "bandwidths": [{"working_set": 2**20, "gbps": 100.0}]}},
-            "benchmarks": list(rows)}
+    return {
+        "context": {
+            "device": "a device", "platform": "a platform", "driver": "1", "git_describe": "abc",
+            "ceilings": {"gflops": 200.0, "bandwidths": [{"working_set": 2**20, "gbps": 100.0}]}
+        }, "benchmarks": list(rows)
+    }

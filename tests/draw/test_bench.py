@@ -15,7 +15,9 @@ class Charts(unittest.TestCase):
         pyplot.close("all")
 
     def test_scaling_takes_axis_and_value_from_the_row(self):
-        rows = [row("scaling", "propagate", axis="grid", value=v, median=v / 10.0) for v in (64, 16, 32)]
+        rows = [
+            row("scaling", "propagate", axis="grid", value=v, median=v / 10.0) for v in (64, 16, 32)
+        ]
         axis, = bench.scaling(rows + [row("scaling", "inject", axis="grid", value=16)]).axes
         self.assertEqual(axis.get_xlabel(), "grid")
         self.assertEqual(axis.lines[0].get_xdata().tolist(), [16, 32, 64])
@@ -25,16 +27,22 @@ class Charts(unittest.TestCase):
         rows = [row("layouts", "gather", layout="image", storage="half", filtered=f, median=m)
                 for f, m in ((True, 2.0), (False, 1.0))]
         plain, shadowed = bench.layouts(rows + [row("layouts", "gather", occlusion=True)]).axes
-        self.assertEqual([t.get_text() for t in plain.get_yticklabels()], ["image/half texels", "image/half"])
+        self.assertEqual([t.get_text() for t in plain.get_yticklabels()],
+                         ["image/half texels", "image/half"])
         self.assertEqual(shadowed.get_title(), "gather sh2, occlusion")
 
     def test_labels_of_frames_are_preset_and_recomputed_results(self):
-        rows = [row("frame", stage, preset=p, recompute=a, median=m)
-                for p, a in (("paper", "light"), ("best", "nothing"), ("best", "light"))
-                for stage, m in (("gather", 3.0), ("propagate", 5.0), ("frame", 9.0)) if (a, stage) != ("nothing", "propagate")]
+        rows = [
+            row("frame", stage, preset=p, recompute=a, median=m)
+            for p, a in (("paper", "light"), ("best", "nothing"), ("best", "light"))
+            for stage, m in (("gather", 3.0), ("propagate", 5.0), ("frame", 9.0))
+            if (a, stage) != ("nothing", "propagate")
+        ]
         axis, = bench.frame(rows).axes
-        self.assertEqual([t.get_text() for t in axis.get_yticklabels()],
-                         ["sh2 paper, light recomputed", "sh2 best, nothing recomputed", "sh2 best, light recomputed"])
+        self.assertEqual([t.get_text() for t in axis.get_yticklabels()], [
+            "sh2 paper, light recomputed", "sh2 best, nothing recomputed",
+            "sh2 best, light recomputed"
+        ])
         self.assertEqual(axis.patches[-2].get_width(), 0.0)
         self.assertEqual(axis.patches[-1].get_x() + axis.patches[-1].get_width(), 8.0)
 
@@ -65,9 +73,11 @@ class Charts(unittest.TestCase):
                 self.assertEqual(made.read_bytes(), (two / made.name).read_bytes(), made.name)
 
     def test_a_document_of_another_shape_is_reported_with_its_place(self):
-        with self.assertRaisesRegex(documents.BadDocument, r"x.json: /benchmarks/1/median is \"4\"; allowed: a number"):
-            documents.checked({"benchmarks": [row("a", "b"), row("a", "b", median="4")]}, "x.json", "benchmarks",
-                              bench.ROW)
+        with self.assertRaisesRegex(documents.BadDocument,
+                                    r"x.json: /benchmarks/1/median is \"4\"; allowed: a number"):
+            documents.checked(
+                {"benchmarks": [row("a", "b"), row("a", "b", median="4")]}, "x.json", "benchmarks",
+                bench.ROW)
 
 
 if __name__ == "__main__":

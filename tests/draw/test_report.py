@@ -33,12 +33,19 @@ class Page(unittest.TestCase):
         return f"{stem}.npy"
 
     def add_view(self):
-        shot = {"title": "ours", "options": NASTY, "nrmse_valid": 0.1, "nrmse_best_gain": 0.0, "energy_ratio": 1.1, "flip": 0.02,
-                "values": self.image("shot", uniform(2, 1.1))}
-        black = {**shot, "title": "other", "options": None, "nrmse_valid": None, "nrmse_best_gain": None, "energy_ratio": None,
-                 "values": self.image("other", uniform(2, 0)[..., :3])}
-        self.document["views"].append({"scene": NASTY, "camera": NASTY, "exposure": 0, "truth": self.image("truth", uniform(2, 1)),
-                                       "shots": [shot, black]})
+        shot = {
+            "title": "ours", "options": NASTY, "nrmse_valid": 0.1, "nrmse_best_gain": 0.0,
+            "energy_ratio": 1.1, "flip": 0.02, "values": self.image("shot", uniform(2, 1.1))
+        }
+        black = {
+            **shot, "title": "other", "options": None, "nrmse_valid": None, "nrmse_best_gain": None,
+            "energy_ratio": None, "values": self.image("other",
+                                                       uniform(2, 0)[..., :3])
+        }
+        self.document["views"].append({
+            "scene": NASTY, "camera": NASTY, "exposure": 0,
+            "truth": self.image("truth", uniform(2, 1)), "shots": [shot, black]
+        })
 
     def page(self):
         (self.folder / "report.json").write_text(json.dumps(self.document))
@@ -46,7 +53,9 @@ class Page(unittest.TestCase):
         return (self.folder / "index.html").read_text()
 
     def views(self, html):
-        return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', html, re.DOTALL)[1])
+        return json.loads(
+            re.search(r'<script type="application/json" id="data">(.*?)</script>', html,
+                      re.DOTALL)[1])
 
     def test_the_viewer_has_linear_values(self):
         self.add_view()
@@ -57,14 +66,20 @@ class Page(unittest.TestCase):
 
     def test_has_everything_inside(self):
         self.add_view()
-        self.document["quality"] = [{"file": "q.json", "document": {"variants": [variant({"preset": "best"})]}}]
-        self.document["benchmarks"] = [{"file": "b.json", "document": bench_document(
-            row("table1", "propagate", cascade=0, occlusion=True), row("layouts", "gather", layout=NASTY),
-            row("layouts", "gather", status="unsupported", reason="no images"))}]
+        self.document["quality"] = [{
+            "file": "q.json", "document": {"variants": [variant({"preset": "best"})]}
+        }]
+        self.document["benchmarks"] = [{
+            "file": "b.json", "document": bench_document(
+                row("table1", "propagate", cascade=0, occlusion=True),
+                row("layouts", "gather", layout=NASTY),
+                row("layouts", "gather", status="unsupported", reason="no images"))
+        }]
         html = self.page()
         self.assertIn("<td>ours</td><td>10.0</td><td>0.0</td><td>1.10</td><td>0.020</td>", html)
         self.assertIn("<td>other</td><td>-</td>", html)
-        self.assertEqual([image["title"] for image in self.views(html)[0]["images"]], ["path tracing", "ours", "other"])
+        self.assertEqual([image["title"] for image in self.views(html)[0]["images"]],
+                         ["path tracing", "ours", "other"])
         self.assertIn('<tr class="marked"><td>best</td><td>45.0 %', html)
         self.assertIn("<td>4.25</td>", html)
         self.assertIn("no images", html)
@@ -74,10 +89,15 @@ class Page(unittest.TestCase):
     def test_escapes_what_users_wrote(self):
         self.add_view()
         options = {"preset": NASTY}
-        self.document["quality"] = [{"file": "q.json", "document": {"variants": [variant(options)]}}]
+        self.document["quality"] = [{
+            "file": "q.json", "document": {"variants": [variant(options)]}
+        }]
         self.document["marked"] = [options]
-        self.document["benchmarks"] = [{"file": "b.json", "document": bench_document(
-            row("table1", NASTY), row("layouts", NASTY), row("layouts", "gather", status=NASTY, reason=NASTY))}]
+        self.document["benchmarks"] = [{
+            "file": "b.json",
+            "document": bench_document(row("table1", NASTY), row("layouts", NASTY),
+                                       row("layouts", "gather", status=NASTY, reason=NASTY))
+        }]
         html = self.page()
         self.assertNotIn("<script>alert", html)
         self.assertEqual(html.count("<script"), 3)
@@ -89,7 +109,9 @@ class Page(unittest.TestCase):
             self.assertIn(what, html)
 
     def test_the_chart_follows_the_page_and_names_its_points(self):
-        self.document["quality"] = [{"file": "q.json", "document": {"variants": [variant({"basis": "a&b"})]}}]
+        self.document["quality"] = [{
+            "file": "q.json", "document": {"variants": [variant({"basis": "a&b"})]}
+        }]
         html = self.page()
         chart = html[html.index("<svg"):html.index("</svg>")]
         self.assertIn("<title>a&amp;b</title>", chart)
@@ -100,8 +122,11 @@ class Page(unittest.TestCase):
         self.assertEqual(report.front_of([(4, 30), (2, 60), (1, 50), (5, 30)]), [(1, 50), (4, 30)])
 
     def test_rejects_a_document_of_another_shape(self):
-        self.document["quality"] = [{"file": "q.json", "document": {"variants": [{"rejected": 0, "options": {}}]}}]
-        with self.assertRaisesRegex(documents.BadDocument, "q.json: /variants/0/nrmse is null; allowed: a number"):
+        self.document["quality"] = [{
+            "file": "q.json", "document": {"variants": [{"rejected": 0, "options": {}}]}
+        }]
+        with self.assertRaisesRegex(documents.BadDocument,
+                                    "q.json: /variants/0/nrmse is null; allowed: a number"):
             self.page()
         self.assertFalse((self.folder / "index.html").exists())
 

@@ -69,13 +69,16 @@ class SphericalPlot(unittest.TestCase):
 
     def test_an_axis_is_hidden_inside_and_behind(self):
         ball = numpy.full(GRID.shape[:2], 0.5)
-        points = numpy.array([[0, 0, 0.3], [0, 0, 0.9], -0.9 * sphere.TOWARDS, 0.9 * sphere.TOWARDS])
+        points = numpy.array([[0, 0, 0.3], [0, 0, 0.9], -0.9 * sphere.TOWARDS,
+                              0.9 * sphere.TOWARDS])
         self.assertEqual(sphere.hidden(ball, points, 1.2).tolist(), [True, False, True, False])
 
     def test_the_outline_of_the_same_sphere_follows_its_edge(self):
         values = numpy.maximum(0, GRID[..., 0])
         without = image_of(values, extent=1)
-        changed = abs(image_of(values, extent=1, outline=(numpy.array([0.5, 0, 0]), 0.5)) - without).max(axis=2) > 0.1
+        changed = abs(
+            image_of(values, extent=1, outline=(numpy.array([0.5, 0, 0]), 0.5)) -
+            without).max(axis=2) > 0.1
         left, right, top, bottom = box(blue(without))
         rows, columns = numpy.nonzero(changed)
         distance = numpy.hypot(columns - (left + right) / 2, rows - (top + bottom) / 2)

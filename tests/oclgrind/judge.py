@@ -1,12 +1,12 @@
-#!/usr/bin/env python3
+# !/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Judges a file of kernels by what Oclgrind found in the workloads that were run.
 
     judge.py FOLDER KERNELS.cl [--expect KERNEL=TEXT...]
 
-FOLDER holds one folder a workload, as `run` leaves it. Every kernel of the file must have been run by a workload,
-and none may be reported. With --expect, exactly the kernels named must be, each with its text: the controls.
-"""
+FOLDER holds one folder a workload, as `run` leaves it. Every kernel of the file must have been run
+by a workload, and none may be reported. With --expect, exactly the kernels named must be, each with
+its text: the controls. """
 import pathlib
 import re
 import sys
@@ -38,14 +38,18 @@ def main(folder, source, expected):
     ran, reports = set(), {}
     for output in sorted(pathlib.Path(folder).glob("*/output.txt")):
         ran |= set(RUN.findall(output.read_text(encoding="utf-8", errors="replace")))
-        merge(reports, reports_by_kernel((output.parent / "reports.log").read_text(encoding="utf-8", errors="replace")))
+        merge(
+            reports,
+            reports_by_kernel(
+                (output.parent / "reports.log").read_text(encoding="utf-8", errors="replace")))
     faults = [f"{source}: no kernel found in it"] if not kernels else []
     faults += [f"{kernel}: no workload runs it" for kernel in sorted(kernels - ran)]
     for kernel in sorted(kernels | {None}, key=str):
         found = reports.get(kernel, [])
         wanted = expected.get(kernel)
         if wanted is None and found:
-            faults.append("\n\n".join([f"{kernel or 'no kernel'}: {len(found)} reports"] + found[:SHOWN_REPORTS]))
+            faults.append("\n\n".join([f"{kernel or 'no kernel'}: {len(found)} reports"] +
+                                      found[:SHOWN_REPORTS]))
         if wanted is not None and not any(wanted in report for report in found):
             faults.append(f"{kernel}: '{wanted}' is not reported")
     print("\n".join(faults) or f"{', '.join(sorted(kernels))}: as expected")

@@ -21,14 +21,16 @@ def test_harmonics_have_their_closed_form():
     values = basis.evaluate(w.reshape(20, 10, 3))
     assert values.shape == (20, 10, 4)
     assert np.allclose(values[..., 0], 1 / math.sqrt(4 * math.pi))
-    assert np.allclose(np.abs(values.reshape(-1, 4)[:, 2]), math.sqrt(3 / (4 * math.pi)) * np.abs(w[:, 2]))
+    assert np.allclose(np.abs(values.reshape(-1, 4)[:, 2]),
+                       math.sqrt(3 / (4 * math.pi)) * np.abs(w[:, 2]))
 
 
 def test_projection_reproduces_functions_of_the_basis():
     for name in clpv.bases():
         basis = clpv.Basis(name)
         c = np.random.default_rng(3).normal(size=len(basis))
-        assert np.allclose(basis.project(basis.evaluate(basis.directions()) @ c), c, atol=1e-6 * basis.condition), name
+        assert np.allclose(basis.project(basis.evaluate(basis.directions()) @ c), c,
+                           atol=1e-6 * basis.condition), name
 
 
 def test_lobes():
@@ -48,30 +50,37 @@ def test_lobes_of_the_paper_are_those_of_the_program():
         assert np.allclose(c, expected["coefficients"], rtol=1e-12, atol=1e-12)
         assert basis.lobe((-2, 1, -3), c)["minimum"] == pytest.approx(expected["minimum"])
         for steps in (8, 24):
-            assert basis.energy(steps, table_size=size) == pytest.approx(expected[f"energy_sampled_{steps}"])
-            assert basis.energy(steps, "exact", size) == pytest.approx(expected[f"energy_exact_{steps}"])
+            assert basis.energy(steps, table_size=size) == pytest.approx(
+                expected[f"energy_sampled_{steps}"])
+            assert basis.energy(steps, "exact",
+                                size) == pytest.approx(expected[f"energy_exact_{steps}"])
     exact = json.loads(program("basis", "srbf4", "--format=json"))["bases"][0]
     assert clpv.Basis("srbf4").mean_error == pytest.approx(exact["mean_relative_l2"])
     assert clpv.Basis("srbf4").energy(0) == pytest.approx(1)
 
 
 def test_own_centres():
-    basis = clpv.Basis("mine", bandwidth=0.3, centres=[[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -2, 0]])
+    centres = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -2, 0]]
+    basis = clpv.Basis("mine", bandwidth=0.3, centres=centres)
     assert len(basis) == 4 and basis.name == "mine"
     assert np.allclose(basis.centres[3], [0, -1, 0]) and np.allclose(basis.bandwidths, 0.3)
 
 
 @pytest.mark.parametrize("make, error", [
-    (lambda: clpv.Basis("nothing"), clpv.UsageError), (lambda: clpv.Basis("srbf4", bandwidth=1.5), clpv.UsageError),
+    (lambda: clpv.Basis("nothing"), clpv.UsageError),
+    (lambda: clpv.Basis("srbf4", bandwidth=1.5), clpv.UsageError),
     (lambda: clpv.Basis("mine", centres=[[0, 0, 0]]), clpv.UsageError),
     (lambda: clpv.Basis("mine", centres=[[1, 0]]), ValueError),
-    (lambda: clpv.Basis().energy(8, "sweep"), clpv.UsageError), (lambda: clpv.Basis().energy(-1), clpv.UsageError),
-    (lambda: clpv.Basis().energy(10 ** 9), clpv.UsageError),
+    (lambda: clpv.Basis().energy(8, "sweep"), clpv.UsageError),
+    (lambda: clpv.Basis().energy(-1), clpv.UsageError),
+    (lambda: clpv.Basis().energy(10**9), clpv.UsageError),
     (lambda: clpv.Basis("srbf4").energy(8, table_size=1), clpv.UsageError),
-    (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], 2 ** 21), clpv.UsageError),
+    (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], 2**21), clpv.UsageError),
     (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], "many"), TypeError),
-    (lambda: clpv.Basis().evaluate([[1, 0]]), ValueError), (lambda: clpv.Basis().evaluate([0, 0, 0]), clpv.UsageError),
-    (lambda: clpv.Basis().lobe([0, 0, 1], [1, 2]), ValueError), (lambda: clpv.Basis().project([1, 2]), ValueError),
+    (lambda: clpv.Basis().evaluate([[1, 0]]), ValueError),
+    (lambda: clpv.Basis().evaluate([0, 0, 0]), clpv.UsageError),
+    (lambda: clpv.Basis().lobe([0, 0, 1], [1, 2]), ValueError),
+    (lambda: clpv.Basis().project([1, 2]), ValueError),
 ])
 def test_bad_input(make, error):
     with pytest.raises(error):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Scenes from arrays: a file's bytes, moving meshes, rejected arrays; trimesh where it is installed."""
+"""Scenes from arrays: a file's bytes, moving meshes, rejected arrays; trimesh where it is
+installed."""
 import gc
 import json
 import re
@@ -43,18 +44,20 @@ def scene_of_glb(path, scale, texture_of):
         view = document["bufferViews"][accessor["bufferView"]]
         columns = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[accessor["type"]]
         start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-        return numpy.frombuffer(binary, TYPES[accessor["componentType"]], columns * accessor["count"],
-                                start).reshape(-1, columns)
+        return numpy.frombuffer(binary, TYPES[accessor["componentType"]],
+                                columns * accessor["count"], start).reshape(-1, columns)
 
     def material(index):
         given = document["materials"][index]
         pbr = given["pbrMetallicRoughness"]
         texture = pbr.get("baseColorTexture")
         if texture is not None:
-            view = document["bufferViews"][document["images"][document["textures"][texture["index"]]["source"]]["bufferView"]]
+            view = document["bufferViews"][document["images"][document["textures"][texture["index"]]
+                                                              ["source"]]["bufferView"]]
             texture = texture_of(binary[view.get("byteOffset", 0):][:view["byteLength"]])
         return clpv.Material(base_colour=pbr["baseColorFactor"], texture=texture,
-                             double_sided=given.get("doubleSided", False), emission=given.get("emissiveFactor", 0.0))
+                             double_sided=given.get("doubleSided", False),
+                             emission=given.get("emissiveFactor", 0.0))
 
     materials = [material(i) for i in range(len(document["materials"]))]
     places = {}
@@ -74,8 +77,10 @@ def scene_of_glb(path, scale, texture_of):
     for mesh in sorted(places):
         for part in document["meshes"][mesh]["primitives"]:
             attributes = part["attributes"]
-            number = scene.add_mesh(array(attributes["POSITION"]), array(part["indices"]).reshape(-1, 3),
-                                    normals=array(attributes["NORMAL"]), uvs=array(attributes["TEXCOORD_0"]),
+            number = scene.add_mesh(array(attributes["POSITION"]),
+                                    array(part["indices"]).reshape(-1, 3),
+                                    normals=array(attributes["NORMAL"]),
+                                    uvs=array(attributes["TEXCOORD_0"]),
                                     material=materials[part["material"]], transform=places[mesh][0])
             for place in places[mesh][1:]:
                 scene.add_instance(number, place)
@@ -88,13 +93,16 @@ def test_arrays_of_a_file_give_its_bytes(name, tmp_path):
         (tmp_path / "texture.png").write_bytes(png)
         image = clpv.read_image(tmp_path / "texture.png")
         bytes_ = numpy.round(image.array * 255).astype(numpy.uint8)
-        return bytes_ if bytes_.shape[2] == 4 else numpy.dstack([bytes_, numpy.full(bytes_.shape[:2], 255, numpy.uint8)])
+        return bytes_ if bytes_.shape[2] == 4 else numpy.dstack(
+            [bytes_, numpy.full(bytes_.shape[:2], 255, numpy.uint8)])
 
     description = json.loads((ROOT / f"scenes/{name}.json").read_text(encoding="utf-8"))
     of_file = clpv.Scene(ROOT / f"scenes/{name}.json")
-    of_arrays = scene_of_glb(ROOT / f"scenes/{name}.glb", description.get("metres_per_unit", 1.0), texture_of)
+    of_arrays = scene_of_glb(ROOT / f"scenes/{name}.glb", description.get("metres_per_unit", 1.0),
+                             texture_of)
     numpy.testing.assert_array_equal(of_arrays.bounds, of_file.bounds)
-    # cameras and lights of a file lose some bits on their way through Python: both scenes get the same ones
+    # cameras and lights of a file lose some bits on their way through Python: both scenes get the
+    # same ones
     of_arrays.cameras, of_arrays.lights = of_file.cameras, of_file.lights
     of_file.cameras, of_file.lights = of_file.cameras, of_file.lights
     options = SMALL | {"cascade_size": 8 if name == "atrium" else 0.7, "cascades": 2}
@@ -108,14 +116,18 @@ def test_arrays_of_a_file_give_its_bytes(name, tmp_path):
     ({"positions": WALL * numpy.nan}, clpv.InputError, "positions[0]: found nan in component 0"),
     ({"positions": WALL.astype(complex)}, TypeError, "positions: found an array of complex128"),
     ({"positions": [[0, 0, 0], "x"]}, (TypeError, ValueError), ""),
-    ({"triangles": SQUARE.astype(float)}, TypeError, "triangles: found an array of float64, allowed: integers"),
+    ({"triangles": SQUARE.astype(float)
+      }, TypeError, "triangles: found an array of float64, allowed: integers"),
     ({"triangles": SQUARE - 1}, clpv.InputError, "triangles[0]: found index -1"),
-    ({"triangles": SQUARE + 2 ** 32}, clpv.InputError, "triangles[0]: found index 4294967296"),
+    ({"triangles": SQUARE + 2**32}, clpv.InputError, "triangles[0]: found index 4294967296"),
     ({"triangles": SQUARE + 1}, clpv.InputError, "triangles[1]: found index 4; allowed: 0 to 3"),
-    ({"triangles": numpy.broadcast_to(numpy.uint8(0), (2 ** 31, 3))}, clpv.InputError, "triangles: found 2147483648 rows"),
-    ({"colours": numpy.zeros((4, 3), numpy.uint8)}, TypeError, "colours: found an array of uint8, allowed: floats"),
+    ({"triangles": numpy.broadcast_to(numpy.uint8(0), (2**31, 3))
+      }, clpv.InputError, "triangles: found 2147483648 rows"),
+    ({"colours": numpy.zeros(
+        (4, 3), numpy.uint8)}, TypeError, "colours: found an array of uint8, allowed: floats"),
     ({"normals": WALL[:3]}, clpv.InputError, "normals: found 3 elements; allowed: 4"),
-    ({"transform": numpy.eye(3)}, clpv.InputError, "transform: found shape (3, 3); allowed: (4, 4)"),
+    ({"transform": numpy.eye(3)
+      }, clpv.InputError, "transform: found shape (3, 3); allowed: (4, 4)"),
 ])
 def test_bad_arrays_are_rejected_by_name(change, error, words):
     with pytest.raises(error, match=re.escape(words)):
@@ -123,7 +135,8 @@ def test_bad_arrays_are_rejected_by_name(change, error, words):
 
 
 def test_bad_materials_are_rejected_by_name():
-    for texture, words in [(numpy.zeros((2, 2, 3), numpy.uint8), "found shape (2, 2, 3)"), (numpy.full((1, 2, 4), numpy.nan), "[0, 0]: found nan")]:
+    for texture, words in [(numpy.zeros((2, 2, 3), numpy.uint8), "found shape (2, 2, 3)"),
+                           (numpy.full((1, 2, 4), numpy.nan), "[0, 0]: found nan")]:
         with pytest.raises(clpv.InputError, match=re.escape(words)):
             clpv.Material(texture=texture)
     with pytest.raises(clpv.InputError, match="alpha_cutoff: found 2"):
@@ -132,12 +145,15 @@ def test_bad_materials_are_rejected_by_name():
 
 def test_any_order_and_type_of_arrays_is_the_same_mesh():
     def image(positions, triangles):
-        return clpv.Renderer(clpv.Scene.from_arrays(positions, triangles), cascade_size=4, **SMALL).render().array
+        return clpv.Renderer(clpv.Scene.from_arrays(positions, triangles), cascade_size=4,
+                             **SMALL).render().array
 
     plain = image(WALL, SQUARE)
     assert plain[..., 3].max() == 1
-    numpy.testing.assert_array_equal(image(numpy.asfortranarray(WALL), SQUARE.astype(numpy.uint8)), plain)
-    numpy.testing.assert_array_equal(image(WALL.tolist(), numpy.repeat(SQUARE, 2, axis=0)[::2]), plain)
+    numpy.testing.assert_array_equal(image(numpy.asfortranarray(WALL), SQUARE.astype(numpy.uint8)),
+                                     plain)
+    numpy.testing.assert_array_equal(image(WALL.tolist(),
+                                           numpy.repeat(SQUARE, 2, axis=0)[::2]), plain)
 
 
 def test_float_textures_are_encoded():
@@ -165,7 +181,8 @@ def test_meshes_change_while_frames_render():
     gc.collect()
     anew = clpv.Scene.from_arrays(WALL + (0, 0, 0.19), SQUARE)
     anew.cameras = scene.cameras
-    numpy.testing.assert_array_equal(renderer.render().array, clpv.Renderer(anew, cascade_size=4, **SMALL).render().array)
+    numpy.testing.assert_array_equal(renderer.render().array,
+                                     clpv.Renderer(anew, cascade_size=4, **SMALL).render().array)
 
 
 def test_scene_of_trimesh():
@@ -173,7 +190,8 @@ def test_scene_of_trimesh():
     box = trimesh.creation.box((1, 1, 1))
     given = trimesh.Scene()
     given.add_geometry(box, geom_name="box")
-    given.graph.update("second", matrix=trimesh.transformations.translation_matrix((3, 0, 0)), geometry="box")
+    given.graph.update("second", matrix=trimesh.transformations.translation_matrix((3, 0, 0)),
+                       geometry="box")
     scene = clpv.Scene.from_trimesh(given)
     assert scene.bounds == ((-0.5, -0.5, -0.5), (3.5, 0.5, 0.5))
     assert "24 triangles" in repr(scene)
@@ -184,9 +202,11 @@ def test_scene_of_trimesh():
 
 def test_the_example_of_arrays_runs(tmp_path):
     script = (ROOT / "examples/arrays.py").read_text(encoding="utf-8")
-    small = script.replace("width=480, height=270", "width=32, height=18").replace("grid=32", "grid=16")
+    small = script.replace("width=480, height=270",
+                           "width=32, height=18").replace("grid=32", "grid=16")
     assert small != script
-    ended = subprocess.run([sys.executable, "-c", small], capture_output=True, text=True, check=False, cwd=tmp_path)
+    ended = subprocess.run([sys.executable, "-c", small], capture_output=True, text=True,
+                           check=False, cwd=tmp_path)
     assert ended.returncode == 0, ended.stderr
     means = [float(line.split()[-2]) for line in ended.stdout.splitlines() if "W/m^2" in line]
     assert len(means) == 5 and len(set(means)) == 5, "the wall's place changes the light"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A renderer in pyopencl's context and queue; skipped without pyopencl (Debian: python3-pyopencl)."""
+"""A renderer in pyopencl's context and queue; skipped without pyopencl (Debian:
+python3-pyopencl)."""
 import pathlib
 import runpy
 
@@ -11,7 +12,9 @@ from conftest import CORNELL, FRONT, ROOT, SMALL
 
 
 def test_handles_of_another_kind_are_named(scene):
-    with pytest.raises(TypeError, match="queue: found .*str.*, allowed: an OpenCL object of pyopencl, or its int_ptr"):
+    with pytest.raises(
+            TypeError,
+            match="queue: found .*str.*, allowed: an OpenCL object of pyopencl, or its int_ptr"):
         clpv.Renderer(scene, queue="queue", **SMALL)
     with pytest.raises(ValueError, match="found a device and a context or queue"):
         clpv.Renderer(scene, "0", queue=1, **SMALL)
@@ -36,10 +39,13 @@ def test_frames_and_light_in_pyopencls_queue(scene, renderer):
 
     assert np.array_equal(read(frame.irradiance), expected)
     light = cl.Buffer(context, cl.mem_flags.WRITE_ONLY, 16 * 48 * 27)
-    made.enqueue_light(48, 27, normals=frame.normals, depths=frame.depth, irradiance=light, camera=FRONT).wait()
+    made.enqueue_light(48, 27, normals=frame.normals, depths=frame.depth, irradiance=light,
+                       camera=FRONT).wait()
     assert np.array_equal(read(light.int_ptr), expected)
-    with pytest.raises(clpv.UsageError, match="light: normals: found 20736 bytes, allowed: at least"):
-        made.enqueue_light(480, 27, normals=frame.normals, depths=frame.depth, irradiance=light, camera=FRONT)
+    with pytest.raises(clpv.UsageError,
+                       match="light: normals: found 20736 bytes, allowed: at least"):
+        made.enqueue_light(480, 27, normals=frame.normals, depths=frame.depth, irradiance=light,
+                           camera=FRONT)
 
 
 def test_the_example_runs():

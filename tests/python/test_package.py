@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The package as users meet it: the program of the documentation, stubs, interrupts, import without the native module."""
+"""The package as users meet it: the program of the documentation, stubs, interrupts, import without
+the native module."""
 import inspect
 import os
 import re
@@ -15,12 +16,14 @@ from conftest import BUILD, CORNELL, ROOT
 
 
 def run(code, **more):
-    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=ROOT, **more)
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False,
+                          cwd=ROOT, **more)
 
 
 def test_the_example_runs_as_written():
     script = (ROOT / "examples/bases.py").read_text(encoding="utf-8")
-    small = script.replace("width=240, height=135", "width=32, height=18").replace("noise=0.02", "noise=0.2")
+    small = script.replace("width=240, height=135",
+                           "width=32, height=18").replace("noise=0.02", "noise=0.2")
     small = small.replace("clpv.bases()", "clpv.bases()[:2]")  # others take long to compile
     assert small != script
     ended = run(small)
@@ -31,8 +34,8 @@ def test_the_example_runs_as_written():
 
 
 def test_stubs_are_up_to_date():
-    ended = subprocess.run([sys.executable, ROOT / "scripts/stubs", "--check"], capture_output=True, text=True,
-                           check=False)
+    ended = subprocess.run([sys.executable, ROOT / "scripts/stubs", "--check"], capture_output=True,
+                           text=True, check=False)
     assert ended.returncode == 0, ended.stderr
 
 
@@ -55,7 +58,8 @@ def test_draw_imports_without_the_native_module():
 @pytest.mark.parametrize("work", ["clpv.pathtrace(scene, samples=1 << 20)"])
 def test_ctrl_c_ends_long_work(work):
     code = f"import clpv\nscene = clpv.Scene({str(CORNELL)!r})\nprint('started', flush=True)\n{work}"
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as child:
         assert child.stdout.readline() == "started\n"
         time.sleep(0.5)
         child.send_signal(signal.SIGINT)
@@ -66,10 +70,11 @@ def test_ctrl_c_ends_long_work(work):
 
 
 def test_work_goes_on_after_an_interrupt():
-    ended = run("import clpv, signal\nscene = clpv.Scene('scenes/cornell.json')\nsignal.alarm(1)\n"
-                "signal.signal(signal.SIGALRM, lambda *a: (_ for _ in ()).throw(TimeoutError('late')))\n"
-                "try:\n  clpv.pathtrace(scene, samples=1 << 20)\nexcept TimeoutError as e:\n  print(e)\n"
-                "print(clpv.pathtrace(scene, width=8, height=8, samples=1).width)")
+    ended = run(
+        "import clpv, signal\nscene = clpv.Scene('scenes/cornell.json')\nsignal.alarm(1)\n"
+        "signal.signal(signal.SIGALRM, lambda *a: (_ for _ in ()).throw(TimeoutError('late')))\n"
+        "try:\n  clpv.pathtrace(scene, samples=1 << 20)\nexcept TimeoutError as e:\n  print(e)\n"
+        "print(clpv.pathtrace(scene, width=8, height=8, samples=1).width)")
     assert ended.stdout == "late\n8\n", ended.stderr
 
 
@@ -92,9 +97,11 @@ def test_the_gil_is_released():
 
 
 def test_version_is_the_programs():
-    said = subprocess.run([BUILD / "clpv", "--version"], capture_output=True, text=True, check=True).stdout
+    said = subprocess.run([BUILD / "clpv", "--version"], capture_output=True, text=True,
+                          check=True).stdout
     assert re.search(re.escape(clpv.__version__), said)
-    assert os.path.realpath(clpv.__file__).startswith(str(ROOT)), "the module under test is the tree's"
+    assert os.path.realpath(clpv.__file__).startswith(
+        str(ROOT)), "the module under test is the tree's"
 
 
 def test_path_tracing_tells_its_progress():
@@ -111,10 +118,12 @@ def test_path_tracing_tells_its_progress():
 
 
 def test_exit_waits_for_a_callback_of_a_daemon_thread():
-    ended = run("import clpv, threading, time\nscene = clpv.Scene('scenes/cornell.json')\ntold = threading.Event()\n"
-                "def tell(_):\n  told.set()\n  time.sleep(0.3)\n"
-                "def work():\n  clpv.pathtrace(scene, width=96, height=54, samples=1 << 14, progress=tell)\n"
-                "threading.Thread(target=work, daemon=True).start()\ntold.wait(60)\nprint('end')", timeout=60)
+    ended = run(
+        "import clpv, threading, time\nscene = clpv.Scene('scenes/cornell.json')\ntold = threading.Event()\n"
+        "def tell(_):\n  told.set()\n  time.sleep(0.3)\n"
+        "def work():\n  clpv.pathtrace(scene, width=96, height=54, samples=1 << 14, progress=tell)\n"
+        "threading.Thread(target=work, daemon=True).start()\ntold.wait(60)\nprint('end')",
+        timeout=60)
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, "end\n", "")
 
 
@@ -130,5 +139,6 @@ def test_notebooks_show_images(tmp_path):
     image = clpv.Image([[[0.5, 0.25, 1.0]]])
     (tmp_path / "shown.png").write_bytes(image._repr_png_())
     image.save(tmp_path / "saved.png")
-    assert (clpv.read_image(tmp_path / "shown.png").array == clpv.read_image(tmp_path / "saved.png").array).all()
+    assert (clpv.read_image(tmp_path / "shown.png").array == clpv.read_image(
+        tmp_path / "saved.png").array).all()
     assert clpv.Image([[[1.0]]])._repr_png_() is None

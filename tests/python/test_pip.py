@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""`pip install .` into a folder. Needs scikit-build-core; links the library of this build to save its compilation."""
+"""`pip install .` into a folder. Needs scikit-build-core; links the library of this build to save
+its compilation."""
 import subprocess
 import sys
 
@@ -14,12 +15,15 @@ pytest.importorskip("pip", reason="all of it: pip is not installed")
 
 def test_pip_install(tmp_path):
     def run(*words):
-        ended = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False, cwd=tmp_path)
+        ended = subprocess.run([str(word) for word in words], capture_output=True, text=True,
+                               check=False, cwd=tmp_path)
         assert ended.returncode == 0, ended.stdout + ended.stderr
         return ended.stdout
 
-    run(sys.executable, "-m", "pip", "install", "-q", "--no-build-isolation", "--no-index", "--no-deps",
-        "--target", tmp_path / "site", f"--config-settings=build-dir={tmp_path / 'build'}", f"--config-settings=cmake.define.CLPV_PREBUILT={BUILD / 'libclpv.a'}", ROOT)
+    run(sys.executable, "-m", "pip", "install", "-q", "--no-build-isolation", "--no-index",
+        "--no-deps", "--target", tmp_path / "site",
+        f"--config-settings=build-dir={tmp_path / 'build'}",
+        f"--config-settings=cmake.define.CLPV_PREBUILT={BUILD / 'libclpv.a'}", ROOT)
     said = run("env", f"PYTHONPATH={tmp_path / 'site'}", sys.executable, "-c",
                "import clpv, clpv.draw; s = clpv.Scene('%s/scenes/cornell.json')\n"
                "print(clpv.__version__, len(s.cameras), clpv.__file__)" % ROOT)

@@ -12,7 +12,9 @@ from conftest import CORNELL, FRONT, SMALL, program
 
 
 def flags():
-    return [word for name, value in SMALL.items() for word in (f"--{name.replace('_', '-')}", value)]
+    return [
+        word for name, value in SMALL.items() for word in (f"--{name.replace('_', '-')}", value)
+    ]
 
 
 def test_images_are_the_programs_byte_for_byte(tmp_path, renderer):
@@ -27,7 +29,8 @@ def test_images_are_the_programs_byte_for_byte(tmp_path, renderer):
 
 
 def test_pathtrace_is_the_programs_byte_for_byte(tmp_path, scene):
-    program("pathtrace", CORNELL, "--width", 16, "--height", 9, "--spp", 4, "--view", "indirect", "-o", tmp_path / "t.exr")
+    program("pathtrace", CORNELL, "--width", 16, "--height", 9, "--spp", 4, "--view", "indirect",
+            "-o", tmp_path / "t.exr")
     traced = clpv.pathtrace(scene, "indirect", width=16, height=9, samples=4)
     assert clpv.read_image(tmp_path / "t.exr").array.tobytes() == traced.array.tobytes()
 
@@ -57,7 +60,8 @@ def test_arrays_do_not_copy_and_outlive_their_owners(scene):
 def test_a_camera_by_value(renderer):
     named = renderer.render("full", camera="front").array
     assert np.allclose(renderer.render("full", camera=FRONT).array, named, atol=1e-4 * named.max())
-    assert not np.allclose(renderer.render("full", camera=FRONT.replace(fov=40)).array, named, atol=0.01)
+    assert not np.allclose(
+        renderer.render("full", camera=FRONT.replace(fov=40)).array, named, atol=0.01)
     assert FRONT == clpv.Camera((0.278, 0.273, -0.18), np.array([0.278, 0.273, 0.28]), fov=75)
     assert "fov=75" in repr(FRONT) and FRONT.replace(near=1).near == 1
     with pytest.raises(AttributeError):
@@ -68,7 +72,9 @@ def test_lights_and_cameras_are_replaced():
     scene = clpv.Scene(CORNELL)
     renderer = clpv.Renderer(scene, **SMALL)
     dim = renderer.render("indirect").array[..., :3].mean()
-    scene.lights = [light.replace(intensity=[3 * x for x in light.intensity]) for light in scene.lights]
+    scene.lights = [
+        light.replace(intensity=[3 * x for x in light.intensity]) for light in scene.lights
+    ]
     assert renderer.render("indirect").array[..., :3].mean() == pytest.approx(3 * dim, rel=0.01)
     assert renderer.stats["propagate"] > 0 and renderer.stats["blockers"] == 0
     scene.lights = [clpv.Light("point", position=(0.278, 0.5, 0.28), intensity=2)]
@@ -101,7 +107,8 @@ def test_stats(scene):
     assert renderer.stats["propagate"] == 0
     renderer.render()
     stats = renderer.stats
-    assert stats["propagate"] > 0 and stats["frame"] > stats["propagate"] and stats["device_bytes"] > 0
+    assert stats["propagate"] > 0 and stats["frame"] > stats["propagate"] and stats[
+        "device_bytes"] > 0
     assert 0 < stats["host"] < stats["frame"] and stats["launches"] > 20 and stats["waits"] > 1
     renderer.render()
     assert renderer.stats["propagate"] == 0, "cached"
@@ -150,11 +157,13 @@ def test_radiance(scene, renderer):
     assert np.array_equal(renderer.radiance(points[2, 3], [0, -1, 0]), light[2, 3])
     assert renderer.radiance(np.zeros((0, 3)), np.zeros((0, 3))).shape == (0, 3)
     assert (renderer.radiance([900, 0, 0], [0, 1, 0]) == 0).all()
-    # The mean over all directions is that of the volumes' 0th coefficient, by hand at the centre of a cell.
+    # The mean over all directions is that of the volumes' 0th coefficient, by hand at the centre of
+    # a cell.
     volume = renderer.volumes()[0]
     cell = (np.array((0.28, 0.3, 0.25)) - volume.origin) // volume.cell
     w = np.random.default_rng(2).normal(size=(20000, 3))
-    mean = renderer.radiance(np.broadcast_to(volume.origin + (cell + 0.5) * volume.cell, w.shape), w).mean(axis=0)
+    mean = renderer.radiance(np.broadcast_to(volume.origin + (cell + 0.5) * volume.cell, w.shape),
+                             w).mean(axis=0)
     x, y, z = cell.astype(int)
     c0 = volume.coefficients[:, 0, z, y, x]
     assert np.allclose(mean, c0 / math.sqrt(4 * math.pi) / volume.cell ** 2, rtol=0.03)
@@ -183,8 +192,12 @@ def test_threads_ask_one_renderer_for_light(renderer):
 
 
 @pytest.mark.parametrize("change, text", [
-    ({"target": FRONT.eye}, "the eye itself"), ({"fov": 0}, "vertical_fov_degrees"), ({"fov": 180}, "vertical_fov_degrees"),
-    ({"eye": (0, math.nan, 0)}, "eye"), ({"up": (0, 0, 0)}, "up"), ({"near": -1}, "near"),
+    ({"target": FRONT.eye}, "the eye itself"),
+    ({"fov": 0}, "vertical_fov_degrees"),
+    ({"fov": 180}, "vertical_fov_degrees"),
+    ({"eye": (0, math.nan, 0)}, "eye"),
+    ({"up": (0, 0, 0)}, "up"),
+    ({"near": -1}, "near"),
 ])
 def test_bad_cameras(renderer, scene, change, text):
     for use in (lambda camera: renderer.render(camera=camera),
@@ -235,7 +248,10 @@ def test_compare_takes_images_and_arrays(renderer):
 def test_threads_share_a_renderer(renderer):
     expected = renderer.render("indirect").array.copy()
     found = []
-    threads = [threading.Thread(target=lambda: found.append(renderer.render("indirect").array)) for _ in range(4)]
+    threads = [
+        threading.Thread(target=lambda: found.append(renderer.render("indirect").array))
+        for _ in range(4)
+    ]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -244,8 +260,10 @@ def test_threads_share_a_renderer(renderer):
 
 
 def test_200_renderers_do_not_leak(scene):
-    tiny = {"basis": "sh2", "transport": "sampled", "blockers": "none", "gather": "all", "width": 16, "height": 9,
-            "grid": 4, "cascades": 1, "rsm_size": 8, "shadow_size": 8}
+    tiny = {
+        "basis": "sh2", "transport": "sampled", "blockers": "none", "gather": "all", "width": 16,
+        "height": 9, "grid": 4, "cascades": 1, "rsm_size": 8, "shadow_size": 8
+    }
 
     def resident():
         with open("/proc/self/statm", encoding="ascii") as statm:

@@ -20,12 +20,14 @@ LAMBDAS = np.array([0.2, 0.3, 0.25, 0.4, 0.33, 0.21])
 
 
 def even_directions(count):
-    z, turn = 1 - (2 * np.arange(count) + 1) / count, math.pi * (3 - math.sqrt(5)) * np.arange(count)
-    return np.stack([np.sqrt(1 - z * z) * np.cos(turn), np.sqrt(1 - z * z) * np.sin(turn), z], axis=-1)
+    z, turn = 1 - (2 * np.arange(count) + 1) / count, math.pi * (3 -
+                                                                 math.sqrt(5)) * np.arange(count)
+    return np.stack([np.sqrt(1 - z * z) * np.cos(turn),
+                     np.sqrt(1 - z * z) * np.sin(turn), z], axis=-1)
 
 
 def error_over(basis, directions, weights):
-    return math.sqrt(sum(w * basis.lobe(d)["relative_l2"] ** 2 for d, w in zip(directions, weights)))
+    return math.sqrt(sum(w * basis.lobe(d)["relative_l2"]**2 for d, w in zip(directions, weights)))
 
 
 @pytest.mark.parametrize("over, directions", [
@@ -34,7 +36,8 @@ def test_the_objective_is_the_error_of_the_basis(over, directions):
     centres = even_directions(6)
     basis = clpv.Basis("set", LAMBDAS, centres)
     objective = search.Objective(*over)
-    assert math.sqrt(objective.square_error(centres, LAMBDAS)[0]) == pytest.approx(error_over(basis, *directions), abs=1e-3)
+    assert math.sqrt(objective.square_error(centres, LAMBDAS)[0]) == pytest.approx(
+        error_over(basis, *directions), abs=1e-3)
     bound = math.exp(objective.log_condition(centres, LAMBDAS)[0])
     assert basis.condition < bound < 6 * basis.condition
 
@@ -53,46 +56,57 @@ def test_gradients_are_those_of_differences(over, lambdas, count):
 
 
 # Errors as an independent optimiser found them (docs/bases.md).
-@pytest.mark.parametrize("count, over, lambdas, error", [
-    (4, "all", "none", 0.40967), (6, "axes", "one", 0.08978), (8, "all", "one", 0.18096), (9, "all", "none", 0.13660)])
+@pytest.mark.parametrize("count, over, lambdas, error", [(4, "all", "none", 0.40967),
+                                                         (6, "axes", "one", 0.08978),
+                                                         (8, "all", "one", 0.18096),
+                                                         (9, "all", "none", 0.13660)])
 def test_minima(count, over, lambdas, error):
     found = search.search(count, over, lambdas, starts=4)
     assert found.error == pytest.approx(error, abs=2e-5) and found.valid == 4
     basis = clpv.Basis("found", found.lambdas, found.centres)
-    assert basis.condition == pytest.approx(found.condition, rel=1e-6) and found.condition < 2e4 * (1 + 1e-5)
+    assert basis.condition == pytest.approx(found.condition,
+                                            rel=1e-6) and found.condition < 2e4 * (1 + 1e-5)
     assert over == "axes" or found.error > search.minimum_error(count)
 
 
 def test_minimum_errors_are_those_of_the_harmonics():
     for count, name in ((4, "sh2"), (9, "sh3")):
-        assert search.minimum_error(count) == pytest.approx(clpv.Basis(name).lobe((1, 2, 3))["relative_l2"], abs=1e-9)
+        assert search.minimum_error(count) == pytest.approx(
+            clpv.Basis(name).lobe((1, 2, 3))["relative_l2"], abs=1e-9)
     assert search.minimum_error(8) == pytest.approx(math.sqrt(1 / 8 - 12 / 128), abs=1e-12)
 
 
 def test_the_same_seed_gives_the_same_set():
-    one, again, other = (search.search(5, lambdas="each", starts=2, seed=seed) for seed in (1, 1, 2))
+    one, again, other = (search.search(5, lambdas="each", starts=2, seed=seed)
+                         for seed in (1, 1, 2))
     assert np.array_equal(one.centres, again.centres) and np.array_equal(one.lambdas, again.lambdas)
     assert not np.array_equal(one.centres, other.centres)
 
 
-@pytest.mark.parametrize("given, text", [
-    ({"count": 0}, "count: found 0, allowed: 1 to 64"), ({"count": 65}, "65"),
-    ({"start_lambda": math.nan}, "lambda: found nan"),
-    ({"max_condition": 1e8}, "1e+07"), ({"starts": 0}, "starts"), ({"lambdas": "two"}, "none, one, each"),
-    ({"over": "poles"}, "all, axes"),
-    ({"count": 20, "lambdas": "none", "start_lambda": 0.05, "starts": 2}, "none of 2 starts")])
+@pytest.mark.parametrize(
+    "given, text",
+    [({"count": 0}, "count: found 0, allowed: 1 to 64"), ({"count": 65}, "65"),
+     ({"start_lambda": math.nan}, "lambda: found nan"), ({"max_condition": 1e8}, "1e+07"),
+     ({"starts": 0}, "starts"), ({"lambdas": "two"}, "none, one, each"),
+     ({"over": "poles"}, "all, axes"),
+     ({"count": 20, "lambdas": "none", "start_lambda": 0.05, "starts": 2}, "none of 2 starts")])
 def test_bad_values(given, text):
     with pytest.raises(ValueError) as raised:
         search.search(**{"count": 4, **given})
     assert text in str(raised.value)
 
 
-@pytest.mark.parametrize("text, place", [
-    ("{", "Expecting"), ("[]", "/weights"), ('{"weights": []}', "1 to 10000"), ('{"weights": 7}', "/weights"),
-    ('{"weights": [[0, 0, 1, 1], [0, 0, 1]]}', "/weights/1"), ('{"weights": [[0, 0, 0, 1]]}', "/weights/0"),
-    ('{"weights": [[0, 0, 1, -1]]}', "/weights/0"), ('{"weights": [[0, 0, 1, NaN]]}', "/weights/0"),
-    ('{"weights": [[0, 0, 1, 1e999]]}', "/weights/0"), ('{"weights": [[0, 0, "1", 1]]}', "/weights/0"),
-    ('{"weights": [[0, 0, true, 1]]}', "/weights/0"), ("[" * 100000, "recursion"), (None, "No such file")])
+@pytest.mark.parametrize("text, place", [("{", "Expecting"), ("[]", "/weights"),
+                                         ('{"weights": []}', "1 to 10000"),
+                                         ('{"weights": 7}', "/weights"),
+                                         ('{"weights": [[0, 0, 1, 1], [0, 0, 1]]}', "/weights/1"),
+                                         ('{"weights": [[0, 0, 0, 1]]}', "/weights/0"),
+                                         ('{"weights": [[0, 0, 1, -1]]}', "/weights/0"),
+                                         ('{"weights": [[0, 0, 1, NaN]]}', "/weights/0"),
+                                         ('{"weights": [[0, 0, 1, 1e999]]}', "/weights/0"),
+                                         ('{"weights": [[0, 0, "1", 1]]}', "/weights/0"),
+                                         ('{"weights": [[0, 0, true, 1]]}', "/weights/0"),
+                                         ("[" * 100000, "recursion"), (None, "No such file")])
 def test_bad_weights(tmp_path, text, place):
     path = tmp_path / "weights.json"
     if text is not None:
@@ -103,14 +117,14 @@ def test_bad_weights(tmp_path, text, place):
 
 
 def run(*arguments):
-    return subprocess.run([sys.executable, "-m", "clpv.search", *map(str, arguments)], capture_output=True, text=True,
-                          check=False, timeout=300, env=os.environ)
+    return subprocess.run([sys.executable, "-m", "clpv.search", *map(str, arguments)],
+                          capture_output=True, text=True, check=False, timeout=300, env=os.environ)
 
 
 def test_from_a_scenes_normals_to_a_set(tmp_path):
     normals, file = tmp_path / "normals.json", tmp_path / "mine.json"
-    program("render", CORNELL, "--width", 16, "--height", 9, "--grid", 8, "--rsm-size", 32, "--dump-normals", normals, "-o",
-            tmp_path / "a.exr")
+    program("render", CORNELL, "--width", 16, "--height", 9, "--grid", 8, "--rsm-size", 32,
+            "--dump-normals", normals, "-o", tmp_path / "a.exr")
     directions, weights = search.weights(normals)
     assert weights.sum() == pytest.approx(1) and len(weights) < 97
     assert weights[directions[:, 1] > 0.99].sum() > 0.2, "the floor"
@@ -118,7 +132,8 @@ def test_from_a_scenes_normals_to_a_set(tmp_path):
     assert found.returncode == 0 and "of 2 starts" in found.stdout, found.stderr
     made = json.loads(file.read_text())
     basis = json.loads(program("basis", "--format=json", "--centres", file))["bases"][0]
-    assert basis["name"] == "mine" and basis["lambdas"] == made["lambda"] and len(made["centres"]) == 4
+    assert basis["name"] == "mine" and basis["lambdas"] == made["lambda"] and len(
+        made["centres"]) == 4
 
 
 def test_exit_codes(tmp_path):

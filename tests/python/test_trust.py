@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The module where Python ends, forks, interrupts, pickles, or makes objects without their __init__: refused by name, never an
-abort or a hang."""
+"""The module where Python ends, forks, interrupts, pickles, or makes objects without their
+__init__: refused by name, never an abort or a hang."""
 import copy
 import inspect
 import os
@@ -24,14 +24,16 @@ renderer.render()
 
 
 def run(code, seconds=300):
-    return subprocess.run([sys.executable, "-c", START + code], capture_output=True, text=True, check=False, cwd=ROOT,
-                          timeout=seconds)
+    return subprocess.run([sys.executable, "-c", START + code], capture_output=True, text=True,
+                          check=False, cwd=ROOT, timeout=seconds)
 
 
 # Each once aborted with 'terminate called'.
 @pytest.mark.parametrize("work", [
     "renderer.render()", "clpv.pathtrace(scene, samples=1 << 20)", "renderer.render().save(path)",
-    "scene.lights = scene.lights", "basis = clpv.Basis('sh4'); basis.project(basis.directions()[:, 0])"])
+    "scene.lights = scene.lights",
+    "basis = clpv.Basis('sh4'); basis.project(basis.directions()[:, 0])"
+])
 def test_exit_while_a_daemon_thread_works(tmp_path, work):
     ended = run(f"path = {str(tmp_path / 'a.exr')!r}\n"
                 f"def work():\n  while True: {work}\n"
@@ -50,9 +52,11 @@ def test_first_arrays_of_two_threads():  # each once waited for the other withou
 
 
 def test_calls_during_exit_are_refused():
-    ended = subprocess.run([sys.executable, "-c", "import atexit\n"
-                            "def late():\n  try: clpv.Scene('a.json')\n  except clpv.Error as e: print(e)\n"
-                            "atexit.register(late)\n" + START], capture_output=True, text=True, check=False, cwd=ROOT)
+    ended = subprocess.run([
+        sys.executable, "-c", "import atexit\n"
+        "def late():\n  try: clpv.Scene('a.json')\n  except clpv.Error as e: print(e)\n"
+        "atexit.register(late)\n" + START
+    ], capture_output=True, text=True, check=False, cwd=ROOT)
     assert ended.stdout == "clpv: Python is exiting\n" and ended.returncode == 0, ended.stderr
 
 
@@ -66,25 +70,33 @@ renderer.render()
 """
 
 
-@pytest.mark.parametrize("work", ["renderer.render()", "clpv.Renderer(scene)", "renderer.stats", "scene.lights = []",
-                                  "clpv.pathtrace(scene, samples=1)", "clpv.devices()", "renderer.volumes()"])
+@pytest.mark.parametrize("work", [
+    "renderer.render()", "clpv.Renderer(scene)", "renderer.stats", "scene.lights = []",
+    "clpv.pathtrace(scene, samples=1)", "clpv.devices()", "renderer.volumes()"
+])
 def test_a_forked_child_is_refused_by_name(work):  # a render there once hung
-    ended = run(FORK.format(f"try: {work}\n  except clpv.Error as e: print(e, flush=True)\n  os._exit(0)"))
-    assert "forked" in ended.stdout and "'spawn'" in ended.stdout and "child 0" in ended.stdout, ended.stderr
+    ended = run(
+        FORK.format(f"try: {work}\n  except clpv.Error as e: print(e, flush=True)\n  os._exit(0)"))
+    for word in "forked", "'spawn'", "child 0":
+        assert word in ended.stdout, ended.stderr
     assert ended.returncode == 0
 
 
 def test_a_fork_before_any_render_works():
     code = FORK.replace("renderer.render()\n", "").format(
-        f"print(clpv.Renderer(scene, **{SMALL!r}).render().width, flush=True)\n  os._exit(0)")  # as multiprocessing ends
-    ended = subprocess.run([sys.executable, "-c", START.split("renderer =")[0] + code], capture_output=True, text=True,
-                           check=False, cwd=ROOT, timeout=300)
+        f"print(clpv.Renderer(scene, **{SMALL!r}).render().width, flush=True)\n  os._exit(0)"
+    )  # as multiprocessing ends
+    ended = subprocess.run(
+        [sys.executable, "-c", START.split("renderer =")[0] + code], capture_output=True, text=True,
+        check=False, cwd=ROOT, timeout=300)
     assert ended.stdout == "48\nchild 0\n", ended.stderr
 
 
 # Each was once a segmentation fault.
-@pytest.mark.parametrize("name", [name for name in clpv.__all__ if inspect.isclass(getattr(clpv, name))
-                                  and not issubclass(getattr(clpv, name), Exception)])
+@pytest.mark.parametrize("name", [
+    name for name in clpv.__all__
+    if inspect.isclass(getattr(clpv, name)) and not issubclass(getattr(clpv, name), Exception)
+])
 def test_objects_without_init_are_rejected(name):
     kind = getattr(clpv, name)
     hollow = kind.__new__(kind)
@@ -110,8 +122,8 @@ def test_objects_without_init_are_rejected(name):
 
 def test_objects_are_not_copied_or_pickled(scene, renderer):
     image = renderer.render()
-    for each in (scene, renderer, image, clpv.Camera((0, 0, 0), (0, 0, 1)), clpv.Light(), clpv.Basis("sh2"),
-                 renderer.volumes()[0], clpv.compare(image, image)):
+    for each in (scene, renderer, image, clpv.Camera((0, 0, 0), (0, 0, 1)), clpv.Light(),
+                 clpv.Basis("sh2"), renderer.volumes()[0], clpv.compare(image, image)):
         name = f"clpv.{type(each).__name__} cannot be copied or pickled"
         for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
             with pytest.raises(TypeError, match=name):
@@ -140,8 +152,8 @@ assert renderer.render().array.tobytes() == expected
 renderer.render().save({str(tmp_path / 'a.exr')!r})
 print('done')
 """
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          cwd=ROOT) as child:
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, cwd=ROOT) as child:
         assert child.stdout.readline() == "started\n"
         while child.poll() is None:
             child.send_signal(signal.SIGINT)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The viewer: its arithmetic and errors; with viser and Chromium, a page that opens, shows an image and follows a drag."""
+"""The viewer: its arithmetic and errors; with viser and Chromium, a page that opens, shows an image
+and follows a drag."""
 import base64
 import contextlib
 import http.client
@@ -36,7 +37,8 @@ def free_port():
 
 def test_the_camera_of_a_browser():
     def handle(wxyz):
-        return types.SimpleNamespace(camera=types.SimpleNamespace(wxyz=wxyz, position=(1, 2, 3), fov=math.pi / 3))
+        return types.SimpleNamespace(
+            camera=types.SimpleNamespace(wxyz=wxyz, position=(1, 2, 3), fov=math.pi / 3))
 
     ahead = view.camera_of(handle((1, 0, 0, 0)))
     assert ahead.eye == (1, 2, 3) and ahead.target == (1, 2, 4) and ahead.up == (0, -1, 0)
@@ -68,8 +70,9 @@ def test_a_view_that_rests_is_drawn_again_with_more_rays():
 
 
 def run(*arguments, **environment):
-    return subprocess.run([sys.executable, "-m", "clpv.view", *map(str, arguments)], capture_output=True, text=True,
-                          check=False, timeout=120, env={**os.environ, **environment})
+    return subprocess.run([sys.executable, "-m", "clpv.view", *map(str, arguments)],
+                          capture_output=True, text=True, check=False, timeout=120,
+                          env={**os.environ, **environment})
 
 
 def test_bad_arguments(tmp_path):
@@ -102,17 +105,22 @@ def test_the_frame_rate_is_of_the_last_second_of_motion():
 
 
 def camera_message(**changes):
-    return types.SimpleNamespace(**{
-        "wxyz": (1, 0, 0, 0), "position": (0, 1, 2), "fov": 1.0, "near": 0.01, "far": 1000.0, "image_height": 600,
-        "image_width": 960, "look_at": (0, 1, 3), "up_direction": (0, 1, 0), **changes})
+    return types.SimpleNamespace(
+        **{
+            "wxyz": (1, 0, 0, 0), "position": (0, 1, 2), "look_at": (0, 1, 3),
+            "up_direction": (0, 1, 0), "fov": 1.0, "near": 0.01, "far": 1000.0,
+            "image_height": 600, "image_width": 960, **changes
+        })
 
 
 # The first two once ended the viewer for all.
-@pytest.mark.parametrize("change", [
-    {"image_height": 0}, {"position": (1,)}, {"position": 3}, {"position": ("a", "b", "c")}, {"position": (0, 0, math.nan)},
-    {"position": (0, 0, 1e30)}, {"wxyz": (0, 0, 0, 0)}, {"wxyz": (1, 0, 0)}, {"fov": 0}, {"fov": math.pi}, {"fov": None},
-    {"image_width": 10 ** 9}, {"image_width": 1.5}, {"image_height": True}, {"look_at": None}, {"up_direction": []},
-    {"near": math.inf}, {"far": "x"}])
+@pytest.mark.parametrize(
+    "change",
+    [{"image_height": 0}, {"position": (1, )}, {"position": 3}, {"position": ("a", "b", "c")},
+     {"position": (0, 0, math.nan)}, {"position": (0, 0, 1e30)}, {"wxyz": (0, 0, 0, 0)},
+     {"wxyz": (1, 0, 0)}, {"fov": 0}, {"fov": math.pi}, {"fov": None}, {"image_width": 10**9},
+     {"image_width": 1.5}, {"image_height": True}, {"look_at": None}, {"up_direction": []},
+     {"near": math.inf}, {"far": "x"}])
 def test_cameras_from_which_no_frame_can_be_rendered_are_ignored(change):
     assert view_gate.is_camera(camera_message())
     assert not view_gate.is_camera(camera_message(**change))
@@ -164,7 +172,8 @@ def browser(port, **more):
     """A client that speaks viser's protocol, without a page."""
     import viser
     from websockets.sync.client import connect
-    with connect(f"ws://127.0.0.1:{port}", subprotocols=[f"viser-v{viser.__version__}"], max_size=None, **more) as client:
+    with connect(f"ws://127.0.0.1:{port}", subprotocols=[f"viser-v{viser.__version__}"],
+                 max_size=None, **more) as client:
         yield client
 
 
@@ -174,7 +183,8 @@ def message(kind, **fields):
 
 
 def moved(**changes):
-    return message("ViewerCameraMessage", **vars(camera_message(**{"position": (0.278, 0.273, -0.18), **changes})))
+    return message("ViewerCameraMessage",
+                   **vars(camera_message(**{"position": (0.278, 0.273, -0.18), **changes})))
 
 
 def drawn_after(made, count, seconds=60):
@@ -189,11 +199,13 @@ def test_other_sites_are_refused(viewer):
     _, port = viewer
     with browser(port, origin=f"http://127.0.0.1:{port}"):
         pass
-    for refused in ({"origin": "http://evil.example"}, {"additional_headers": {"Host": "evil.example"}}):
+    for refused in ({"origin": "http://evil.example"},
+                    {"additional_headers": {"Host": "evil.example"}}):
         with pytest.raises(InvalidStatus, match="403"):
             with browser(port, **refused):
                 pass
-    for path, host, status in (("/", "127.0.0.1", 200), ("/", "evil.example", 403), ("/../../_viser.py", "127.0.0.1", 404),
+    for path, host, status in (("/", "127.0.0.1", 200), ("/", "evil.example", 403),
+                               ("/../../_viser.py", "127.0.0.1", 404),
                                ("/%2e%2e/%2e%2e/_viser.py", "127.0.0.1", 404)):
         connection = http.client.HTTPConnection("127.0.0.1", port)
         connection.request("GET", path, headers={"Host": host})
@@ -209,17 +221,21 @@ def test_one_clients_messages_end_or_change_no_other(viewer):
         good.send(moved())
         assert drawn_after(made, before)
         basis, kept = made.controls.basis, made.controls.basis.value
-        for nonsense in (moved(image_height=0), moved(position=(1,)), message("ShareUrlRequest"),
-                         message("GuiUpdateMessage", uuid=basis._impl.uuid, updates={"value": "nonsense"}),
-                         message("GuiUpdateMessage", uuid=basis._impl.uuid, updates={"update_cb": 5}),
-                         message("GuiUpdateMessage", uuid=made.controls.exposure._impl.uuid, updates={"value": math.nan}),
+        for nonsense in (moved(image_height=0), moved(position=(1, )), message("ShareUrlRequest"),
+                         message("GuiUpdateMessage", uuid=basis._impl.uuid,
+                                 updates={"value": "nonsense"}),
+                         message("GuiUpdateMessage", uuid=basis._impl.uuid,
+                                 updates={"update_cb": 5}),
+                         message("GuiUpdateMessage", uuid=made.controls.exposure._impl.uuid,
+                                 updates={"value": math.nan}),
                          message("GuiUpdateMessage", uuid=["x"], updates=7)):
             bad.send(nonsense)
         before = made.frames
         bad.send(moved())  # still connected
         assert drawn_after(made, before)
         assert basis.value == kept and made.controls.exposure.value == 0 and made.server._share_tunnel is None
-        for broken in (b"", b"\xff" * 100, b"\x91" * 10000, message("Nothing"), b"x" * 100000, "text"):
+        for broken in (b"", b"\xff" * 100, b"\x91" * 10000, message("Nothing"), b"x" * 100000,
+                       "text"):
             with browser(port) as other:
                 with pytest.raises(ConnectionClosed):
                     other.send(broken)
@@ -263,8 +279,10 @@ def test_twenty_clients_are_served_in_turn(viewer):
         for client in clients:
             client.send(moved())
         end = time.monotonic() + 120
-        while time.monotonic() < end and not (len(made.clients) >= 20 and all(c.served for c in made.clients.values())):
-            clients[0].send(moved(position=(0.27 + 0.01 * math.sin(time.monotonic()), 0.27, -0.18)))  # one that never rests
+        while time.monotonic() < end and not (len(made.clients) >= 20
+                                              and all(c.served for c in made.clients.values())):
+            clients[0].send(moved(position=(0.27 + 0.01 * math.sin(time.monotonic()), 0.27,
+                                            -0.18)))  # one that never rests
             time.sleep(0.05)
         assert len(made.clients) >= 20 and all(client.served for client in made.clients.values())
 
@@ -313,12 +331,15 @@ class Tab:
 
     def __init__(self, port, address):
         from websockets.sync.client import connect
-        request = urllib.request.Request(f"http://127.0.0.1:{port}/json/new?{address}", method="PUT")
+        request = urllib.request.Request(f"http://127.0.0.1:{port}/json/new?{address}",
+                                         method="PUT")
         with urllib.request.urlopen(request, timeout=30) as answer:
             page = json.load(answer)
-        self.socket, self.numbers = connect(page["webSocketDebuggerUrl"], max_size=None), itertools.count()
+        self.socket, self.numbers = connect(page["webSocketDebuggerUrl"],
+                                            max_size=None), itertools.count()
         self.ask("Page.enable")
-        self.ask("Emulation.setDeviceMetricsOverride", width=960, height=600, deviceScaleFactor=1, mobile=False)
+        self.ask("Emulation.setDeviceMetricsOverride", width=960, height=600, deviceScaleFactor=1,
+                 mobile=False)
 
     def ask(self, method, **parameters):
         number = next(self.numbers)
@@ -344,12 +365,13 @@ class Tab:
         raise AssertionError(f"mean {pixels.mean()}, deviation {pixels.std()}")
 
     def mouse(self, kind, x, y, buttons=1):
-        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons, clickCount=1)
+        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons,
+                 clickCount=1)
 
     def press(self, letter):
         for kind in ("keyDown", "keyUp"):
-            self.ask("Input.dispatchKeyEvent", type=kind, key=letter.lower(), code=f"Key{letter}", text=letter.lower(),
-                     windowsVirtualKeyCode=ord(letter))
+            self.ask("Input.dispatchKeyEvent", type=kind, key=letter.lower(), code=f"Key{letter}",
+                     text=letter.lower(), windowsVirtualKeyCode=ord(letter))
 
     def drag(self, x, y, to_x, to_y):
         self.mouse("mouseMoved", x, y, 0)
@@ -361,7 +383,8 @@ class Tab:
 
 @contextlib.contextmanager
 def started(words, **more):
-    with subprocess.Popen([str(word) for word in words], stderr=subprocess.STDOUT, text=True, **more) as process:
+    with subprocess.Popen([str(word) for word in words], stderr=subprocess.STDOUT, text=True,
+                          **more) as process:
         try:
             yield process
         finally:
@@ -383,9 +406,12 @@ def test_a_page_shows_the_scene_and_follows_a_drag(tmp_path):
     keep = os.environ.get("CLPV_SCREENSHOTS")  # folder for the screenshots
     scene = os.environ.get("CLPV_VIEW_SCENE", str(CORNELL)).split()
     port, debug = free_port(), free_port()
-    chromium = [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader",
-                "--enable-unsafe-swiftshader", f"--remote-debugging-port={debug}", "--remote-allow-origins=*",
-                f"--user-data-dir={tmp_path / 'profile'}", "about:blank"]
+    chromium = [
+        CHROMIUM, "--headless=new", "--no-sandbox", "--disable-dev-shm-usage",
+        "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+        f"--remote-debugging-port={debug}", "--remote-allow-origins=*",
+        f"--user-data-dir={tmp_path / 'profile'}", "about:blank"
+    ]
     with open(tmp_path / "log", "w", encoding="utf-8") as log, \
             started([sys.executable, "-m", "clpv.view", *scene, "--port", port], stdout=log, cwd=ROOT) as viewer, \
             started(chromium, stdout=subprocess.DEVNULL):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Scores that others hand in, results/quality/scores: each has the form that `python3 -m clpv.score -o` writes."""
+"""Scores that others hand in, results/quality/scores: each has the form that `python3 -m clpv.score
+-o` writes."""
 import copy
 import json
 import math
@@ -17,7 +18,8 @@ NEEDED = "nrmse", "nrmse_best_gain", "energy_ratio", "flip"
 def view_names():
     for scene, cameras in suite.SCENES.items():
         document = json.loads((test_score.ROOT / f"scenes/{scene}.json").read_text())
-        yield from (f"{scene}-{camera['name']}" for camera in document["cameras"] if not cameras or camera["name"] in cameras)
+        yield from (f"{scene}-{camera['name']}" for camera in document["cameras"]
+                    if not cameras or camera["name"] in cameras)
 
 
 def faults(document):
@@ -29,19 +31,28 @@ def faults(document):
         found.append(f"suite: found {document.get('suite')}; allowed: hash of suite.json")
     if not str(document.get("method", "")).strip():
         found.append("method: found no name")
-    found += [f"view {row.get('view')}: allowed: {', '.join(names)}" for row in views if row.get("view") not in names]
+    found += [
+        f"view {row.get('view')}: allowed: {', '.join(names)}" for row in views
+        if row.get("view") not in names
+    ]
     if not views or len({row.get("view") for row in views}) < len(views):
         found.append(f"views: found {len(views)}, some twice or none")
     if document.get("complete") != (len(views) == len(names)):
-        found.append(f"complete: found {document.get('complete')} with {len(views)} of {len(names)} views")
+        found.append(
+            f"complete: found {document.get('complete')} with {len(views)} of {len(names)} views")
     for row in views:
-        found += [f"view {row.get('view')}, {name}: found {row.get(name)}; allowed: numbers" for name in NEEDED
-                  if not isinstance(row.get(name), (int, float)) or not math.isfinite(row[name])]
+        found += [
+            f"view {row.get('view')}, {name}: found {row.get(name)}; allowed: numbers"
+            for name in NEEDED
+            if not isinstance(row.get(name), (int, float)) or not math.isfinite(row[name])
+        ]
     for name, mean in document.get("mean", {}).items():
         values = [row.get(name) for row in views]
         if None in values or abs(sum(values) / len(values) - mean) > 1.1 * 10 ** -scored.DIGITS:
             found.append(f"mean {name}: found {mean}; allowed: mean of the views")
-    return found + [f"mean {name}: missing" for name in NEEDED if name not in document.get("mean", {})]
+    return found + [
+        f"mean {name}: missing" for name in NEEDED if name not in document.get("mean", {})
+    ]
 
 
 class HandedIn(unittest.TestCase):
@@ -50,20 +61,26 @@ class HandedIn(unittest.TestCase):
         documents = [json.loads(file.read_text()) for file in FILES]
         for file, document in zip(FILES, documents):
             self.assertEqual(faults(document), [], file.name)
-        self.assertEqual(len({document["suite"] for document in documents}), 1, "scores of different suites in one table")
+        self.assertEqual(len({document["suite"]
+                              for document in documents}), 1,
+                         "scores of different suites in one table")
 
     def test_faults_are_found(self):
         document = json.loads(FILES[0].read_text())
-        for change, words in [(lambda d: d.update(schema=0), "schema: found 0"), (lambda d: d.update(suite="x"), "suite: found x"),
-                              (lambda d: d.update(method=" "), "method"), (lambda d: d.update(complete=None), "complete: found None"),
-                              (lambda d: d["views"][0].update(view="cellar-stairs"), "view cellar-stairs"),
+        for change, words in [(lambda d: d.update(schema=0), "schema: found 0"),
+                              (lambda d: d.update(suite="x"), "suite: found x"),
+                              (lambda d: d.update(method=" "), "method"),
+                              (lambda d: d.update(complete=None), "complete: found None"),
+                              (lambda d: d["views"][0].update(view="cellar-stairs"),
+                               "view cellar-stairs"),
                               (lambda d: d["views"].append(d["views"][0]), "some twice"),
                               (lambda d: d["views"][0].update(nrmse=math.nan), "nrmse: found nan"),
                               (lambda d: d["mean"].update(flip=0.9), "mean flip: found 0.9"),
                               (lambda d: d["mean"].pop("nrmse"), "mean nrmse: missing")]:
             broken = copy.deepcopy(document)
             change(broken)
-            self.assertTrue(any(words in fault for fault in faults(broken)), (words, faults(broken)))
+            self.assertTrue(any(words in fault for fault in faults(broken)),
+                            (words, faults(broken)))
 
 
 if __name__ == "__main__":

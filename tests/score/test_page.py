@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The page of the scorer in headless Chromium: slider, exposure, error maps and values under the cursor."""
+"""The page of the scorer in headless Chromium: slider, exposure, error maps and values under the
+cursor."""
 import json
 import re
 import shutil
@@ -44,9 +45,10 @@ class Page(test_score.Suite):
         page.write(file, self.folder, self.folders())
         file.write_text(file.read_text() + DRIVER)
         with tempfile.TemporaryDirectory() as profile:
-            dumped = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                                     f"--user-data-dir={profile}", "--dump-dom", f"file://{file}"],
-                                    check=True, capture_output=True, text=True, timeout=120).stdout
+            dumped = subprocess.run([
+                CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                f"--user-data-dir={profile}", "--dump-dom", f"file://{file}"
+            ], check=True, capture_output=True, text=True, timeout=120).stdout
         found = json.loads(re.search(r'data-found="([^"]*)"', dumped)[1].replace("&quot;", '"'))
         self.assertEqual(found["errors"], [])
         self.assertGreater(found["ours"], found["truth"])

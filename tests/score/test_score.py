@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The scorer: its numbers are those of `clpv compare --suite`, bias and noise, bad input by name. The suite's cameras and lights.
+"""The scorer: its numbers are those of `clpv compare --suite`, bias and noise, bad input by name.
+The suite's cameras and lights.
 
 CLPV: the program.
 """
@@ -24,7 +25,10 @@ from measured import suite  # noqa: E402
 CLPV = os.environ["CLPV"]
 SIZE = 40, 24
 HASH = "0123456789abcdef"
-SHOWN = {"nrmse": "nrmse_valid", "nrmse_best_gain": "nrmse_best_gain", "energy_ratio": "energy_ratio", "flip": "flip"}
+SHOWN = {
+    "nrmse": "nrmse_valid", "nrmse_best_gain": "nrmse_best_gain", "energy_ratio": "energy_ratio",
+    "flip": "flip"
+}
 
 
 def write(file, planes):
@@ -34,16 +38,20 @@ def write(file, planes):
 
     names, (height, width) = sorted(planes), next(iter(planes.values())).shape
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    channels = b"".join(name.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for name in names) + b"\0"
+    channels = b"".join(name.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1)
+                        for name in names) + b"\0"
     head = struct.pack("<2i", exr.MAGIC, 2) + attribute(b"channels", b"chlist", channels) + \
         attribute(b"compression", b"compression", b"\0") + attribute(b"dataWindow", b"box2i", window) + \
         attribute(b"displayWindow", b"box2i", window) + attribute(b"lineOrder", b"lineOrder", b"\0") + \
         attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) + \
         attribute(b"screenWindowCenter", b"v2f", bytes(8)) + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0"
-    rows = [b"".join(planes[name][y].astype("<f4").tobytes() for name in names) for y in range(height)]
+    rows = [
+        b"".join(planes[name][y].astype("<f4").tobytes() for name in names) for y in range(height)
+    ]
     first, size = len(head) + 8 * height, 8 + len(rows[0])
     chunks = b"".join(struct.pack("<2i", y, len(row)) + row for y, row in enumerate(rows))
-    file.write_bytes(head + struct.pack(f"<{height}Q", *(first + y * size for y in range(height))) + chunks)
+    file.write_bytes(head + struct.pack(f"<{height}Q", *(first + y * size
+                                                         for y in range(height))) + chunks)
 
 
 def layered(rgb, alpha, layer=""):
@@ -55,8 +63,10 @@ def smooth_image(seed):
     """Large soft patches, brighter to the right, as light is."""
     random, (width, height) = numpy.random.default_rng(seed), SIZE
     y, x = numpy.mgrid[:height, :width] / width
-    image = sum(random.uniform(0.1, 1, 3) * numpy.exp(-((x - random.uniform()) ** 2 + (y - random.uniform()) ** 2)[..., None] * 30)
-                for _ in range(6))
+    image = sum(
+        random.uniform(0.1, 1, 3) * numpy.exp(-((x - random.uniform())**2 +
+                                                (y - random.uniform())**2)[..., None] * 30)
+        for _ in range(6))
     return (0.5 * image * (0.3 + x[..., None])).astype(numpy.float32)
 
 
@@ -69,16 +79,23 @@ class Suite(unittest.TestCase):
             (self.folder / name).mkdir()
         self.alpha = numpy.ones(SIZE[::-1], numpy.float32)
         self.alpha[:3] = 0
-        self.truths = {name: smooth_image(seed) * self.alpha[..., None] for seed, name in enumerate(("room-left", "room-right"))}
+        self.truths = {
+            name: smooth_image(seed) * self.alpha[..., None]
+            for seed, name in enumerate(("room-left", "room-right"))
+        }
         views = []
         for name, truth in self.truths.items():
             write(self.folder / f"truths/{name}-{HASH}.exr", layered(truth, self.alpha, "indirect"))
-            views.append({"name": name, "truth": f"truths/{name}-{HASH}.exr", "noise": 0.02, "exposure": 1.5})
-        (self.folder / "suite.json").write_text(json.dumps({"schema": 1, "hash": HASH, "views": views}))
+            views.append({
+                "name": name, "truth": f"truths/{name}-{HASH}.exr", "noise": 0.02, "exposure": 1.5
+            })
+        (self.folder / "suite.json").write_text(
+            json.dumps({"schema": 1, "hash": HASH, "views": views}))
 
     def put(self, change, alpha=None):
         for name, truth in self.truths.items():
-            write(self.folder / f"ours/{name}.exr", layered(change(truth), self.alpha if alpha is None else alpha))
+            write(self.folder / f"ours/{name}.exr",
+                  layered(change(truth), self.alpha if alpha is None else alpha))
 
     def score(self, **options):
         return scored.score(self.folder / "ours", self.folder, **options)
@@ -99,13 +116,20 @@ class Numbers(Suite):
         alpha = self.alpha.copy()
         alpha[:, :2] = 0
         self.put(lambda truth: truth * random.uniform(0.5, 1.4, truth.shape) + 0.02, alpha)
-        theirs = json.loads(subprocess.run([CLPV, "compare", "--suite", self.folder / "ours", "--truths", self.folder / "truths",
-                                            "--exposure", "1.5"], check=True, capture_output=True, text=True).stdout)
+        theirs = json.loads(
+            subprocess.run([
+                CLPV, "compare", "--suite", self.folder / "ours", "--truths",
+                self.folder / "truths", "--exposure", "1.5"
+            ], check=True, capture_output=True, text=True).stdout)
         ours = self.score()
         for view, other in zip(ours["views"], theirs["views"]):
-            self.assertEqual({name: view[name] for name in SHOWN},
-                             {name: round(other[key], scored.DIGITS) for name, key in SHOWN.items()})
-            self.assertEqual(view["suspected"], ["has no surface in 5 % of the truth's: other camera or scene"])
+            self.assertEqual(
+                {name: view[name]
+                 for name in SHOWN},
+                {name: round(other[key], scored.DIGITS)
+                 for name, key in SHOWN.items()})
+            self.assertEqual(view["suspected"],
+                             ["has no surface in 5 % of the truth's: other camera or scene"])
         self.assertAlmostEqual(ours["mean"]["nrmse"], theirs["mean_nrmse"], scored.DIGITS - 1)
 
     def test_bias_and_noise_of_frames_are_apart(self):
@@ -113,26 +137,36 @@ class Numbers(Suite):
         frames = 24
         rms = numpy.sqrt((truth[self.alpha > 0] ** 2).mean())
         for i in range(frames):
-            write(self.folder / f"ours/room-left.{i:02}.exr", layered(1.1 * truth + random.normal(0, 0.2 * rms, truth.shape), self.alpha))
+            write(self.folder / f"ours/room-left.{i:02}.exr",
+                  layered(1.1 * truth + random.normal(0, 0.2 * rms, truth.shape), self.alpha))
         row = self.score(only=["room-left"])["views"][0]
         self.assertEqual(row["frames"], frames)
         self.assertAlmostEqual(row["bias"], 0.1, delta=0.01)
         self.assertAlmostEqual(row["noise"], 0.2, delta=0.01)
         self.assertAlmostEqual(row["nrmse"] ** 2, row["bias"] ** 2 + row["noise"] ** 2, delta=1e-4)
         # |difference| of two normal variables of deviation s has the mean 2 s / sqrt(pi).
-        self.assertAlmostEqual(row["change"], 0.4 * rms / numpy.sqrt(numpy.pi) / truth[self.alpha > 0].mean(), delta=0.01)
+        self.assertAlmostEqual(row["change"],
+                               0.4 * rms / numpy.sqrt(numpy.pi) / truth[self.alpha > 0].mean(),
+                               delta=0.01)
 
     def test_the_command_prints_a_table_and_writes_json(self):
         self.put(lambda truth: 1.1 * truth)
         printed, file = io.StringIO(), self.folder / "score.json"
         with contextlib.redirect_stdout(printed):
-            code = command.main([str(self.folder / "ours"), "--suite", str(self.folder), "--method", "mine", "-o", str(file)])
+            code = command.main([
+                str(self.folder / "ours"), "--suite",
+                str(self.folder), "--method", "mine", "-o",
+                str(file)
+            ])
         self.assertEqual(code, 0)
         self.assertRegex(printed.getvalue(), r"room-left +10\.0 +0\.0 +1\.100")
         document = json.loads(file.read_text())
-        self.assertEqual((document["method"], document["suite"], document["complete"]), ("mine", HASH, True))
+        self.assertEqual((document["method"], document["suite"], document["complete"]),
+                         ("mine", HASH, True))
         with contextlib.redirect_stderr(io.StringIO()) as said:
-            self.assertEqual(command.main([str(self.folder / "nowhere"), "--suite", str(self.folder)]), 3)
+            self.assertEqual(
+                command.main([str(self.folder / "nowhere"), "--suite",
+                              str(self.folder)]), 3)
         self.assertIn("nowhere", said.getvalue())
 
 
@@ -163,7 +197,8 @@ class BadInput(Suite):
     def test_damaged_files(self):
         self.put(lambda truth: truth)
         whole = (self.folder / "ours/room-left.exr").read_bytes()
-        for data, words in (b"", "damaged"), (bytes(100), "no EXR"), (whole[:200], "damaged"), (whole[:-400], "damaged"):
+        for data, words in ((b"", "damaged"), (bytes(100), "no EXR"), (whole[:200], "damaged"),
+                            (whole[:-400], "damaged")):
             (self.folder / "ours/room-left.exr").write_bytes(data)
             self.assertIn(words, self.rejected())
 
@@ -175,7 +210,8 @@ class BadInput(Suite):
     def test_suspicions(self):
         self.assertEqual(self.suspected(lambda truth: 3.1 * truth), ["looks 3.1x too bright"])
         self.assertEqual(self.suspected(lambda truth: truth / 4), ["looks 4x too dark"])
-        self.assertIn("sRGB", self.suspected(lambda truth: flip.encoded(numpy.clip(truth, 0, 1)))[0])
+        self.assertIn("sRGB",
+                      self.suspected(lambda truth: flip.encoded(numpy.clip(truth, 0, 1)))[0])
         self.assertIn("mirrored, left to right", self.suspected(lambda truth: truth[:, ::-1])[0])
         self.assertEqual(self.suspected(lambda truth: 0 * truth), ["is black"])
         self.assertEqual(self.suspected(lambda truth: 1.5 * truth + 0.01), [])
@@ -188,7 +224,9 @@ class Files(unittest.TestCase):
             source, target = pathlib.Path(folder) / "a.exr", pathlib.Path(folder) / "b.exr"
             write(source, layered(image, numpy.ones(SIZE[::-1])))
             for kind, compression in (("half", "zip"), ("float", "zips"), ("half", "none")):
-                subprocess.run(["oiiotool", source, "-d", kind, "--compression", compression, "-o", target], check=True)
+                subprocess.run(
+                    ["oiiotool", source, "-d", kind, "--compression", compression, "-o", target],
+                    check=True)
                 expected = image.astype(numpy.float16) if kind == "half" else image
                 numpy.testing.assert_array_equal(exr.colours(exr.read(target), target)[0], expected)
 
@@ -208,7 +246,8 @@ class CamerasAndLights(unittest.TestCase):
             *v, w = suite.facing(direction)
             v, forward = numpy.array(v), numpy.array([0, 0, -1.0])
             turned = forward + 2 * numpy.cross(v, numpy.cross(v, forward) + w * forward)
-            numpy.testing.assert_allclose(turned, direction / numpy.linalg.norm(direction), atol=1e-6)
+            numpy.testing.assert_allclose(turned, direction / numpy.linalg.norm(direction),
+                                          atol=1e-6)
 
     def test_a_model_with_them_has_the_scene_files_image(self):
         scene = json.loads((ROOT / "scenes/cornell.json").read_text())
@@ -217,7 +256,9 @@ class CamerasAndLights(unittest.TestCase):
         model, views = json.loads(data[20:20 + size]), suite.views_gltf(scene)
         roots = model["scenes"][model.get("scene", 0)]["nodes"]
         model["nodes"].append({"scale": [scene["metres_per_unit"]] * 3, "children": list(roots)})
-        roots[:] = [len(model["nodes"]) - 1, *(len(model["nodes"]) + i for i in range(len(views["nodes"])))]
+        roots[:] = [
+            len(model["nodes"]) - 1, *(len(model["nodes"]) + i for i in range(len(views["nodes"])))
+        ]
         model["nodes"] += views["nodes"]
         model |= {key: views[key] for key in ("cameras", "extensions")}
         text = json.dumps(model).encode()
@@ -226,10 +267,13 @@ class CamerasAndLights(unittest.TestCase):
         images = []
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
-            (folder / "joined.glb").write_bytes(struct.pack("<3I", 0x46546c67, 2, 12 + len(chunks)) + chunks)
+            (folder / "joined.glb"
+             ).write_bytes(struct.pack("<3I", 0x46546c67, 2, 12 + len(chunks)) + chunks)
             for file in ROOT / "scenes/cornell.json", folder / "joined.glb":
-                subprocess.run([CLPV, "--quiet", "pathtrace", file, "--camera", "front", "--width", "40", "--height", "24", "--spp", "2",
-                                "--view", "direct", "-o", folder / "image.exr"], check=True, stdout=subprocess.DEVNULL)
+                subprocess.run([
+                    CLPV, "--quiet", "pathtrace", file, "--camera", "front", "--width", "40",
+                    "--height", "24", "--spp", "2", "--view", "direct", "-o", folder / "image.exr"
+                ], check=True, stdout=subprocess.DEVNULL)
                 images.append(exr.colours(exr.read(folder / "image.exr"), folder)[0])
         self.assertGreater(images[0].max(), 0.1)
         self.assertLess(abs(images[0] - images[1]).mean(), 1e-3 * images[0].mean())

@@ -2,11 +2,12 @@
 """python3 -m clpv.draw bench|basis|report [IN OUT]
 
     bench  IN OUT   draws charts of IN/bench.json into the folder OUT
-    basis  IN OUT   draws figures 2, 3 and 6 from IN/figures.json and IN/surfaces.npy into the folder OUT
+    basis  IN OUT   draws figures 2, 3 and 6 from IN/figures.json and IN/surfaces.npy into the
+                    folder OUT
     report IN OUT   writes the page of IN/report.json and its images into the file OUT
 
-Without IN and OUT: checks that the required modules are installed. Exit codes are clpv's: 1 missing module, 2 usage, 3 invalid
-document.
+Without IN and OUT: checks that the required modules are installed. Exit codes are clpv's: 1 missing
+module, 2 usage, 3 invalid document.
 """
 import importlib
 import pathlib

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Charts of `clpv bench`: layouts, roofline, scaling, bases and frame.
 
-Each function turns rows into a figure, or returns None if no row belongs to its chart. It reads fields of rows, not names.
-"""
+Each function turns rows into a figure, or returns None if no row belongs to its chart. It reads
+fields of rows, not names. """
 import itertools
 import math
 
@@ -15,7 +15,8 @@ from clpv.draw.documents import NUMBER, TEXT_OR_NULL
 ROW = {"suite": str, "stage": str, "status": str, "basis": TEXT_OR_NULL, "layout": TEXT_OR_NULL,
        "storage": TEXT_OR_NULL, "occlusion": bool, "median": NUMBER, "min": NUMBER, "p95": NUMBER}
 DEVICE_CHARS = 70
-CLOSEST_LABELS = 0.7  # maximum ratio to the previous labelled bandwidth; closer labels would overlap
+# Maximum ratio to the previous labelled bandwidth; closer labels would overlap.
+CLOSEST_LABELS = 0.7
 
 
 def of_suite(rows, suite):
@@ -28,7 +29,8 @@ def distinct(values):
 
 def error_bars(rows):
     """Returns distances from the median down to the minimum and up to the 95th percentile."""
-    return [[max(0.0, r["median"] - r["min"]) for r in rows], [max(0.0, r["p95"] - r["median"]) for r in rows]]
+    return [[max(0.0, r["median"] - r["min"]) for r in rows],
+            [max(0.0, r["p95"] - r["median"]) for r in rows]]
 
 
 def work_of(row):
@@ -43,7 +45,10 @@ def layouts(rows):
     figure, axes = style.panels(len(groups), 2, (4.5, 2.4))
     for axis, group in zip(axes, groups):
         members = sorted((r for r in rows if work_of(r) == group), key=lambda r: r["median"])
-        names = [f"{r['layout']}/{r['storage']}" + ("" if r.get("filtered", True) else " texels") for r in members]
+        names = [
+            f"{r['layout']}/{r['storage']}" + ("" if r.get("filtered", True) else " texels")
+            for r in members
+        ]
         colours = [style.colour(1 if r["layout"] == "image" else 0) for r in members]
         axis.barh(names, [r["median"] for r in members], xerr=error_bars(members), color=colours,
                   error_kw={"lw": 0.8, "ecolor": style.INK})
@@ -51,12 +56,16 @@ def layouts(rows):
         axis.set(title=group, xlabel="ms (median; whiskers: minimum to 95 %)")
         axis.invert_yaxis()
         for i, r in enumerate(members):
-            axis.annotate(f"{r['median']:.2f}", (r["median"], i), textcoords="offset points", xytext=(4, 5), size=7)
+            axis.annotate(f"{r['median']:.2f}", (r["median"], i), textcoords="offset points",
+                          xytext=(4, 5), size=7)
     return figure
 
 
 def roofline(rows, ceilings):
-    points = [r for r in rows if r["status"] == "ok" and r["flops"] > 0 and r["bytes"] > 0 and r["median"] > 0]
+    points = [
+        r for r in rows
+        if r["status"] == "ok" and r["flops"] > 0 and r["bytes"] > 0 and r["median"] > 0
+    ]
     if not points or not ceilings.get("gflops"):
         return None
     figure, axis = pyplot.subplots(figsize=(7.5, 5))
@@ -65,7 +74,8 @@ def roofline(rows, ceilings):
     labelled = math.inf
     for bandwidth in sorted(ceilings["bandwidths"], key=lambda b: -b["gbps"]):
         knee = ceilings["gflops"] / bandwidth["gbps"]
-        axis.plot([lowest, knee], [lowest * bandwidth["gbps"], ceilings["gflops"]], color=style.SOFT, lw=0.8)
+        axis.plot([lowest, knee], [lowest * bandwidth["gbps"], ceilings["gflops"]],
+                  color=style.SOFT, lw=0.8)
         if bandwidth["gbps"] > CLOSEST_LABELS * labelled:
             continue
         labelled = bandwidth["gbps"]
@@ -73,21 +83,29 @@ def roofline(rows, ceilings):
                       (lowest, lowest * bandwidth["gbps"]), size=6, color=style.SOFT, rotation=30,
                       rotation_mode="anchor", textcoords="offset points", xytext=(2, 2))
     axis.axhline(ceilings["gflops"], color=style.INK, lw=1)
-    axis.annotate(f"{ceilings['gflops']:.0f} GFLOP/s fused multiply-adds", (highest, ceilings["gflops"]), size=7,
-                  ha="right", va="bottom")
+    axis.annotate(f"{ceilings['gflops']:.0f} GFLOP/s fused multiply-adds",
+                  (highest, ceilings["gflops"]), size=7, ha="right", va="bottom")
     stages, kinds = distinct(r["stage"] for r in points), distinct(r["layout"] for r in points)
     markers = dict(zip(stages, itertools.cycle("osD^vPX*")))
     colours = {layout: style.colour(i) for i, layout in enumerate(kinds)}
     for stage, layout in distinct((r["stage"], r["layout"]) for r in points):
         members = [r for r in points if (r["stage"], r["layout"]) == (stage, layout)]
-        axis.scatter([r["flops"] / r["bytes"] for r in members], [r["gflops"] for r in members], s=18,
-                     color=colours[layout], marker=markers[stage], zorder=3)
-    key = [Line2D([], [], ls="", marker=markers[stage], color=style.SOFT, label=stage) for stage in stages]
-    key += [Line2D([], [], ls="", marker="s", ms=8, color=colours[layout], label=layout) for layout in kinds if layout]
-    axis.set(xlabel="operations per byte", ylabel="GFLOP/s", xlim=(lowest, highest), title="Roofline")
+        axis.scatter([r["flops"] / r["bytes"] for r in members], [r["gflops"] for r in members],
+                     s=18, color=colours[layout], marker=markers[stage], zorder=3)
+    key = [
+        Line2D([], [], ls="", marker=markers[stage], color=style.SOFT, label=stage)
+        for stage in stages
+    ]
+    key += [
+        Line2D([], [], ls="", marker="s", ms=8, color=colours[layout], label=layout)
+        for layout in kinds if layout
+    ]
+    axis.set(xlabel="operations per byte", ylabel="GFLOP/s", xlim=(lowest, highest),
+             title="Roofline")
     style.logarithmic(axis.xaxis)
     style.logarithmic(axis.yaxis)
-    axis.legend(handles=key, fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
+    axis.legend(handles=key, fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1),
+                borderaxespad=0)
     return figure
 
 
@@ -101,8 +119,9 @@ def scaling(rows):
         members = sorted((r for r in rows if r["axis"] == name), key=lambda r: r["value"])
         for i, stage in enumerate(distinct(r["stage"] for r in members)):
             series = [r for r in members if r["stage"] == stage]
-            axis.errorbar([r["value"] for r in series], [r["median"] for r in series], yerr=error_bars(series),
-                          marker="o", ms=3, lw=1, color=style.colour(i), label=stage)
+            axis.errorbar([r["value"] for r in series], [r["median"] for r in series],
+                          yerr=error_bars(series), marker="o", ms=3, lw=1, color=style.colour(i),
+                          label=stage)
         axis.set(xscale="log", xlabel=name, ylabel="ms")
         style.logarithmic(axis.yaxis)
         values = distinct(r["value"] for r in members)
@@ -113,7 +132,9 @@ def scaling(rows):
 
 
 def bases(rows):
-    rows = [r for r in of_suite(rows, "bases") if r["stage"] == "propagate" and r["lobe"] == "exact"]
+    rows = [
+        r for r in of_suite(rows, "bases") if r["stage"] == "propagate" and r["lobe"] == "exact"
+    ]
     sizes = {r["basis"]: r["n"] for r in sorted(rows, key=lambda r: r["n"])}
     if not sizes:
         return None
@@ -124,8 +145,9 @@ def bases(rows):
         found = {r["basis"]: r for r in rows if r["occlusion"] == occlusion}
         at = [i + (k - 0.5) * width for i, name in enumerate(sizes) if name in found]
         members = [found[name] for name in sizes if name in found]
-        axis.bar(at, [r["median"] for r in members], width, yerr=error_bars(members), color=style.colour(k),
-                 error_kw={"lw": 0.7, "ecolor": style.INK}, label="occlusion" if occlusion else "no occlusion")
+        axis.bar(at, [r["median"] for r in members], width, yerr=error_bars(members),
+                 color=style.colour(k), error_kw={"lw": 0.7, "ecolor": style.INK},
+                 label="occlusion" if occlusion else "no occlusion")
     axis.set_xticks(range(len(sizes)), [f"{name}\nN={n}" for name, n in sizes.items()])
     axis.set(ylabel="ms", title="Propagation by basis")
     style.logarithmic(axis.yaxis)
@@ -139,15 +161,20 @@ def frame(rows):
     if not frames:
         return None
     figure, axis = pyplot.subplots(figsize=(8, 1.2 + 0.5 * len(frames)))
-    names = [f"{r['basis']} {r['preset']}" + (f", {r['recompute']} recomputed" if r.get("recompute") else "") for r in frames]
+    names = [
+        f"{r['basis']} {r['preset']}" +
+        (f", {r['recompute']} recomputed" if r.get("recompute") else "") for r in frames
+    ]
     left = [0.0] * len(frames)
     for i, stage in enumerate(distinct(r["stage"] for r in rows if r["stage"] != "frame")):
-        times = {(r["basis"], r["preset"], r.get("recompute")): r["median"] for r in rows if r["stage"] == stage}
+        times = {(r["basis"], r["preset"], r.get("recompute")): r["median"]
+                 for r in rows if r["stage"] == stage}
         widths = [times.get((f["basis"], f["preset"], f.get("recompute")), 0.0) for f in frames]
-        axis.barh(names, widths, left=left, color=style.colour(i), hatch="//" if i >= len(style.COLOURS) else None,
-                  label=stage)
+        axis.barh(names, widths, left=left, color=style.colour(i),
+                  hatch="//" if i >= len(style.COLOURS) else None, label=stage)
         left = [a + b for a, b in zip(left, widths)]
-    axis.plot([f["median"] for f in frames], names, "|", color=style.INK, ms=14, label="frame (wall)")
+    axis.plot([f["median"] for f in frames], names, "|", color=style.INK, ms=14,
+              label="frame (wall)")
     axis.set(xlabel="ms, medians", title="Frames by stage")
     axis.legend(fontsize=7, ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.25))
     return figure
@@ -155,8 +182,8 @@ def frame(rows):
 
 def save(figure, folder, name, context):
     device = f"{context['device']} ({context['platform']} {context['driver']})"[:DEVICE_CHARS]
-    figure.text(0.995, 0.004, f"clpv {context['git_describe']} on {device}", ha="right", va="bottom", size=6,
-                color=style.SOFT)
+    figure.text(0.995, 0.004, f"clpv {context['git_describe']} on {device}", ha="right",
+                va="bottom", size=6, color=style.SOFT)
     figure.tight_layout(rect=(0, 0.015, 1, 1))
     for suffix in ("svg", "png"):
         documents.write(folder / f"{name}.{suffix}", style.rendered(figure, suffix, dpi=150))
@@ -164,9 +191,12 @@ def save(figure, folder, name, context):
 
 def draw(source, folder):
     document = documents.read(source / "bench.json")
-    rows, context = documents.checked(document, "bench.json", "benchmarks", ROW), document["context"]
-    charts = {"layouts": layouts(rows), "roofline": roofline(rows, context["ceilings"]), "scaling": scaling(rows),
-              "bases": bases(rows), "frame": frame(rows)}
+    rows, context = documents.checked(document, "bench.json", "benchmarks",
+                                      ROW), document["context"]
+    charts = {
+        "layouts": layouts(rows), "roofline": roofline(rows, context["ceilings"]),
+        "scaling": scaling(rows), "bases": bases(rows), "frame": frame(rows)
+    }
     for name, figure in charts.items():
         if figure:
             save(figure, folder, name, context)

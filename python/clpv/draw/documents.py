@@ -5,7 +5,10 @@ import os
 
 NUMBER = (int, float)
 TEXT_OR_NULL = (str, type(None))
-NAMES = {str: "text", int: "a number", float: "a number", bool: "true or false", dict: "an object", type(None): "null"}
+NAMES = {
+    str: "text", int: "a number", float: "a number", bool: "true or false", dict: "an object",
+    type(None): "null"
+}
 
 
 class BadDocument(Exception):
@@ -17,7 +20,8 @@ def read(path):
 
 
 def checked(document, source, key, fields):
-    """Returns the rows document[key]. Raises BadDocument unless each has the fields {name: type or types}."""
+    """Returns the rows document[key]. Raises BadDocument unless each has the fields {name: type or
+    types}."""
     rows = document.get(key) if isinstance(document, dict) else None
     if not isinstance(rows, list):
         raise BadDocument(f"{source}: no list '{key}'")
@@ -27,12 +31,14 @@ def checked(document, source, key, fields):
             if not isinstance(value, kind):
                 kinds = kind if isinstance(kind, tuple) else (kind,)
                 allowed = " or ".join(dict.fromkeys(NAMES[k] for k in kinds))
-                raise BadDocument(f"{source}: /{key}/{i}/{name} is {json.dumps(value)}; allowed: {allowed}")
+                raise BadDocument(
+                    f"{source}: /{key}/{i}/{name} is {json.dumps(value)}; allowed: {allowed}")
     return rows
 
 
 def write(path, data):
-    """Writes the bytes to a temporary file beside `path`, then renames it: readers see the old file or the new one."""
+    """Writes the bytes to a temporary file beside `path`, then renames it: readers see the old file
+    or the new one."""
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         beside.write_bytes(data)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The report page: one self-contained HTML file.
 
-report.json: "subtitle"; "views", each with "scene", "camera", "exposure", "truth", and "shots" with "title", "options" (null: an
-image of another method), "values" and the numbers of `clpv compare`. Truth and values are files (.npy: rows, columns, R G B or R G B A, linear).
-"quality" and "benchmarks": {"file", "document"} of `clpv quality` and `clpv bench` with --output. "marked": options of
-variants to highlight.
+report.json: "subtitle"; "views", each with "scene", "camera", "exposure", "truth", and "shots" with
+"title", "options" (null: an image of another method), "values" and the numbers of `clpv compare`.
+Truth and values are files (.npy: rows, columns, R G B or R G B A, linear). "quality" and
+"benchmarks": {"file", "document"} of `clpv quality` and `clpv bench` with --output. "marked":
+options of variants to highlight.
 """
 import pathlib
 import re
@@ -18,17 +19,21 @@ from clpv.draw import bench, documents, style
 from clpv.draw.documents import NUMBER
 from clpv.score import page
 
-VARIANT = {"options": dict, "rejected": int, "nrmse": NUMBER, "worst_nrmse": NUMBER, "energy_ratio": NUMBER,
-           "frame_ms": NUMBER}
+VARIANT = {
+    "options": dict, "rejected": int, "nrmse": NUMBER, "worst_nrmse": NUMBER,
+    "energy_ratio": NUMBER, "frame_ms": NUMBER
+}
 
 
 def inlined(figure, titles=()):
-    """Returns a figure as inline SVG in the page's colours; titles[i] is the tooltip of the artist "point<i>"."""
+    """Returns a figure as inline SVG in the page's colours; titles[i] is the tooltip of the artist
+    "point<i>"."""
     if figure is None:
         return ""
     figure.tight_layout()
     svg = style.rendered(figure, "svg", transparent=True, bbox_inches="tight").decode("utf-8")
-    svg = re.sub(r' xmlns(:xlink)?="[^"]*"| (width|height)="[0-9.]+pt"', "", svg[svg.index("<svg"):])
+    svg = re.sub(r' xmlns(:xlink)?="[^"]*"| (width|height)="[0-9.]+pt"', "",
+                 svg[svg.index("<svg"):])
     for name, colour in page_colours().items():
         svg = svg.replace(colour, f"var(--{name})")
     for i, title in enumerate(titles):
@@ -38,7 +43,8 @@ def inlined(figure, titles=()):
 
 
 def page_colours():
-    """Returns the page's colour names and their values in charts; the page replaces them on dark screens."""
+    """Returns the page's colour names and their values in charts; the page replaces them on dark
+    screens."""
     return {"ink": style.INK, "soft": style.SOFT, "line": style.LINE,
             **{f"c{i}": colour for i, colour in enumerate(style.COLOURS)}}
 
@@ -47,10 +53,15 @@ def viewer(views, folder):
     """HTML of the viewer with all views."""
     def values(name):
         pixels = numpy.load(folder / name)
-        return pixels[..., :3], pixels[..., 3] if pixels.shape[2] > 3 else numpy.ones(pixels.shape[:2])
-    return Markup(page.viewer([page.view(f"{shown['scene']}, {shown['camera']}", shown["exposure"], *values(shown["truth"]),
-                                         [(shot["title"], *values(shot["values"])) for shot in shown["shots"]])
-                               for shown in views]))
+        return pixels[..., :3], pixels[...,
+                                       3] if pixels.shape[2] > 3 else numpy.ones(pixels.shape[:2])
+
+    return Markup(
+        page.viewer([
+            page.view(f"{shown['scene']}, {shown['camera']}", shown["exposure"],
+                      *values(shown["truth"]), [(shot["title"], *values(shot["values"]))
+                                                for shot in shown["shots"]]) for shown in views
+        ]))
 
 
 def variants(quality, marked):
@@ -58,9 +69,12 @@ def variants(quality, marked):
     rows = []
     for source in quality:
         listed = source["document"].get("variants")
-        for i, row in enumerate(documents.checked(source["document"], source["file"], "variants", {"rejected": int})):
+        for i, row in enumerate(
+                documents.checked(source["document"], source["file"], "variants",
+                                  {"rejected": int})):
             if row["rejected"] == 0:
-                documents.checked({"variants": listed[i:i + 1]}, source["file"], "variants", VARIANT)
+                documents.checked({"variants": listed[i:i + 1]}, source["file"], "variants",
+                                  VARIANT)
                 rows.append({**row, "name": " ".join(map(str, row["options"].values())),
                              "series": str(row["options"].get("transport", "preset")),
                              "marked": row["options"] in marked})
@@ -86,14 +100,17 @@ def error_against_cost(rows):
     middle = numpy.sqrt(min(x for x, _ in places) * max(x for x, _ in places))
     for i, (row, (x, y)) in enumerate(zip(rows, places)):
         axis.plot([x], [y], "o", gid=f"point{i}", ms=10 if row["marked"] else 6.5,
-                  color=style.colour(series.index(row["series"])), mec=style.INK, mew=1.5 if row["marked"] else 0)
+                  color=style.colour(series.index(row["series"])), mec=style.INK,
+                  mew=1.5 if row["marked"] else 0)
         if row["marked"]:
             left = x > middle
-            axis.annotate(row["name"], (x, y), textcoords="offset points", xytext=(-8 if left else 8, 7),
-                          ha="right" if left else "left", weight="bold")
+            axis.annotate(row["name"], (x, y), textcoords="offset points",
+                          xytext=(-8 if left else 8, 7), ha="right" if left else "left",
+                          weight="bold")
     for i, name in enumerate(series):
         axis.plot([], [], "o", color=style.colour(i), label=name)
-    axis.set(ylim=(0, 1.08 * max(y for _, y in places)), xlabel="frame [ms]", ylabel="mean NRMSE [%]")
+    axis.set(ylim=(0, 1.08 * max(y for _, y in places)), xlabel="frame [ms]",
+             ylabel="mean NRMSE [%]")
     style.logarithmic(axis.xaxis)
     axis.legend()
     return figure
@@ -107,8 +124,10 @@ def table1(rows):
         line = (f"{row['stage']}{cascade}, lobes {row.get('lobe') or '-'}, "
                 f"{'with' if row.get('occlusion') else 'without'} indirect shadows")
         ok = row["status"] == "ok"
-        lines.setdefault(line, {})[str(row["basis"])] = f"{row['median']:.3g}" if ok else row["status"]
-    return bases, [(line, [cells.get(basis, "") for basis in bases]) for line, cells in lines.items()]
+        lines.setdefault(line,
+                         {})[str(row["basis"])] = f"{row['median']:.3g}" if ok else row["status"]
+    return bases, [(line, [cells.get(basis, "") for basis in bases])
+                   for line, cells in lines.items()]
 
 
 def draw(source, target):
@@ -117,11 +136,13 @@ def draw(source, target):
             for row in documents.checked(given["document"], given["file"], "benchmarks", bench.ROW)]
     quality = variants(report["quality"], report["marked"])
     layouts = [row for row in rows if row["suite"] == "layouts"]
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent), autoescape=True,
-                                     trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent),
+                                     autoescape=True, trim_blocks=True, lstrip_blocks=True,
+                                     undefined=jinja2.StrictUndefined)
     html = environment.get_template("page.html").render(
-        subtitle=report["subtitle"], views=report["views"], viewer=viewer(report["views"], source), quality=quality,
-        quality_chart=inlined(error_against_cost(quality), [row["name"] for row in quality]),
+        subtitle=report["subtitle"], views=report["views"], viewer=viewer(report["views"], source),
+        quality=quality, quality_chart=inlined(error_against_cost(quality),
+                                               [row["name"] for row in quality]),
         table1=table1([row for row in rows if row["suite"] == "table1"]), layouts=layouts,
         layouts_chart=inlined(bench.layouts(layouts)), colours=page_colours())
     documents.write(target, html.encode("utf-8"))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Spherical plots: functions f on the sphere as shaded surfaces |f(w)| w with axes; z is up.
 
-Input: values on a grid. Rows go from +z to -z (theta from 0 to pi, both poles included), columns around z from +x towards +y
-(phi from 0 to below 2 pi).
+Input: values on a grid. Rows go from +z to -z (theta from 0 to pi, both poles included), columns
+around z from +x towards +y (phi from 0 to below 2 pi).
 """
 import numpy
 from matplotlib.collections import TriMesh
@@ -18,8 +18,12 @@ def unit(v):
     return v / numpy.maximum(numpy.linalg.norm(v, axis=-1, keepdims=True), 1e-12)
 
 
-# The eye: azimuth -55 degrees, elevation 24. Parallel projection: rows are right, up and towards the eye.
-TOWARDS = numpy.array([numpy.cos(0.42) * numpy.cos(-0.96), numpy.cos(0.42) * numpy.sin(-0.96), numpy.sin(0.42)])
+# The eye: azimuth -55 degrees, elevation 24. Parallel projection: rows are right, up and towards
+# the eye.
+TOWARDS = numpy.array(
+    [numpy.cos(0.42) * numpy.cos(-0.96),
+     numpy.cos(0.42) * numpy.sin(-0.96),
+     numpy.sin(0.42)])
 RIGHT = unit(numpy.cross((0, 0, 1), TOWARDS))
 VIEW = numpy.stack([RIGHT, numpy.cross(TOWARDS, RIGHT), TOWARDS])
 LAMP = unit(numpy.array([-0.45, 0.6, 0.7]) @ VIEW)
@@ -38,7 +42,8 @@ def signed(values):
 
 
 def joint(functions, colours):
-    """Returns the maximum of several functions as one surface, and the colour of the largest at each point."""
+    """Returns the maximum of several functions as one surface, and the colour of the largest at
+    each point."""
     return functions.max(axis=0), numpy.asarray(colours)[functions.argmax(axis=0)]
 
 
@@ -60,10 +65,12 @@ def lit(colours, normals):
 
 
 def front_facets(screen):
-    """Returns triangles of a projected grid that face the eye, farthest first (painter's algorithm)."""
+    """Returns triangles of a projected grid that face the eye, farthest first (painter's
+    algorithm)."""
     rows, columns = screen.shape[:2]
     a = (numpy.arange(rows - 1)[:, None] * columns + numpy.arange(columns)[None, :]).ravel()
-    b = (numpy.arange(rows - 1)[:, None] * columns + (numpy.arange(columns) + 1)[None, :] % columns).ravel()
+    b = (numpy.arange(rows - 1)[:, None] * columns +
+         (numpy.arange(columns) + 1)[None, :] % columns).ravel()
     triangles = numpy.concatenate([numpy.stack([a, a + columns, b], axis=1),
                                    numpy.stack([b, a + columns, b + columns], axis=1)])
     corners = screen.reshape(-1, 3)[triangles]
@@ -75,8 +82,10 @@ def front_facets(screen):
 def radius_at(values, points):
     """Returns |f| in the directions of points, at the nearest grid point."""
     w = unit(points)
-    row = numpy.rint(numpy.arccos(numpy.clip(w[..., 2], -1, 1)) / numpy.pi * (values.shape[0] - 1)).astype(int)
-    column = numpy.rint(numpy.arctan2(w[..., 1], w[..., 0]) / (2 * numpy.pi) * values.shape[1]).astype(int)
+    row = numpy.rint(numpy.arccos(numpy.clip(w[..., 2], -1, 1)) / numpy.pi *
+                     (values.shape[0] - 1)).astype(int)
+    column = numpy.rint(numpy.arctan2(w[..., 1], w[..., 0]) / (2 * numpy.pi) *
+                        values.shape[1]).astype(int)
     return abs(values[row, column % values.shape[1]])
 
 
@@ -100,18 +109,21 @@ def draw_axes(axis, values, extent):
 
 
 def plot(axis, values, colours=None, extent=1.2, outline=None):
-    """Draws into `axis`; |f| = extent reaches its edge. `colours`: linear, one per grid point; None: by sign. `outline`:
-    (centre, radius) of a sphere whose silhouette is drawn on top. `values` None: axes only."""
+    """Draws into `axis`; |f| = extent reaches its edge. `colours`: linear, one per grid point;
+    None: by sign. `outline`: (centre, radius) of a sphere whose silhouette is drawn on top.
+    `values` None: axes only."""
     if values is not None:
         points = abs(values)[..., None] * directions(values.shape)
         screen = points @ VIEW.T
         triangles = front_facets(screen)
         flat = screen.reshape(-1, 3)
         mesh = TriMesh(Triangulation(flat[:, 0], flat[:, 1], triangles))
-        mesh.set_facecolor(lit(signed(values) if colours is None else colours, normals_of(points)).reshape(-1, 3))
+        mesh.set_facecolor(
+            lit(signed(values) if colours is None else colours, normals_of(points)).reshape(-1, 3))
         axis.add_collection(mesh, autolim=False)
     draw_axes(axis, values, extent)
     if outline:
         centre, radius = outline
-        axis.add_patch(Circle(VIEW[:2] @ centre, radius, fill=False, ls=(0, (4, 3)), lw=1, ec="0.1", zorder=5))
+        axis.add_patch(
+            Circle(VIEW[:2] @ centre, radius, fill=False, ls=(0, (4, 3)), lw=1, ec="0.1", zorder=5))
     axis.set(xlim=(-extent, extent), ylim=(-extent, extent), aspect="equal")

@@ -19,9 +19,20 @@ matplotlib.rcParams.update({
     "svg.hashsalt": "clpv",  # reproducible bytes
     "svg.fonttype": "none",
     "text.parse_math": False,  # dollar signs in names are literal
-    "font.size": 9, "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": SOFT, "xtick.color": INK,
-    "ytick.color": INK, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": LINE,
-    "grid.linewidth": 0.6, "axes.axisbelow": True, "legend.frameon": False, "legend.labelcolor": INK,
+    "font.size": 9,
+    "text.color": INK,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": SOFT,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": LINE,
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "legend.frameon": False,
+    "legend.labelcolor": INK,
 })
 
 
@@ -52,7 +63,8 @@ def panels(count, columns, size):
     """Returns a figure of `count` panels in rows, each of that size [inches], and their axes."""
     columns = min(columns, count)
     rows = math.ceil(count / columns)
-    figure, axes = pyplot.subplots(rows, columns, figsize=(size[0] * columns, size[1] * rows), squeeze=False)
+    figure, axes = pyplot.subplots(rows, columns, figsize=(size[0] * columns, size[1] * rows),
+                                   squeeze=False)
     for axis in list(axes.flat)[count:]:
         axis.axis("off")
     return figure, list(axes.flat)[:count]
@@ -70,20 +82,23 @@ class Sheet:
         rows = math.ceil(count / columns)
         width, height = columns * (tile[0] + gap) + gap, heading + rows * (tile[1] + caption) + gap
         self.figure = pyplot.figure(figsize=(width, height), facecolor="white")
-        self.figure.text(0.06 / width, 1 - 0.06 / height, "\n".join(title), fontsize=11, va="top", linespacing=1.35)
+        self.figure.text(0.06 / width, 1 - 0.06 / height, "\n".join(title), fontsize=11, va="top",
+                         linespacing=1.35)
         self.places = []
         for i in range(count):
             left = gap + i % columns * (tile[0] + gap)
             top = heading + i // columns * (tile[1] + caption) + (caption if above else 0)
-            self.places.append((left / width, 1 - (top + tile[1]) / height, tile[0] / width, tile[1] / height))
+            self.places.append(
+                (left / width, 1 - (top + tile[1]) / height, tile[0] / width, tile[1] / height))
 
     def tile(self, i, caption):
         """Returns the empty axes of tile i, with its caption."""
         axis = self.figure.add_axes(self.places[i])
         axis.axis("off")
         y, anchor, offset = (1, "bottom", 3) if self.above else (0, "top", -1)
-        axis.annotate(caption, (0.5, y), xycoords="axes fraction", xytext=(0, offset), textcoords="offset points",
-                      ha="center", va=anchor, fontsize=self.font, linespacing=1.3, annotation_clip=False)
+        axis.annotate(caption, (0.5, y), xycoords="axes fraction", xytext=(0, offset),
+                      textcoords="offset points", ha="center", va=anchor, fontsize=self.font,
+                      linespacing=1.3, annotation_clip=False)
         return axis
 
     def save(self, path, dpi):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Scores images of indirect light, by any renderer, against path-traced truths. Needs NumPy alone; docs/score.md.
+"""Scores images of indirect light, by any renderer, against path-traced truths. Needs NumPy alone;
+docs/score.md.
 
-    python3 -m clpv.score DIR [--suite FOLDER]     a folder of images, one for each view of the suite
+    python3 -m clpv.score DIR [--suite FOLDER]     a folder of images, one for each view of the
+                                                   suite
     clpv.score.suite.score(folder, suite)          the same as a dictionary
 """

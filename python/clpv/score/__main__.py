@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m clpv.score DIR...: errors of folders of images of indirect light against the truths of a suite."""
+"""python3 -m clpv.score DIR...: errors of folders of images of indirect light against the truths of
+a suite."""
 import argparse
 import json
 import pathlib
@@ -9,8 +10,9 @@ from clpv.score import page, suite
 from clpv.score.exr import BadImage
 
 BAD_INPUT = 3
-COLUMNS = [("NRMSE [%]", "nrmse", 100, 1), ("at best gain", "nrmse_best_gain", 100, 1), ("energy", "energy_ratio", 1, 3),
-           ("FLIP", "flip", 1, 3), ("bias [%]", "bias", 100, 1), ("noise [%]", "noise", 100, 1), ("change [%]", "change", 100, 1)]
+COLUMNS = [("NRMSE [%]", "nrmse", 100, 1), ("at best gain", "nrmse_best_gain", 100, 1),
+           ("energy", "energy_ratio", 1, 3), ("FLIP", "flip", 1, 3), ("bias [%]", "bias", 100, 1),
+           ("noise [%]", "noise", 100, 1), ("change [%]", "change", 100, 1)]
 
 
 def table(score):
@@ -18,23 +20,31 @@ def table(score):
     columns = [column for column in COLUMNS if any(column[1] in row for row in score["views"])]
     lines = [["view", *(title for title, *_ in columns)]]
     for row in [*score["views"], {"view": "mean", **score["mean"]}]:
-        lines.append([row["view"], *("-" if row.get(key) is None else f"{factor * row[key]:.{digits}f}"
-                                     for _, key, factor, digits in columns)])
+        lines.append([
+            row["view"], *("-" if row.get(key) is None else f"{factor * row[key]:.{digits}f}"
+                           for _, key, factor, digits in columns)
+        ])
     widths = [max(map(len, column)) for column in zip(*lines)]
-    return "\n".join("  ".join(cell.ljust(width) if i == 0 else cell.rjust(width)
-                               for i, (cell, width) in enumerate(zip(line, widths))) for line in lines)
+    return "\n".join("  ".join(
+        cell.ljust(width) if i == 0 else cell.rjust(width)
+        for i, (cell, width) in enumerate(zip(line, widths))) for line in lines)
 
 
 def main(arguments):
     parser = argparse.ArgumentParser(prog="python3 -m clpv.score", description=__doc__)
-    parser.add_argument("folders", metavar="DIR", type=pathlib.Path, nargs="+",
-                        help="images VIEW.exr, or frames VIEW.NUMBER.exr of the same still view: linear radiance")
+    parser.add_argument(
+        "folders", metavar="DIR", type=pathlib.Path, nargs="+",
+        help="images VIEW.exr, or frames VIEW.NUMBER.exr of the same still view: linear radiance")
     parser.add_argument("--suite", metavar="FOLDER", type=pathlib.Path, default=pathlib.Path("."),
                         help="folder with suite.json (default: the current one)")
-    parser.add_argument("--method", metavar="NAME", help="name of the method in the JSON (default: that of DIR)")
-    parser.add_argument("--only", metavar="PATTERN", action="append", help="views, such as 'cornell-*'; repeatable (default: all)")
-    parser.add_argument("-o", "--output", metavar="FILE.json", type=pathlib.Path, help="writes the score")
-    parser.add_argument("--page", metavar="FILE.html", type=pathlib.Path, help="writes a page: images of all DIR beside the truths")
+    parser.add_argument("--method", metavar="NAME",
+                        help="name of the method in the JSON (default: that of DIR)")
+    parser.add_argument("--only", metavar="PATTERN", action="append",
+                        help="views, such as 'cornell-*'; repeatable (default: all)")
+    parser.add_argument("-o", "--output", metavar="FILE.json", type=pathlib.Path,
+                        help="writes the score")
+    parser.add_argument("--page", metavar="FILE.html", type=pathlib.Path,
+                        help="writes a page: images of all DIR beside the truths")
     given = parser.parse_args(arguments)
     if len(given.folders) > 1 and (given.method or given.output):
         parser.error("--method and --output: found several DIR; allowed: one")

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Errors of an image against a ground truth, as `clpv compare` computes them, and what is suspicious in it."""
+"""Errors of an image against a ground truth, as `clpv compare` computes them, and what is
+suspicious in it."""
 import numpy
 
 from clpv.score import flip
 
 GAIN_LIMIT = 1.8  # of another exposure
 EXPLAINED = 0.6  # share of the error that remains once a suspicion is corrected
-MIRRORS = {"left to right": numpy.s_[:, ::-1], "upside down": numpy.s_[::-1], "rotated by half a turn": numpy.s_[::-1, ::-1]}
+MIRRORS = {
+    "left to right": numpy.s_[:, ::-1], "upside down": numpy.s_[::-1],
+    "rotated by half a turn": numpy.s_[::-1, ::-1]
+}
 
 
 def root_of_ratio(power, of):
@@ -24,28 +28,38 @@ def gained(a, b):
 def errors(frames, truth, valid, exposure):
     """Errors of frames (n x height x width x 3) of one still view, over valid pixels.
 
-    nrmse: root mean square error of all frames over the truth's root mean square. With several frames nrmse^2 = bias^2 +
-    noise^2: bias is that of the mean of infinitely many such frames, noise their deviation from it. change: mean
-    |difference| of consecutive frames over the truth's mean. Sums are in double."""
+    nrmse: root mean square error of all frames over the truth's root mean square. With several
+    frames nrmse^2 = bias^2 + noise^2: bias is that of the mean of infinitely many such frames,
+    noise their deviation from it. change: mean |difference| of consecutive frames over the truth's
+    mean. Sums are in double."""
     lit = frames[:, valid].astype(float)
     target = truth[valid].astype(float)
     power = (target * target).sum()
     gain, nrmse_best_gain = gained(lit, numpy.broadcast_to(target, lit.shape))
     total = target.sum()
-    result = {"nrmse": root_of_ratio(((lit - target) ** 2).sum() / len(lit), power), "best_gain": gain,
-              "nrmse_best_gain": nrmse_best_gain, "energy_ratio": lit.sum() / len(lit) / total if total else None,
-              "flip": numpy.mean([flip_map(frame, truth, valid, exposure)[valid].mean() for frame in frames])}
+    result = {
+        "nrmse": root_of_ratio(((lit - target)**2).sum() / len(lit),
+                               power), "best_gain": gain, "nrmse_best_gain": nrmse_best_gain,
+        "energy_ratio": lit.sum() / len(lit) / total if total else None, "flip": numpy.mean(
+            [flip_map(frame, truth, valid, exposure)[valid].mean() for frame in frames])
+    }
     if len(lit) > 1:
         variance = lit.var(axis=0, ddof=1).sum()
         off = ((lit.mean(axis=0) - target) ** 2).sum()
-        result |= {"bias": root_of_ratio(off - variance / len(lit), power), "noise": root_of_ratio(variance, power),
-                   "change": abs(numpy.diff(lit, axis=0)).sum() / (len(lit) - 1) / total if total else None}
+        result |= {
+            "bias": root_of_ratio(off - variance / len(lit),
+                                  power), "noise": root_of_ratio(variance, power),
+            "change": abs(numpy.diff(lit, axis=0)).sum() / (len(lit) - 1) / total if total else None
+        }
     return result
 
 
 def flip_map(image, truth, valid, exposure):
     """FLIP of each pixel; invalid ones are black in both."""
-    shown = [flip.displayed(numpy.where(valid[..., None], values, 0).astype(float), exposure) for values in (image, truth)]
+    shown = [
+        flip.displayed(numpy.where(valid[..., None], values, 0).astype(float), exposure)
+        for values in (image, truth)
+    ]
     return flip.flip(*shown)
 
 
@@ -56,21 +70,26 @@ def correlation(a, b):
 
 
 def suspicions(image, truth, valid):
-    """Sentences about an image that is not what it should be: mirrored, sRGB-encoded, of another exposure."""
+    """Sentences about an image that is not what it should be: mirrored, sRGB-encoded, of another
+    exposure."""
     a, b = image.astype(float), truth.astype(float)
     straight = correlation(a[valid], b[valid])
     for name, turned in MIRRORS.items():
         both = valid & valid[turned]
         mirrored = correlation(a[turned][both], b[both])
         if mirrored > 0.5 and mirrored > straight + 0.2:
-            return [f"looks mirrored, {name}: correlation {mirrored:.2f} with the truth, {straight:.2f} as it is"]
+            return [
+                f"looks mirrored, {name}: correlation {mirrored:.2f} with the truth, {straight:.2f} as it is"
+            ]
     gain, error = gained(a[valid], b[valid])
     if gain is None or error is None:
         return ["is black"] if gain is None and (b[valid] != 0).any() else []
     linear = flip.decoded(a)
     linear_gain, linear_error = gained(linear[valid], b[valid])
     if 0 <= a[valid].min() and a[valid].max() <= 1 and linear_error < EXPLAINED * error:
-        return [f"looks sRGB-encoded: decoded, its error falls from {100 * error:.0f} to {100 * linear_error:.0f} %"]
+        return [
+            f"looks sRGB-encoded: decoded, its error falls from {100 * error:.0f} to {100 * linear_error:.0f} %"
+        ]
     as_it_is = root_of_ratio(((a - b)[valid] ** 2).sum(), (b[valid] ** 2).sum())
     if error < EXPLAINED * as_it_is and not 1 / GAIN_LIMIT < gain < GAIN_LIMIT:
         return [f"looks {1 / gain:.2g}x too bright" if gain < 1 else f"looks {gain:.2g}x too dark"]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Reads OpenEXR images with NumPy alone: scanlines, uncompressed, ZIP or ZIPS. Other files need the module OpenEXR (PyPI)."""
+"""Reads OpenEXR images with NumPy alone: scanlines, uncompressed, ZIP or ZIPS. Other files need the
+module OpenEXR (PyPI)."""
 import struct
 import zlib
 
@@ -74,12 +75,16 @@ def by_openexr(file):
     try:
         import OpenEXR
     except ImportError:
-        raise BadImage(f"{file}: found a tiled, deep, multi-part or differently compressed EXR; allowed: scanlines, "
-                       "uncompressed, ZIP or ZIPS, or install OpenEXR (PyPI)") from None
+        raise BadImage(
+            f"{file}: found a tiled, deep, multi-part or differently compressed EXR; allowed: scanlines, "
+            "uncompressed, ZIP or ZIPS, or install OpenEXR (PyPI)") from None
     if not hasattr(OpenEXR, "File"):
         raise BadImage(f"{file}: found OpenEXR {OpenEXR.__version__}; allowed: at least 3.3 (PyPI)")
     with OpenEXR.File(str(file), separate_channels=True) as image:
-        return {name: channel.pixels.astype(numpy.float32) for name, channel in image.channels().items()}
+        return {
+            name: channel.pixels.astype(numpy.float32)
+            for name, channel in image.channels().items()
+        }
 
 
 def read(file):
@@ -104,6 +109,8 @@ def colours(planes, file, layer=""):
     """Returns R, G and B of a layer (height x width x 3) and its alpha, 1 where there is none."""
     prefix = f"{layer}." if layer else ""
     if any(prefix + name not in planes for name in "RGB"):
-        raise BadImage(f"{file}: found channels {', '.join(sorted(planes))}; allowed: {', '.join(prefix + c for c in 'RGB')}")
+        raise BadImage(
+            f"{file}: found channels {', '.join(sorted(planes))}; allowed: {', '.join(prefix + c for c in 'RGB')}"
+        )
     rgb = numpy.stack([planes[prefix + name] for name in "RGB"], axis=-1)
     return rgb, planes.get(f"{prefix}A", numpy.ones(rgb.shape[:2], numpy.float32))

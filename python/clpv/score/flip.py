@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""FLIP (Andersson et al. 2020) of linear images after tone curve ACES, with the numbers of host/image/flip.cpp."""
+"""FLIP (Andersson et al. 2020) of linear images after tone curve ACES, with the numbers of
+host/image/flip.cpp."""
 import numpy
 
 PIXELS_PER_DEGREE = 67.0206  # 3840 pixels over 0.7 m, seen from 0.7 m
 EDGE_WIDTH = 0.082  # of a feature [degrees]
-SENSITIVITIES = [(1, 0.0047)], [(1, 0.0053)], [(34.1, 0.04), (13.5, 0.025)]  # height, width by channel
+SENSITIVITIES = [(1, 0.0047)], [(1, 0.0053)], [(34.1, 0.04),
+                                               (13.5, 0.025)]  # height, width by channel
 WIDEST = 0.04
 TO_XYZ = numpy.array([[10135552 / 24577794, 8788810 / 24577794, 4435075 / 24577794],
                       [2613072 / 12288897, 8788810 / 12288897, 887015 / 12288897],
@@ -13,11 +15,13 @@ WHITE = TO_XYZ.sum(axis=1)
 
 
 def encoded(linear):
-    return numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * numpy.maximum(linear, 0) ** (1 / 2.4) - 0.055)
+    return numpy.where(linear <= 0.0031308, 12.92 * linear,
+                       1.055 * numpy.maximum(linear, 0)**(1 / 2.4) - 0.055)
 
 
 def decoded(srgb):
-    return numpy.where(srgb <= 0.04045, srgb / 12.92, ((numpy.maximum(srgb, 0) + 0.055) / 1.055) ** 2.4)
+    return numpy.where(srgb <= 0.04045, srgb / 12.92,
+                       ((numpy.maximum(srgb, 0) + 0.055) / 1.055)**2.4)
 
 
 def displayed(linear, exposure):
@@ -56,7 +60,8 @@ def features(lightness):
     strengths = []
     for row in -i * smooth, (i ** 2 / deviation ** 2 - 1) * smooth:
         row = row / (numpy.where(row > 0, row[row > 0].sum(), -row[row <= 0].sum()) * smooth.sum())
-        strengths.append(numpy.hypot(filtered(lightness, row, smooth), filtered(lightness, smooth, row)))
+        strengths.append(
+            numpy.hypot(filtered(lightness, row, smooth), filtered(lightness, smooth, row)))
     return strengths
 
 
@@ -69,7 +74,9 @@ def hunt_lab(linear):
     """CIELAB with Hunt's adjustment: chroma counts less in the dark."""
     f = lab_curve(linear @ TO_XYZ.T / WHITE)
     lightness = 116 * f[..., 1] - 16
-    return numpy.stack([lightness, 5 * lightness * (f[..., 0] - f[..., 1]), 2 * lightness * (f[..., 1] - f[..., 2])], axis=-1)
+    return numpy.stack([
+        lightness, 5 * lightness * (f[..., 0] - f[..., 1]), 2 * lightness * (f[..., 1] - f[..., 2])
+    ], axis=-1)
 
 
 def hyab(a, b):
@@ -83,7 +90,8 @@ def observed(srgb):
     lightness = (opponent[0] + 16) / 116
     y, cx, cz = (seen(plane, sensitivity) for plane, sensitivity in zip(opponent, SENSITIVITIES))
     y = (y + 16) / 116
-    linear = numpy.stack([y + cx / 500, y, y - cz / 200], axis=-1) * WHITE @ numpy.linalg.inv(TO_XYZ).T
+    linear = numpy.stack([y + cx / 500, y, y - cz / 200],
+                         axis=-1) * WHITE @ numpy.linalg.inv(TO_XYZ).T
     return hunt_lab(numpy.clip(linear, 0, 1)), features(lightness)
 
 

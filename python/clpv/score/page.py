@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Images of several methods beside the truths: slider, zoom, exposure, error maps. A page of its own, or a part of a report."""
+"""Images of several methods beside the truths: slider, zoom, exposure, error maps. A page of its
+own, or a part of a report."""
 import base64
 import json
 import pathlib
@@ -18,7 +19,10 @@ def text_of(values):
 
 
 def entry(title, image):
-    return {"title": title, "halves": text_of(numpy.clip(image, -LARGEST_HALF, LARGEST_HALF).astype("<f2"))}
+    return {
+        "title": title,
+        "halves": text_of(numpy.clip(image, -LARGEST_HALF, LARGEST_HALF).astype("<f2"))
+    }
 
 
 def view(name, exposure, truth, alpha, shots):
@@ -27,8 +31,12 @@ def view(name, exposure, truth, alpha, shots):
     for title, image, mask in shots:
         valid = (alpha > 0) & (mask > 0)
         seen = numpy.where(valid, errors.flip_map(image, truth, valid, exposure), 0)
-        images.append({**entry(title, image), "flip": text_of(numpy.round(255 * seen).astype(numpy.uint8))})
-    return {"name": name, "width": truth.shape[1], "height": truth.shape[0], "exposure": exposure, "images": images}
+        images.append(
+            {**entry(title, image), "flip": text_of(numpy.round(255 * seen).astype(numpy.uint8))})
+    return {
+        "name": name, "width": truth.shape[1], "height": truth.shape[0], "exposure": exposure,
+        "images": images
+    }
 
 
 def part(name):
@@ -42,18 +50,22 @@ def viewer(views):
 
 def mean_of(frames):
     """Mean and common alpha of a method's frames: (image, alpha)."""
-    return numpy.mean([rgb for rgb, _ in frames], axis=0), numpy.min([mask for _, mask in frames], axis=0)
+    images, masks = zip(*frames)
+    return numpy.mean(images, axis=0), numpy.min(masks, axis=0)
 
 
 def write(target, suite_folder, folders, only=("*",)):
-    """Writes the page. `folders`: {title: folder}, which suite.score() accepts. Throws BadImage for more than 30 MB."""
+    """Writes the page. `folders`: {title: folder}, which suite.score() accepts. Throws BadImage for
+    more than 30 MB."""
     views = []
     for each in suite.chosen(suite.read_suite(suite_folder), only):
         truth, alpha = suite.read_truth(suite_folder, each)
-        shots = [(title, *mean_of([suite.read_image(file, truth) for file in suite.frames_of(folder, each["name"])]))
+        shots = [(title, *mean_of(
+            [suite.read_image(file, truth) for file in suite.frames_of(folder, each["name"])]))
                  for title, folder in folders.items()]
         views.append(view(each["name"], each["exposure"], truth, alpha, shots))
     page = part("page.html").replace("VIEWER", viewer(views), 1)
     if len(page) > LARGEST:
-        raise BadImage(f"{target}: found {len(page)} bytes; allowed: {LARGEST}; use --only for fewer views")
+        raise BadImage(
+            f"{target}: found {len(page)} bytes; allowed: {LARGEST}; use --only for fewer views")
     target.write_text(page, encoding="utf-8")

@@ -20,7 +20,8 @@ def read_suite(folder):
     try:
         suite = json.loads(file.read_text())
     except OSError as error:
-        raise BadImage(f"{file}: {error.strerror}; allowed: a folder that scripts/suite wrote") from None
+        raise BadImage(
+            f"{file}: {error.strerror}; allowed: a folder that scripts/suite wrote") from None
     except ValueError as error:
         raise BadImage(f"{file}: {error}") from None
     if not isinstance(suite, dict) or suite.get("schema") != SCHEMA or not suite.get("views"):
@@ -34,7 +35,8 @@ def frames_of(folder, view):
                 if (found := re.fullmatch(rf"{re.escape(view)}\.(\d+)\.exr", file.name))]
     single = folder / f"{view}.exr"
     if single.exists() and numbered:
-        raise BadImage(f"{single}: found frames {view}.NUMBER.exr beside it; allowed: one of the two")
+        raise BadImage(
+            f"{single}: found frames {view}.NUMBER.exr beside it; allowed: one of the two")
     return [single] if single.exists() else [file for _, file in sorted(numbered)]
 
 
@@ -43,12 +45,14 @@ def read_image(file, truth):
     rgb, alpha = exr.colours(exr.read(file), file)
     height, width = truth.shape[:2]
     if rgb.shape != truth.shape:
-        raise BadImage(f"{file}: found {rgb.shape[1]} x {rgb.shape[0]} pixels; allowed: {width} x {height}")
+        raise BadImage(
+            f"{file}: found {rgb.shape[1]} x {rgb.shape[0]} pixels; allowed: {width} x {height}")
     bad = numpy.argwhere(~numpy.isfinite(rgb))
     if len(bad):
         y, x, channel = bad[0]
-        raise BadImage(f"{file}: pixel ({x}, {y}), channel {'RGB'[channel]}: found {rgb[y, x, channel]}, "
-                       f"{len(bad)} such values; allowed: finite values")
+        raise BadImage(
+            f"{file}: pixel ({x}, {y}), channel {'RGB'[channel]}: found {rgb[y, x, channel]}, "
+            f"{len(bad)} such values; allowed: finite values")
     return rgb, alpha
 
 
@@ -61,19 +65,30 @@ def score_view(files, folder, view):
     images = [read_image(file, truth) for file in files]
     valid = numpy.logical_and.reduce([alpha > 0, *(mask > 0 for _, mask in images)])
     if not valid.any():
-        raise BadImage(f"{files[0]}: found no pixel with alpha above 0 where the truth has a surface")
+        raise BadImage(
+            f"{files[0]}: found no pixel with alpha above 0 where the truth has a surface")
     frames = numpy.stack([rgb for rgb, _ in images])
     found = errors.errors(frames, truth, valid, view["exposure"])
-    rounded = {name: None if value is None else round(float(value), DIGITS) for name, value in found.items()}
+    rounded = {
+        name: None if value is None else round(float(value), DIGITS)
+        for name, value in found.items()
+    }
     missing = 1 - valid.sum() / (alpha > 0).sum()
     suspected = errors.suspicions(frames.mean(axis=0), truth, valid)
     if missing > 0.02:
-        suspected.append(f"has no surface in {100 * missing:.0f} % of the truth's: other camera or scene")
-    return {"view": view["name"], **rounded, "frames": len(files), "truth_noise": view["noise"], "suspected": suspected}
+        suspected.append(
+            f"has no surface in {100 * missing:.0f} % of the truth's: other camera or scene")
+    return {
+        "view": view["name"], **rounded, "frames": len(files), "truth_noise": view["noise"],
+        "suspected": suspected
+    }
 
 
 def chosen(suite, only):
-    views = [view for view in suite["views"] if any(fnmatch.fnmatch(view["name"], pattern) for pattern in only)]
+    views = [
+        view for view in suite["views"] if any(
+            fnmatch.fnmatch(view["name"], pattern) for pattern in only)
+    ]
     if not views:
         names = ", ".join(view["name"] for view in suite["views"])
         raise BadImage(f"--only {' '.join(only)}: found no view; allowed: {names}")
@@ -81,8 +96,8 @@ def chosen(suite, only):
 
 
 def score(folder, suite_folder, method=None, only=("*",)):
-    """Scores the images of `folder` for the views whose names match a pattern of `only`; `folder` must have all of them.
-    Returns the errors of each view and their means. Throws BadImage."""
+    """Scores the images of `folder` for the views whose names match a pattern of `only`; `folder`
+    must have all of them. Returns the errors of each view and their means. Throws BadImage."""
     suite = read_suite(suite_folder)
     views = chosen(suite, only)
     files = {view["name"]: frames_of(folder, view["name"]) for view in views}
@@ -90,13 +105,16 @@ def score(folder, suite_folder, method=None, only=("*",)):
         raise BadImage(f"{folder}: no folder")
     absent = [name for name, found in files.items() if not found]
     if absent:
-        raise BadImage(f"{folder}: found no image of {', '.join(f'{name}.exr' for name in absent)}; allowed: all "
-                       f"{len(views)} views, or --only PATTERN")
+        raise BadImage(
+            f"{folder}: found no image of {', '.join(f'{name}.exr' for name in absent)}; allowed: all "
+            f"{len(views)} views, or --only PATTERN")
     rows = [score_view(files[view["name"]], suite_folder, view) for view in views]
     means = {}
     for measure in MEASURES:
         values = [row[measure] for row in rows if row.get(measure) is not None]
         if len(values) == len(rows):
             means[measure] = round(sum(values) / len(values), DIGITS)
-    return {"schema": SCHEMA, "suite": suite["hash"], "method": method or folder.resolve().name, "mean": means,
-            "complete": len(views) == len(suite["views"]), "views": rows}
+    return {
+        "schema": SCHEMA, "suite": suite["hash"], "method": method or folder.resolve().name,
+        "mean": means, "complete": len(views) == len(suite["views"]), "views": rows
+    }

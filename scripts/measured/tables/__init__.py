@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Writes the tables of measured numbers in the docs, between <!-- table: NAME --> and <!-- end -->, from results/docs.
+"""Writes the tables of measured numbers in the docs, between <!-- table: NAME --> and <!-- end -->,
+from results/docs.
 
-    scripts/tables            rewrites them in README.md and docs/, and claims.json and expected.json in results/paper
+    scripts/tables            rewrites them in README.md and docs/, and claims.json and
+                              expected.json in results/paper
     scripts/tables --check    changes nothing; fails if one of them differs from results/docs
     scripts/tables --list     names of all tables
-    scripts/tables --stages FILE.json...   prints stage times of files of `clpv render --stats`, side by side
+    scripts/tables --stages FILE.json...   prints stage times of files of `clpv render --stats`,
+                                           side by side
 
 scripts/measure writes results/docs. Only the standard library.
 """
@@ -16,7 +19,9 @@ from . import benchmarks, quality, paper, standing  # they fill TABLES
 from .cells import LOADED, MEASURED, TABLES, read, result
 from .stages import print_stages
 
-__all__ = ["MEASURED", "TABLES", "benchmarks", "main", "paper", "quality", "read", "result", "standing"]
+__all__ = [
+    "MEASURED", "TABLES", "benchmarks", "main", "paper", "quality", "read", "result", "standing"
+]
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 def drawn(lines):
     text = ["| " + " | ".join(line) + " |" for line in lines]
@@ -24,7 +29,8 @@ def drawn(lines):
 
 
 def measured_on():
-    """Commit, device and date of the page's tables: one line if one run of scripts/measure measured them all."""
+    """Commit, device and date of the page's tables: one line if one run of scripts/measure measured
+    them all."""
     runs = {}
     for name in sorted(LOADED):
         measured = read(name)["measured"]
@@ -34,7 +40,8 @@ def measured_on():
         runs.setdefault(key, []).append(name)
     if len(runs) == 1:
         return f"Measured with {next(iter(runs))} (`results/docs`).\n"
-    return "".join(f"- {', '.join(files)} (`results/docs`): {run}.\n" for run, files in runs.items())
+    return "".join(f"- {', '.join(files)} (`results/docs`): {run}.\n"
+                   for run, files in runs.items())
 
 
 def block(match):
@@ -50,7 +57,9 @@ def written(text):
     """The page with its tables, and where they were measured."""
     LOADED.clear()
     text = BLOCK.sub(block, text)
-    return BLOCK.sub(lambda match: match[1] + measured_on() + match[3] if match[2] == "measured-on" else match[0], text)
+    return BLOCK.sub(
+        lambda match: match[1] + measured_on() + match[3]
+        if match[2] == "measured-on" else match[0], text)
 
 
 def main():
@@ -63,7 +72,8 @@ def main():
     if arguments not in ([], ["--check"]):
         sys.exit(__doc__.strip())
     differing = []
-    for name, document in (("claims", {"claims": verdicts.judged(result)}), ("expected", expected.expected(result))):
+    for name, document in (("claims", {"claims": verdicts.judged(result)}),
+                           ("expected", expected.expected(result))):
         file = RESULTS / f"paper/{name}.json"
         text = json_lines(document)
         if not file.exists() or file.read_text(encoding="utf-8") != text:
@@ -78,6 +88,7 @@ def main():
             if not arguments:
                 page.write_text(written(text), encoding="utf-8")
     if arguments and differing:
-        print(f"{', '.join(differing)}: tables differ from results/docs; run scripts/tables", file=sys.stderr)
+        print(f"{', '.join(differing)}: tables differ from results/docs; run scripts/tables",
+              file=sys.stderr)
         return 1
     return 0

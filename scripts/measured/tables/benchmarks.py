@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Tables of docs/benchmarks.md, docs/gpu.md and docs/paper/table1.md, by `clpv bench` and `clpv render --stats`."""
+"""Tables of docs/benchmarks.md, docs/gpu.md and docs/paper/table1.md, by `clpv bench` and `clpv
+render --stats`."""
 import math
 
 from .. import rows as known
@@ -15,17 +16,23 @@ TABLE1_BASES = "sh2", "srbf4", "srbf8v2"
 
 def table1(shadows):
     """The paper's Table 1: of each basis the published time and the one measured here."""
-    lines = [["[ms]"] + [f"{basis}, {column}" for basis in TABLE1_BASES for column in ("paper", "here")]
-             + ["srbf8v2 / sh2, paper", "here"]]
+    lines = [["[ms]"] +
+             [f"{basis}, {column}" for basis in TABLE1_BASES
+              for column in ("paper", "here")] + ["srbf8v2 / sh2, paper", "here"]]
 
     def add(title, published, here, spreads):
-        times = [cell for a, b, s in zip(published, here, spreads)
-                 for cell in ("-" if a is None else f"{a:g}", "-" if b is None else f"{number(b)} +- {number(s)}")]
+        times = [
+            cell for a, b, s in zip(published, here, spreads)
+            for cell in ("-" if a is None else f"{a:g}",
+                         "-" if b is None else f"{number(b)} +- {number(s)}")
+        ]
         lines.append([title, *times, ratio(published[-1], published[0]), ratio(here[-1], here[0])])
 
     def at(stage, cascade, layout):
-        rows = [found(bench("table1"), stage=stage, cascade=cascade, layout=layout, basis=basis, occlusion=shadows)
-                for basis in TABLE1_BASES]
+        rows = [
+            found(bench("table1"), stage=stage, cascade=cascade, layout=layout, basis=basis,
+                  occlusion=shadows) for basis in TABLE1_BASES
+        ]
         return [[row and row[key] for row in rows] for key in ("published_ms", "median", "mad")]
 
     for layout in ("image", "soa"):
@@ -34,7 +41,8 @@ def table1(shadows):
                             ("propagate", "propagation"), ("gather", "light buffer")):
             if stage == "inject-geometry" and not shadows:
                 continue
-            for cascade, size in enumerate(("small", "medium", "big")) if stage != "gather" else ((None, None),):
+            for cascade, size in enumerate(
+                ("small", "medium", "big")) if stage != "gather" else ((None, None), ):
                 cells = at(stage, cascade, layout)
                 if layout == "image":
                     add(f"{name}, {size}" if size else name, *cells)
@@ -43,8 +51,11 @@ def table1(shadows):
                 if stage != "inject-geometry":
                     terms.append(cells)
         published, here, spreads = zip(*terms)
-        add("sum, without geometry volume" if layout == "image" else "in buffers and constants: the same sum",
-            *([summed(column) for column in zip(*times)] for times in (published, here)), [math.hypot(*column) for column in zip(*spreads)])
+        add(
+            "sum, without geometry volume"
+            if layout == "image" else "in buffers and constants: the same sum",
+            *([summed(column) for column in zip(*times)] for times in (published, here)),
+            [math.hypot(*column) for column in zip(*spreads)])
     return lines
 
 
@@ -60,12 +71,18 @@ def table1_no_shadows():
 
 @table
 def layouts():
-    formats = ["image/half", "image/float", "aos/float", "soa/float", "soa/half", "tiled/float", "tiled/half"]
+    formats = [
+        "image/half", "image/float", "aos/float", "soa/float", "soa/half", "tiled/float",
+        "tiled/half"
+    ]
     lines = [["stage [ms]", *formats, "best over image/half"]]
-    works = dict.fromkeys((row["stage"], row["basis"], row["occlusion"]) for row in bench("layouts"))
+    works = dict.fromkeys(
+        (row["stage"], row["basis"], row["occlusion"]) for row in bench("layouts"))
     for stage, basis, occlusion in works:
-        rows = [found(bench("layouts"), stage=stage, basis=basis, occlusion=occlusion, filtered=True,
-                      **dict(zip(("layout", "storage"), name.split("/")))) for name in formats]
+        rows = [
+            found(bench("layouts"), stage=stage, basis=basis, occlusion=occlusion, filtered=True,
+                  **dict(zip(("layout", "storage"), name.split("/")))) for name in formats
+        ]
         best = min(row["median"] for row in rows if row["layout"] != "image")
         lines.append([f"{stage} {basis}{', blockers' if occlusion else ''}", *map(time, rows),
                       ratio(rows[0]["median"], best)])
@@ -87,17 +104,23 @@ def scaling(axis, stages, title):
     values = sorted({row["value"] for row in rows})
     lines = [[title, *(f"{value:.0f}" for value in values)]]
     for stage in stages:
-        lines.append([f"{stage} [ms]"] + [number((found(rows, stage=stage, value=value) or {}).get("median"))
-                                          for value in values])
+        lines.append([f"{stage} [ms]"] + [
+            number((found(rows, stage=stage, value=value) or {}).get("median")) for value in values
+        ])
     return lines
 
 
 @table
 def scaling_grid():
     lines = scaling("grid", ["propagate"], "cells along each axis")
-    rows = [found(bench("scaling"), axis="grid", stage="propagate", value=int(value)) for value in lines[0][1:]]
-    return lines + [["per cell and step [ns]"] + [number(row["median"] * 1e6 / (row["value"] ** 3 * row["iterations"]))
-                                                  for row in rows]]
+    rows = [
+        found(bench("scaling"), axis="grid", stage="propagate", value=int(value))
+        for value in lines[0][1:]
+    ]
+    return lines + [
+        ["per cell and step [ns]"] +
+        [number(row["median"] * 1e6 / (row["value"]**3 * row["iterations"])) for row in rows]
+    ]
 
 
 @table
@@ -125,8 +148,8 @@ def ceilings():
     return [[*lines[0], "a launch [us]"], [*lines[1], number(1e3 * measured["launch_ms"])]]
 
 
-STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light", "inject-geometry", "propagate", "gather",
-          "near-trace", "near", "medium", "shade")
+STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light",
+          "inject-geometry", "propagate", "gather", "near-trace", "near", "medium", "shade")
 
 
 def stage_ms(frame, stage):
@@ -136,19 +159,25 @@ def stage_ms(frame, stage):
 
 @table
 def frames():
-    return [["[ms]", "frame", *STAGES]] + [
-        [name, number(frame and frame["frame_ms"]), *(number(stage_ms(frame, stage)) for stage in STAGES)]
-        for name, frame in ((name, found(load("frames")["frames"], given=given)) for name, given in known.FRAMES.items())]
+    return [["[ms]", "frame", *STAGES]] + [[
+        name,
+        number(frame and frame["frame_ms"]), *(number(stage_ms(frame, stage)) for stage in STAGES)
+    ] for name, frame in ((name, found(load("frames")["frames"], given=given))
+                          for name, given in known.FRAMES.items())]
 
 
 @table
 def frames_recomputed():
     lines = [["recomputed", "frame [ms]", "blockers and visibility [ms]"]]
-    for recompute, name in (("everything", "everything"), ("light", "light, as if lights had changed"),
-                       ("nothing", "nothing: only the camera moves")):
+    for recompute, name in (("everything", "everything"), ("light",
+                                                           "light, as if lights had changed"),
+                            ("nothing", "nothing: only the camera moves")):
         rows = [row for row in bench("frame") if row["recompute"] == recompute]
         parts = [row["median"] for row in rows if row["stage"] in ("blockers", "visibility")]
-        lines.append([name, time(found(rows, stage="frame")), number(sum(parts)) if sum(parts) else "-"])
+        lines.append(
+            [name,
+             time(found(rows, stage="frame")),
+             number(sum(parts)) if sum(parts) else "-"])
     return lines
 
 
@@ -156,24 +185,37 @@ def frames_recomputed():
 def rasterize():
     names = {"rasterize-camera": "camera, 960x540", "rasterize-shadow": "shadow map, 1024^2",
              "rasterize-rsm": "three RSMs, 256^2"}
-    lines = [["", "clpv [ms]", "per triangle [ns]", "per pixel [ns]", "OpenGL [ms]", "OpenGL / clpv"]]
+    lines = [[
+        "", "clpv [ms]", "per triangle [ns]", "per pixel [ns]", "OpenGL [ms]", "OpenGL / clpv"
+    ]]
     for stage, name in names.items():
         ours, theirs = (found(bench("rasterize"), name=stage + peer) for peer in ("", "/opengl"))
         wall = ours["wall_ms"]
-        lines.append([name, number(wall), number(1e6 * wall / ours["triangles"]), number(1e6 * wall / ours["pixels"]),
-                      number(theirs["wall_ms"]), ratio(theirs["wall_ms"], wall)])
+        lines.append([
+            name,
+            number(wall),
+            number(1e6 * wall / ours["triangles"]),
+            number(1e6 * wall / ours["pixels"]),
+            number(theirs["wall_ms"]),
+            ratio(theirs["wall_ms"], wall)
+        ])
     return lines
 
 
 @table
 def baseline():
-    lines = [["sh2", "OpenCL, minimum [ms]", "GFLOP/s", "of the ceiling", "C++, minimum [ms]", "GFLOP/s", "of the ceiling",
-              "OpenCL / C++"]]
+    lines = [[
+        "sh2", "OpenCL, minimum [ms]", "GFLOP/s", "of the ceiling", "C++, minimum [ms]", "GFLOP/s",
+        "of the ceiling", "OpenCL / C++"
+    ]]
     for occlusion, name in ((False, "without blockers"), (True, "with blockers")):
         rows = [found(bench("native"), stage=stage, occlusion=occlusion)
                 for stage in ("propagate", "native")]
-        cells = [cell for row in rows for cell in (number(row["min"]), f"{row['gflops'] * row['median'] / row['min']:.0f}",
-                                                   f"{100 * row['ceiling_share'] * row['median'] / row['min']:.0f} %")]
+        cells = [
+            cell for row in rows
+            for cell in (number(row["min"]), f"{row['gflops'] * row['median'] / row['min']:.0f}",
+                         f"{100 * row['ceiling_share'] * row['median'] / row['min']:.0f} %")
+        ]
         lines.append([name, *cells, ratio(rows[0]["min"], rows[1]["min"])])
     return lines
 
@@ -184,8 +226,11 @@ def baseline():
 @table
 def factors():
     """A line for each row: times of both bases, their ratio and difference from the preset."""
-    lines = [["changed from `--preset paper`", "sh2 [ms]", "srbf8v2 [ms]", "srbf8v2 / sh2", "propagation: srbf8v2 / sh2",
-              "srbf8v2 over the preset's", "a light volume of srbf8v2 [MiB]", "difference: sh2", "srbf8v2"]]
+    lines = [[
+        "changed from `--preset paper`", "sh2 [ms]", "srbf8v2 [ms]", "srbf8v2 / sh2",
+        "propagation: srbf8v2 / sh2", "srbf8v2 over the preset's",
+        "a light volume of srbf8v2 [MiB]", "difference: sh2", "srbf8v2"
+    ]]
     rows = [row for row in bench("factors") if row["stage"] == "sum"]
     preset = found(rows, basis="srbf8v2", changed="")
 
@@ -194,10 +239,19 @@ def factors():
 
     for changed in dict.fromkeys(row["changed"] for row in rows):
         sh, srbf = (found(rows, basis=basis, changed=changed) for basis in ("sh2", "srbf8v2"))
-        steps = [found(bench("factors"), stage="propagate", basis=basis, changed=changed)["median"] for basis in ("srbf8v2", "sh2")]
+        steps = [
+            found(bench("factors"), stage="propagate", basis=basis, changed=changed)["median"]
+            for basis in ("srbf8v2", "sh2")
+        ]
         *before, last = changed.split(" ")
         title = f"and {last}" if before else f"only {last}" if last else "nothing: as published"
-        lines.append([title, shown(sh), shown(srbf), ratio(srbf["median"], sh["median"]),
-                      ratio(*steps), f"{preset['median'] / srbf['median']:.3g}x faster" if changed else "-",
-                      number(srbf["volume_bytes"] / 2**20), f"{sh['difference']:.4f}", f"{srbf['difference']:.4f}"])
+        lines.append([
+            title,
+            shown(sh),
+            shown(srbf),
+            ratio(srbf["median"], sh["median"]),
+            ratio(*steps), f"{preset['median'] / srbf['median']:.3g}x faster" if changed else "-",
+            number(srbf["volume_bytes"] / 2**20), f"{sh['difference']:.4f}",
+            f"{srbf['difference']:.4f}"
+        ])
     return lines

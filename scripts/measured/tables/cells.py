@@ -24,7 +24,8 @@ def read(name):
 
 
 def result(name):
-    """A file of results/ by its name, "docs/claims"; tables that use one of results/docs say where it was measured."""
+    """A file of results/ by its name, "docs/claims"; tables that use one of results/docs say where
+    it was measured."""
     folder, _, file = name.rpartition("/")
     if folder == "docs":
         return load(file)

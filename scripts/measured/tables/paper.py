@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Tables of docs/bases.md and docs/paper/: errors of clamped cosines, claims, brightness over steps."""
+"""Tables of docs/bases.md and docs/paper/: errors of clamped cosines, claims, brightness over
+steps."""
 import functools
 
 from .. import rows as known, verdicts
@@ -12,13 +13,17 @@ from .cells import TABLES, found, load, number, result, table
 
 @table
 def basis_lobes():
-    lines = [["basis", "N", "condition of A", "+z", "(-2,1,-3)", "(-2,1,-3), rotated", "mean", "minimum, +z",
-              "energy after 8 / 24 steps"]]
+    lines = [[
+        "basis", "N", "condition of A", "+z", "(-2,1,-3)", "(-2,1,-3), rotated", "mean",
+        "minimum, +z", "energy after 8 / 24 steps"
+    ]]
     for row in load("claims")["lobes"]["sets"]:
         if ":" not in row["basis"]:
-            lines.append([row["basis"], str(row["n"]), number(row["condition"])]
-                         + [f"{row[key]:.3f}" for key in ("up", "oblique", "oblique_rotated", "mean", "minimum")] + [
-                          f"{row['energy_sampled_8']:.3f} / {row['energy_sampled_24']:.3f}"])
+            lines.append(
+                [row["basis"], str(row["n"]), number(row["condition"])] + [
+                    f"{row[key]:.3f}"
+                    for key in ("up", "oblique", "oblique_rotated", "mean", "minimum")
+                ] + [f"{row['energy_sampled_8']:.3f} / {row['energy_sampled_24']:.3f}"])
     return lines
 
 
@@ -27,7 +32,10 @@ def basis_tables():
     """Rotated lobes by the number of table entries."""
     rows = load("claims")["tables"]
     sizes = list(dict.fromkeys(row["entries"] for row in rows))
-    lines = [["error along +z; energy after 8 steps", *(f"{size} entries" if size else "H computed" for size in sizes)]]
+    lines = [[
+        "error along +z; energy after 8 steps",
+        *(f"{size} entries" if size else "H computed" for size in sizes)
+    ]]
     for name in dict.fromkeys(row["basis"] for row in rows):
         cells = (found(rows, basis=name, entries=size) for size in sizes)
         lines.append([name, *(f"{row['up']:.3f}; {row['energy_sampled_8']:.3f}" for row in cells)])
@@ -46,9 +54,14 @@ def basis_guesses():
 def basis_lambdas():
     """Lobes along +z and light at `curtains`, by lambda."""
     names = ("sh2", "srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
-    return [["lambda", *names, "4, 8v1, 8v3 worse than SH", "8v2 very similar to SH", "light: 8v2 and SH differ by", "*E* of 8v2"]] + [
-        [f"{row['lambda']}", *(f"{row[name]:.3f}" if row[name] else "-" for name in names), *("yes" if row[rule] else "no" for rule in ("worse", "similar")),
-         *(f"{row[key]:.3f}" for key in ("difference", "error"))] for row in load("claims")["lambdas"]]
+    return [[
+        "lambda", *names, "4, 8v1, 8v3 worse than SH", "8v2 very similar to SH",
+        "light: 8v2 and SH differ by", "*E* of 8v2"
+    ]] + [[
+        f"{row['lambda']}", *(f"{row[name]:.3f}" if row[name] else "-" for name in names),
+        *("yes" if row[rule] else "no"
+          for rule in ("worse", "similar")), *(f"{row[key]:.3f}" for key in ("difference", "error"))
+    ] for row in load("claims")["lambdas"]]
 
 
 @table
@@ -58,15 +71,20 @@ def basis_search():
     for n in dict.fromkeys(row["n"] for row in rows):
         fixed, best = (found(rows, n=n, over="all", lambdas=lambdas) for lambdas in ("none", "one"))
         axes = found(rows, n=n, over="axes", lambdas="one")
-        lines.append([str(n), f"{fixed['error']:.3f}", f"{best['error']:.3f} ({best['lambda']:.2f})", f"{fixed['bound']:.3f}",
-                      f"{axes['error']:.3f}"])
+        lines.append([
+            str(n), f"{fixed['error']:.3f}", f"{best['error']:.3f} ({best['lambda']:.2f})",
+            f"{fixed['bound']:.3f}", f"{axes['error']:.3f}"
+        ])
     return lines
 
 
 @table
 def basis_images():
     """Errors of images by searched centres."""
-    lines = [["NRMSE of indirect light, mean of four views [%]", "published scheme, exact lobes", "`--preset fast`"]]
+    lines = [[
+        "NRMSE of indirect light, mean of four views [%]", "published scheme, exact lobes",
+        "`--preset fast`"
+    ]]
     for name, options in known.CENTRES.items():
         lines.append([name, mean("quality-centres", {**known.EXACT_LOBES, **options}),
                       mean("quality-centres" if "centres" in options else "quality",
@@ -79,13 +97,18 @@ def basis_images():
 
 @table
 def claims_light():
-    lines = [["smallest cascade, steps", "sh2", "srbf8v2", "difference of both", "the same, RSM 1024^2"]]
+    lines = [[
+        "smallest cascade, steps", "sh2", "srbf8v2", "difference of both", "the same, RSM 1024^2"
+    ]]
     rows = load("claims")["light"]
     for row in (row for row in rows if row["rsm_size"] == 256):
         size, steps = row["cascade_size"], row["iterations"]
         large = found(rows, cascade_size=size, iterations=steps, rsm_size=1024)
-        lines.append([f"{size:g} m, {steps} steps", *(f"{row[key]:.3f}" for key in ("sh2", "srbf8v2", "difference")),
-                      f"{large['difference']:.3f}" if large else "-"])
+        lines.append([
+            f"{size:g} m, {steps} steps",
+            *(f"{row[key]:.3f}" for key in ("sh2", "srbf8v2", "difference")),
+            f"{large['difference']:.3f}" if large else "-"
+        ])
     return lines
 
 
@@ -93,17 +116,26 @@ def claims_light():
 def claims_views():
     """Errors of both bases by the published scheme, paired in twelve views."""
     views = load("claims")["views"]
-    lines = [["E of sh2, srbf8v2 (difference)", *(f"{s['cascade_size']:g} m, {s['iterations']} steps" for s in views["summary"])]]
+    lines = [[
+        "E of sh2, srbf8v2 (difference)",
+        *(f"{s['cascade_size']:g} m, {s['iterations']} steps" for s in views["summary"])
+    ]]
     for camera in dict.fromkeys(row["camera"] for row in views["rows"]):
         line = [camera.replace("-", ", ")]
         for setting in views["summary"]:
-            sh, srbf = (next(row["nrmse"] for row in views["rows"] if row["camera"] == camera and row["basis"] == basis
-                             and float(row["cascade-size"]) == setting["cascade_size"]
-                             and int(row["iterations"]) == setting["iterations"]) for basis in ("sh2", "srbf8v2"))
+            sh, srbf = (next(
+                row["nrmse"] for row in views["rows"]
+                if row["camera"] == camera and row["basis"] == basis and float(row["cascade-size"])
+                == setting["cascade_size"] and int(row["iterations"]) == setting["iterations"])
+                        for basis in ("sh2", "srbf8v2"))
             line.append(f"{sh:.3f}, {srbf:.3f} ({sh - srbf:+.3f})")
         lines.append(line)
-    lines.append(["mean difference, standard error", *(f"{s['mean']:+.3f}, {s['standard_error']:.3f}" for s in views["summary"])])
-    lines.append(["8v2 better", *(f"{s['srbf8v2_better']} of {s['views']}" for s in views["summary"])])
+    lines.append([
+        "mean difference, standard error",
+        *(f"{s['mean']:+.3f}, {s['standard_error']:.3f}" for s in views["summary"])
+    ])
+    lines.append(
+        ["8v2 better", *(f"{s['srbf8v2_better']} of {s['views']}" for s in views["summary"])])
     return lines
 
 
@@ -112,9 +144,10 @@ def claims_shadows():
     names = {"path traced": "path traced", "paper sh2": "published scheme, sh2",
              "paper srbf8v2": "published scheme, srbf8v2", "best": "the defaults",
              "paper sh2 64 16": "published scheme, sh2, 64^3 cells, 16 steps"}
-    return [["contrast on the floor", "with indirect shadows", "without"]] + [
-        [names[row["image"]], *("-" if row[key] is None else f"{row[key]:.2f}" for key in ("on", "off"))]
-        for row in load("claims")["shadows"]["rows"]]
+    return [["contrast on the floor", "with indirect shadows", "without"]] + [[
+        names[row["image"]], *("-" if row[key] is None else f"{row[key]:.2f}"
+                               for key in ("on", "off"))
+    ] for row in load("claims")["shadows"]["rows"]]
 
 
 SHOWN = 6  # points of a claim whose numbers its line shows
@@ -126,9 +159,13 @@ def verdict_lines(section):
     for claim in verdicts.judged(result, section):
         points = [f"{point['at']}: {point['numbers']}" for point in claim["points"]]
         more = [f"{len(points) - SHOWN} more"] if len(points) > SHOWN + 1 else []
-        command = f"`{claim['command']}`" if claim["command"].split()[0] in ("clpv", "python3", "scripts/reproduce") else claim["command"]
-        lines.append([claim["statement"], claim["rule"], f"**{claim['verdict']}**" if len(claim["verdict"]) < 20 else claim["verdict"],
-                      "; ".join(points[:SHOWN if more else None] + more), command])
+        command = f"`{claim['command']}`" if claim["command"].split()[0] in (
+            "clpv", "python3", "scripts/reproduce") else claim["command"]
+        lines.append([
+            claim["statement"], claim["rule"],
+            f"**{claim['verdict']}**" if len(claim["verdict"]) < 20 else claim["verdict"],
+            "; ".join(points[:SHOWN if more else None] + more), command
+        ])
     return lines
 
 
@@ -142,12 +179,21 @@ for each in ("theory", "lobes", "light", "shadows", "cost", "conclusions"):
 @table
 def figures_brightness():
     rows = load("figures")["rows"]
-    lines = [["mean luminance", *(f"{size} m, {steps} steps" for size in ("12.5", "50") for steps in (8, 24))]]
-    exact = {name.replace("-", "_"): value for name, value in known.EXACT_LOBES.items() if name != "preset"}
-    for name, variant in (("published scheme, sh2", {"basis": "sh2"}), ("published scheme, srbf8v2", {"basis": "srbf8v2"}),
+    lines = [[
+        "mean luminance",
+        *(f"{size} m, {steps} steps" for size in ("12.5", "50") for steps in (8, 24))
+    ]]
+    exact = {
+        name.replace("-", "_"): value
+        for name, value in known.EXACT_LOBES.items() if name != "preset"
+    }
+    for name, variant in (("published scheme, sh2", {"basis": "sh2"}),
+                          ("published scheme, srbf8v2", {"basis": "srbf8v2"}),
                           ("published scheme, srbf14", {"basis": "srbf14"}),
-                          ("srbf14, exact lobes", {"basis": "srbf14", **exact}),
-                          ("srbf14, exact lobes and transport", {"basis": "srbf14", **exact, "transport": "exact"})):
+                          ("srbf14, exact lobes",
+                           {"basis": "srbf14",
+                            **exact}), ("srbf14, exact lobes and transport",
+                                        {"basis": "srbf14", **exact, "transport": "exact"})):
         cells = []
         for size in (12.5, 50):
             fields = {"lobe": None, "transport": None, **variant, "cascade_size": size}

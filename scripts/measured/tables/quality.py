@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Tables of docs/quality.md and README.md: NRMSE of indirect light in %, and energy over the ground truth's."""
+"""Tables of docs/quality.md and README.md: NRMSE of indirect light in %, and energy over the ground
+truth's."""
 from .. import rows as known
 from ..rows import PAPER
 from .benchmarks import stage_ms
 from .cells import found, load, number, percent, table
 
 
-VIEWS = {"curtains": "curtains", "atrium": "atrium", "columns": "columns", "front": "Cornell, front"}
+VIEWS = {
+    "curtains": "curtains", "atrium": "atrium", "columns": "columns", "front": "Cornell, front"
+}
 
 
 def nrmse(name, options, **view):
@@ -24,14 +27,18 @@ def energy(row):
 
 
 def energies(name, options):
-    return " ".join(energy(found(load(name)["cells"], options=options, camera=camera)) for camera in VIEWS)
+    return " ".join(
+        energy(found(load(name)["cells"], options=options, camera=camera)) for camera in VIEWS)
 
 
 def quality_lines(variants):
     lines = [["variant", *VIEWS.values(), "mean", "energy", "other suns, mean"]]
     for name, options in variants.items():
-        lines.append([name] + [nrmse("quality", options, camera=camera) for camera in VIEWS]
-                     + [mean("quality", options), energies("quality", options), mean("quality-suns", options)])
+        lines.append(
+            [name] + [nrmse("quality", options, camera=camera) for camera in VIEWS] +
+            [mean("quality", options),
+             energies("quality", options),
+             mean("quality-suns", options)])
     return lines
 
 
@@ -47,11 +54,18 @@ def quality_parts():
 
 @table
 def quality_grid():
-    lines = [["cells along each axis", "mean", "worst", "energy", "frame [ms]", "propagate [ms]", "gather [ms]"]]
+    lines = [[
+        "cells along each axis", "mean", "worst", "energy", "frame [ms]", "propagate [ms]",
+        "gather [ms]"
+    ]]
     for grid in known.GRIDS:
         row = found(load("quality-grid")["variants"], options={**known.FAST, "grid": str(grid)})
-        lines.append([str(grid), percent(row["nrmse"], 1), percent(row["worst_nrmse"], 1), f"{row['energy_ratio']:.2f}",
-                      *map(number, (row["frame_ms"], row["stage_ms"]["propagate"], row["stage_ms"]["gather"]))])
+        lines.append([
+            str(grid),
+            percent(row["nrmse"], 1),
+            percent(row["worst_nrmse"], 1), f"{row['energy_ratio']:.2f}",
+            *map(number, (row["frame_ms"], row["stage_ms"]["propagate"], row["stage_ms"]["gather"]))
+        ])
     return lines
 
 
@@ -69,10 +83,17 @@ def quality_scenes():
     for scene, name in (("atrium", "atrium, its sun"), ("atrium_overcast", "atrium, overcast"),
                         ("sponza_overcast", "Sponza, overcast")):
         for label, options in known.SUNS.items():
-            rows = [row for row in load("quality-scenes")["cells"] if (row["scene"], row["options"]) == (scene, options)]
+            rows = [
+                row for row in load("quality-scenes")["cells"]
+                if (row["scene"], row["options"]) == (scene, options)
+            ]
             if rows and all(row["nrmse"] is not None for row in rows):  # steps reject skies
-                lines.append([name, label, ", ".join(f"{row['camera']} {percent(row['nrmse'])}" for row in rows),
-                              percent(sum(row["nrmse"] for row in rows) / len(rows)), " ".join(map(energy, rows))])
+                lines.append([
+                    name, label,
+                    ", ".join(f"{row['camera']} {percent(row['nrmse'])}" for row in rows),
+                    percent(sum(row["nrmse"] for row in rows) / len(rows)),
+                    " ".join(map(energy, rows))
+                ])
     return lines
 
 
@@ -81,11 +102,14 @@ def quality_media():
     lines = [["scene, camera", "sigma_s, sigma_a [1/m]", "bounces", "`medium`", "`indirect`"]]
     rows = {}  # cells by view
     for cell in load("quality-media")["cells"]:
-        rows.setdefault((cell["scene"], cell["camera"], cell["medium"], cell["bounces"]), {})[cell["view"]] = cell
+        rows.setdefault((cell["scene"], cell["camera"], cell["medium"], cell["bounces"]),
+                        {})[cell["view"]] = cell
     for (scene, camera, medium, bounces), views in rows.items():
-        lines.append([f"{scene}, {camera}", medium, bounces,
-                      *(f"{percent(views[view]['nrmse'])} %, {energy(views[view])}" if view in views else "-"
-                        for view in ("medium", "indirect"))])
+        lines.append([
+            f"{scene}, {camera}", medium, bounces,
+            *(f"{percent(views[view]['nrmse'])} %, {energy(views[view])}" if view in views else "-"
+              for view in ("medium", "indirect"))
+        ])
     return lines
 
 
@@ -101,19 +125,30 @@ def quality_bounces():
 @table
 def quality_lamp():
     lines = [["ground truth", "variant", "front", "published"]]
-    for truth, file, options, name in (
-            ("one bounce", "quality-lamp", known.FAST, "`--preset fast`"),
-            *(("all bounces", "quality-lamp-bounces", {**known.FAST, "bounces": n}, f"`--preset fast --bounces {n}`") for n in ("1", "2", "all"))):
-        lines.append([truth, name] + [nrmse(file, options, camera=camera) for camera in ("front", "published")])
+    for truth, file, options, name in (("one bounce", "quality-lamp", known.FAST,
+                                        "`--preset fast`"),
+                                       *(("all bounces", "quality-lamp-bounces", {
+                                           **known.FAST, "bounces": n
+                                       }, f"`--preset fast --bounces {n}`")
+                                         for n in ("1", "2", "all"))):
+        lines.append([truth, name] +
+                     [nrmse(file, options, camera=camera) for camera in ("front", "published")])
     return lines
 
 
 @table
 def quality_steps():
-    lines = [["NRMSE [%], energy", *(f"{s['cascade-size']} m, {s['iterations']} steps" for s in known.SETTINGS)]]
+    lines = [[
+        "NRMSE [%], energy",
+        *(f"{s['cascade-size']} m, {s['iterations']} steps" for s in known.SETTINGS)
+    ]]
     for name, options in known.STEPS.items():
-        cells = [found(load("quality-steps")["cells"], options={**options, **setting}) for setting in known.SETTINGS]
-        lines.append([name] + [f"{percent(row['nrmse'])}, {energy(row)}" if row else "-" for row in cells])
+        cells = [
+            found(load("quality-steps")["cells"], options={**options, **setting})
+            for setting in known.SETTINGS
+        ]
+        lines.append([name] +
+                     [f"{percent(row['nrmse'])}, {energy(row)}" if row else "-" for row in cells])
     return lines
 
 
@@ -127,7 +162,10 @@ def readme():
         frame = found(load("frames")["frames"], given=known.FRAMES[name])
         times = stage_ms(frame, "propagate"), stage_ms(frame, "gather"), frame and frame["frame_ms"]
         error = mean("quality", quality, 0)
-        lines.append([name, *(f"{number(time)} ms" if time else "-" for time in times), "-" if error == "-" else f"{error} %"])
+        lines.append([
+            name, *(f"{number(time)} ms" if time else "-" for time in times),
+            "-" if error == "-" else f"{error} %"
+        ])
     return lines
 
 
@@ -135,14 +173,23 @@ def readme():
 def quality_cascades():
     cells = load("quality-cascades")["cells"]
     views = list(dict.fromkeys((cell["scene"], cell["camera"]) for cell in cells))
-    lines = [["NRMSE [%]", *(f"{scene}, {camera}" for scene, camera in views), "mean", "FLIP", "light [ms]", "memory [MB]"]]
+    lines = [[
+        "NRMSE [%]", *(f"{scene}, {camera}" for scene, camera in views), "mean", "FLIP",
+        "light [ms]", "memory [MB]"
+    ]]
     for method in (None, *known.CASCADE_METHODS):
         options = {"baseline": method} if method else {}
-        found_cells = [found(cells, options=options, scene=scene, camera=camera) for scene, camera in views]
+        found_cells = [
+            found(cells, options=options, scene=scene, camera=camera) for scene, camera in views
+        ]
         times = sorted(cell["stage_ms"].get("baseline", 0) for cell in found_cells)
         memory = max(cell["settings"].get("megabytes", 0) for cell in found_cells)
-        lines.append([f"`{method}`" if method else "clpv, the defaults", *(percent(cell["nrmse"]) for cell in found_cells),
-                      *(f"{sum(cell[name] for cell in found_cells) * factor / len(views):.{digits}f}"
-                        for name, factor, digits in (("nrmse", 100, 1), ("flip", 1, 3))),
-                      f"{times[0]:.0f}-{times[-1]:.0f}" if method else "-", number(memory) if memory else "-"])
+        lines.append([
+            f"`{method}`" if method else "clpv, the defaults", *(percent(cell["nrmse"])
+                                                                 for cell in found_cells),
+            *(f"{sum(cell[name] for cell in found_cells) * factor / len(views):.{digits}f}"
+              for name, factor, digits in (("nrmse", 100, 1), ("flip", 1, 3))),
+            f"{times[0]:.0f}-{times[-1]:.0f}" if method else "-",
+            number(memory) if memory else "-"
+        ])
     return lines

@@ -7,13 +7,19 @@ from ..rows import SHARED
 from .cells import found, number, percent, table
 
 
-METHODS = {"clpv": "**clpv, the defaults**", "clpv, near off": "clpv, `--preset fast`", "published scheme": "published scheme, sh2",
-           **{name: f"`{name}`" for name in known.METHODS}}
+METHODS = {
+    "clpv": "**clpv, the defaults**", "clpv, near off": "clpv, `--preset fast`",
+    "published scheme": "published scheme, sh2", **{name: f"`{name}`"
+                                                    for name in known.METHODS}
+}
 
 
 def handed_in():
     """Scores of other renderers, as `python3 -m clpv.score -o` writes them."""
-    return [json.loads(path.read_text(encoding="utf-8")) for path in sorted((RESULTS / "quality/scores").glob("*.json"))]
+    return [
+        json.loads(path.read_text(encoding="utf-8"))
+        for path in sorted((RESULTS / "quality/scores").glob("*.json"))
+    ]
 
 
 @table
@@ -28,8 +34,12 @@ def scores():
             def mean_of(name, rows=rows):
                 values = [row.get(name) for row in rows]
                 return None if None in values else sum(values) / len(values)
-            lines.append([document["method"], scene, str(len(rows)), *(percent(mean_of(name), 1) for name in ("nrmse", "bias", "noise")),
-                          f"{mean_of('energy_ratio'):.3f}", f"{mean_of('flip'):.3f}"])
+
+            lines.append([
+                document["method"], scene,
+                str(len(rows)), *(percent(mean_of(name), 1) for name in ("nrmse", "bias", "noise")),
+                f"{mean_of('energy_ratio'):.3f}", f"{mean_of('flip'):.3f}"
+            ])
     return lines
 
 
@@ -41,18 +51,30 @@ def standing():
 
 def standing_lines(group):
     """A line for each run and method: the error of each view, then means."""
-    views = list(dict.fromkeys((cell["scene"], cell["camera"]) for _, document in standing() for cell in document[group]))
-    lines = [["run", "NRMSE [%]", *(f"{scene}, {camera}" for scene, camera in views), "mean", "energy", "FLIP", "light [ms]"]]
+    views = list(
+        dict.fromkeys((cell["scene"], cell["camera"]) for _, document in standing()
+                      for cell in document[group]))
+    lines = [[
+        "run", "NRMSE [%]", *(f"{scene}, {camera}" for scene, camera in views), "mean", "energy",
+        "FLIP", "light [ms]"
+    ]]
     for run, document in standing():
         for method, title in METHODS.items():
-            cells = [found(document[group], method=method, scene=scene, camera=camera) for scene, camera in views]
+            cells = [
+                found(document[group], method=method, scene=scene, camera=camera)
+                for scene, camera in views
+            ]
             there = [cell for cell in cells if cell and not cell["rejected"]]
             if there:
                 def mean_of(get):
                     return sum(map(get, there)) / len(there)
-                lines.append([run, title, *(percent(cell and cell["nrmse"]) for cell in cells),
-                              percent(mean_of(lambda cell: cell["nrmse"]), 1), f"{mean_of(lambda cell: cell['energy_ratio']):.2f}",
-                              f"{mean_of(lambda cell: cell['flip']):.3f}", number(mean_of(light_ms))])
+                lines.append([
+                    run, title, *(percent(cell and cell["nrmse"]) for cell in cells),
+                    percent(mean_of(lambda cell: cell["nrmse"]),
+                            1), f"{mean_of(lambda cell: cell['energy_ratio']):.2f}",
+                    f"{mean_of(lambda cell: cell['flip']):.3f}",
+                    number(mean_of(light_ms))
+                ])
     return lines
 
 
@@ -78,7 +100,9 @@ def standing_large():
 
 @table
 def standing_runs():
-    return [["run", "clpv", "device", "driver", "threads", "date", "time of 960x540 [ms]"]] + [
-        [run, document["measured"]["commit"], document["measured"]["device"], document["measured"]["driver"],
-         str(document["small"][0]["compute_units"]), document["measured"]["date"], number(document["time_of_large_ms"])]
-        for run, document in standing()]
+    return [["run", "clpv", "device", "driver", "threads", "date", "time of 960x540 [ms]"]] + [[
+        run, document["measured"]["commit"], document["measured"]["device"],
+        document["measured"]["driver"],
+        str(document["small"][0]["compute_units"]), document["measured"]["date"],
+        number(document["time_of_large_ms"])
+    ] for run, document in standing()]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The paper's claims judged by rule (judge.py), a file for each section of docs/paper/figures.md."""
+"""The paper's claims judged by rule (judge.py), a file for each section of
+docs/paper/figures.md."""
 from . import theory, lobes, light, shadows, cost, conclusions  # in the order of the page
 from .judge import judged, sentence
 from .light import interval, signed

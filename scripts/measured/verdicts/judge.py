@@ -55,7 +55,8 @@ def sentence(axis, points):
 
 
 def judged(read, only=None):
-    """All claims, or those of a section, as JSON. `read`: returns a file of results by its name ("docs/claims")."""
+    """All claims, or those of a section, as JSON. `read`: returns a file of results by its name
+    ("docs/claims")."""
     made = []
     for section, statement, rule, axis, command, function in CLAIMS:
         if only not in (None, section):

@@ -53,7 +53,8 @@ ARCADE = "scripts/reproduce --part arcade"
 def of_arcade(read):
     """The path-traced shadow, and the rows of all images."""
     traced, *rows = read("docs/claims")["arcade"]
-    return traced["on"], [({**NAMES, "64": "the defaults in 64^3 cells"}[each["image"]], each) for each in rows]
+    return traced["on"], [({**NAMES, "64": "the defaults in 64^3 cells"}[each["image"]], each)
+                          for each in rows]
 
 
 @claim("shadows", "image", ARCADE)
