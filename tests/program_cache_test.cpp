@@ -101,15 +101,28 @@ TEST_F(ProgramCacheTest, DropsTheLeastRecentlyUsed) {
 TEST_F(ProgramCacheTest, UsersFolderIsTheDocumentedOne) {
   setenv("HOME", "/home/me", 1);
   setenv("XDG_CACHE_HOME", "/cache", 1);
+  Device device = choose_device();
+  device.platform = "of a driver without a cache";
   unsetenv("CLPV_PROGRAM_CACHE");
-  EXPECT_EQ(ProgramCache::of_user()->folder(), "/cache/clpv");
+  EXPECT_EQ(ProgramCache::of_user(device)->folder(), "/cache/clpv");
   setenv("XDG_CACHE_HOME", "", 1);
-  EXPECT_EQ(ProgramCache::of_user()->folder(), "/home/me/.cache/clpv");
+  EXPECT_EQ(ProgramCache::of_user(device)->folder(), "/home/me/.cache/clpv");
   setenv("CLPV_PROGRAM_CACHE", "off", 1);
-  EXPECT_FALSE(ProgramCache::of_user().has_value());
+  EXPECT_FALSE(ProgramCache::of_user(device).has_value());
   unsetenv("CLPV_PROGRAM_CACHE");
   unsetenv("HOME");
-  EXPECT_FALSE(ProgramCache::of_user().has_value());
+  EXPECT_FALSE(ProgramCache::of_user(device).has_value());
+}
+
+TEST_F(ProgramCacheTest, DriversThatKeepKernelsNeedNone) {
+  setenv("XDG_CACHE_HOME", "/cache", 1);
+  unsetenv("CLPV_PROGRAM_CACHE");
+  Device device = choose_device();
+  device.platform = "Portable Computing Language";
+  EXPECT_FALSE(ProgramCache::of_user(device).has_value());
+  setenv("CLPV_PROGRAM_CACHE", "on", 1);
+  EXPECT_TRUE(ProgramCache::of_user(device).has_value());
+  unsetenv("CLPV_PROGRAM_CACHE");
 }
 
 /// A session's program from the cache; its kernel writes another value than a compiled one.

@@ -44,11 +44,14 @@ struct Renderer::State {
         scene_stays(file.contents().mutex),
         posed(file),
         options(resolve_options(given.given(), posed.scene())),
-        session(std::move(where), ProgramCache::of_user()),
+        session(where, ProgramCache::of_user(device_of(where))),
         rebuilds(file.contents().rebuilds) {
     frame.emplace(session, posed.scene(), options);
     scene_stays.unlock();
   }
+
+  static const Device& device_of(const Device& device) { return device; }
+  static const Device& device_of(const GivenQueue& given) { return given.device; }
 
   void require(bool made, const char* what) const {
     if (!made)

@@ -132,9 +132,10 @@ void run(Options options, const Shared& shared) {
   const bench::Suite& suite =
       *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
   load_suite_scene(options, suite);
+  const Device device = choose_device(shared.device);
   // Cached programs have no build time.
-  Session session(choose_device(shared.device),
-                  suite.name == "regression" ? std::nullopt : ProgramCache::of_user());
+  Session session(device,
+                  suite.name == "regression" ? std::nullopt : ProgramCache::of_user(device));
   spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
                session.device().driver);
   const bench::Results results = bench::run_suite(session, suite, options.bench);

@@ -70,8 +70,8 @@ void run(const Options& options, const Shared& shared) {
   const RenderOptions resolved = resolve_request(request, moving.scene());
   const SceneCamera& camera = moving.scene().camera(request.camera);
   log_scene(moving.scene(), camera, resolved);
-  Session session(choose_device(shared.device), ProgramCache::of_user(),
-                  compilation_of(request, shared.device));
+  const Device device = choose_device(shared.device);
+  Session session(device, ProgramCache::of_user(device), compilation_of(request, shared.device));
   Frame frame(session, moving.scene(), resolved);
   frame.render(camera);
   const std::string table = table_of(points, frame);

@@ -88,8 +88,8 @@ void run(const Options& options, const Shared& shared) {
   progress.advance();
 
   stats.begin_startup();
-  Session session(choose_device(shared.device), ProgramCache::of_user(),
-                  compilation_of(request, shared.device));
+  const Device device = choose_device(shared.device);
+  Session session(device, ProgramCache::of_user(device), compilation_of(request, shared.device));
   Frame frame(session, scene, resolved);
   stats.end_startup();
   spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,

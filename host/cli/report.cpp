@@ -194,7 +194,8 @@ void run(const Options& options, const Shared& shared) {
   const Drawing drawing("report", "clpv report");
   nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},
                         {"benchmarks", read_documents(options.benchmarks, "benchmarks", "bench")}};
-  Session session(choose_device(shared.device), ProgramCache::of_user());
+  const Device device = choose_device(shared.device);
+  Session session(device, ProgramCache::of_user(device));
   report["views"] = views(session, options, drawing);
   session.store_programs();
   const RenderOptions best;

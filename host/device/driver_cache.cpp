@@ -26,6 +26,10 @@ std::string name_of_mark(const std::string& key) {
 
 }  // namespace
 
+bool driver_keeps_kernels(const Device& device) {
+  return device.platform == "Portable Computing Language";
+}
+
 std::optional<fs::path> driver_cache_folder() {
   if (const auto given = folder_of("POCL_CACHE_DIR", "")) return given;
   if (const auto cache = folder_of("XDG_CACHE_HOME", "pocl/kcache")) return cache;
@@ -41,7 +45,7 @@ bool driver_cache_is_full() {
 }
 
 CompiledMarks::CompiledMarks(const Device& device) {
-  if (device.platform != "Portable Computing Language") return;
+  if (!driver_keeps_kernels(device)) return;
   if (const auto cache = driver_cache_folder()) folder_.emplace(*cache / "clpv");
 }
 

@@ -11,6 +11,9 @@
 
 namespace clpv {
 
+/// Returns true if the driver keeps compiled kernels itself, for all processes: PoCL.
+bool driver_keeps_kernels(const Device& device);
+
 /// PoCL's cache folder: POCL_CACHE_DIR, else below XDG_CACHE_HOME, else below HOME.
 std::optional<std::filesystem::path> driver_cache_folder();
 

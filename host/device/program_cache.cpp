@@ -6,6 +6,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "device/driver_cache.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/log.hpp"
@@ -72,12 +73,13 @@ std::optional<ProgramCache::Binary> unpack(std::string_view bytes, const std::st
 ProgramCache::ProgramCache(fs::path folder, std::uint64_t max_bytes)
     : folder_(std::move(folder)), max_bytes_(max_bytes) {}
 
-std::optional<ProgramCache> ProgramCache::of_user() {
+std::optional<ProgramCache> ProgramCache::of_user(const Device& device) {
   const char* setting = std::getenv("CLPV_PROGRAM_CACHE");
   const std::string_view value = setting == nullptr ? "" : setting;
   if (value == "off") return std::nullopt;
   if (!value.empty() && value != "on")
     throw Error(ExitCode::usage, "CLPV_PROGRAM_CACHE: found '{}', allowed: on, off", value);
+  if (value.empty() && driver_keeps_kernels(device)) return std::nullopt;
   if (const auto folder = user_cache_folder()) return ProgramCache(*folder);
   spdlog::debug("neither XDG_CACHE_HOME nor HOME is set: compiled programs are not cached");
   return std::nullopt;

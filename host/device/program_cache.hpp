@@ -26,8 +26,9 @@ class ProgramCache {
   explicit ProgramCache(std::filesystem::path folder, std::uint64_t max_bytes = kDefaultMaxBytes);
 
   /// The user's cache: $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv. None if neither variable is
-  /// set or CLPV_PROGRAM_CACHE is "off".
-  static std::optional<ProgramCache> of_user();
+  /// set, if CLPV_PROGRAM_CACHE is "off", or if the driver keeps compiled kernels itself, unless
+  /// CLPV_PROGRAM_CACHE is "on".
+  static std::optional<ProgramCache> of_user(const Device& device);
 
   /// Cache key of a program: device, driver, build options and text, in full.
   static std::string key(const Device& device, const std::string& options, const std::string& text);

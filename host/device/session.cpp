@@ -24,8 +24,6 @@ ProgramSource words_program() {
 constexpr std::size_t kWordsGroup = 64;
 constexpr double kNoticeMs = 1000;             // longer waits are explained in the log
 constexpr std::size_t kCopiedBytes = 1 << 20;  // larger writes wait for the queue rather than copy
-constexpr int kStoreShare = 10;  // store_programs() takes at most 1/10 of the process's run time
-const auto kProcessStart = std::chrono::steady_clock::now();
 
 cl_uint words_of(std::size_t bytes) {
   return bytes / sizeof(cl_uint);
@@ -236,14 +234,10 @@ bool Session::load(Program& program) {
 }
 
 void Session::store_programs() {
-  if (!cache_ || helped_)
-    return;  // after a first run the driver's own cache suffices; later runs store
+  if (!cache_) return;
   bool logged = false;
-  const auto start = std::chrono::steady_clock::now();
-  const auto limit = (start - kProcessStart) / kStoreShare;
   for (auto& [key, program] : programs_) {
     if (program->stored || program->built() == nullptr) continue;
-    if (std::chrono::steady_clock::now() - start > limit) return;
     // Reading a binary makes some drivers compile again.
     if (!std::exchange(logged, true) && build_ms_ > kNoticeMs)
       spdlog::info("caching the compiled kernels for later runs");

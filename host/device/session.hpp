@@ -96,9 +96,8 @@ class Session {
   /// kernels it did not launch.
   void mark_compiled();
 
-  /// Stores compiled programs in the cache, for at most 1/10 of the process's run time; later runs
-  /// store the rest. Call it last, after results are written: on PoCL, reading a program's binary
-  /// takes about as long as its first launches.
+  /// Stores compiled programs in the cache. Call it last, after results are written: some drivers
+  /// compile again when a binary is read.
   void store_programs();
 
   /// Allocates a buffer of max(bytes, 4) bytes with undefined contents. `what` names it in errors.

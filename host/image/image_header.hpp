@@ -14,7 +14,7 @@ namespace clpv {
 /// Size of an image as its file declares it, unchecked.
 struct DeclaredImage {
   std::int64_t width = 0, height = 0;  ///< of the data window [pixels]
-  /// Of a tile, or of the rows decoded at once [pixels].
+  /// Size of a tile, or of the rows decoded at once [pixels].
   std::int64_t chunk_width = 0, chunk_height = 0;
   std::int64_t channels = 0;  ///< upper bound: duplicate names count once in the image
   bool tiled = false;

@@ -27,7 +27,7 @@ namespace clpv::pathtracer {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Of a bounce, besides its direction.
+// Random numbers of a bounce, besides those of its direction.
 constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2, kFlightStream = 3, kBeamStream = 4;
 constexpr std::uint64_t kAirStream = 1ull << 32, kChannelStream = kAirStream + 1,
                         kEyeBeamStream = kAirStream + 2;  // of a path, besides its bounces

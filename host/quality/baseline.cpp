@@ -18,7 +18,7 @@ namespace clpv {
 namespace {
 
 constexpr unsigned kMaxSamples = 1u << 16, kMaxStride = 4;
-// Of the filter: its last taps are 8 pixels away; more blur Cornell's corners.
+// Passes of the filter: its last taps are 8 pixels away; more blur Cornell's corners.
 constexpr int kPasses = 4;
 constexpr unsigned kInterleave = 4;
 constexpr double kFarthest = 2;      // extrapolation of samples

@@ -51,7 +51,7 @@ struct QualityCell {
   std::map<std::string, double> stage_ms;
   bool from_events = true;     ///< times from device events; false: wall time
   unsigned compute_units = 0;  ///< of the device or sub-device that was timed
-  /// Of a baseline: samples, threads and times (quality/baseline.hpp).
+  /// Settings of a baseline: samples, threads and times (quality/baseline.hpp).
   std::map<std::string, double> settings;
   double setup_s = 0;     ///< time to create the frame; 0 if reused from another view
   double measured_s = 0;  ///< total time of the measurement

@@ -76,7 +76,7 @@ class Sequence {
     Frame frame;
     Renderer(const Device& device, const SceneData& scene, const RenderOptions& options,
              Compilation compilation)
-        : session(device, ProgramCache::of_user(), std::move(compilation)),
+        : session(device, ProgramCache::of_user(device), std::move(compilation)),
           frame(session, scene, options) {}
   };
   using Clock = std::chrono::steady_clock;

@@ -69,7 +69,7 @@ Volume on_device(Session& session, const reference::Volume& from, const VolumeFo
 struct CascadeLight {
   std::vector<ClpvGrid> grids;
   std::vector<SharedVolume> light;
-  /// Of visibility_masks() for all cascades; empty: nothing is occluded.
+  /// Result of visibility_masks() for all cascades; empty: nothing is occluded.
   std::vector<std::uint8_t> occluded;
 };
 

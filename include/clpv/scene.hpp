@@ -52,7 +52,7 @@ struct Light {
 /// Fog or dust in a box, homogeneous. Errors as for Camera.
 struct Medium {
   Vec3 scattering{}, absorption{};  ///< of red, green and blue [1/m], 0 to 1e6
-  /// Of Henyey and Greenstein's phase function, -0.9 to 0.9; above 0: forwards.
+  /// Anisotropy of Henyey and Greenstein's phase function, -0.9 to 0.9; above 0: forwards.
   double anisotropy = 0;
   /// Lower and upper corner [m]; none: the scene's bounding box.
   std::optional<std::array<Vec3, 2>> box{};

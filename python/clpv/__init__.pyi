@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 _Path = str | os.PathLike[str]
 _Vector = Sequence[float] | NDArray[Any]
-_View = Literal["full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "medium", "cells"]
+_View = Literal["full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "medium",
+                "cells"]
 __version__: str
 
 class Error(Exception):

@@ -259,7 +259,7 @@ class Viewer:
             client.shown = len(LEVELS)
             self.controls.status.content = f"**{error}**"
         except Exception as error:
-            # Of this client alone: one that left while it was drawn for, for example.
+            # An error of this client alone, which may have left while it was drawn for.
             self.disconnect(client.handle)
             print(f"clpv.view: lost a client: {error!r}", file=sys.stderr)
 

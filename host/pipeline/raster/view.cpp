@@ -155,7 +155,7 @@ ClpvView directional_rsm_view(const ClpvLight& light, const ClpvGrid& cascade, c
   double middle[2], half_extent[2];
   for (int axis = 0; axis < 2; ++axis) {
     const glm::dvec3 along = axis == 0 ? frame.right : frame.up;
-    // Of the cube along this axis.
+    // Half the extent of the cube along this axis.
     const double reach = half * glm::dot(glm::abs(along), glm::dvec3(1));
     // One spare texel: snapping moves the window by up to one.
     const double texel = 2 * reach / (size - 1);
