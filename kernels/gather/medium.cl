@@ -6,10 +6,9 @@
 //          + max(0, sum_l g^l sum_m C_lm(p) Y_lm(w))]
 //
 // medium_light adds the first sum, single scattering with shadow maps, and medium_volumes the
-// second, light of the volumes (radiance.h). The integral is a sum over points t_k. w: direction of
-// light that travels towards the camera. The 16 pixels of a tile have different t_k (air_rays.h),
-// and a mean over a tile's size joins them. Every second pixel along both axes has a ray.
-// pixel_planes.h defines the planes.
+// second, light of the volumes (radiance.h). The integral is a sum over points t_k; w points to the
+// camera. Every second pixel along both axes has a ray. The 16 rays of a tile have different t_k
+// (air_rays.h), and a mean over a tile's size joins them. pixel_planes.h defines the planes.
 //
 // medium_light
 //   In:      view, depths [m]      the camera's surface
@@ -17,11 +16,10 @@
 //   In, out: scattered             in-scattered light, three planes; medium_volumes initialises it
 // medium_volumes
 //   In:      view, depths, medium, CLPV_RADIANCE
-//   Out:     ends                  where each ray leaves the medium or meets a surface [m]; 0 if it
-//                                  is never in the medium
-//            scattered
+//   Out:     scattered
+//            ends                  where a ray leaves the medium or meets a surface [m]; 0: never in
 // medium_blur
-//   In:      ends, scattered;   Out: blurred: mean over five by five pixels of similar ends
+//   In:      ends, scattered;   Out: blurred, mean over five by five pixels of similar ends
 // medium_add
 //   In:      depths, medium, ends, blurred
 //            alone   1: the scattered light; 0: T L_surface + scattered light
@@ -54,8 +52,7 @@ CLPV_INLINE void find_plane_rays(const ClpvView view, const PlaneRow r,
   a->end = a->inside ? a->end : ZERO;
 }
 
-// Place in (0, 1) of each pixel's point within its interval: the ordered dither of a 4 x 4 tile
-// (Bayer 1973).
+// Place in (0, 1) of a pixel's point in its interval: ordered dither of a 4 x 4 tile (Bayer 1973).
 CLPV_INLINE realW place_in_interval(const PlaneRow r) {
   const uint y = (uint)r.y;
   const uintW x = as_uintW(r.x + lane_numbers()), across = (x ^ y) & 1u,

@@ -2,8 +2,8 @@
 // Finds the nearest triangle of each pixel: depth test of the triangles that rasterize.cl listed
 // for a tile.
 //
-//   inside: no edge function e_i(x, y) is negative;   key(x, y) = key + x key_x + y key_y, smaller
-//                                                     is nearer
+//   inside: no edge function e_i(x, y) is negative
+//   key(x, y) = key + x key_x + y key_y, smaller is nearer
 //
 // Tiled rasterisation with integer edge functions (Pineda 1988, 'A parallel algorithm for polygon
 // rasterization'; docs/method.md, 'Rasterize'). A pixel keeps the smallest key, and of equal keys
@@ -13,15 +13,13 @@
 //          starts        index in `binned` of the first entry of each slice of each tile
 //          binned        entries: index in `list`, smallest key
 //          counts        CLPV_LISTED and so on. With more entries than most_entered, `starts` and
-//                        `binned` are incomplete: every tile then draws the whole list, which is
-//                        slow
+//                        `binned` are incomplete: every tile then draws the whole list, slowly
 //          fresh         1: tiles start empty; 0: they continue from `keys` and `seen`
 //          vertices, triangles, materials, textures, texels   the scene, for masked materials
 // In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers
 //                        per row of a tile, CLPV_TILE rows per tile, tiles row by row; INFINITY and
 //                        UINT_MAX for empty pixels
-// A work-item draws W columns of a tile: with W 8 all of it, with W 1 a work-group draws eight
-// tiles.
+// A work-item draws W columns of a tile: all of it with W 8; with W 1 a work-group has eight tiles.
 #include "lanes.h"
 #include "prefetch.h"
 #include "raster/alpha_mask.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Irradiance of a light with shadow maps on W surfaces, for shade.cl and near_light.cl, and whether
-// it reaches points in the air, for media.
+// Irradiance of a light with shadow maps on W surfaces, and whether it reaches points in the air.
 //
 // The shadow filter has 4 x 4 taps: a box of three texels at any sub-texel position, hence the
 // weight clamp(2 - |distance|, 0, 1) per texel and axis. Each texel's depth is compared with the
@@ -16,8 +15,7 @@
 #include "vec.h"
 
 // W receivers in a shadow map, with their lifted tangent planes. At the texel (dx, dy) from the
-// receiver a plane
-// has depth d with d (a + per_depth g) = b - (1 - per_depth) g,  g = dx slope_x + dy slope_y.
+// receiver d (a + per_depth g) = b - (1 - per_depth) g, d its depth, g = dx slope_x + dy slope_y.
 typedef struct {
   realW x, y;  // pixel coordinates
   realW slope_x, slope_y;
@@ -34,7 +32,7 @@ CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec
   const realW scale = view.orthographic != 0.0f ? ONE : vec_dot_unfused(offset, forward);
   const realW sx = vec_dot_unfused(offset, right) / scale, sy = vec_dot_unfused(offset, up) / scale;
   const float width = (float)view.width, height = (float)view.height;
-  // At depth 1.
+  // at depth 1
   const float edge_x = 2.0f * view.half_width / width, edge_y = -2.0f * view.half_height / height;
   const realW square = 1.0f - cosine * cosine;
   const realW sine = sqrt(square > ZERO ? square : ZERO);
@@ -112,8 +110,7 @@ CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, co
   return dot(blocked, one);
 }
 
-// Visible share of the light at W receivers in [0, 1]; 1 outside the map and outside the mask
-// `lit`.
+// Visible share of the light at W receivers, 0 to 1; 1 outside the map and the mask `lit`.
 CLPV_INLINE realW find_visibility(const ClpvView view, __global const float* map, const Receivers r,
                                   const intW lit) {
   const Taps tx = find_taps(r.x, (int)view.width), ty = find_taps(r.y, (int)view.height);
@@ -138,7 +135,7 @@ CLPV_INLINE realW find_visibility(const ClpvView view, __global const float* map
   return all > ZERO ? ONE - load_lanes(blocked) / all : ONE;
 }
 
-// Mask of the points that view `which` covers: among views sharing an eye, the one facing `offset`
+// Mask of the points that view `which` covers: of views with one eye, the one that faces `offset`
 // most directly; on a tie, the first.
 CLPV_INLINE intW view_covers(__global const ClpvView* views, const uint count, const uint which,
                              const Vec offset) {
@@ -179,8 +176,7 @@ CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shado
   return vec_times(irradiance, find_visibility(view, shadow.map, r, *lit));
 }
 
-// 1 where the light reaches points in the air, else 0: the nearest texel of its map. 0 too where
-// another view of the light covers them.
+// 1 where the light reaches points in the air by the nearest texel of this map, else 0.
 CLPV_INLINE realW light_reaches(const ShadowMap shadow, const Vec position) {
   if (shadow.count == 0) return ONE;
   const ClpvView view = shadow.views[shadow.which];

@@ -47,8 +47,8 @@ enum {
       8,  // from the start of a bordered row to its first cell: aligned for eight lanes
 };
 #define CLPV_SWEEP_ROW_OF(n) (((n) + 7) / 8 * 8)
-#define CLPV_SWEEP_PLANE_OF(n) ((n)*CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_LINE)
-#define CLPV_SWEEP_VOLUME_OF(n) ((n)*CLPV_SWEEP_PLANE_OF(n) + CLPV_SWEEP_LINE)
+#define CLPV_SWEEP_PLANE_OF(n) ((n) * CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_LINE)
+#define CLPV_SWEEP_VOLUME_OF(n) ((n) * CLPV_SWEEP_PLANE_OF(n) + CLPV_SWEEP_LINE)
 #define CLPV_SWEEP_PITCH_OF(n) (CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_FIRST)
 #define CLPV_SWEEP_BORDERED_PLANE_OF(n) (((n) + 2) * CLPV_SWEEP_PITCH_OF(n) + CLPV_SWEEP_FIRST)
 #define CLPV_SWEEP_BORDERED_VOLUME_OF(n) (((n) + 2) * CLPV_SWEEP_BORDERED_PLANE_OF(n))

@@ -1,30 +1,27 @@
 // SPDX-License-Identifier: MIT
-// One step of a sweep: W cells of a plane, all channels and all directions of a bin. Both forms of
-// the sweep use it (sweep_bins.cl, sweep_planes.cl).
+// One step of a sweep: W cells of a plane, all channels and directions of a bin, for sweep_bins.cl
+// and sweep_planes.cl.
 //
-//   D = I + sum_k t_k T_k D_k                               k: the four cells of the previous plane
-//                                                           that light comes from
+//   D = I + sum_k t_k T_k D_k                                k: four cells of the previous plane
 //   t = (1-t_u)(1-t_v), t_u(1-t_v), (1-t_u)t_v, t_u t_v      of these cells
 //   t_u = |w_u| / |w_m|
-//   I_w = sum_i c_i (1 / Omega) Int_part b_i dw             I of direction w
+//   I_w = sum_i c_i (1 / Omega) Int_part b_i dw              I of direction w
 //   L_b s^2 = sum_d Omega_d D_d / (|w_m| Omega_b)            d: the directions of bin b
 //
 // Discrete ordinates by short characteristics (docs/method.md, 'The sweep'). D [W/sr] is the light
-// along a direction, I [W/sr] the injected light, with add_cosine_rest() for harmonics, T_k in [0,
-// 1] the transmittance of the link from cell k. ClpvSweepDirection has t and the share Omega_d /
-// (|w_m| Omega_b), BinSweep the means of the basis functions over a direction's part of a bin.
+// along a direction, I [W/sr] the injected light, with add_cosine_rest() for harmonics, T_k the
+// transmittance of the link from cell k, 0 to 1. ClpvSweepDirection has t and the share of a
+// direction, BinSweep the means of the basis functions over its part of a bin.
 //
-// With CLPV_MEDIUM, light from the previous plane is attenuated in each channel, and the medium
-// scatters light into it:
+// With CLPV_MEDIUM, the medium attenuates light from the previous plane and scatters light into it:
 //
 //   D = I + (1 - f a) sum_k t_k T_k D_k + |w_m| a (f J) s^2,   a = 1 - exp(-sigma_t s / |w_m|)
 //
-// f is the part in the medium of a cell, J s^2 [W/sr] the source function of the bin
-// (sweep_medium.cl); f and f J are means of the cell and its neighbour upstream along m.
+// J s^2 [W/sr]: source function of the bin (sweep_medium.cl); f: part of a cell in the medium; f and
+// f J are means of the cell and its neighbour upstream along m.
 //
 // From the host: CLPV_PARTS directions of a bin, CLPV_SOURCES coefficients stored per channel,
-// CLPV_EMITTING of them that a bin's light depends on, CLPV_BLOCKING, CLPV_MEDIUM,
-// CLPV_COSINE_REST.
+// CLPV_EMITTING that a bin's light depends on, CLPV_BLOCKING, CLPV_MEDIUM, CLPV_COSINE_REST.
 #pragma once
 
 #include "shared/sweep.h"
@@ -37,19 +34,17 @@ typedef struct {
   int number;  // of the bin, 0 to CLPV_SWEEP_BINS - 1
   ClpvSweepBin bin;
   __constant const ClpvSweepDirection* directions;  // CLPV_PARTS of them
-  __constant const int*
-      coefficients;               // the CLPV_EMITTING coefficients that the bin's light depends on
-  __constant const float* means;  // of their functions, CLPV_EMITTING for each direction
-  CLPV_BUFFER_IN sources;         // c of 3 channels and CLPV_SOURCES coefficients (sweep_source.cl)
-  __global const uchar* lit;      // 1 for each CLPV_SOURCE_LANES cells that hold sources
-  CLPV_BUFFER_IN links;                             // T, a volume for each axis and link
-  CLPV_BUFFER_IN border;  // D in the cells beside the grid (sweep_border.h)
-  CLPV_BUFFER_OUT sums;                             // L s^2, a volume for each channel and bin
-  CLPV_BUFFER_OUT halo_light;                       // D in the cells of the halo (sweep_border.h)
+  __constant const int* coefficients;  // those that the bin's light depends on, CLPV_EMITTING
+  __constant const float* means;       // of their functions, CLPV_EMITTING for each direction
+  CLPV_BUFFER_IN sources;      // c of 3 channels and CLPV_SOURCES coefficients (sweep_source.cl)
+  __global const uchar* lit;   // 1 for each CLPV_SOURCE_LANES cells that hold sources
+  CLPV_BUFFER_IN links;        // T, a volume for each axis and link
+  CLPV_BUFFER_IN border;       // D in the cells beside the grid (sweep_border.h)
+  CLPV_BUFFER_OUT sums;        // L s^2, a volume for each channel and bin
+  CLPV_BUFFER_OUT halo_light;  // D in the cells of the halo (sweep_border.h)
 #if CLPV_MEDIUM
-  __global const float*
-      inside;  // part in the medium of each cell along x, y and z, rows with border
-  CLPV_BUFFER_IN scattered;                         // J s^2, a volume for each channel and bin
+  __global const float* inside;  // part in the medium of each cell along each axis, with border
+  CLPV_BUFFER_IN scattered;      // J s^2, a volume for each channel and bin
 #endif
 } BinSweep;
 
@@ -62,14 +57,12 @@ typedef struct {
 #endif
 
 // A BinSweep of bin b, from the kernel's parameters and its `bin`, by their names.
-#define CLPV_BIN_SWEEP(b)                                                                 \
-  {                                                                                       \
-    b, bin, directions + (b)*CLPV_PARTS, coefficients + (b)*CLPV_EMITTING,                \
-        means + (b)*CLPV_PARTS *CLPV_EMITTING,                                            \
-        sources + bin.transposed * 3 * CLPV_SOURCES *CLPV_SWEEP_VOLUME,                   \
-        lit + bin.transposed *CLPV_SWEEP_VOLUME / CLPV_SOURCE_LANES, links, border, sums, \
-        halo_light CLPV_MEDIUM_MEMBER                                                     \
-  }
+#define CLPV_BIN_SWEEP(b)                                                                       \
+  {b, bin, directions + (b) * CLPV_PARTS, coefficients + (b) * CLPV_EMITTING,                   \
+   means + (b) * CLPV_PARTS * CLPV_EMITTING,                                                    \
+   sources + bin.transposed * 3 * CLPV_SOURCES * CLPV_SWEEP_VOLUME,                             \
+   lit + bin.transposed * CLPV_SWEEP_VOLUME / CLPV_SOURCE_LANES, links, border, sums,           \
+   halo_light CLPV_MEDIUM_MEMBER}
 
 // Returns true if any of W cells holds sources.
 CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
@@ -80,8 +73,7 @@ CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
 #endif
 }
 
-// Adds I to D in cells that hold sources, and to `sum`. `planes`: D of the bin's first ordinate in
-// these cells.
+// Adds I to D in cells with sources, and to `sum`. `planes`: D of the bin's first ordinate there.
 CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float* planes,
                              realW* sum) {
   for (int channel = 0; channel < 3; ++channel) {
@@ -109,14 +101,12 @@ CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float
 }
 
 #if CLPV_MEDIUM
-// Index in `inside` of cell i along an axis.
 CLPV_INLINE int inside_index(const int axis, const int i) {
   return axis * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + i;
 }
 #endif
 
-// `from`: plane buffer of the previous plane; `to`: plane buffer of this one, which may be the
-// same.
+// `from`: plane buffer of the previous plane; `to`: that of this one, which may be the same.
 CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __global float* to,
                              const int plane, const int row, const int column) {
   const ClpvSweepBin bin = s->bin;
@@ -184,11 +174,10 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
                   sum[channel]);
 }
 
-// Row or column upstream of the grid.
 CLPV_INLINE int upstream_of_grid(const int sign) { return sign > 0 ? -1 : CLPV_GRID; }
 
-// Copy the boundary condition of a plane from the border into the plane buffer, where the next
-// plane reads it: W cells of the row upstream, and of the column upstream (one cell with one lane).
+// Copy the boundary condition of a plane into the plane buffer, where the next plane reads it: W
+// cells of the row upstream, and of the column upstream (one cell with one lane).
 CLPV_INLINE void copy_border_row(const BinSweep* s, __global float* planes, const int ordinate,
                                  const int plane, const int column) {
   planes += ordinate * CLPV_BORDERED_PLANE + plane_index(upstream_of_grid(s->bin.row_sign), column);
