@@ -17,7 +17,7 @@
 // medium_volumes
 //   In:      view, depths, medium, CLPV_RADIANCE
 //   Out:     scattered
-//            ends                  where a ray leaves the medium or meets a surface [m]; 0: never in
+//            ends                  where a ray leaves the medium or meets a surface [m], or 0
 // medium_blur
 //   In:      ends, scattered;   Out: blurred, mean over five by five pixels of similar ends
 // medium_add

@@ -13,12 +13,12 @@
 // transmittance of the link from cell k, 0 to 1. ClpvSweepDirection has t and the share of a
 // direction, BinSweep the means of the basis functions over its part of a bin.
 //
-// With CLPV_MEDIUM, the medium attenuates light from the previous plane and scatters light into it:
+// With CLPV_MEDIUM, a medium attenuates light from the previous plane, and scatters some into it:
 //
 //   D = I + (1 - f a) sum_k t_k T_k D_k + |w_m| a (f J) s^2,   a = 1 - exp(-sigma_t s / |w_m|)
 //
-// J s^2 [W/sr]: source function of the bin (sweep_medium.cl); f: part of a cell in the medium; f and
-// f J are means of the cell and its neighbour upstream along m.
+// J s^2 [W/sr]: source function of the bin (sweep_medium.cl); f: part of a cell in the medium; f
+// and f J are means of the cell and its neighbour upstream along m.
 //
 // From the host: CLPV_PARTS directions of a bin, CLPV_SOURCES coefficients stored per channel,
 // CLPV_EMITTING that a bin's light depends on, CLPV_BLOCKING, CLPV_MEDIUM, CLPV_COSINE_REST.

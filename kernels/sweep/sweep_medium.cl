@@ -4,10 +4,10 @@
 //
 //   J_b = sigma_s / sigma_t (sum over lights of p_b(w) E + sum over bins b' of M_bb' L_b')
 //
-// J, L [W/m^2/sr]. E [W/m^2]: irradiance of a light, mean over eight points of the cell that lie in the medium; p_b
-// [1/sr]: phase function from the light's direction w to the mean direction of bin b, over all bins
-// scaled to an integral of 1; M (24 x 24): means of the phase function from bin to bin
-// (host/basis/sweep.hpp).
+// J, L [W/m^2/sr]. E [W/m^2]: irradiance of a light, mean over eight points of the cell that lie in
+// the medium; p_b [1/sr]: phase function from the light's direction w to the mean direction of bin
+// b, over all bins scaled to an integral of 1; M (24 x 24): means of the phase function from bin to
+// bin (host/basis/sweep.hpp).
 //
 // scatter_lights    adds the first sum for one light and one of its shadow maps
 //   In:      grid, light, views, count, which, map   as in shade.cl, light scaled as volumes are
@@ -17,8 +17,8 @@
 //   In:      lit           J s^2 of the lights
 //            swept         L s^2 [W/sr], as written by a sweep
 //   Out:     sources
-// From the host (host/codegen/sweep_source.cpp): CLPV_SCATTERING, M by folded bins (mirrored_bins.h).
-// A work-item computes a tile of W x W cells of a slice; in scatter_swept of a channel.
+// From the host: CLPV_SCATTERING, M by folded bins (mirrored_bins.h). A work-item has a tile of
+// W x W cells of a slice, in scatter_swept of one channel.
 #include "lanes.h"
 #include "gather/medium.h"
 #include "raster/shadow.h"
