@@ -156,7 +156,8 @@ TEST(Check, AKernelThatCrashesFailsOnlyItsRow) {
 
 TEST(Check, AKernelThatDoesNotEndExceedsTheLimit) {
   const test::Outcome outcome = check_with_sizes(
-      "__kernel void sizes(volatile __global uint* bytes) { do *bytes = 0; while (*bytes == 0); }\n",
+      "__kernel void sizes(volatile __global uint* bytes) { do *bytes = 0; while (*bytes == 0); "
+      "}\n",
       "--stage sizes,emit --limit 3");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
   auto all = statuses(outcome);
