@@ -106,7 +106,10 @@ TEST_F(BadGltfTest, Documents) {
       {{{"/asset/minVersion", "2.1"}}, {"/asset/minVersion", "'2.1'", "2.0"}},
       {{{"/extensionsRequired", {"KHR_texture_transform", "KHR_draco_mesh_compression"}}},
        {"/extensionsRequired/1", "'KHR_draco_mesh_compression'", "KHR_lights_punctual"}},
-      {{{"/extensionsRequired", {"\x1b[2J\xc2\x9b0m"}}}, {"'?[2J?0m'"}},
+      {{{"/extensionsRequired",
+         {"\x1b[2J\xc2\x9b"
+          "0m"}}},
+       {"'?[2J?0m'"}},
       {{{"/materials", 7}}, {"/materials", "found 7", "an array"}},
       {{{"/materials/0/doubleSided", "yes"}},
        {"/materials/0/doubleSided", "\"yes\"", "true or false"}},
