@@ -25,9 +25,8 @@ class Basis {
   /// SRBF bandwidths in (0, 1), one per centre; empty for other bases.
   const std::vector<double>& lambdas() const { return lambdas_; }
   std::string lambda_text() const;  ///< bandwidth for messages: "0.25", "0.1 to 0.4"
-  const std::vector<glm::dvec3>& centres() const {
-    return centres_;
-  }  ///< unit SRBF centres; empty for other bases
+  /// Unit SRBF centres; empty for other bases.
+  const std::vector<glm::dvec3>& centres() const { return centres_; }
 
   /// Computes b_i(w) of a unit w. b: N values.
   virtual void evaluate(const glm::dvec3& w, std::span<double> b) const = 0;
@@ -50,9 +49,8 @@ class Basis {
   const Matrix& gram() const { return gram_; }  ///< N x N: A_ij = Int b_i b_j dw
   const Matrix& gram_inverse() const { return gram_inverse_; }
   double condition() const { return condition_; }  ///< 2-norm condition number of A
-  const std::vector<double>& integrals() const {
-    return integrals_;
-  }  ///< N: Int b_i dw; the energy of f is c . integrals
+  /// N: Int b_i dw; the energy of f is c . integrals.
+  const std::vector<double>& integrals() const { return integrals_; }
 
   std::vector<double> evaluate(const glm::dvec3& w) const;
   double value(std::span<const double> c, const glm::dvec3& w) const;  ///< f(w)

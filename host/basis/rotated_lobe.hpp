@@ -45,9 +45,8 @@ class ZonalTable {
   double operator()(float t) const;
   double to_step(double t) const;  ///< distance from t to the next change of entry [entries]
   int size() const { return static_cast<int>(values_.size()); }
-  std::vector<float> values() const {
-    return {values_.begin(), values_.end()};
-  }  ///< entries for a device
+  /// Entries for a device.
+  std::vector<float> values() const { return {values_.begin(), values_.end()}; }
 
  private:
   std::vector<double> values_;

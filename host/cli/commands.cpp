@@ -23,7 +23,7 @@
 namespace clpv {
 namespace {
 
-// Of a misspelt command: "rendr" and "qualtiy" have one and two.
+// Edits of a misspelt command: "rendr" and "qualtiy" have one and two.
 constexpr std::size_t kMaxEdits = 2;
 
 /// Rank 0 logs at the requested level; other ranks log only problems unless --verbose is given.

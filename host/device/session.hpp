@@ -171,9 +171,8 @@ class Session {
 
   std::size_t device_bytes() const { return use_->now; }        ///< device memory in use
   std::size_t peak_device_bytes() const { return use_->peak; }  ///< maximum so far
-  double build_ms() const {
-    return build_ms_;
-  }  ///< time spent compiling programs or loading them [ms]
+  /// Time spent compiling programs or loading them [ms].
+  double build_ms() const { return build_ms_; }
 
  private:
   Device device_;

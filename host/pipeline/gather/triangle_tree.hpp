@@ -33,9 +33,8 @@ class TriangleTree {
   /// triangles as before.
   void move(const SceneData& scene);
 
-  const std::vector<TreeRow>& nodes() const {
-    return nodes_;
-  }  ///< CLPV_TREE_NODE_ROWS each; node 0 is the root
+  /// CLPV_TREE_NODE_ROWS each; node 0 is the root.
+  const std::vector<TreeRow>& nodes() const { return nodes_; }
   const std::vector<TreeRow>& leaves() const { return leaves_; }  ///< CLPV_TREE_LEAF_ROWS each
 
  private:
