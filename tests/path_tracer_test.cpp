@@ -230,6 +230,32 @@ TEST(PathTracer, StopsAtTheNoiseAskedFor) {
   EXPECT_NEAR(mean(image.irradiance), plates_expected(), 0.01 * plates_expected());
 }
 
+// One reported share is the paths traced over those that the noise needs, within the estimate's
+// error; it never falls, and it is 1 only at the end.
+TEST(PathTracer, ReportsTheShareOfThePathsThatTheNoiseNeeds) {
+  const SceneData scene = box(0.8f, 1);
+  const ClpvView view = view_of({0.4, 0.5, 0.6}, {0.3, 0.1, -1}, {0, 1, 0}, 1, 32, 32);
+  PathTracerOptions options;
+  options.bounces = PathTracerOptions::kAllBounces;
+  options.noise = trace_paths(scene, view, [&] {
+                    PathTracerOptions few = options;
+                    few.samples = 1024;
+                    return few;
+                  }()).noise * 1.01;
+  std::vector<double> shares;
+  const TracedImage image =
+      pathtracer::trace_paths(scene, scene.lights, view, options, [&](double share) { shares.push_back(share); });
+  ASSERT_GE(image.samples, 768u);
+  ASSERT_FALSE(shares.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_LE(shares.front(), 2 * 64.0 / image.samples);
+  EXPECT_EQ(shares.back(), 1);
+  EXPECT_LT(shares[shares.size() - 2], 1);
+  // As many tiles report in the second half of the paths as in the first.
+  const auto half = std::ranges::lower_bound(shares, 0.5) - shares.begin();
+  EXPECT_GT(half, static_cast<std::ptrdiff_t>(shares.size()) / 4);
+}
+
 TEST(PathTracer, SameBytesWhateverTheThreads) {
   SceneData scene = box(0.7f, 0);
   scene.lights = {lamp({0.5f, 0.9f, 0.5f}, 1)};

@@ -24,8 +24,12 @@ namespace clpv::pathtracer {
 namespace {
 
 constexpr std::uint32_t kTile = 16;  // edge of a tile [pixels], the unit of work of a thread
-// Paths per pixel before the first estimate of the noise.
+// Paths per pixel before the first estimate of the noise, which only the progress uses, and before
+// the first that may end the tracing.
+constexpr std::uint32_t kFirstEstimate = 16;
 constexpr std::uint32_t kFirstSamples = 64;
+// Progress until the noise is reached: an estimate that is too low must not report completion.
+constexpr double kAlmostDone = 0.99;
 constexpr std::uint32_t kMaxSamples = PathTracerOptions::kMaxSamples;
 
 /// Unit direction of the ray through a pixel's centre.
@@ -124,9 +128,8 @@ class ImageTracer {
       });
       const std::lock_guard lock(mutex_);
       done += count;
-      if (progress_ && ranks_.is_root())
-        progress_(progress_start_ + (progress_end_ - progress_start_) *
-                                        std::min(1.0, static_cast<double>(done) / items.end));
+      report(progress_start_ + (progress_end_ - progress_start_) *
+                                   std::min(1.0, static_cast<double>(done) / items.end));
     });
     sums_ = rank_sums_;  // one rank has each sum; the others add 0
     ranks_.sum({&sums_[0].x, 3 * sums_.size()});
@@ -135,6 +138,7 @@ class ImageTracer {
   }
 
   TracedImage finish() {
+    report(1);
     for (std::size_t i = 0; i < layers_ * hits_.size(); ++i)
       layer_number(image_, i) =
           glm::vec3((sums_[2 * i] + sums_[2 * i + 1]) / double(image_.samples));
@@ -145,7 +149,7 @@ class ImageTracer {
   }
 
   double current_noise() const { return image_.noise; }
-  /// Sets the range of progress that the next trace() reports.
+  /// Sets the range of progress that the next trace() reports; an empty range reports nothing.
   void set_progress_range(double start, double end) {
     progress_start_ = start, progress_end_ = end;
   }
@@ -158,6 +162,13 @@ class ImageTracer {
 
   static std::uint32_t half_of(std::uint32_t samples, std::uint32_t half) {
     return (samples + 1 - half) / 2;
+  }
+
+  /// Reports progress, which never falls, though the expected number of paths may rise.
+  void report(double share) {
+    if (!progress_ || !ranks_.is_root() || share <= reported_) return;
+    reported_ = share;
+    progress_(share);
   }
 
   std::uint32_t columns() const { return (image_.view.width + kTile - 1) / kTile; }
@@ -199,7 +210,8 @@ class ImageTracer {
   template <typename Action>
   void parallel_for(const Items& items, const Action& action) {
     std::atomic<std::size_t> next{items.first};
-    const auto run = [&] {
+    const auto run = [&, stop = current_stop()] {
+      const StopScope scope(stop);
       PathSampler sampler(rays_, lights_, emitters_, sky_,
                           image_.medium ? &*image_.medium : nullptr, options_);
       for (std::size_t item; !interrupted() && (item = next.fetch_add(items.step)) < items.end;)
@@ -251,7 +263,7 @@ class ImageTracer {
   TracedImage image_;
   std::mutex mutex_;
   int threads_ = 1;
-  double progress_start_ = 0, progress_end_ = 0;
+  double progress_start_ = 0, progress_end_ = 0, reported_ = 0;
 };
 
 void check(const SceneData& scene, const std::vector<SceneLight>& lights,
@@ -293,13 +305,12 @@ TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& l
     tracer.trace(options.samples);
     return tracer.finish();
   }
-  std::uint32_t done = 0;
+  tracer.trace(kFirstEstimate);  // nothing is known before it, and nothing reported
+  std::uint32_t done = kFirstEstimate;
   for (std::uint32_t count = kFirstSamples; count <= kMaxSamples; count = next_count(count)) {
     const double goal =
-        done == 0
-            ? count
-            : std::max<double>(count, expected_count(done, tracer.current_noise(), options.noise));
-    tracer.set_progress_range(done / goal, count / goal);
+        std::max<double>(count, expected_count(done, tracer.current_noise(), options.noise));
+    tracer.set_progress_range(kAlmostDone * done / goal, kAlmostDone * count / goal);
     tracer.trace(count);
     done = count;
     if (tracer.current_noise() <= options.noise) break;

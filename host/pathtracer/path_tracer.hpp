@@ -60,7 +60,9 @@ struct TracedImage {
   std::uint64_t rays = 0;
 };
 
-/// Receives the estimated progress in [0, 1]. Called on rank 0, by one thread at a time.
+/// Receives the estimated share of all paths that are traced, rising to 1 at the end. It is first
+/// called when the number of paths for the noise can be estimated. Called on rank 0, by one thread
+/// at a time.
 using TraceProgress = std::function<void(double)>;
 
 /// Traces `scene` lit by `lights`, which replace SceneData::lights. All `ranks` call it; they share
