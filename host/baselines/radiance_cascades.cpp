@@ -94,11 +94,11 @@ RadianceCascades::RadianceCascades(const View& view, const glm::vec3& origin, fl
     : view_(view), origin_(origin), settings_(settings) {
   float from = 0, length = settings.first * spacing;
   for (unsigned i = 0; i < settings.cascades; ++i, from += length, length *= settings.ratio) {
-    Cascade cascade{.spacing = std::ldexp(spacing, static_cast<int>(i)),
-                    .side = settings.side << i};
     const bool last = i + 1 == settings.cascades;
+    Cascade& cascade = cascades_.emplace_back();
+    cascade.spacing = std::ldexp(spacing, static_cast<int>(i));
+    cascade.side = settings.side << i;
     cascade.from = from, cascade.to = last ? kInfinity : from + length;
-    cascades_.push_back(std::move(cascade));
   }
   for (unsigned i = 0; i <= settings.cascades; ++i)
     directions_.push_back(healpix_directions(settings.side << i));
