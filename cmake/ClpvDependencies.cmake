@@ -39,14 +39,23 @@ find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_library(TINYGLTF_LIBRARY tinygltf REQUIRED)
 find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 
+# What sources that include host/ are compiled with: the library itself, program, benchmarks, tests, Python module. A program
+# that links clpv::clpv gets none of it.
+add_library(clpv_internal INTERFACE)
+target_compile_definitions(clpv_internal INTERFACE
+  CL_HPP_TARGET_OPENCL_VERSION=120 CL_HPP_MINIMUM_OPENCL_VERSION=120 CL_HPP_ENABLE_EXCEPTIONS
+  CL_TARGET_OPENCL_VERSION=120 GLM_FORCE_EXPLICIT_CTOR SPDLOG_FMT_EXTERNAL)
+target_include_directories(clpv_internal INTERFACE
+  ${CMAKE_CURRENT_SOURCE_DIR}/include ${CMAKE_CURRENT_SOURCE_DIR}/host ${CMAKE_CURRENT_SOURCE_DIR})
+target_link_libraries(clpv_internal INTERFACE
+  OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json spdlog::spdlog Threads::Threads)
+
+# Public headers include CL/cl.h and fmt; what else the library links, its users link but do not compile with.
 function(clpv_link_dependencies target)
-  target_compile_definitions(${target} PUBLIC
-    CL_HPP_TARGET_OPENCL_VERSION=120 CL_HPP_MINIMUM_OPENCL_VERSION=120 CL_HPP_ENABLE_EXCEPTIONS
-    CL_TARGET_OPENCL_VERSION=120 GLM_FORCE_EXPLICIT_CTOR SPDLOG_FMT_EXTERNAL)
   target_link_libraries(${target}
-    PUBLIC OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json
-           spdlog::spdlog Threads::Threads
-    PRIVATE OpenImageIO::OpenImageIO ${TINYGLTF_LIBRARY} embree)
+    PUBLIC OpenCL::OpenCL fmt::fmt
+    PRIVATE $<BUILD_INTERFACE:clpv_internal> spdlog::spdlog Threads::Threads OpenImageIO::OpenImageIO
+            $<BUILD_INTERFACE:${TINYGLTF_LIBRARY}> $<INSTALL_INTERFACE:tinygltf> embree)
   target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR})
   target_include_directories(${target} SYSTEM PRIVATE ${EIGEN_INCLUDE_DIR})
 endfunction()

@@ -31,7 +31,8 @@ struct Image {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
   float& at(int x, int y, std::size_t channel) {
-    return pixels[(static_cast<std::size_t>(y) * width + x) * channels.size() + channel];
+    const auto row = static_cast<std::size_t>(y), column = static_cast<std::size_t>(x);
+    return pixels[(row * static_cast<std::size_t>(width) + column) * channels.size() + channel];
   }
   float at(int x, int y, std::size_t channel) const {
     return const_cast<Image*>(this)->at(x, y, channel);

@@ -35,6 +35,21 @@ run(${WORK}/build/render_cornell ${SOURCE}/scenes/cornell.json ${WORK}/cornell.p
 run(${WORK}/build/walk ${SOURCE}/scenes/cornell.json ${WORK}/walk.png)
 run(${WORK}/build/raycast ${SOURCE}/scenes/cornell.json ${WORK}/raycast.exr)
 run(${WORK}/prefix/bin/clpv devices)
+# Without the libraries that only clpv's own sources need, and with all warnings.
+run(${CMAKE_COMMAND} -S ${SOURCE}/tests/package/consumer -B ${WORK}/consumer -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
+    -DCMAKE_DISABLE_FIND_PACKAGE_glm=ON -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON)
+run(${CMAKE_COMMAND} --build ${WORK}/consumer)
+execute_process(COMMAND nm --dynamic --defined-only ${WORK}/consumer/libplugin.so OUTPUT_VARIABLE exported COMMAND_ERROR_IS_FATAL ANY)
+if(exported MATCHES "clpv" OR exported MATCHES " u " OR NOT exported MATCHES "plugin_width")
+  message(FATAL_ERROR "a plugin exports symbols of clpv, or unique ones: ${exported}")
+endif()
+file(GLOB targets ${WORK}/prefix/lib*/cmake/clpv/*.cmake ${WORK}/prefix/lib/*/cmake/clpv/*.cmake)
+foreach(target IN LISTS targets)
+  file(STRINGS ${target} absolute REGEX "\"/usr/|;/usr/|/usr/lib")
+  if(absolute)
+    message(FATAL_ERROR "${target}: paths of this machine: ${absolute}")
+  endif()
+endforeach()
 # The same program with pkg-config, if installed.
 find_program(PKG_CONFIG pkg-config)
 if(PKG_CONFIG)
@@ -42,7 +57,7 @@ if(PKG_CONFIG)
   execute_process(COMMAND ${PKG_CONFIG} --cflags --libs clpv OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE
                   COMMAND_ERROR_IS_FATAL ANY)
   separate_arguments(flags)
-  run(${COMPILER} ${SOURCE}/examples/render_cornell.cpp ${flags} -o ${WORK}/by_pkg_config)
+  run(${COMPILER} -std=c++20 ${SOURCE}/examples/render_cornell.cpp ${flags} -o ${WORK}/by_pkg_config)
   run(${WORK}/by_pkg_config ${SOURCE}/scenes/cornell.json ${WORK}/cornell_by_pkg_config.png)
 endif()
 # The man page is installed if help2man is, and names the options of commands.
