@@ -219,6 +219,27 @@ TEST(Api, AMediumCanBeSetAndRemoved) {
   rejected("box", {.box = std::array{Vec3{0, 0, 0}, Vec3{1, 0, 1}}});
 }
 
+// The box of a medium is the scene's whatever the order of calls.
+TEST(Api, AMediumWithoutABoxFillsTheSceneWhateverTheOrder) {
+  const std::vector<std::array<float, 3>> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+  const std::vector<std::array<std::uint32_t, 3>> triangle{{0, 1, 2}};
+  const Mesh mesh{.positions = corners, .triangles = triangle};
+  Scene before, after, moved;
+  before.set_medium(Medium{.scattering = {1, 1, 1}});
+  before.add_mesh(mesh);
+  after.add_mesh(mesh);
+  after.set_medium(Medium{.scattering = {1, 1, 1}});
+  EXPECT_EQ(before.medium()->box, after.medium()->box);
+  EXPECT_EQ(*before.medium()->box, before.bounds());
+  const int number = moved.add_mesh(mesh);
+  moved.set_medium(Medium{.scattering = {1, 1, 1}});
+  Transform away = kIdentity;
+  away[0][3] = 5;
+  moved.set_transform(number, away);
+  EXPECT_EQ(*moved.medium()->box, moved.bounds());
+  EXPECT_NE(*moved.medium()->box, after.bounds());
+}
+
 TEST(Api, ARendererOutlivesItsSceneHandle) {
   auto scene = std::make_unique<Scene>(kCornell);
   Renderer renderer(*scene, test::small_options());
@@ -334,6 +355,20 @@ TEST(Api, OptionsAreThoseOfTheProgram) {
   EXPECT_THAT(test::error_of(ExitCode::usage, [] { Options().set("layout", "planes"); }),
               ::testing::AllOf(HasSubstr("planes"), HasSubstr("soa")));
   EXPECT_THROW(Options().set("no-such-option", "1"), Error);
+}
+
+// A move once left a Renderer whose calls crashed.
+TEST(Api, ARendererThatWasMovedFromIsNamed) {
+  Scene scene(kCornell);
+  Renderer first(scene, test::small_options());
+  const Scene moved = std::move(scene);
+  EXPECT_EQ(scene.cameras().size(), moved.cameras().size()) << "a Scene is never empty";
+  Renderer second = std::move(first);
+  for (const auto& call : std::initializer_list<std::function<void()>>{
+           [&] { first.render(); }, [&] { first.show(View::full); }, [&] { first.stats(); },
+           [&] { first.description(); }, [&] { first.volumes(); }, [&] { first.lookup_source(); }})
+    EXPECT_THAT(test::error_of(ExitCode::usage, call), HasSubstr("moved from"));
+  EXPECT_EQ(second.render().width, 48);
 }
 
 TEST(Api, ErrorsHaveTheirExitCode) {

@@ -135,12 +135,19 @@ Renderer::~Renderer() {
   }
 }
 
+Renderer::State& Renderer::state() const {
+  if (!state_)
+    throw Error(ExitCode::usage,
+                "renderer: found one that was moved from, allowed: the one that it moved to");
+  return *state_;
+}
+
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
   check_view(view);
-  State& state = *state_;
+  State& state = this->state();
   const std::lock_guard lock(state.mutex);
   const std::shared_lock scene_stays(state.file.contents().mutex);
   const Clock::time_point started = Clock::now();
@@ -152,19 +159,19 @@ Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
 
 Image Renderer::show(View view) {
   check_view(view);
-  const std::lock_guard lock(state_->mutex);
-  state_->require_image("show");
-  if (view == View::cells) state_->require_light("show");
-  return state_->image(view);
+  const std::lock_guard lock(state().mutex);
+  state().require_image("show");
+  if (view == View::cells) state().require_light("show");
+  return state().image(view);
 }
 
 std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces,
                                                   const CameraChoice& camera, double seconds) {
   check(surfaces);
-  const std::lock_guard lock(state_->mutex);
-  const std::shared_lock scene_stays(state_->file.contents().mutex);
-  state_->pose(seconds);
-  return state_->light(state_->posed.camera(camera), surfaces);
+  const std::lock_guard lock(state().mutex);
+  const std::shared_lock scene_stays(state().file.contents().mutex);
+  state().pose(seconds);
+  return state().light(state().posed.camera(camera), surfaces);
 }
 
 std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const Vec3& eye,
@@ -174,10 +181,10 @@ std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const
     throw Error(ExitCode::usage,
                 "light: found depths and an eye, allowed: positions, or depths and a camera");
   const SceneCamera camera = camera_at(eye);
-  const std::lock_guard lock(state_->mutex);
-  const std::shared_lock scene_stays(state_->file.contents().mutex);
-  state_->pose(seconds);
-  return state_->light(camera, surfaces);
+  const std::lock_guard lock(state().mutex);
+  const std::shared_lock scene_stays(state().file.contents().mutex);
+  state().pose(seconds);
+  return state().light(camera, surfaces);
 }
 
 std::array<double, 3> Renderer::irradiance(const Vec3& position, const Vec3& normal) {
@@ -191,26 +198,26 @@ std::vector<std::array<float, 3>> Renderer::irradiance(
     std::span<const std::array<float, 3>> positions,
     std::span<const std::array<float, 3>> normals) {
   Points points = checked_points("irradiance", "normal", positions, normals);
-  const std::lock_guard lock(state_->mutex);
-  state_->require_light("irradiance");
+  const std::lock_guard lock(state().mutex);
+  state().require_light("irradiance");
   return without_alpha(
-      state_->frame->irradiance_at(std::move(points.positions), std::move(points.vectors)));
+      state().frame->irradiance_at(std::move(points.positions), std::move(points.vectors)));
 }
 
 std::vector<std::array<float, 3>> Renderer::radiance(
     std::span<const std::array<float, 3>> positions,
     std::span<const std::array<float, 3>> directions) {
   Points points = checked_points("radiance", "direction", positions, directions);
-  const std::lock_guard lock(state_->mutex);
-  state_->require_light("radiance");
+  const std::lock_guard lock(state().mutex);
+  state().require_light("radiance");
   return without_alpha(
-      state_->frame->radiance_at(std::move(points.positions), std::move(points.vectors)));
+      state().frame->radiance_at(std::move(points.positions), std::move(points.vectors)));
 }
 
 std::vector<LightVolume> Renderer::volumes() {
-  const std::lock_guard lock(state_->mutex);
-  state_->require_light("volumes");
-  const GatheredLight light = state_->frame->light();
+  const std::lock_guard lock(state().mutex);
+  state().require_light("volumes");
+  const GatheredLight light = state().frame->light();
   std::vector<LightVolume> all;
   for (std::size_t c = 0; c < light.grids.size(); ++c) {
     const ClpvGrid& grid = light.grids[c];
@@ -220,34 +227,34 @@ std::vector<LightVolume> Renderer::volumes() {
     volume.cell = grid.cell;
     volume.n = shape.n;
     volume.coefficients = shape.coefficients;
-    volume.basis = state_->frame->gathered().name();
-    volume.values = light.accumulated[c]->read(state_->session);
+    volume.basis = state().frame->gathered().name();
+    volume.values = light.accumulated[c]->read(state().session);
     for (float& value : volume.values) value /= light.scale;
   }
   return all;
 }
 
 std::string Renderer::description() const {
-  const RenderOptions& options = state_->options;  // which never change
+  const RenderOptions& options = state().options;  // which never change
   return fmt::format("{} x {}, basis {}, transport {}, on {}", options.width, options.height,
-                     options.basis, name_of(options.transport), state_->session.device().name);
+                     options.basis, name_of(options.transport), state().session.device().name);
 }
 
 Stats Renderer::stats() const {
-  const std::lock_guard lock(state_->mutex);
+  const std::lock_guard lock(state().mutex);
   Stats stats;
   for (const Pass pass : values_of<Pass>()) {
     if (pass != Pass::whole) stats.stages[std::string(name_of(pass))] = 0;
   }
   FrameTimes times;
-  times.add(state_->session.timeline().times());
+  times.add(state().session.timeline().times());
   for (const auto& [pass, ms] : times.passes()) stats.stages[pass] = ms[0];
-  const HostWork& host = state_->session.timeline().host();
-  stats.frame_ms = state_->frame_ms;
+  const HostWork& host = state().session.timeline().host();
+  stats.frame_ms = state().frame_ms;
   stats.host_ms = host.host_ms, stats.launches = host.launches, stats.waits = host.waits;
-  stats.build_ms = state_->session.build_ms();
-  stats.device_bytes = state_->session.device_bytes();
-  stats.peak_device_bytes = state_->session.peak_device_bytes();
+  stats.build_ms = state().session.build_ms();
+  stats.device_bytes = state().session.device_bytes();
+  stats.peak_device_bytes = state().session.peak_device_bytes();
   return stats;
 }
 

@@ -50,7 +50,7 @@ opencl::Frame Renderer::enqueue(View view, const CameraChoice& camera, double se
   if (view == View::cells)
     throw Error(ExitCode::usage,
                 "enqueue: found view 'cells', which the host paints, allowed: the others");
-  State& state = *state_;
+  State& state = this->state();
   const std::lock_guard lock(state.mutex);
   const std::shared_lock scene_stays(state.file.contents().mutex);
   state.render(camera, seconds, true);
@@ -74,11 +74,11 @@ opencl::Event Renderer::State::enqueue_light(const SceneCamera& camera, const Gi
 
 opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const CameraChoice& camera,
                                       double seconds) {
-  const std::lock_guard lock(state_->mutex);
-  const std::shared_lock scene_stays(state_->file.contents().mutex);
-  const GivenLight given = checked(state_->session, surfaces);
-  state_->pose(seconds);
-  return state_->enqueue_light(state_->posed.camera(camera), given.pixels, given.irradiance);
+  const std::lock_guard lock(state().mutex);
+  const std::shared_lock scene_stays(state().file.contents().mutex);
+  const GivenLight given = checked(state().session, surfaces);
+  state().pose(seconds);
+  return state().enqueue_light(state().posed.camera(camera), given.pixels, given.irradiance);
 }
 
 opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Vec3& eye,
@@ -87,18 +87,18 @@ opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Vec
     throw Error(ExitCode::usage,
                 "light: found no positions for an eye, allowed: positions, or depths and a camera");
   const SceneCamera camera = camera_at(eye);
-  const std::lock_guard lock(state_->mutex);
-  const std::shared_lock scene_stays(state_->file.contents().mutex);
-  const GivenLight given = checked(state_->session, surfaces);
-  state_->pose(seconds);
-  return state_->enqueue_light(camera, given.pixels, given.irradiance);
+  const std::lock_guard lock(state().mutex);
+  const std::shared_lock scene_stays(state().file.contents().mutex);
+  const GivenLight given = checked(state().session, surfaces);
+  state().pose(seconds);
+  return state().enqueue_light(camera, given.pixels, given.irradiance);
 }
 
 opencl::Volumes Renderer::device_volumes() {
-  const std::lock_guard lock(state_->mutex);
-  state_->require_light("device volumes");
-  state_->frame->require_lookups("device volumes");
-  const Gatherer& light = state_->frame->gatherer();
+  const std::lock_guard lock(state().mutex);
+  state().require_light("device volumes");
+  state().frame->require_lookups("device volumes");
+  const Gatherer& light = state().frame->gatherer();
   return {.grids = light.grids().handle()(),
           .cascades = light.cascades(),
           .unit = light.unit(),
@@ -107,8 +107,9 @@ opencl::Volumes Renderer::device_volumes() {
 }
 
 std::string Renderer::lookup_source() const {
-  const std::lock_guard lock(state_->mutex);
-  return state_->frame->lookup_source();
+  const std::lock_guard lock(state().mutex);
+  state().require(state().frame.has_value(), "lookup source");  // none after a failed rebuild
+  return state().frame->lookup_source();
 }
 
 }  // namespace clpv

@@ -133,6 +133,7 @@ std::array<Vec3, 2> Scene::bounds() const {
 }
 
 double Scene::exposure() const {
+  const std::shared_lock lock(contents_->mutex);
   return contents_->moving.scene().exposure;
 }
 

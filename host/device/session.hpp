@@ -4,6 +4,7 @@
 
 #include <CL/opencl.hpp>
 #include <array>
+#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
@@ -213,15 +214,23 @@ class Session {
 /// Times all launches during its lifetime as one stage of the timeline.
 class StageScope {
  public:
-  StageScope(Session& session, StageMark mark) : session_(session) {
+  StageScope(Session& session, StageMark mark)
+      : session_(session), exceptions_(std::uncaught_exceptions()) {
     session_.timeline().begin(std::move(mark));
   }
-  ~StageScope() noexcept(false) { session_.timeline().end(session_.queue()); }
+  /// Ends the stage. Throws cl::Error, unless another exception ends the scope.
+  ~StageScope() noexcept(false) {
+    if (std::uncaught_exceptions() == exceptions_)
+      session_.timeline().end(session_.queue());
+    else
+      session_.timeline().abandon();
+  }
   StageScope(const StageScope&) = delete;
   StageScope& operator=(const StageScope&) = delete;
 
  private:
   Session& session_;
+  int exceptions_;
 };
 
 }  // namespace clpv

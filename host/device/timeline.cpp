@@ -21,6 +21,10 @@ void Timeline::end(cl::CommandQueue& queue) {
   current_ = -1;
 }
 
+void Timeline::abandon() {
+  current_ = -1;
+}
+
 void Timeline::add(const cl::Event& event) {
   ++host_.launches;
   if (current_ >= 0 && events_valid_) entries_[current_].events.push_back(event);

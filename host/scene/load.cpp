@@ -204,13 +204,22 @@ void MovingScene::set_lights(std::vector<SceneLight> lights) {
 }
 
 void MovingScene::set_medium(std::optional<ClpvMedium> medium) {
-  if (medium && vector(medium->lower) == vector(medium->upper)) {
-    for (int i = 0; i < 3; ++i) {
-      medium->lower[i] = scene_.lower[i];
-      medium->upper[i] = scene_.upper[i];
-    }
-  }
   scene_.medium = medium;
+  medium_fills_scene_ = medium && vector(medium->lower) == vector(medium->upper);
+  fit_medium();
+}
+
+bool MovingScene::fit_medium() {
+  if (!medium_fills_scene_) return false;
+  ClpvMedium& medium = *scene_.medium;
+  const bool fits =
+      vector(medium.lower) == glm::dvec3(scene_.lower) &&
+                    vector(medium.upper) == glm::dvec3(scene_.upper);
+  for (int i = 0; i < 3; ++i) {
+    medium.lower[i] = scene_.lower[i];
+    medium.upper[i] = scene_.upper[i];
+  }
+  return !fits;
 }
 
 MovingScene::MovingScene() {
@@ -244,9 +253,9 @@ MovingScene::MovingScene(const std::filesystem::path& path,
   scene_.name = path.stem().string();
 }
 
-/// Updates what depends on the meshes.
-void MovingScene::meshes_changed() {
+bool MovingScene::meshes_changed() {
   find_bounds(scene_);
+  const bool refitted = fit_medium();
   std::erase(scene_.notes, kNoTriangles);
   if (scene_.triangles.empty()) scene_.notes.push_back(kNoTriangles);
   if (std::ranges::find(scene_.notes, kAddedCamera) != scene_.notes.end())
@@ -255,6 +264,7 @@ void MovingScene::meshes_changed() {
     scene_.start_reach.reset();
     scene_.start_reach = scene_.reach();
   }
+  return refitted;
 }
 
 int MovingScene::add_mesh(const Mesh& mesh, const Transform& transform) {
@@ -277,14 +287,12 @@ void MovingScene::remove_mesh(int mesh) {
 bool MovingScene::set_positions(int mesh, std::span<const std::array<float, 3>> positions,
                                 std::span<const std::array<float, 3>> normals) {
   const bool first = added_.set_positions(mesh, positions, normals, scene_);
-  meshes_changed();
-  return first;
+  return meshes_changed() || first;
 }
 
 bool MovingScene::set_transform(int mesh, const Transform& transform) {
   const bool first = added_.set_transform(mesh, transform, scene_);
-  meshes_changed();
-  return first;
+  return meshes_changed() || first;
 }
 
 void MovingScene::pose(double seconds) {

@@ -44,11 +44,12 @@ class MovingScene {
   void set_lights(std::vector<SceneLight> lights);
 
   /// Replaces the medium or removes it. One without a box, `lower` equal to `upper`, fills the
-  /// scene's bounding box at the present time.
+  /// scene's bounding box, which follows added, removed and moved meshes.
   void set_medium(std::optional<ClpvMedium> medium);
 
   /// Change meshes in memory, as clpv::Scene does. set_positions() and set_transform() return true
-  /// if the mesh moves for the first time, so that SceneData::moving is longer. Call before pose().
+  /// if frames allocate their memory again: the mesh moves for the first time, so that
+  /// SceneData::moving is longer, or the medium's box changed. Call before pose().
   int add_mesh(const Mesh& mesh, const Transform& transform);
   int add_instance(int mesh, const Transform& transform);
   void remove_mesh(int mesh);
@@ -64,12 +65,16 @@ class MovingScene {
   void set_views(SceneViews views);
   void add_defaults(bool has_lights);
   void forget_missing_lights();
-  void meshes_changed();
+  /// Updates what depends on the meshes. Returns fit_medium().
+  bool meshes_changed();
+  /// Fits a medium without a box of its own to the scene. Returns true if its box changed.
+  bool fit_medium();
 
   Motion motion_;
   AddedMeshes added_;
   SceneDescription description_;  ///< empty without a scene file
   SceneData scene_;
+  bool medium_fills_scene_ = false;
 };
 
 inline constexpr double kSunIlluminance = 10;  ///< of the sun that a model without lights gets [lx]

@@ -7,12 +7,14 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace clpv {
 namespace {
 
 std::atomic<int> pending_signal{0};
 std::atomic<const char*> uninterruptible{nullptr};
+thread_local const StopRequest* thread_stop = nullptr;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 static_assert(std::atomic<int>::is_always_lock_free,
               "a signal handler may write only lock-free atomics");
@@ -48,12 +50,18 @@ Uninterruptible::~Uninterruptible() {
   uninterruptible = outer_;
 }
 
-bool interrupted() {
-  return pending_signal != 0;
+StopScope::StopScope(const StopRequest* stop) : outer_(std::exchange(thread_stop, stop)) {}
+
+StopScope::~StopScope() {
+  thread_stop = outer_;
 }
 
-void set_interrupted(bool now) {
-  pending_signal = now ? SIGINT : 0;
+const StopRequest* current_stop() {
+  return thread_stop;
+}
+
+bool interrupted() {
+  return pending_signal != 0 || (thread_stop != nullptr && *thread_stop);
 }
 
 void stop_if_interrupted(const std::string& kept) {

@@ -2,6 +2,7 @@
 // SIGINT and SIGTERM: long work ends cleanly at its next step.
 #pragma once
 
+#include <atomic>
 #include <stdexcept>
 #include <string>
 
@@ -30,14 +31,29 @@ class Uninterruptible {
   const char* outer_;
 };
 
-/// Returns true after a signal. For loops that must not throw, such as those of other threads.
+/// A request to end the work of one call at its next step, made by another thread: for hosts that
+/// catch signals themselves, such as Python.
+using StopRequest = std::atomic<bool>;
+
+/// Makes `stop` this thread's request, during its lifetime; null: none. A call that starts threads
+/// passes current_stop() on to them.
+class StopScope {
+ public:
+  explicit StopScope(const StopRequest* stop);
+  ~StopScope();
+  StopScope(const StopScope&) = delete;
+  StopScope& operator=(const StopScope&) = delete;
+
+ private:
+  const StopRequest* outer_;
+};
+const StopRequest* current_stop();
+
+/// Returns true after a signal or this thread's stop request. For loops that must not throw, such
+/// as those of other threads.
 bool interrupted();
 
-/// Acts as if a signal had come, or forgets one. For hosts that catch signals themselves, such as
-/// Python.
-void set_interrupted(bool now);
-
-/// Throws Interrupted(kept) after a signal.
+/// Throws Interrupted(kept) if interrupted().
 void stop_if_interrupted(const std::string& kept = "nothing was written");
 
 /// Ends the process by the pending signal's default action, so that its parent sees the signal.

@@ -96,6 +96,7 @@ class Renderer {
   /// capability).
   Renderer(const Scene& scene, const Options& options, const opencl::Queue& queue);
   ~Renderer();  ///< waits for its commands; stores compiled programs in the user's cache
+  /// Calls of a Renderer that was moved from throw Error(usage).
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
@@ -175,6 +176,7 @@ class Renderer {
 
  private:
   struct State;
+  State& state() const;  ///< throws Error(usage) after a move
   std::unique_ptr<State> state_;
 };
 

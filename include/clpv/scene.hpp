@@ -54,7 +54,7 @@ struct Medium {
   Vec3 scattering{}, absorption{};  ///< of red, green and blue [1/m], 0 to 1e6
   /// Anisotropy of Henyey and Greenstein's phase function, -0.9 to 0.9; above 0: forwards.
   double anisotropy = 0;
-  /// Lower and upper corner [m]; none: the scene's bounding box.
+  /// Lower and upper corner [m]; none: the scene's bounding box, also after its meshes change.
   std::optional<std::array<Vec3, 2>> box{};
 };
 
@@ -111,6 +111,10 @@ class Scene {
       const;  ///< one sentence for each thing skipped or added by the loader and not replaced
   std::array<Vec3, 2> bounds() const;  ///< lower and upper corner of the bounding box at 0 s [m]
   double exposure() const;             ///< [EV], for save_image()
+
+  // Copies, also where a move would do: no Scene is ever empty.
+  Scene(const Scene&) = default;
+  Scene& operator=(const Scene&) = default;
 
   struct Contents;
   const Contents& contents() const { return *contents_; }

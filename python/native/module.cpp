@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <thread>
 
 #include "clpv/device.hpp"
@@ -51,7 +52,7 @@ Errors errors;  // filled once, by add_errors
 
 // State of this process, guarded by the GIL.
 int running = 0;       // RunningCalls
-bool exiting = false;  // Python's exit has begun
+std::atomic<bool> exiting{false};  // Python's exit has begun
 std::thread::id exiting_thread;
 pid_t device_user = 0;  // process that called note_device_use() first; a fork copies it
 constexpr std::chrono::milliseconds kPoll{5};
@@ -62,7 +63,6 @@ void end_running_calls() {
   exiting_thread = std::this_thread::get_id();
   if (forked_from_device_use()) return;  // calls of the parent's threads
   while (running > 0) {
-    set_interrupted(true);
     py::gil_scoped_release released;
     std::this_thread::sleep_for(kPoll);
   }
@@ -101,6 +101,10 @@ RunningCall::RunningCall() {
 
 RunningCall::~RunningCall() {
   --running;
+}
+
+bool exit_stops_calls() {
+  return exiting;
 }
 
 void note_device_use() {

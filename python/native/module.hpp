@@ -47,7 +47,9 @@ Array real_array(const py::object& given, const char* what) {
                               : std::string(py::str(py::type::of(given)))) +
                          ", allowed: an array of real numbers");
   }
-  return Array::ensure(any);
+  Array converted = Array::ensure(any);
+  if (!converted) throw py::error_already_set();  // no memory for the copy
+  return converted;
 }
 
 /// Like real_array(), for vectors of three: shape (..., 3). Throws ValueError with the shape found.
@@ -95,6 +97,9 @@ class RunningCall {
   RunningCall& operator=(const RunningCall&) = delete;
 };
 
+/// Returns true once Python exits: running calls end at their next step.
+bool exit_stops_calls();
+
 /// Marks this process as one that uses a device or the path tracer, and thus threads.
 void note_device_use();
 /// Returns true in a process forked from a marked one.
@@ -111,13 +116,18 @@ auto without_gil(const Action& action) {
 /// Runs `work` on another thread without the GIL, so that Python can handle signals meanwhile.
 /// After Ctrl-C the work ends at its next step, and the signal's exception is raised. `poll` runs
 /// with the GIL, on the caller's thread, now and then and at the end; an exception of it ends the
-/// work too.
+/// work too. Ends this call's work only.
 template <typename Work, typename Poll>
 auto interruptible(const Work& work, const Poll& poll) {
   const RunningCall call;
   py::gil_scoped_release released;
-  auto result = std::async(std::launch::async, work);
+  StopRequest stop{false};
+  auto result = std::async(std::launch::async, [&] {
+    const StopScope scope(&stop);
+    return work();
+  });
   while (result.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+    if (exit_stops_calls()) stop = true;
     py::gil_scoped_acquire acquired;
     std::optional<py::error_already_set> raised;
     if (PyErr_CheckSignals() != 0) {
@@ -132,9 +142,8 @@ auto interruptible(const Work& work, const Poll& poll) {
     if (!raised) continue;
     {
       py::gil_scoped_release waiting;
-      set_interrupted(true);
+      stop = true;
       result.wait();
-      set_interrupted(false);
     }
     throw *raised;
   }

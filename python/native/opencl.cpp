@@ -132,10 +132,10 @@ void add_opencl(py::module_& module) {
           throw py::value_error("light: found eye and camera, allowed: one of both");
         const opencl::GBuffer surfaces{width,
                                        height,
-                                       handle_of<cl_mem>(normals, "normals"),
-                                       handle_of<cl_mem>(positions, "positions"),
-                                       handle_of<cl_mem>(depths, "depths"),
-                                       handle_of<cl_mem>(irradiance, "irradiance")};
+                                       handle_of<cl_mem>(normals, "normals", kMemoryClass),
+                                       handle_of<cl_mem>(positions, "positions", kMemoryClass),
+                                       handle_of<cl_mem>(depths, "depths", kMemoryClass),
+                                       handle_of<cl_mem>(irradiance, "irradiance", kMemoryClass)};
         return interruptible([&] {
           return eye ? renderer.enqueue_light(surfaces, *eye, time)
                      : renderer.enqueue_light(surfaces, camera.value_or(CameraChoice()), time);

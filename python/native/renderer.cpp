@@ -201,8 +201,8 @@ void add_renderer(py::module_& module) {
   type.def(py::init([](const Scene& scene, const std::string& device, const py::object& context,
                        const py::object& queue, const py::kwargs& given) {
              const Options options = options_of(given);
-             const opencl::Queue where{handle_of<cl_context>(context, "context"),
-                                       handle_of<cl_command_queue>(queue, "queue")};
+             const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
+                                       handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
              const bool own = context.is_none() && queue.is_none();
              if (!own && !device.empty())
                throw py::value_error("found a device and a context or queue, allowed: one of both");

@@ -14,8 +14,17 @@ from conftest import CORNELL, FRONT, ROOT, SMALL
 def test_handles_of_another_kind_are_named(scene):
     with pytest.raises(
             TypeError,
-            match="queue: found .*str.*, allowed: an OpenCL object of pyopencl, or its int_ptr"):
+            match="queue: found .*str.*, allowed: an object of pyopencl's class CommandQueue, or its int_ptr"):
         clpv.Renderer(scene, queue="queue", **SMALL)
+
+    class Context:  # as pyopencl's, whose handle a driver would take for a queue and crash
+        int_ptr = 4096
+
+    for name, given in [("queue", Context()), ("context", type("CommandQueue", (Context,), {})())]:
+        if name == "context":
+            given.__class__ = type("Buffer", (), {"int_ptr": 4096})
+        with pytest.raises(TypeError, match=f"{name}: found .*, allowed: an object of pyopencl's class"):
+            clpv.Renderer(scene, **{name: given}, **SMALL)
     with pytest.raises(ValueError, match="found a device and a context or queue"):
         clpv.Renderer(scene, "0", queue=1, **SMALL)
     with pytest.raises(TypeError, match="__init__ was not called"):

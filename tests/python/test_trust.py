@@ -8,8 +8,10 @@ import pickle
 import signal
 import subprocess
 import sys
+import threading
 import time
 
+import numpy as np
 import pytest
 
 import clpv
@@ -132,6 +134,29 @@ def test_objects_are_not_copied_or_pickled(scene, renderer):
             with pytest.raises(TypeError, match=name):
                 function(each)
     assert isinstance(pickle.loads(pickle.dumps(clpv.UsageError("text"))), clpv.UsageError)
+
+
+def test_an_exception_ends_its_own_call_only():  # all calls of the process once ended with it
+    def stop(_):
+        raise RuntimeError("enough")
+
+    traced = []
+    options = {"width": 48, "height": 27, "threads": 1}
+    other = threading.Thread(target=lambda: traced.append(
+        clpv.pathtrace(clpv.Scene(CORNELL), samples=256, **options)))
+    other.start()
+    stopped = 0
+    while other.is_alive():
+        with pytest.raises(RuntimeError, match="enough"):
+            clpv.pathtrace(clpv.Scene(CORNELL), samples=1 << 14, progress=stop, **options)
+        stopped += 1
+    assert stopped > 0 and len(traced) == 1
+
+
+def test_arrays_that_fit_no_memory_are_named(scene, renderer):
+    endless = np.broadcast_to(np.zeros(3, dtype="f8"), (10**13, 3))
+    with pytest.raises(MemoryError):
+        renderer.irradiance(endless, endless)
 
 
 def test_a_storm_of_interrupts(tmp_path):
