@@ -2,16 +2,23 @@
 // Output files are complete or absent; headers of .npy files.
 #include "support/output_file.hpp"
 
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstring>
+#include <functional>
 #include <iterator>
 
 #include "support/array_files.hpp"
+#include "support/input_file.hpp"
+#include "support/interrupt.hpp"
 #include "support/progress.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/run_program.hpp"
@@ -33,6 +40,7 @@ class OutputFile : public testing::Test {
 
 using test::error_of;
 using test::read_file;
+using ::testing::HasSubstr;
 
 TEST_F(OutputFile, ReplacesWholeFilesAndLeavesNothingBeside) {
   const fs::path path = folder_ / "out.txt";
@@ -88,6 +96,151 @@ TEST_F(OutputFile, KeepsTheModeOfTheFileThatItReplaces) {
     EXPECT_EQ(mode_of(folder_ / "new"), mode);
   }
   ::umask(before);
+}
+
+void give_away(const fs::path& path, uid_t user, gid_t group) {
+  ASSERT_EQ(::lchown(path.c_str(), user, group), 0);
+}
+
+// Owner and group once became the writer's: a user could no longer read an own private file.
+TEST_F(OutputFile, KeepsOwnerAndGroupOfTheFileThatItReplaces) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give files away";
+  const fs::path path = folder_ / "private";
+  write_file(path, std::string_view("x"));
+  ::chmod(path.c_str(), 0600);
+  give_away(path, 1234, 4321);
+  check_writable(path);
+  write_file(path, std::string_view("y"));
+  struct stat found {};
+  ASSERT_EQ(::stat(path.c_str(), &found), 0);
+  EXPECT_EQ(found.st_uid, 1234u);
+  EXPECT_EQ(found.st_gid, 4321u);
+  EXPECT_EQ(found.st_mode & 07777, 0600u);
+  EXPECT_EQ(read_file(path), "y");
+}
+
+/// Calls `action` in a process of user and group 65534; returns its Error's message.
+std::string error_of_nobody(const fs::path& folder, const std::function<void()>& action) {
+  const fs::path said = folder / "said";
+  write_file(said, std::string_view(""));
+  const int out = ::open(said.c_str(), O_WRONLY);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::string message;
+    try {
+      if (::setgroups(0, nullptr) != 0 || ::setgid(65534) != 0 || ::setuid(65534) != 0)
+        message = "cannot become another user";
+      action();
+    } catch (const Error& error) {
+      message = error.what();
+    }
+    ::dprintf(out, "%s", message.c_str());
+    ::_exit(0);
+  }
+  ::waitpid(child, nullptr, 0);
+  ::close(out);
+  const std::string message = read_file(said);
+  fs::remove(said);
+  return message;
+}
+
+TEST_F(OutputFile, AFileWhoseOwnerWouldChangeIsRejectedBeforeTheWork) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  const fs::path shared = folder_ / "shared";
+  for (const mode_t mode : {0777u, 01777u}) {  // of a folder, also a sticky one
+    fs::create_directory(shared);
+    ::chmod(folder_.c_str(), 0755);
+    ::chmod(shared.c_str(), mode);
+    write_file(shared / "a", std::string_view("of user 1234"));
+    ::chmod((shared / "a").c_str(), 0666);
+    give_away(shared / "a", 1234, 1234);
+    EXPECT_THAT(error_of_nobody(folder_, [&] { check_writable(shared / "a"); }),
+                HasSubstr("a: cannot be written: its owner 1234:1234 would become 65534:65534"));
+    EXPECT_EQ(read_file(shared / "a"), "of user 1234");
+    give_away(shared / "a", 65534, 65534);
+    EXPECT_EQ(error_of_nobody(folder_, [&] { write_file(shared / "a", std::string_view("own")); }),
+              "");
+    EXPECT_EQ(read_file(shared / "a"), "own");
+    EXPECT_EQ(std::distance(fs::directory_iterator(shared), {}), 1) << "a temporary file";
+    fs::remove_all(shared);
+  }
+}
+
+// The temporary file once stayed for ever, since it can be neither renamed nor removed.
+TEST_F(OutputFile, AppendOnlyFoldersAndFilesAreRejectedBeforeTheWork) {
+  const fs::path below = folder_ / "below", file = folder_ / "file";
+  fs::create_directory(below);
+  write_file(file, std::string_view("x"));
+  if (test::run("chattr +a " + below.string() + " " + file.string()).exit_code != 0)
+    GTEST_SKIP() << "no attributes on this file system, or not for this user";
+  const auto message = [](const fs::path& path) {
+    return error_of(ExitCode::run_time, [&] { check_writable(path); });
+  };
+  EXPECT_THAT(message(below / "new"), HasSubstr("new: cannot be written: its folder"));
+  EXPECT_THAT(message(file), HasSubstr("file: cannot be written: it is append-only"));
+  test::run("chattr -a " + file.string() + "; chattr +i " + file.string());
+  EXPECT_THAT(message(file), HasSubstr("file: cannot be written: it is append-only or immutable"));
+  test::run("chattr -a " + below.string() + "; chattr -i " + file.string());
+  EXPECT_TRUE(fs::is_empty(below));
+  EXPECT_EQ(entries(), 2u);
+}
+
+TEST_F(OutputFile, AMountPointIsRejectedBeforeTheWork) {
+  write_file(folder_ / "file", std::string_view("x"));
+  const std::string file = (folder_ / "file").string();
+  const test::Outcome outcome =
+      test::run("unshare -rm sh -c 'mount --bind " + file + " " + file + " && " CLPV_PROGRAM
+                " check --list --junit " + file + "'");
+  if (outcome.exit_code != 1) GTEST_SKIP() << "nothing may be mounted here: " << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("file: cannot be written: it is a mount point"));
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(OutputFile, SignalsLeaveNoTemporaryFile) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      std::signal(signal, SIG_DFL);
+      catch_interrupts();
+      clpv::OutputFile first(folder_ / "a"), second(folder_ / "b");
+      { clpv::OutputFile third(folder_ / "c"); }
+      ::raise(signal);
+      const bool both = entries() == 2;  // they end with the work
+      ::raise(signal);                   // this one ends the process
+      ::_exit(both ? 1 : 2);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status)) << WEXITSTATUS(status);
+    EXPECT_EQ(WTERMSIG(status), signal);
+    EXPECT_EQ(entries(), 0u);
+  }
+}
+
+// An input that was not known when the work began was once replaced at its end.
+TEST_F(OutputFile, NoInputIsReplacedEvenIfItIsReadDuringTheWork) {
+  const fs::path input = folder_ / "input", late = folder_ / "late", linked = folder_ / "linked";
+  for (const fs::path& path : {input, late}) write_file(path, std::string_view("x"));
+  fs::create_hard_link(late, linked);
+  {
+    const InputRecord record;
+    clpv::OutputFile output(linked);
+    for (const fs::path& path : {input, late}) clpv::read_file(path, 10, "scene.json", "/model");
+    const std::string message = error_of(ExitCode::usage, [&] { output.commit(); });
+    EXPECT_THAT(message, HasSubstr("linked: found the file of scene.json /model"));
+    for (const fs::path& path : {input, late}) {
+      error_of(ExitCode::usage, [&] { check_writable(path); });
+      error_of(ExitCode::usage, [&] { write_file(path, std::string_view("y")); });
+      EXPECT_EQ(read_file(path), "x");
+    }
+    InputRecord::close();
+    write_file(folder_ / "frame", std::string_view("1"));
+    clpv::read_file(folder_ / "frame", 10, "frame");
+    write_file(folder_ / "frame", std::string_view("2"));
+    error_of(ExitCode::usage, [&] { check_writable(input); });
+  }
+  write_file(input, std::string_view("y"));
+  EXPECT_EQ(entries(), 4u);
 }
 
 // The temporary file's name was once longer than a name may be.

@@ -92,7 +92,20 @@ TEST_F(ProgramCacheTest, DropsTheLeastRecentlyUsed) {
   fs::last_write_time(cache.file_of("a"), now - std::chrono::hours(2));
   fs::last_write_time(cache.file_of("b"), now - std::chrono::hours(1));
   EXPECT_TRUE(cache.load("a").has_value());  // used: "b" is the oldest now
+  // Any name with ".program" in it was once removed.
+  const std::string hash(16, 'a');
+  const fs::path part = folder_ / ("." + hash + ".program.7-0.part");
+  write_file(part, std::string(1000, 'x'));
+  fs::last_write_time(part, now - std::chrono::hours(3));
+  const std::vector<fs::path> others{folder_ / "my.program.backup.tar", folder_ / "my.program",
+                                     folder_ / (hash + ".program.old")};
+  for (const fs::path& other : others) {
+    write_file(other, "of the user");
+    fs::last_write_time(other, now - std::chrono::hours(4));
+  }
   cache.store("c", binary);
+  EXPECT_FALSE(fs::exists(part)) << "of a killed process";
+  for (const fs::path& other : others) EXPECT_TRUE(fs::exists(other)) << other;
   EXPECT_TRUE(cache.load("a").has_value());
   EXPECT_FALSE(cache.load("b").has_value());
   EXPECT_TRUE(cache.load("c").has_value());

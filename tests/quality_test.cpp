@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "support/error.hpp"
 #include "tests/support/error_of.hpp"
@@ -185,6 +186,43 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   EXPECT_EQ(same_times, 3);
   EXPECT_EQ(kept(), 4u);
   EXPECT_EQ(test::read_file(file("a.json")), second.out);
+}
+
+// A camera's name once led --images to any file of the user.
+TEST_F(QualityCommand, ASceneDoesNotChooseWhereImagesLie) {
+  nlohmann::json room = nlohmann::json::parse(test::read_file(file("room.json")));
+  room["cameras"][0]["name"] = "x/../../../victim";
+  room["cameras"][1]["name"] = "..";
+  std::ofstream(file("room.json")) << room.dump();
+  std::ofstream(file("victim.exr")) << "of the user";
+  const test::Outcome outcome =
+      quality("--baseline paths --baseline-time 1 --images " + file("out") + " --format json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(test::read_file(file("victim.exr")), "of the user");
+  std::set<std::string> names;
+  for (const auto& image : fs::recursive_directory_iterator(file("out")))
+    names.insert(image.path().lexically_relative(file("out")));
+  EXPECT_THAT(names, ElementsAre("paths", testing::MatchesRegex("paths/room-__-[0-9a-f]*.exr"),
+                                 testing::MatchesRegex("paths/room-x_+victim-[0-9a-f]*.exr")));
+}
+
+// They were once found after the measuring, as unwritable, or replaced by each other.
+TEST_F(QualityCommand, ImagesAreCheckedBeforeTheWork) {
+  const std::string images = "--camera left --baseline paths --images " + file("out");
+  fs::create_directories(file("out/paths/room-left.exr"));
+  const test::Outcome folder = quality(images);
+  EXPECT_EQ(folder.exit_code, 1);
+  EXPECT_THAT(folder.err, HasSubstr("room-left.exr: cannot be written: it is a folder"));
+  fs::remove(file("out/paths/room-left.exr"));
+  fs::create_directory(file("b"));
+  fs::copy(file("room.json"), file("b/room.json"));
+  fs::copy(file("model.gltf"), file("b/model.gltf"));
+  fs::copy(file("model.bin"), file("b/model.bin"));
+  const test::Outcome same = quality(file("b/room.json") + " " + images);
+  EXPECT_EQ(same.exit_code, 2);
+  EXPECT_THAT(same.err, HasSubstr("--images: room-left.exr would be the file of"));
+  EXPECT_TRUE(fs::is_empty(file("out/paths")));
+  EXPECT_FALSE(fs::exists(file("cache/references"))) << "nothing was traced";
 }
 
 }  // namespace

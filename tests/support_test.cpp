@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <set>
 #include <string_view>
 
@@ -40,6 +41,24 @@ TEST(Printable, ErrorsAndXmlAre) {
   const Error error(ExitCode::bad_input, "{}: no '{}'", "a.gltf", "\x1b[2J");
   EXPECT_STREQ(error.what(), "a.gltf: no '?[2J'");
   EXPECT_EQ(xml_escaped("<a\x01&\x1b\n>"), "&lt;a?&amp;?\n>");
+}
+
+TEST(InFileName, HasOnlyPlainCharactersAndTellsNamesApart) {
+  std::set<std::string> parts;
+  const std::string wide = "K\xc3\xbc" "che", longer(65, 'a');
+  for (const std::string& name :
+       {std::string("front"), std::string("Front-2_b"), std::string(64, 'a'), longer, longer + "b",
+        std::string(), std::string("."), std::string(".."), std::string("_"), std::string("a b"),
+        std::string("a_b"), std::string("a\0b", 3), std::string("a/b"), std::string("a\nb"), wide,
+        std::string("x/../../../home/victim"), std::string("a.0001"), std::string("%d")}) {
+    const std::string part = in_file_name(name);
+    EXPECT_EQ(part, in_file_name(name));
+    EXPECT_TRUE(std::regex_match(part, std::regex("[A-Za-z0-9_-]{1,73}"))) << part;
+    EXPECT_TRUE(parts.insert(part).second) << part;
+  }
+  for (const std::string same : {"front", "Front-2_b", "_"}) EXPECT_EQ(in_file_name(same), same);
+  EXPECT_EQ(in_file_name("a b").substr(0, 4), "a_b-");
+  EXPECT_EQ(view_file_name("room", "left"), "room-left");
 }
 
 std::string of(const std::vector<std::string>& pieces) {

@@ -4,12 +4,13 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "device/driver_cache.hpp"
@@ -22,6 +23,7 @@
 #include "support/log.hpp"
 #include "support/scratch_folder.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -29,6 +31,7 @@ namespace clpv::trust_test {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 using test::kSmallSteps;
 using test::kTiny;
 using test::read_file;
@@ -234,51 +237,91 @@ TEST_F(CacheTest, TwoProcessesShareOneQualityCacheAndOutput) {
 // -------------------------------------------------------------------------------------- temporary
 // folders
 
-TEST(ScratchFolders, OfKilledRunsAreRemovedByTheNext) {
-  const test::TemporaryFolder folder;
-  ::setenv("TMPDIR", folder.path().c_str(), 1);
-  folder.write("clpv-aaaaaa/below/file", "of a killed run");
-  folder.write("clpv-bbbbbb/file", "of a run that goes on");
-  folder.write("clpv-cccccc/file", "just made");
-  folder.write("clpv-data/file", "of the user");
+/// Paths below a folder and the contents of its files.
+std::map<std::string, std::string> contents_of(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    all[entry.path().string()] = entry.is_regular_file() ? read_file(entry.path()) : "";
+  return all;
+}
+
+/// A folder as TMPDIR.
+struct ScratchFolders : ::testing::Test {
+  test::TemporaryFolder folder;
+  const fs::path own = folder / (".clpv-scratch-" + std::to_string(::geteuid()));
+
+  void SetUp() override { ::setenv("TMPDIR", folder.path().c_str(), 1); }
+  void TearDown() override { ::unsetenv("TMPDIR"); }
+
+  /// Kills a process that has a temporary folder; returns that folder.
+  fs::path killed() const {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const ScratchFolder scratch;
+      ::raise(SIGKILL);
+    }
+    ::waitpid(child, nullptr, 0);
+    for (const auto& left : fs::directory_iterator(own)) return left.path();
+    return {};
+  }
+};
+
+// All folders clpv-?????? were once removed, also a user's clpv-output.
+TEST_F(ScratchFolders, NothingGoesButMarkedFoldersOfKilledRuns) {
+  const fs::path left = killed();
+  ASSERT_TRUE(fs::exists(left / "clpv-scratch"));
+  const std::string name = own.filename().string();
+  for (const char* kept : {"clpv-output/a", "clpv-images/a", ".clpv-run-aaaaaa/clpv-scratch"})
+    folder.write(kept, "of the user");
+  folder.write(name + "/run-aaaaaa/file", "has no mark");
+  folder.write(name + "/clpv-scratch", "no folder");
+  fs::create_directory_symlink(folder / "clpv-output", own / "run-linked");
+  folder.write("clpv-output/clpv-scratch", "a link leads to this mark");
+  const auto before = contents_of(folder.path());
   const auto hours_ago = fs::file_time_type::clock::now() - std::chrono::hours(2);
-  for (const char* old : {"clpv-aaaaaa", "clpv-bbbbbb", "clpv-data"})
-    fs::last_write_time(folder / old, hours_ago);
-  const int running = ::open((folder / "clpv-bbbbbb").c_str(), O_RDONLY | O_DIRECTORY);
-  ASSERT_EQ(::flock(running, LOCK_EX), 0);
+  for (const auto& [path, text] : before) fs::last_write_time(path, hours_ago);
   fs::path made;
   {
-    const ScratchFolder scratch;
+    const ScratchFolder scratch, other;  // neither removes the other's
     made = scratch.path();
     EXPECT_EQ(mode_of(made), 0700u);
+    EXPECT_EQ(mode_of(own), 0700u);
+    EXPECT_TRUE(fs::exists(made));
   }
-  ::unsetenv("TMPDIR");
-  ::close(running);
   EXPECT_FALSE(fs::exists(made));
-  EXPECT_FALSE(fs::exists(folder / "clpv-aaaaaa"));
-  for (const char* kept : {"clpv-bbbbbb", "clpv-cccccc", "clpv-data"})
-    EXPECT_TRUE(fs::exists(folder / kept)) << kept;
-}
-
-TEST(ScratchFolders, AKilledProcessLosesItsLock) {
-  const test::TemporaryFolder folder;
-  ::setenv("TMPDIR", folder.path().c_str(), 1);
-  const pid_t child = ::fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    const ScratchFolder scratch;
-    ::raise(SIGKILL);
-  }
-  ::waitpid(child, nullptr, 0);
-  const fs::path left = *fs::directory_iterator(folder.path());
-  fs::last_write_time(left, fs::file_time_type::clock::now() - std::chrono::hours(2));
-  { const ScratchFolder scratch; }
-  ::unsetenv("TMPDIR");
   EXPECT_FALSE(fs::exists(left));
+  auto after = contents_of(folder.path());
+  after.insert({{left.string(), ""}, {(left / "clpv-scratch").string(), ""}});
+  EXPECT_EQ(after, before);
 }
 
-TEST(ScratchFolders, AMissingTmpdirIsNamed) {
-  const test::TemporaryFolder folder;
+TEST_F(ScratchFolders, NothingIsRemovedWhereOthersMayWrite) {
+  const fs::path left = killed();
+  for (const mode_t mode : {0770u, 0707u, 01777u}) {
+    ::chmod(own.c_str(), mode);
+    ::testing::internal::CaptureStderr();
+    const ScratchFolder scratch;
+    EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr(own.string() + ": not used"));
+    EXPECT_EQ(scratch.path().parent_path(), folder.path());
+    EXPECT_EQ(mode_of(scratch.path()), 0700u);
+  }
+  fs::remove_all(own);
+  fs::create_directory(folder / "elsewhere");
+  fs::create_directory_symlink(folder / "elsewhere", own);
+  EXPECT_EQ(ScratchFolder().path().parent_path(), folder.path()) << "a link";
+  EXPECT_TRUE(fs::is_empty(folder / "elsewhere"));
+  fs::remove(own);
+  folder.write(own.filename().string(), "a file");
+  EXPECT_EQ(ScratchFolder().path().parent_path(), folder.path());
+  EXPECT_EQ(read_file(own), "a file");
+  fs::remove(own);
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give files away";
+  fs::create_directory(own);
+  ASSERT_EQ(::lchown(own.c_str(), 65534, 65534), 0);
+  EXPECT_EQ(ScratchFolder().path().parent_path(), folder.path()) << "a folder of another user";
+}
+
+TEST_F(ScratchFolders, AMissingTmpdirIsNamed) {
   const test::Outcome drawing = test::run(
       "TMPDIR=/nonexistent " CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string());
   const test::Outcome cold =
@@ -296,33 +339,86 @@ TEST(ScratchFolders, AMissingTmpdirIsNamed) {
 // --------------------------------------------------------------------------------------------------
 // outputs
 
-TEST(Outputs, SpareInputsAndEachOther) {
-  const test::TemporaryFolder folder;
-  for (const auto& entry : fs::directory_iterator(fs::path(kTiny).parent_path()))
-    if (entry.path().stem() == "tiny") fs::copy(entry.path(), folder.path());
-  folder.write("my.json", R"({"model": "tiny.gltf"})");
-  folder.write("times.json", R"({"model": "tiny.gltf"})");
-  folder.write("points.csv", "0,0,0,0,1,0\n");
-  const std::string scene = " my.json" + kSmallSteps;
+/// A folder with a scene whose model has a texture of each kind of name, a sky, and centres.
+struct Inputs : ::testing::Test {
+  test::TemporaryFolder folder;
+
+  void SetUp() override {
+    test::GltfBuilder model;
+    json material = {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}};
+    model.square(2)["material"] = model.add("materials", material);
+    material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
+    model.square(1)["material"] = model.add("materials", material);
+    for (const char* uri : {"a%20b.png", "frame-0001.png", "un%75sed.png"})
+      model.add("textures", {{"source", model.add("images", {{"uri", uri}})}});
+    for (const char* name : {"a b.png", "frame-0001.png", "unused.png"})
+      folder.write(name, test::decode_base64(test::kPngRgba2x2));
+    model.write(folder);
+    Image sky = make_image(2, 1, {"R", "G", "B"});
+    write_exr(folder / "my sky.exr", sky);
+    folder.write("my.json", R"({"model": "model.gltf", "sky": {"map": "my%20sky.exr"}})");
+    for (const char* name : {"centres.json", "times.json", "frame-0002.png", "figure3.png"})
+      folder.write(name, R"({"centres": [[1,0,0],[-1,0,0],[0,1,0],[0,-1,0],[0,0,1],[0,0,-1]]})");
+    folder.write("points.csv", "0,0,0,0,1,0\n");
+    folder.write("index.html", R"({"variants": []})");
+    fs::create_hard_link(folder / "model.gltf", folder / "hard.json");
+    fs::create_symlink("model.bin", folder / "link.json");
+    folder.write("gather/gather.cl", "a kernel file");
+  }
+};
+
+TEST_F(Inputs, AreReplacedByNoOutput) {
+  const auto before = contents_of(folder.path());
+  const std::string scene = " my.json" + kSmallSteps,
+                    film = "sequence" + scene + "--frames 3 --fps 1 --format png -o . ",
+                    cached = " --spp 1 --frames 1 --cache " + (folder / "../cache").string();
+  ::setenv("CLPV_KERNEL_DIR", folder.path().c_str(), 1);
+  const test::Outcome kernel = run_here("check --list --junit gather/gather.cl", folder.path());
+  ::unsetenv("CLPV_KERNEL_DIR");
+  EXPECT_EQ(kernel.exit_code, 2) << kernel.err;
+  const std::string rendered = "render" + scene;
   for (const std::string& command :
-       {"render" + scene + "-o o.exr --stats o.exr", "render" + scene + "-o o.exr --stats my.json",
-        "render" + scene + "-o o.exr --dump-normals ./o.exr",
-        "render" + scene + "-o o.exr --stats tiny.gltf",  // not named on the command line
-        std::string("pathtrace my.json -o o.exr --stats my.json"),
+       {rendered + "-o o.exr --stats o.exr", rendered + "-o o.exr --dump-normals ./o.exr",
+        rendered + "-o o.exr --stats my.json", rendered + "-o o.exr --stats model.gltf",
+        rendered + "-o o.exr --stats hard.json", rendered + "-o o.exr --stats link.json",
+        rendered + "-o 'a b.png'", rendered + "-o unused.png", rendered + "-o 'my sky.exr'",
+        rendered + "-o o.exr --centres centres.json --stats centres.json",
+        "pathtrace my.json -o 'my sky.exr'", std::string("pathtrace my.json -o o.exr --stats my.json"),
         "query" + scene + "--points points.csv -o points.csv",
-        "quality" + scene + "--cache cache -o my.json",
-        std::string("bench regression --scene my.json -o my.json"),
-        "sequence times.json" + kSmallSteps + "--frames 1 --fps 1 -o ."}) {
+        "query" + scene + "--points points.csv -o model.bin", film,
+        "sequence" + scene + "--frames 3 --fps 1 -o . --centres times.json",
+        "quality" + scene + cached + " -o my.json", "quality" + scene + cached + " -o hard.json",
+        "quality" + scene + cached + " -o link.json",
+        "quality" + scene + cached + " --centres centres.json -o centres.json",
+        "quality" + scene + cached + " --vary centres=times.json,centres.json -o centres.json",
+        std::string("bench regression --scene my.json -o hard.json"),
+        std::string("bench regression --scene my.json -o o.json --log model.gltf"),
+        std::string("bench regression --scene my.json --log frame-0001.png"),
+        std::string("basis --centres figure3.png --figures ."),
+        std::string("report . --quality index.html")}) {
     const test::Outcome outcome = run_here(command, folder.path());
     EXPECT_EQ(outcome.exit_code, 2) << command << "\n" << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("allowed: another file")) << command;
-    EXPECT_EQ(read_file(folder / "my.json"), R"({"model": "tiny.gltf"})");
-    EXPECT_FALSE(fs::exists(folder / "o.exr")) << command;
+    EXPECT_TRUE(contents_of(folder.path()) == before) << command;
   }
-  fs::copy(folder / "my.json", folder / "again.json");
-  EXPECT_EQ(run_here("render again.json" + kSmallSteps + "-o o.exr --stats s.json", folder.path())
-                .exit_code,
-            0);
+  const std::string centres = "--frames 3 --fps 1 --format png --centres frame-0002.png -o .";
+  fs::remove(folder / "frame-0001.png");
+  EXPECT_EQ(run_here("sequence " + kTiny + kSmallSteps + centres, folder.path()).exit_code, 2);
+}
+
+TEST_F(Inputs, AreNoneWhereOutputsOfEarlierRunsAreReplaced) {
+  const std::string scene = " my.json" + kSmallSteps;
+  for (const char* sky : {"1", "2"}) {
+    folder.write("my.json", R"({"model": "model.gltf", "sky": {"radiance": [1, 1, )" +
+                                std::string(sky) + "]}}");
+    for (const std::string& command :
+         {"render" + scene + "-o o.exr --stats s.json",
+          "sequence" + scene + "--frames 2 --fps 1 --view radiance -o film"}) {
+      const test::Outcome outcome = run_here(command, folder.path());
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      EXPECT_THAT(outcome.err, Not(HasSubstr("existed"))) << outcome.err;
+    }
+  }
   EXPECT_EQ(run_here("compare o.exr o.exr -o o.exr", folder.path()).exit_code, 2);
 }
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "basis/basis.hpp"
 #include "bench/compare_runs.hpp"
@@ -82,13 +82,15 @@ nlohmann::json earlier_run(const Options& options) {
   return report;
 }
 
-/// Checks before the benchmark that charts can be drawn. Empty if not requested.
-std::unique_ptr<const Drawing> prepared_plot(const Options& options) {
-  if (options.plot.empty()) return nullptr;
-  auto drawing = std::make_unique<const Drawing>("bench", "--plot");
-  create_folder("--plot", options.plot);
-  check_writable(std::filesystem::path(options.plot) / "roofline.svg");
-  return drawing;
+/// Returns the files of the options; those of --plot as python/clpv/draw/bench.py names them.
+std::vector<NamedFile> outputs_of(const Options& options) {
+  std::vector<NamedFile> outputs{{"--output", options.output}, {"--log", options.log}};
+  if (options.plot.empty()) return outputs;
+  for (const char* chart : {"layouts", "roofline", "scaling", "bases", "frame"})
+    for (const char* suffix : {"svg", "png"})
+      outputs.push_back(
+          {"--plot", std::filesystem::path(options.plot) / fmt::format("{}.{}", chart, suffix)});
+  return outputs;
 }
 
 /// Loads the scene of --scene, or the default scene of the suite, into the options.
@@ -124,14 +126,15 @@ void run(Options options, const Shared& shared) {
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.log = options.log;
   if (!options.output.empty()) require_extension("--output", options.output, {".json"});
-  check_outputs(
-      {{"--output", options.output}, {"--log", options.log}},
-      {{"--scene", options.scene}, {"--model", options.model}, {"--compare", options.compare}});
-  const std::unique_ptr<const Drawing> plot = prepared_plot(options);
+  if (!options.plot.empty()) create_folder("--plot", options.plot);
+  check_outputs(outputs_of(options));
+  std::optional<const Drawing> plot;  // before the benchmark, to report whether charts can be drawn
+  if (!options.plot.empty()) plot.emplace("bench", "--plot");
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite =
       *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
   load_suite_scene(options, suite);
+  check_outputs(outputs_of(options));
   const Device device = choose_device(shared.device);
   // Cached programs have no build time.
   Session session(device,

@@ -134,7 +134,7 @@ nlohmann::json report_of(const CheckResults& results, const Device& device) {
 }
 
 void run(const Options& options, const Shared& shared) {
-  if (!options.junit.empty()) check_writable(options.junit);
+  check_outputs({{"--junit", options.junit}});
   const verify::Cases cases = options.choice.cases();
   if (options.list) {
     for (const verify::Case& c : cases) fmt::print("{:<10} {}\n", name_of(c.stage), c.name);

@@ -14,7 +14,9 @@
 #include "cli/options.hpp"
 #include "clpv/version.hpp"
 #include "device/cl_error.hpp"
+#include "device/kernel_files.hpp"
 #include "support/error.hpp"
+#include "support/input_record.hpp"
 #include "support/interrupt.hpp"
 #include "support/limits.hpp"
 #include "support/log.hpp"
@@ -240,6 +242,8 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
 }
 
 int run_program(int argc, const char* const* argv) {
+  const InputRecord record;
+  record_kernel_files();
   CLI::App app;
   Shared shared;
   add_commands(app, shared);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "support/error.hpp"
+#include "support/input_file.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 
@@ -55,6 +57,11 @@ std::vector<fs::path> interpreters() {
   return all;
 }
 
+std::string read_whole(const fs::path& file) {
+  if (auto bytes = file_bytes(file, std::numeric_limits<std::uintmax_t>::max())) return *bytes;
+  throw Error(ExitCode::run_time, "{}: cannot be read", file.string());
+}
+
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
@@ -80,12 +87,19 @@ Drawing::Drawing(std::string kind, std::string asked_by)
 }
 
 void Drawing::add(const std::string& file, const nlohmann::json& document) const {
-  write_file(folder() / file, document.dump());
+  write_file(folder() / file, document.dump(), OutputFile::Kind::entry);
 }
 
 void Drawing::draw(const fs::path& output) const {
-  const Process::Result ended = run(python_, {folder().string(), fs::absolute(output).string()});
-  if (ended.code == 0) return;
+  const fs::path drawn = folder() / "drawn";
+  fs::create_directory(drawn);
+  const fs::path target = kind_ == "report" ? drawn / "index.html" : drawn;
+  const Process::Result ended = run(python_, {folder().string(), target.string()});
+  if (ended.code == 0) {
+    for (const fs::directory_entry& file : fs::directory_iterator(drawn))
+      write_file(output / file.path().filename(), read_whole(file.path()));
+    return;
+  }
   if (ended.code == static_cast<int>(ExitCode::bad_input))
     throw Error(ExitCode::bad_input, "{}: {}", asked_by_, ended.output);
   throw Error(ExitCode::run_time, "{}: {} -m clpv.draw ended with {}: {}", asked_by_,

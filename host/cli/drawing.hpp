@@ -26,8 +26,8 @@ class Drawing {
   const std::filesystem::path& folder() const { return folder_.path(); }
   void add(const std::string& file, const nlohmann::json& document) const;
 
-  /// Throws Error(bad_input) for a malformed document, Error(run_time) with Python's message on
-  /// failure.
+  /// Draws, and writes the files to a folder, each as an OutputFile. Throws Error(bad_input) for a
+  /// malformed document, Error(run_time) with Python's message on failure.
   void draw(const std::filesystem::path& output) const;
 
  private:

@@ -86,8 +86,9 @@ void run(const Options& options, Shared& shared) {
   if (std::ranges::none_of(options.views, needs_paths)) tracing.samples = 1;
   require_extension("--output", options.output, {".exr"});
   const std::vector<NamedFile> outputs{{"--output", options.output}, {"--stats", options.stats}};
-  check_outputs(outputs, options.files());
-  MovingScene moving = options.open(outputs);
+  check_outputs(outputs);
+  MovingScene moving = options.open();
+  check_outputs(outputs);
   for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
   moving.pose(options.time);
   const SceneData& scene = moving.scene();

@@ -201,12 +201,15 @@ void run(const Options& options, Shared& shared) {
   if (!options.baselines.names.empty() && ranks.size() > 1)
     throw Error(ExitCode::usage, "--baseline: found {} ranks; allowed: one", ranks.size());
   if (!options.output.empty()) require_extension("--output", options.output, {".json"});
-  check_outputs({{"--output", options.output}}, files_of(options.subjects));
+  std::vector<NamedFile> outputs{{"--output", options.output}};
+  check_outputs(outputs);
   const std::filesystem::path folder = quality_cache(options.cache);
   QualityStore store(folder / "cells");
   Session session(ranks.device(shared.device));
   std::vector<Subject> subjects = load_subjects(options.subjects);
   const std::vector<Group> groups = groups_of(options, subjects, variants);
+  std::ranges::move(image_files(options.baselines, subjects), std::back_inserter(outputs));
+  check_outputs(outputs);
   for (Subject& subject : subjects) {
     const RenderOptions frame = with(options, {}, subject.scene);
     trace_truths(subject, frame.width, frame.height, tracing, folder / "references", ranks);

@@ -6,8 +6,18 @@
 #include "image/image_io.hpp"
 #include "support/error.hpp"
 #include "support/progress.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
+namespace {
+
+std::filesystem::path image_file(const std::string& images, Baseline baseline,
+                                 const Subject& subject, const SceneCamera& camera) {
+  return std::filesystem::path(images) / name_of(baseline) /
+         (view_file_name(subject.scene.name, camera.name) + ".exr");
+}
+
+}  // namespace
 
 void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
   CLI::Option* names = add_choices(command, "--baseline", baselines.names,
@@ -22,6 +32,20 @@ void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
   add(command, "--images", "DIR", baselines.images,
       "folder for images: DIR/BASELINE/SCENE-CAMERA.exr")
       ->needs(names);
+}
+
+std::vector<NamedFile> image_files(const QualityBaselines& baselines,
+                                   const std::vector<Subject>& subjects) {
+  if (baselines.images.empty()) return {};
+  require_distinct_names("--images", subjects);
+  std::vector<NamedFile> files;
+  for (const Baseline baseline : baselines.names) {
+    create_folder("--images", std::filesystem::path(baselines.images) / name_of(baseline));
+    for (const Subject& subject : subjects)
+      for (const SceneCamera& camera : subject.cameras)
+        files.push_back({"--images", image_file(baselines.images, baseline, subject, camera)});
+  }
+  return files;
 }
 
 std::vector<QualityCell> measure_baselines(
@@ -42,22 +66,16 @@ std::vector<QualityCell> measure_baselines(
       BaselineBudget budget = baseline_budget(session, frame, camera, frames);
       if (baselines.time > 0) budget.budget_ms = baselines.time;
       for (const Baseline baseline : baselines.names) {
-        QualityCell cell;
+        MeasuredBaseline measured;
+        QualityCell& cell = measured.cell;
         try {
-          MeasuredBaseline measured =
-              measure_baseline(baseline, view, budget, subject.truths[c], show, frames);
-          cell = std::move(measured.cell);
-          if (!baselines.images.empty()) {
-            const std::filesystem::path folder =
-                std::filesystem::path(baselines.images) / name_of(baseline);
-            create_folder("--images", folder);
-            write_exr(folder / fmt::format("{}-{}.exr", subject.scene.name, camera.name),
-                      measured.image);
-          }
+          measured = measure_baseline(baseline, view, budget, subject.truths[c], show, frames);
         } catch (const Error& error) {
           if (error.code() != ExitCode::usage) throw;
           cell.rejected = error.what();
         }
+        if (!baselines.images.empty() && cell.rejected.empty())
+          write_exr(image_file(baselines.images, baseline, subject, camera), measured.image);
         cell.scene = subject.scene.name, cell.camera = camera.name;
         cell.variant = {{"baseline", std::string(name_of(baseline))}};
         cells.push_back(std::move(cell));

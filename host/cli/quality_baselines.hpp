@@ -10,6 +10,7 @@
 #include "cli/quality_subjects.hpp"
 #include "device/session.hpp"
 #include "quality/baseline.hpp"
+#include "support/output_file.hpp"
 
 namespace clpv {
 
@@ -22,6 +23,11 @@ struct QualityBaselines {
 
 /// Adds --baseline, --baseline-time and --images.
 void add_baseline_options(CLI::App& command, QualityBaselines& baselines);
+
+/// Returns the files of --images, if given, and creates their folders. Throws Error(usage) if two
+/// views have one name.
+std::vector<NamedFile> image_files(const QualityBaselines& baselines,
+                                   const std::vector<Subject>& subjects);
 
 /// Measures each baseline in each view of the subjects, which have their ground truths.
 /// `options_of`: of the frame whose time they get. A baseline that does not have a scene's light is

@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "cli/options.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 #include "support/log.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -37,13 +39,6 @@ void add_subject_options(CLI::App& command, QualitySubjects& subjects) {
                             "name of a camera, repeatable (default: all cameras of all scenes)");
   add_scene_changes(command, subjects.changes, *camera);
   add_seconds(command, "--time", subjects.time, "time in the scene's animation [s]");
-}
-
-std::vector<NamedFile> files_of(const QualitySubjects& given) {
-  std::vector<NamedFile> all;
-  for (const std::string& scene : given.scenes)
-    all.insert(all.end(), {{"SCENE", scene}, {"--model", model_for(scene, given)}});
-  return all;
 }
 
 std::filesystem::path quality_cache(const std::string& given) {
@@ -82,6 +77,21 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
       subjects[0].scene.camera(name);  // throws an error that lists the camera names
   }
   return subjects;
+}
+
+void require_distinct_names(const std::string& option, const std::vector<Subject>& subjects) {
+  std::map<std::string, std::string> views;  // by file name
+  for (const Subject& subject : subjects) {
+    for (const SceneCamera& camera : subject.cameras) {
+      const std::string view = fmt::format("{}, camera '{}'", subject.scene.path, camera.name);
+      const auto [other, first] =
+          views.try_emplace(view_file_name(subject.scene.name, camera.name), view);
+      if (first) continue;
+      throw Error(ExitCode::usage,
+                  "{}: {}.exr would be the file of {} and of {}; allowed: scenes of different names",
+                  option, other->first, other->second, view);
+    }
+  }
 }
 
 void trace_truths(Subject& subject, int width, int height,

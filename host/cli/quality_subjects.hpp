@@ -11,7 +11,6 @@
 #include "cli/options.hpp"
 #include "quality/ground_truth.hpp"
 #include "scene/scene.hpp"
-#include "support/output_file.hpp"
 
 namespace clpv {
 
@@ -35,9 +34,6 @@ struct Subject {
   std::vector<GroundTruth> truths;  ///< one per camera, after tracing
 };
 
-/// Returns the files that the command line names.
-std::vector<NamedFile> files_of(const QualitySubjects& given);
-
 /// Returns the cache folder of quality runs: `given` (--cache), or the user's cache if that is
 /// empty. Throws Error(usage) if neither exists.
 std::filesystem::path quality_cache(const std::string& given);
@@ -45,6 +41,10 @@ std::filesystem::path quality_cache(const std::string& given);
 /// Loads the scenes at that time, without ground truths. Throws the errors of load_scene, and
 /// Error(usage) for a camera or model that matches no scene.
 std::vector<Subject> load_subjects(const QualitySubjects& given);
+
+/// Throws Error(usage) if two views have one view_file_name(), as scenes of one stem do. `option`: of
+/// the files.
+void require_distinct_names(const std::string& option, const std::vector<Subject>& subjects);
 
 /// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar. Collective
 /// over all ranks.

@@ -60,14 +60,13 @@ RenderRequest of_volumes(RenderRequest request) {
 
 void run(const Options& options, const Shared& shared) {
   const std::vector<NamedFile> outputs{{"--output", options.output}};
-  std::vector<NamedFile> inputs = options.request.files();
-  inputs.push_back({"--points", options.points});
-  check_outputs(outputs, inputs);
+  check_outputs(outputs);
   const std::vector<SurfacePoint> points = read_points(options.points);
   const RenderRequest request = of_volumes(options.request);
-  MovingScene moving = request.open(outputs);
+  MovingScene moving = request.open();
   moving.pose(options.time);
   const RenderOptions resolved = resolve_request(request, moving.scene());
+  check_outputs(outputs);
   const SceneCamera& camera = moving.scene().camera(request.camera);
   log_scene(moving.scene(), camera, resolved);
   const Device device = choose_device(shared.device);

@@ -75,14 +75,15 @@ void write_images(Frame& frame, const Options& options, float exposure,
 
 void run(const Options& options, const Shared& shared) {
   const std::vector<NamedFile> outputs = outputs_of(options);
-  check_outputs(outputs, options.request.files());
+  check_outputs(outputs);
   FrameStats stats;
   Progress progress("render", 4);
   const RenderRequest& request = options.request;
-  MovingScene moving = request.open(outputs);
+  MovingScene moving = request.open();
   const SceneData& scene = moving.scene();
   moving.pose(options.time);
   const RenderOptions resolved = resolve_request(request, scene);
+  check_outputs(outputs);
   const SceneCamera& camera = scene.camera(request.camera);
   log_scene(scene, camera, resolved);
   progress.advance();

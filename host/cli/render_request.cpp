@@ -20,20 +20,8 @@ namespace {
 constexpr float kMaxExposure = 64;  // 2^64: beyond any scene, and finite
 }
 
-std::vector<NamedFile> SceneRequest::files() const {
-  return {{"SCENE", scene}, {"--model", model}};
-}
-
-std::vector<NamedFile> RenderRequest::files() const {
-  std::vector<NamedFile> all = SceneRequest::files();
-  if (const auto given = frame.find("centres"); given != frame.end())
-    all.push_back({"--centres", given->second});
-  return all;
-}
-
-MovingScene SceneRequest::open(const std::vector<NamedFile>& outputs) const {
+MovingScene SceneRequest::open() const {
   MovingScene moving(scene, model);
-  check_outputs(outputs, files_of(moving.scene()));
   changes.apply(moving);
   return moving;
 }
@@ -90,13 +78,6 @@ Compilation compilation_of(const RenderRequest& request, const std::string& devi
   add("device", device);
   for (const auto& [name, value] : request.frame) add(name, value);
   return {std::move(arguments), std::nullopt};
-}
-
-std::vector<NamedFile> files_of(const SceneData& scene) {
-  std::vector<NamedFile> all;
-  for (const std::filesystem::path& file : scene.files)
-    all.push_back({"scene " + scene.name, file});
-  return all;
 }
 
 void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOptions& options) {

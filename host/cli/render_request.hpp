@@ -14,7 +14,6 @@
 #include "image/tone_map.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
-#include "support/output_file.hpp"
 
 namespace clpv {
 
@@ -23,12 +22,8 @@ struct SceneRequest {
   std::string scene, model, camera;
   SceneChanges changes;
 
-  /// The files that the command line names.
-  std::vector<NamedFile> files() const;
-
-  /// Loads the scene with these changes. A camera given by its numbers is then the only one. Throws
-  /// Error(usage) if one of the `outputs` is a file of the scene.
-  MovingScene open(const std::vector<NamedFile>& outputs = {}) const;
+  /// Loads the scene with these changes. A camera given by its numbers is then the only one.
+  MovingScene open() const;
 };
 
 /// Adds SCENE, --model, --camera and the options of add_scene_changes(); the request must outlive
@@ -40,7 +35,6 @@ struct RenderRequest : SceneRequest {
   std::optional<float> exposure;
   OptionValues frame;
 
-  std::vector<NamedFile> files() const;
   float exposure_of(const SceneData& shown) const { return exposure.value_or(shown.exposure); }
 };
 
@@ -57,9 +51,6 @@ RenderOptions resolve_request(const RenderRequest& request, const SceneData& sce
 /// Returns who compiles the kernels of these frames: helper processes, unless a launcher started
 /// several ranks.
 Compilation compilation_of(const RenderRequest& request, const std::string& device);
-
-/// Returns the files that the scene was read from.
-std::vector<NamedFile> files_of(const SceneData& scene);
 
 /// Logs the scene's notes, the automatic choice of cascades and its consequences.
 void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOptions& options);

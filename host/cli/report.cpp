@@ -24,6 +24,7 @@
 #include "support/json_schema.hpp"
 #include "support/output_file.hpp"
 #include "support/progress.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace report_command {
@@ -71,6 +72,10 @@ nlohmann::json read_documents(const std::vector<std::string>& paths, const char*
   return all;
 }
 
+fs::path page_of(const Options& options) {
+  return fs::path(options.folder) / "index.html";
+}
+
 OptionValues sized(const Options& options, OptionValues given) {
   given["width"] = options.width;
   given["height"] = options.height;
@@ -101,7 +106,7 @@ std::string add_values(const Drawing& drawing, const std::string& stem, const Im
 }
 
 fs::path file_of(const std::string& folder, const Subject& subject, const SceneCamera& camera) {
-  return fs::path(folder) / fmt::format("{}-{}.exr", subject.scene.name, camera.name);
+  return fs::path(folder) / (view_file_name(subject.scene.name, camera.name) + ".exr");
 }
 
 /// The image of another method for a view. Throws Error(bad_input) without channels R, G and B.
@@ -164,10 +169,12 @@ nlohmann::json view(Session& session, const Options& options, const Subject& sub
 nlohmann::json views(Session& session, const Options& options, const Drawing& drawing) {
   nlohmann::json all = nlohmann::json::array();
   std::vector<Subject> subjects = load_subjects(options.subjects);
+  if (!options.images.empty()) require_distinct_names("--images", subjects);
   for (const Subject& subject : subjects)  // before minutes of tracing
     for (const SceneCamera& camera : subject.cameras)
       for (const std::string& folder : options.images)
         read_image_of_method(file_of(folder, subject, camera));
+  check_outputs({{"DIR", page_of(options)}});
   for (Subject& subject : subjects) {
     const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
     trace_truths(subject, size.width, size.height, options.tracing.resolved(),
@@ -184,16 +191,12 @@ void run(const Options& options, const Shared& shared) {
   if (options.subjects.scenes.empty() && options.quality.empty() && options.benchmarks.empty())
     throw Error(ExitCode::usage, "report: nothing to show; allowed: scenes, --quality or --bench");
   create_folder("DIR", options.folder);
-  const fs::path output = fs::path(options.folder) / "index.html";
-  std::vector<NamedFile> inputs = files_of(options.subjects);
-  for (const std::string& file : options.quality) inputs.push_back({"--quality", file});
-  for (const std::string& file : options.benchmarks) inputs.push_back({"--bench", file});
   if (!options.images.empty() && options.subjects.scenes.empty())
     throw Error(ExitCode::usage, "--images: needs a scene");
-  check_outputs({{"DIR", output}}, inputs);
-  const Drawing drawing("report", "clpv report");
   nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},
                         {"benchmarks", read_documents(options.benchmarks, "benchmarks", "bench")}};
+  check_outputs({{"DIR", page_of(options)}});
+  const Drawing drawing("report", "clpv report");
   const Device device = choose_device(shared.device);
   Session session(device, ProgramCache::of_user(device));
   report["views"] = views(session, options, drawing);
@@ -206,8 +209,8 @@ void run(const Options& options, const Shared& shared) {
                                    version(), session.device().name, session.device().platform,
                                    session.device().driver, options.width, options.height);
   drawing.add("report.json", report);
-  drawing.draw(output);
-  fmt::print("{}\n", output.string());
+  drawing.draw(options.folder);
+  fmt::print("{}\n", page_of(options).string());
 }
 
 }  // namespace report_command

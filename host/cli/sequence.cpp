@@ -47,8 +47,11 @@ std::vector<NamedFile> prepare_outputs(const Options& options) {
   std::vector<NamedFile> outputs{{"--output", options.file(0)},
                                  {"--output", folder / "times.json"},
                                  {"--video", options.video}};
+  std::error_code unknown;
+  for (int i = 1; i < options.frames; ++i)  // file(0) tells whether new files are possible
+    if (fs::exists(options.file(i), unknown)) outputs.push_back({"--output", options.file(i)});
   if (options.stability) outputs.push_back({"--stability", folder / "stability.json"});
-  check_outputs(outputs, options.request.files());
+  check_outputs(outputs);
   return outputs;
 }
 
@@ -68,8 +71,10 @@ void run(const Options& options, Shared& shared) {
   if (!options.video.empty() && ranks.is_root())
     video.emplace(options.video, options.frames_per_second);
   const RenderRequest& request = options.request;
-  MovingScene moving = request.open(outputs);
+  MovingScene moving = request.open();
   const RenderOptions resolved = resolve_request(request, moving.scene());
+  check_outputs(outputs);
+  InputRecord::close();  // from here on it reads its own frames
   const Device device = ranks.device(shared.device);
   const auto camera = [&](const SceneData& scene) -> const SceneCamera& {
     return scene.camera(request.camera);

@@ -45,7 +45,6 @@ Video::Video(fs::path file, double frames_per_second)
   if (!found)
     throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)");
   ffmpeg_ = *found;
-  check_writable(file_);
 }
 
 Video::~Video() {

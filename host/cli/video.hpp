@@ -15,8 +15,8 @@ namespace clpv {
 /// H.264 video in an MP4 file, an OutputFile.
 class Video {
  public:
-  /// Throws Error(run_time) if ffmpeg is not in the path (with what to install) or `file` is not
-  /// writable. Construct before the work.
+  /// Throws Error(run_time) if ffmpeg is not in the path (with what to install). Construct before
+  /// the work.
   Video(std::filesystem::path file, double frames_per_second);
   ~Video();  ///< without finish(): no video
   Video(const Video&) = delete;

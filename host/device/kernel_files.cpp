@@ -9,6 +9,7 @@
 
 #include "support/error.hpp"
 #include "support/input_file.hpp"
+#include "support/input_record.hpp"
 
 namespace clpv {
 namespace {
@@ -64,6 +65,13 @@ void append_file(std::string& out, const std::string& name, int depth) {
 }
 
 }  // namespace
+
+void record_kernel_files() {
+  const char* folder = std::getenv("CLPV_KERNEL_DIR");
+  if (folder == nullptr || *folder == '\0') return;
+  for (const auto& [name, embedded] : detail::embedded_kernel_files())
+    InputRecord::add({"CLPV_KERNEL_DIR", std::filesystem::path(folder) / name});
+}
 
 std::string kernel_file(const std::string& name) {
   if (const char* folder = std::getenv("CLPV_KERNEL_DIR"); folder != nullptr && *folder != '\0') {

@@ -8,6 +8,9 @@
 
 namespace clpv {
 
+/// Adds the files of CLPV_KERNEL_DIR to the InputRecord.
+void record_kernel_files();
+
 /// Returns the text of kernels/NAME ("steps/propagate.cl", "volume/soa.h"): from CLPV_KERNEL_DIR if
 /// that folder has the file, else the embedded copy. Throws Error(run_time) for an unknown name.
 std::string kernel_file(const std::string& name);

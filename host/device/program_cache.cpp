@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <regex>
 #include <system_error>
 
 #include "device/driver_cache.hpp"
@@ -66,6 +67,12 @@ std::optional<ProgramCache::Binary> unpack(std::string_view bytes, const std::st
   if (!take_sized(bytes, stored_key) || !take_sized(bytes, binary) || stored_key != key)
     return std::nullopt;
   return ProgramCache::Binary(binary.begin(), binary.end());
+}
+
+/// Returns true for the names that file_of() and the OutputFiles of killed processes have.
+bool is_own(const std::string& name) {
+  static const std::regex kOwn(R"([0-9a-f]{16}\.program|\.[0-9a-f]{16}\.program\.\d+-\d+\.part)");
+  return std::regex_match(name, kOwn);
 }
 
 }  // namespace
@@ -139,7 +146,7 @@ void ProgramCache::evict_oldest() const {
     std::error_code gone;
     File file{it->last_write_time(gone), 0, it->path()};
     if (!gone) file.bytes = it->file_size(gone);
-    if (gone || file.path.filename().string().find(kSuffix) == std::string::npos) continue;
+    if (gone || !is_own(file.path.filename().string())) continue;
     total += file.bytes;
     files.push_back(std::move(file));
   }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <cctype>
 #include <optional>
 
 #include "clpv/version.hpp"
@@ -17,6 +16,7 @@
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/named_enum.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -32,14 +32,6 @@ std::string key(const SceneData& scene, const SceneCamera& camera, const ClpvVie
   print.add(std::vector{view}).add(options.bounces).add(options.seed).add(emits(scene));
   print.add(options.samples).add(options.samples > 0 ? 0.0 : options.noise);
   return print.hex();
-}
-
-/// Converts a name to a safe part of a file name; replaces other characters by '_'.
-std::string in_file_name(std::string name) {
-  for (char& c : name) {
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
-  }
-  return name;
 }
 
 std::vector<Show> views_of(bool medium) {
@@ -153,7 +145,7 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
   const ClpvView view = camera_view(camera, width, height);
   const CacheFolder cache(folder);
   const std::string name =
-      fmt::format("{}-{}-{}.exr", in_file_name(scene.name), in_file_name(camera.name),
+      fmt::format("{}-{}.exr", view_file_name(scene.name, camera.name),
                   key(scene, camera, view, options));
   std::optional<GroundTruth> kept;
   bool cached = false;

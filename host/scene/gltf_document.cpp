@@ -10,6 +10,7 @@
 #include "scene/gltf_accessor.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
+#include "support/input_record.hpp"
 
 namespace clpv {
 namespace {
@@ -130,17 +131,17 @@ void load_model(const Bytes& bytes, const json& parsed, GltfDocument& document) 
     reject(document.file, place_of_failure(document.model, parsed), excerpt(error), "glTF 2.0");
 }
 
-}  // namespace
-
-std::vector<std::filesystem::path> GltfDocument::files() const {
-  std::vector<std::filesystem::path> all{file};
-  const auto add = [&](const std::string& uri) {
-    if (!uri.empty() && !uri.starts_with("data:")) all.push_back(folder / uri);
-  };
-  for (const tinygltf::Buffer& buffer : model.buffers) add(buffer.uri);
-  for (const tinygltf::Image& image : model.images) add(image.uri);
-  return all;
+/// Adds all images of the document to the InputRecord: those that no material uses are not read.
+void record_images(const GltfDocument& document) {
+  for (std::size_t i = 0; i < document.model.images.size(); ++i) {
+    const std::string& uri = document.model.images[i].uri;
+    const auto path = uri.starts_with("data:") ? std::nullopt : percent_decoded(uri);
+    if (path && !path->empty())
+      InputRecord::add({fmt::format("{} /images/{}/uri", document.file, i), document.folder / *path});
+  }
 }
+
+}  // namespace
 
 std::span<const std::uint8_t> GltfDocument::view(int index) const {
   const tinygltf::BufferView& view = entry(model.bufferViews, index);
@@ -159,6 +160,7 @@ GltfDocument read_gltf_document(const std::filesystem::path& path) {
   const json parsed = parse_json(text, document.file);
   check_gltf(parsed, document.file);
   load_model(bytes, parsed, document);
+  record_images(document);
   check_accessors(document);
   return document;
 }

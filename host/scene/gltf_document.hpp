@@ -27,9 +27,6 @@ struct GltfDocument {
   /// Indices are in range; Image::image has the encoded bytes of a data URI.
   tinygltf::Model model;
 
-  /// Its own file, and those of its buffers and images.
-  std::vector<std::filesystem::path> files() const;
-
   /// Bytes of a buffer view.
   std::span<const std::uint8_t> view(int index) const;
 };

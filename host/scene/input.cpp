@@ -4,13 +4,20 @@
 
 #include <algorithm>
 #include <cctype>
-#include <optional>
 
 #include "support/error.hpp"
 
 namespace clpv {
 namespace fs = std::filesystem;
 namespace {
+
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  const auto [in_folder, in_path] =
+      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return in_folder == folder.end();
+}
+
+}  // namespace
 
 std::optional<std::string> percent_decoded(std::string_view uri) {
   std::string out;
@@ -28,14 +35,6 @@ std::optional<std::string> percent_decoded(std::string_view uri) {
   }
   return out;
 }
-
-bool lies_in(const fs::path& path, const fs::path& folder) {
-  const auto [in_folder, in_path] =
-      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
-  return in_folder == folder.end();
-}
-
-}  // namespace
 
 std::string excerpt(std::string_view text) {
   constexpr std::size_t kMaxLength = 160;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,9 @@ namespace clpv {
 
 /// Up to 160 bytes of a text on one line, for messages.
 std::string excerpt(std::string_view text);
+
+/// Returns the text with its %XX decoded; nothing if one is malformed.
+std::optional<std::string> percent_decoded(std::string_view uri);
 
 /// Canonical path of the relative URI `uri` in `file`, percent-decoded, with links resolved.
 /// `folder` must be canonical. Throws Error(bad_input) for absolute paths, `..`, links that lead

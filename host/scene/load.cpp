@@ -15,6 +15,7 @@
 #include "scene/gltf_parts.hpp"
 #include "scene/input.hpp"
 #include "support/error.hpp"
+#include "support/input_record.hpp"
 
 namespace clpv {
 namespace {
@@ -29,7 +30,6 @@ SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, M
   if (!ignored.empty())
     notes.add(fmt::format("extensions that are not read: {}", fmt::join(ignored, ", ")));
   SceneData scene;
-  scene.files = document.files();
   motion.tree = read_nodes(document, read_animations(document, notes),
                            glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
   PosedTree posed(motion.tree, 0);
@@ -152,6 +152,7 @@ void MovingScene::load_scene_file(const std::filesystem::path& path,
                                   const std::filesystem::path& replacement, Notes& notes) {
   description_ = read_scene_file(path);
   SceneViews views = views_at(description_, 0);
+  InputRecord::add({path.string() + " /model", description_.model});
   const std::filesystem::path model = replacement.empty() ? description_.model : replacement;
   if (model.empty())
     reject(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
@@ -161,7 +162,6 @@ void MovingScene::load_scene_file(const std::filesystem::path& path,
            "an existing file; option model says where it lies");
   }
   scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes);
-  if (!description_.sky_map.empty()) scene_.files.push_back(description_.sky_map);
   if (views.cameras) motion_.cameras.clear();
   if (views.lights) motion_.lights.clear();
   set_views(std::move(views));
@@ -235,7 +235,8 @@ MovingScene::MovingScene(const std::filesystem::path& path,
     load_scene_file(path, replacement, notes);
     scene_.path = path.string();
   } else if (extension == ".gltf" || extension == ".glb") {
-    const std::filesystem::path model = replacement.empty() ? path : replacement;
+    InputRecord::add({path.string() + " /model", description_.model});
+  const std::filesystem::path model = replacement.empty() ? path : replacement;
     scene_ = load_gltf(model, 1.0, motion_, notes);
     scene_.path = model.string();
   } else {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
@@ -66,8 +65,6 @@ struct MeshRange {
 struct SceneData {
   std::string name;  ///< the file's stem
   std::string path;  ///< the scene's file
-  /// Other files that it was read from: model, buffers, images.
-  std::vector<std::filesystem::path> files;
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
   std::vector<ClpvMaterial> materials;  ///< at least one if there are triangles

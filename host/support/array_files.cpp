@@ -36,7 +36,7 @@ void write_npy(const std::filesystem::path& path, std::span<const float> values,
   file.push_back(static_cast<char>(header.size() >> 8));
   file += header;
   file.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-  write_file(path, file);
+  write_file(path, file, OutputFile::Kind::entry);
 }
 
 }  // namespace clpv

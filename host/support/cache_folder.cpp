@@ -68,25 +68,30 @@ std::optional<std::string> CacheFolder::read(const std::string& name, std::uintm
   return bytes;
 }
 
-std::string CacheFolder::write(const std::string& name, std::span<const std::byte> bytes) const {
+/// Creates an entry's temporary file and calls use(file). Returns the reason of a failure, else "".
+template <typename Use>
+std::string CacheFolder::with_file(const std::string& name, const Use& use) const {
   make_private_folders(path_);
   if (const std::string why = distrust(path_); !why.empty())
     return fmt::format("{}: not used as a cache: {}", path_.string(), why);
   try {
-    OutputFile file(path_ / name, OutputFile::Links::replace);
-    file.write(bytes);
-    file.commit();
+    OutputFile file(path_ / name, OutputFile::Kind::entry);
+    use(file);
     return {};
   } catch (const Error& error) {
     return error.what();
   }
 }
 
+std::string CacheFolder::write(const std::string& name, std::span<const std::byte> bytes) const {
+  return with_file(name, [&](OutputFile& file) {
+    file.write(bytes);
+    file.commit();
+  });
+}
+
 std::string CacheFolder::problem() const {
-  const std::string probe = fmt::format("probe-{}", ::getpid());
-  std::string why = write(probe, std::string_view(""));
-  if (why.empty()) ::unlink((path_ / probe).c_str());
-  return why;
+  return with_file("probe", [](OutputFile&) {});
 }
 
 }  // namespace clpv

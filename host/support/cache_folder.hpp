@@ -37,10 +37,13 @@ class CacheFolder {
     return write(name, std::as_bytes(std::span(text)));
   }
 
-  /// Returns the reason why write() would fail, else "".
+  /// Returns the reason why write() would fail, else "". Changes nothing.
   std::string problem() const;
 
  private:
+  template <typename Use>
+  std::string with_file(const std::string& name, const Use& use) const;
+
   std::filesystem::path path_;
 };
 

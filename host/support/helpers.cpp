@@ -66,7 +66,7 @@ std::optional<Claims::Taken> Claims::taken(const std::string& name) const {
 }
 
 void Claims::finish(const std::string& name, const std::string& result) const {
-  write_file(folder_ / (name + kDone), result);
+  write_file(folder_ / (name + kDone), result, OutputFile::Kind::entry);
 }
 
 bool Claims::finished(const std::string& name) const {
@@ -123,7 +123,7 @@ std::string Helpers::failures() const {
 
 void become_helper() {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
 }
 
 }  // namespace clpv

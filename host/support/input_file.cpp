@@ -5,13 +5,16 @@
 #include <fstream>
 
 #include "support/error.hpp"
+#include "support/input_record.hpp"
 
 namespace clpv {
 
 namespace fs = std::filesystem;
 
-Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file,
-                std::string_view place) {
+namespace {
+
+Bytes bytes_of(const fs::path& path, std::uint64_t limit, const std::string& file,
+               std::string_view place) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (!fs::exists(status))
@@ -37,9 +40,17 @@ Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& fi
   return bytes;
 }
 
+}  // namespace
+
+Bytes read_file(const fs::path& path, std::uint64_t limit, const std::string& file,
+                std::string_view place) {
+  InputRecord::add({place.empty() ? "an input," : fmt::format("{} {}", file, place), path});
+  return bytes_of(path, limit, file, place);
+}
+
 std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t max_bytes) {
   try {
-    const Bytes bytes = read_file(path, max_bytes, path.string());
+    const Bytes bytes = bytes_of(path, max_bytes, path.string(), {});
     return std::string(bytes.begin(), bytes.end());
   } catch (const Error&) {
     return std::nullopt;

@@ -17,16 +17,16 @@ namespace clpv {
 inline constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1}
                                                 << 28;  ///< more than any cache or report
 
-/// Returns a regular file's bytes; nothing if it is missing, unreadable or longer than `limit`
-/// bytes.
+/// Returns the bytes of a regular file that clpv may itself have written; nothing if it is missing,
+/// unreadable or longer than `limit` bytes.
 std::optional<std::string> file_bytes(const std::filesystem::path& path,
                                       std::uintmax_t limit = kMaxFileBytes);
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Returns a regular file's bytes. `file` and `place` name the document that refers to it, for
-/// errors. Throws Error(bad_input) if it is missing, not a regular file, unreadable or longer than
-/// `limit` bytes.
+/// Returns the bytes of an input, a regular file, and adds it to the InputRecord. `file` and `place`
+/// name the document that refers to it, for errors. Throws Error(bad_input) if it is missing, not a
+/// regular file, unreadable or longer than `limit` bytes.
 Bytes read_file(const std::filesystem::path& path, std::uint64_t limit, const std::string& file,
                 std::string_view place = {});
 

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <utility>
 
+#include "support/output_file.hpp"
+
 namespace clpv {
 namespace {
 
@@ -25,21 +27,27 @@ void say(const char* text) {
   static_cast<void>(written);  // nowhere to report a failure
 }
 
+/// Ends the process by the signal's default action; async-signal-safe.
+void end_by(int signal) {
+  remove_unfinished_outputs();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
 extern "C" void on_signal(int signal) {
-  pending_signal = signal;
+  if (pending_signal.exchange(signal) == signal) return end_by(signal);  // once more
   if (const char* what = uninterruptible) {
     say("\nclpv: stopping after ");
     say(what);
     say("; once more to stop now\n");
   }
-  std::signal(signal, SIG_DFL);  // a second signal ends the process at once
 }
 
 }  // namespace
 
 void catch_interrupts() {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    // A shell ignores SIGINT for background processes; keep that.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // A shell ignores SIGINT for background processes, nohup SIGHUP; keep that.
     if (std::signal(signal, on_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
 }
@@ -70,8 +78,7 @@ void stop_if_interrupted(const std::string& kept) {
 
 void end_as_interrupted() {
   const int pending = pending_signal, signal = pending != 0 ? pending : SIGINT;
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
+  end_by(signal);
   std::abort();  // never reached
 }
 

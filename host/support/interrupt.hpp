@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SIGINT and SIGTERM: long work ends cleanly at its next step.
+// SIGINT, SIGTERM and SIGHUP: long work ends cleanly at its next step.
 #pragma once
 
 #include <atomic>
@@ -14,8 +14,8 @@ class Interrupted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Installs the handler: the first SIGINT or SIGTERM sets interrupted(), a second one ends the
-/// process at once.
+/// Installs the handler: the first of these signals sets interrupted(); the same once more ends
+/// the process at once, without its unfinished outputs.
 void catch_interrupts();
 
 /// Work that cannot be interrupted, during its lifetime: a signal then logs "stopping after

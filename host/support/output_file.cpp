@@ -6,9 +6,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <map>
 #include <system_error>
 #include <utility>
 
@@ -19,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxLinks = 40;  // symbolic links in a row, as Linux allows
 constexpr int kMaxNames = 1000;
 constexpr mode_t kPermissions = 0777;
 
@@ -36,19 +36,6 @@ std::string temporary_name(const std::string& target) {
   static std::atomic<unsigned> count{0};
   const std::string suffix = fmt::format(".{}-{}.part", ::getpid(), count++);
   return fmt::format(".{}{}", target.substr(0, NAME_MAX - 1 - suffix.size()), suffix);
-}
-
-/// Returns `path` with its symbolic links resolved, those to files that do not exist yet too.
-fs::path follow_links(const fs::path& path, std::error_code& error) {
-  // Absolute first: weakly_canonical drops the folder of a relative path that does not exist yet.
-  fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
-  std::error_code missing;
-  for (int hops = 0; !error && fs::is_symlink(fs::symlink_status(target, missing)); ++hops) {
-    if (hops == kMaxLinks) error = std::make_error_code(std::errc::too_many_symbolic_link_levels);
-    const fs::path next = error ? fs::path() : fs::read_symlink(target, error);
-    if (!error) target = fs::weakly_canonical(target.parent_path() / next, error);
-  }
-  return target;
 }
 
 /// Returns follow_links(). Throws Error(run_time) if no file can be written there.
@@ -70,32 +57,109 @@ fs::path resolve(const fs::path& path) {
   return target;
 }
 
-bool same_file(const fs::path& a, const fs::path& b) {
-  std::error_code missing;
-  return follow_links(a, missing) == follow_links(b, missing) || fs::equivalent(a, b, missing);
+/// Returns why a file in the target's folder could not be renamed to it, or the temporary file not
+/// be removed, else "".
+std::string obstacle(const fs::path& target) {
+  struct statx folder {}, old {};
+  const fs::path above = target.has_parent_path() ? target.parent_path() : ".";
+  if (::statx(AT_FDCWD, above.c_str(), 0, 0, &folder) == 0 &&
+      (folder.stx_attributes & STATX_ATTR_APPEND) != 0)
+    return fmt::format("its folder {} is append-only", above.string());
+  if (::statx(AT_FDCWD, target.c_str(), AT_SYMLINK_NOFOLLOW, 0, &old) != 0) return {};
+  if ((old.stx_attributes & (STATX_ATTR_APPEND | STATX_ATTR_IMMUTABLE)) != 0)
+    return "it is append-only or immutable";
+  return (old.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0 ? "it is a mount point" : "";
+}
+
+/// Gives a new file owner, group and mode of the file that it will replace. Throws Error(run_time)
+/// if owner or group would change. In a sticky folder only the owner may replace a file, so that
+/// this finds those of others.
+void keep_owner_and_mode(const fs::path& target, int descriptor, const struct stat& replaced) {
+  struct stat made {};
+  if (::fstat(descriptor, &made) != 0) reject_output(target, reason(errno));
+  if ((made.st_uid != replaced.st_uid || made.st_gid != replaced.st_gid) &&
+      ::fchown(descriptor, replaced.st_uid, replaced.st_gid) != 0) {
+    reject_output(target, fmt::format("its owner {}:{} would become {}:{}: {}", replaced.st_uid,
+                                      replaced.st_gid, made.st_uid, made.st_gid, reason(errno)));
+  }
+  // Some file systems have no modes.
+  static_cast<void>(::fchmod(descriptor, replaced.st_mode & kPermissions));
+}
+
+/// Throws Error(usage) if the target is an input.
+void spare_input(const fs::path& target) {
+  if (const auto input = InputRecord::find(identity_of(target)))
+    throw Error(ExitCode::usage, "{}: found the file of {} {}; allowed: another file",
+                target.string(), input->option, input->path.string());
+}
+
+/// Waits until a file or folder is on the disk and closes it. Returns the error, else 0.
+int sync_and_close(int descriptor) {
+  const bool fails = ::fsync(descriptor) != 0;
+  const bool cannot = errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;  // file systems differ
+  const int error = fails && !cannot ? errno : 0;
+  return ::close(descriptor) != 0 && error == 0 ? errno : error;
+}
+
+// Temporary files of unfinished outputs; more than a command writes at once.
+std::array<std::atomic<const char*>, 8> unfinished{};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+void replace_unfinished(const char* from, const char* to) {
+  for (auto& slot : unfinished) {
+    const char* expected = from;
+    if (slot.compare_exchange_strong(expected, to)) return;
+  }
 }
 
 }  // namespace
 
-OutputFile::OutputFile(const fs::path& path, Links links)
-    : target_(links == Links::follow ? resolve(path) : path) {
+void remove_unfinished_outputs() {
+  for (const auto& slot : unfinished)
+    if (const char* file = slot) ::unlink(file);
+}
+
+OutputFile::OutputFile(const fs::path& path, Kind kind)
+    : target_(kind == Kind::result ? resolve(path) : path), kind_(kind) {
+  spare_input(target_);
+  if (const std::string why = obstacle(target_); !why.empty()) reject_output(target_, why);
   struct stat replaced {};
-  const bool replaces = ::lstat(target_.c_str(), &replaced) == 0 && S_ISREG(replaced.st_mode);
+  const bool replaces = kind == Kind::result && ::lstat(target_.c_str(), &replaced) == 0;
+  create(replaces ? 0600 : 0666);
+  try {
+    if (replaces) keep_owner_and_mode(target_, descriptor_, replaced);
+  } catch (...) {
+    discard();
+    throw;
+  }
+}
+
+OutputFile::~OutputFile() {
+  discard();
+}
+
+/// Creates the temporary file.
+void OutputFile::create(mode_t mode) {
   // The name may exist: of a killed process, or of a process on another machine.
   for (int tries = 0; descriptor_ < 0 && tries < kMaxNames && (tries == 0 || errno == EEXIST);
        ++tries) {
     temporary_ = target_.parent_path() / temporary_name(target_.filename().string());
-    descriptor_ =
-        ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, replaces ? 0600 : 0666);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   }
-  if (descriptor_ < 0) reject_output(target_, reason(errno));
-  // Some file systems have no modes.
-  if (replaces) static_cast<void>(::fchmod(descriptor_, replaced.st_mode & kPermissions));
+  if (descriptor_ < 0) {
+    temporary_.clear();
+    reject_output(target_, reason(errno));
+  }
+  replace_unfinished(nullptr, temporary_.c_str());
 }
 
-OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-  if (!renamed_ && !temporary_.empty()) ::unlink(temporary_.c_str());
+/// Removes the temporary file, if any.
+void OutputFile::discard() {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  if (temporary_.empty()) return;
+  ::unlink(temporary_.c_str());
+  replace_unfinished(temporary_.c_str(), nullptr);
+  temporary_.clear();
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
@@ -108,10 +172,19 @@ void OutputFile::write(std::span<const std::byte> bytes) {
 }
 
 void OutputFile::commit() {
-  const int closed = ::close(std::exchange(descriptor_, -1));
-  if (closed != 0) reject_output(target_, reason(errno));
+  const bool lasts = kind_ == Kind::result;
+  const int file = std::exchange(descriptor_, -1);
+  const int error = lasts ? sync_and_close(file) : ::close(file) != 0 ? errno : 0;
+  if (error != 0) reject_output(target_, reason(error));
+  spare_input(target_);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) reject_output(target_, reason(errno));
-  renamed_ = true;
+  replace_unfinished(temporary_.c_str(), nullptr);
+  temporary_.clear();
+  if (!lasts) return;
+  // A folder that its user cannot read cannot be opened.
+  const int folder = ::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (const int unsafe = folder < 0 ? 0 : sync_and_close(folder); unsafe != 0)
+    reject_output(target_, reason(unsafe));
 }
 
 void check_writable(const fs::path& path) {
@@ -119,29 +192,30 @@ void check_writable(const fs::path& path) {
 }
 
 void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
-  std::vector<NamedFile> others = inputs;
+  std::map<FileIdentity, NamedFile> others;
+  for (const NamedFile& input : inputs)
+    if (!input.path.empty()) others.try_emplace(identity_of(input.path), input);
   for (const NamedFile& output : outputs) {
     if (output.path.empty()) continue;
-    const auto same = std::ranges::find_if(others, [&](const NamedFile& other) {
-      return !other.path.empty() && same_file(output.path, other.path);
-    });
-    if (same != others.end()) {
+    const FileIdentity file = identity_of(output.path);
+    const auto other = others.find(file);
+    if (const auto same = other != others.end() ? other->second : InputRecord::find(file)) {
       throw Error(ExitCode::usage, "{} {}: found the file of {} {}; allowed: another file",
                   output.option, output.path.string(), same->option, same->path.string());
     }
     check_writable(output.path);
-    others.push_back(output);
+    others.emplace(file, output);
   }
 }
 
-void write_file(const fs::path& path, std::span<const std::byte> bytes) {
-  OutputFile file(path);
+void write_file(const fs::path& path, std::span<const std::byte> bytes, OutputFile::Kind kind) {
+  OutputFile file(path, kind);
   file.write(bytes);
   file.commit();
 }
 
-void write_file(const fs::path& path, std::string_view text) {
-  write_file(path, std::as_bytes(std::span(text)));
+void write_file(const fs::path& path, std::string_view text, OutputFile::Kind kind) {
+  write_file(path, std::as_bytes(std::span(text)), kind);
 }
 
 }  // namespace clpv

@@ -6,11 +6,13 @@
 
 namespace clpv {
 
-/// A new folder clpv-XXXXXX in $TMPDIR, or /tmp, that only this user can read.
+/// A new folder run-XXXXXX in $TMPDIR/.clpv-scratch-UID, or below /tmp, that only this user can read.
+/// Its file `clpv-scratch`, locked until the process ends, marks it as clpv's.
 class ScratchFolder {
  public:
-  /// Also removes the folders that killed runs of this user left there. Throws Error(run_time) that
-  /// names TMPDIR if the folder cannot be made.
+  /// Also removes the marked folders of killed runs, and nothing else: if anyone but this user may
+  /// have written .clpv-scratch-UID, warns and makes the folder beside it. Throws Error(run_time)
+  /// that names TMPDIR if the folder cannot be made.
   ScratchFolder();
   ~ScratchFolder();  ///< removes it with all it holds
   ScratchFolder(const ScratchFolder&) = delete;
@@ -20,7 +22,7 @@ class ScratchFolder {
 
  private:
   std::filesystem::path path_;
-  int lock_ = -1;  ///< the locked folder: the lock ends with the process
+  int lock_ = -1;  ///< of the mark
 };
 
 }  // namespace clpv

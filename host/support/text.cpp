@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support/error.hpp"
+#include "support/fingerprint.hpp"
 
 namespace clpv {
 
@@ -37,6 +38,21 @@ std::string xml_escaped(const std::string& text) {
       out.push_back(c);
   }
   return out;
+}
+
+std::string in_file_name(std::string_view name) {
+  constexpr std::size_t kMaxLength = 64;
+  std::string part(name.empty() ? "_" : name.substr(0, kMaxLength));
+  for (char& c : part) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    if (!letter && !(c >= '0' && c <= '9') && c != '-') c = '_';
+  }
+  if (part == name) return part;
+  return fmt::format("{}-{:08x}", part, Fingerprint().add(name).value() & 0xffffffff);
+}
+
+std::string view_file_name(std::string_view scene, std::string_view camera) {
+  return fmt::format("{}-{}", in_file_name(scene), in_file_name(camera));
 }
 
 std::string float_literal(double value) {
