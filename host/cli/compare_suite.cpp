@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
 #include "support/error.hpp"
+#include "support/json_optional.hpp"
 
 namespace clpv {
 namespace {
@@ -43,6 +45,7 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
     throw Error(ExitCode::bad_input, "{}: no image; allowed: SCENE-CAMERA.exr", folder.string());
   nlohmann::json views = nlohmann::json::array();
   double sum = 0;
+  int defined = 0;
   for (const fs::path& file : files) {
     const Image image = read_image(file);
     std::vector<std::pair<fs::path, Image>> found;
@@ -66,8 +69,10 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
     view.update({{"view", file.stem().string()}, {"ground_truth", path.filename().string()}});
     views.push_back(std::move(view));
     sum += errors.nrmse_valid.value_or(0);
+    defined += errors.nrmse_valid.has_value();
   }
-  return {{"views", views}, {"mean_nrmse", sum / static_cast<double>(files.size())}};
+  const std::optional<double> mean = defined > 0 ? std::optional(sum / defined) : std::nullopt;
+  return {{"views", views}, {"mean_nrmse", mean}, {"undefined", files.size() - defined}};
 }
 
 }  // namespace clpv

@@ -23,6 +23,7 @@
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 #include "support/output_file.hpp"
+#include "support/print.hpp"
 #include "support/progress.hpp"
 
 namespace clpv {
@@ -207,7 +208,7 @@ void run(const Options& options, const Shared& shared) {
                                    session.device().driver, options.width, options.height);
   drawing.add("report.json", report);
   drawing.draw(output);
-  fmt::print("{}\n", output.string());
+  print_data("{}\n", output.string());
 }
 
 }  // namespace report_command
