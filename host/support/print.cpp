@@ -34,7 +34,7 @@ void print_message(std::string_view text) {
 }
 
 void print_over_line(std::string_view text) {
-  std::fputs(("\r" + printable(text) + "\x1b[K").c_str(), stderr);
+  std::fputs(fmt::format("\r{}\x1b[K", printable(text)).c_str(), stderr);
 }
 
 void flush_data() {
