@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
 #include "support/error.hpp"
-#include "support/json_optional.hpp"
 
 namespace clpv {
 namespace {
@@ -71,7 +69,8 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
     sum += errors.nrmse_valid.value_or(0);
     defined += errors.nrmse_valid.has_value();
   }
-  const std::optional<double> mean = defined > 0 ? std::optional(sum / defined) : std::nullopt;
+  nlohmann::json mean;  // null without a defined error
+  if (defined > 0) mean = sum / defined;
   return {{"views", views}, {"mean_nrmse", mean}, {"undefined", files.size() - defined}};
 }
 
