@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
@@ -24,8 +25,10 @@ constexpr double kMaxRows = 1u << 20;
 
 struct Value {
   std::string name;
-  double value, mad = 0;
-  bool repeated = true;  ///< more than once: `mad` is known
+  std::optional<double> value;
+  double mad = 0;
+  bool repeated = false;       ///< more than once: `mad` is known
+  std::string undefined = {};  ///< reason if there is no value
 };
 
 std::vector<Value> values_of_bench(const nlohmann::json& report, const std::string& file) {
@@ -36,16 +39,33 @@ std::vector<Value> values_of_bench(const nlohmann::json& report, const std::stri
                                    rule::object("/benchmarks/*"),
                                    rule::text("/benchmarks/*/name").must(),
                                    rule::text("/benchmarks/*/status").must(),
+                                   rule::integer("/benchmarks/*/repetitions", 0, kMax),
                                    rule::number("/benchmarks/*/median", 0, kMax).must(),
                                    rule::number("/benchmarks/*/mad", 0, kMax).must()};
   check_rules(report, rules, file);
   std::vector<Value> values;
   for (const nlohmann::json& row : report.at("benchmarks")) {
-    if (row.at("status") != "unsupported")
+    if (row.at("status") == "ok")
       values.push_back(
-          {row.at("name"), row.at("median"), row.at("mad"), row.value("repetitions", 2) > 1});
+          {row.at("name"), row.at("median").get<double>(), row.at("mad"),
+           row.value("repetitions", 2) > 1});
+    else
+      values.push_back({row.at("name"), {}, 0, false, row.at("status")});
   }
   return values;
+}
+
+/// A number from 0, or null if it is undefined. Throws Error(bad_input) for anything else.
+std::optional<double> number_or_null(const nlohmann::json& object, const char* key,
+                                     const std::string& file, const std::string& place) {
+  const auto found = object.find(key);
+  const bool missing = found == object.end();
+  if (!missing && found->is_null()) return std::nullopt;
+  if (missing || !found->is_number() || !(found->get<double>() >= 0)) {
+    reject(file, pointer_to(place, key), missing ? "nothing" : quoted(*found),
+           "a number from 0, or null");
+  }
+  return found->get<double>();
 }
 
 /// Errors and times of the cells; rejected cells have none.
@@ -61,15 +81,20 @@ std::vector<Value> values_of_quality(const nlohmann::json& report, const std::st
                                    rule::number("/cells/*/frame_ms", 0, kMax).must()};
   check_rules(report, rules, file);
   std::vector<Value> values;
-  for (const nlohmann::json& cell : report.at("cells")) {
-    if (cell.at("rejected") != "") continue;
+  for (std::size_t i = 0; i < report.at("cells").size(); ++i) {
+    const nlohmann::json& cell = report.at("cells")[i];
     std::string name = fmt::format("{}:{}", cell.at("scene").get<std::string>(),
                                    cell.at("camera").get<std::string>());
     for (const auto& [option, value] : cell.at("options").items())
       name += fmt::format(" {}={}", option, value.get<std::string>());
-    if (const auto nrmse = cell.find("nrmse"); nrmse != cell.end() && nrmse->is_number())
-      values.push_back({name + " nrmse", *nrmse});
-    values.push_back({name + " frame", cell.at("frame_ms"), 0, false});
+    const auto nrmse = number_or_null(cell, "nrmse", file, fmt::format("/cells/{}", i));
+    if (cell.at("rejected") == "") {
+      values.push_back({name + " nrmse", nrmse, 0, true, "undefined"});  // it repeats exactly
+      values.push_back({name + " frame", cell.at("frame_ms").get<double>()});
+    } else {
+      for (const char* of : {" nrmse", " frame"})
+        values.push_back({name + of, {}, 0, false, "rejected"});
+    }
   }
   return values;
 }
@@ -83,7 +108,7 @@ std::vector<Value> values_of_stats(const nlohmann::json& report, const std::stri
                                    rule::text("/stages/*/stage").must(),
                                    rule::number("/stages/*/ms", 0, kMax).must()};
   check_rules(report, rules, file);
-  std::vector<Value> values = {{"frame", report.at("frame_ms"), 0, false}};
+  std::vector<Value> values = {{"frame", report.at("frame_ms").get<double>()}};
   for (const nlohmann::json& stage : report.at("stages")) {
     std::string name = stage.at("stage");
     for (const char* part : {"cascade", "light"}) {  // null in stages of all
@@ -91,7 +116,7 @@ std::vector<Value> values_of_stats(const nlohmann::json& report, const std::stri
           number != stage.end() && number->is_number_integer())
         name += fmt::format("/{}:{}", part, number->get<int>());
     }
-    values.push_back({name, stage.at("ms"), 0, false});
+    values.push_back({name, stage.at("ms").get<double>()});
   }
   return values;
 }
@@ -115,14 +140,20 @@ const Kind& kind_of(const nlohmann::json& report, const std::string& file) {
               file);
 }
 
-std::map<std::string, Value> by_name(const std::vector<Value>& values) {
+/// Values by name. Further ones of a name get its number: "gather (2)".
+std::map<std::string, Value> by_name(std::vector<Value>& values) {
+  std::map<std::string, int> counts;
   std::map<std::string, Value> map;
-  for (const Value& value : values) map[value.name] = value;
+  for (Value& value : values) {
+    if (const int number = ++counts[value.name]; number > 1)
+      value.name += fmt::format(" ({})", number);
+    map[value.name] = value;
+  }
   return map;
 }
 
 Change change_of(const Value& before, const Value& after) {
-  Change change{after.name, before.value, after.value, before.mad, after.mad};
+  Change change{after.name, *before.value, *after.value, before.mad, after.mad};
   change.spread_known = before.repeated && after.repeated;
   const double difference = std::abs(change.after - change.before),
                deviation = kDeviationPerMad * std::hypot(change.before_mad, change.after_mad);
@@ -144,33 +175,50 @@ ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& a
   if (&kind != &after_kind)
     throw Error(ExitCode::bad_input, "{} is of {}, {} of {}; allowed: two reports of one command",
                 file, kind.command, after_file, after_kind.command);
-  const std::vector<Value> old_values = kind.values(before, file),
-                           new_values = kind.values(after, after_file);
+  std::vector<Value> old_values = kind.values(before, file),
+                     new_values = kind.values(after, after_file);
   const std::map<std::string, Value> old_named = by_name(old_values),
                                      new_named = by_name(new_values);
   ReportChanges result;
   for (const Value& value : new_values) {
     const auto old_value = old_named.find(value.name);
-    if (old_value == old_named.end())
-      result.only_after.push_back(value.name);
-    else
+    const bool old = old_value != old_named.end() && old_value->second.value;
+    if (old && value.value)
       result.changes.push_back(change_of(old_value->second, value));
+    else if (old)
+      result.lost.push_back({value.name, value.undefined});
+    else
+      (value.value ? result.added : result.undefined).push_back(value.name);
   }
   for (const Value& value : old_values) {
-    if (!new_named.contains(value.name)) result.only_before.push_back(value.name);
+    if (new_named.contains(value.name)) continue;
+    if (value.value)
+      result.lost.push_back({value.name, "not in this run"});
+    else
+      result.undefined.push_back(value.name);
   }
   return result;
 }
 
 void require_ratios(const ReportChanges& found, double limit) {
-  std::vector<std::string> slower;
+  std::vector<std::string> slower, lost, problems;
   for (const Change& change : found.changes) {
     if (change.ratio() > limit && (change.significant || !change.spread_known))
       slower.push_back(fmt::format("{} ({:.3f})", change.name, change.ratio()));
   }
-  if (slower.empty()) return;
-  throw Error(ExitCode::validation, "{} of {} rows have more than {} times their earlier value: {}",
-              slower.size(), found.changes.size(), limit, fmt::join(slower, ", "));
+  for (const LostRow& row : found.lost)
+    lost.push_back(fmt::format("{} ({})", row.name, row.reason));
+  if (!slower.empty())
+    problems.push_back(fmt::format("{} of {} rows have more than {} times their earlier value: {}",
+                                   slower.size(), found.changes.size(), limit,
+                                   fmt::join(slower, ", ")));
+  if (!lost.empty())
+    problems.push_back(fmt::format("{} rows have lost their value: {}", lost.size(),
+                                   fmt::join(lost, ", ")));
+  if (found.changes.empty())
+    problems.push_back("no row has a value in both reports; allowed: one or more");
+  if (problems.empty()) return;
+  throw Error(ExitCode::validation, "{}", fmt::join(problems, "; "));
 }
 
 std::string changes_table(const ReportChanges& found) {
@@ -187,10 +235,10 @@ std::string changes_table(const ReportChanges& found) {
                         with_spread(change.before, change.before_mad),
                         with_spread(change.after, change.after_mad), change.ratio(), verdict);
   }
-  for (const std::string& name : found.only_before)
-    text += fmt::format("{}: only in the earlier run\n", name);
-  for (const std::string& name : found.only_after)
-    text += fmt::format("{}: only in this run\n", name);
+  for (const LostRow& row : found.lost) text += fmt::format("{}: LOST: {}\n", row.name, row.reason);
+  for (const std::string& name : found.added) text += fmt::format("{}: only in this run\n", name);
+  for (const std::string& name : found.undefined)
+    text += fmt::format("{}: - (undefined in both)\n", name);
   return text;
 }
 

@@ -3,6 +3,7 @@
 // of `clpv bench`, of `clpv quality`, and the statistics of `clpv render --stats`.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -19,15 +20,26 @@ struct Change {
   /// True if the spread is known and the difference exceeds both kSignificantDeviations standard
   /// deviations (1.4826 MAD each, added in quadrature) and kMinRelativeChange of the value before.
   bool significant = false;
-  double ratio() const { return before > 0 ? after / before : 0; }
+  /// Infinite if only the value before is 0.
+  double ratio() const {
+    if (before > 0) return after / before;
+    return after > 0 ? std::numeric_limits<double>::infinity() : 1;
+  }
 };
 
 inline constexpr double kSignificantDeviations = 3;
 inline constexpr double kMinRelativeChange = 0.02;
 
+/// A row of the earlier report that has no value in the new one.
+struct LostRow {
+  std::string name, reason;  ///< "not in this run", "rejected", "wrong", "undefined", ...
+};
+
 struct ReportChanges {
-  std::vector<Change> changes;  ///< rows of both reports, in the order of the new one
-  std::vector<std::string> only_before, only_after;  ///< names of the other rows
+  std::vector<Change> changes;  ///< rows with a value in both reports, in the order of the new one
+  std::vector<LostRow> lost;
+  std::vector<std::string> added;      ///< names of rows with a value in the new report only
+  std::vector<std::string> undefined;  ///< names of rows without a value in both
 };
 
 /// Compares two reports. Throws Error(bad_input) if one is no report of schema 1, or if their kinds
@@ -35,11 +47,11 @@ struct ReportChanges {
 ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& after,
                            const std::string& file, const std::string& after_file = "this run");
 
-/// Throws Error(validation) that names the rows whose ratio exceeds `limit`: beyond the spread, or
-/// with unknown spread.
+/// Throws Error(validation) that names the rows whose ratio exceeds `limit`, beyond the spread or
+/// with unknown spread, and the lost rows; also if no row has a value in both reports.
 void require_ratios(const ReportChanges& found, double limit);
 
-/// Text with one line per change: medians with MAD, ratio and verdict. Rows of only one run follow.
+/// Text with one line per change: medians with MAD, ratio and verdict. The other rows follow.
 std::string changes_table(const ReportChanges& found);
 
 }  // namespace clpv::bench

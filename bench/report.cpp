@@ -143,8 +143,7 @@ std::string report_table(const std::vector<Row>& rows) {
                          or_dash(row.cost.bytes > 0, fmt::format("{:.1f}", row.gbps())),
                          or_dash(!row.ceiling.empty(),
                                  fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling)),
-                         or_dash(row.max_rel_error.has_value(),
-                                 fmt::format("{:.1e}", row.max_rel_error.value_or(0))));
+                         error_text(row));
                    }) +
          notes_above_ceilings(rows);
 }

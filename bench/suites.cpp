@@ -65,6 +65,10 @@ std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& pas
   return rows;
 }
 
+std::string error_text(const Row& row) {
+  return row.max_rel_error ? fmt::format("{:.1e}", *row.max_rel_error) : "-";
+}
+
 std::size_t name_width(const std::vector<Row>& rows) {
   std::size_t width = 4;
   for (const Row& row : rows) width = std::max(width, row.name.size());

@@ -67,6 +67,9 @@ std::vector<Group> groups_by_basis(
 std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& passes,
                            const Row& frame);
 
+/// The row's error for a table, "-" if nothing was compared.
+std::string error_text(const Row& row);
+
 /// Length of the longest row name, at least 4.
 std::size_t name_width(const std::vector<Row>& rows);
 /// Text with one line per row: the name padded to `width`, then `columns` of a timed row, or status

@@ -7,6 +7,7 @@
 #include "support/process.hpp"
 
 int main(int argc, char** argv) {
+  clpv::reset_inherited_state();
   clpv::keep_absolute_path_entries();
   clpv::catch_interrupts();
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` then fails with a reason

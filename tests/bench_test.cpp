@@ -70,8 +70,9 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
   EXPECT_NEAR(found.changes[1].ratio(), 1.3, 1e-12);
   EXPECT_FALSE(found.changes[2].significant);
   EXPECT_TRUE(found.changes[3].significant);
-  EXPECT_EQ(found.only_before, std::vector<std::string>{"gone"});
-  EXPECT_EQ(found.only_after, std::vector<std::string>{"new"});
+  ASSERT_EQ(found.lost.size(), 1u);
+  EXPECT_EQ(found.lost[0].name, "gone");
+  EXPECT_EQ(found.added, std::vector<std::string>{"new"});
   const std::string table = changes_table(found);
   EXPECT_THAT(table, HasSubstr("13.0000 +- 0.1000    1.300 HIGHER"));
   EXPECT_THAT(table, HasSubstr("0.500 lower"));
@@ -142,6 +143,77 @@ TEST(BenchCompare, ReportsOfQualityAndStats) {
   const test::Outcome mixed = compare_files(stats(10), quality(0.2, 10));
   EXPECT_EQ(mixed.exit_code, 3);
   EXPECT_THAT(mixed.err, HasSubstr("two reports of one command"));
+}
+
+/// A report of quality: a lit view, and a dark one without error relative to its ground truth.
+nlohmann::json two_cells() {
+  const auto cell = [](const char* camera, const nlohmann::json& nrmse) {
+    return nlohmann::json{{"scene", "s"},   {"camera", camera},
+                          {"rejected", ""}, {"options", nlohmann::json::object()},
+                          {"nrmse", nrmse}, {"frame_ms", 10}};
+  };
+  return {{"cells", {cell("lit", 0.2), cell("dark", nullptr)}}};
+}
+
+// `--fail-above` once passed each of these.
+TEST(BenchCompare, AGateWithoutAComparisonFails) {
+  const nlohmann::json bench = report({{"a", 10, 0.1}, {"b", 10, 0.1}}), quality = two_cells();
+  const auto changed = [](nlohmann::json report, const char* place, const nlohmann::json& value) {
+    report[nlohmann::json::json_pointer(place)] = value;
+    return report;
+  };
+  const nlohmann::json none = nlohmann::json::array();
+  struct Gate {
+    nlohmann::json before, after;
+    int code;
+    const char* word;
+  };
+  for (const Gate& gate : std::vector<Gate>{
+           {bench, report({}), 5, "2 rows have lost their value: a (not in this run)"},
+           {report({}), report({}), 5, "no row has a value in both"},
+           {report({}), bench, 5, "no row has a value in both"},
+           {bench, report({{"a", 10, 0.1}}), 5, "b (not in this run)"},
+           {bench, report({{"a", 10, 0.1}, {"B", 10, 0.1}}), 5, "b (not in this run)"},
+           {bench, changed(bench, "/benchmarks/1/status", "unsupported"), 5, "b (unsupported)"},
+           {bench, changed(bench, "/benchmarks/1/status", "wrong"), 5, "b (wrong)"},
+           {bench, changed(bench, "/benchmarks/1/median", nullptr), 3, "/benchmarks/1/median"},
+           {bench, changed(bench, "/benchmarks/1/median", "10"), 3, "/benchmarks/1/median"},
+           {report({{"a", 0, 0}}), report({{"a", 1, 0}}), 5, "a (inf)"},
+           {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 10, 0}}), 5, "a (2)"},
+           {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 20, 0}, {"a", 10, 0}}), 5, "a (2.000)"},
+           {quality, changed(quality, "/cells", none), 5, "s:lit nrmse (not in this run)"},
+           {quality, changed(quality, "/cells/0/rejected", "why"), 5, "s:lit nrmse (rejected)"},
+           {quality, changed(quality, "/cells/0/nrmse", nullptr), 5, "s:lit nrmse (undefined)"},
+           {quality, changed(quality, "/cells/0/nrmse", "0.2"), 3, "/cells/0/nrmse"},
+           {quality, changed(quality, "/cells/0/nrmse", -1), 3, "/cells/0/nrmse"},
+           {quality, changed(quality, "/cells/0/camera", "other"), 5, "s:lit nrmse"},
+           {bench, bench, 0, ""},
+           {report({{"a", 0, 0}}), report({{"a", 0, 0}}), 0, ""},
+           {changed(bench, "/benchmarks/1/status", "unsupported"),
+            changed(bench, "/benchmarks/1/status", "unsupported"), 0, ""},
+           {quality, quality, 0, ""},
+       }) {
+    const test::Outcome outcome = compare_files(gate.before, gate.after);
+    EXPECT_EQ(outcome.exit_code, gate.code) << gate.word << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(gate.word));
+  }
+  EXPECT_THAT(compare_files(quality, quality).out, HasSubstr("s:dark nrmse: - (undefined in both)"));
+}
+
+TEST(BenchCompare, LimitsAreNumbers) {
+  for (const char* limit : {"nan", "inf", "-inf", "0.5", "", "1.2x", "1e400"}) {
+    const test::Outcome outcome =
+        test::run_here(std::string("compare a.json b.json --fail-above '") + limit + "'");
+    EXPECT_EQ(outcome.exit_code, 2) << limit;
+    EXPECT_THAT(outcome.err, HasSubstr("--fail-above")) << limit;
+  }
+  for (const char* option : {"compare a.exr b.exr --amplify nan", "compare a.exr b.exr --exposure nan",
+                             "pathtrace x.json -o a.exr --noise nan"}) {
+    const test::Outcome outcome = test::run_here(option);
+    EXPECT_EQ(outcome.exit_code, 2) << option;
+    EXPECT_THAT(outcome.err, HasSubstr("found 'nan'")) << option;
+  }
+  EXPECT_EQ(test::run_here("compare --suite . --fail-above 1.2").exit_code, 2);
 }
 
 TEST(BenchPublished, CellsAreThoseOfTheTable) {

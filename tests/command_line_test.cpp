@@ -4,7 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/run_program.hpp"
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::command_line_test {
 namespace {
@@ -79,9 +83,84 @@ TEST(CommandLine, AClosedPipeEndsTheProgram) {
 }
 
 TEST(CommandLine, WriteErrorsOfStdoutAreReported) {
-  const test::Outcome outcome = clpv("devices --format json >/dev/full");
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("stdout: cannot be written: No space left on device"));
+  for (const char* arguments :
+       {"", "--help", "--help-all", "--version", "render --help", "devices", "devices --format json",
+        "basis sh2", "basis sh2 --format json", "check --list"}) {
+    const test::Outcome full = clpv(std::string(arguments) + " >/dev/full"),
+                        closed = clpv(std::string(arguments) + " >&-");
+    EXPECT_EQ(full.exit_code, 1) << arguments;
+    EXPECT_THAT(full.err, HasSubstr("stdout: cannot be written: No space left on device"));
+    EXPECT_EQ(closed.exit_code, 1) << arguments;
+    EXPECT_THAT(closed.err, HasSubstr("stdout: cannot be written: Bad file descriptor"));
+  }
+}
+
+/// Characters that a terminal obeys: colours and the bell in names would repaint its window.
+bool obeyed(const std::string& text) {
+  return text.find_first_of("\x1b\a\x7f") != std::string::npos ||
+         text.find("\xc2\x9b") != std::string::npos;
+}
+
+// Tables once passed names on as they are.
+TEST(CommandLine, NamesOfOthersDoNotReachTheTerminal) {
+  const test::TemporaryFolder folder;
+  const nlohmann::json name = "red\x1b[31m\a\x7f\u009b5m";
+  const nlohmann::json cell{{"scene", name},      {"camera", name},  {"rejected", ""},
+                            {"frame_ms", 1},      {"nrmse", 0.1},    {"options", {{name, name}}}},
+      row{{"name", name}, {"status", "ok"}, {"median", 1}, {"mad", 0}},
+      lost{{"name", "lost"}, {"status", name}, {"median", 1}, {"mad", 0}};
+  const auto bench = [](const nlohmann::json& rows) {
+    return nlohmann::json{{"context", {{"schema", 1}}}, {"benchmarks", rows}}.dump();
+  };
+  folder.write("quality.json", nlohmann::json{{"cells", {cell}}}.dump());
+  folder.write("stats.json",
+               nlohmann::json{{"frame_ms", 1}, {"stages", {{{"stage", name}, {"ms", 1}}}}}.dump());
+  folder.write("old.json", bench({row, {{"name", "lost"}, {"status", "ok"}, {"median", 1}, {"mad", 0}}}));
+  folder.write("new.json", bench({row, lost}));
+  folder.write("centres.json",
+               nlohmann::json{{"name", name},
+                              {"centres", {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0},
+                                           {0, 0, 1}, {0, 0, -1}}}}
+                   .dump());
+  folder.write("room.json",
+               nlohmann::json{{"model", test::kTiny},
+                              {"cameras", {{{"name", name}, {"eye", {0, 1, 3}}, {"target", {0, 0, 0}}}}},
+                              {"lights", {{{"kind", "directional"}, {"direction", {0, -1, 0}}}}}}
+                   .dump());
+  const std::string small = test::kSmallSteps + "--spp 1 --frames 1 --cache cache ";
+  for (const std::string& arguments :
+       {std::string("compare quality.json quality.json"),
+        std::string("compare stats.json stats.json"), std::string("compare new.json old.json"),
+        std::string("basis --centres centres.json"),
+        std::string("basis --centres centres.json --format json"),
+        "quality room.json" + small + "-v", "quality room.json" + small + "--format json",
+        std::string("bench ceilings --repetitions 1 --scene room.json"),
+        "render room.json" + test::kSmallSteps + "-o a.exr --stats - -v"}) {
+    const test::Outcome outcome = test::run_here(arguments, folder.path());
+    EXPECT_EQ(outcome.exit_code, 0) << arguments << outcome.err;
+    EXPECT_FALSE(obeyed(outcome.out)) << arguments;
+    EXPECT_FALSE(obeyed(outcome.err)) << arguments;
+    EXPECT_THAT(outcome.out + outcome.err, HasSubstr("31m")) << arguments << ": names are printed";
+  }
+  const test::Outcome unknown = test::run_here("\x1b[31m --\a", folder.path());
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_FALSE(obeyed(unknown.err));
+}
+
+// Every other way to stdout or stderr passes control characters on.
+TEST(CommandLine, OneFilePrints) {
+  std::vector<std::string> others;
+  for (const char* folder : {"/host", "/bench"}) {
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(CLPV_SOURCE_DIR + std::string(folder))) {
+      if (!entry.is_regular_file() || entry.path().filename() == "print.cpp") continue;
+      const std::string text = test::read_file(entry.path());
+      for (const char* way : {"fmt::print(", "printf(std", "fputs(", "puts(", "std::cout",
+                              "std::cerr", "fwrite("})
+        if (text.find(way) != std::string::npos) others.push_back(entry.path().string() + way);
+    }
+  }
+  EXPECT_THAT(others, ::testing::IsEmpty());
 }
 
 // They take 0.3 s to load, and most commands read no image.

@@ -193,6 +193,21 @@ TEST_F(CompareCommand, ComparesASuiteOfImagesWithTheirGroundTruths) {
   EXPECT_NEAR(output()["views"][0]["nrmse"].get<double>(), 0.2, 1e-6);
   EXPECT_NEAR(output()["mean_nrmse"].get<double>(), 0.2, 1e-6);
 
+  EXPECT_EQ(output()["undefined"], 0);
+
+  Image black;  // a white image of a dark view once had the error 0
+  append_layer(black, plain(6, 4, 0, 0, 0), "indirect");
+  write_exr(file("truths/room-dark-0123456789abcdef.exr"), black);
+  write_exr(file("ours/room-dark.exr"), plain(6, 4, 1, 1, 1));
+  ASSERT_EQ(run(suite), 0) << outcome_.err;
+  EXPECT_NEAR(output()["mean_nrmse"].get<double>(), 0.2, 1e-6) << "of the view that has one";
+  EXPECT_EQ(output()["undefined"], 1);
+  std::filesystem::rename(file("ours/room-left.exr"), file("left.exr"));
+  ASSERT_EQ(run(suite), 0) << outcome_.err;
+  EXPECT_TRUE(output()["mean_nrmse"].is_null());
+  std::filesystem::rename(file("left.exr"), file("ours/room-left.exr"));
+  std::filesystem::remove(file("ours/room-dark.exr"));
+
   write_exr(file("truths/room-left-fedcba9876543210.exr"), truth);
   EXPECT_EQ(run(suite), 3);
   EXPECT_NE(outcome_.err.find("found 2 ground truths room-left-HASH.exr of 6x4 pixels"),

@@ -90,6 +90,12 @@ TEST(Junit, ListsStagesCasesAndFailures) {
           HasSubstr("<skipped message=\"no images\"/>")));
 }
 
+TEST(Junit, WithoutAnOkResultItHasAnError) {
+  for (const CheckResults& none :
+       {CheckResults{}, CheckResults{{"gather", "image", {}, Status::unsupported, "no images"}}})
+    EXPECT_THAT(junit(none, "A"), HasSubstr("failures=\"0\" errors=\"1\""));
+}
+
 TEST(Junit, IsWrittenByTheCheck) {
   const test::TemporaryFolder folder;
   const std::string file = (folder / "check.xml").string();

@@ -6,19 +6,23 @@
 #include <gmock/gmock.h>
 #include <grp.h>
 #include <gtest/gtest.h>
+#include <pty.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <future>
 #include <iterator>
 
 #include "support/array_files.hpp"
 #include "support/input_file.hpp"
 #include "support/interrupt.hpp"
+#include "support/log.hpp"
 #include "support/progress.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/run_program.hpp"
@@ -326,6 +330,42 @@ TEST(ProgressLine, ShowsShareAndTimeLeft) {
   EXPECT_NE(progress_line("tracing", 1, 101, 60, 200).find("1:40:00 left"), std::string::npos);
   EXPECT_NE(progress_line("tracing", 12, 10, 60, 200).find("100 % 0:00 left"), std::string::npos);
   EXPECT_EQ(progress_line("tracing", 5, 10, 90, 10).size(), 10u);
+  EXPECT_EQ(progress_line("a\x1b[2Jb", 5, 10, 90, 8), "a?[2Jb [");
+}
+
+/// What a process with this TERM and NO_COLOR draws on a terminal in 1.2 s.
+std::string drawn_with(const char* terminal, const char* no_color) {
+  int master = -1;
+  const pid_t child = ::forkpty(&master, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    set_log_level(false, 0);
+    ::setenv("TERM", terminal, 1);
+    ::setenv("NO_COLOR", no_color, 1);
+    {
+      Progress progress("tracing", 10);
+      ::usleep(1100000);
+      progress.advance();
+    }
+    ::_exit(0);
+  }
+  std::string text;
+  char bytes[256];
+  for (ssize_t count; (count = ::read(master, bytes, sizeof bytes)) > 0;)
+    text.append(bytes, static_cast<std::size_t>(count));
+  ::close(master);
+  ::waitpid(child, nullptr, 0);
+  return text;
+}
+
+TEST(ProgressLine, EscapeCodesNeedATerminalThatTakesThem) {
+  const auto draw = [](const char* terminal, const char* no_color) {
+    return std::async(std::launch::async, drawn_with, terminal, no_color);
+  };
+  auto usual = draw("xterm", ""), dumb = draw("dumb", ""), unset = draw("", ""),
+       plain = draw("xterm", "1");
+  EXPECT_THAT(usual.get(), ::testing::HasSubstr("\x1b[K"));
+  for (auto* quiet : {&dumb, &unset, &plain})
+    EXPECT_EQ(quiet->get(), "") << "a first line comes after 10 s";
 }
 
 TEST(ProgressWords, ShowCountsShareAndTimeLeft) {

@@ -17,6 +17,7 @@ using test::kTiny;
 using test::read_file;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A folder with a trap of every name that Python or a program search could take from it. Each
 /// writes a file "sprung".
@@ -88,6 +89,26 @@ TEST(Programs, APythonThatLacksModulesIsPassedOver) {
   EXPECT_THAT(named.err,
               AllOf(HasSubstr("CLPV_PYTHON"), HasSubstr("python3-matplotlib"),
                     HasSubstr((folder / "bin/python3").string() + ": No module named numpy")));
+}
+
+// Python and daemons may ignore SIGCHLD. The first frame then waited without end, and an ffmpeg that
+// had failed replaced the film by nothing.
+TEST(Programs, AParentThatIgnoresSIGCHLDChangesNothing) {
+  const test::TemporaryFolder folder;
+  folder.write("bin/ffmpeg", "#!/bin/sh\ncat >/dev/null\nexit 3\n");
+  ::chmod((folder / "bin/ffmpeg").c_str(), 0755);
+  folder.write("film.mp4", "old");
+  const std::string ignoring = "cd " + folder.path().string() + " && PATH=" +
+                               (folder / "bin").string() +
+                               ":$PATH exec env --ignore-signal=CHLD --block-signal=TERM "
+                               "timeout -s KILL 300 " CLPV_PROGRAM;
+  const test::Outcome film = test::run(ignoring + " sequence " + kTiny + kSmallSteps +
+                                       "--frames 1 --fps 1 -o frames --video film.mp4");
+  EXPECT_EQ(film.exit_code, 1) << film.err;
+  EXPECT_THAT(film.err, HasSubstr("ffmpeg ended with 3"));
+  EXPECT_EQ(read_file(folder / "film.mp4"), "old");
+  const test::Outcome checked = test::run(ignoring + " check --stage sizes,emit");
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
 }
 
 TEST(Programs, ANameWithAColonOrADashIsAFileToFfmpeg) {

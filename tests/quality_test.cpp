@@ -77,13 +77,45 @@ TEST(QualityReport, SummariesAreMeansBestFirst) {
                  cell("sh4", "b", 0.1, 10), cell("sh3", "a", 0.4, 20), cell("sh3", "b", 0.6, 40)});
   ASSERT_EQ(sums.size(), 3u);
   EXPECT_EQ(sums[0].variant[0].second, "sh3");
-  EXPECT_DOUBLE_EQ(sums[0].nrmse, 0.5);
-  EXPECT_DOUBLE_EQ(sums[0].worst_nrmse, 0.6);
-  EXPECT_DOUBLE_EQ(sums[0].frame_ms, 30);
+  EXPECT_DOUBLE_EQ(sums[0].nrmse.value(), 0.5);
+  EXPECT_DOUBLE_EQ(sums[0].worst_nrmse.value(), 0.6);
+  EXPECT_DOUBLE_EQ(sums[0].frame_ms.value(), 30);
   EXPECT_DOUBLE_EQ(sums[0].stage_ms.at("propagate"), 15);
-  EXPECT_DOUBLE_EQ(sums[1].nrmse_best_gain, 0.35);
+  EXPECT_DOUBLE_EQ(sums[1].nrmse_best_gain.value(), 0.35);
   EXPECT_EQ(sums[2].rejected, 1)
       << "a low error on one view does not make up for one that is missing";
+}
+
+/// A cell over a black ground truth, into which the variant leaks light.
+QualityCell leaking(const std::string& basis, const std::string& camera) {
+  QualityCell c = cell(basis, camera, 0, 10);
+  c.nrmse.reset(), c.nrmse_best_gain.reset(), c.energy_ratio.reset();
+  return c;
+}
+
+// Undefined errors once counted as 0: the variant that leaked most came first.
+TEST(QualityReport, UndefinedIsNeverBestAndInNoMean) {
+  const std::vector<QualityCell> cells{leaking("leaks", "dark"),    cell("leaks", "lit", 0.1, 20),
+                                       cell("tight", "dark", 0, 10), cell("tight", "lit", 0.4, 20),
+                                       leaking("black", "dark"),    leaking("black", "lit"),
+                                       rejected("none", "dark"),    rejected("none", "lit")};
+  const auto sums = summarise(cells);
+  ASSERT_EQ(sums.size(), 4u);
+  EXPECT_EQ(sums[0].variant[0].second, "tight");
+  EXPECT_EQ(sums[1].variant[0].second, "leaks");
+  EXPECT_EQ(sums[1].undefined, 1);
+  EXPECT_DOUBLE_EQ(sums[1].nrmse.value(), 0.1) << "of the lit view";
+  EXPECT_DOUBLE_EQ(sums[1].energy_ratio.value(), 1.5);
+  EXPECT_DOUBLE_EQ(sums[1].flip.value(), 0.25);
+  EXPECT_DOUBLE_EQ(sums[1].frame_ms.value(), 15);
+  EXPECT_EQ(sums[2].variant[0].second, "black");
+  EXPECT_EQ(sums[3].variant[0].second, "none");
+  for (const char* key : {"nrmse", "worst_nrmse", "nrmse_best_gain", "energy_ratio"})
+    EXPECT_TRUE(to_json(sums[2]).at(key).is_null()) << key;
+  EXPECT_TRUE(to_json(sums[3]).at("frame_ms").is_null());
+  const std::string table = quality_table(cells);
+  EXPECT_THAT(table, HasSubstr("undefined, as over a black ground truth: 3 of 8 errors"));
+  EXPECT_THAT(table, ::testing::Not(HasSubstr("nan")));
 }
 
 TEST(QualityReport, TableHasALineAVariant) {

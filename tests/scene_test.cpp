@@ -10,6 +10,7 @@
 namespace clpv::test::scene_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -70,6 +71,14 @@ TEST_F(SceneTest, AllKeysOfASceneFile) {
   EXPECT_EQ(scene.cascade_size, 8.0f);
   EXPECT_EQ(scene.upper, glm::vec3(0.5f, 0.5f, 0)) << "half a metre per unit";
   EXPECT_THAT(scene.notes, IsEmpty());
+}
+
+// It renders black.
+TEST_F(SceneTest, ASceneTooSmallForLampsIsNoted) {
+  std::string small = kFull;
+  small.replace(small.find("0.5,"), 4, "1e-6,");
+  EXPECT_THAT(load(small).notes,
+              Contains(AllOf(HasSubstr("1e-06 m wide"), HasSubstr("metres_per_unit 1e-06"))));
 }
 
 TEST_F(SceneTest, CamerasAreScaledToMetres) {

@@ -170,7 +170,7 @@ TEST_F(Limited, AddressSpaceAndFilesOfADriver) {
     EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
   };
   for (const char* limit : {"ulimit -v 64000", "ulimit -v 300000", "ulimit -v 1000000",
-                            "ulimit -n 4", "ulimit -n 20", "ulimit -f 16"})
+                            "ulimit -n 4", "ulimit -n 20", "ulimit -f 16", "ulimit -s 64"})
     expect_reported(limit, kTiny);
   expect_reported("ulimit -v 2500000", kAnyGrid + "--width 12 --height 9 --grid 300 ");
 }

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Text that is safe to print, fingerprints of content, and processes: output, exit codes, input.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <regex>
+#include <csignal>
+#include <functional>
 #include <set>
 #include <string_view>
 
@@ -27,8 +32,24 @@ TEST(Version, HasAnEntryInTheCitationAndTheChanges) {
 
 TEST(Printable, TextStaysAsItIs) {
   for (const std::string text : {"", "a b~", "two\nlines\tand a tab", "\u00e9\u20ac\U0001F4A1",
-                                 "\u00a0", "\xc2", "\xff\x9b"})
+                                 "\u00a0"})
     EXPECT_EQ(printable(text), text);
+}
+
+// A terminal that takes single bytes obeys 0x9b as it does U+009B.
+TEST(Printable, BytesThatAreNotUtf8AreNotPrinted) {
+  for (const auto& [text, shown] : {std::pair<std::string, std::string>{"\xc2", "?"},
+                                    {"\xff\x9b", "??"},
+                                    {"\xc0\x9b", "??"},
+                                    {"\xe0\x80\x9b", "???"},
+                                    {"a\xe2\x82", "a??"},
+                                    {"\xf5\x80\x80\x80z", "????z"}})
+    EXPECT_EQ(printable(text), shown);
+}
+
+TEST(TerminalJson, ControlCharactersAreEscaped) {
+  EXPECT_EQ(terminal_json("{\"a\": \"\u00e9\u009b1\x7f\"}\n"),
+            "{\"a\": \"\u00e9\\u009b1\\u007f\"}\n");
 }
 
 TEST(Printable, ControlCharactersBecomeQuestionMarks) {
@@ -124,6 +145,76 @@ TEST(Process, OneThatIsNotThere) {
   EXPECT_THAT(ended.output, HasSubstr("No such file"));
   EXPECT_EQ(Process("a program of this name", {}).end().code, -1);
   EXPECT_EQ(Process("sh", {"-c", "exit 5"}).end().code, -1) << "not searched in the path";
+}
+
+/// Runs `act` in a fork, which may change its signals; its exit code, 128 + signal.
+int in_fork(const std::function<int()>& act) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(act());
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+// The kernel then reaps children at once: the first was waited for without end, and one that had
+// failed had status 0.
+TEST(Process, ALostStatusIsAFailure) {
+  EXPECT_EQ(in_fork([] {
+              std::signal(SIGCHLD, SIG_IGN);
+              ::alarm(20);
+              Process polled("/bin/sh", {"-c", "exit 0"});
+              while (polled.running()) ::usleep(1000);
+              const Process::Result ended = Process("/bin/sh", {"-c", "exit 0"}).end();
+              const bool named = ended.output.find("ignores SIGCHLD") != std::string::npos;
+              return polled.end().code == -1 && ended.code == -1 && named ? 7 : 1;
+            }),
+            7);
+}
+
+TEST(Process, ChildrenHaveUsualSignals) {
+  EXPECT_EQ(in_fork([] {
+              sigset_t all;
+              sigfillset(&all);
+              ::sigprocmask(SIG_SETMASK, &all, nullptr);
+              for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
+              const char* status =  // bits 12 and 24
+                  "grep -Eq '^SigBlk:\\s*0+$' /proc/self/status && "
+                  "exit $((0x$(sed -n 's/^SigIgn:\\s*//p' /proc/self/status) & 0x1001000 ? 1 : 0))";
+              return Process("/bin/sh", {"-c", status}).end().code;
+            }),
+            0);
+}
+
+// The child of a killed `clpv report` wrote its page later.
+TEST(Process, ChildrenEndWithTheirParent) {
+  const test::TemporaryFolder folder;
+  const std::string late = (folder / "late").string();
+  EXPECT_EQ(in_fork([&] {
+              Process child("/bin/sh", {"-c", "sleep 0.3; echo >" + late});
+              ::raise(SIGKILL);
+              return 0;
+            }),
+            128 + SIGKILL);
+  ::usleep(600000);
+  EXPECT_FALSE(std::filesystem::exists(late));
+}
+
+TEST(InheritedState, IsUndone) {
+  EXPECT_EQ(in_fork([] {
+              sigset_t all, now;
+              sigfillset(&all);
+              ::sigprocmask(SIG_SETMASK, &all, nullptr);
+              std::signal(SIGCHLD, SIG_IGN);
+              ::close(STDOUT_FILENO);
+              reset_inherited_state();
+              ::sigprocmask(SIG_SETMASK, nullptr, &now);
+              if (sigismember(&now, SIGTERM) != 0) return 1;
+              if (std::signal(SIGCHLD, SIG_DFL) != SIG_DFL) return 2;
+              // A file that opens must not become stdout, nor what is printed vanish.
+              if (::open("/dev/null", O_RDONLY) <= STDERR_FILENO) return 3;
+              return ::write(STDOUT_FILENO, "x", 1) < 0 ? 0 : 4;
+            }),
+            0);
 }
 
 }  // namespace

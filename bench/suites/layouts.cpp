@@ -54,11 +54,11 @@ std::string layouts_table(const std::vector<Row>& rows) {
   const auto columns = [&](const Row& row) {
     const Row* paper = paper_row(rows, row);
     return fmt::format(
-        "{:>10.3f} {:>9.3f} {:>12.0f} {:>12.0f} {:>8.1f} {:>16} {:>16} {:>9.1e}", row.times.median,
+        "{:>10.3f} {:>9.3f} {:>12.0f} {:>12.0f} {:>8.1f} {:>16} {:>16} {:>9}", row.times.median,
         row.times.mad, row.cost.reads_per_cell, row.cost.writes_per_cell, row.gbps(),
         fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
         paper != nullptr ? fmt::format("{:.1f}x", paper->times.median / row.times.median) : "-",
-        row.max_rel_error.value_or(0));
+        error_text(row));
   };
   return text + row_lines(rows, width, columns) +
          "\nreads, writes: numbers, or texels of 4 numbers, per cell and step over all channels, "

@@ -88,11 +88,11 @@ std::string native_table(const std::vector<Row>& rows) {
       return native != nullptr ? fmt::format("{:.2f}", opencl_ms / native_ms) : "-";
     };
     return fmt::format(
-        "{:>10.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.1f} {:>8.1f} {:>15} {:>9} {:>10} {:>9.1e}",
+        "{:>10.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.1f} {:>8.1f} {:>15} {:>9} {:>10} {:>9}",
         row.times.median, row.times.min, row.times.mad, row.wall_ms, row.gflops(), row.gbps(),
         fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
         ratio(row.times.median, native != nullptr ? native->times.median : 0),
-        ratio(row.wall_ms, native != nullptr ? native->wall_ms : 0), row.max_rel_error.value_or(0));
+        ratio(row.wall_ms, native != nullptr ? native->wall_ms : 0), error_text(row));
   };
   return head + row_lines(rows, width, columns) +
          "\n/ C++: median over that of the hand-written code (native), which the host's clock "

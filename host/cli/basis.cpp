@@ -13,6 +13,7 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "support/error.hpp"
+#include "support/print.hpp"
 
 namespace clpv {
 namespace basis_command {
@@ -109,16 +110,16 @@ void run(const Options& options) {
     BasisFigures figures{{}, options.lobes, options.lambda};
     if (!options.name.empty() || !options.centres_file.empty()) figures.bases = bases_of(options);
     for (const auto& file : write_basis_figures(std::move(figures), options.figures))
-      fmt::print("{}\n", file.string());
+      print_data("{}\n", file.string());
     return;
   }
   const BasisView view{options.lobes, unit_axis(options.axis)};
   nlohmann::json bases = nlohmann::json::array();
   for (const auto& basis : bases_of(options)) bases.push_back(describe(*basis, view));
   if (options.format == "json") {
-    fmt::print("{}\n", nlohmann::json{{"schema", 1}, {"bases", bases}}.dump(2));
+    print_json(nlohmann::json{{"schema", 1}, {"bases", bases}}.dump(2) + "\n");
   } else {
-    fmt::print("{}", table_of(bases));
+    print_text(table_of(bases));
   }
 }
 

@@ -19,6 +19,7 @@
 #include "support/json_schema.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
+#include "support/print.hpp"
 
 namespace clpv {
 namespace bench_command {
@@ -111,9 +112,13 @@ void load_suite_scene(Options& options, const bench::Suite& suite) {
   if (scene->cascade_size) options.bench.suite.settings.cascade_size = *scene->cascade_size;
 }
 
-/// Throws Error(validation) if an output was wrong.
+/// Throws Error(validation) if an output was wrong, or no row could run.
 void require_right_results(const std::vector<bench::Row>& rows) {
   const auto wrong = std::ranges::count(rows, bench::Status::wrong, &bench::Row::status);
+  if (wrong == 0 && std::ranges::count(rows, bench::Status::ok, &bench::Row::status) == 0) {
+    throw Error(ExitCode::validation, "{} rows: none is ok; {}: {}: {}", rows.size(),
+                rows.at(0).name, name_of(rows.at(0).status), rows.at(0).reason);
+  }
   if (wrong == 0) return;
   const auto& first = *std::ranges::find(rows, bench::Status::wrong, &bench::Row::status);
   throw Error(ExitCode::validation, "{} of {} rows have wrong results; {}: {:.3g} > {:.0e} at {}",
@@ -146,12 +151,18 @@ void run(Options options, const Shared& shared) {
     return as_text(options, format, suite, session, results);
   };
   if (!options.output.empty()) write_file(options.output, text("json"));
-  fmt::print("{}", text(options.format));
-  std::fflush(stdout);
+  if (options.format == "table")
+    print_text(text(options.format));
+  else
+    print_json(text(options.format));
+  flush_data();
   bench::ReportChanges changes;
   if (!before.is_null()) {
     changes = bench::compare_runs(before, report_of(options, session, results), options.compare);
-    fmt::print("\n{}", bench::changes_table(changes));
+    std::erase_if(changes.lost, [&](const bench::LostRow& row) {
+      return options.bench.filter && !std::regex_search(row.name, *options.bench.filter);
+    });
+    print_data("\n{}", bench::changes_table(changes));
   }
   if (plot) {
     plot->add("bench.json", report_of(options, session, results));

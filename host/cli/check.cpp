@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +15,7 @@
 #include "support/helpers.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
+#include "support/print.hpp"
 #include "support/progress.hpp"
 #include "verify/junit.hpp"
 #include "verify/schedule.hpp"
@@ -52,7 +52,7 @@ std::string counts_of(const CheckResults& results) {
 void print(std::string_view stage, const CheckResults& results) {
   const std::size_t ok = count(results, Status::ok),
                     unsupported = count(results, Status::unsupported);
-  fmt::print("{:<10} {:>4} of {:<4} {}", stage, ok, results.size(),
+  print_data("{:<10} {:>4} of {:<4} {}", stage, ok, results.size(),
              ok + unsupported < results.size() ? "FAILED"
              : ok > 0                          ? "ok    "
                                                : "none  ");
@@ -61,21 +61,21 @@ void print(std::string_view stage, const CheckResults& results) {
   };
   if (ok > 0) {
     const CheckResult& worst = *std::ranges::max_element(results, {}, share);
-    fmt::print("  worst {:.2e} of {:.0e} allowed ({})", worst.deviation.worst,
+    print_data("  worst {:.2e} of {:.0e} allowed ({})", worst.deviation.worst,
                worst.deviation.allowed, worst.variant);
   }
-  fmt::print("\n");
+  print_data("\n");
   for (const CheckResult& r : results) {
     if (r.passed())
       spdlog::debug("{} {}: {:.2e} of {:.0e}", stage, r.variant, r.deviation.worst,
                     r.deviation.allowed);
     else if (r.status == Status::wrong)
-      fmt::print("           {}: {:.3e} > {:.0e} at {}\n", r.variant, r.deviation.worst,
+      print_data("           {}: {:.3e} > {:.0e} at {}\n", r.variant, r.deviation.worst,
                  r.deviation.allowed, r.deviation.place);
     else
-      fmt::print("           {}: {}: {}\n", r.variant, name_of(r.status), r.reason);
+      print_data("           {}: {}: {}\n", r.variant, name_of(r.status), r.reason);
   }
-  std::fflush(stdout);
+  flush_data();
 }
 
 /// Collects the results of the cases and prints each stage when it is complete.
@@ -137,7 +137,7 @@ void run(const Options& options, const Shared& shared) {
   check_outputs({{"--junit", options.junit}});
   const verify::Cases cases = options.choice.cases();
   if (options.list) {
-    for (const verify::Case& c : cases) fmt::print("{:<10} {}\n", name_of(c.stage), c.name);
+    for (const verify::Case& c : cases) print_data("{:<10} {}\n", name_of(c.stage), c.name);
     return;
   }
   const Device device = choose_device(shared.device);
@@ -151,9 +151,9 @@ void run(const Options& options, const Shared& shared) {
   const bool json = options.format == "json";
   const CheckResults results = results_of(cases, options, shared, device, !json);
   if (json)
-    fmt::print("{}\n", report_of(results, device).dump(2));
+    print_json(report_of(results, device).dump(2) + "\n");
   else
-    fmt::print("{}\n", counts_of(results));
+    print_data("{}\n", counts_of(results));
   if (!options.junit.empty()) write_file(options.junit, verify::junit(results, device.name));
   if (verify::passed(results)) return;
   throw Error(ExitCode::validation,

@@ -5,11 +5,9 @@
 
 #include <CL/opencl.hpp>
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <iostream>
 #include <numeric>
 #include <optional>
+#include <sstream>
 
 #include "cli/options.hpp"
 #include "clpv/version.hpp"
@@ -20,6 +18,7 @@
 #include "support/interrupt.hpp"
 #include "support/limits.hpp"
 #include "support/log.hpp"
+#include "support/print.hpp"
 #include "support/progress.hpp"
 
 namespace clpv {
@@ -142,12 +141,6 @@ class ShortHelp : public CLI::Formatter {
   mutable bool short_ = true;  ///< --help, not --help-all
 };
 
-/// Reports write errors of stdout, such as a full disk.
-void flush_data() {
-  if (std::fflush(stdout) != 0 || !std::cout.flush())
-    throw Error(ExitCode::run_time, "stdout: cannot be written: {}", std::strerror(errno));
-}
-
 /// Returns a message prefix like "rank 3 on node7: " if there are several ranks.
 std::string rank_prefix(const Shared& shared) {
   return shared.started && !shared.started->alone() ? shared.started->name() + ": " : "";
@@ -157,8 +150,8 @@ std::string rank_prefix(const Shared& shared) {
 int report_failure(const Shared& shared, ExitCode code, const std::string& message) {
   const bool limited = (code == ExitCode::run_time || code == ExitCode::device) &&
                        message.find("ulimit") == std::string::npos;
-  std::cerr << "clpv: " << rank_prefix(shared) << message << (limited ? limits_note() : "")
-            << std::endl;
+  print_message(fmt::format("clpv: {}{}{}\n", rank_prefix(shared), message,
+                            limited ? limits_note() : ""));
   if (shared.started && !shared.started->alone()) shared.started->abort(code);
   return static_cast<int>(code);
 }
@@ -241,26 +234,46 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
   }
 }
 
+namespace {
+
+/// Prints help, or a usage error. Returns the exit code.
+int answer(const CLI::App& app, const CLI::ParseError& error) {
+  std::ostringstream out, err;
+  app.exit(error, out, err);
+  print_text(out.str());
+  print_message(err.str());
+  return error.get_exit_code() == 0 ? 0 : static_cast<int>(ExitCode::usage);
+}
+
+/// Parses the command line and runs the command, or prints the help. Returns the exit code.
+int parse_and_run(CLI::App& app, int argc, const char* const* argv) {
+  if (argc == 1) {
+    print_text(app.help());
+    return 0;
+  }
+  try {
+    parse_command_line(app, argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return answer(app, error);
+  }
+}
+
+}  // namespace
+
 int run_program(int argc, const char* const* argv) {
   const InputRecord record;
   record_kernel_files();
   CLI::App app;
   Shared shared;
   add_commands(app, shared);
-  if (argc == 1) {
-    std::cout << app.help();
-    return 0;
-  }
   try {
-    parse_command_line(app, argc, argv);
+    const int code = parse_and_run(app, argc, argv);
     flush_data();
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    app.exit(error, std::cout, std::cerr);
-    return error.get_exit_code() == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    return code;
   } catch (const Interrupted& interrupted) {
-    std::cerr << "clpv: " << rank_prefix(shared) << "interrupted; " << interrupted.what()
-              << std::endl;
+    print_message(
+        fmt::format("clpv: {}interrupted; {}\n", rank_prefix(shared), interrupted.what()));
     end_as_interrupted();
   } catch (const Error& error) {
     return report_failure(shared, error.code(), error.what());

@@ -16,6 +16,7 @@
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 #include "support/output_file.hpp"
+#include "support/print.hpp"
 
 namespace clpv {
 namespace {
@@ -69,7 +70,7 @@ bool is_report(const std::string& file) {
 void compare_reports(const CompareOptions& options) {
   const bench::ReportChanges changes =
       bench::compare_runs(read_json(options.b), read_json(options.a), options.b, options.a);
-  fmt::print("{}", bench::changes_table(changes));
+  print_text(bench::changes_table(changes));
   if (options.fail_above > 0) bench::require_ratios(changes, options.fail_above);
 }
 
@@ -78,7 +79,7 @@ void run(const CompareOptions& options) {
     const std::filesystem::path truths = options.truths.empty()
                                              ? quality_cache({}) / "references"
                                              : std::filesystem::path(options.truths);
-    fmt::print("{}\n", compare_suite(options.suite, truths, options.exposure).dump(2));
+    print_json(compare_suite(options.suite, truths, options.exposure).dump(2) + "\n");
     return;
   }
   for (const auto& [name, value] : {std::pair{"A", &options.a}, {"B", &options.b}})
@@ -94,7 +95,7 @@ void run(const CompareOptions& options) {
   const Comparison comparison = compare(a, options.a, b, options.b, options.exposure);
   if (!options.output.empty())
     write_difference(options.output, difference_image(a, b, options.amplify));
-  fmt::print("{}\n", to_json(comparison).dump(2));
+  print_json(to_json(comparison).dump(2) + "\n");
 }
 
 }  // namespace
@@ -111,12 +112,12 @@ void add_compare(CLI::App& app, Shared&) {
                       "of the same command");
   add(*command, "-o,--output", "FILE", options->output,
       "difference image |A-B| x amplify, .png or .exr");
-  command->add_option("--amplify", options->amplify, "factor of the difference image")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
-  command->add_option("--exposure", options->exposure, "exposure of linear images for flip [EV]")
-      ->capture_default_str()
-      ->check(CLI::Range(-30.0, 30.0));
+  add_number(*command, "--amplify", options->amplify, "factor of the difference image",
+             {0, 1e6, "0..1e6"})
+      ->default_str(fmt::format("{}", options->amplify));
+  add_number(*command, "--exposure", options->exposure, "exposure of linear images for flip [EV]",
+             {-30, 30, "-30..30"})
+      ->default_str(fmt::format("{}", options->exposure));
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
   CLI::Option* suite = add(
@@ -127,7 +128,7 @@ void add_compare(CLI::App& app, Shared&) {
       "folder of their ground truths SCENE-CAMERA-HASH.exr (default: "
       "$XDG_CACHE_HOME/clpv/quality/references)")
       ->needs(suite);
-  add_fail_above(*command, options->fail_above)->excludes("--output");
+  add_fail_above(*command, options->fail_above)->excludes("--output")->excludes(suite);
   command->footer(
       "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as "
       "stored: linear in EXR\n"

@@ -43,6 +43,7 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
     throw Error(ExitCode::bad_input, "{}: no image; allowed: SCENE-CAMERA.exr", folder.string());
   nlohmann::json views = nlohmann::json::array();
   double sum = 0;
+  int defined = 0;
   for (const fs::path& file : files) {
     const Image image = read_image(file);
     std::vector<std::pair<fs::path, Image>> found;
@@ -66,8 +67,11 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
     view.update({{"view", file.stem().string()}, {"ground_truth", path.filename().string()}});
     views.push_back(std::move(view));
     sum += errors.nrmse_valid.value_or(0);
+    defined += errors.nrmse_valid.has_value();
   }
-  return {{"views", views}, {"mean_nrmse", sum / static_cast<double>(files.size())}};
+  nlohmann::json mean;  // null without a defined error
+  if (defined > 0) mean = sum / defined;
+  return {{"views", views}, {"mean_nrmse", mean}, {"undefined", files.size() - defined}};
 }
 
 }  // namespace clpv

@@ -8,6 +8,7 @@
 #include "cli/options.hpp"
 #include "device/device.hpp"
 #include "support/error.hpp"
+#include "support/print.hpp"
 
 namespace clpv {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Device, index, platform_index, device_index, platform, name,
@@ -33,16 +34,16 @@ const char* yes_no(bool value) {
 
 void print(const DeviceList& list) {
   for (const Device& d : list.devices) {
-    fmt::print("{}  {}\n   {}, {}, driver {}\n", d.index, d.name, d.platform, d.version, d.driver);
-    fmt::print("   {}, {} compute units, {} MiB a buffer; images {}, 3-D image writes {}\n", d.type,
+    print_data("{}  {}\n   {}, {}, driver {}\n", d.index, d.name, d.platform, d.version, d.driver);
+    print_data("   {}, {} compute units, {} MiB a buffer; images {}, 3-D image writes {}\n", d.type,
                d.compute_units, d.max_alloc_bytes >> 20, yes_no(d.images),
                yes_no(d.image3d_writes));
-    fmt::print("   64-bit atomics {}, fp64 {}, events {}\n", yes_no(d.int64_atomics),
+    print_data("   64-bit atomics {}, fp64 {}, events {}\n", yes_no(d.int64_atomics),
                yes_no(d.fp64), d.profiling_valid ? "valid" : "implausible: wall time instead");
-    if (!d.supported()) fmt::print("   unsupported, lacks: {}\n", fmt::join(d.missing, ", "));
+    if (!d.supported()) print_data("   unsupported, lacks: {}\n", fmt::join(d.missing, ", "));
   }
   for (const std::string& name : list.platforms_without_devices)
-    fmt::print("-  {}: no device\n", name);
+    print_data("-  {}: no device\n", name);
 }
 
 }  // namespace
@@ -58,8 +59,7 @@ void add_devices(CLI::App& app, Shared& shared) {
       list = {{choose_device(list.devices, shared.device)}, {}};
     }
     if (*format == "json") {
-      fmt::print("{}\n",
-                 to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+      print_json(to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     } else {
       print(list);
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +19,8 @@
 
 namespace clpv {
 namespace {
+
+constexpr double kMaxNoise = 1e6;  // more than any image has
 
 /// Empty if the text is not three comma-separated numbers.
 template <typename T>
@@ -97,15 +100,11 @@ std::string group_of(const std::string& name) {
 
 }  // namespace
 
-CLI::Option* add_number(CLI::App& command, const std::string& name, double& value,
-                        const std::string& help, const NumberRange& range) {
-  const auto take = [&value, name, range](const std::string& text) {
-    const auto found = parse_number<double>(text);
-    if (!found || !(*found >= range.minimum && *found <= range.maximum))  // NaN is in no range
-      throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", name, text, range.allowed);
-    value = *found;
-  };
-  return command.add_option_function<std::string>(name, take, help);
+double number_in(const NumberRange& range, const std::string& option, const std::string& text) {
+  const auto found = parse_number<double>(text);
+  if (!found || !(*found >= range.minimum && *found <= range.maximum))  // NaN is in no range
+    throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", option, text, range.allowed);
+  return *found;
 }
 
 CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& seconds,
@@ -149,10 +148,11 @@ CLI::Option* add_format(CLI::App& command, std::string& format,
 }
 
 CLI::Option* add_fail_above(CLI::App& command, double& ratio) {
-  return add(command, "--fail-above", "RATIO", ratio,
-             "exit with 5 if a value of the new report is more than RATIO times the earlier one, "
-             "beyond the spread")
-      ->check(CLI::Range(1.0, 1e6));
+  return add_number(command, "--fail-above", ratio,
+                    "exit with 5 if a value of the new report is more than RATIO times the earlier "
+                    "one, beyond the spread, or is missing, or if no row has both values",
+                    {1, 1e6, "1..1e6"})
+      ->type_name("RATIO");
 }
 
 void require_extension(const std::string& option, const std::filesystem::path& file,
@@ -260,13 +260,12 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
   auto* samples = add(command, "--spp", "N", options.values.samples, "paths per pixel")
                       ->check(CLI::Range(1u, pathtracer::PathTracerOptions::kMaxSamples))
                       ->group(kGroup);
-  command
-      .add_option(
-          "--noise", options.values.noise,
-          "relative standard error of the indirect light at which tracing stops (root mean square)")
-      ->check(CLI::PositiveNumber)
+  add_number(
+      command, "--noise", options.values.noise,
+      "relative standard error of the indirect light at which tracing stops (root mean square)",
+      {std::numeric_limits<double>::min(), kMaxNoise, fmt::format("more than 0, up to {}", kMaxNoise)})
       ->excludes(samples)
-      ->capture_default_str()
+      ->default_str(fmt::format("{}", options.values.noise))
       ->group(kGroup);
   command
       .add_option("--seed", options.values.seed, "random seed; the same seed gives identical files")

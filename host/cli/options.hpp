@@ -5,6 +5,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <concepts>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -66,9 +67,18 @@ struct NumberRange {
   std::string allowed;  ///< "0..1 m"
 };
 
-/// Adds an option for a finite number within the range. A bad value throws Error(usage).
-CLI::Option* add_number(CLI::App& command, const std::string& name, double& value,
-                        const std::string& help, const NumberRange& range);
+/// Parses a finite number within the range. Throws Error(usage) with the option for anything else.
+double number_in(const NumberRange& range, const std::string& option, const std::string& text);
+
+/// Adds an option for a finite number within the range. CLI::Range lets NaN pass.
+template <std::floating_point T>
+CLI::Option* add_number(CLI::App& command, const std::string& name, T& value,
+                        const std::string& help, const NumberRange& range) {
+  const auto take = [&value, name, range](const std::string& text) {
+    value = static_cast<T>(number_in(range, name, text));
+  };
+  return command.add_option_function<std::string>(name, take, help);
+}
 
 /// Adds an option for a time [s] within the range of scenes; the value of `seconds` is the default.
 CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& seconds,

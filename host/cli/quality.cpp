@@ -30,6 +30,7 @@
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 #include "support/output_file.hpp"
+#include "support/print.hpp"
 #include "support/progress.hpp"
 
 namespace clpv {
@@ -224,7 +225,10 @@ void run(const Options& options, Shared& shared) {
   }
   const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
   if (!options.output.empty()) write_file(options.output, json);
-  fmt::print("{}", options.format == "json" ? json : quality_table(cells));
+  if (options.format == "json")
+    print_json(json);
+  else
+    print_text(quality_table(cells));
 }
 
 void add_options(CLI::App& command, Options& options) {

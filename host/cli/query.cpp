@@ -2,7 +2,6 @@
 // clpv query: indirect light of the volumes at points from a file, visible to the camera or not.
 #include <fmt/format.h>
 
-#include <iostream>
 #include <iterator>
 
 #include "cli/commands.hpp"
@@ -14,6 +13,7 @@
 #include "scene/points_file.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
+#include "support/print.hpp"
 
 namespace clpv {
 namespace query_command {
@@ -75,7 +75,7 @@ void run(const Options& options, const Shared& shared) {
   frame.render(camera);
   const std::string table = table_of(points, frame);
   if (options.output.empty()) {
-    std::cout << table;
+    print_text(table);
   } else {
     write_file(options.output, table);
   }

@@ -19,6 +19,7 @@
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
+#include "support/print.hpp"
 #include "support/progress.hpp"
 
 namespace clpv {
@@ -114,7 +115,7 @@ void run(const Options& options, const Shared& shared) {
   if (!options.stats.empty()) {
     const std::string text = stats.to_json(session, described).dump(2) + "\n";
     if (options.stats == "-")
-      fmt::print("{}", text);
+      print_json(text);
     else
       write_file(options.stats, text);
   }

@@ -23,6 +23,7 @@
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 #include "support/output_file.hpp"
+#include "support/print.hpp"
 #include "support/progress.hpp"
 #include "support/text.hpp"
 
@@ -210,7 +211,7 @@ void run(const Options& options, const Shared& shared) {
                                    session.device().driver, options.width, options.height);
   drawing.add("report.json", report);
   drawing.draw(options.folder);
-  fmt::print("{}\n", page_of(options).string());
+  print_data("{}\n", page_of(options).string());
 }
 
 }  // namespace report_command

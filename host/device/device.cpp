@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "device/cl_error.hpp"
+#include "device/driver_cache.hpp"
 #include "support/limits.hpp"
 #include "support/text.hpp"
 
@@ -121,9 +122,7 @@ bool matches(const Device& device, std::string_view choice) {
          lower(device.platform).find(wanted) != std::string::npos;
 }
 
-}  // namespace
-
-DeviceList list_devices() {
+DeviceList ask_platforms() {
   DeviceList list;
   std::vector<cl::Platform> platforms;
   try {
@@ -160,8 +159,6 @@ DeviceList list_devices() {
   return list;
 }
 
-namespace {
-
 /// `choice`, or CLPV_DEVICE if `choice` is empty.
 std::string_view choice_or_environment(std::string_view choice) {
   const char* environment = std::getenv("CLPV_DEVICE");
@@ -169,21 +166,25 @@ std::string_view choice_or_environment(std::string_view choice) {
 }
 
 /// Lists all devices. Throws Error(device) if platforms exist but none has a device, and as
-/// require_limits().
+/// list_devices().
 std::vector<Device> found_devices() {
-  require_limits();
   DeviceList list = list_devices();
   if (list.devices.empty() && !list.platforms_without_devices.empty()) {
     throw Error(ExitCode::device,
                 "no OpenCL device found; platforms without one: {} (PoCL has no device if it "
-                "cannot write its cache, "
-                "set by POCL_CACHE_DIR, XDG_CACHE_HOME or HOME)",
+                "cannot write its cache, POCL_CACHE_DIR)",
                 fmt::join(list.platforms_without_devices, ", "));
   }
   return std::move(list.devices);
 }
 
 }  // namespace
+
+DeviceList list_devices() {
+  require_limits();
+  choose_driver_cache();
+  return ask_platforms();
+}
 
 Device choose_device(std::string_view choice) {
   return choose_device(found_devices(), choice_or_environment(choice));
@@ -237,7 +238,7 @@ Device choose_device(const std::vector<Device>& devices, std::string_view choice
 }
 
 Device device_of(const cl::Device& handle) {
-  for (Device& listed : list_devices().devices) {
+  for (Device& listed : ask_platforms().devices) {
     if (listed.handle() == handle()) return std::move(listed);
   }
   Device device;

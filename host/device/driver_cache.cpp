@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "device/driver_cache.hpp"
 
+#include <unistd.h>
+
 #include <cstdlib>
+#include <memory>
+#include <mutex>
 #include <system_error>
 
 #include "support/fingerprint.hpp"
+#include "support/input_file.hpp"
 #include "support/log.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace clpv {
 namespace {
@@ -14,11 +20,21 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kFullBytes = 1 << 20;  // less cannot hold a kernel and its temporary files
 
-std::optional<fs::path> folder_of(const char* variable, const char* below) {
-  const char* set = std::getenv(variable);
-  if (set == nullptr || *set == '\0') return std::nullopt;
-  return fs::path(set) / below;
-}
+constexpr const char* kVariable = "POCL_CACHE_DIR";
+
+/// A scratch folder until this process ends; a fork of it leaves the folder alone.
+struct FolderOfProcess {
+  std::unique_ptr<ScratchFolder> folder;
+  pid_t owner = ::getpid();
+
+  const fs::path& path() {
+    if (!folder) folder = std::make_unique<ScratchFolder>();
+    return folder->path();
+  }
+  ~FolderOfProcess() {
+    if (::getpid() != owner) static_cast<void>(folder.release());
+  }
+};
 
 std::string name_of_mark(const std::string& key) {
   return Fingerprint().add(key).hex();
@@ -30,10 +46,27 @@ bool driver_keeps_kernels(const Device& device) {
   return device.platform == "Portable Computing Language";
 }
 
+void choose_driver_cache() {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  if (driver_cache_folder()) return;
+  std::string why = "neither XDG_CACHE_HOME nor HOME is an absolute path";
+  fs::path folder;
+  if (const auto cache = user_cache_folder()) {
+    folder = *cache / "pocl";
+    why = CacheFolder(folder).problem();
+  }
+  if (!why.empty()) {
+    static FolderOfProcess scratch;
+    folder = scratch.path();
+    spdlog::warn("{}: each run compiles its kernels again", why);
+  }
+  ::setenv(kVariable, folder.c_str(), 1);
+}
+
 std::optional<fs::path> driver_cache_folder() {
-  if (const auto given = folder_of("POCL_CACHE_DIR", "")) return given;
-  if (const auto cache = folder_of("XDG_CACHE_HOME", "pocl/kcache")) return cache;
-  return folder_of("HOME", ".cache/pocl/kcache");
+  const char* set = std::getenv(kVariable);
+  return set != nullptr && *set != '\0' ? std::optional<fs::path>(set) : std::nullopt;
 }
 
 bool driver_cache_is_full() {

@@ -14,7 +14,13 @@ namespace clpv {
 /// Returns true if the driver keeps compiled kernels itself, for all processes: PoCL.
 bool driver_keeps_kernels(const Device& device);
 
-/// PoCL's cache folder: POCL_CACHE_DIR, else below XDG_CACHE_HOME, else below HOME.
+/// Sets POCL_CACHE_DIR, unless the user has, before PoCL reads it: to a folder of the user's cache
+/// that nobody else can write (user_cache_folder(), CacheFolder), else, with a warning, to a
+/// ScratchFolder of this process. Without it PoCL loads code from /tmp/pocl or from the current
+/// folder where HOME is missing or relative. Helpers inherit the variable. Throws as ScratchFolder.
+void choose_driver_cache();
+
+/// POCL_CACHE_DIR; nothing before choose_driver_cache().
 std::optional<std::filesystem::path> driver_cache_folder();
 
 /// Returns true if the disk of that folder has no space left.

@@ -139,19 +139,30 @@ void Session::compile_with_helpers() {
   spdlog::info("compiling {} kernels for {}: on the first run only", kernels, device_.name);
   const auto start = std::chrono::steady_clock::now();
   Progress progress("compiling kernels", kernels);
-  Helpers helpers(compilation_.helpers);
   helped_ = true;
-  while (helpers.wait()) {
+  const std::unique_ptr<Helpers> helpers = started_helpers();
+  if (!helpers) return;
+  while (helpers->wait()) {
     stop_if_interrupted("kernels were being compiled");
-    build_one_compiled(helpers.claims());
+    build_one_compiled(helpers->claims());
     // Some are described later.
-    progress.reach(std::min(helpers.claims().finished_count(), kernels));
+    progress.reach(std::min(helpers->claims().finished_count(), kernels));
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   spdlog::debug("{} helpers compiled {} kernels in {:.1f} s", helper_count(),
-                helpers.claims().finished_count(), elapsed.count());
-  if (!helpers.failures().empty())
-    spdlog::debug("a helper failed, so this process compiles the rest: {}", helpers.failures());
+                helpers->claims().finished_count(), elapsed.count());
+  if (!helpers->failures().empty())
+    spdlog::debug("a helper failed, so this process compiles the rest: {}", helpers->failures());
+}
+
+/// Null, with a warning, where no folder can be made for the helpers: a frame needs none.
+std::unique_ptr<Helpers> Session::started_helpers() const {
+  try {
+    return std::make_unique<Helpers>(compilation_.helpers);
+  } catch (const Error& error) {
+    spdlog::warn("{}: this process compiles all kernels itself", error.what());
+    return nullptr;
+  }
 }
 
 /// Builds a program whose kernels helpers have compiled, from the driver's cache, while they

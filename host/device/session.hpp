@@ -183,6 +183,7 @@ class Session {
   void build(Program& program);
   bool load(Program& program);
   void compile_with_helpers();
+  std::unique_ptr<Helpers> started_helpers() const;
   void build_one_compiled(const Claims& claims);
 
   void write_bytes(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t at);

@@ -109,8 +109,9 @@ std::optional<double> normalised(double squared_error, double reference_power) {
   return quotient ? std::optional(std::sqrt(std::max(*quotient, 0.0))) : std::nullopt;
 }
 
-/// Sets the errors over valid pixels from their sums.
+/// Sets the errors over valid pixels from their sums; without any they are undefined.
 void set_valid_errors(Comparison& result, const Sums& valid) {
+  if (result.valid_pixels == 0) return;
   result.nrmse_valid = normalised(valid.squared_error, valid.bb);
   result.best_gain = ratio(valid.ab, valid.aa);
   // At the best gain g = AB / AA, |gA - B|^2 = BB - AB^2 / AA; a black A has no gain.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "device/kernel_files.hpp"
 #include "image/compare.hpp"
@@ -160,30 +161,43 @@ void QualityStore::keep(const std::string& key, const QualityCell& cell) {
 
 namespace {
 
-void add(QualitySummary& sum, const QualityCell& cell) {
-  ++sum.views;
-  if (!cell.rejected.empty()) {
-    ++sum.rejected;
-    return;
+/// Mean of the values that are defined.
+template <typename Value>
+std::optional<double> mean_of(const std::vector<const QualityCell*>& cells, Value value) {
+  double sum = 0;
+  int count = 0;
+  for (const QualityCell* cell : cells) {
+    const std::optional<double> defined = value(*cell);
+    sum += defined.value_or(0);
+    count += defined.has_value();
   }
-  const double nrmse = cell.nrmse.value_or(0);
-  sum.nrmse += nrmse;
-  sum.worst_nrmse = std::max(sum.worst_nrmse, nrmse);
-  sum.nrmse_best_gain += cell.nrmse_best_gain.value_or(0);
-  sum.energy_ratio += cell.energy_ratio.value_or(0);
-  sum.flip += cell.flip.value_or(0);
-  sum.frame_ms += cell.frame_ms;
-  for (const auto& [stage, ms] : cell.stage_ms) sum.stage_ms[stage] += ms;
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-void divide(QualitySummary& sum) {
-  const int rendered = sum.views - sum.rejected;
-  if (rendered == 0) return;
-  for (double* value :
-       {&sum.nrmse, &sum.nrmse_best_gain, &sum.energy_ratio, &sum.flip, &sum.frame_ms}) {
-    *value /= rendered;
+QualitySummary summary_of(const Variant& variant, const std::vector<QualityCell>& cells) {
+  QualitySummary sum{.variant = variant};
+  std::vector<const QualityCell*> rendered;
+  for (const QualityCell& cell : cells) {
+    if (cell.variant != variant) continue;
+    ++sum.views;
+    if (cell.rejected.empty()) rendered.push_back(&cell);
   }
-  for (auto& [stage, ms] : sum.stage_ms) ms /= rendered;
+  sum.rejected = sum.views - static_cast<int>(rendered.size());
+  for (const QualityCell* cell : rendered) {
+    sum.undefined += !cell->nrmse;
+    sum.worst_nrmse = std::max(sum.worst_nrmse, cell->nrmse);  // an empty one is the least
+    for (const auto& [stage, ms] : cell->stage_ms)
+      sum.stage_ms[stage] += ms / static_cast<double>(rendered.size());
+  }
+  const auto mean = [&](auto member) {
+    return mean_of(rendered, [member](const QualityCell& cell) { return cell.*member; });
+  };
+  sum.nrmse = mean(&QualityCell::nrmse);
+  sum.nrmse_best_gain = mean(&QualityCell::nrmse_best_gain);
+  sum.energy_ratio = mean(&QualityCell::energy_ratio);
+  sum.flip = mean(&QualityCell::flip);
+  sum.frame_ms = mean(&QualityCell::frame_ms);
+  return sum;
 }
 
 }  // namespace
@@ -191,16 +205,11 @@ void divide(QualitySummary& sum) {
 std::vector<QualitySummary> summarise(const std::vector<QualityCell>& cells) {
   std::vector<QualitySummary> sums;
   for (const QualityCell& cell : cells) {
-    auto sum = std::ranges::find(sums, cell.variant, &QualitySummary::variant);
-    if (sum == sums.end()) {
-      sum = sums.insert(sums.end(), QualitySummary{});
-      sum->variant = cell.variant;
-    }
-    add(*sum, cell);
+    if (std::ranges::find(sums, cell.variant, &QualitySummary::variant) == sums.end())
+      sums.push_back(summary_of(cell.variant, cells));
   }
-  for (QualitySummary& sum : sums) divide(sum);
-  std::ranges::stable_sort(sums, [](const QualitySummary& a, const QualitySummary& b) {
-    return (a.rejected > 0) != (b.rejected > 0) ? b.rejected > 0 : a.nrmse < b.nrmse;
+  std::ranges::stable_sort(sums, {}, [](const QualitySummary& sum) {
+    return std::tuple(sum.rejected > 0, sum.undefined, sum.nrmse.value_or(0));
   });
   return sums;
 }

@@ -89,15 +89,17 @@ class QualityStore {
   bool writable_ = true;
 };
 
-/// Means of a variant over all its views.
+/// Means of a variant over those of its views where the value is defined; empty if there is none.
 struct QualitySummary {
   Variant variant;
   int views = 0, rejected = 0;
-  double nrmse = 0, worst_nrmse = 0, nrmse_best_gain = 0, energy_ratio = 0, flip = 0, frame_ms = 0;
+  int undefined = 0;  ///< rendered views without `nrmse`: its ground truth is black, the frame not
+  std::optional<double> nrmse, worst_nrmse, nrmse_best_gain, energy_ratio, flip, frame_ms;
   std::map<std::string, double> stage_ms;
 };
 
-/// One summary per variant, by increasing mean error; variants with a rejected view come last.
+/// One summary per variant, by increasing mean error. Variants with fewer errors in their mean
+/// follow: those with undefined errors, at last those with a rejected view.
 std::vector<QualitySummary> summarise(const std::vector<QualityCell>& cells);
 
 nlohmann::json to_json(const QualityCell& cell);
@@ -106,7 +108,7 @@ QualityCell cell_from_json(const nlohmann::json& json);
 nlohmann::json to_json(const QualitySummary& summary);
 
 /// One line per variant, best first: NRMSE of each view, their mean, means of the other metrics,
-/// and stage times.
+/// and stage times. Undefined values are '-'.
 std::string quality_table(const std::vector<QualityCell>& cells);
 
 }  // namespace clpv

@@ -34,8 +34,22 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+/// Text with so many decimals; '-' if the number is undefined.
+std::string text_of(const std::optional<double>& number, int decimals, double factor = 1) {
+  return number ? fmt::format("{:.{}f}", factor * *number, decimals) : "-";
+}
+
 std::string percent(const std::optional<double>& share) {
-  return share ? fmt::format("{:.1f}", 100 * *share) : "-";
+  return text_of(share, 1, 100);
+}
+
+/// A line that counts errors which no mean has; empty if there is none.
+std::string note_of_undefined(const std::vector<QualityCell>& cells) {
+  const auto undefined = std::ranges::count_if(
+      cells, [](const QualityCell& cell) { return cell.rejected.empty() && !cell.nrmse; });
+  if (undefined == 0) return {};
+  return fmt::format("-: undefined, as over a black ground truth: {} of {} errors, in no mean\n",
+                     undefined, cells.size());
 }
 
 /// Timed stages of a frame: stages with a pass of their name.
@@ -61,8 +75,9 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain,
                                    nrmse_best_gain, energy_ratio, flip, frame_ms, stage_ms,
                                    compute_units, settings, setup_s, measured_s)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, nrmse, worst_nrmse,
-                                   nrmse_best_gain, energy_ratio, flip, frame_ms, stage_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, undefined, nrmse,
+                                   worst_nrmse, nrmse_best_gain, energy_ratio, flip, frame_ms,
+                                   stage_ms)
 
 nlohmann::json to_json(const QualityCell& cell) {
   nlohmann::json json = cell, varied = nlohmann::json::array();  // an array: objects lose the order
@@ -117,12 +132,12 @@ std::string quality_table(const std::vector<QualityCell>& cells) {
     row[c++] = percent(sum.nrmse);
     row[c++] = percent(sum.worst_nrmse);
     row[c++] = percent(sum.nrmse_best_gain);
-    row[c++] = fmt::format("{:.2f}", sum.energy_ratio);
-    row[c++] = fmt::format("{:.3f}", sum.flip);
-    row[c++] = fmt::format("{:.1f}", sum.frame_ms);
+    row[c++] = text_of(sum.energy_ratio, 2);
+    row[c++] = text_of(sum.flip, 3);
+    row[c++] = text_of(sum.frame_ms, 1);
     for (const std::string_view kind : kinds) row[c++] = fmt::format("{:.1f}", kind_ms(sum, kind));
   }
-  return aligned(rows);
+  return aligned(rows) + note_of_undefined(cells);
 }
 
 }  // namespace clpv

@@ -60,6 +60,9 @@ inline constexpr std::size_t kCameras = 1024;
 // Coordinates [m]. At 1e7 m the resolution of a float is 1 m.
 inline constexpr double kCoordinate = 1e7;
 
+// Extent below which a scene is noted as small [m]: ten times the near plane of a lamp's views.
+inline constexpr double kSmallScene = 0.1;
+
 // Notes to the user that are stored; further ones are counted.
 inline constexpr std::size_t kNotes = 32;
 

@@ -68,6 +68,17 @@ void find_bounds(SceneData& scene) {
   }
 }
 
+/// Notes a scene so small that lamps cannot light it, which renders black.
+void note_small_scene(const SceneData& scene, double metres_per_unit, Notes& notes) {
+  const glm::vec3 extent = scene.upper - scene.lower;
+  const float widest = std::max({extent.x, extent.y, extent.z});
+  if (scene.triangles.empty() || widest >= bounds::kSmallScene) return;
+  notes.add(fmt::format(
+      "the scene is {:.2g} m wide, with metres_per_unit {}: much of it is dark, since lamps light "
+      "nothing nearer than 0.01 m; allowed without this note: {} m or more",
+      widest, metres_per_unit, bounds::kSmallScene));
+}
+
 void check_camera_lights(const SceneData& scene) {
   std::vector<std::string> names;
   for (const SceneLight& light : scene.lights) names.push_back("'" + light.name + "'");
@@ -246,6 +257,7 @@ MovingScene::MovingScene(const std::filesystem::path& path,
   if (motion_.empty()) motion_.tree = {};  // frees its memory
   scene_.moving = ranges_of(motion_.meshes);
   find_bounds(scene_);
+  note_small_scene(scene_, description_.metres_per_unit, notes);
   if (scene_.medium) set_medium(*scene_.medium);
   scene_.notes = notes.take();
   add_defaults(description_.lights.has_value() || scene_.sky);

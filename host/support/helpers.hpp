@@ -88,7 +88,7 @@ class Helpers {
   std::vector<Ended> ended_;
 };
 
-/// In a helper: ends this process when its parent ends, and on a signal at once.
+/// In a helper: a signal ends this process at once.
 void become_helper();
 
 }  // namespace clpv

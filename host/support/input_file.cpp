@@ -58,9 +58,13 @@ std::optional<std::string> file_bytes(const fs::path& path, std::uintmax_t max_b
 }
 
 std::optional<fs::path> user_cache_folder() {
-  if (const char* home = std::getenv("XDG_CACHE_HOME"); home && *home)
-    return fs::path(home) / "clpv";
-  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache/clpv";
+  // A relative path would be a folder of whatever folder is the current one.
+  const auto absolute = [](const char* variable) {
+    const char* set = std::getenv(variable);
+    return set != nullptr && *set == '/' ? std::optional<fs::path>(set) : std::nullopt;
+  };
+  if (const auto cache = absolute("XDG_CACHE_HOME")) return *cache / "clpv";
+  if (const auto home = absolute("HOME")) return *home / ".cache/clpv";
   return std::nullopt;
 }
 

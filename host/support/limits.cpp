@@ -20,6 +20,8 @@ constexpr std::uint64_t kCompilerBytes = 512 * kMiB, kCoreBytes = 128 * kMiB;
 constexpr std::uint64_t kLeastLeft = 64 * kMiB;
 constexpr std::uint64_t kLeastFiles = 64;        // libraries, a linker's inputs, caches
 constexpr std::uint64_t kLeastFileBytes = kMiB;  // compiled kernels have 0.1 MiB
+// PoCL's threads get stacks of this size, and its compiler recurses: with 64 KiB they crash.
+constexpr std::uint64_t kLeastStack = 512 * 1024;
 
 std::uint64_t limit_of(int resource) {
   rlimit limit{};
@@ -59,6 +61,10 @@ void require_limits() {
     throw Error(ExitCode::run_time,
                 "open files (ulimit -n): found {}, allowed for OpenCL: {} or more", files,
                 kLeastFiles);
+  }
+  if (const std::uint64_t bytes = limit_of(RLIMIT_STACK); bytes < kLeastStack) {
+    throw Error(ExitCode::run_time, "stack (ulimit -s): found {} KiB, allowed for OpenCL: {} or more",
+                bytes / 1024, kLeastStack / 1024);
   }
   if (const std::uint64_t bytes = limit_of(RLIMIT_FSIZE); bytes < kLeastFileBytes) {
     throw Error(ExitCode::run_time,

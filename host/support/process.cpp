@@ -3,12 +3,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -28,8 +29,16 @@ std::vector<char*> argument_pointers(std::string& program, std::vector<std::stri
   return words;
 }
 
+/// A file descriptor above those of stdin, stdout and stderr, which a child replaces.
+int above_streams(int descriptor) {
+  if (descriptor < 0 || descriptor > STDERR_FILENO) return descriptor;
+  const int moved = ::fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  ::close(descriptor);
+  return moved;
+}
+
 std::FILE* file_in_memory() {
-  const int descriptor = ::memfd_create("output", MFD_CLOEXEC);
+  const int descriptor = above_streams(::memfd_create("output", MFD_CLOEXEC));
   return descriptor >= 0 ? ::fdopen(descriptor, "w+") : nullptr;
 }
 
@@ -42,9 +51,45 @@ std::string contents(std::FILE* file) {
   return text;
 }
 
-}  // namespace
+/// Files of a child's stdin, stdout and stderr.
+using Streams = std::array<int, 3>;
 
-namespace {
+/// In the child of vfork(), which shares this process's memory until it runs the program: only
+/// system calls. Returns errno of the failure.
+int become(const char* program, char* const* words, const Streams& streams, pid_t parent) {
+  if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return errno;
+  if (::getppid() != parent) return ESRCH;  // it ended before prctl()
+  for (int stream = 0; stream < 3; ++stream)
+    if (::dup2(streams[stream], stream) < 0) return errno;
+  for (int signal = 1; signal < NSIG; ++signal) {  // no handler of this process may run
+    const bool stays = signal != SIGCHLD && signal != SIGPIPE && signal != SIGXFSZ;
+    if (std::signal(signal, SIG_DFL) == SIG_IGN && stays) std::signal(signal, SIG_IGN);
+  }
+  sigset_t none;
+  sigemptyset(&none);
+  if (::sigprocmask(SIG_SETMASK, &none, nullptr) != 0) return errno;
+  ::execve(program, words, environ);
+  return errno;
+}
+
+/// Starts a program that the kernel ends with this thread, however that ends. posix_spawn() has no
+/// such attribute. Returns its process; -1, and errno in `failure`, if it does not start.
+pid_t start(const char* program, char* const* words, const Streams& streams, int& failure) {
+  sigset_t all, before;
+  sigfillset(&all);  // the child must not run this process's handlers
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t parent = ::getpid();
+  volatile int reason = 0;
+  const pid_t child = ::vfork();
+  if (child == 0) {
+    reason = become(program, words, streams, parent);
+    ::_exit(127);
+  }
+  failure = child < 0 ? errno : reason;
+  if (child > 0 && reason != 0) ::waitpid(child, nullptr, 0);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return failure == 0 ? child : -1;
+}
 
 /// The absolute entries of PATH.
 std::vector<std::string> program_folders() {
@@ -57,6 +102,19 @@ std::vector<std::string> program_folders() {
 }
 
 }  // namespace
+
+void reset_inherited_state() {
+  // A missing stdout or stderr would become the first file that opens, and get what is printed.
+  // Opened the other way round, they fail as closed ones do.
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    const int mode = stream == STDIN_FILENO ? O_WRONLY : O_RDONLY;
+    if (::fcntl(stream, F_GETFD) < 0) static_cast<void>(::open("/dev/null", mode));
+  }
+  std::signal(SIGCHLD, SIG_DFL);
+  sigset_t none;
+  sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+}
 
 void keep_absolute_path_entries() {
   ::setenv("PATH", fmt::format("{}", fmt::join(program_folders(), ":")).c_str(), 1);
@@ -83,22 +141,14 @@ Process::Process(const std::filesystem::path& program, const std::vector<std::st
     return;
   }
   input_ = ends[0];
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  if (with_input) {
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
-  } else {
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  }
-  posix_spawn_file_actions_adddup2(&actions, ::fileno(output_.get()), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, ::fileno(output_.get()), STDERR_FILENO);
+  const int stdin_file =
+      above_streams(with_input ? ends[1] : ::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const int stdout_file = ::fileno(output_.get());
   std::string name = program.string();
   std::vector<std::string> words = arguments;
-  start_error_ = ::posix_spawn(&child_, program.c_str(), &actions, nullptr,
-                               argument_pointers(name, words).data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (with_input) ::close(ends[1]);
-  if (start_error_ != 0) child_ = -1;
+  child_ = start(program.c_str(), argument_pointers(name, words).data(),
+                 {stdin_file, stdout_file, stdout_file}, start_error_);
+  if (stdin_file >= 0) ::close(stdin_file);
 }
 
 Process::~Process() {
@@ -116,9 +166,20 @@ bool Process::feed(std::span<const std::byte> bytes) {
 }
 
 bool Process::running() {
-  if (child_ < 0 || exited_) return false;
-  exited_ = ::waitpid(child_, &status_, WNOHANG) == child_;
-  return !exited_;
+  return !wait(WNOHANG);
+}
+
+/// Returns true once the process has ended, or its status is lost: the kernel reaps children of a
+/// process that ignores SIGCHLD, and another thread may wait for all children.
+bool Process::wait(int flags) {
+  if (child_ < 0 || exited_) return true;
+  pid_t waited = -1;
+  do {
+    waited = ::waitpid(child_, &status_, flags);
+  } while (waited < 0 && errno == EINTR);
+  if (waited < 0) lost_ = errno;
+  exited_ = waited != 0;
+  return exited_;
 }
 
 void Process::kill() {
@@ -128,9 +189,13 @@ void Process::kill() {
 Process::Result Process::end() {
   if (input_ >= 0) ::close(std::exchange(input_, -1));
   if (child_ < 0) return {-1, std::strerror(start_error_)};
-  while (!exited_ && ::waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
-  }
+  wait(0);
   child_ = -1;
+  if (lost_ != 0) {
+    return {-1, fmt::format("its exit status is lost ({}): this process ignores SIGCHLD, or "
+                            "something else in it waits for all children\n{}",
+                            std::strerror(lost_), contents(output_.get()))};
+  }
   return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_),
           contents(output_.get())};
 }

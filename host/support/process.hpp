@@ -15,6 +15,10 @@
 
 namespace clpv {
 
+/// Undoes what a parent may have left: SIGCHLD ignored, which loses the status of children; blocked
+/// signals, which nothing would interrupt; closed standard streams. For the start of a program.
+void reset_inherited_state();
+
 /// Removes the entries of PATH that depend on the current folder, since a scene's folder may hold
 /// anything. For drivers that start programs, as PoCL starts ld.
 void keep_absolute_path_entries();
@@ -22,12 +26,13 @@ void keep_absolute_path_entries();
 /// Returns the file of a program in the absolute entries of PATH.
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
-/// A child process, started without a shell.
+/// A child process, started without a shell. The kernel ends it with the thread that started it,
+/// also after SIGKILL, so that it writes nothing later.
 class Process {
  public:
   struct Result {
-    int code = -1;       ///< exit status; 128 + signal; -1 if the program could not be started
-    std::string output;  ///< stdout and stderr, or the reason why it did not start
+    int code = -1;  ///< exit status; 128 + signal; -1 if it did not start or its status is lost
+    std::string output;  ///< stdout and stderr; the reason where the code is -1
   };
 
   /// Starts the program of that file. `with_input`: its stdin reads the bytes of feed(); else stdin
@@ -52,6 +57,8 @@ class Process {
   Result end();
 
  private:
+  bool wait(int flags);
+
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
@@ -60,6 +67,7 @@ class Process {
   pid_t child_ = -1;
   int status_ = 0;  ///< of waitpid, once exited_
   bool exited_ = false;
+  int lost_ = 0;         ///< errno of waitpid, where it knows no such child
   int start_error_ = 0;  ///< errno of a failure to start
 };
 

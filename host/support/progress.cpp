@@ -8,7 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "support/print.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -40,12 +44,24 @@ std::string time_left(double share, double elapsed_seconds) {
   return share > 0 ? duration(elapsed_seconds * (1 - share) / share) + " left" : "";
 }
 
-/// The requested style; `none` if the log is quiet, and lines instead of a bar without a terminal.
+/// True if stderr is a terminal that obeys escape codes, and its user wants them
+/// (https://no-color.org).
+bool takes_escape_codes() {
+  const auto value = [](const char* variable) {
+    const char* set = std::getenv(variable);
+    return std::string_view(set != nullptr ? set : "");
+  };
+  const std::string_view terminal = value("TERM");
+  return ::isatty(STDERR_FILENO) == 1 && !terminal.empty() && terminal != "dumb" &&
+         value("NO_COLOR").empty();
+}
+
+/// The requested style; `none` if the log is quiet, and lines instead of a bar where escape codes
+/// are not taken.
 ProgressStyle effective_style() {
   if (!spdlog::should_log(spdlog::level::info)) return ProgressStyle::none;
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  return requested_style == ProgressStyle::bar && !terminal ? ProgressStyle::lines
-                                                            : requested_style;
+  return requested_style == ProgressStyle::bar && !takes_escape_codes() ? ProgressStyle::lines
+                                                                        : requested_style;
 }
 
 }  // namespace
@@ -68,7 +84,8 @@ std::string progress_line(const std::string& title, std::uint64_t done, std::uin
   const int filled = static_cast<int>(share * kBarColumns);
   const std::string left = time_left(share, elapsed_seconds);
   const std::string bar = std::string(filled, '#') + std::string(kBarColumns - filled, '.');
-  std::string line = fmt::format("{} [{}] {:3.0f} % {}", title, bar, 100 * share, left);
+  const std::string line =
+      fmt::format("{} [{}] {:3.0f} % {}", printable(title), bar, 100 * share, left);
   return line.substr(0, static_cast<std::size_t>(std::max(columns, 0)));
 }
 
@@ -80,7 +97,7 @@ Progress::Progress(std::string title, std::uint64_t total)
       next_draw_(started_ + (style_ == ProgressStyle::lines ? kNextLine : kFirstDraw)) {}
 
 Progress::~Progress() {
-  if (drawn_) std::fputs("\r\x1b[K", stderr);
+  if (drawn_) print_over_line("");
 }
 
 void Progress::advance(std::uint64_t amount) {
@@ -106,8 +123,7 @@ void Progress::show() {
   }
   // One column less: some terminals wrap after the last column.
   const std::string line = progress_line(title_, done_, total_, elapsed, terminal_columns() - 1);
-  std::fprintf(stderr, "\r%s\x1b[K", line.c_str());
-  std::fflush(stderr);
+  print_over_line(line);
   drawn_ = true;
   next_draw_ = now + kRedraw;
 }

@@ -9,13 +9,14 @@
 
 namespace clpv {
 
-/// bar: on stderr, if it is a terminal; lines: a log line every 10 s, for batch jobs; none.
+/// bar: on stderr, if it is a terminal, TERM is not `dumb` and NO_COLOR not set; lines: a log line
+/// every 10 s, for batch jobs; none.
 enum class ProgressStyle { bar, lines, none };
 /// Sets the style of every Progress constructed later.
 void set_progress_style(ProgressStyle style);
 
 /// Counts work done out of a known total. Draws no bar during the first second. Logs lines instead
-/// if stderr is no terminal, and nothing if the log is quiet (set_log_level). The destructor erases
+/// where a bar cannot be drawn, and nothing if the log is quiet (set_log_level). The destructor erases
 /// the bar. advance() and reach() are thread safe.
 class Progress {
  public:

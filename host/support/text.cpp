@@ -1,26 +1,64 @@
 // SPDX-License-Identifier: MIT
 #include "support/text.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 
 namespace clpv {
+namespace {
+
+/// Bytes of the UTF-8 character that `text` begins with; 0 if its first byte begins none.
+std::size_t character_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return 1;
+  const std::size_t bytes = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+  // 0xc0, 0xc1 and 0xf5 on begin no character; 0xe0 and 0xf0 have longer forms of shorter ones.
+  if (byte(0) < 0xc2 || byte(0) > 0xf4 || bytes > text.size()) return 0;
+  if ((byte(0) == 0xe0 && byte(1) < 0xa0) || (byte(0) == 0xf0 && byte(1) < 0x90)) return 0;
+  for (std::size_t i = 1; i < bytes; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  return bytes;
+}
+
+/// True for U+007F to U+009F.
+bool is_control(std::string_view character) {
+  if (character.size() == 1) return character[0] == 0x7f;
+  return character.size() == 2 && character[0] == '\xc2' &&
+         static_cast<unsigned char>(character[1]) < 0xa0;
+}
+
+}  // namespace
 
 std::string printable(std::string_view text) {
   std::string out;
   out.reserve(text.size());
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
-    // U+0080 to U+009F, of two bytes.
-    const bool wide = byte == 0xc2 && next >= 0x80 && next < 0xa0;
-    if (wide || byte == 0x7f || (byte < 0x20 && byte != '\n' && byte != '\t'))
+  while (!text.empty()) {
+    const std::size_t bytes = character_bytes(text);
+    const auto first = static_cast<unsigned char>(text[0]);
+    if (bytes == 0 || is_control(text.substr(0, bytes)) ||
+        (first < 0x20 && first != '\n' && first != '\t'))
       out += '?';
     else
-      out += text[i];
-    if (wide) ++i;
+      out += text.substr(0, bytes);
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return out;
+}
+
+std::string terminal_json(std::string_view json) {
+  std::string out;
+  out.reserve(json.size());
+  while (!json.empty()) {
+    const std::size_t bytes = std::max<std::size_t>(character_bytes(json), 1);
+    const std::string_view character = json.substr(0, bytes);
+    if (is_control(character))
+      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(character.back()));
+    else
+      out += character;
+    json.remove_prefix(bytes);
   }
   return out;
 }

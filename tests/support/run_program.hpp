@@ -40,9 +40,9 @@ inline std::string usual_kernels() {
   if (const char* set = std::getenv("POCL_CACHE_DIR"))
     return std::string("POCL_CACHE_DIR=") + set + " ";
   if (const char* cache = std::getenv("XDG_CACHE_HOME"))
-    return std::string("POCL_CACHE_DIR=") + cache + "/pocl/kcache ";
+    return std::string("POCL_CACHE_DIR=") + cache + "/clpv/pocl ";
   const char* home = std::getenv("HOME");
-  return home != nullptr ? std::string("POCL_CACHE_DIR=") + home + "/.cache/pocl/kcache " : "";
+  return home != nullptr ? std::string("POCL_CACHE_DIR=") + home + "/.cache/clpv/pocl " : "";
 }
 
 }  // namespace clpv::test

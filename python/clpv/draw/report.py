@@ -65,14 +65,14 @@ def viewer(views, folder):
 
 
 def variants(quality, marked):
-    """What was not rejected, best first."""
+    """What was not rejected and has an error, best first."""
     rows = []
     for source in quality:
         listed = source["document"].get("variants")
         for i, row in enumerate(
                 documents.checked(source["document"], source["file"], "variants",
                                   {"rejected": int})):
-            if row["rejected"] == 0:
+            if row["rejected"] == 0 and row.get("nrmse", 0) is not None:
                 documents.checked({"variants": listed[i:i + 1]}, source["file"], "variants",
                                   VARIANT)
                 rows.append({**row, "name": " ".join(map(str, row["options"].values())),
