@@ -148,8 +148,9 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session,
            std::size_t number) {
     stop_if_interrupted(
         fmt::format("{} of {} cells are finished; the same command resumes", cells.size(), mine));
-    const std::string key = quality_key(group.subject.truths[camera], session.device(),
-                                        group.options, options.view, options.frames);
+    const std::string key =
+        quality_key(group.subject.truths[camera], session.device(), group.options, options.view,
+                    options.frames, ranks.processors());
     std::optional<QualityCell> cell;
     if (!options.fresh) cell = store.find(key);
     const bool kept = cell.has_value();

@@ -51,6 +51,8 @@ std::vector<QualityCell> measure_baselines(
             const std::filesystem::path folder =
                 std::filesystem::path(baselines.images) / name_of(baseline);
             create_folder("--images", folder);
+            measured.image.metadata[kViewHash] =
+                view_hash(subject.scene, camera, options.width, options.height);
             write_exr(folder / fmt::format("{}-{}.exr", subject.scene.name, camera.name),
                       measured.image);
           }

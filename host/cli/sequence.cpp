@@ -30,6 +30,17 @@ struct Options : SequenceOptions {
   bool stability = false;
 };
 
+/// Throws Error(run_time) if there is anything but a file in a frame's place.
+void check_places(const SequenceOptions& options) {
+  for (int i = 0; i < options.frames; ++i) {
+    std::error_code failed;
+    const fs::file_status status = fs::status(options.file(i), failed);
+    if (fs::exists(status) && !fs::is_regular_file(status))
+      throw Error(ExitCode::run_time, "{}: cannot be written: it is {}", options.file(i).string(),
+                  fs::is_directory(status) ? "a folder" : "not a regular file");
+  }
+}
+
 /// Checks the options before the scene is read. Returns the outputs.
 std::vector<NamedFile> prepare_outputs(const Options& options) {
   if (const double last = options.time_of(options.frames - 1); last > bounds::kSeconds) {
@@ -45,10 +56,11 @@ std::vector<NamedFile> prepare_outputs(const Options& options) {
     throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.folder);
   create_folder("--output", folder);
   std::vector<NamedFile> outputs{{"--output", options.file(0)},
-                                 {"--output", folder / "times.json"},
+                                 {"--output", folder / "times.jsonl"},
                                  {"--video", options.video}};
   if (options.stability) outputs.push_back({"--stability", folder / "stability.json"});
   check_outputs(outputs, options.request.files());
+  check_places(options);
   return outputs;
 }
 
@@ -103,7 +115,7 @@ void add_sequence(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand("sequence", "Render an animated scene frame by frame");
   auto options = std::make_shared<sequence_command::Options>();
   add(*command, "-o,--output", "DIR", options->folder,
-      "output folder for frame-0000.exr, ... and times.json; created if missing")
+      "output folder for frame-0000.exr, ... and times.jsonl; created if missing")
       ->required();
   add(*command, "--frames", "N", options->frames, "number of frames")
       ->check(CLI::Range(1, kMaxFrames))
@@ -128,9 +140,11 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add_render_request(*command, options->request);
   command->footer(
       "Frame i shows FROM + i / RATE seconds, identical to `clpv render --time` of that time.\n"
-      "An interrupted run resumes: frames whose file has the same inputs are not rendered again.\n"
-      "times.json has the times of all frames, and median, 95th percentile and maximum of each "
-      "stage [ms].\n"
+      "An interrupted run resumes: frames whose file is whole and has the same inputs are not "
+      "rendered again.\n"
+      "times.jsonl has the times of each frame, one line each, and a last line with n, min, median, "
+      "mad and\n"
+      "max of each stage [ms].\n"
       "mpirun -n N clpv sequence ... distributes the frames over N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }

@@ -8,6 +8,8 @@
 
 namespace clpv {
 
+class Fingerprint;
+
 /// Returns the text of kernels/NAME ("steps/propagate.cl", "volume/soa.h"): from CLPV_KERNEL_DIR if
 /// that folder has the file, else the embedded copy. Throws Error(run_time) for an unknown name.
 std::string kernel_file(const std::string& name);
@@ -18,6 +20,10 @@ std::string kernel_file(const std::string& name);
 /// their caches miss changed files. Throws Error(run_time) for an unknown name and for includes
 /// nested more than 8 deep.
 std::string assemble_kernel_source(const std::string& name);
+
+/// Adds the text of all kernel files to a hash, and of other files that they include from
+/// CLPV_KERNEL_DIR. Throws Error(usage) as kernel_file().
+void add_kernels(Fingerprint& print);
 
 namespace detail {
 const std::map<std::string, std::string_view>& embedded_kernel_files();
