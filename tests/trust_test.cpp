@@ -301,7 +301,7 @@ TEST(Outputs, SpareInputsAndEachOther) {
   for (const auto& entry : fs::directory_iterator(fs::path(kTiny).parent_path()))
     if (entry.path().stem() == "tiny") fs::copy(entry.path(), folder.path());
   folder.write("my.json", R"({"model": "tiny.gltf"})");
-  folder.write("times.json", R"({"model": "tiny.gltf"})");
+  folder.write("stability.json", R"({"model": "tiny.gltf"})");
   folder.write("points.csv", "0,0,0,0,1,0\n");
   const std::string scene = " my.json" + kSmallSteps;
   for (const std::string& command :
@@ -312,7 +312,7 @@ TEST(Outputs, SpareInputsAndEachOther) {
         "query" + scene + "--points points.csv -o points.csv",
         "quality" + scene + "--cache cache -o my.json",
         std::string("bench regression --scene my.json -o my.json"),
-        "sequence times.json" + kSmallSteps + "--frames 1 --fps 1 -o ."}) {
+        "sequence stability.json" + kSmallSteps + "--frames 1 --fps 1 --stability -o ."}) {
     const test::Outcome outcome = run_here(command, folder.path());
     EXPECT_EQ(outcome.exit_code, 2) << command << "\n" << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("allowed: another file")) << command;
