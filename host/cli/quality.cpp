@@ -271,8 +271,9 @@ void add_quality(CLI::App& app, Shared& shared) {
       "single factor that minimises it; energy: ratio of sums; FLIP: mean visible difference, 0 to "
       "1,\n"
       "at the scene's exposure (Andersson et al. 2020).\n"
-      "An interrupted run resumes from its cached cells. A new build, device or kernel source "
-      "invalidates them.\n"
+      "An interrupted run resumes from its cached cells. Another build, device, driver setting, "
+      "number\n"
+      "of threads or kernel file invalidates them.\n"
       "mpirun -n N clpv quality ... distributes the cells over N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }
