@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -187,6 +188,11 @@ TEST_F(CompareCommand, ComparesASuiteOfImagesWithTheirGroundTruths) {
   write_exr(file("truths/room-left-of-0123456789abcdef.exr"), truth);
   write_exr(file("ours/room-left.exr"), plain(6, 4, 0.6f, 0.6f, 0.6f));
   const std::string suite = "--suite " + file("ours") + " --truths " + file("truths");
+  EXPECT_EQ(run(suite), 3) << "a truth of that name may be another scene's";
+  EXPECT_NE(outcome_.err.find("room-left.exr: found no metadata clpv:view_hash"), std::string::npos)
+      << outcome_.err;
+  std::ofstream(file("suite.json"))
+      << R"({"views": [{"name": "room-left", "truth": "truths/room-left-0123456789abcdef.exr"}]})";
   ASSERT_EQ(run(suite), 0) << outcome_.err;
   ASSERT_EQ(output()["views"].size(), 1u);
   EXPECT_EQ(output()["views"][0]["ground_truth"], "room-left-0123456789abcdef.exr");
@@ -208,10 +214,20 @@ TEST_F(CompareCommand, ComparesASuiteOfImagesWithTheirGroundTruths) {
   std::filesystem::rename(file("left.exr"), file("ours/room-left.exr"));
   std::filesystem::remove(file("ours/room-dark.exr"));
 
-  write_exr(file("truths/room-left-fedcba9876543210.exr"), truth);
+  // Images by clpv name scene, lights and camera.
+  Image ours = plain(6, 4, 0.6f, 0.6f, 0.6f), other = truth;
+  ours.metadata["view_hash"] = other.metadata["view_hash"] = "0011223344556677";
+  write_exr(file("ours/room-left.exr"), ours);
   EXPECT_EQ(run(suite), 3);
-  EXPECT_NE(outcome_.err.find("found 2 ground truths room-left-HASH.exr of 6x4 pixels"),
+  EXPECT_NE(outcome_.err.find("found 0 ground truths room-left-HASH.exr of 6x4 pixels"),
             std::string::npos)
+      << outcome_.err;
+  write_exr(file("truths/room-left-aaaaaaaaaaaaaaaa.exr"), other);
+  ASSERT_EQ(run(suite), 0) << outcome_.err;
+  EXPECT_EQ(output()["views"][0]["ground_truth"], "room-left-aaaaaaaaaaaaaaaa.exr");
+  write_exr(file("truths/room-left-fedcba9876543210.exr"), other);
+  EXPECT_EQ(run(suite), 3);
+  EXPECT_NE(outcome_.err.find("found 2 ground truths room-left-HASH.exr"), std::string::npos)
       << outcome_.err;
   write_exr(file("ours/room-left.exr"), plain(5, 4, 1, 1, 1));
   EXPECT_EQ(run(suite), 3);

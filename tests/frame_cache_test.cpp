@@ -3,14 +3,20 @@
 // before it.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "options/render_options.hpp"
 #include "pipeline/frame/cached.hpp"
 #include "pipeline/frame/frame.hpp"
+#include "pipeline/frame/frame_keys.hpp"
 #include "scene/load.hpp"
 #include "tests/support/gltf_builder.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv::frame_cache_test {
 namespace {
@@ -31,6 +37,7 @@ TEST(Cached, HoldsNothingAfterAFailure) {
   EXPECT_EQ(computed, 1);
 }
 
+using nlohmann::json;
 using Passes = std::set<Pass>;
 
 constexpr int kGrid = 8, kCascades = 2;
@@ -46,8 +53,24 @@ struct Instants {
 
 class CachedFrame : public ::testing::Test {
  protected:
-  explicit CachedFrame(const std::function<void(RenderOptions&)>& change = {})
-      : options_(options(change)), scene_(moving_.scene()), frame_(session_, scene_, options_) {}
+  /// `change_scene`: of the scene file and the model.
+  explicit CachedFrame(const std::function<void(RenderOptions&)>& change = {},
+                       const std::function<void(json&, json&)>& change_scene = {})
+      : moving_(write_scene(folder_, change_scene)),
+        options_(options(change)),
+        scene_(moving_.scene()),
+        frame_(session_, scene_, options_) {}
+
+  static std::filesystem::path write_scene(const test::TemporaryFolder& folder,
+                                           const std::function<void(json&, json&)>& change) {
+    const std::filesystem::path file = test::write_moving_scene(folder);
+    if (!change) return file;
+    json scene = json::parse(test::read_file(file)),
+         model = json::parse(test::read_file(folder / "model.gltf"));
+    change(scene, model);
+    folder.write("model.gltf", model.dump());
+    return folder.write("moving.json", scene.dump());
+  }
 
   static RenderOptions options(const std::function<void(RenderOptions&)>& change) {
     RenderOptions options;
@@ -95,7 +118,7 @@ class CachedFrame : public ::testing::Test {
   }
 
   test::TemporaryFolder folder_;
-  MovingScene moving_{test::write_moving_scene(folder_)};
+  MovingScene moving_;
   RenderOptions options_;
   Session session_{choose_device()};
   SceneData scene_;
@@ -171,6 +194,145 @@ TEST_F(CachedFrame, AnObserverReceivesSharedVolumes) {
   ASSERT_EQ(recomputed.size(), 4u);
   EXPECT_FALSE(recomputed[0] == recomputed[2]) << "a cascade's own";
   EXPECT_TRUE(observed() == recomputed);
+}
+
+void add_sky(json& scene, json&) {
+  scene["sky"] = {{"radiance", {0.5, 1, 2}}};
+}
+void add_medium(json& scene, json&) {
+  scene["medium"] = {{"scattering", {0.2, 0.2, 0.2}}, {"anisotropy", 0.3}};
+}
+void add_emission(json&, json& model) {  // of the wall
+  model["materials"][0]["emissiveFactor"] = {1, 0.5, 0.25};
+}
+
+struct CachedSky : CachedFrame {
+  CachedSky() : CachedFrame({}, add_sky) {}
+};
+struct CachedMedium : CachedFrame {
+  CachedMedium() : CachedFrame({}, add_medium) {}
+};
+struct CachedEmission : CachedFrame {
+  CachedEmission() : CachedFrame({}, add_emission) {}
+};
+struct CachedAll : CachedFrame {
+  CachedAll()
+      : CachedFrame({}, [](json& scene, json& model) {
+          add_sky(scene, model), add_medium(scene, model), add_emission(scene, model);
+        }) {}
+};
+
+TEST_F(CachedSky, RecomputesOnlyWhatChanged) {
+  Instants at;
+  const Passes all = with(with(with(kOfEveryFrame, kOfView), kOfLight), kOfCells);
+  EXPECT_EQ(passes(at), all);
+  EXPECT_EQ(passes(at), kOfEveryFrame);
+  at.eye.x += 0.5f * kCell;
+  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfView));
+  at.sun = 0.3;
+  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
+  at.wall = 0.6;
+  EXPECT_EQ(passes(at), all) << "it shadows the sky";
+  at.eye.x += kCell;
+  EXPECT_EQ(passes(at), with(with(with(kOfEveryFrame, kOfView), kOfCells),
+                             {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}));
+}
+
+TEST_F(CachedMedium, RecomputesOnlyWhatChanged) {
+  const Passes always = with(kOfEveryFrame, {Pass::medium});
+  Instants at;
+  const Passes all = with(with(with(always, kOfView), kOfLight), kOfCells);
+  EXPECT_EQ(passes(at), all);
+  EXPECT_EQ(passes(at), always);
+  at.eye.x += 0.5f * kCell;
+  EXPECT_EQ(passes(at), with(always, kOfView));
+  at.sun = 0.3;
+  EXPECT_EQ(passes(at), with(always, kOfLight)) << "scattered sunlight, too";
+  at.wall = 0.6;
+  EXPECT_EQ(passes(at), all);
+}
+
+TEST_F(CachedEmission, RecomputesOnlyWhatChanged) {
+  Instants at;
+  const Passes all = with(with(with(with(kOfEveryFrame, kOfView), kOfLight), kOfCells), {Pass::emit});
+  EXPECT_EQ(passes(at), all);
+  EXPECT_EQ(passes(at), kOfEveryFrame);
+  at.eye.x += 0.5f * kCell;
+  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfView));
+  at.sun = 0.3;
+  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight)) << "the emissive wall is still";
+  at.wall = 0.6;
+  EXPECT_EQ(passes(at), all) << "the emissive wall moves";
+  frame_.invalidate_light();
+  EXPECT_EQ(passes(at), with(with(with(kOfEveryFrame, kOfView), kOfLight), {Pass::emit}));
+}
+
+TEST_F(CachedAll, IsTheSameAlongAPathAcrossCells) {
+  Instants at;
+  for (int i = 0; i < 6; ++i) {
+    at.eye[i % 2 == 0 ? 0 : 2] += (i % 2 == 0 ? 0.7f : -0.7f) * kCell;
+    if (i % 3 == 1) at.sun += 0.1;
+    if (i % 3 == 2) at.wall += 0.1;
+    passes(at);
+  }
+}
+
+/// Sets environment variables, and restores them at the end.
+class Environment {
+ public:
+  void set(const std::string& name, const std::string& value) {
+    const char* before = std::getenv(name.c_str());
+    before_.try_emplace(name, before ? std::optional<std::string>(before) : std::nullopt);
+    ::setenv(name.c_str(), value.c_str(), 1);
+  }
+  ~Environment() {
+    for (const auto& [name, value] : before_)
+      value ? ::setenv(name.c_str(), value->c_str(), 1) : ::unsetenv(name.c_str());
+  }
+
+ private:
+  std::map<std::string, std::optional<std::string>> before_;
+};
+
+TEST(FrameKeys, ChangeWithEachInput) {
+  const test::TemporaryFolder folder;
+  Device device;
+  device.platform = "A", device.name = "B", device.driver = "C", device.compute_units = 2;
+  RenderOptions options;
+  std::set<std::string> pixels, times;
+  const auto both = [&](const char* what) {
+    EXPECT_TRUE(pixels.insert(pixels_key(device, options)).second) << what;
+    EXPECT_TRUE(times.insert(times_key(device, options, 2)).second) << what;
+  };
+  const auto only_times = [&](const char* what, int processors = 2) {
+    EXPECT_FALSE(pixels.insert(pixels_key(device, options)).second) << what;
+    EXPECT_TRUE(times.insert(times_key(device, options, processors)).second) << what;
+  };
+  both("first");
+  device.platform = "A2", both("platform");
+  device.platform_version = "A3", both("version of the platform");
+  device.name = "B2", both("device");
+  device.driver = "C2", both("driver");
+  device.lanes = 1, both("lanes");
+  options.grid = 8, both("options");
+  options.centres = folder.write("set.json", R"({"centres": [[1, 0, 0], [0, 1, 0]]})").string();
+  both("centres");
+  folder.write("set.json", R"({"centres": [[1, 0, 0], [0, 0, 1]]})"), both("their content");
+
+  Environment environment;
+  environment.set("CLPV_KERNEL_DIR", folder.path().string());
+  folder.write("gather/gather.cl", "#include \"mine.h\"\n"), both("a kernel");
+  folder.write("mine.h", "#include \"more.h\"\n"), both("a file that it includes");
+  folder.write("more.h", "a"), both("a file that that one includes");
+  folder.write("more.h", "b"), both("its content");
+  environment.set("POCL_EXTRA_BUILD_FLAGS", "-g"), both("flags of the driver");
+
+  environment.set("POCL_MAX_PTHREAD_COUNT", "1"), only_times("threads");
+  device.compute_units = 1, only_times("compute units");
+  only_times("processors", 1);
+  const std::string before = times_key(device, options, 1);
+  environment.set("POCL_CACHE_DIR", folder.path().string());
+  EXPECT_EQ(times_key(device, options, 1), before) << "a cache changes nothing";
 }
 
 /// Visible surfels are blockers, so blockers and propagation change with the view.

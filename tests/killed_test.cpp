@@ -11,6 +11,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -25,6 +27,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
 
 /// Moments a command is killed at; more by CLPV_KILLED_MOMENTS.
 int moments() {
@@ -144,11 +147,50 @@ TEST_F(Killed, WhileQualityMeasures) {
 }
 
 /// Long enough to be met at work: frames without end.
-std::string sequence(const fs::path& folder) {
-  return "sequence " CLPV_SOURCE_DIR
-         "/scenes/atrium_living.json --frames 1000 --fps 24 --width 16 --height 9" +
+std::string sequence(const fs::path& folder, int frames = 1000) {
+  return "sequence " CLPV_SOURCE_DIR "/scenes/atrium_living.json --frames " +
+         std::to_string(frames) + " --fps 24 --width 16 --height 9" +
          kSmall + "--basis sh2 --transport sampled --gather all --blockers seen -o " +
          folder.string();
+}
+
+/// Numbers of the frames in a folder, and of those with a line in its times.jsonl.
+std::set<int> frames_in(const fs::path& folder) {
+  std::set<int> found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (const std::string name = entry.path().filename().string(); name.starts_with("frame-"))
+      found.insert(std::stoi(name.substr(6)));
+  return found;
+}
+std::set<int> frames_with_times(const fs::path& folder) {
+  std::set<int> found;
+  std::ifstream in(folder / "times.jsonl");
+  for (std::string line; std::getline(in, line);)
+    if (const auto json = nlohmann::json::parse(line, nullptr, false);
+        json.is_object() && json.contains("frame"))
+      found.insert(json["frame"].get<int>());
+  return found;
+}
+
+TEST_F(Killed, EachFrameOfAKilledSequenceHasItsTimes) {
+  const fs::path film = folder_ / "film";
+  int frames = 0;
+  {
+    Child child(CLPV_PROGRAM " " + sequence(film), folder_ / "said");
+    for (int i = 0; i < 6000 && !fs::exists(film / "frame-0007.exr"); ++i)
+      std::this_thread::sleep_for(10ms);
+    ASSERT_EQ(child.end(SIGKILL), 128 + SIGKILL) << read_file(folder_ / "said");
+    EXPECT_THAT(frames_with_times(film), IsSupersetOf(frames_in(film)));
+    frames = static_cast<int>(frames_in(film).size()) + 2;
+  }
+  // Two processes resume it at once.
+  const std::string command = CLPV_PROGRAM " " + sequence(film, frames);
+  const Outcome both = run("( " + command + " ) & " + command + "; code=$?; wait $! && exit $code");
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  std::ifstream in(film / "times.jsonl");
+  nlohmann::json last;
+  for (std::string line; std::getline(in, line);) last = nlohmann::json::parse(line);
+  EXPECT_EQ(last["summary"]["frames"], frames);
 }
 
 TEST_F(Killed, AnInterruptIsReported) {
@@ -162,7 +204,7 @@ TEST_F(Killed, AnInterruptIsReported) {
     EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; "));
     EXPECT_THAT(read_file(said), HasSubstr(" of 1000 frames are in " + film.string() +
                                            "; the same command resumes"));
-    EXPECT_TRUE(nlohmann::json::accept(read_file(film / "times.json")));
+    EXPECT_THAT(frames_with_times(film), IsSupersetOf(frames_in(film)));
     for (const auto& entry : fs::directory_iterator(film)) {
       EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
       if (entry.path().extension() == ".exr") {

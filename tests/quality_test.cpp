@@ -257,5 +257,23 @@ TEST_F(QualityCommand, ImagesAreCheckedBeforeTheWork) {
   EXPECT_FALSE(fs::exists(file("cache/references"))) << "nothing was traced";
 }
 
+TEST_F(QualityCommand, AnImageIsComparedWithTheTruthOfItsScene) {
+  const std::string render = "render " + file("room.json") +
+                             " --view indirect --width 32 --height 18 --grid 8 --blockers none "
+                             "--rsm-size 16 --camera left -o " +
+                             file("ours/room-left.exr"),
+                    compare = "compare --suite " + file("ours") + " --truths " +
+                              file("cache/references");
+  fs::create_directory(file("ours"));
+  ASSERT_EQ(quality("--basis sh2 --transport sampled --camera left").exit_code, 0);
+  ASSERT_EQ(test::run_here(render).exit_code, 0);
+  const test::Outcome same = test::run_here(compare);
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  ASSERT_EQ(test::run_here(render + " --sun 0,-1,-0.4").exit_code, 0);
+  const test::Outcome other = test::run_here(compare);
+  EXPECT_EQ(other.exit_code, 3) << "another sun";
+  EXPECT_THAT(other.err, HasSubstr("found 0 ground truths"));
+}
+
 }  // namespace
 }  // namespace clpv::quality_test

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "image/image_io.hpp"
 #include "tests/support/gltf_builder.hpp"
@@ -49,6 +50,17 @@ struct SequenceTest : ::testing::Test {
   json written(const std::string& file) const {
     return json::parse(read_file(folder / ("out/" + file)));
   }
+  const fs::path times = folder / "out/times.jsonl";
+  /// The whole lines of times.jsonl that have this member.
+  std::vector<json> lines(const std::string& member) const {
+    std::vector<json> found;
+    std::istringstream text(read_file(times));
+    for (std::string line; std::getline(text, line);)
+      if (json each = json::parse(line, nullptr, false); each.is_object() && each.contains(member))
+        found.push_back(each);
+    return found;
+  }
+  json summary() const { return lines("summary").back()["summary"]; }
 
   /// A folder with an ffmpeg that copies its input and arguments to its output.
   std::string fake_ffmpeg(const std::string& script) const {
@@ -84,16 +96,92 @@ TEST_F(SequenceTest, ARunResumesWhereAnotherEnded) {
                                HasSubstr("rendered again"), HasSubstr("3 frames in")));
   EXPECT_EQ(fs::last_write_time(frame(0)), time) << "not rendered again";
   EXPECT_EQ(read_file(frame(1)), second) << "the same bytes";
-  const json times = written("times.json");
-  ASSERT_EQ(times["frames"].size(), 4u) << "existing frames keep their times";
-  EXPECT_EQ(times["frames"][3]["frame"], 3);
-  EXPECT_DOUBLE_EQ(times["frames"][3]["time"].get<double>(), 0.3);
-  EXPECT_EQ(times["summary"]["frames"], 2) << "the first frame of each run aside";
-  folder.write("out/times.json", "{\"frames\": [3]}");
-  const Outcome damaged = sequence("--frames 4 --fps 10");
-  EXPECT_EQ(damaged.exit_code, 0);
-  EXPECT_THAT(damaged.err,
-              AllOf(HasSubstr("4 of 4 frames existed"), HasSubstr("times.json: times of")));
+  const std::vector<json> frames = lines("frame");
+  ASSERT_EQ(frames.size(), 6u);
+  EXPECT_EQ(frames[5]["frame"], 3);
+  EXPECT_DOUBLE_EQ(frames[5]["time"].get<double>(), 0.3);
+  EXPECT_EQ(summary()["frames"], 4) << "existing frames keep their times";
+  EXPECT_EQ(summary()["steady"], 2) << "the first frame of each run aside";
+}
+
+TEST_F(SequenceTest, NoTimesAreLostOrMixed) {
+  ASSERT_EQ(sequence("--frames 4 --fps 10").exit_code, 0);
+  const json whole = summary();
+  ASSERT_EQ(sequence("--frames 2 --fps 10").exit_code, 0);
+  EXPECT_EQ(summary()["frames"], 2);
+  ASSERT_EQ(sequence("--frames 1 --fps 10 --gather-offset 0.3").exit_code, 0);
+  EXPECT_EQ(summary()["frames"], 1);
+  EXPECT_EQ(summary()["options"]["gather-offset"], 0.3);
+  ASSERT_EQ(sequence("--frames 4 --fps 10").exit_code, 0);
+  EXPECT_EQ(summary()["frames"], 4);
+  EXPECT_EQ(summary()["steady"], 3);
+  EXPECT_EQ(summary()["frame"], whole["frame"]) << "of the first run, but for frame 0";
+}
+
+TEST_F(SequenceTest, InvalidLinesOfTimesAreSkipped) {
+  ASSERT_EQ(sequence("--frames 3 --fps 10").exit_code, 0);
+  const json before = summary(), line = lines("frame")[1];
+  std::string text;
+  for (const auto& [member, value] :
+       {std::pair<std::string, json>{"frame", -5}, {"frame", 0.5}, {"frame", 3}, {"frame", 1e30},
+        {"key", "another"}, {"settings", "another"}, {"frame_ms", -1}, {"frame_ms", "1"},
+        {"first", 1}, {"stages", {{{"stage", "none"}, {"ms", 1}, {"timer", "event"}}}}}) {
+    json bad = line;
+    bad["frame_ms"] = 1e6;
+    bad[member] = value;
+    text += bad.dump() + "\n";
+  }
+  text += std::string(2 << 20, '[') + "\nnull\n" + line.dump().substr(0, 99);  // the last is torn
+  folder.write("out/times.jsonl", read_file(times) + text);
+  ASSERT_EQ(sequence("--frames 3 --fps 10").exit_code, 0);
+  EXPECT_EQ(summary(), before);
+}
+
+TEST_F(SequenceTest, FilesOfOthersAreNamedBeforeTheWorkAndStay) {
+  for (const char* text : {"{\"mine\": 1}\n", "x"}) {
+    folder.write("out/times.jsonl", text);
+    const Outcome outcome = sequence("--frames 1 --fps 10");
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("times.jsonl: found a file that clpv did not write"));
+    EXPECT_EQ(read_file(times), text);
+    EXPECT_FALSE(fs::exists(frame(0)));
+  }
+  fs::remove(times);
+  folder.write("out/times.json", "mine");
+  fs::create_directory(frame(2));
+  const Outcome outcome = sequence("--frames 3 --fps 10");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("frame-0002.exr: cannot be written: it is a folder"));
+  EXPECT_FALSE(fs::exists(frame(0)));
+  fs::remove(frame(2));
+  ASSERT_EQ(sequence("--frames 1 --fps 10").exit_code, 0);
+  EXPECT_EQ(read_file(folder / "out/times.json"), "mine");
+}
+
+TEST_F(SequenceTest, FramesAreKnownByTheirPixels) {
+  for (const std::string extension : {"exr", "png"}) {
+    const std::string run = "--frames 2 --fps 10 --format " + extension;
+    ASSERT_EQ(sequence(run).exit_code, 0);
+    ASSERT_THAT(sequence(run).err, HasSubstr("2 of 2 frames existed"));
+    const fs::path file = frame(1, extension);
+    const std::string whole = read_file(file);
+    Image edited = read_image(file);  // with its metadata
+    edited.pixels[0] += 0.5f;
+    if (extension == "exr")
+      write_exr(file, edited);
+    else
+      write_png(file, edited);
+    Outcome again = sequence(run);
+    EXPECT_THAT(again.err, AllOf(HasSubstr("1 of 2"), HasSubstr("its pixels were changed")));
+    EXPECT_TRUE(read_file(file) == whole);
+    std::string damaged = whole;
+    for (std::size_t i = damaged.size() - 60; i < damaged.size() - 20; ++i) damaged[i] ^= 0x55;
+    folder.write(fs::relative(file, folder.path()).string(), damaged);
+    again = sequence(run);
+    EXPECT_EQ(again.exit_code, 0);
+    EXPECT_THAT(again.err, AllOf(HasSubstr("1 of 2"), HasSubstr("rendered again")));
+    EXPECT_TRUE(read_file(file) == whole);
+  }
 }
 
 TEST_F(SequenceTest, FramesOfOtherInputsAreRenderedAgain) {
@@ -106,31 +194,40 @@ TEST_F(SequenceTest, FramesOfOtherInputsAreRenderedAgain) {
     EXPECT_THAT(outcome.err, Not(HasSubstr("2 of 2"))) << other;
     EXPECT_NE(read_file(frame(1, "png")), before) << other;
   }
+  const std::string set = "--frames 2 --fps 10 --format png --centres set.json";
+  folder.write("set.json", R"({"centres": [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0]]})");
+  ASSERT_EQ(sequence(set).exit_code, 0);
+  folder.write("set.json", R"({"centres": [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, -1, 0]]})");
+  EXPECT_THAT(sequence(set).err, Not(HasSubstr("frames existed"))) << "other centres";
   std::string text = read_file(scene);
   text.replace(text.find("\"illuminance_lux\": 10"), 21, "\"illuminance_lux\": 11");
   folder.write("moving.json", text);
   EXPECT_THAT(sequence("--frames 2 --fps 10 --format png --view albedo").err,
-              Not(HasSubstr("there already")))
+              Not(HasSubstr("frames existed")))
       << "the scene file says something else";
 }
 
 TEST_F(SequenceTest, TimesOfEveryStageAreSummedUp) {
   ASSERT_EQ(sequence("--frames 4 --fps 10").exit_code, 0);
-  const json times = written("times.json");
-  EXPECT_EQ(times["schema"], 1);
+  const std::vector<json> frames = lines("frame");
+  const json times = summary();
+  ASSERT_EQ(frames.size(), 4u);
   EXPECT_EQ(times["fps"], 10);
   EXPECT_EQ(times["options"]["grid"], 16);
-  EXPECT_TRUE(times["frames"][0]["first"].get<bool>());
-  ASSERT_EQ(times["summary"]["frames"], 3);
-  const json& stages = times["summary"]["stages"];
-  ASSERT_EQ(stages.size(), times["frames"][1]["stages"].size());
+  EXPECT_TRUE(frames[0]["first"].get<bool>());
+  ASSERT_EQ(times["steady"], 3);
+  const json& stages = times["stages"];
+  ASSERT_EQ(stages.size(), frames[1]["stages"].size());
   for (std::size_t s = 0; s < stages.size(); ++s) {
     std::vector<double> ms;
-    for (int i = 1; i < 4; ++i) ms.push_back(times["frames"][i]["stages"][s]["ms"]);
+    for (int i = 1; i < 4; ++i) ms.push_back(frames[i]["stages"][s]["ms"]);
     std::ranges::sort(ms);
-    EXPECT_DOUBLE_EQ(stages[s]["median_ms"].get<double>(), ms[1]) << stages[s];
-    EXPECT_DOUBLE_EQ(stages[s]["worst_ms"].get<double>(), ms[2]) << stages[s];
-    EXPECT_NEAR(stages[s]["p95_ms"].get<double>(), 0.9 * ms[2] + 0.1 * ms[1], 1e-9) << stages[s];
+    EXPECT_EQ(stages[s]["stage"], frames[1]["stages"][s]["stage"]);
+    EXPECT_EQ(stages[s]["n"], 3);
+    EXPECT_DOUBLE_EQ(stages[s]["min"].get<double>(), ms[0]) << stages[s];
+    EXPECT_DOUBLE_EQ(stages[s]["median"].get<double>(), ms[1]) << stages[s];
+    EXPECT_DOUBLE_EQ(stages[s]["max"].get<double>(), ms[2]) << stages[s];
+    EXPECT_NEAR(stages[s]["mad"].get<double>(), std::min(ms[1] - ms[0], ms[2] - ms[1]), 1e-9);
   }
 }
 

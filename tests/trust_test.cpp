@@ -403,7 +403,7 @@ struct Inputs : ::testing::Test {
     Image sky = make_image(2, 1, {"R", "G", "B"});
     write_exr(folder / "my sky.exr", sky);
     folder.write("my.json", R"({"model": "model.gltf", "sky": {"map": "my%20sky.exr"}})");
-    for (const char* name : {"centres.json", "times.json", "frame-0002.png", "figure3.png"})
+    for (const char* name : {"centres.json", "stability.json", "frame-0002.png", "figure3.png"})
       folder.write(name, R"({"centres": [[1,0,0],[-1,0,0],[0,1,0],[0,-1,0],[0,0,1],[0,0,-1]]})");
     folder.write("points.csv", "0,0,0,0,1,0\n");
     folder.write("index.html", R"({"variants": []})");
@@ -432,11 +432,11 @@ TEST_F(Inputs, AreReplacedByNoOutput) {
         "pathtrace my.json -o 'my sky.exr'", std::string("pathtrace my.json -o o.exr --stats my.json"),
         "query" + scene + "--points points.csv -o points.csv",
         "query" + scene + "--points points.csv -o model.bin", film,
-        "sequence" + scene + "--frames 3 --fps 1 -o . --centres times.json",
+        "sequence" + scene + "--frames 3 --fps 1 --stability -o . --centres stability.json",
         "quality" + scene + cached + " -o my.json", "quality" + scene + cached + " -o hard.json",
         "quality" + scene + cached + " -o link.json",
         "quality" + scene + cached + " --centres centres.json -o centres.json",
-        "quality" + scene + cached + " --vary centres=times.json,centres.json -o centres.json",
+        "quality" + scene + cached + " --vary centres=stability.json,centres.json -o centres.json",
         std::string("bench regression --scene my.json -o hard.json"),
         std::string("bench regression --scene my.json -o o.json --log model.gltf"),
         std::string("bench regression --scene my.json --log frame-0001.png"),

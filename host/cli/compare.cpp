@@ -122,7 +122,9 @@ void add_compare(CLI::App& app, Shared&) {
       "layer to compare in both EXR files (default: the unnamed one)");
   CLI::Option* suite = add(
       *command, "--suite", "DIR", options->suite,
-      "folder of images SCENE-CAMERA.exr of indirect light, by any renderer, in place of A and B");
+      "folder of images SCENE-CAMERA.exr of indirect light, by any renderer, in place of A and B; "
+      "with metadata clpv:view_hash, or in\n"
+      "a suite.json beside the truths (docs/score.md)");
   suite->excludes(a)->excludes("--output")->excludes("--layer");
   add(*command, "--truths", "DIR", options->truths,
       "folder of their ground truths SCENE-CAMERA-HASH.exr (default: "

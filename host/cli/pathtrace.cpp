@@ -16,6 +16,7 @@
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/raster/view.hpp"
+#include "quality/ground_truth.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
@@ -58,7 +59,7 @@ Image compose(const pathtracer::TracedImage& traced, const std::vector<Show>& vi
   return image;
 }
 
-void write_outputs(const Options& options, const SceneCamera& camera,
+void write_outputs(const Options& options, const SceneData& scene, const SceneCamera& camera,
                    const pathtracer::TracedImage& traced, double seconds) {
   const nlohmann::json asked = resolved(options, camera);
   const nlohmann::json noise =
@@ -72,6 +73,7 @@ void write_outputs(const Options& options, const SceneCamera& camera,
   image.metadata["view"] = fmt::format("{}", fmt::join(views, ","));
   image.metadata["spp_traced"] = std::to_string(traced.samples);
   image.metadata["noise_reached"] = noise.dump();
+  image.metadata[kViewHash] = view_hash(scene, camera, options.width, options.height);
   write_exr(options.output, image);
   if (options.stats.empty()) return;
   const nlohmann::json stats = {{"schema", 1},    {"options", asked},    {"spp", traced.samples},
@@ -105,7 +107,7 @@ void run(const Options& options, Shared& shared) {
     spdlog::warn("noise {:.4f} after the maximum of {} paths per pixel; requested: {}",
                  traced.noise, traced.samples, options.tracing.values.noise);
   }
-  write_outputs(options, camera, traced, seconds);
+  write_outputs(options, scene, camera, traced, seconds);
   const std::string noise =
       std::isnan(traced.noise) ? "" : fmt::format("noise {:.4f}, ", traced.noise);
   spdlog::info("{} paths per pixel, {}{:.1f} s", traced.samples, noise, seconds);

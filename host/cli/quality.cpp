@@ -149,8 +149,9 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session,
            std::size_t number) {
     stop_if_interrupted(
         fmt::format("{} of {} cells are finished; the same command resumes", cells.size(), mine));
-    const std::string key = quality_key(group.subject.truths[camera], session.device(),
-                                        group.options, options.view, options.frames);
+    const std::string key =
+        quality_key(group.subject.truths[camera], session.device(), group.options, options.view,
+                    options.frames, ranks.processors());
     std::optional<QualityCell> cell;
     if (!options.fresh) cell = store.find(key);
     const bool kept = cell.has_value();
@@ -277,8 +278,9 @@ void add_quality(CLI::App& app, Shared& shared) {
       "single factor that minimises it; energy: ratio of sums; FLIP: mean visible difference, 0 to "
       "1,\n"
       "at the scene's exposure (Andersson et al. 2020).\n"
-      "An interrupted run resumes from its cached cells. A new build, device or kernel source "
-      "invalidates them.\n"
+      "An interrupted run resumes from its cached cells. Another build, device, driver setting, "
+      "number\n"
+      "of threads or kernel file invalidates them.\n"
       "mpirun -n N clpv quality ... distributes the cells over N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }

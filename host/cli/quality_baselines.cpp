@@ -74,8 +74,11 @@ std::vector<QualityCell> measure_baselines(
           if (error.code() != ExitCode::usage) throw;
           cell.rejected = error.what();
         }
-        if (!baselines.images.empty() && cell.rejected.empty())
+        if (!baselines.images.empty() && cell.rejected.empty()) {
+          measured.image.metadata[kViewHash] =
+              view_hash(subject.scene, camera, options.width, options.height);
           write_exr(image_file(baselines.images, baseline, subject, camera), measured.image);
+        }
         cell.scene = subject.scene.name, cell.camera = camera.name;
         cell.variant = {{"baseline", std::string(name_of(baseline))}};
         cells.push_back(std::move(cell));

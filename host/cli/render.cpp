@@ -2,7 +2,9 @@
 // clpv render: renders an image of a scene lit by cascaded light propagation volumes.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
@@ -12,6 +14,7 @@
 #include "image/image_io.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/frame/frame_stats.hpp"
+#include "quality/ground_truth.hpp"
 #include "quality/normal_weights.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -109,7 +112,10 @@ void run(const Options& options, const Shared& shared) {
     stats.set_times(measure_frames(session, frame, camera, options.frames, 0));
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
-  write_images(frame, options, request.exposure_of(scene), metadata_of(described));
+  std::map<std::string, std::string> metadata = metadata_of(described);
+  if (std::ranges::count(options.views, Show::indirect) > 0)  // for `compare --suite`
+    metadata[kViewHash] = view_hash(scene, camera, resolved.width, resolved.height);
+  write_images(frame, options, request.exposure_of(scene), metadata);
   if (!options.normals.empty())
     write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
   if (!options.stats.empty()) {

@@ -45,7 +45,7 @@ std::vector<NamedFile> prepare_outputs(const Options& options) {
     throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.folder);
   create_folder("--output", folder);
   std::vector<NamedFile> outputs{{"--output", options.file(0)},
-                                 {"--output", folder / "times.json"},
+                                 {"--output", folder / "times.jsonl"},
                                  {"--video", options.video}};
   std::error_code unknown;
   for (int i = 1; i < options.frames; ++i)  // file(0) tells whether new files are possible
@@ -108,7 +108,7 @@ void add_sequence(CLI::App& app, Shared& shared) {
   CLI::App* command = app.add_subcommand("sequence", "Render an animated scene frame by frame");
   auto options = std::make_shared<sequence_command::Options>();
   add(*command, "-o,--output", "DIR", options->folder,
-      "output folder for frame-0000.exr, ... and times.json; created if missing")
+      "output folder for frame-0000.exr, ... and times.jsonl; created if missing")
       ->required();
   add(*command, "--frames", "N", options->frames, "number of frames")
       ->check(CLI::Range(1, kMaxFrames))
@@ -133,9 +133,11 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add_render_request(*command, options->request);
   command->footer(
       "Frame i shows FROM + i / RATE seconds, identical to `clpv render --time` of that time.\n"
-      "An interrupted run resumes: frames whose file has the same inputs are not rendered again.\n"
-      "times.json has the times of all frames, and median, 95th percentile and maximum of each "
-      "stage [ms].\n"
+      "An interrupted run resumes: frames whose file is whole and has the same inputs are not "
+      "rendered again.\n"
+      "times.jsonl has the times of each frame, one line each, and a last line with n, min, median, "
+      "mad and\n"
+      "max of each stage [ms].\n"
       "mpirun -n N clpv sequence ... distributes the frames over N ranks (docs/scale.md).");
   command->callback([options, &shared] { run(*options, shared); });
 }

@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <sstream>
 
+#include "image/image.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -24,11 +23,8 @@ constexpr const char* kEncoding =
 std::vector<std::uint8_t> rgb_bytes(const Image& shown) {
   const std::size_t channels = shown.channels.size();
   std::vector<std::uint8_t> bytes(3 * shown.pixel_count());
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const float value = shown.pixels[i / 3 * channels + i % 3];
-    bytes[i] =
-        static_cast<std::uint8_t>(std::lround(255 * (value > 0 ? std::min(value, 1.0f) : 0.0f)));
-  }
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = byte_of(shown.pixels[i / 3 * channels + i % 3]);
   return bytes;
 }
 

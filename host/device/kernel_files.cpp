@@ -5,9 +5,12 @@
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <sstream>
 
 #include "support/error.hpp"
+#include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
 #include "support/input_record.hpp"
 
@@ -39,6 +42,33 @@ std::string guard_of(std::string name) {
   std::ranges::replace_if(
       name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return "CLPV_ONCE_" + name;
+}
+
+/// Returns kernel_file(name), or nothing for an unknown name.
+std::optional<std::string> find_kernel_file(const std::string& name) {
+  if (const char* folder = std::getenv("CLPV_KERNEL_DIR"); folder != nullptr && *folder != '\0') {
+    if (auto text = file_bytes(std::string(folder) + "/" + name)) return text;
+    if (!std::filesystem::is_directory(folder))
+      throw Error(ExitCode::usage,
+                  "CLPV_KERNEL_DIR: found '{}', allowed: a folder with kernel files", folder);
+  }
+  const auto& files = detail::embedded_kernel_files();
+  const auto found = files.find(name);
+  if (found == files.end()) return std::nullopt;
+  return std::string(found->second);
+}
+
+/// Adds a file and those that it includes, each once.
+void add_file(Fingerprint& print, const std::string& name, std::set<std::string>& added) {
+  if (!added.insert(name).second) return;
+  const auto text = find_kernel_file(name);
+  print.add(name).add(text.has_value());
+  if (!text) return;  // compiling a kernel that includes it fails by name
+  print.add(*text);
+  std::istringstream lines(*text);
+  for (std::string line; std::getline(lines, line);)
+    if (const std::string other = included_name(line); !other.empty())
+      add_file(print, other, added);
 }
 
 void append_file(std::string& out, const std::string& name, int depth) {
@@ -74,16 +104,14 @@ void record_kernel_files() {
 }
 
 std::string kernel_file(const std::string& name) {
-  if (const char* folder = std::getenv("CLPV_KERNEL_DIR"); folder != nullptr && *folder != '\0') {
-    if (auto text = file_bytes(std::string(folder) + "/" + name)) return *text;
-    if (!std::filesystem::is_directory(folder))
-      throw Error(ExitCode::usage,
-                  "CLPV_KERNEL_DIR: found '{}', allowed: a folder with kernel files", folder);
-  }
-  const auto& files = detail::embedded_kernel_files();
-  const auto found = files.find(name);
-  if (found == files.end()) throw Error(ExitCode::run_time, "no kernel file named '{}'", name);
-  return std::string(found->second);
+  auto text = find_kernel_file(name);
+  if (!text) throw Error(ExitCode::run_time, "no kernel file named '{}'", name);
+  return *std::move(text);
+}
+
+void add_kernels(Fingerprint& print) {
+  std::set<std::string> added;
+  for (const auto& [name, text] : detail::embedded_kernel_files()) add_file(print, name, added);
 }
 
 std::string assemble_kernel_source(const std::string& name) {

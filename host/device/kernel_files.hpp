@@ -8,6 +8,8 @@
 
 namespace clpv {
 
+class Fingerprint;
+
 /// Adds the files of CLPV_KERNEL_DIR to the InputRecord.
 void record_kernel_files();
 
@@ -21,6 +23,10 @@ std::string kernel_file(const std::string& name);
 /// their caches miss changed files. Throws Error(run_time) for an unknown name and for includes
 /// nested more than 8 deep.
 std::string assemble_kernel_source(const std::string& name);
+
+/// Adds the text of all kernel files to a hash, and of other files that they include from
+/// CLPV_KERNEL_DIR. Throws Error(usage) as kernel_file().
+void add_kernels(Fingerprint& print);
 
 namespace detail {
 const std::map<std::string, std::string_view>& embedded_kernel_files();

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "device/driver_cache.hpp"
+#include "device/driver_settings.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/log.hpp"
@@ -94,8 +95,9 @@ std::optional<ProgramCache> ProgramCache::of_user(const Device& device) {
 
 std::string ProgramCache::key(const Device& device, const std::string& options,
                               const std::string& text) {
-  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", device.platform, device.platform_version,
-                     device.name, device.version, device.driver, options, text);
+  return fmt::format("{}\n{}\n{}\n{}\n{}\n{}{}\n{}", device.platform, device.platform_version,
+                     device.name, device.version, device.driver,
+                     driver_settings(DriverSettings::compilation), options, text);
 }
 
 fs::path ProgramCache::file_of(const std::string& key) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // On-disk cache of compiled programs: later runs compile nothing.
 //
-// One file per program. The file holds the full key (device, driver, options, source text), which
+// One file per program. The file holds the full key (device, driver, settings, options, source text), which
 // load() compares: sources whose file names collide never share a program. Files appear by rename,
 // so several processes may read and write one folder at once.
 #pragma once
@@ -30,7 +30,7 @@ class ProgramCache {
   /// CLPV_PROGRAM_CACHE is "on".
   static std::optional<ProgramCache> of_user(const Device& device);
 
-  /// Cache key of a program: device, driver, build options and text, in full.
+  /// Cache key of a program: device, driver and its settings, build options and text, in full.
   static std::string key(const Device& device, const std::string& options, const std::string& text);
 
   /// Returns the binary stored under `key`; nothing if the file is missing, damaged or has another

@@ -3,8 +3,11 @@
 #include "image/image.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "support/error.hpp"
+#include "support/fingerprint.hpp"
 
 namespace clpv {
 namespace {
@@ -91,6 +94,25 @@ void append_layer(Image& image, const Image& addition, const std::string& layer)
   image.pixels = std::move(pixels);
   for (const std::string& name : addition.channels) {
     image.channels.push_back(layer.empty() ? name : layer + "." + name);
+  }
+}
+
+std::uint8_t byte_of(float value) {
+  const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;
+  return static_cast<std::uint8_t>(std::lround(clamped * 255.0f));
+}
+
+void add_pixels(Fingerprint& print, const Image& image) {
+  print.add(image.width).add(image.height);
+  std::map<std::string, std::size_t> sorted;  // files order channels by name
+  for (const std::string& name : image.channels) sorted[name] = *image.channel(name);
+  for (const auto& [name, channel] : sorted) {
+    std::vector<float> values(image.pixel_count());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const float value = image.pixels[i * image.channels.size() + channel];
+      values[i] = image.encoding == Encoding::srgb ? static_cast<float>(byte_of(value)) : value;
+    }
+    print.add(name).add(values);
   }
 }
 

@@ -2,12 +2,15 @@
 // Layers of an image: extraction and composition.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "clpv/image.hpp"
 
 namespace clpv {
+
+class Fingerprint;
 
 /// An image whose pixels are 0.
 Image make_image(int width, int height, std::vector<std::string> channels);
@@ -23,5 +26,12 @@ Image extract_layer(const Image& image, const std::string& layer, const std::str
 /// Appends the channels of `addition` to `image` as `layer`. Sizes and encodings must be equal,
 /// unless `image` has no channels.
 void append_layer(Image& image, const Image& addition, const std::string& layer);
+
+/// A display value as 8 bits; NaN becomes 0.
+std::uint8_t byte_of(float value);
+
+/// Adds size, channels and values to a hash, those that a written file has: sRGB-encoded ones with 8
+/// bits, channels in any order.
+void add_pixels(Fingerprint& print, const Image& image);
 
 }  // namespace clpv

@@ -188,10 +188,7 @@ std::vector<unsigned char> png_bytes(const Image& image) {
     throw std::logic_error("PNG: needs sRGB-encoded R, G, B and optionally A");
   }
   std::vector<std::uint8_t> pixels(image.pixels.size());
-  std::transform(image.pixels.begin(), image.pixels.end(), pixels.begin(), [](float value) {
-    const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;  // NaN becomes 0
-    return static_cast<std::uint8_t>(std::lround(clamped * 255.0f));
-  });
+  std::transform(image.pixels.begin(), image.pixels.end(), pixels.begin(), byte_of);
   std::vector<unsigned char> bytes;
   require_encoded("image.png", image_codec().encode_png(coded(image), pixels.data(), bytes));
   return bytes;

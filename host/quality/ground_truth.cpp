@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <optional>
+#include <cctype>
 
 #include "clpv/version.hpp"
 #include "image/image_io.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/emission.hpp"
-#include "scene/sky.hpp"
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
@@ -53,6 +52,7 @@ void describe(Image& image, const SceneData& scene, const SceneCamera& camera,
   image.metadata["version"] = version();
   image.metadata["scene"] = scene.name;
   image.metadata["camera"] = camera.name;
+  image.metadata[kViewHash] = view_hash(scene, camera, image.width, image.height);
   image.metadata["bounces"] = options.bounces == pathtracer::PathTracerOptions::kAllBounces
                                   ? "all"
                                   : std::to_string(options.bounces);
@@ -65,15 +65,7 @@ constexpr const char* kCacheFingerprint = "fingerprint";  // metadata: of the re
 
 std::string fingerprint_of(const Image& image) {
   Fingerprint print;
-  print.add(image.width).add(image.height);
-  std::map<std::string, std::size_t> sorted;  // files order channels by name
-  for (const std::string& name : image.channels) sorted[name] = *image.channel(name);
-  for (const auto& [name, channel] : sorted) {
-    std::vector<float> values(image.pixel_count());
-    for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] = image.pixels[i * image.channels.size() + channel];
-    print.add(name).add(values);
-  }
+  add_pixels(print, image);
   for (const auto& [name, value] : image.metadata)
     if (name != kCacheFingerprint && !value.empty())
       print.add(name).add(value);  // files lack empty values
@@ -96,37 +88,18 @@ GroundTruth decode(const std::filesystem::path& file, const std::string& bytes,
   return truth;
 }
 
-}  // namespace
-
-std::string scene_fingerprint(const SceneData& scene) {
-  Fingerprint print;
-  print.add(scene.vertices).add(scene.triangles).add(scene.materials);
-  for (const Texture& texture : scene.textures) {
-    print.add(texture.width)
-        .add(texture.height)
-        .add(texture.wrap_u)
-        .add(texture.wrap_v)
-        .add(texture.rgba);
-  }
-  if (scene.sky) add_sky(print, *scene.sky);
-  if (scene.medium) print.add(*scene.medium);
-  return print.hex();
-}
-
-namespace {
-
 constexpr std::uintmax_t kMaxBytes = ImageLimits().file_bytes;
 
-/// Returns the cached ground truth if its entry is sound.
-std::optional<GroundTruth> read_cached(const CacheFolder& cache, const std::string& name,
-                                       const SceneData& scene) {
+/// Returns the bytes of a ground truth's entry, or "" if it is missing or damaged.
+std::string read_cached(const CacheFolder& cache, const std::string& name, const SceneData& scene) {
   const auto bytes = cache.read(name, kMaxBytes);
-  if (!bytes) return std::nullopt;
+  if (!bytes) return {};
   try {
-    return decode(cache.path() / name, *bytes, scene);
+    decode(cache.path() / name, *bytes, scene);
+    return *bytes;
   } catch (const std::exception& error) {
     spdlog::warn("{}; traced again", error.what());
-    return std::nullopt;
+    return {};
   }
 }
 
@@ -138,6 +111,13 @@ bool can_be_cached(const std::string& problem) {
 
 }  // namespace
 
+std::string view_hash(const SceneData& scene, const SceneCamera& camera, int width, int height) {
+  Fingerprint print;
+  print.add(scene_fingerprint(scene)).add(std::vector{camera_view(camera, width, height)});
+  for (const SceneLight& light : scene.lights_for(camera)) print.add(std::vector{light.data});
+  return print.hex();
+}
+
 GroundTruth cached_ground_truth(const std::filesystem::path& folder, const SceneData& scene,
                                 const SceneCamera& camera, int width, int height,
                                 const pathtracer::PathTracerOptions& options,
@@ -147,20 +127,16 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
   const std::string name =
       fmt::format("{}-{}.exr", view_file_name(scene.name, camera.name),
                   key(scene, camera, view, options));
-  std::optional<GroundTruth> kept;
   bool cached = false;
   const std::string found = ranks.from_root([&] {
-    kept = read_cached(cache, name, scene);
-    if (!kept) cached = can_be_cached(cache.problem());
-    return kept ? "there" : "";
+    std::string bytes = read_cached(cache, name, scene);
+    if (bytes.empty()) cached = can_be_cached(cache.problem());
+    return bytes;
   });
-  if (!found.empty() && !kept) kept = read_cached(cache, name, scene);
-  if (!found.empty() && !kept)
-    throw Error(ExitCode::run_time, "{}: root has it, but this rank cannot read it",
-                (folder / name).string());
-  if (kept) {
-    kept->exposure = scene.exposure;
-    return *std::move(kept);
+  if (!found.empty()) {
+    GroundTruth kept = decode(folder / name, found, scene);
+    kept.exposure = scene.exposure;
+    return kept;
   }
   const pathtracer::TracedImage traced =
       pathtracer::trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);

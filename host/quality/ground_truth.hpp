@@ -21,19 +21,22 @@ struct GroundTruth {
   float exposure = 0;  ///< the scene's [EV]
 };
 
+/// Metadata of ground truths and of rendered views of indirect light: view_hash().
+inline constexpr const char* kViewHash = "view_hash";
+
+/// Hash of what a view of this size shows: content of the scene, lights and camera.
+std::string view_hash(const SceneData& scene, const SceneCamera& camera, int width, int height);
+
 /// Returns the ground truth of `camera` from the cache in `folder`; traces and stores it if it is
 /// missing. The file name contains a key over scene content, camera, size, options and program
 /// version, but no file paths. A damaged file is traced again, with a warning; one that CacheFolder
-/// does not trust is ignored. Collective over all `ranks`; each rank receives the result. Rank 0
-/// reads and writes the cache. A folder that cannot be written is a warning before tracing, and a
+/// does not trust is ignored. Collective over all `ranks`; each rank receives the result. Only rank
+/// 0 reads and writes the cache, whose folder other hosts need not share. A folder that cannot be written is a warning before tracing, and a
 /// failure to write one after it. Throws like pathtracer::trace_paths.
 GroundTruth cached_ground_truth(const std::filesystem::path& folder, const SceneData& scene,
                                 const SceneCamera& camera, int width, int height,
                                 const pathtracer::PathTracerOptions& options,
                                 const pathtracer::TraceProgress& progress = {},
                                 Ranks& ranks = single_rank());
-
-/// Hash of all scene content that affects light: geometry, materials, textures.
-std::string scene_fingerprint(const SceneData& scene);
 
 }  // namespace clpv

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "device/kernel_files.hpp"
 #include "image/compare.hpp"
+#include "pipeline/frame/frame_keys.hpp"
 #include "pipeline/frame/frame_times.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
@@ -101,19 +101,10 @@ QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
 }
 
 std::string quality_key(const GroundTruth& truth, const Device& device,
-                        const RenderOptions& options, Show show, int frames) {
-  static const std::string program = program_fingerprint();
+                        const RenderOptions& options, Show show, int frames, int processors) {
   Fingerprint print;
-  print.add(program).add(truth.file.filename().string()).add(device.name).add(device.driver);
-  print.add(to_json(options).dump()).add(name_of(show)).add(frames).add(truth.exposure);
-  if (!options.centres.empty()) {
-    const auto basis = make_basis(options);
-    for (const glm::dvec3& centre : basis->centres())
-      print.add(centre.x).add(centre.y).add(centre.z);
-    for (const double lambda : basis->lambdas()) print.add(lambda);
-  }
-  for (const auto& [name, embedded] : detail::embedded_kernel_files()) print.add(kernel_file(name));
-  return print.hex();
+  print.add(times_key(device, options, processors)).add(truth.file.filename().string());
+  return print.add(name_of(show)).add(frames).add(truth.exposure).hex();
 }
 
 namespace {

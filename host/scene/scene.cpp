@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "scene/sky.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 
@@ -46,6 +47,21 @@ std::vector<SceneLight> SceneData::lights_for(const SceneCamera& camera) const {
     if (medium) shining.back().data.medium = *medium;
   }
   return shining;
+}
+
+std::string scene_fingerprint(const SceneData& scene) {
+  Fingerprint print;
+  print.add(scene.vertices).add(scene.triangles).add(scene.materials);
+  for (const Texture& texture : scene.textures) {
+    print.add(texture.width)
+        .add(texture.height)
+        .add(texture.wrap_u)
+        .add(texture.wrap_v)
+        .add(texture.rgba);
+  }
+  if (scene.sky) add_sky(print, *scene.sky);
+  if (scene.medium) print.add(*scene.medium);
+  return print.hex();
 }
 
 void add_range(Fingerprint& print, const SceneData& scene, const MeshRange& range) {

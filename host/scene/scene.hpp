@@ -93,6 +93,9 @@ struct SceneData {
   std::vector<SceneLight> lights_for(const SceneCamera& camera) const;
 };
 
+/// Hash of all scene content that affects light, apart from lights: geometry, materials, textures,
+/// sky and medium.
+std::string scene_fingerprint(const SceneData& scene);
 /// Adds the animated vertices and triangles to a hash.
 void add_moving(Fingerprint& print, const SceneData& scene);
 /// Adds the vertices and triangles of a range to a hash.

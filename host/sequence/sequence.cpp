@@ -3,11 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "device/kernel_files.hpp"
 #include "image/image_io.hpp"
-#include "pipeline/frame/frame_times.hpp"
+#include "pipeline/frame/frame_keys.hpp"
 #include "pipeline/raster/view.hpp"
-#include "quality/ground_truth.hpp"
 #include "sequence/stability.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
@@ -22,21 +20,37 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKey = "frame_key";        // metadata: the key of a frame
-constexpr std::chrono::seconds kTimesEvery{10};  // interval of saving times.json
+constexpr const char* kPixels = "pixels_hash";  // metadata: hash of the pixels
+constexpr std::size_t kKeyDigits = 16;
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
 }
 
-/// Returns true if the file holds a frame with that key. Warns about unreadable files.
+std::string pixels_hash(const Image& image) {
+  Fingerprint print;
+  add_pixels(print, image);
+  return print.hex();
+}
+
+bool has(const std::map<std::string, std::string>& metadata, const char* name,
+         const std::string& value) {
+  const auto found = metadata.find(name);
+  return found != metadata.end() && found->second == value;
+}
+
+/// Returns true if the file holds a frame with that key, and its pixels as clpv wrote them. Warns
+/// about damaged files.
 bool holds_frame(const fs::path& file, const std::string& key) {
   std::error_code unknown;
   if (!fs::exists(file, unknown)) return false;
   try {
-    const std::map<std::string, std::string> metadata = read_metadata(file);
-    const auto found = metadata.find(kKey);
-    return found != metadata.end() && found->second == key;
+    if (!has(read_metadata(file), kKey, key)) return false;
+    const Image image = read_image(file);
+    if (has(image.metadata, kPixels, pixels_hash(image))) return true;
+    spdlog::warn("{}: its pixels were changed; it is rendered again", file.string());
+    return false;
   } catch (const Error& error) {
     spdlog::warn("{}; it is rendered again", error.what());
     return false;
@@ -58,11 +72,13 @@ Sequence::Sequence(const SequenceOptions& options, SequenceSubject subject, Movi
       resolved_(resolved),
       device_(device),
       compilation_(std::move(compilation)),
-      ranks_(ranks) {
-  Fingerprint print;
-  print.add(program_fingerprint()).add(device_.platform).add(device_.name).add(device_.driver);
-  still_ = print.add(scene_fingerprint(moving_.scene())).hex();
-  if (ranks.is_root()) times_ = read_times(times_file(), options.frames);
+      ranks_(ranks),
+      times_(fs::path(options.folder) / "times.jsonl") {
+  Fingerprint still, settings;
+  still.add(pixels_key(device_, resolved_)).add(scene_fingerprint(moving_.scene()));
+  still_ = still.hex();
+  settings.add(still_).add(times_key(device_, resolved_, ranks.processors()));
+  settings_ = settings.add(header_json().dump()).hex();
 }
 
 void Sequence::render() {
@@ -77,7 +93,6 @@ void Sequence::render() {
       stop_if_interrupted();
       (render(i) ? rendered : there) += 1;  // a signal may also end it where it compiles kernels
     } catch (const Interrupted&) {
-      write_times();
       throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes",
                                     rendered + there, mine, options_.folder));
     }
@@ -87,10 +102,7 @@ void Sequence::render() {
   if (there > 0) spdlog::info("{} of {} frames existed already", there, options_.frames);
   if (rendered > 0)
     spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
-  for (const std::string& gathered : ranks_.gather(nlohmann::json(times_).dump()))
-    for (auto& [number, frame] : nlohmann::json::parse(gathered).get<SequenceTimes>())
-      times_[number] = frame;
-  write_times();
+  write_summary();
   if (renderer_) renderer_->session.store_programs();
   renderer_.reset();
 }
@@ -150,43 +162,45 @@ bool Sequence::render(int number) {
   const double seconds = options_.time_of(number);
   Clock::time_point started = Clock::now();
   moving_.pose(seconds);
-  double pose_ms = milliseconds_since(started);
+  const double host_ms = milliseconds_since(started);
   const nlohmann::json description = described(seconds);
-  const std::string key = this->key(description);
-  if (holds_frame(options_.file(number), key)) return false;
-  const bool first = !renderer_;
-  if (first) renderer_.emplace(device_, moving_.scene(), resolved_, compilation_);
+  FrameLine line;
+  line.frame = number, line.seconds = seconds;
+  line.key = key(description), line.settings = settings_;
+  keys_ += line.key;
+  if (holds_frame(options_.file(number), line.key)) return false;
+  line.first = !renderer_;
+  if (line.first) renderer_.emplace(device_, moving_.scene(), resolved_, compilation_);
   auto& [session, frame] = *renderer_;
   started = Clock::now();
   if (moving_.moves()) frame.scene_moved();
-  pose_ms += milliseconds_since(started);
+  line.pose_ms = host_ms + milliseconds_since(started);
   started = Clock::now();
   frame.render(camera());
   session.queue().finish();
-  const double frame_ms = milliseconds_since(started);
-  nlohmann::json stages = to_json(session.timeline().times());
-  if (first) subject_.first_frame(session, frame);
-  started = Clock::now();
-  write(number, frame, description, key);
-  times_[number] = {{"frame", number},
-                    {"time", seconds},
-                    {"first", first},
-                    {"pose_ms", pose_ms},
-                    {"frame_ms", frame_ms},
-                    {"write_ms", milliseconds_since(started)},
-                    {"stages", std::move(stages)}};
-  spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, seconds, frame_ms);
-  if (Clock::now() - times_written_ > kTimesEvery) write_times();
+  line.frame_ms = milliseconds_since(started);
+  line.stages = session.timeline().times();
+  if (line.first) subject_.first_frame(session, frame);
+  spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, seconds, line.frame_ms);
+  write(std::move(line), frame, description);
   return true;
 }
 
-void Sequence::write(int number, Frame& frame, const nlohmann::json& description,
-                     const std::string& key) {
-  Image image = view_image(frame, options_.view);
-  image.metadata = metadata_of(description);
-  image.metadata[kKey] = key;
-  if (options_.format == FrameFormat::exr) return write_exr(options_.file(number), image);
-  write_png(options_.file(number), displayed(image));
+/// Writes the frame and its times. The times come first, so that no frame lacks them.
+void Sequence::write(FrameLine line, Frame& frame, const nlohmann::json& description) {
+  const Clock::time_point started = Clock::now();
+  const Image image = view_image(frame, options_.view);
+  Image shown = options_.format == FrameFormat::exr ? image : displayed(image);
+  shown.metadata = metadata_of(description);
+  shown.metadata[kKey] = line.key;
+  shown.metadata[kPixels] = pixels_hash(shown);
+  const std::vector<unsigned char> bytes =
+      options_.format == FrameFormat::exr ? exr_bytes(shown) : png_bytes(shown);
+  OutputFile file(options_.file(line.frame));
+  file.write(std::as_bytes(std::span(bytes)));
+  line.write_ms = milliseconds_since(started);
+  times_.append(to_json(line));
+  file.commit();
 }
 
 nlohmann::json Sequence::header_json() const {
@@ -198,10 +212,19 @@ nlohmann::json Sequence::header_json() const {
           {"from", options_.from}};
 }
 
-void Sequence::write_times() {
+/// Collective: rank 0 appends the summary of all frames' times.
+void Sequence::write_summary() {
+  const std::vector<std::string> gathered = ranks_.gather(keys_);
   if (!ranks_.is_root()) return;
-  write_file(times_file(), times_json(header_json(), times_).dump(1) + "\n");
-  times_written_ = Clock::now();
+  std::vector<std::string> keys;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(options_.frames); ++i)
+    keys.push_back(gathered[i % gathered.size()].substr(i / gathered.size() * kKeyDigits, kKeyDigits));
+  TimesSummary summary;
+  times_.read(keys, settings_, [&](const FrameLine& line) { summary.add(line); });
+  nlohmann::json all = header_json();
+  all.update(summary.to_json());
+  all["settings"] = settings_;
+  times_.append({{"summary", std::move(all)}});
 }
 
 }  // namespace clpv

@@ -18,6 +18,7 @@
 #include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
 #include "sequence/sequence_report.hpp"
+#include "sequence/times_file.hpp"
 #include "support/named_enum.hpp"
 
 namespace clpv {
@@ -29,7 +30,7 @@ inline constexpr auto kNames<FrameFormat> = name_list("exr", "png");
 
 /// Frame i shows `from` + i / `frames_per_second` [s].
 struct SequenceOptions {
-  std::string folder;  ///< of frame-0000.exr, ... and times.json
+  std::string folder;  ///< of frame-0000.exr, ... and times.jsonl
   int frames = 0;
   double frames_per_second = 0, from = 0;
   Show view = Show::full;
@@ -55,12 +56,13 @@ struct SequenceSubject {
 /// them out.
 class Sequence {
  public:
+  /// Throws as TimesFile.
   Sequence(const SequenceOptions& options, SequenceSubject subject, MovingScene& scene,
            const RenderOptions& resolved, const Device& device, Compilation compilation,
            Ranks& ranks);
 
-  /// Renders the missing frames of this rank; then rank 0 writes the times of all. Throws
-  /// Interrupted, which names the frames that are kept.
+  /// Renders the missing frames of this rank, and appends the times of each to times.jsonl; then
+  /// rank 0 appends a summary. Throws Interrupted, which names the frames that are kept.
   void render();
 
   /// Writes stability.json. One rank renders all frames again, because an earlier run may have
@@ -87,15 +89,12 @@ class Sequence {
     return display_image(image, subject_.exposure, subject_.tonemap);
   }
   const SceneCamera& camera() const { return moving_.scene().camera(subject_.camera); }
-  std::filesystem::path times_file() const {
-    return std::filesystem::path(options_.folder) / "times.json";
-  }
   nlohmann::json described(double seconds) const;
   std::string key(const nlohmann::json& described) const;
   bool render(int number);
-  void write(int number, Frame& frame, const nlohmann::json& description, const std::string& key);
+  void write(FrameLine line, Frame& frame, const nlohmann::json& description);
   nlohmann::json header_json() const;
-  void write_times();
+  void write_summary();
 
   SequenceOptions options_;
   SequenceSubject subject_;
@@ -104,9 +103,10 @@ class Sequence {
   Device device_;
   Compilation compilation_;
   Ranks& ranks_;
-  std::string still_;    ///< key of all static content
-  SequenceTimes times_;  ///< of this rank's frames; at rank 0 also those of an earlier run
-  Clock::time_point times_written_ = Clock::now();
+  TimesFile times_;
+  std::string still_;     ///< key of all static content
+  std::string settings_;  ///< key of what this run's times share
+  std::string keys_;      ///< of this rank's frames, one after another
   std::optional<Renderer> renderer_;  ///< empty before the first frame
 };
 

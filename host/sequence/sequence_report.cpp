@@ -3,10 +3,7 @@
 
 #include <algorithm>
 
-#include "pipeline/frame/frame_times.hpp"
-#include "support/input_file.hpp"
 #include "support/json_optional.hpp"
-#include "support/log.hpp"
 #include "support/statistics.hpp"
 
 namespace clpv {
@@ -15,63 +12,47 @@ namespace {
 using nlohmann::json;
 
 constexpr int kSchema = 1;
-constexpr const char* kSpans[] = {"pose", "frame", "write"};
 
-/// Null without samples.
-json summary_of(std::vector<double> samples) {
-  if (samples.empty()) return nullptr;
+/// Statistics of `frames` samples [ms]; those that are not given are 0.
+json statistics_json(std::vector<double> samples, std::size_t frames) {
+  samples.resize(frames, 0.0);
   const Statistics figures = statistics_of(std::move(samples));
-  return {{"median_ms", figures.median}, {"p95_ms", figures.p95}, {"worst_ms", figures.max}};
-}
-
-json summary_of(const std::vector<const json*>& frames) {
-  FrameTimes times;
-  for (const json* frame : frames) times.add(stage_times_from_json(frame->at("stages")));
-  json stages = json::array();
-  for (const FrameTimes::Series& series : times.stages()) {
-    json summary = to_json({{series.mark, 0, series.from_events}})[0];
-    summary.erase("ms");
-    summary.erase("timer");
-    summary.update(summary_of(series.ms));
-    stages.push_back(std::move(summary));
-  }
-  json summary = {{"frames", frames.size()}, {"stages", std::move(stages)}};
-  for (const std::string span : kSpans) {
-    std::vector<double> samples;
-    for (const json* frame : frames) samples.push_back(frame->at(span + "_ms"));
-    summary[span] = summary_of(std::move(samples));
-  }
-  return summary;
+  return {{"n", frames},
+          {"min", figures.min},
+          {"median", figures.median},
+          {"mad", figures.mad},
+          {"max", figures.max}};
 }
 
 }  // namespace
 
-SequenceTimes read_times(const std::filesystem::path& file, int frames) {
-  const auto text = file_bytes(file);
-  if (!text) return {};
-  SequenceTimes times;
-  try {
-    const json before = json::parse(*text);
-    for (const json& frame : before.at("frames")) {
-      summary_of({&frame});  // throws if a summarised field is missing
-      frame.at("time").get<double>(), frame.at("first").get<bool>();
-      if (const int number = frame.at("frame"); number < frames) times[number] = frame;
-    }
-    return times;
-  } catch (const std::exception& error) {
-    spdlog::warn("{}: times of existing frames are left out: {}", file.string(), error.what());
-    return {};
+void TimesSummary::add(const FrameLine& line) {
+  ++frames_;
+  if (line.first) return;
+  pose_.push_back(line.pose_ms);
+  frame_.push_back(line.frame_ms);
+  write_.push_back(line.write_ms);
+  for (const StageTime& time : line.stages) {
+    auto found = std::ranges::find(stages_, time.mark, &Series::mark);
+    if (found == stages_.end()) found = stages_.insert(found, {time.mark, {}});
+    found->ms.push_back(time.ms);
   }
 }
 
-json times_json(const json& about, const SequenceTimes& times) {
-  json all = about, frames = json::array();
-  std::vector<const json*> steady;
-  for (const auto& [number, frame] : times) {
-    frames.push_back(frame);
-    if (!frame.at("first").get<bool>()) steady.push_back(&frame);
+json TimesSummary::to_json() const {
+  const std::size_t steady = frame_.size();
+  json all = {{"frames", frames_}, {"steady", steady}, {"stages", json::array()}};
+  if (steady == 0) return all;
+  for (const auto& [name, samples] :
+       {std::pair("pose", &pose_), std::pair("frame", &frame_), std::pair("write", &write_)})
+    all[name] = statistics_json(*samples, steady);
+  for (const Series& series : stages_) {
+    json stage = statistics_json(series.ms, steady);
+    stage.update({{"stage", name_of(series.mark.pass)},
+                  {"cascade", series.mark.cascade},
+                  {"light", series.mark.light}});
+    all["stages"].push_back(std::move(stage));
   }
-  all.update({{"schema", kSchema}, {"frames", std::move(frames)}, {"summary", summary_of(steady)}});
   return all;
 }
 

@@ -1,29 +1,37 @@
 // SPDX-License-Identifier: MIT
-// Reports of `clpv sequence`: times.json and stability.json.
+// Reports of `clpv sequence`: the summary in times.jsonl, and stability.json.
 #pragma once
 
-#include <filesystem>
-#include <map>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <vector>
 
 #include "sequence/stability.hpp"
+#include "sequence/times_file.hpp"
 
 namespace clpv {
 
-/// Wall times of frames [ms] as JSON, by frame number. pose_ms: scene animation on host and device.
-/// frame_ms: all stages, until the device has finished. write_ms: readback, encoding and writing.
-/// `first`: first frame of a run, whose launches may compile kernels.
-using SequenceTimes = std::map<int, nlohmann::json>;
+/// Sums up times of frames, one after another.
+class TimesSummary {
+ public:
+  void add(const FrameLine& line);
 
-/// Reads the times of frames below `frames` from an earlier run's times.json. Empty, with a
-/// warning, if the file is invalid.
-SequenceTimes read_times(const std::filesystem::path& file, int frames);
+  /// Number of frames, and of those without first frames (`steady`). For each of pose, frame, write
+  /// and each stage, cascade and light over steady frames: n, min, median, mad and max [ms]. A frame
+  /// without a stage took 0 ms for it.
+  nlohmann::json to_json() const;
 
-/// Schema 1: the fields of `about`, the frames, and the median, 95th percentile and maximum of
-/// pose_ms, frame_ms, write_ms and each stage, cascade and light, without first frames. A frame
-/// without a stage took 0 ms for it.
-nlohmann::json times_json(const nlohmann::json& about, const SequenceTimes& times);
+ private:
+  struct Series {
+    StageMark mark;
+    std::vector<double> ms;  ///< of steady frames that ran it
+  };
+
+  std::size_t frames_ = 0;
+  std::vector<double> pose_, frame_, write_;  ///< [ms] of steady frames
+  std::vector<Series> stages_;                ///< in order of first occurrence
+};
 
 /// Schema 1: the fields of `about`, the steps, and a summary of the steps with static lights and
 /// triangles, grouped by whether a cascade moved.

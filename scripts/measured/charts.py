@@ -8,7 +8,7 @@
                                                                 bases over the bandwidth; lambdas
                                                                 that clpv rejects are missing. Needs
                                                                 a build
-    scripts/charts times DIR -o FILE.png                        times.json of `clpv sequence`:
+    scripts/charts times DIR -o FILE.png                        times.jsonl of `clpv sequence`:
                                                                 median, 95th percentile and maximum
                                                                 of each stage; time of every frame
     scripts/charts stability [LABEL=]DIR ... -o FILE.png        stability.json of `clpv sequence
@@ -133,10 +133,30 @@ def read(folder, name):
     return json.loads((pathlib.Path(folder) / name).read_text(encoding="utf-8"))
 
 
+def steady_frames(file):
+    """Lines of times.jsonl: the last of each frame with the settings of the last summary, without
+    first frames of a process."""
+    lines = []
+    for line in file.read_text(encoding="utf-8").splitlines():
+        try:
+            lines.append(json.loads(line))
+        except ValueError:
+            pass  # torn by a crash
+    summaries = [line["summary"] for line in lines if "summary" in line]
+    if not summaries:
+        sys.exit(f"{file}: no summary: the run did not end")
+    frames = {
+        line["frame"]: line
+        for line in lines if line.get("settings") == summaries[-1]["settings"]
+    }
+    return [frames[number] for number in sorted(frames) if not frames[number]["first"]]
+
+
 def draw_times(folder, output):
-    frames = [frame for frame in read(folder, "times.json")["frames"] if not frame["first"]]
+    file = pathlib.Path(folder) / "times.jsonl"
+    frames = steady_frames(file)
     if not frames:
-        sys.exit(f"{folder}/times.json: only first frames of runs")
+        sys.exit(f"{file}: only first frames of runs")
     samples = stage_samples(frames)
     samples["frame (wall)"] = [frame["frame_ms"] for frame in frames]
     figure, (left, right) = style.panels(2, 2, (4.6, 3.4))
