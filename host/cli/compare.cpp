@@ -9,6 +9,7 @@
 #include "bench/compare_runs.hpp"
 #include "cli/commands.hpp"
 #include "cli/compare_suite.hpp"
+#include "cli/image_layer.hpp"
 #include "cli/options.hpp"
 #include "cli/quality_subjects.hpp"
 #include "image/image_io.hpp"
@@ -58,7 +59,7 @@ void write_difference(const std::string& output, const Image& difference) {
 
 Image read_layer(const std::string& text, const std::string& usual) {
   const auto [file, layer] = file_and_layer(text, usual);
-  return extract_layer(read_image(file), layer, file);
+  return read_image_layer(file, layer);
 }
 
 bool is_report(const std::string& file) {
@@ -111,12 +112,11 @@ void add_compare(CLI::App& app, Shared&) {
                       "of the same command");
   add(*command, "-o,--output", "FILE", options->output,
       "difference image |A-B| x amplify, .png or .exr");
-  command->add_option("--amplify", options->amplify, "factor of the difference image")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
-  command->add_option("--exposure", options->exposure, "exposure of linear images for flip [EV]")
-      ->capture_default_str()
-      ->check(CLI::Range(-30.0, 30.0));
+  add_number(*command, "--amplify", "X", options->amplify, "factor of the difference image",
+             {0, 1e6});
+  add_number(*command, "--exposure", "EV", options->exposure,
+             "exposure of linear images for flip [EV]", {-30, 30})
+      ->default_str("0");
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
   CLI::Option* suite = add(

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/image_layer.hpp"
 #include "image/compare.hpp"
-#include "image/image_io.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -44,11 +44,11 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
   nlohmann::json views = nlohmann::json::array();
   double sum = 0;
   for (const fs::path& file : files) {
-    const Image image = read_image(file);
+    const Image image = read_image_layer(file, "");
     std::vector<std::pair<fs::path, Image>> found;
     for (const fs::path& truth : candidates) {
       if (!is_truth_of(truth.stem().string(), file.stem().string())) continue;
-      Image read = read_image(truth);
+      Image read = read_image_layer(truth, "indirect");
       if (read.width == image.width && read.height == image.height)
         found.emplace_back(truth, std::move(read));
     }
@@ -59,9 +59,7 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
                   truths.string());
     }
     const auto& [path, truth] = found[0];
-    const Comparison errors =
-        compare(extract_layer(image, "", file.string()), file.string(),
-                extract_layer(truth, "indirect", path.string()), path.string(), exposure);
+    const Comparison errors = compare(image, file.string(), truth, path.string(), exposure);
     nlohmann::json view = to_json(errors);
     view.update({{"view", file.stem().string()}, {"ground_truth", path.filename().string()}});
     views.push_back(std::move(view));
