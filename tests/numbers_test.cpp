@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
 
 #include "cli/commands.hpp"
 #include "support/error.hpp"
@@ -52,13 +51,13 @@ std::string error_of_value(CLI::Option& option, const std::string& text) {
   return {};
 }
 
-/// A number that the option takes as such: it takes two of these, and no word. Empty for others.
+/// A number that the option takes; empty for options that take words, choices or vectors.
 std::string number_for(CLI::Option& option) {
-  std::vector<std::string> taken;
-  if (error_of_value(option, "word").empty()) return {};
+  for (const char* other : {"word", "3,0"})
+    if (error_of_value(option, other).empty()) return {};
   for (const char* number : {"3", "0.3", "40"})
-    if (error_of_value(option, number).empty()) taken.emplace_back(number);
-  return taken.empty() ? std::string() : taken.front();
+    if (error_of_value(option, number).empty()) return number;
+  return {};
 }
 
 // A new option that CLI11 converts by itself fails here.

@@ -104,9 +104,10 @@ void add_compare(CLI::App& app, Shared&) {
   CLI::App* command = app.add_subcommand(
       "compare", "Errors of image A against ground truth B, or changes of report A against B");
   auto options = std::make_shared<CompareOptions>();
-  CLI::Option* a = command->add_option("A", options->a,
-                                       "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer. "
-                                       "Or a report: JSON of bench, quality or --stats");
+  CLI::Option* a =
+      command->add_option("A", options->a,
+                          "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer or part. "
+                          "Or a report: JSON of bench, quality or --stats");
   command->add_option("B", options->b,
                       "ground truth of the same size, with a layer likewise. Or the earlier report "
                       "of the same command");
@@ -138,7 +139,8 @@ void add_compare(CLI::App& app, Shared&) {
       "valid pixels: alpha above 0 in both, all where there is no alpha. flip (FLIP, Andersson et "
       "al. 2020) is the mean\n"
       "difference that an observer sees, from 0 to 1, of linear images after tone curve aces.\n"
-      "Different sizes and values that are not finite exit with 3.");
+      "Different sizes, pixels that only one file has, and values that are not finite exit with "
+      "3.");
   command->callback([options] { run(*options); });
 }
 

@@ -16,7 +16,7 @@ std::string text_of(const ExrWindow& window) {
   return fmt::format("({}, {}) to ({}, {})", window.left, window.top, window.right, window.bottom);
 }
 
-/// Common part of the data window and the display window, from the display window's corner.
+/// Common part of the data window and a display window that has pixels, from the latter's corner.
 PixelWindow shown_window(const ExrHeader& part) {
   const ExrWindow &data = part.data, &display = part.display;
   const auto clamped = [](std::int64_t at, std::int64_t size) {
@@ -31,6 +31,8 @@ PixelWindow shown_window(const ExrHeader& part) {
 void check_part(const fs::path& path, const ExrHeader& part, const ExrHeader& first,
                 const ImageLimits& limits) {
   check_size(path, part, limits);
+  check_size(path, {.width = part.display.width(), .height = part.display.height(), .channels = 1},
+             limits);
   if (part.cube_map)
     reject_image(path, "found a cube map (attribute 'envmap' 1); allowed: flat images");
   if (part.display != first.display) {

@@ -106,10 +106,11 @@ def to_rec709(file, planes, chromaticities):
     if numpy.abs(numpy.subtract(chromaticities, REC709)).max() < SAME_CHROMATICITY:
         return
     try:
-        (source, white), (target, wanted) = xyz(chromaticities), xyz(REC709)
-        gain = BRADFORD @ wanted / (BRADFORD @ white)
-        matrix = numpy.linalg.solve(
-            target, numpy.linalg.solve(BRADFORD, gain[:, None] * BRADFORD) @ source)
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            (source, white), (target, wanted) = xyz(chromaticities), xyz(REC709)
+            gain = BRADFORD @ wanted / (BRADFORD @ white)
+            matrix = numpy.linalg.solve(
+                target, numpy.linalg.solve(BRADFORD, gain[:, None] * BRADFORD) @ source)
     except numpy.linalg.LinAlgError:
         matrix = numpy.full((3, 3), numpy.nan)
     if not numpy.isfinite(matrix).all():
