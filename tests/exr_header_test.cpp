@@ -200,6 +200,7 @@ TEST(ExrHeader, WindowsColoursAndMapsAreThoseOfTheAttributes) {
   EXPECT_EQ(header.data, (ExrWindow{-3, 2, 8, 4}));
   EXPECT_EQ(header.width, 12);
   EXPECT_EQ(header.display, (ExrWindow{0, 0, 5, 6}));
+  EXPECT_EQ(walked(one(window(4, 3), 64)).display, (ExrWindow{0, 0, 3, 2}));
   EXPECT_EQ(header.chromaticities.value(), (Chromaticities{0.5, 0.25, 0, 1, 0, 0, 0.25, 0.5}));
   EXPECT_TRUE(header.cube_map);
   EXPECT_EQ(header.name, "left");

@@ -105,8 +105,6 @@ void convert_primaries(const fs::path& path, Image& image, const Chromaticities&
 ExrFile::ExrFile(const fs::path& path, std::span<const std::uint8_t> bytes,
                  const ImageLimits& limits)
     : path_(path), limits_(limits), parts_(read_exr_header(path, bytes)) {
-  for (ExrHeader& part : parts_)  // OpenEXR rejects a header without the window
-    if (part.display == ExrWindow{}) part.display = part.data;
   check_parts(path, parts_, limits);
   decoder_ = open_decoder(path, "openexr", bytes, limits);
 }

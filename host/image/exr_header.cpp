@@ -287,6 +287,7 @@ std::vector<ExrHeader> read_exr_header(const std::filesystem::path& path,
     if (several && part.empty) break;  // an empty header ends the list of parts
     if (typed) check_type(file, fmt::format("part {}", index), part);
     set_chunk_size(part, flags, typed);
+    if (part.display == ExrWindow{}) part.display = part.data;
     parts.push_back(part);
     if (index == kMaxParts)
       reject(file.file(), {}, fmt::format("over {} parts", index),

@@ -35,7 +35,8 @@ struct ExrWindow {
 /// Header of one part of an EXR file; its size is that of the data window.
 struct ExrHeader : DeclaredImage {
   std::string name;
-  ExrWindow data, display;
+  ExrWindow data;
+  ExrWindow display;  ///< the data window if the file has no other
   std::optional<Chromaticities> chromaticities;
   bool cube_map = false;
 };
