@@ -19,9 +19,13 @@ using namespace std::string_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-DeclaredImage walked(const std::string& bytes) {
+std::vector<ExrHeader> parts_of(const std::string& bytes) {
   return read_exr_header(
       "a.exr", std::span(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+ExrHeader walked(const std::string& bytes) {
+  return parts_of(bytes).front();
 }
 
 std::string rejection(const std::string& bytes) {
@@ -74,10 +78,12 @@ TEST(ExrHeader, IsWhatOpenExrReads) {
       continue;
     const test::TemporaryFolder folder;
     const Image image = read_image(folder.write("a.exr", bytes));
-    const DeclaredImage declared = walked(bytes);
-    EXPECT_EQ(declared.width, image.width) << entry.path();
-    EXPECT_EQ(declared.height, image.height) << entry.path();
-    EXPECT_EQ(declared.channels, static_cast<int>(image.channels.size())) << entry.path();
+    const ExrHeader declared = walked(bytes);
+    EXPECT_EQ(declared.display.width(), image.width) << entry.path();
+    EXPECT_EQ(declared.display.height(), image.height) << entry.path();
+    std::int64_t channels = 0;
+    for (const ExrHeader& part : parts_of(bytes)) channels += part.channels;
+    EXPECT_EQ(channels, static_cast<int>(image.channels.size())) << entry.path();
     EXPECT_EQ(declared.tiled, entry.path().string().ends_with("_tile")) << entry.path();
     EXPECT_FALSE(declared.deep);
     ++images;
@@ -85,12 +91,15 @@ TEST(ExrHeader, IsWhatOpenExrReads) {
   EXPECT_GE(images, 7);
 }
 
-TEST(ExrHeader, TheFirstOfSeveralPartsIsReturned) {
+TEST(ExrHeader, AllPartsAreReturned) {
   std::string bytes = test::read_file(CLPV_SOURCE_DIR "/tests/fuzz/corpus/image/two_parts");
-  const DeclaredImage declared = walked(bytes);
-  EXPECT_EQ(declared.width, 5);
-  EXPECT_EQ(declared.height, 4);
-  EXPECT_EQ(declared.channels, 1) << "the second has three";
+  const std::vector<ExrHeader> parts = parts_of(bytes);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].width, 5);
+  EXPECT_EQ(parts[0].height, 4);
+  EXPECT_EQ(parts[0].channels, 1);
+  EXPECT_EQ(parts[1].channels, 3);
+  EXPECT_NE(parts[0].name, parts[1].name);
   const std::size_t second = bytes.rfind("compression\0compression\0"s);
   bytes.replace(second + 24, 4, number(1u << 30));
   EXPECT_THAT(rejection(bytes),
@@ -178,6 +187,23 @@ TEST(ExrHeader, ChannelsAreCountedAndEndWhereTheySay) {
   EXPECT_THAT(rejection(channels("B\0"s + "123")), HasSubstr("found 16 bytes"));
   EXPECT_THAT(rejection(one(attribute(std::string(256, 'n'), "int", "1234"))),
               HasSubstr("no end of a name in 256 bytes"));
+}
+
+TEST(ExrHeader, WindowsColoursAndMapsAreThoseOfTheAttributes) {
+  const ExrHeader header = walked(
+      one(attribute("dataWindow", "box2i", test::bytes_of<std::int32_t>({-3, 2, 8, 4})) +
+              attribute("displayWindow", "box2i", test::bytes_of<std::int32_t>({0, 0, 5, 6})) +
+              attribute("chromaticities", "chromaticities",
+                        test::bytes_of<float>({0.5f, 0.25f, 0, 1, 0, 0, 0.25f, 0.5f})) +
+              attribute("envmap", "envmap", "\1") + attribute("name", "string", "left"),
+          64));
+  EXPECT_EQ(header.data, (ExrWindow{-3, 2, 8, 4}));
+  EXPECT_EQ(header.width, 12);
+  EXPECT_EQ(header.display, (ExrWindow{0, 0, 5, 6}));
+  EXPECT_EQ(walked(one(window(4, 3), 64)).display, (ExrWindow{0, 0, 3, 2}));
+  EXPECT_EQ(header.chromaticities.value(), (Chromaticities{0.5, 0.25, 0, 1, 0, 0, 0.25, 0.5}));
+  EXPECT_TRUE(header.cube_map);
+  EXPECT_EQ(header.name, "left");
 }
 
 TEST(ExrHeader, NamesAreThereOnce) {

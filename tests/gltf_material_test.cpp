@@ -62,6 +62,10 @@ TEST_F(GltfMaterialTest, ImagesOfOtherKindsBecomeRgba) {
   ASSERT_EQ(red.size(), 256u);
   EXPECT_NEAR(red[0], 255, 4);
   EXPECT_NEAR(red[1], 0, 4);
+  const auto cmyk = rgba(kJpegCmyk8x8);
+  EXPECT_THAT(std::vector(cmyk.begin(), cmyk.begin() + 4), ElementsAre(200, 60, 30, 255));
+  const auto exif = rgba(kJpegExif16x8);
+  EXPECT_NEAR(exif[1], 200, 4) << "rows as stored, whatever Exif says";
 }
 
 TEST_F(GltfMaterialTest, ImagesInBuffersAndDataUris) {

@@ -137,19 +137,16 @@ void add_basis(CLI::App& app, Shared&) {
       "custom SRBF set: JSON {\"name\": ..., \"lambda\": ..., \"centres\": [[x, y, z], ...]}; name "
       "and lambda (one number, or one per centre) are optional")
       ->excludes(name);
-  command
-      ->add_option("--lambda", options->lambda,
-                   "parameter of the SRBF kernels, between 0 and 1, narrower with larger values; a "
-                   "lambda in --centres overrides it")
-      ->capture_default_str();
+  add_number(*command, "--lambda", "X", options->lambda,
+             "parameter of the SRBF kernels, between 0 and 1, narrower with larger values; a "
+             "lambda in --centres overrides it",
+             {0, 1});
   add(*command, "--axis", "X,Y,Z", options->axis, "axis of the clamped cosine, any length");
   add_choice(*command, "--lobe", options->lobes.kind,
              "method of the clamped cosine: exact projection, or projection along +z and rotation "
              "by a table");
-  command
-      ->add_option("--table-size", options->lobes.table_size,
-                   "number of entries in the table of rotated lobes")
-      ->capture_default_str();
+  add_number(*command, "--table-size", "N", options->lobes.table_size,
+             "number of entries in the table of rotated lobes", {2, kMaxTableSize});
   CLI::Option* format = add_format(*command, options->format);
   add(*command, "--figures", "DIR", options->figures,
       "output folder for the paper's figures 2, 3 and 6, in place of the report")

@@ -197,9 +197,8 @@ void add_bench(CLI::App& app, Shared& shared) {
       ->delimiter(',');
   add(*command, "--filter", "REGEX", options->filter,
       "regular expression for the names of rows to run (default: all)");
-  command->add_option("--repetitions", options->bench.repetitions, "timed runs per row")
-      ->capture_default_str()
-      ->check(CLI::Range(1, bench::kMaxRepetitions));
+  add_number(*command, "--repetitions", "N", options->bench.repetitions, "timed runs per row",
+             {1, bench::kMaxRepetitions});
   add_format(*command, options->format, {"table", "json", "github-action"});
   add(*command, "--log", "FILE.jsonl", options->log,
       "log of row starts and ends, one JSON line each; after a crash its last line names the row");

@@ -195,7 +195,8 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
       ->check(CLI::IsMember({"auto", "1", "8"}))
       ->group(std::string(kMoreOptions) + "device");
   app.add_flag("-q,--quiet", shared.quiet, "no messages but errors");
-  app.add_flag("-v,--verbose", shared.verbosity, "more log messages; -vv: even more");
+  app.add_flag("-v,--verbose", shared.verbosity, "more log messages; -vv: even more")
+      ->disable_flag_override();
   app.require_subcommand(1);
   app.fallthrough();
   app.parse_complete_callback([&] { set_log(shared); });

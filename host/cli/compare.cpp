@@ -9,6 +9,7 @@
 #include "bench/compare_runs.hpp"
 #include "cli/commands.hpp"
 #include "cli/compare_suite.hpp"
+#include "cli/image_layer.hpp"
 #include "cli/options.hpp"
 #include "cli/quality_subjects.hpp"
 #include "image/image_io.hpp"
@@ -59,7 +60,7 @@ void write_difference(const std::string& output, const Image& difference) {
 
 Image read_layer(const std::string& text, const std::string& usual) {
   const auto [file, layer] = file_and_layer(text, usual);
-  return extract_layer(read_image(file), layer, file);
+  return read_image_layer(file, layer);
 }
 
 bool is_report(const std::string& file) {
@@ -104,20 +105,20 @@ void add_compare(CLI::App& app, Shared&) {
   CLI::App* command = app.add_subcommand(
       "compare", "Errors of image A against ground truth B, or changes of report A against B");
   auto options = std::make_shared<CompareOptions>();
-  CLI::Option* a = command->add_option("A", options->a,
-                                       "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer. "
-                                       "Or a report: JSON of bench, quality or --stats");
+  CLI::Option* a =
+      command->add_option("A", options->a,
+                          "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer or part. "
+                          "Or a report: JSON of bench, quality or --stats");
   command->add_option("B", options->b,
                       "ground truth of the same size, with a layer likewise. Or the earlier report "
                       "of the same command");
   add(*command, "-o,--output", "FILE", options->output,
       "difference image |A-B| x amplify, .png or .exr");
-  add_number(*command, "--amplify", options->amplify, "factor of the difference image",
-             {0, 1e6, "0..1e6"})
-      ->default_str(fmt::format("{}", options->amplify));
-  add_number(*command, "--exposure", options->exposure, "exposure of linear images for flip [EV]",
-             {-30, 30, "-30..30"})
-      ->default_str(fmt::format("{}", options->exposure));
+  add_number(*command, "--amplify", "X", options->amplify, "factor of the difference image",
+             {0, 1e6});
+  add_number(*command, "--exposure", "EV", options->exposure,
+             "exposure of linear images for flip [EV]", {-30, 30})
+      ->default_str("0");
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
   CLI::Option* suite = add(
@@ -141,7 +142,8 @@ void add_compare(CLI::App& app, Shared&) {
       "valid pixels: alpha above 0 in both, all where there is no alpha. flip (FLIP, Andersson et "
       "al. 2020) is the mean\n"
       "difference that an observer sees, from 0 to 1, of linear images after tone curve aces.\n"
-      "Different sizes and values that are not finite exit with 3.");
+      "Different sizes, pixels that only one file has, and values that are not finite exit with "
+      "3.");
   command->callback([options] { run(*options); });
 }
 

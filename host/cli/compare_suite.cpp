@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/image_layer.hpp"
 #include "image/compare.hpp"
-#include "image/image_io.hpp"
 #include "quality/ground_truth.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
@@ -80,7 +80,7 @@ std::pair<fs::path, Image> truth_of(const fs::path& file, const Image& image,
   for (const fs::path& truth : candidates) {
     if (!is_truth_of(truth.stem().string(), stem)) continue;
     if (hash.empty() && truth.filename() != in_list->second) continue;
-    Image read = read_image(truth);
+    Image read = read_image_layer(truth, "indirect");
     if (read.width == image.width && read.height == image.height &&
         (hash.empty() || hash_in(read) == hash))
       found.emplace_back(truth, std::move(read));
@@ -104,11 +104,9 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
   double sum = 0;
   int defined = 0;
   for (const fs::path& file : files) {
-    const Image image = read_image(file);
+    const Image image = read_image_layer(file, "");
     const auto [path, truth] = truth_of(file, image, candidates, listed, truths);
-    const Comparison errors =
-        compare(extract_layer(image, "", file.string()), file.string(),
-                extract_layer(truth, "indirect", path.string()), path.string(), exposure);
+    const Comparison errors = compare(image, file.string(), truth, path.string(), exposure);
     nlohmann::json view = to_json(errors);
     view.update({{"view", file.stem().string()}, {"ground_truth", path.filename().string()}});
     views.push_back(std::move(view));

@@ -20,7 +20,8 @@
 namespace clpv {
 namespace {
 
-constexpr double kMaxNoise = 1e6;  // more than any image has
+// A smaller noise takes more paths than there may be; a larger one is none.
+constexpr double kMinNoise = 1e-9, kMaxNoise = 1e9;
 
 /// Empty if the text is not three comma-separated numbers.
 template <typename T>
@@ -29,7 +30,7 @@ std::optional<glm::vec<3, T>> parse_three(std::string_view text) {
   for (int i = 0; i < 3; ++i) {
     const std::size_t end = i < 2 ? text.find(',') : text.size();
     if (end == std::string_view::npos) return std::nullopt;
-    const auto value = parse_number<T>(text.substr(0, end));
+    const auto value = parse_number<T>(trimmed(text.substr(0, end)));
     if (!value) return std::nullopt;
     values[i] = *value;
     text.remove_prefix(std::min(end + 1, text.size()));
@@ -100,25 +101,17 @@ std::string group_of(const std::string& name) {
 
 }  // namespace
 
-double number_in(const NumberRange& range, const std::string& option, const std::string& text) {
-  const auto found = parse_number<double>(text);
-  if (!found || !(*found >= range.minimum && *found <= range.maximum))  // NaN is in no range
-    throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", option, text, range.allowed);
-  return *found;
-}
-
 CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& seconds,
                          const std::string& help) {
   const NumberRange range{-bounds::kSeconds, bounds::kSeconds,
                           fmt::format("{}..{} seconds", -bounds::kSeconds, bounds::kSeconds)};
-  return add_number(command, name, seconds, help, range)
-      ->type_name("SECONDS")
+  return add_number(command, name, "SECONDS", seconds, help, range)
       ->default_str(fmt::format("{}", seconds));
 }
 
 glm::dvec3 parse_dvec3(const std::string& text, const char* option) {
   const auto v = parse_three<double>(text);
-  if (v && std::isfinite(v->x) && std::isfinite(v->y) && std::isfinite(v->z)) return *v;
+  if (v) return *v;
   throw Error(ExitCode::usage, "{}: '{}' is not three finite numbers between commas, like 0,0.5,-1",
               option, text);
 }
@@ -148,11 +141,11 @@ CLI::Option* add_format(CLI::App& command, std::string& format,
 }
 
 CLI::Option* add_fail_above(CLI::App& command, double& ratio) {
-  return add_number(command, "--fail-above", ratio,
-                    "exit with 5 if a value of the new report is more than RATIO times the earlier "
-                    "one, beyond the spread, or is missing, or if no row has both values",
-                    {1, 1e6, "1..1e6"})
-      ->type_name("RATIO");
+  return add_number(
+      command, "--fail-above", "RATIO", ratio,
+      "exit with 5 if a value of the new report is more than RATIO times the earlier one, beyond the "
+      "spread, or is missing, or if no row has both values",
+      {1, 1e6});
 }
 
 void require_extension(const std::string& option, const std::filesystem::path& file,
@@ -212,11 +205,12 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
   target->needs(eye);
   eye->needs(target);
   vector("--up", "X,Y,Z", changes.camera.up, "its upward direction (default: 0,1,0)")->needs(eye);
-  add(command, "--fov", "DEGREES", changes.camera.vertical_fov_degrees,
-      "its vertical field of view [degrees]")
+  add_number(command, "--fov", "DEGREES", changes.camera.vertical_fov_degrees,
+             "its vertical field of view [degrees]", {bounds::kMinFov, bounds::kMaxFov})
       ->needs(eye)
       ->group(kGroup);
-  add(command, "--near-plane", "M", changes.camera.near, "its nearest visible depth [m]")
+  add_number(command, "--near-plane", "M", changes.camera.near, "its nearest visible depth [m]",
+             {bounds::kMinLength, bounds::kCoordinate})
       ->needs(eye)
       ->group(kGroup);
   const auto take_sun = [&changes](const std::string& text) { changes.sun = parse_sun(text); };
@@ -257,23 +251,22 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
   add(command, "--bounces", "N|all", options.bounces,
       "maximum number of reflections between light and visible surface: 1, 2, ... or all")
       ->group(kGroup);
-  auto* samples = add(command, "--spp", "N", options.values.samples, "paths per pixel")
-                      ->check(CLI::Range(1u, pathtracer::PathTracerOptions::kMaxSamples))
+  auto* samples = add_number(command, "--spp", "N", options.values.samples, "paths per pixel",
+                             {1, pathtracer::PathTracerOptions::kMaxSamples})
                       ->group(kGroup);
   add_number(
-      command, "--noise", options.values.noise,
+      command, "--noise", "X", options.values.noise,
       "relative standard error of the indirect light at which tracing stops (root mean square)",
-      {std::numeric_limits<double>::min(), kMaxNoise, fmt::format("more than 0, up to {}", kMaxNoise)})
+      {kMinNoise, kMaxNoise})
       ->excludes(samples)
-      ->default_str(fmt::format("{}", options.values.noise))
       ->group(kGroup);
-  command
-      .add_option("--seed", options.values.seed, "random seed; the same seed gives identical files")
-      ->capture_default_str()
+  constexpr auto kMaxSeed = std::numeric_limits<std::uint64_t>::max();
+  add_number(command, "--seed", "N", options.values.seed,
+             "random seed; the same seed gives identical files",
+             {0, static_cast<double>(kMaxSeed), fmt::format("0..{}", kMaxSeed)})
       ->group(kGroup);
-  add(command, "--threads", "N", options.values.threads,
-      "number of tracing threads (default: one per processor)")
-      ->check(CLI::Range(1, 1024))
+  add_number(command, "--threads", "N", options.values.threads,
+             "number of tracing threads (default: one per processor)", {1, 1024})
       ->group(kGroup);
 }
 

@@ -22,18 +22,21 @@
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/frame/scene_options.hpp"
 #include "scene/load.hpp"
+#include "support/error.hpp"
 #include "support/named_enum.hpp"
 #include "support/progress.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 
-/// Adds an option with the placeholder of its value in --help, and its default if `member` holds
-/// one.
+/// Adds an option of text with the placeholder of its value in --help, and its default if `member`
+/// holds one.
 template <typename T>
 CLI::Option* add(CLI::App& command, const std::string& name, const char* type, T& member,
                  const std::string& help) {
+  static_assert(!std::is_arithmetic_v<T>, "add_number() reads numbers");
   CLI::Option* option = command.add_option(name, member, help)->type_name(type);
-  if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+  if constexpr (std::is_same_v<T, std::string>) {
     if (member != T{}) option->capture_default_str();
   }
   return option;
@@ -64,20 +67,39 @@ CLI::Option* add_choices(CLI::App& command, const std::string& option, std::vect
 
 struct NumberRange {
   double minimum, maximum;
-  std::string allowed;  ///< "0..1 m"
+  std::string allowed = {};  ///< "0..1 m"; empty: "MINIMUM..MAXIMUM"
 };
 
-/// Parses a finite number within the range. Throws Error(usage) with the option for anything else.
-double number_in(const NumberRange& range, const std::string& option, const std::string& text);
+/// Parses the value of an option, a number within the range. Throws Error(usage) that names option,
+/// value and range.
+template <typename Number>
+Number option_number(const std::string& option, const std::string& text, const NumberRange& range) {
+  const auto found = parse_number<Number>(text);
+  const auto value = static_cast<double>(found.value_or(0));
+  if (found && value >= range.minimum && value <= range.maximum) return *found;
+  throw Error(
+      ExitCode::usage, "{}: found '{}', allowed: {}", option, text,
+      range.allowed.empty() ? fmt::format("{}..{}", range.minimum, range.maximum) : range.allowed);
+}
 
-/// Adds an option for a finite number within the range. CLI::Range lets NaN pass.
-template <std::floating_point T>
-CLI::Option* add_number(CLI::App& command, const std::string& name, T& value,
-                        const std::string& help, const NumberRange& range) {
-  const auto take = [&value, name, range](const std::string& text) {
-    value = static_cast<T>(number_in(range, name, text));
+/// Adds an option of a number within the range, a member of type Number or of an optional one. Its
+/// value is the default in --help unless it is 0. All numeric options are added here, since CLI11
+/// accepts NaN, and reads 010 as 8.
+template <typename Member>
+CLI::Option* add_number(CLI::App& command, const std::string& name, const char* type,
+                        Member& member, const std::string& help, const NumberRange& range) {
+  const auto take = [&member, name, range](const std::string& text) {
+    if constexpr (std::is_arithmetic_v<Member>) {
+      member = option_number<Member>(name, text, range);
+    } else {
+      member = option_number<typename Member::value_type>(name, text, range);
+    }
   };
-  return command.add_option_function<std::string>(name, take, help);
+  CLI::Option* option = command.add_option_function<std::string>(name, take, help)->type_name(type);
+  if constexpr (std::is_arithmetic_v<Member>) {
+    if (member != Member{}) option->default_str(fmt::format("{}", member));
+  }
+  return option;
 }
 
 /// Adds an option for a time [s] within the range of scenes; the value of `seconds` is the default.

@@ -121,12 +121,8 @@ void add_options(CLI::App& command, Options& options) {
   add_seconds(command, "--time", options.time, "time in the scene's animation [s]");
   add_choices(command, "--view", options.views, "views to write; several become layers of the EXR")
       ->default_str("full");
-  command.add_option("--width", options.width, "image width [pixels]")
-      ->check(CLI::Range(1, 16384))
-      ->capture_default_str();
-  command.add_option("--height", options.height, "image height [pixels]")
-      ->check(CLI::Range(1, 16384))
-      ->capture_default_str();
+  add_number(command, "--width", "N", options.width, "image width [pixels]", {1, kMaxPixels});
+  add_number(command, "--height", "N", options.height, "image height [pixels]", {1, kMaxPixels});
   add_tracing_options(command, options.tracing);
   add(command, "--stats", "FILE.json", options.stats,
       "output file for paths, noise, rays and time [s], as JSON");

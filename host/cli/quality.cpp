@@ -244,12 +244,10 @@ void add_options(CLI::App& command, Options& options) {
       "named");
   add_baseline_options(command, options.baselines);
   add_choice(command, "--view", options.view, "view to compare");
-  command
-      .add_option(
-          "--frames", options.frames,
-          "number of timed frames per cell, after a warm-up frame; the results have their medians")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  add_number(
+      command, "--frames", "N", options.frames,
+      "number of timed frames per cell, after a warm-up frame; the results have their medians",
+      {1, 1000});
   add_tracing_options(command, options.tracing);
   add(command, "--cache", "DIR", options.cache,
       "folder for cached ground truths and cells (default: $XDG_CACHE_HOME/clpv/quality)");

@@ -25,9 +25,8 @@ void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
                                    "of the frame without G-buffer, shadow\n"
                                    "maps and shading");
   const NumberRange range{1e-3, 1e7, "0.001..1e7 ms"};
-  add_number(command, "--baseline-time", baselines.time,
+  add_number(command, "--baseline-time", "MS", baselines.time,
              "time of each baseline in place of the frame's [ms]", range)
-      ->type_name("MS")
       ->needs(names);
   add(command, "--images", "DIR", baselines.images,
       "folder for images: DIR/BASELINE/SCENE-CAMERA.exr")

@@ -149,12 +149,9 @@ void add_render(CLI::App& app, Shared& shared) {
       "output file (-: stdout) for stage times of frames that recompute all lighting, options and "
       "energies, "
       "as JSON");
-  command
-      ->add_option(
-          "--frames", options->frames,
-          "number of timed frames for --stats, after a warm-up frame; it has their medians")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  add_number(*command, "--frames", "N", options->frames,
+             "number of timed frames for --stats, after a warm-up frame; it has their medians",
+             {1, 1000});
   add(*command, "--dump-normals", "FILE.json", options->normals,
       "output file for lit surface normals, weighted by reflected flux, for python3 -m clpv.search "
       "--weights");

@@ -44,14 +44,8 @@ void add_render_request(CLI::App& command, RenderRequest& request) {
 }
 
 void add_shown_options(CLI::App& command, RenderRequest& request) {
-  add(command, "--exposure", "EV", request.exposure,
-      "exposure of a PNG [EV] (default: the scene's)")
-      ->check([](const std::string& text) {
-        const auto found = parse_number<float>(text);  // NaN is in no range
-        return found && std::abs(*found) <= kMaxExposure
-                   ? std::string()
-                   : fmt::format("found '{}', allowed: -{}..{}", text, kMaxExposure, kMaxExposure);
-      });
+  add_number(command, "--exposure", "EV", request.exposure,
+             "exposure of a PNG [EV] (default: the scene's)", {-kMaxExposure, kMaxExposure});
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
 }
 

@@ -11,6 +11,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/drawing.hpp"
+#include "cli/image_layer.hpp"
 #include "cli/options.hpp"
 #include "cli/quality_subjects.hpp"
 #include "cli/render_request.hpp"
@@ -112,7 +113,7 @@ fs::path file_of(const std::string& folder, const Subject& subject, const SceneC
 
 /// The image of another method for a view. Throws Error(bad_input) without channels R, G and B.
 Image read_image_of_method(const fs::path& path) {
-  Image image = extract_layer(read_image(path), "", path.string());
+  Image image = read_image_layer(path, "");
   const std::array colours{"R", "G", "B"};
   if (image.channels.size() < colours.size() ||
       !std::equal(colours.begin(), colours.end(), image.channels.begin())) {
@@ -231,10 +232,10 @@ void add_report(CLI::App& app, Shared& shared) {
       "results of clpv bench table1 or layouts -o FILE.json, repeatable");
   add(*command, "--images", "DIR", options->images,
       "images of another method: DIR/SCENE-CAMERA.exr of indirect light, repeatable");
-  command->add_option("--width", options->width, "width of the images [pixels]")
-      ->capture_default_str();
-  command->add_option("--height", options->height, "height of the images [pixels]")
-      ->capture_default_str();
+  add_number(*command, "--width", "N", options->width, "width of the images [pixels]",
+             {1, kMaxPixels});
+  add_number(*command, "--height", "N", options->height, "height of the images [pixels]",
+             {1, kMaxPixels});
   add_tracing_options(*command, options->tracing);
   add(*command, "--cache", "DIR", options->cache,
       "folder for cached ground truths (default: $XDG_CACHE_HOME/clpv/quality)");

@@ -110,15 +110,13 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add(*command, "-o,--output", "DIR", options->folder,
       "output folder for frame-0000.exr, ... and times.jsonl; created if missing")
       ->required();
-  add(*command, "--frames", "N", options->frames, "number of frames")
-      ->check(CLI::Range(1, kMaxFrames))
+  add_number(*command, "--frames", "N", options->frames, "number of frames", {1, kMaxFrames})
       ->required();
-  add_number(*command, "--fps", options->frames_per_second,
+  add_number(*command, "--fps", "RATE", options->frames_per_second,
              "frame rate [frames per second of the scene's time]",
              {std::numeric_limits<double>::min(), kMaxFramesPerSecond,
               fmt::format("more than 0, up to {}", kMaxFramesPerSecond)})
-      ->required()
-      ->type_name("RATE");
+      ->required();
   add_seconds(*command, "--from", options->from, "time of the first frame [s]");
   add_choice(*command, "--view", options->view, "view of the frames");
   add_choice(*command, "--format", options->format,
@@ -126,9 +124,9 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add(*command, "--video", "FILE.mp4", options->video, "output video of all frames; needs ffmpeg");
   command->add_flag("--stability", options->stability,
                     "write stability.json: change of light between frames on static surfaces");
-  add(*command, "--traced", "SPP", options->traced,
-      "paths per pixel for the path-traced noise of --stability")
-      ->check(CLI::Range(1u, pathtracer::PathTracerOptions::kMaxSamples));
+  add_number(*command, "--traced", "SPP", options->traced,
+             "paths per pixel for the path-traced noise of --stability",
+             {1, pathtracer::PathTracerOptions::kMaxSamples});
   add_shown_options(*command, options->request);
   add_render_request(*command, options->request);
   command->footer(

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <string_view>
 
 namespace clpv {
@@ -71,24 +72,69 @@ class Decoder : public ImageDecoder {
     OIIO::ImageSpec spec, config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     if (!input_->open(name, spec, config)) return first_line(input_->geterror());
-    described_ = description_of(spec);
-    described_.channels.resize(static_cast<std::size_t>(spec.nchannels));
+    take(spec);
+    return {};
+  }
+
+  std::string select(int part) override {
+    if (part == part_) return {};
+    if (!input_->seek_subimage(part, 0)) return first_line(input_->geterror());
+    part_ = part;
+    take(input_->spec());
     return {};
   }
 
   const CodedImage& described() const override { return described_; }
-  std::string read(float* pixels) override { return read(OIIO::TypeFloat, pixels); }
+
+  std::string read(float* pixels) override {
+    for (int c = 0; c < spec_.nchannels; ++c)
+      if (spec_.channelformat(c) == OIIO::TypeUInt32) return read_numbers(pixels);
+    return read(OIIO::TypeFloat, pixels);
+  }
   std::string read(std::uint8_t* pixels) override { return read(OIIO::TypeUInt8, pixels); }
 
  private:
+  void take(const OIIO::ImageSpec& spec) {
+    spec_ = spec;
+    described_ = description_of(spec);
+    described_.channels.resize(static_cast<std::size_t>(spec.nchannels));
+  }
+
   std::string read(OIIO::TypeDesc type, void* pixels) {
-    const int channels = static_cast<int>(described_.channels.size());
-    return input_->read_image(0, 0, 0, channels, type, pixels) ? ""
-                                                               : first_line(input_->geterror());
+    return input_->read_image(part_, 0, 0, spec_.nchannels, type, pixels)
+               ? ""
+               : first_line(input_->geterror());
+  }
+
+  /// Converts each channel from its own type. OpenImageIO would divide integers by 2^32 - 1.
+  std::string read_numbers(float* pixels) {
+    std::vector<unsigned char> coded(spec_.image_bytes(true));
+    const std::string error = read(OIIO::TypeUnknown, coded.data());
+    if (!error.empty()) return error;
+    const std::size_t channels = static_cast<std::size_t>(spec_.nchannels),
+                      pixel = spec_.pixel_bytes(true), count = coded.size() / pixel;
+    const unsigned char* from = coded.data();
+    for (int c = 0; c < spec_.nchannels; ++c, ++pixels) {
+      const OIIO::TypeDesc type = spec_.channelformat(c);
+      for (std::size_t i = 0; i < count && type == OIIO::TypeUInt32; ++i) {
+        std::uint32_t number;
+        std::memcpy(&number, from + i * pixel, sizeof number);
+        pixels[i * channels] = static_cast<float>(number);
+      }
+      if (type != OIIO::TypeUInt32) {
+        OIIO::convert_image(1, spec_.width, spec_.height, 1, from, type, pixel, OIIO::AutoStride,
+                            OIIO::AutoStride, pixels, OIIO::TypeFloat, channels * sizeof(float),
+                            OIIO::AutoStride, OIIO::AutoStride);
+      }
+      from += type.size();
+    }
+    return {};
   }
 
   MemoryReader memory_;
   std::unique_ptr<OIIO::ImageInput> input_;
+  OIIO::ImageSpec spec_;
+  int part_ = 0;
   CodedImage described_;
 };
 

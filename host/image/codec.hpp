@@ -26,8 +26,12 @@ struct CodedImage {
 class ImageDecoder {
  public:
   virtual ~ImageDecoder() = default;
+  /// Turns to a part of an EXR; the first is open. Returns the reason of a failure, else "".
+  virtual std::string select(int part) = 0;
+  /// Describes the part that is open.
   virtual const CodedImage& described() const = 0;
-  /// Read all channels of all pixels. Return the reason of a failure, else "".
+  /// Read all channels of its pixels: channels of 32-bit integers as these numbers, other integers
+  /// relative to their largest value. Return the reason of a failure, else "".
   virtual std::string read(float* pixels) = 0;
   virtual std::string read(std::uint8_t* pixels) = 0;
 };
@@ -35,7 +39,7 @@ class ImageDecoder {
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  /// Opens an image of format "openexr", "png", "jpeg" or "hdr"; the bytes must outlive it. Colours
+  /// Opens an image of format "openexr", "png" or "jpeg"; the bytes must outlive it. Colours
   /// are not multiplied by alpha. Returns null and sets `error` on failure. `name`: for errors.
   virtual std::unique_ptr<ImageDecoder> open(const std::string& format, const std::string& name,
                                              std::span<const std::uint8_t> bytes,

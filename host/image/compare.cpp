@@ -41,11 +41,33 @@ void check_finite(const Image& image, const std::string& name) {
   }
 }
 
+std::string pixels_in(const Image& image) {
+  const auto found = image.windows.find("");
+  if (found == image.windows.end()) return "all pixels";
+  const PixelWindow& window = found->second;
+  return fmt::format("only pixels ({}, {}) to ({}, {})", window.left, window.top, window.right - 1,
+                     window.bottom - 1);
+}
+
+/// True for the pixels that a file has.
+bool has_pixel(const Image& image, std::size_t index) {
+  const auto found = image.windows.find("");
+  if (found == image.windows.end()) return true;
+  const PixelWindow& window = found->second;
+  const int x = static_cast<int>(index % static_cast<std::size_t>(image.width)),
+            y = static_cast<int>(index / static_cast<std::size_t>(image.width));
+  return x >= window.left && x < window.right && y >= window.top && y < window.bottom;
+}
+
 void check_comparable(const Image& a, const std::string& a_name, const Image& b,
                       const std::string& b_name) {
   if (a.width != b.width || a.height != b.height) {
     throw Error(ExitCode::bad_input, "{} has {} x {} pixels, {} has {} x {}; allowed: equal sizes",
                 a_name, a.width, a.height, b_name, b.width, b.height);
+  }
+  if (a.windows != b.windows) {
+    throw Error(ExitCode::bad_input, "{} has {} of {} x {}, {} has {}; allowed: the same pixels",
+                a_name, pixels_in(a), a.width, a.height, b_name, pixels_in(b));
   }
   const std::size_t in_a = colour_channels(a).size(), in_b = colour_channels(b).size();
   if (in_a != in_b || in_a == 0) {
@@ -143,7 +165,10 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b,
   Sums all, valid;
   std::vector<bool> is_valid(pixels);
   double relative = 0;
+  std::size_t present = 0;
   for (std::size_t p = 0; p < pixels; ++p) {
+    if (!has_pixel(a, p)) continue;
+    ++present;
     const float *pa = pixel(a, p), *pb = pixel(b, p);
     is_valid[p] = (!alpha_a || pa[*alpha_a] > 0) && (!alpha_b || pb[*alpha_b] > 0);
     result.valid_pixels += is_valid[p];
@@ -160,12 +185,12 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b,
       }
     }
   }
-  const double values = static_cast<double>(pixels * channels);
+  const double values = static_cast<double>(present * channels);
   result.rmse = std::sqrt(all.squared_error / values);
   result.nrmse = normalised(all.squared_error, all.bb);
   result.relative_mse = relative / values;
   if (result.rmse > 0) result.psnr_db = -20 * std::log10(result.rmse);
-  for (double& mean : result.mean_luminance) mean /= static_cast<double>(pixels);
+  for (double& mean : result.mean_luminance) mean /= static_cast<double>(present);
   result.identical = result.max_error == 0;
   set_valid_errors(result, valid);
   result.flip = mean_flip(a, b, is_valid, exposure);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <set>
 #include <string>
 #include <string_view>
@@ -23,6 +24,7 @@ constexpr std::size_t kFlagsAt = 4;
 constexpr std::size_t kNameBytes = 255;
 constexpr std::size_t kMaxParts = 1024, kMaxAttributes = 1024;  // bound the time of the walk
 constexpr std::int64_t kOffsetBytes = 8;  // of a chunk, in the table of chunks
+constexpr unsigned char kCubeMap = 1;     // value of `envmap`
 constexpr std::array<std::string_view, 4> kPartTypes = {
     {"scanlineimage", "tiledimage", "deepscanline", "deeptile"}};
 
@@ -106,8 +108,8 @@ class Cursor {
   std::span<const unsigned char> left_;
 };
 
-/// Header of one part.
-struct ExrPart : DeclaredImage {
+/// Header of one part, and what only the walk needs.
+struct ExrPart : ExrHeader {
   std::int64_t rows = 1;                         ///< rows of a chunk of a part without tiles
   std::int64_t tile_width = 0, tile_height = 0;  ///< 0 without attribute `tiles`
   std::int64_t chunks = 0;                       ///< value of `chunkCount`
@@ -116,11 +118,18 @@ struct ExrPart : DeclaredImage {
 };
 
 /// Counts the entries of a channel list: names, each followed by 16 bytes of type and sampling,
-/// ended by an empty name. Rejects bytes after the end.
+/// ended by an empty name. Rejects channels of less resolution, and bytes after the end.
 std::int64_t count_channels(Cursor list, std::string_view place) {
-  constexpr std::size_t kChannelBytes = 16;
+  constexpr std::size_t kChannelBytes = 16, kSamplingAt = 8;
   std::int64_t count = 0;
-  for (; !list.name(place).empty(); ++count) list.take(kChannelBytes, place);
+  for (std::string name; !(name = list.name(place)).empty(); ++count) {
+    const auto bytes = list.take(kChannelBytes, place);
+    const std::int32_t x = number_at(bytes, kSamplingAt), y = number_at(bytes, kSamplingAt + 4);
+    if (x != 1 || y != 1) {
+      reject(list.file(), place,
+             fmt::format("channel '{}' sampled every {} x {} pixels", name, x, y), "1 x 1");
+    }
+  }
   if (list.left() != 0) {
     reject(list.file(), place, fmt::format("{} bytes after the last channel", list.left()), "none");
   }
@@ -163,12 +172,31 @@ void check_value(const Cursor& file, std::string_view place, std::string_view ty
   }
 }
 
-/// Stores the attributes that determine memory use.
+ExrWindow window_at(std::span<const unsigned char> bytes) {
+  return {number_at(bytes, 0), number_at(bytes, 4), number_at(bytes, 8), number_at(bytes, 12)};
+}
+
+Chromaticities chromaticities_at(std::span<const unsigned char> bytes) {
+  Chromaticities found;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    found[i] = double{std::bit_cast<float>(little_endian_word(bytes, 4 * i))};
+  return found;
+}
+
+/// Stores the attributes that determine memory use, places and colours of pixels.
 void store_value(ExrPart& part, const Cursor& file, std::string_view place, std::string_view name,
                  std::string_view type, std::span<const unsigned char> bytes) {
   if (name == "dataWindow" && type == "box2i") {
-    part.width = std::int64_t{number_at(bytes, 8)} - number_at(bytes, 0) + 1;
-    part.height = std::int64_t{number_at(bytes, 12)} - number_at(bytes, 4) + 1;
+    part.data = window_at(bytes);
+    part.width = part.data.width(), part.height = part.data.height();
+  } else if (name == "displayWindow" && type == "box2i") {
+    part.display = window_at(bytes);
+  } else if (name == "chromaticities" && type == "chromaticities") {
+    part.chromaticities = chromaticities_at(bytes);
+  } else if (name == "envmap" && type == "envmap") {
+    part.cube_map = bytes[0] == kCubeMap;
+  } else if (name == "name" && type == "string") {
+    part.name.assign(bytes.begin(), bytes.end());
   } else if (name == "tiles" && type == "tiledesc") {
     part.tile_width = little_endian_word(bytes, 0);
     part.tile_height = little_endian_word(bytes, 4);
@@ -239,8 +267,8 @@ void set_chunk_size(ExrPart& part, std::uint32_t flags, bool typed) {
 
 }  // namespace
 
-DeclaredImage read_exr_header(const std::filesystem::path& path,
-                              std::span<const unsigned char> bytes) {
+std::vector<ExrHeader> read_exr_header(const std::filesystem::path& path,
+                                       std::span<const unsigned char> bytes) {
   Cursor file(path.string(), bytes);
   file.take(kFlagsAt, "the header");
   const std::uint32_t flags = file.number("the header");
@@ -252,14 +280,15 @@ DeclaredImage read_exr_header(const std::filesystem::path& path,
     reject(file.file(), place, fmt::format("{} chunks", chunks),
            fmt::format("{}, whose table fits into the rest of the file", max_chunks));
   };
-  DeclaredImage first;
+  std::vector<ExrHeader> parts;
   std::int64_t chunks = 0;
   for (std::size_t index = 0;; ++index) {
     ExrPart part = read_part(file, index);
     if (several && part.empty) break;  // an empty header ends the list of parts
     if (typed) check_type(file, fmt::format("part {}", index), part);
     set_chunk_size(part, flags, typed);
-    if (index == 0) first = part;
+    if (part.display == ExrWindow{}) part.display = part.data;
+    parts.push_back(part);
     if (index == kMaxParts)
       reject(file.file(), {}, fmt::format("over {} parts", index),
              fmt::format("up to {}", kMaxParts));
@@ -268,7 +297,7 @@ DeclaredImage read_exr_header(const std::filesystem::path& path,
     if (!several) break;
   }
   check_tables("all parts", chunks);
-  return first;
+  return parts;
 }
 
 }  // namespace clpv

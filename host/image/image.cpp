@@ -12,17 +12,35 @@
 namespace clpv {
 namespace {
 
-std::string_view layer_of(std::string_view channel) {
-  const auto dot = channel.rfind('.');
-  return dot == std::string_view::npos ? std::string_view{} : channel.substr(0, dot);
-}
-
 std::string_view name_in_layer(std::string_view channel) {
   const auto dot = channel.rfind('.');
   return dot == std::string_view::npos ? channel : channel.substr(dot + 1);
 }
 
+bool has_colours(const Image& image, const std::string& layer) {
+  return image.channel(layer + ".R") && image.channel(layer + ".G") && image.channel(layer + ".B");
+}
+
+/// The layer itself, or that of the only part which has it; empty for none or several.
+std::optional<std::string> found_layer(const Image& image, const std::string& layer) {
+  const std::vector<std::string> all = layers(image);
+  if (std::ranges::count(all, layer) > 0) return layer;
+  std::vector<std::string> found;
+  for (const std::string& part : image.parts) {
+    const std::string name = layer.empty() ? part : part + "." + layer;
+    if (std::ranges::count(all, name) > 0) found.push_back(name);
+  }
+  if (std::ranges::any_of(found, [&](const auto& name) { return has_colours(image, name); }))
+    std::erase_if(found, [&](const auto& name) { return !has_colours(image, name); });
+  return found.size() == 1 ? std::optional(found[0]) : std::nullopt;
+}
+
 }  // namespace
+
+std::string_view layer_of(std::string_view channel) {
+  const auto dot = channel.rfind('.');
+  return dot == std::string_view::npos ? std::string_view{} : channel.substr(0, dot);
+}
 
 std::optional<std::size_t> Image::channel(std::string_view name) const {
   const auto channel = std::find(channels.begin(), channels.end(), name);
@@ -49,10 +67,11 @@ std::vector<std::string> layers(const Image& image) {
 }
 
 Image extract_layer(const Image& image, const std::string& layer, const std::string& source) {
+  const std::optional<std::string> found = found_layer(image, layer);
   std::vector<std::size_t> selected;
   std::vector<std::string> names;
   for (std::size_t c = 0; c < image.channels.size(); ++c) {
-    if (layer_of(image.channels[c]) != layer) continue;
+    if (layer_of(image.channels[c]) != found) continue;
     selected.push_back(c);
     names.emplace_back(name_in_layer(image.channels[c]));
   }
@@ -65,6 +84,9 @@ Image extract_layer(const Image& image, const std::string& layer, const std::str
   Image result = make_image(image.width, image.height, std::move(names));
   result.metadata = image.metadata;
   result.encoding = image.encoding;
+  result.notes = image.notes;
+  if (const auto window = image.windows.find(*found); window != image.windows.end())
+    result.windows[""] = window->second;
   for (std::size_t p = 0; p < image.pixel_count(); ++p) {
     for (std::size_t c = 0; c < selected.size(); ++c) {
       result.pixels[p * selected.size() + c] =

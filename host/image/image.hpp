@@ -15,12 +15,16 @@ class Fingerprint;
 /// An image whose pixels are 0.
 Image make_image(int width, int height, std::vector<std::string> channels);
 
+/// Layer in the name of a channel: "indirect" of "indirect.R".
+std::string_view layer_of(std::string_view channel);
+
 /// Names of the layers, in order of first appearance. The unnamed layer is "".
 std::vector<std::string> layers(const Image& image);
 
-/// Image with the channels of one layer, named without the layer, and with the metadata. Throws
-/// Error(bad_input) that lists the layers if there is no such layer; `source` is the file in the
-/// message.
+/// Image with the channels of one layer, named without the layer, and with the metadata. In a file
+/// of several parts the layer may be that of the only part which has it (among several, the only
+/// one with R, G and B). Throws Error(bad_input) that lists the layers if there is no such layer;
+/// `source` is the file in the message.
 Image extract_layer(const Image& image, const std::string& layer, const std::string& source);
 
 /// Appends the channels of `addition` to `image` as `layer`. Sizes and encodings must be equal,

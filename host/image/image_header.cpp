@@ -4,9 +4,14 @@
 // OpenImageIO for interlaced ones.
 #include "image/image_header.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
+
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -28,6 +33,8 @@ bool contains(Data bytes, Data sequence) {
 }
 
 constexpr std::size_t kPngSignature = 8;
+
+constexpr std::size_t kChunkData = 8, kChunkCheck = 4;  // bytes before and after a chunk's data
 
 /// Calls `visit(type, chunk)` for each chunk of a PNG up to IEND. Returns false if a chunk exceeds
 /// the bytes.
@@ -96,6 +103,31 @@ std::vector<std::uint8_t> strip_png(Data bytes) {
       kept.insert(kept.end(), chunk.begin(), chunk.end());
   });
   return kept;
+}
+
+std::string foreign_colour(Data png) {
+  constexpr double kUnit = 1e-5;  // of gAMA and cHRM
+  constexpr double kSrgbGamma = 0.45455, kSameGamma = 5e-3;
+  constexpr std::array<std::size_t, 8> kOrder = {6, 7, 0, 1, 2, 3, 4, 5};  // cHRM begins with white
+  std::string found;
+  bool srgb = false;
+  visit_chunks(png, [&](std::string_view type, Data chunk) {
+    const Data data = chunk.subspan(kChunkData, chunk.size() - kChunkData - kChunkCheck);
+    if (type == "sRGB") srgb = true;
+    if (type == "gAMA" && data.size() == 4) {
+      const double gamma = kUnit * big_endian(data, 0, 4);
+      if (std::abs(gamma - kSrgbGamma) > kSameGamma) found = fmt::format("gAMA {:.5g}", gamma);
+    } else if (type == "cHRM" && data.size() == 32) {
+      Chromaticities given;
+      for (std::size_t i = 0; i < given.size(); ++i)
+        given[kOrder[i]] = kUnit * big_endian(data, 4 * i, 4);
+      if (!is_rec709(given)) found = fmt::format("cHRM {}", text_of(given));
+    } else if (type == "iCCP" || type == "cICP") {
+      const std::string name(data.begin(), std::ranges::find(data, 0));
+      found = type == "iCCP" ? fmt::format("iCCP '{}'", printable(name)) : "cICP";
+    }
+  });
+  return srgb ? "" : found;
 }
 
 }  // namespace clpv

@@ -23,9 +23,11 @@ struct ImageLimits {
   std::size_t pixel_bytes = std::size_t{1} << 30;  ///< of the decoded pixels, as float
 };
 
-/// Reads all channels of an EXR, PNG or HDR file, of the finest level of the first part. PNG:
-/// sRGB-encoded values in [0, 1] (Encoding::srgb) with unassociated alpha. Extension and content
-/// must agree. Throws Error(bad_input) that names the file, the value found and the values allowed.
+/// Reads all channels of an EXR, PNG or HDR file. EXR: the finest level of all parts, placed in the
+/// display window; several parts become layers. Linear R, G and B of EXR and HDR are those of Rec.
+/// 709. PNG: sRGB-encoded values in [0, 1] (Encoding::srgb) with unassociated alpha. docs/scenes.md
+/// says what is converted and rejected. Extension and content must agree. Throws Error(bad_input)
+/// that names the file, the value found and the values allowed.
 Image read_image(const std::filesystem::path& path, const ImageLimits& limits = {});
 
 /// Decodes the bytes of such a file; `path` is its name. Throws as read_image.

@@ -16,14 +16,13 @@ namespace clpv {
 namespace {
 
 // Upper limits, beyond any practical use: a mistyped value fails before memory is allocated.
-constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxTexels = 8192, kMaxPixels = 16384;
+constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxTexels = 8192;
 // Edge of a cascade [m]. With 512 cells of the smallest, products of a cell's edges are far from a
 // float's limits; the largest holds every scene (bounds::kCoordinate).
 constexpr double kMinMetres = 1e-6, kMaxMetres = 1e7;
 constexpr int kMinRsm = 2, kMinShadow = 4;  // texels: fewer have no interior, and no filter
 constexpr int kMaxCascades = 8;
 constexpr int kMaxStride = 16;
-constexpr int kMaxEntries = 65536;  // minimum of CL_DEVICE_IMAGE_MAX_BUFFER_SIZE
 
 struct Range {
   double minimum, maximum;
@@ -107,7 +106,7 @@ void for_each_option(Options& o, Visit&& visit) {
         "lobes of propagation: host constants, or computed in the kernel as in the paper", Named{});
   visit("evaluate", o.evaluate,
         "SRBF evaluation: exact, or from tables in a buffer or a 1-D image buffer", Named{});
-  visit("table-size", o.table_size, "entries of lobe and SRBF tables", Range{2, kMaxEntries});
+  visit("table-size", o.table_size, "entries of lobe and SRBF tables", Range{2, kMaxTableSize});
   visit("transport", o.transport,
         "propagation: steps with sampled or exact face fluxes, or one sweep along directions",
         Named{});

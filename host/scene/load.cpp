@@ -14,6 +14,7 @@
 
 #include "scene/gltf_parts.hpp"
 #include "scene/input.hpp"
+#include "scene/sky.hpp"
 #include "support/error.hpp"
 #include "support/input_record.hpp"
 
@@ -180,6 +181,8 @@ void MovingScene::load_scene_file(const std::filesystem::path& path,
   scene_.cascade_size = description_.cascade_size;
   scene_.cascades = description_.cascades;
   scene_.sky = description_.sky;
+  if (scene_.sky)
+    for (const std::string& note : scene_.sky->notes) notes.add(note);
   scene_.medium = description_.medium;
 }
 

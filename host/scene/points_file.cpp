@@ -19,13 +19,6 @@ namespace {
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 31;
 constexpr double kShortest = 1e-6;  // minimum length of a valid normal
 
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 /// Returns the part up to the separator; removes both from `text`.
 std::string_view cut(std::string_view& text, char separator) {
   const std::size_t end = std::min(text.find(separator), text.size());
@@ -40,7 +33,7 @@ std::optional<std::array<double, 6>> parse_six(std::string_view line) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i > 0 && line.empty()) return std::nullopt;
     const auto value = parse_number<double>(trimmed(cut(line, ',')));
-    if (!value || !std::isfinite(*value)) return std::nullopt;
+    if (!value) return std::nullopt;
     values[i] = *value;
   }
   return trimmed(line).empty() ? std::optional(values) : std::nullopt;

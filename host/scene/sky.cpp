@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "image/image.hpp"
 #include "image/image_io.hpp"
 #include "scene/bounds.hpp"
 #include "support/error.hpp"
@@ -92,7 +91,7 @@ Sky read_sky(const std::filesystem::path& path, double scale, double rotation) {
   limits.side = std::max(bounds::kSkyWidth, bounds::kSkyHeight);
   limits.file_bytes = bounds::kImageFileBytes;
   limits.channels = bounds::kSkyChannels;
-  const Image image = read_image(path, limits);
+  const Image image = extract_layer(read_image(path, limits), "", path.string());
   if (image.encoding != Encoding::linear)
     throw Error(ExitCode::bad_input, "{}: sRGB-encoded sky; allowed: linear EXR and HDR files",
                 path.string());
@@ -104,6 +103,15 @@ Sky read_sky(const std::filesystem::path& path, double scale, double rotation) {
   Sky sky;
   sky.width = image.width, sky.height = image.height, sky.rotation = rotation;
   sky.texels.resize(image.pixel_count());
+  for (const std::string& note : image.notes)
+    sky.notes.push_back(fmt::format("{}: {}", path.filename().string(), note));
+  if (const auto window = image.windows.find(""); window != image.windows.end()) {
+    const PixelWindow& has = window->second;
+    sky.notes.push_back(
+        fmt::format("{}: has only pixels ({}, {}) to ({}, {}) of {} x {}; the others are 0",
+                    path.filename().string(), has.left, has.top, has.right - 1, has.bottom - 1,
+                    image.width, image.height));
+  }
   for (int channel = 0; channel < 3; ++channel) {
     const char* name = names[channel];
     const auto from = image.channel(name);

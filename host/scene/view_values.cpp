@@ -15,7 +15,6 @@
 namespace clpv {
 namespace {
 
-constexpr double kMinLength = 1e-6;  // of directions, distances and angles
 constexpr double kMaxIntensity = 1e18;
 
 glm::dvec3 dvec3(const Vec3& v) {
@@ -54,7 +53,7 @@ glm::dvec3 point(const char* member, const Vec3& value, const RejectMember& reje
 
 glm::dvec3 direction(const char* member, const Vec3& value, const RejectMember& reject) {
   const glm::dvec3 v = point(member, value, reject);
-  if (glm::length(v) < kMinLength) reject(member, "a vector of no length", "a direction");
+  if (glm::length(v) < bounds::kMinLength) reject(member, "a vector of no length", "a direction");
   return glm::normalize(v);
 }
 
@@ -74,13 +73,14 @@ RejectMember rejected_in(const std::string& what) {
 SceneCamera scene_camera(const Camera& camera, const RejectMember& reject, double metres_per_unit) {
   const glm::dvec3 eye = point("eye", camera.eye, reject),
                    towards = point("target", camera.target, reject) - eye;
-  if (glm::length(towards) < kMinLength)
+  if (glm::length(towards) < bounds::kMinLength)
     reject("target", "the eye itself", "a point away from eye");
-  check_number("vertical_fov_degrees", camera.vertical_fov_degrees, 0.01, 179.9, reject);
-  check_number("near", camera.near, kMinLength, bounds::kCoordinate, reject);
+  check_number("vertical_fov_degrees", camera.vertical_fov_degrees, bounds::kMinFov,
+               bounds::kMaxFov, reject);
+  check_number("near", camera.near, bounds::kMinLength, bounds::kCoordinate, reject);
   const glm::dvec3 forward = glm::normalize(towards), up = direction("up", camera.up, reject);
   const glm::dvec3 perpendicular = up - forward * glm::dot(forward, up);
-  if (glm::length(perpendicular) < kMinLength) {
+  if (glm::length(perpendicular) < bounds::kMinLength) {
     reject("up", fmt::format("{}, parallel to the viewing direction", text_of(camera.up)),
            "a vector that is not parallel to the viewing direction");
   }
@@ -112,7 +112,7 @@ SceneLight scene_light(const Light& light, const RejectMember& reject, double me
     store_floats(data.direction, direction("direction", light.direction, reject));
   if (light.kind == LightKind::spot) {
     check_number("inner_cone_degrees", light.inner_cone_degrees, 0, 90, reject);
-    check_number("outer_cone_degrees", light.outer_cone_degrees, kMinLength, 90, reject);
+    check_number("outer_cone_degrees", light.outer_cone_degrees, bounds::kMinLength, 90, reject);
     if (light.inner_cone_degrees >= light.outer_cone_degrees) {
       reject("",
              fmt::format("inner_cone_degrees {} and outer_cone_degrees {}",

@@ -63,6 +63,13 @@ std::string terminal_json(std::string_view json) {
   return out;
 }
 
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 std::string xml_escaped(const std::string& text) {
   std::string out;
   for (const char c : printable(text)) {

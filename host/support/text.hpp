@@ -3,6 +3,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,13 +33,18 @@ std::string view_file_name(std::string_view scene, std::string_view camera);
 /// Throws Error(run_time) if float(value) is not finite.
 std::string float_literal(double value);
 
-/// Parses all of `text` as a number; returns nothing if it is none or out of range.
+/// Returns `text` without blanks at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// Parses all of `text` as a finite decimal number, such as "-2", "+1.5", ".5" or "1e-3"; returns
+/// nothing if it is none or out of range. All numbers in text are read by it, but those of JSON.
 template <typename Number>
 std::optional<Number> parse_number(std::string_view text) {
   Number value{};
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value)
-                                                                  : std::nullopt;
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  return whole && std::isfinite(static_cast<double>(value)) ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace clpv

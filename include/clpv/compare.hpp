@@ -34,9 +34,10 @@ struct Comparison {
                                ///< 2020); empty without valid pixels
 };
 
-/// Compares A with the reference B. Throws Error(bad_input) for different sizes, numbers of colour
-/// channels or encodings, and for values that are not finite. Linear images are tone-mapped at
-/// `exposure` [EV] for FLIP. Thread-safe.
+/// Compares A with the reference B, over the pixels that their files have. Throws Error(bad_input)
+/// for different sizes, pixels that only one has, different numbers of colour channels or
+/// encodings, and for values that are not finite. Linear images are tone-mapped at `exposure` [EV]
+/// for FLIP. Thread-safe.
 Comparison compare(const Image& a, const Image& b, float exposure = 0);
 
 }  // namespace clpv

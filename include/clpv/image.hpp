@@ -15,6 +15,12 @@ namespace clpv {
 /// Meaning of the values: linear in light, or sRGB-encoded for a display (0 to 1).
 enum class Encoding { linear, srgb };
 
+/// Rectangle of pixels, from its left top pixel to before `right` and `bottom`.
+struct PixelWindow {
+  int left = 0, top = 0, right = 0, bottom = 0;
+  bool operator==(const PixelWindow&) const = default;
+};
+
 /// Image of `width` x `height` pixels. Row 0 is the top row. Channels are interleaved: pixels[(y *
 /// width + x) * channels.size() + c]. Layers follow OpenEXR: channel "indirect.R" is R of layer
 /// "indirect"; a channel without a dot belongs to layer "". Alpha ("A") is 1 on surfaces and 0 in
@@ -26,6 +32,12 @@ struct Image {
   /// Options that the image was rendered with, by name.
   std::map<std::string, std::string> metadata;
   Encoding encoding = Encoding::linear;
+  /// By layer, the pixels that the file has, where it lacks some; the absent ones are 0.
+  std::map<std::string, PixelWindow> windows;
+  /// Names of the parts of an EXR file that has several. Their channels are layers of these names.
+  std::vector<std::string> parts;
+  /// What reading converted or ignored, such as "chromaticities ...: converted to Rec. 709".
+  std::vector<std::string> notes;
 
   std::size_t pixel_count() const {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

@@ -222,6 +222,9 @@ class Image:
     def metadata(self) -> dict[str, str]:
         """Dict of the options that it was rendered with."""
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What reading its file converted or ignored."""
+    @property
     def encoding(self) -> str:
         """'linear' in light, or 'srgb'."""
     def save(self, path: _Path, exposure: float = 0.0) -> None:

@@ -273,6 +273,13 @@ def require_free(host, port):
             sys.exit(f"clpv.view: {host}:{port}: {error.strerror}; choose another --port or --host")
 
 
+def port_number(text):
+    """Value of --port. As choices argparse would list all of them."""
+    if not (text.isascii() and text.isdigit() and len(text) <= 5 and 1 <= int(text) <= 65535):
+        raise argparse.ArgumentTypeError(f"found '{text}', allowed: 1..65535")
+    return int(text)
+
+
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="python3 -m clpv.view",
                                      description="Shows a scene in the browser.")
@@ -284,8 +291,8 @@ def main(arguments=None):
         "--host", default="127.0.0.1", help=
         "address to listen on (default: %(default)s, this machine only); whoever reaches it controls the viewer"
     )
-    parser.add_argument("--port", type=int, default=8080, choices=range(1, 65536),
-                        metavar="1..65535", help="(default: %(default)s)")
+    parser.add_argument("--port", type=port_number, default=8080, metavar="1..65535",
+                        help="(default: %(default)s)")
     given = parser.parse_args(arguments)
     try:
         import viser  # noqa: F401

@@ -141,6 +141,9 @@ void add_image(py::module_& module) {
       "Names, such as 'R' or 'indirect.R' of layer 'indirect'.");
   type.def_readonly("metadata", &Image::metadata, "Dict of the options that it was rendered with.");
   type.def_property_readonly(
+      "notes", [](const Image& image) { return py::tuple(py::cast(image.notes)); },
+      "What reading its file converted or ignored.");
+  type.def_property_readonly(
       "encoding",
       [](const Image& image) { return image.encoding == Encoding::srgb ? "srgb" : "linear"; },
       "'linear' in light, or 'srgb'.");

@@ -22,12 +22,13 @@ const char* name_for(std::string_view bytes) {
 
 void hold_against_header(const clpv::Image& image, const char* name,
                          std::span<const unsigned char> bytes) {
-  const clpv::DeclaredImage declared = clpv::read_exr_header(name, bytes);
-  // Channels of one name count once for OpenEXR.
-  if (declared.width != image.width || declared.height != image.height ||
-      declared.channels < static_cast<std::int64_t>(image.channels.size())) {
-    std::abort();
+  std::int64_t channels = 0;
+  for (const clpv::ExrHeader& part : clpv::read_exr_header(name, bytes)) {
+    channels += part.channels;
+    if (part.display.width() != image.width || part.display.height() != image.height) std::abort();
   }
+  // Channels of one name count once for OpenEXR.
+  if (channels < static_cast<std::int64_t>(image.channels.size())) std::abort();
 }
 
 }  // namespace

@@ -35,6 +35,14 @@ def free_port():
         return probe.getsockname()[1]
 
 
+@pytest.mark.parametrize("port", ["0", "65536", "0x50", "80.5", " 80", "nan"])
+def test_ports_out_of_range_are_named(port, capsys):
+    with pytest.raises(SystemExit):
+        view.main(["none.json", "--port", port])
+    message = capsys.readouterr().err
+    assert f"found '{port}', allowed: 1..65535" in message and len(message) < 500
+
+
 def test_the_camera_of_a_browser():
     def handle(wxyz):
         return types.SimpleNamespace(

@@ -31,25 +31,27 @@ SHOWN = {
 }
 
 
-def write(file, planes):
-    """An uncompressed EXR of floats."""
+def write(file, planes, data=None, display=None, more=b""):
+    """An uncompressed EXR of floats. data, display: windows (left, top, right, bottom)."""
     def attribute(name, kind, value):
         return name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
 
     names, (height, width) = sorted(planes), next(iter(planes.values())).shape
-    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    data = data or (0, 0, width - 1, height - 1)
+    window, shown = struct.pack("<4i", *data), struct.pack("<4i", *(display or data))
     channels = b"".join(name.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1)
                         for name in names) + b"\0"
     head = struct.pack("<2i", exr.MAGIC, 2) + attribute(b"channels", b"chlist", channels) + \
         attribute(b"compression", b"compression", b"\0") + attribute(b"dataWindow", b"box2i", window) + \
-        attribute(b"displayWindow", b"box2i", window) + attribute(b"lineOrder", b"lineOrder", b"\0") + \
+        attribute(b"displayWindow", b"box2i", shown) + attribute(b"lineOrder", b"lineOrder", b"\0") + \
         attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) + \
-        attribute(b"screenWindowCenter", b"v2f", bytes(8)) + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0"
+        attribute(b"screenWindowCenter", b"v2f", bytes(8)) + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + more + b"\0"
     rows = [
         b"".join(planes[name][y].astype("<f4").tobytes() for name in names) for y in range(height)
     ]
     first, size = len(head) + 8 * height, 8 + len(rows[0])
-    chunks = b"".join(struct.pack("<2i", y, len(row)) + row for y, row in enumerate(rows))
+    chunks = b"".join(
+        struct.pack("<2i", data[1] + y, len(row)) + row for y, row in enumerate(rows))
     file.write_bytes(head + struct.pack(f"<{height}Q", *(first + y * size
                                                          for y in range(height))) + chunks)
 
@@ -229,6 +231,55 @@ class Files(unittest.TestCase):
                     check=True)
                 expected = image.astype(numpy.float16) if kind == "half" else image
                 numpy.testing.assert_array_equal(exr.colours(exr.read(target), target)[0], expected)
+
+
+class Windows(Suite):
+    """Pixels lie by their coordinates in the display window."""
+    def setUp(self):
+        super().setUp()
+        self.image = self.folder / "a.exr"
+        self.pixels = layered(smooth_image(3), self.alpha)
+        self.shown = 0, 0, SIZE[0] - 1, SIZE[1] - 1
+
+    def read(self):
+        return exr.colours(exr.read(self.image), self.image)[0]
+
+    def test_overscan_is_cut(self):
+        padded = {name: numpy.pad(plane, 4, constant_values=9) for name, plane in self.pixels.items()}
+        write(self.image, padded, (-4, -4, SIZE[0] + 3, SIZE[1] + 3), self.shown)
+        numpy.testing.assert_array_equal(self.read(), smooth_image(3))
+        elsewhere = -10, -20, SIZE[0] - 11, SIZE[1] - 21
+        write(self.image, self.pixels, elsewhere, elsewhere)
+        numpy.testing.assert_array_equal(self.read(), smooth_image(3))
+
+    def test_absent_pixels_are_rejected(self):
+        for data in (3, 0, SIZE[0] + 2, SIZE[1] - 1), (0, -1, SIZE[0] - 1, SIZE[1] - 2):
+            write(self.image, self.pixels, data, self.shown)
+            with self.assertRaisesRegex(exr.BadImage, r"only pixels \(.*displayWindow"):
+                self.read()
+
+
+class Primaries(Suite):
+    def test_are_those_the_program_reads(self):
+        image = self.folder / "ours/room-left.exr"
+        numbers = struct.pack("<8f", 0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)
+        more = b"chromaticities\0chromaticities\0" + struct.pack("<i", 32) + numbers
+        write(image, layered(self.truths["room-left"], self.alpha), more=more)
+        row = self.score(only=["room-left"])["views"][0]
+        theirs = json.loads(
+            subprocess.run([
+                CLPV, "compare", "-q", "--suite", self.folder / "ours", "--truths",
+                self.folder / "truths"
+            ], check=True, capture_output=True, text=True).stdout)["views"][0]
+        self.assertGreater(row["nrmse"], 0.01)
+        self.assertAlmostEqual(row["nrmse"], theirs["nrmse_valid"], scored.DIGITS - 1)
+
+    def test_of_no_colours_are_rejected(self):
+        more = b"chromaticities\0chromaticities\0" + struct.pack("<i", 32) + bytes(32)
+        image = self.folder / "ours/room-left.exr"
+        write(image, layered(self.truths["room-left"], self.alpha), more=more)
+        with self.assertRaisesRegex(exr.BadImage, "three colours and a white"):
+            self.score(only=["room-left"])
 
 
 class CamerasAndLights(unittest.TestCase):

@@ -9,6 +9,10 @@ import numpy
 MAGIC, NOT_SCANLINES = 20000630, 0x1a00  # in the version: tiled, deep, several parts
 TYPES = {0: numpy.dtype("<u4"), 1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
 ROWS = {0: 1, 2: 1, 3: 16}  # of a chunk, by compression: none, ZIPS, ZIP
+REC709 = 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.3290  # x and y of red, green, blue and white
+SAME_CHROMATICITY = 1e-3  # standards state three or four digits
+BRADFORD = numpy.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367],
+                        [0.0389, -0.0685, 1.0296]])  # cone responses of CIE XYZ
 
 
 class BadImage(Exception):
@@ -31,7 +35,10 @@ def channel_list(value):
     at, found = 0, []
     while value[at]:
         end = value.index(0, at)
-        found.append((value[at:end].decode(), TYPES[struct.unpack_from("<i", value, end + 1)[0]]))
+        kind, x, y = struct.unpack_from("<i4x2i", value, end + 1)
+        if (x, y) != (1, 1):
+            raise ValueError(f"channel {value[at:end].decode()} sampled every {x} x {y} pixels")
+        found.append((value[at:end].decode(), TYPES[kind]))
         at = end + 17
     return found
 
@@ -50,7 +57,7 @@ def unzipped(data, size):
 
 
 def scanlines(data, attributes, at):
-    left, top, right, bottom = struct.unpack("<4i", attributes["dataWindow"])
+    left, top, right, bottom = window(attributes["dataWindow"])
     width, height = right - left + 1, bottom - top + 1
     channels = channel_list(attributes["channels"])
     bytes_of_row = width * sum(kind.itemsize for _, kind in channels)
@@ -71,6 +78,64 @@ def scanlines(data, attributes, at):
     return planes
 
 
+def window(value):
+    return struct.unpack("<4i", value)
+
+
+def in_display(file, planes, data, display):
+    """Cuts planes of the data window to the display window, which must lie in it."""
+    left, top, right, bottom = display
+    if data[0] > left or data[1] > top or data[2] < right or data[3] < bottom:
+        raise BadImage(f"{file}: found only pixels {data[:2]} to {data[2:]} (dataWindow); allowed: all "
+                       f"of {display[:2]} to {display[2:]} (displayWindow)")
+    rows, columns = slice(top - data[1], bottom - data[1] + 1), slice(left - data[0],
+                                                                     right - data[0] + 1)
+    return {name: plane[rows, columns] for name, plane in planes.items()}
+
+
+def xyz(chromaticities):
+    """Returns the matrix from RGB to XYZ and the white (SMPTE RP 177)."""
+    x, y = numpy.reshape(chromaticities, (4, 2)).T
+    columns = numpy.array([x, y, 1 - x - y])
+    white = columns[:, 3] / y[3]
+    return columns[:, :3] * numpy.linalg.solve(columns[:, :3], white), white
+
+
+def to_rec709(file, planes, chromaticities):
+    """Converts R, G and B of each layer in place, white adapted by Bradford's transform."""
+    if numpy.abs(numpy.subtract(chromaticities, REC709)).max() < SAME_CHROMATICITY:
+        return
+    try:
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            (source, white), (target, wanted) = xyz(chromaticities), xyz(REC709)
+            gain = BRADFORD @ wanted / (BRADFORD @ white)
+            matrix = numpy.linalg.solve(
+                target, numpy.linalg.solve(BRADFORD, gain[:, None] * BRADFORD) @ source)
+    except numpy.linalg.LinAlgError:
+        matrix = numpy.full((3, 3), numpy.nan)
+    if not numpy.isfinite(matrix).all():
+        raise BadImage(f"{file}: found chromaticities {tuple(chromaticities)}; allowed: three colours "
+                       "and a white")
+    for prefix in {name[:-1] for name in planes if name == "R" or name.endswith(".R")}:
+        names = [prefix + colour for colour in "RGB"]
+        if all(name in planes for name in names):
+            converted = numpy.einsum("ij,jyx->iyx", matrix, [planes[name] for name in names])
+            planes.update(zip(names, converted.astype(numpy.float32)))
+
+
+def merged(parts):
+    """Channels of all parts {name: planes}, as 'PART.CHANNEL'; those of the only part with R, G and
+    B also as they are."""
+    planes = {
+        channel if channel.startswith(f"{part}.") else f"{part}.{channel}": plane
+        for part, channels in parts.items() for channel, plane in channels.items()
+    }
+    shown = [channels for channels in parts.values() if all(name in channels for name in "RGB")]
+    for channels in shown if len(shown) == 1 else ():
+        planes.update(channels)
+    return planes
+
+
 def by_openexr(file):
     try:
         import OpenEXR
@@ -80,15 +145,21 @@ def by_openexr(file):
             "uncompressed, ZIP or ZIPS, or install OpenEXR (PyPI)") from None
     if not hasattr(OpenEXR, "File"):
         raise BadImage(f"{file}: found OpenEXR {OpenEXR.__version__}; allowed: at least 3.3 (PyPI)")
+    parts = {}
     with OpenEXR.File(str(file), separate_channels=True) as image:
-        return {
-            name: channel.pixels.astype(numpy.float32)
-            for name, channel in image.channels().items()
-        }
+        for part in image.parts:
+            planes = {name: each.pixels.astype(numpy.float32) for name, each in part.channels.items()}
+            data, display = (tuple(int(edge) for corner in part.header[name] for edge in corner)
+                             for name in ("dataWindow", "displayWindow"))
+            planes = in_display(file, planes, data, display)
+            to_rec709(file, planes, part.header.get("chromaticities", REC709))
+            parts[part.name()] = planes
+    return merged(parts) if len(parts) > 1 else planes
 
 
 def read(file):
-    """Returns the channels {name: float32 array of height x width}. Throws BadImage."""
+    """Returns the channels {name: float32 array of height x width} of the display window, R, G and B
+    those of Rec. 709. Throws BadImage, also where pixels are missing."""
     try:
         data = file.read_bytes()
     except OSError as error:
@@ -100,7 +171,11 @@ def read(file):
         attributes, at = header(data)
         if version & NOT_SCANLINES or attributes["compression"][0] not in ROWS:
             return by_openexr(file)
-        return scanlines(data, attributes, at)
+        planes = in_display(file, scanlines(data, attributes, at), window(attributes["dataWindow"]),
+                            window(attributes["displayWindow"]))
+        if "chromaticities" in attributes:
+            to_rec709(file, planes, struct.unpack("<8f", attributes["chromaticities"]))
+        return planes
     except (struct.error, zlib.error, IndexError, KeyError, ValueError, RuntimeError) as error:
         raise BadImage(f"{file}: damaged EXR ({type(error).__name__}: {error})") from None
 
