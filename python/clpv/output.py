@@ -20,7 +20,7 @@ import tarfile
 RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3  # exit codes
 MARKER = ".clpv-output"  # of a script's output folder: the script, then its files, a line each
 LONGEST_NAME = 255  # bytes
-GET_FLAGS, IMMUTABLE, APPEND_ONLY = 0x80086601, 0x10, 0x20  # FS_IOC_GETFLAGS of Linux
+GET_FLAGS, APPEND_ONLY = 0x80086601, 0x20  # FS_IOC_GETFLAGS of Linux
 NO_SYNC = errno.EINVAL, errno.ENOTSUP  # file systems without fsync
 
 
@@ -37,12 +37,13 @@ def printable(text):
     return "".join(c if c.isprintable() or c == " " else "?" for c in str(text))
 
 
-def flags_of(file):
-    """Attributes of an open file or folder that `lsattr` shows; 0 where there are none."""
+def is_append_only(folder):
+    """Whether an open folder keeps what is created in it (`chattr +a`)."""
     try:
-        return struct.unpack("l", fcntl.ioctl(file, GET_FLAGS, bytes(struct.calcsize("l"))))[0]
+        flags = fcntl.ioctl(folder, GET_FLAGS, bytes(struct.calcsize("l")))
     except OSError:
-        return 0
+        return False  # the file system has no such flags
+    return bool(struct.unpack("l", flags)[0] & APPEND_ONLY)
 
 
 def sync(file):
@@ -115,7 +116,7 @@ class Output:
     def _replaced(self, folder):
         """Status of the file to replace, or None. Rejects what cannot be replaced."""
         name = os.path.basename(self.target)
-        if flags_of(folder) & APPEND_ONLY:
+        if is_append_only(folder):
             self._reject("its folder is append-only")
         try:
             status = os.stat(name, dir_fd=folder, follow_symlinks=False)
@@ -127,15 +128,11 @@ class Output:
             self._reject("it is a folder")
         if not stat.S_ISREG(status.st_mode):
             self._reject("it is not a regular file")
-        if not os.access(name, os.W_OK, dir_fd=folder):
-            self._reject(os.strerror(errno.EACCES))
         above = os.fstat(folder)
         if above.st_mode & stat.S_ISVTX and os.geteuid() not in (0, status.st_uid, above.st_uid):
             self._reject("it belongs to another user, and its folder is sticky")
-        file = os.open(name, os.O_WRONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=folder)
-        with open(file, "wb"):
-            if flags_of(file) & (APPEND_ONLY | IMMUTABLE):
-                self._reject("it is append-only or immutable")
+        # Fails for a file that is read-only, append-only or immutable.
+        os.close(os.open(name, os.O_WRONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=folder))
         return status
 
     def _created(self, folder, mode):
