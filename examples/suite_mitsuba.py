@@ -1,4 +1,4 @@
-# !/usr/bin/env python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Renders the still views of the suite (docs/score.md) with the path tracer Mitsuba 3, to score
 them.

@@ -3,7 +3,8 @@
 
     scripts/frame [--out DIR]
 
-Output: frame-NAME.jpg in docs/images, or in DIR, a new or empty folder. First builds. Needs the packages of scripts/setup.
+Output: frame-NAME.jpg in docs/images, or in DIR, a new or empty folder, or one of an earlier run.
+First builds. Needs the packages of scripts/setup.
 """
 import argparse
 import io

@@ -12,12 +12,13 @@ in the docs show.
 NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. DEVICE: as --device of clpv takes
 it; default: the first. The first form runs `clpv check` and four suites of `clpv bench`. The second
 compares clpv and other methods at equal time with path tracing, and names its file after device and
-commit (docs/results.md). results/NAME is new, empty, or written by scripts/measure. The third runs more suites, frames with --stats, and `clpv quality`
+commit (docs/results.md). The third runs more suites, frames with --stats, and `clpv quality`
 against path tracing, and redraws the charts in docs/images; scripts/tables then writes the tables.
 The paper's numbers are those of scripts/reproduce --record. Commit and build first (scripts/build),
-and keep the machine free of other work. Files hold no samples and no host name. `clpv quality`
-caches ground truths, and for the docs finished cells, so a second run of it is short. The third
-form needs Debian's Python and its packages.
+and keep the machine free of other work. results/NAME of the first form is new, empty, or of an
+earlier run. Files hold no samples and no host name. `clpv quality` caches ground truths, and for
+the docs finished cells, so a second run of it is short. The third form needs Debian's Python and
+its packages.
 """
 import argparse
 import datetime

@@ -109,7 +109,8 @@ class Files(InFolder):
             self.assertEqual(sorted(each.name for each in path.parent.iterdir()), ["theirs"])
 
     def test_append_only_is_found_before_the_work(self):
-        for name, words in (self.folder, "folder is append-only"), (self.file, "Operation not permitted"):
+        for name, words in ((self.folder, "folder is append-only"),
+                            (self.file, "Operation not permitted")):
             if shutil.which("chattr") is None or subprocess.run(
                     ["chattr", "+a", name], capture_output=True, check=False).returncode:
                 self.skipTest("skipped: chattr +a does not work here")

@@ -76,7 +76,8 @@ def read_truth(folder, view):
 def inputs(folders, suite_folder):
     """Files that a score of these folders may read: suite.json, all truths and images."""
     truths = [suite_folder / view["truth"] for view in read_suite(suite_folder)["views"]]
-    return [suite_folder / "suite.json", *truths, *(f for each in folders for f in each.glob("*.exr"))]
+    images = [file for folder in folders for file in folder.glob("*.exr")]
+    return [suite_folder / "suite.json", *truths, *images]
 
 
 def score_view(files, folder, view):
