@@ -391,8 +391,10 @@ def write_scene(path, scene):
     output.write(path, json.dumps(scene, indent=2) + "\n")
 
 
-def main(file):
-    """`file`: the path for a name."""
+def main(arguments):
+    file = HERE.joinpath
+    if arguments:
+        file = output.Folder(arguments[0], "scenes/generate_atrium.py").file
     document = Document("clpv scenes/generate_atrium.py")
     add_materials(document)
     document.node("shell", document.mesh("shell", shell()))
@@ -412,5 +414,4 @@ def main(file):
 
 
 if __name__ == "__main__":
-    given = sys.argv[1:2]
-    main(output.Folder(given[0], "scenes/generate_atrium.py").file if given else HERE.joinpath)
+    sys.exit(output.exit_code(main, sys.argv[1:]))

@@ -150,12 +150,13 @@ def write(file, stem):
     output.write(file(f"{stem}.json"), json.dumps(scene_file(stem), indent=2) + "\n")
 
 
-def main(file):
-    """`file`: the path for a name."""
+def main(arguments):
+    file = HERE.joinpath
+    if arguments:
+        file = output.Folder(arguments[0], "scenes/generate_cornell.py").file
     for stem in ("cornell", "cornell_lamp", "empty_room"):
         write(file, stem)
 
 
 if __name__ == "__main__":
-    given = sys.argv[1:2]
-    main(output.Folder(given[0], "scenes/generate_cornell.py").file if given else HERE.joinpath)
+    sys.exit(output.exit_code(main, sys.argv[1:]))

@@ -15,6 +15,7 @@ import pathlib
 import secrets
 import stat
 import struct
+import sys
 import tarfile
 
 RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3  # exit codes
@@ -155,9 +156,18 @@ class Output:
         os.fchmod(file, stat.S_IMODE(replaced.st_mode) & 0o777)
 
 
-def write(path, data, inputs=()):
+def write(path, data):
     """Writes bytes or text to a file. Raises BadOutput."""
-    Output(path, inputs).write(data)
+    Output(path).write(data)
+
+
+def exit_code(main, *arguments):
+    """That of a script's main function. Prints what cannot be written."""
+    try:
+        return main(*arguments)
+    except BadOutput as error:
+        print(f"{sys.argv[0]}: {error}", file=sys.stderr)
+        return error.code
 
 
 def read_regular(path):

@@ -50,15 +50,6 @@ def hash_of(paths):
     return sums.hexdigest()
 
 
-def exit_code(main):
-    """That of a script's main(). Prints what cannot be written."""
-    try:
-        return main()
-    except output.BadOutput as error:
-        print(f"scripts/{pathlib.Path(sys.argv[0]).name}: {error}", file=sys.stderr)
-        return error.code
-
-
 def json_lines(document):
     """JSON with a line for each row of its lists and for each member of its objects."""
     members = []

@@ -64,13 +64,17 @@ def written(text):
 
 def main():
     arguments = sys.argv[1:]
+    if arguments in (["-h"], ["--help"]):
+        print(__doc__.strip())
+        return 0
     if arguments == ["--list"]:
         print("\n".join(["measured-on", *TABLES]))
         return 0
     if arguments[:1] == ["--stages"] and len(arguments) > 1:
         return print_stages(arguments[1:])
     if arguments not in ([], ["--check"]):
-        sys.exit(__doc__.strip())
+        print(__doc__.strip(), file=sys.stderr)
+        return 2
     differing = []
     for name, document in (("claims", {"claims": verdicts.judged(result)}),
                            ("expected", expected.expected(result))):
