@@ -113,12 +113,14 @@ def key_of(arguments):
 
 
 def earlier(out, name, key):
-    """The part of an earlier run with this key; None if there is none. Reports a damaged file."""
+    """The part of an earlier run with this key; None if there is none, or if it lacks one of its
+    files. Reports a damaged one."""
     if name not in out.names or not (out.path / name).exists():
         return None
     try:
         found = json.loads(output.read_regular(out.path / name))
-        if found["key"] == key:
+        whole = all((out.path / file).is_file() for file in found["files"])
+        if found["key"] == key and whole:
             return {**found, "result": found["result"], "minutes": float(found["minutes"])}
     except (OSError, ValueError, KeyError, TypeError) as error:
         print(
@@ -137,9 +139,10 @@ def measured(arguments):
         found = earlier(arguments.out, file, key)
         if found is None:
             print(f"scripts/reproduce: {name}", file=sys.stderr, flush=True)
-            start = time.monotonic()
+            start, before = time.monotonic(), len(arguments.out.written)
             result = part()
-            found = {"key": key, "minutes": (time.monotonic() - start) / 60, "result": result}
+            minutes, files = (time.monotonic() - start) / 60, arguments.out.written[before:]
+            found = {"key": key, "minutes": minutes, "files": files, "result": result}
             arguments.out.write(file, json.dumps(found))
         done[name] = found
     return done
@@ -362,6 +365,8 @@ def main():
     arguments.out = output.Folder(arguments.out.resolve(), "scripts/reproduce")
     if not arguments.no_build:
         subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
+    if not CLPV.exists():
+        parser.error(f"--no-build: found no {CLPV}; allowed: a build")
     done = measured(arguments)
     document = json.loads((RESULTS / "paper/expected.json").read_text(encoding="utf-8"))
     numbers = numbers_of(done)
