@@ -1,4 +1,4 @@
-# !/usr/bin/env python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """A room built from NumPy arrays. Its red wall moves; the indirect light on the floor is printed,
 and plotted with matplotlib."""

@@ -1,4 +1,4 @@
-# !/usr/bin/env python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Renders the still views of the suite (docs/score.md) with the path tracer Mitsuba 3, to score
 them.
@@ -227,7 +227,10 @@ def main():
     )
     given = parser.parse_args()
     suite = json.loads((given.suite / "suite.json").read_text())
-    given.output.mkdir(parents=True, exist_ok=True)
+    sys.path.insert(0, str(given.suite))  # the scorer, and how clpv writes files
+    from clpv import output
+    from clpv.score import exr
+    folder = output.Folder(given.output, "examples/suite_mitsuba.py")
     for name, entry in suite["scenes"].items():
         views = [
             view for view in suite["views"]
@@ -247,14 +250,12 @@ def main():
             rays = camera_rays(gltf, view["camera"], view["width"], view["height"])
             albedo = None
             if given.albedo_of_suite:
-                sys.path.insert(0, str(given.suite))  # the scorer
-                from clpv.score import exr
                 albedo, _ = exr.colours(exr.read(given.suite / view["truth"]), view["truth"],
                                         "albedo")
             for frame in range(given.frames):
                 image = render(scene, mi.Ray3f(rays), given.spp, (view["height"], view["width"]),
                                frame, albedo)
-                mi.Bitmap(image).write(str(given.output / f"{view['name']}.{frame:04}.exr"))
+                mi.Bitmap(image).write(str(folder.file(f"{view['name']}.{frame:04}.exr")))
             print(view["name"], flush=True)
 
 

@@ -1,19 +1,22 @@
-# !/usr/bin/env python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes atrium.glb and atrium.json beside itself, a two-storey colonnade round an open court, hung
 with curtains; atrium_overcast.json, the same without a sun; and atrium_living.gltf and .json, the
 same for ten seconds of a day.
 
 Python's standard library only; the same bytes every time. `generate_atrium.py [FOLDER]` writes into
-FOLDER instead.
+FOLDER instead, which is new, empty, or of an earlier run.
 
 Metres; x along the court, y up, z across. The court's floor is at y = 0 and its centre at the
 origin. The light falls from +z to -z: through the open roof onto the floor's -z half and the
 curtains of the -z arcade. """
 import json
-import os
+import pathlib
 import sys
 
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "python"))
+from clpv import output  # noqa: E402
 from modelling import shapes, textures
 from modelling.gltf import Document
 from modelling.mesh import Mesh
@@ -384,13 +387,14 @@ def overcast_scene_file():
     }
 
 
-def write_scene(folder, name, scene):
-    with open(os.path.join(folder, name), "w", encoding="utf-8", newline="\n") as file:
-        json.dump(scene, file, indent=2)
-        file.write("\n")
+def write_scene(path, scene):
+    output.write(path, json.dumps(scene, indent=2) + "\n")
 
 
-def main(folder):
+def main(arguments):
+    file = HERE.joinpath
+    if arguments:
+        file = output.Folder(arguments[0], "scenes/generate_atrium.py").file
     document = Document("clpv scenes/generate_atrium.py")
     add_materials(document)
     document.node("shell", document.mesh("shell", shell()))
@@ -400,14 +404,14 @@ def main(folder):
     place_curtains(document)
     place_banners(document)
     place_furniture(document)
-    glb = document.write(os.path.join(folder, "atrium.glb"))
-    write_scene(folder, "atrium.json", scene_file())
-    write_scene(folder, "atrium_overcast.json", overcast_scene_file())
+    glb = document.write(file("atrium.glb"))
+    write_scene(file("atrium.json"), scene_file())
+    write_scene(file("atrium_overcast.json"), overcast_scene_file())
     move_curtain(document)
     throw_ball(document)
-    document.write_beside(os.path.join(folder, "atrium_living.gltf"), "atrium.glb", glb)
-    write_scene(folder, "atrium_living.json", living_scene_file())
+    document.write_beside(file("atrium_living.gltf"), "atrium.glb", glb)
+    write_scene(file("atrium_living.json"), living_scene_file())
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__)))
+    sys.exit(output.exit_code(main, sys.argv[1:]))

@@ -1,10 +1,10 @@
-# !/usr/bin/env python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes cornell, cornell_lamp and empty_room, .glb and .json, beside itself: the Cornell box, by
 its published corners.
 
 Python's standard library only; the same bytes every time. `generate_cornell.py [FOLDER]` writes
-into FOLDER instead.
+into FOLDER instead, which is new, empty, or of an earlier run.
 
 Millimetres, as published (Cornell University Program of Computer Graphics, "The Cornell Box:
 Data"): the open front is at z = 0, the red wall at x = 552.8, the green one at x = 0. The
@@ -15,9 +15,12 @@ thickness (not published: they have none there), since light falls on them from 
 `empty_room` is `cornell` without blocks and with walls along the axes: light on the simplest
 surfaces, which tests compare with path tracing as cells get smaller. """
 import json
-import os
+import pathlib
 import sys
 
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "python"))
+from clpv import output  # noqa: E402
 from modelling.gltf import Document
 from modelling.mesh import Mesh
 
@@ -132,7 +135,7 @@ def scene_file(stem):
     }
 
 
-def write(folder, stem):
+def write(file, stem):
     lamp, empty = stem == "cornell_lamp", stem == "empty_room"
     document = Document("clpv scenes/generate_cornell.py")
     for name, colour in (("white", WHITE), ("red", RED), ("green", GREEN)):
@@ -143,16 +146,17 @@ def write(folder, stem):
     document.node("outside", document.mesh("outside", outside(empty)))
     for name, (footprint, height) in [] if empty else BLOCKS.items():
         document.node(name, document.mesh(name, block(footprint, height)))
-    document.write(os.path.join(folder, stem + ".glb"))
-    with open(os.path.join(folder, stem + ".json"), "w", encoding="utf-8", newline="\n") as file:
-        json.dump(scene_file(stem), file, indent=2)
-        file.write("\n")
+    document.write(file(f"{stem}.glb"))
+    output.write(file(f"{stem}.json"), json.dumps(scene_file(stem), indent=2) + "\n")
 
 
-def main(folder):
+def main(arguments):
+    file = HERE.joinpath
+    if arguments:
+        file = output.Folder(arguments[0], "scenes/generate_cornell.py").file
     for stem in ("cornell", "cornell_lamp", "empty_room"):
-        write(folder, stem)
+        write(file, stem)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__)))
+    sys.exit(output.exit_code(main, sys.argv[1:]))

@@ -102,7 +102,7 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
   const std::map<std::string, std::string> listed = listed_in(truths);
   nlohmann::json views = nlohmann::json::array();
   double sum = 0;
-  int defined = 0;
+  std::size_t defined = 0;
   for (const fs::path& file : files) {
     const Image image = read_image_layer(file, "");
     const auto [path, truth] = truth_of(file, image, candidates, listed, truths);
@@ -113,8 +113,8 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
     sum += errors.nrmse_valid.value_or(0);
     defined += errors.nrmse_valid.has_value();
   }
-  nlohmann::json mean;  // null without a defined error
-  if (defined > 0) mean = sum / defined;
+  nlohmann::json mean;  // null if the error of a view is undefined: means of other views differ
+  if (defined == files.size()) mean = sum / static_cast<double>(defined);
   return {{"views", views}, {"mean_nrmse", mean}, {"undefined", files.size() - defined}};
 }
 

@@ -17,6 +17,7 @@ import warnings
 
 import numpy as np
 
+from clpv import output
 from clpv.draw import documents
 
 NORM = 2 * np.pi / 3  # integral of max(0, w . d)^2
@@ -270,16 +271,15 @@ def main(arguments=None):
     path, file, count = given.pop("output"), given.pop("weights"), given["count"]
     try:
         given["over"] = weights(file) if file else given["over"]
+        target = path and output.Output(path, [file] if file else [])
         found = search(**given)
         if path:
-            documents.write(path,
-                            (json.dumps(document_of(path.stem, found), indent=1) + "\n").encode())
+            target.write(json.dumps(document_of(path.stem, found), indent=1) + "\n")
     except ImportError as error:
         sys.exit(f"{error} (Debian: python3-scipy)")
-    except (documents.BadDocument, OSError, ValueError) as error:
+    except (documents.BadDocument, output.BadOutput, ValueError) as error:
         print(error, file=sys.stderr)
-        return 3 if isinstance(error,
-                               documents.BadDocument) else 1 if isinstance(error, OSError) else 2
+        return 3 if isinstance(error, documents.BadDocument) else getattr(error, "code", 2)
     print(
         f"error {found.error:.4f}; minimum of any {count} functions over all directions: "
         f"{minimum_error(count):.4f}\ncondition number {found.condition:.4g}; {found.valid} of "

@@ -6,6 +6,8 @@ import json
 import struct
 import zlib
 
+from clpv import output
+
 FLOAT, UNSIGNED_SHORT, UNSIGNED_INT = 5126, 5123, 5125
 ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 
@@ -113,8 +115,7 @@ class Document:
         glb = struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(blob))
         glb += struct.pack("<I4s", len(text), b"JSON") + text
         glb += struct.pack("<I4s", len(blob), b"BIN\0") + blob
-        with open(path, "wb") as file:
-            file.write(glb)
+        output.write(path, glb)
         return glb
 
     def write_beside(self, path, name, glb):
@@ -135,9 +136,7 @@ class Document:
             **self._json, "bufferViews": views, "buffers": [{"uri": name, "byteLength": len(glb)},
                                                             {"uri": data, "byteLength": len(rest)}]
         }
-        with open(path, "w", encoding="utf-8", newline="\n") as file:
-            json.dump(document, file, separators=(",", ":"))
-            file.write("\n")
+        output.write(path, json.dumps(document, separators=(",", ":")) + "\n")
 
     def _view(self, data, target=None):
         self._blob += b"\0" * (-len(self._blob) % 4)

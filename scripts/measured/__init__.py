@@ -4,16 +4,19 @@ scripts/charts show them.
 
 rows.py has what is measured, once for both.
 """
+import hashlib
 import json
 import os
 import pathlib
+import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BUILD = pathlib.Path(os.environ.get("CLPV_BUILD_DIR", ROOT / "build"))
+BUILD = ROOT / os.environ.get("CLPV_BUILD_DIR", "build")
 CLPV = BUILD / "clpv"
 RESULTS = ROOT / "results"
 sys.path.insert(0, str(ROOT / "python"))
+from clpv import output  # noqa: E402
 
 
 def native():
@@ -21,6 +24,30 @@ def native():
     import clpv
     clpv.__path__.append(str(BUILD / "python/clpv"))
     return clpv
+
+
+def described():
+    """Commit of this tree, as cmake/git_describe.cmake finds it: `unknown` without git, and in a
+    source archive, which may lie in another repository."""
+    if (ROOT / ".git").exists():
+        try:
+            return subprocess.run(["git", "describe", "--always", "--dirty", "--tags"],
+                                  capture_output=True, text=True, check=True,
+                                  cwd=ROOT).stdout.strip()
+        except (OSError, subprocess.CalledProcessError):
+            pass
+    return "unknown"
+
+
+def hash_of(paths):
+    """SHA-256 of files, and of all files in folders, with their names."""
+    sums = hashlib.sha256()
+    for path in paths:
+        for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
+            if file.is_file() and "__pycache__" not in file.parts:
+                content = hashlib.sha256(file.read_bytes()).hexdigest()
+                sums.update(f"{file.relative_to(path.parent)} {content}\n".encode())
+    return sums.hexdigest()
 
 
 def json_lines(document):

@@ -23,7 +23,7 @@ import sys
 
 import numpy
 
-from . import native
+from . import native, output
 
 clpv = native()
 from clpv.draw import documents, style  # noqa: E402
@@ -37,10 +37,10 @@ BASES = ("srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 LAMBDAS = [round(0.05 * i, 2) for i in range(1, 15)]
 
 
-def save(figure, output, dpi):
+def save(figure, target, dpi):
     figure.tight_layout()
-    documents.write(pathlib.Path(output), style.rendered(figure, "png", dpi=dpi))
-    print(output)
+    output.write(target, style.rendered(figure, "png", dpi=dpi))
+    print(target)
 
 
 def points(path, label):
@@ -61,7 +61,7 @@ def points(path, label):
     return [(name, sorted(line)) for name, line in lines.items()]
 
 
-def draw_errors(files, output):
+def draw_errors(files, target):
     """`files`: (label, path)."""
     series = [
         line for label, path in files
@@ -80,7 +80,7 @@ def draw_errors(files, output):
              xlabel="frame [ms]", ylabel="mean NRMSE [%]")
     style.logarithmic(axis.xaxis)
     axis.legend()
-    save(figure, output, 110)
+    save(figure, target, 110)
 
 
 def described(name, bandwidth):
@@ -93,7 +93,7 @@ def described(name, bandwidth):
             "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)}
 
 
-def draw_lambda(output):
+def draw_lambda(target):
     curves = {
         name: [point for point in (described(name, value) for value in LAMBDAS) if point]
         for name in BASES
@@ -117,7 +117,7 @@ def draw_lambda(output):
     panels[2].axhline(1, color=style.INK, linestyle="--")
     panels[2].set_ylim(0, 2)
     panels[1].legend(fontsize=8)
-    save(figure, output, 80)
+    save(figure, target, 80)
 
 
 def stage_samples(frames):
@@ -152,7 +152,7 @@ def steady_frames(file):
     return [frames[number] for number in sorted(frames) if not frames[number]["first"]]
 
 
-def draw_times(folder, output):
+def draw_times(folder, target):
     file = pathlib.Path(folder) / "times.jsonl"
     frames = steady_frames(file)
     if not frames:
@@ -171,10 +171,10 @@ def draw_times(folder, output):
     right.plot([frame["time"] for frame in frames], samples["frame (wall)"], lw=1,
                color=style.colour(0))
     right.set(xlabel="s", ylabel="ms", title="Every frame (wall)", ylim=(0, None))
-    save(figure, output, 100)
+    save(figure, target, 100)
 
 
-def draw_stability(folders, output):
+def draw_stability(folders, target):
     figure, (axis,) = style.panels(1, 1, (8.6, 3.4))
     documents_of = {label: read(folder, "stability.json") for label, folder in folders}
     for i, (label, document) in enumerate(documents_of.items()):
@@ -189,7 +189,7 @@ def draw_stability(folders, output):
              title="Change between frames, on surfaces that do not move (lowest line: none)")
     style.logarithmic(axis.yaxis)
     axis.legend(fontsize=7, ncol=3, loc="upper center", bbox_to_anchor=(0.5, -0.18))
-    save(figure, output, 100)
+    save(figure, target, 100)
 
 
 def labelled(given):
@@ -209,6 +209,8 @@ def main():
     if len(files) not in allowed:
         parser.error(
             f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
+    read = {"times": "/times.json", "stability": "/stability.json"}.get(arguments.chart, "")
+    output.Output(arguments.output, [path + read for _, path in files])
     try:
         if arguments.chart == "errors":
             draw_errors(files, arguments.output)

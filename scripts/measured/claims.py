@@ -18,8 +18,8 @@ arcade   shadows of the arcade's columns and curtains in the irradiance of the w
          sun along the nave
 lit      share of pixels without direct light, in each camera
 
-All but lobes and tables are of Sponza. `arguments`: model, out (folder) and quick, of
-scripts/reproduce. """
+All but lobes and tables are of Sponza. `arguments`: model, out (output.Folder) and
+quick, of scripts/reproduce. """
 import concurrent.futures
 import itertools
 import json
@@ -175,8 +175,7 @@ class Views:
     def __init__(self, arguments):
         self.scene = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
         self.noise = NOISE_OF_QUICK if arguments.quick else NOISE
-        self.truths = arguments.out / "truths"
-        self.truths.mkdir(parents=True, exist_ok=True)
+        self.out = arguments.out
 
     traced = {}  # of all instances: a scene's cameras and lights have their own names
 
@@ -185,7 +184,7 @@ class Views:
         key = camera, view, noise
         if key not in Views.traced:
             Views.traced[key] = clpv.pathtrace(self.scene, view, camera, WIDTH, HEIGHT, noise=noise)
-            Views.traced[key].save(self.truths / f"{camera}-{view}-{noise:g}.exr")
+            Views.traced[key].save(self.out.file(f"truths/{camera}-{view}-{noise:g}.exr"))
         return Views.traced[key]
 
     def renderer(self, **options):
@@ -357,7 +356,7 @@ def arcade(arguments):
                          fov=math.degrees(2 * math.atan(height / (far - AT_WALL))))
     traced = clpv.pathtrace(views_of.scene, "irradiance", before, ACROSS,
                             round(ACROSS * height / half), samples=SAMPLES)
-    traced.save(views_of.truths / "arcade.exr")
+    traced.save(views_of.out.file("truths/arcade.exr"))
     line = traced.array[..., :3].astype(float).sum(axis=(0, 2))
     rows = [{"image": "path traced", "on": (line * wave).mean() / line.mean(), "off": None}]
     points = [(at, y, AT_WALL + BEFORE_WALL) for at in x]

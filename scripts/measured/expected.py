@@ -67,7 +67,7 @@ def numbers(value, path):
                 {key: one for key, one in each.items() if key not in IDENTITY},
                 f"{path}/{label(each)}",
             )
-    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+    elif value is None or isinstance(value, (int, float)) and not isinstance(value, bool):
         yield path, value
 
 
@@ -93,7 +93,7 @@ def parts_of(read):
 
 
 def found(parts):
-    """{name: number} of {part: document}; parts that are None are left out."""
+    """{name: number, None if undefined} of {part: document}; parts that are None are left out."""
     return dict(
         pair
         for part, document in parts.items()
@@ -117,14 +117,23 @@ def expected(read):
         "numbers": {
             name: [float(f"{value:.6g}"), tolerance(name, value)]
             for name, value in found(parts_of(read)).items()
+            if value is not None
         },
     }
 
 
-def left(document, measured):
-    """Lines for numbers of `measured` that left their tolerance or are not expected."""
+def left(document, measured, whole=()):
+    """Lines for numbers of `measured` that left their tolerance or are not expected, and for those
+    of parts measured as a whole that are missing."""
     lines = []
+    for name in document["numbers"]:
+        if name not in measured and any(name.startswith(f"{part}/") for part in whole):
+            lines.append(f"{name}: found none; allowed: {document['numbers'][name][0]:g}")
     for name, value in measured.items():
+        if value is None:
+            if name in document["numbers"]:
+                lines.append(f"{name}: found null; allowed: {document['numbers'][name][0]:g}")
+            continue
         if name not in document["numbers"]:
             lines.append(
                 f"{name}: found {value:.6g}; allowed: a number of results/paper/expected.json"

@@ -11,8 +11,11 @@ srbf14             srbf14 with rotated lobes and sampled transport, and with exa
 
 These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md
 describes them. """
+import io
 import itertools
+import pathlib
 import subprocess
+import tempfile
 
 import numpy as np
 from matplotlib import pyplot
@@ -107,7 +110,7 @@ def figure1(frames, out):
         tile for preset in PRESETS
         for tile in with_caption(pair(frames, preset=preset), f"--preset {preset}")
     ]
-    sheet(out / "figure1.jpg", f"Figure 1: two bases by either preset ({frames.view})", 3, tiles)
+    sheet(out.file("figure1.jpg"), f"Figure 1: two bases by either preset ({frames.view})", 3, tiles)
 
 
 def figure4(frames, out, preset):
@@ -118,7 +121,7 @@ def figure4(frames, out, preset):
         tiles += with_caption(pair(frames, preset=preset, cascade_size=size, **given),
                               f"{size:g} m, {steps} iterations")
     sheet(
-        out / f"figure4-{preset}.jpg",
+        out.file(f"figure4-{preset}.jpg"),
         f"Figure 4 by --preset {preset}: edge of the smallest cascade, propagation steps ({frames.view})",
         3, tiles)
 
@@ -129,7 +132,7 @@ def figure5(frames, out, preset):
         open_air = frames.image(view, basis="srbf8v2", preset=preset, blockers="none")
         tiles += with_caption(pair(frames, view, preset=preset), light)
         tiles.append((open_air, f"srbf8v2, {light}, no indirect shadows"))
-    sheet(out / f"figure5-{preset}.jpg",
+    sheet(out.file(f"figure5-{preset}.jpg"),
           f"Figure 5 by --preset {preset}: indirect shadows ({frames.view})", 4, tiles)
 
 
@@ -140,7 +143,7 @@ def srbf14(frames, out):
             pixels = frames.image(view, preset="paper", basis="srbf14", **options,
                                   cascade_size=size, iterations=steps)
             tiles.append((pixels, f"{setting}, {steps} steps, {size:g} m, {view}"))
-    sheet(out / "srbf14.jpg",
+    sheet(out.file("srbf14.jpg"),
           f"srbf14 by --preset paper, with other lobes and transport ({frames.view})", 4, tiles)
 
 
@@ -168,21 +171,23 @@ def brightness(frames):
 
 
 def basis_figures(out):
+    """Names of Figures 2, 3 and 6 in the folder."""
+    names = []
     for lobe in LOBES:
-        subprocess.run(
-            [str(CLPV), "basis", "--lobe", lobe, "--figures",
-             str(out / f"lobes-{lobe}")], check=True, stdout=subprocess.DEVNULL)
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([str(CLPV), "basis", "--lobe", lobe, "--figures", folder], check=True,
+                           stdout=subprocess.DEVNULL)
+            for file in sorted(pathlib.Path(folder).glob("*.png")):
+                names.append(f"lobes-{lobe}/{file.name}")
+                out.write(names[-1], file.read_bytes())
+    return names
 
 
 def paper(arguments):
     """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness.
     Without a model Figures 2, 3 and 6 alone."""
     out = arguments.out
-    basis_figures(out)
-    lobe_files = [
-        str(file.relative_to(out)) for kind in LOBES
-        for file in sorted((out / f"lobes-{kind}").glob("*.png"))
-    ]
+    lobe_files = basis_figures(out)
     if not arguments.model:
         return {"sheets": [], "lobes": lobe_files, "rows": []}
     scene = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
@@ -217,5 +222,7 @@ def saved(out, name, caption, images):
     files = []
     for basis, pixels in zip(BASES, images):
         files.append(f"{name}-{basis}.jpg")
-        pyplot.imsave(out / files[-1], pixels[..., :3], pil_kwargs={"quality": 88})
+        made = io.BytesIO()
+        pyplot.imsave(made, pixels[..., :3], format="jpg", pil_kwargs={"quality": 88})
+        out.write(files[-1], made.getvalue())
     return {"caption": caption, "left": files[0], "right": files[1]}

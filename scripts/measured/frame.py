@@ -3,9 +3,11 @@
 
     scripts/frame [--out DIR]
 
-Output: DIR (docs/images): frame-NAME.jpg. First builds. Needs the packages of scripts/setup.
+Output: frame-NAME.jpg in docs/images, or in DIR, a new or empty folder, or one of an earlier run.
+First builds. Needs the packages of scripts/setup.
 """
 import argparse
+import io
 import math
 import pathlib
 import subprocess
@@ -13,7 +15,7 @@ import subprocess
 import numpy as np
 from matplotlib import pyplot
 
-from . import ROOT, native
+from . import ROOT, native, output
 
 clpv = native()  # main() builds the native module
 
@@ -45,17 +47,19 @@ def rsm(scene, camera):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs/images",
-                        help="output folder (default: docs/images)")
+    parser.add_argument("--out", type=pathlib.Path, help="output folder (default: docs/images)")
     out = parser.parse_args().out
+    folder = out and output.Folder(out, "scripts/frame")
     subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
     scene = clpv.Scene(ROOT / "scenes/atrium.json")
     camera = next(each for each in scene.cameras if each.name == CAMERA)
 
     def save(name, image, exposure):
-        file = out / f"frame-{name}.jpg"
+        file = f"frame-{name}.jpg"
+        file, made = folder.file(file) if folder else ROOT / "docs/images" / file, io.BytesIO()
         pixels = image.display(scene.exposure + exposure)[..., :3]
-        pyplot.imsave(file, pixels, pil_kwargs={"quality": 80, "optimize": True})
+        pyplot.imsave(made, pixels, format="jpg", pil_kwargs={"quality": 80, "optimize": True})
+        output.write(file, made.getvalue())
         print(file)
 
     save("rsm", rsm(scene, camera), 0)

@@ -15,9 +15,10 @@ compares clpv and other methods at equal time with path tracing, and names its f
 commit (docs/results.md). The third runs more suites, frames with --stats, and `clpv quality`
 against path tracing, and redraws the charts in docs/images; scripts/tables then writes the tables.
 The paper's numbers are those of scripts/reproduce --record. Commit and build first (scripts/build),
-and keep the machine free of other work. Files hold no samples and no host name. `clpv quality`
-caches ground truths, and for the docs finished cells, so a second run of it is short. The third
-form needs Debian's Python and its packages.
+and keep the machine free of other work. results/NAME of the first form is new, empty, or of an
+earlier run. Files hold no samples and no host name. `clpv quality` caches ground truths, and for
+the docs finished cells, so a second run of it is short. The third form needs Debian's Python and
+its packages.
 """
 import argparse
 import datetime
@@ -26,26 +27,22 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 
-from . import CLPV, RESULTS, ROOT, charts, json_lines, rows
+from . import CLPV, RESULTS, ROOT, charts, described, json_lines, output, rows
 
 FRAME_COUNT = 9
 STANDING_COUNT = 5
+NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # of a folder in results/
 PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media"]
 
 
-def output(*command):
-    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True,
-                          cwd=ROOT).stdout.strip()
-
-
-def run(*arguments):
-    """Returns the JSON of `clpv ARGUMENTS FILE.json`. Where that fails and leaves a file, as `clpv
-    bench` does, goes on."""
+def run(*arguments, charts_of=()):
+    """Returns the JSON of `clpv ARGUMENTS FILE.json`, with FOLDER a temporary folder. Where that
+    fails and leaves a file, as `clpv bench` does, goes on. `charts_of`: images in FOLDER that go to
+    docs/images."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "result.json"
         command = [
@@ -58,14 +55,19 @@ def run(*arguments):
             print(f"scripts/measure: exit code {code}", file=sys.stderr)
         if not file.exists():
             sys.exit(code)
+        for chart in charts_of:
+            image = (pathlib.Path(folder) / f"{chart}.png").read_bytes()
+            output.write(ROOT / f"docs/images/bench-{chart}.png", image)
         return json.loads(file.read_text(encoding="utf-8"))
 
 
 def write(folder, name, document):
+    """`folder`: of results/, or an output.Folder."""
     document.get("context", {}).pop("host_name", None)
     for row in document.get("benchmarks", []):
         row.pop("samples_ms", None)
-    (folder / f"{name}.json").write_text(json_lines(document), encoding="utf-8")
+    named = folder.file if isinstance(folder, output.Folder) else folder.joinpath
+    output.write(named(f"{name}.json"), json_lines(document))
 
 
 def measure_device(folder):
@@ -87,7 +89,7 @@ def scenes_of(arguments, model):
 
 
 def measured_with(device):
-    return {"commit": output("git", "describe", "--always"), "date": str(datetime.date.today()),
+    return {"commit": described(), "date": str(datetime.date.today()),
             "device": device["name"], "driver": f"{device['platform']} {device['driver']}"}
 
 
@@ -175,12 +177,9 @@ def measure_docs(folder, model, parts):
             continue
         if options[:1] == ["sponza"]:
             options = ["--scene=scenes/sponza.json", *sponza, *options[1:]]
-        plots = ROOT / "out/charts" / suite
-        plots.mkdir(parents=True, exist_ok=True)
-        document = run("bench", suite, *options, f"--plot={plots}", "--output")
+        document = run("bench", suite, *options, "--plot=FOLDER", "--output",
+                       charts_of=rows.CHARTS.get(suite, ()))
         write(folder, suite, {"measured": measured, **document})
-        for chart in rows.CHARTS.get(suite, ()):
-            shutil.copy(plots / f"{chart}.png", ROOT / f"docs/images/bench-{chart}.png")
     if "quality-centres" in parts:
         search_centres(sponza)
     for name in filter(parts.count, rows.QUALITY_FILES):
@@ -255,8 +254,9 @@ def main():
         parser.error("--model: needed for docs and quality, and for these alone")
     if arguments.device:
         os.environ["CLPV_DEVICE"] = arguments.device
+    if not re.fullmatch(NAME, arguments.name):
+        parser.error(f"NAME {arguments.name}: allowed: letters, digits, '.', '_' and '-'")
     folder = RESULTS / arguments.name
-    folder.mkdir(parents=True, exist_ok=True)
     if arguments.name == "docs":
         measure_docs(folder, pathlib.Path(arguments.model).resolve(), arguments.part or PARTS)
         print("results/docs is written; scripts/tables writes the tables of the docs")
@@ -264,5 +264,5 @@ def main():
         measure_standing(folder, pathlib.Path(arguments.model).resolve())
         print("results/quality is written; scripts/tables writes docs/results.md")
     else:
-        measure_device(folder)
+        measure_device(output.Folder(folder, "scripts/measure"))
         print(f"results/{arguments.name} is written; results/README.md says how to send it")

@@ -4,7 +4,8 @@
     scripts/reproduce [--model PATH/Sponza.gltf] [--quick] [--part NAME...] [--out DIR] [--record]
 
 Builds, measures part by part, and writes index.html (one self-contained page) and parts/*.json into
-DIR (out/paper). A second run of the same commit continues: it measures the parts that it lacks.
+DIR (out/paper), a new or empty folder or one of an earlier run. A second run with the same program,
+scripts, model and device continues: it measures the parts that it lacks.
 Without --model only lobes, tables and Figures 2, 3 and 6 run. --quick leaves out views, searches
 for centres, large RSMs and srbf14's frames, computes lobes on the host, and times each row two or
 three times. --record puts the numbers into results/docs and the figures into docs/images;
@@ -16,14 +17,16 @@ not compared. Needs the packages of scripts/setup.
 import argparse
 import base64
 import json
+import os
 import pathlib
-import shutil
 import subprocess
 import sys
+import tempfile
 import time
 
-from . import CLPV, RESULTS, ROOT, expected, tables, verdicts
+from . import BUILD, CLPV, RESULTS, ROOT, described, expected, hash_of, output, tables, verdicts
 from .measure import measured_with, write
+from .suite import model_files
 
 LEFT = 5  # exit code
 CLAIMS = ("lobes", "tables", "lit", "texels", "lambdas", "light", "arcade", "shadows", "views")
@@ -38,26 +41,17 @@ def of_claims(name, arguments):
 
 
 def of_bench(suite, options, arguments):
-    file = arguments.out / f"{suite}-rows.json"
-    subprocess.run(
-        [
-            str(CLPV),
-            "bench",
-            suite,
-            "--scene",
-            "scenes/sponza.json",
-            f"--model={arguments.model}",
-            "--camera=curtains",
-            *options,
-            f"--output={file}",
-        ],
-        stdout=subprocess.DEVNULL,
-        check=True,
-        cwd=ROOT,
-    )
-    document = json.loads(file.read_text(encoding="utf-8"))
+    given = ["--scene=scenes/sponza.json", f"--model={arguments.model}", "--camera=curtains"]
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "rows.json"
+        subprocess.run(
+            [str(CLPV), "bench", suite, *given, *options, f"--output={file}"],
+            stdout=subprocess.DEVNULL,
+            check=True,
+            cwd=ROOT,
+        )
+        document = json.loads(file.read_text(encoding="utf-8"))
     document["context"].pop("host_name", None)
-    file.unlink()
     return document
 
 
@@ -91,31 +85,65 @@ def parts_of(arguments):
     }
 
 
-def commit():
+def devices():
     return subprocess.run(
-        ["git", "describe", "--always", "--dirty"],
-        stdout=subprocess.PIPE,
-        text=True,
-        check=True,
-        cwd=ROOT,
-    ).stdout.strip()
+        [str(CLPV), "devices", "--format=json"], stdout=subprocess.PIPE, text=True, check=True
+    ).stdout
+
+
+def key_of(arguments):
+    """What the numbers of a part depend on, by content: program and module, scripts and scenes, the
+    model, replaced kernels, the devices, and the environment of clpv and its drivers."""
+    module = sorted((BUILD / "python/clpv").glob("_native*.so"))
+    sources = [CLPV, *module, ROOT / "python/clpv", ROOT / "scripts/measured", ROOT / "scenes"]
+    kernels = os.environ.get("CLPV_KERNEL_DIR")
+    environment = {
+        name: value
+        for name, value in sorted(os.environ.items())
+        if name.startswith(("CLPV_", "POCL_", "OCL_"))
+    }
+    return {
+        "sources": hash_of(sources),
+        "model": hash_of(model_files(pathlib.Path(arguments.model))) if arguments.model else None,
+        "kernels": hash_of([pathlib.Path(kernels)]) if kernels else None,
+        "devices": devices(),
+        "environment": environment,
+        "quick": arguments.quick,
+    }
+
+
+def earlier(out, name, key):
+    """The part of an earlier run with this key; None if there is none, or if it lacks one of its
+    files. Reports a damaged one."""
+    if name not in out.names or not (out.path / name).exists():
+        return None
+    try:
+        found = json.loads(output.read_regular(out.path / name))
+        whole = all((out.path / file).is_file() for file in found["files"])
+        if found["key"] == key and whole:
+            return {**found, "result": found["result"], "minutes": float(found["minutes"])}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        print(
+            f"scripts/reproduce: {out.path / name}: damaged ({type(error).__name__}: {error}): "
+            "measured again",
+            file=sys.stderr,
+        )
+    return None
 
 
 def measured(arguments):
-    """{part: {"minutes", "result"}} of this commit, from files of an earlier run or new."""
-    key = {"commit": commit(), "quick": arguments.quick, "model": str(arguments.model)}
-    folder = arguments.out / "parts"
-    folder.mkdir(parents=True, exist_ok=True)
-    done = {}
+    """{part: {"minutes", "result"}} of this key, from files of an earlier run or new."""
+    key, done = key_of(arguments), {}
     for name, part in parts_of(arguments).items():
-        file = folder / f"{name}.json"
-        found = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-        if found.get("key") != key:
+        file = f"parts/{name}.json"
+        found = earlier(arguments.out, file, key)
+        if found is None:
             print(f"scripts/reproduce: {name}", file=sys.stderr, flush=True)
-            start = time.monotonic()
+            start, before = time.monotonic(), len(arguments.out.written)
             result = part()
-            found = {"key": key, "minutes": (time.monotonic() - start) / 60, "result": result}
-            file.write_text(json.dumps(found), encoding="utf-8")
+            minutes, files = (time.monotonic() - start) / 60, arguments.out.written[before:]
+            found = {"key": key, "minutes": minutes, "files": files, "result": result}
+            arguments.out.write(file, json.dumps(found))
         done[name] = found
     return done
 
@@ -160,20 +188,17 @@ def numbers_of(done):
 
 def record(done, out):
     """Writes results/docs from the parts of this run, and docs/images from its figures."""
-    devices = subprocess.run(
-        [str(CLPV), "devices", "--format=json"], stdout=subprocess.PIPE, check=True
-    ).stdout
-    now = measured_with(json.loads(devices)["devices"][0])
+    now = measured_with(json.loads(devices())["devices"][0])
     folder = RESULTS / "docs"
     claims = {name: done[name]["result"] for name in CLAIMS if name in done}
     if claims:
-        earlier = tables.read("claims")
+        recorded = tables.read("claims")
         whole = len(claims) == len(CLAIMS)
         later = f"{', '.join(claims)}: clpv {now['commit']}, {now['date']}"
-        older = earlier["measured"].get("except")
+        older = recorded["measured"].get("except")
         excepted = f"{older}; {later}" if older else later
-        measured = now if whole else {**earlier["measured"], "except": excepted}
-        parts = {name: claims.get(name, earlier.get(name)) for name in CLAIMS}
+        measured = now if whole else {**recorded["measured"], "except": excepted}
+        parts = {name: claims.get(name, recorded.get(name)) for name in CLAIMS}
         write(folder, "claims", {"measured": measured, **parts})
     for name in ("table1", "factors"):
         if name in done:
@@ -182,7 +207,8 @@ def record(done, out):
         figures = done["figures"]["result"]
         write(folder, "figures", {"measured": now, "rows": figures["rows"]})
         for sheet in figures["sheets"]:
-            shutil.copy(out / sheet["file"], ROOT / "docs/images")
+            image = (out.path / sheet["file"]).read_bytes()
+            output.write(ROOT / "docs/images" / sheet["file"], image)
 
 
 def uri(file):
@@ -247,7 +273,7 @@ def page(arguments, done, left, checked, unmeasured):
         for name in dict.fromkeys(each["section"] for each in claims)
     ]
     figures = done["figures"]["result"] if "figures" in done else {"sheets": [], "lobes": []}
-    out = arguments.out
+    out = arguments.out.path
     sheets = [
         {
             "name": sheet["name"],
@@ -274,7 +300,7 @@ def page(arguments, done, left, checked, unmeasured):
     html = environment.get_template("paper.html").render(
         subtitle=", ".join(
             [
-                f"clpv {commit()}",
+                f"clpv {described()}",
                 "quick run" if arguments.quick else "whole run",
                 *device,
                 time.strftime("%Y-%m-%d"),
@@ -299,7 +325,7 @@ def page(arguments, done, left, checked, unmeasured):
             ),
         ],
     )
-    (out / "index.html").write_text(html, encoding="utf-8")
+    arguments.out.write("index.html", html)
 
 
 def main():
@@ -322,8 +348,9 @@ def main():
     )
     parser.add_argument("--no-build", action="store_true", help="use the build as it is")
     arguments = parser.parse_args()
-    arguments.out = arguments.out.resolve()
     arguments.model = str(pathlib.Path(arguments.model).resolve()) if arguments.model else None
+    if arguments.model and not pathlib.Path(arguments.model).is_file():
+        parser.error(f"--model {arguments.model}: found no file; allowed: Sponza's glTF")
     arguments.width, arguments.height = (480, 270) if arguments.quick else (960, 540)
     for name in arguments.part or []:
         if name not in (
@@ -335,16 +362,20 @@ def main():
             )
     if arguments.record and (arguments.quick or not arguments.model):
         parser.error("--record: needs --model, excludes --quick")
+    arguments.out = output.Folder(arguments.out.resolve(), "scripts/reproduce")
     if not arguments.no_build:
         subprocess.run([str(ROOT / "scripts/build"), "clpv", "clpv_python"], check=True)
+    if not CLPV.exists():
+        parser.error(f"--no-build: found no {CLPV}; allowed: a build")
     done = measured(arguments)
     document = json.loads((RESULTS / "paper/expected.json").read_text(encoding="utf-8"))
     numbers = numbers_of(done)
-    left = expected.left(document, numbers)
+    whole = [] if arguments.quick else [f"claims/{name}" for name in CLAIMS if name in done]
+    left = expected.left(document, numbers, whole)
     if arguments.record:
         record(done, arguments.out)
     overlay(done)
     page(arguments, done, left, len(numbers), len(set(document["numbers"]) - set(numbers)))
-    print(arguments.out / "index.html")
+    print(arguments.out.path / "index.html")
     print(f"{len(numbers)} numbers, {len(left)} left their tolerance", *left, sep="\n")
     return LEFT if left else 0

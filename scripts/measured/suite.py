@@ -3,7 +3,9 @@
 renderer (docs/score.md).
 
     scripts/suite --output DIR --model PATH/Sponza.gltf    DIR/suite.json and the files that it
-                                                           names, and DIR.tar
+                                                           names, and DIR.tar with them alone
+
+DIR: a new or empty folder, or one that scripts/suite wrote.
 
 The views are those of the standing benchmark and Sponza under three other suns. Needs a built clpv
 and oiiotool; traces the ground truths that `clpv quality` has not cached, a minute of processor
@@ -13,15 +15,13 @@ import hashlib
 import json
 import math
 import pathlib
-import shutil
 import subprocess
-import sys
-import tarfile
 import tempfile
+import urllib.parse
 
 import numpy
 
-from . import CLPV, ROOT
+from . import CLPV, ROOT, output
 
 SCHEMA, SIZE, NOISE = 1, (240, 135), 0.03
 SCENES = {
@@ -147,7 +147,10 @@ def model_files(model):
         entry["uri"] for entry in [*document.get("buffers", []), *document.get("images", [])]
         if "uri" in entry
     ]
-    return [model, *(model.parent / uri for uri in uris if not uri.startswith("data:"))]
+    return [
+        model, *(model.parent / urllib.parse.unquote(uri) for uri in uris
+                 if not uri.startswith("data:"))
+    ]
 
 
 def ground_truths(name, cameras, model, cache):
@@ -164,37 +167,42 @@ def ground_truths(name, cameras, model, cache):
         return json.loads(report.read_text())["ground_truths"]
 
 
-def in_halves(source, target):
+def in_halves(source):
+    """Bytes of a truth with the suite's layers as halves."""
     channels = ",".join(f"{layer}.{channel}" for layer in LAYERS for channel in "RGBA")
-    subprocess.run([
-        "oiiotool",
-        str(source), "--ch", channels, "-d", "half", "--compression", "zip", "-o",
-        str(target)
-    ], check=True)
+    with tempfile.TemporaryDirectory() as folder:
+        target = pathlib.Path(folder) / source.name
+        subprocess.run([
+            "oiiotool",
+            str(source), "--ch", channels, "-d", "half", "--compression", "zip", "-o",
+            str(target)
+        ], check=True)
+        return target.read_bytes()
 
 
-def add_scene(output, name, sponza, cache):
-    """Writes a scene's files. Returns its entry and those of its views."""
+def add_scene(folder, name, sponza, cache):
+    """Writes a scene's files into an output.Folder. Returns its entry and those of its views."""
     scene = json.loads((ROOT / f"scenes/{name}.json").read_text())
     ours = scene["model"] != "Sponza.gltf"
     model = ROOT / "scenes" / scene["model"] if ours else sponza
     if ours:
         for file in model_files(model):
-            shutil.copy(file, output / "models" / file.name)
+            folder.write(f"models/{file.name}", file.read_bytes())
     cameras = {
         camera["name"]: camera
         for camera in scene["cameras"] if not SCENES[name] or camera["name"] in SCENES[name]
     }
     gltf = views_gltf({**scene, "cameras": list(cameras.values())}, TIMES.get(name, 0))
-    (output / "cameras" / f"{name}.gltf").write_text(json.dumps(gltf, indent=1) + "\n")
+    folder.write(f"cameras/{name}.gltf", json.dumps(gltf, indent=1) + "\n")
     views = []
     for traced in ground_truths(name, cameras, None if ours else sponza, cache):
         source = pathlib.Path(traced["file"])
-        in_halves(source, output / "truths" / source.name)
+        truth = in_halves(source)
+        folder.write(f"truths/{source.name}", truth)
         views.append({
             "name": f"{name}-{traced['camera']}", "scene": name, "camera": traced["camera"],
             "lights": lights_of(scene, cameras[traced["camera"]]), "truth": f"truths/{source.name}",
-            "sha256": sha256(output / "truths" / source.name), "noise": traced["noise"],
+            "sha256": hashlib.sha256(truth).hexdigest(), "noise": traced["noise"],
             "paths": traced["spp"], "exposure": scene.get("exposure",
                                                           0), "width": SIZE[0], "height": SIZE[1]
         })
@@ -206,18 +214,11 @@ def add_scene(output, name, sponza, cache):
     }, views
 
 
-def reproducible(entry):
-    """An entry of the tar without what differs from run to run."""
-    entry.mtime, entry.uid, entry.gid, entry.uname, entry.gname = 0, 0, 0, "", ""
-    return None if "__pycache__" in entry.name else entry
-
-
-def write_suite(output, sponza, cache, names):
-    for folder in "truths", "models", "cameras":
-        (output / folder).mkdir(parents=True, exist_ok=True)
+def write_suite(folder, tar, sponza, cache, names):
+    """`folder`: output.Folder; `tar`: output.Output."""
     scenes, views = {}, []
     for name in names:
-        scenes[name], found = add_scene(output, name, sponza, cache)
+        scenes[name], found = add_scene(folder, name, sponza, cache)
         views += found
     whole = hashlib.sha256("".join(view["name"] + view["sha256"]
                                    for view in views).encode()).hexdigest()[:16]
@@ -225,17 +226,17 @@ def write_suite(output, sponza, cache, names):
         "schema": SCHEMA, "hash": whole, "units": UNITS, "conventions": CONVENTIONS,
         "scenes": scenes, "views": views
     }
-    (output / "suite.json").write_text(json.dumps(document, indent=1) + "\n")
-    shutil.copytree(ROOT / "python/clpv/score", output / "clpv/score",
-                    ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
-    for file in "docs/score.md", "LICENSE":
-        shutil.copy(ROOT / file, output)
-    packed = output.with_name(output.name + ".tar")
-    with tarfile.open(packed, "w") as tar:
-        tar.add(output, output.name, filter=reproducible)
-    if packed.stat().st_size > LARGEST:
-        sys.exit(f"{packed}: found {packed.stat().st_size} bytes; allowed: {LARGEST}")
-    print(f"{packed}: {len(views)} views, {packed.stat().st_size / 2**20:.1f} MiB")
+    folder.write("suite.json", json.dumps(document, indent=1) + "\n")
+    scorer = ROOT / "python/clpv"
+    for file in [scorer / "output.py", *scorer.glob("score/*.py"), *scorer.glob("score/*.html")]:
+        folder.write(f"clpv/{file.relative_to(scorer)}", file.read_bytes())
+    for file in ROOT / "docs/score.md", ROOT / "LICENSE":
+        folder.write(file.name, file.read_bytes())
+    packed = output.tar_of(folder.path.name, folder.contents(sorted(folder.written)))
+    if len(packed) > LARGEST:
+        raise output.BadOutput(f"{tar.path}: found {len(packed)} bytes; allowed: {LARGEST}")
+    tar.write(packed)
+    print(f"{tar.path}: {len(views)} views, {len(packed) / 2**20:.1f} MiB")
 
 
 def main():
@@ -247,10 +248,17 @@ def main():
                         help="Sponza's glTF, of the Khronos sample models")
     parser.add_argument("--scene", metavar="NAME", action="append", choices=SCENES,
                         help="some scenes, repeatable (default: all)")
-    parser.add_argument("--cache", metavar="DIR", help="ground truths, as --cache of clpv quality")
+    parser.add_argument("--cache", metavar="DIR", type=pathlib.Path,
+                        help="ground truths, as --cache of clpv quality")
     arguments = parser.parse_args()
     names = arguments.scene or list(SCENES)
     if any(name.startswith("sponza") for name in names) and not arguments.model:
         parser.error("--model: needed for Sponza")
-    write_suite(arguments.output, arguments.model and arguments.model.resolve(), arguments.cache,
-                names)
+    place = arguments.output.resolve()
+    packed = place.with_name(place.name + ".tar")
+    if packed.exists() and not (place / output.MARKER).exists():
+        parser.error(f"--output {place}: found a file {packed}; allowed: none where DIR is new")
+    folder, tar = output.Folder(place, "scripts/suite"), output.Output(packed)
+    write_suite(folder, tar, arguments.model and arguments.model.resolve(),
+                arguments.cache and arguments.cache.resolve(), names)
+    return 0

@@ -1,4 +1,4 @@
-# !/usr/bin/env python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Judges a file of kernels by what Oclgrind found in the workloads that were run.
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Verdicts from outcomes, tolerances, and the rows of scripts/reproduce that need no model."""
+import argparse
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -13,6 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 os.environ.setdefault("CLPV_BUILD_DIR", os.environ["CLPV_BUILD"])
 sys.path.insert(0, str(ROOT / "scripts"))
 pytest.importorskip("jinja2", reason="all of it")
+import measured  # noqa: E402
 from measured import expected, reproduce, verdicts  # noqa: E402
 
 
@@ -61,6 +64,56 @@ def test_numbers_that_left_their_tolerance_are_named():
     assert len(expected.left(document, {"b": float("nan")})) == 1
 
 
+def test_undefined_and_missing_numbers_left_their_tolerance():
+    document = {"numbers": {"claims/a/x": [1.0, 0.1], "claims/b/x": [2.0, 0.1]}}
+    assert expected.found({"claims/a": {"x": None}}) == {"claims/a/x": None}
+    assert expected.left(document, {"claims/a/x": None, "claims/a/new": None}) == [
+        "claims/a/x: found null; allowed: 1"
+    ]
+    assert expected.left(document, {}, ["claims/b"]) == ["claims/b/x: found none; allowed: 2"]
+
+
+def test_the_key_of_a_part_has_the_content_that_it_depends_on(monkeypatch, tmp_path):
+    arguments = argparse.Namespace(model=None, quick=True)
+    kernels = tmp_path / "kernels"
+    kernels.mkdir()
+    monkeypatch.setenv("CLPV_KERNEL_DIR", str(kernels))
+    program = tmp_path / "clpv"
+    program.symlink_to(reproduce.CLPV)
+    keys = [reproduce.key_of(arguments)]
+    assert reproduce.key_of(arguments) == keys[0]
+    (kernels / "gather.cl").write_text("a")
+    keys.append(reproduce.key_of(arguments))
+    (kernels / "gather.cl").write_text("b")
+    keys.append(reproduce.key_of(arguments))
+    monkeypatch.setenv("CLPV_LANES", "1")
+    keys.append(reproduce.key_of(arguments))
+    model = tmp_path / "model.gltf"
+    texture = tmp_path / "a b.png"
+    model.write_text('{"images": [{"uri": "a%20b.png"}]}')
+    for content in "cd":
+        texture.write_text(content)
+        keys.append(reproduce.key_of(argparse.Namespace(model=str(model), quick=True)))
+    monkeypatch.setattr(reproduce, "ROOT", tmp_path)  # other sources, another program
+    keys.append(reproduce.key_of(arguments))
+    (tmp_path / "scripts/measured").mkdir(parents=True)
+    (tmp_path / "scripts/measured/new.py").write_text("")
+    keys.append(reproduce.key_of(arguments))
+    assert len({json.dumps(key) for key in keys}) == len(keys)
+
+
+def test_the_commit_is_unknown_without_git_and_in_an_archive(monkeypatch, tmp_path):
+    (tmp_path / "inner").mkdir()
+    if shutil.which("git"):  # the archive lies in a repository
+        subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    monkeypatch.setattr(measured, "ROOT", tmp_path / "inner")
+    assert measured.described() == "unknown"
+    (tmp_path / "inner/.git").write_text("damaged")
+    assert measured.described() == "unknown"
+    monkeypatch.setenv("PATH", "/none")
+    assert measured.described() == "unknown"
+
+
 def test_rows_of_a_run_replace_those_of_the_record():
     record = {"x": [{"basis": "sh2", "up": 1, "mean": 2}, {"basis": "srbf4", "up": 3}], "y": 1}
     assert reproduce.merged(record, {"x": [{"basis": "sh2", "up": 5}]}) == {
@@ -71,6 +124,7 @@ def test_rows_of_a_run_replace_those_of_the_record():
 
 
 def run(folder):
+    """Without git and a home."""
     return subprocess.run(
         [
             str(ROOT / "scripts/reproduce"),
@@ -83,6 +137,7 @@ def run(folder):
         capture_output=True,
         text=True,
         check=False,
+        env={key: value for key, value in os.environ.items() if key != "HOME"} | {"PATH": "/none"},
     )
 
 
@@ -96,9 +151,15 @@ def test_lobes_and_tables_have_the_expected_values(tmp_path):
     document = json.loads(part.read_text())
     document["result"]["sets"][0]["up"] += 0.01
     part.write_text(json.dumps(document))
+    for name in "private.txt", "figure1.jpg", "parts/private.json":
+        (tmp_path / name).write_text("precious")
     second = run(tmp_path)  # continues: reads the altered part
     assert second.returncode == reproduce.LEFT
     assert "claims/lobes/sets/sh2,4/up: found 0.363553; allowed: 0.353553 +- " in second.stdout
+    assert (tmp_path / "figure1.jpg").read_text() == "precious"
+    part.write_text("")
+    third = run(tmp_path)
+    assert third.returncode == 0 and "parts/lobes.json: damaged (JSON" in third.stderr
     tar = tmp_path.parent / "paper.tar"
     subprocess.run(
         [str(ROOT / "scripts/archive"), f"--from={tmp_path}", f"--output={tar}"], check=True
@@ -113,6 +174,7 @@ def test_lobes_and_tables_have_the_expected_values(tmp_path):
         )
     assert len(sums) == len(names) - 1
     assert any(line.endswith("  paper/index.html") for line in sums)
+    assert not [name for name in names if "private" in name or "figure1.jpg" in name]
 
 
 def test_parts_that_need_a_model_are_rejected_without_one():

@@ -42,8 +42,7 @@ class Page(test_score.Suite):
     @unittest.skipUnless(CHROMIUM, "skipped: no chromium here")
     def test_controls_change_what_is_drawn(self):
         file = self.folder / "page.html"
-        page.write(file, self.folder, self.folders())
-        file.write_text(file.read_text() + DRIVER)
+        file.write_text(page.made(self.folder, self.folders()) + DRIVER)
         with tempfile.TemporaryDirectory() as profile:
             dumped = subprocess.run([
                 CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
@@ -64,15 +63,14 @@ class Page(test_score.Suite):
         self.assertAlmostEqual(float(lines[2].split()[-3]), 1.5 * truth[0], delta=2e-3 * truth[0])
 
     def test_names_are_data(self):
-        page.write(self.folder / "page.html", self.folder, {"</script><b>": self.folders()["mine"]})
-        self.assertNotIn("</script><b>", (self.folder / "page.html").read_text())
+        made = page.made(self.folder, {"</script><b>": self.folders()["mine"]})
+        self.assertNotIn("</script><b>", made)
 
     def test_too_large(self):
         limit, page.LARGEST = page.LARGEST, 1000
         self.addCleanup(setattr, page, "LARGEST", limit)
         with self.assertRaisesRegex(exr.BadImage, "allowed: 1000; use --only"):
-            page.write(self.folder / "page.html", self.folder, self.folders())
-        self.assertFalse((self.folder / "page.html").exists())
+            page.made(self.folder, self.folders())
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ The suite's cameras and lights.
 CLPV: the program.
 """
 import contextlib
+import copy
 import io
 import json
 import os
@@ -172,7 +173,115 @@ class Numbers(Suite):
         self.assertIn("nowhere", said.getvalue())
 
 
+class Undefined(Suite):
+    def blacken(self, name):
+        self.truths[name] = numpy.zeros_like(self.truths[name])
+        write(self.folder / f"truths/{name}-{HASH}.exr",
+              layered(self.truths[name], self.alpha, "indirect"))
+
+    def command(self, *more):
+        printed, said = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(said):
+            code = command.main(
+                [str(self.folder / "ours"), "--suite", str(self.folder), *map(str, more)])
+        return code, printed.getvalue(), said.getvalue()
+
+    def test_a_lit_image_of_a_black_truth_has_no_error_and_no_mean(self):
+        self.blacken("room-left")
+        self.put(lambda truth: truth + 0.5)
+        code, printed, said = self.command("-o", self.folder / "score.json")
+        self.assertEqual(code, 0)
+        document = json.loads((self.folder / "score.json").read_text())
+        for measure in "nrmse", "nrmse_best_gain", "energy_ratio":
+            self.assertIsNone(document["views"][0][measure], measure)
+            self.assertIsNone(document["mean"][measure], measure)
+            self.assertEqual(document["undefined"][measure], 1)
+            self.assertIn(f"{measure} is undefined in 1 of 2 views", said)
+        self.assertEqual(document["undefined"]["flip"], 0)
+        self.assertRegex(printed, r"room-left +- +- +- +0")
+        self.assertRegex(printed, r"mean +- +- +- +0")
+        self.assertIn("is lit where the truth is black", said)
+
+    def test_a_black_image_of_a_black_truth_has_no_error(self):
+        self.blacken("room-left")
+        self.put(lambda truth: truth)
+        row = self.score()["views"][0]
+        self.assertEqual((row["nrmse"], row["energy_ratio"], row["suspected"]), (0, None, []))
+
+    def test_frames_of_a_black_truth(self):
+        self.blacken("room-left")
+        for i in range(2):
+            write(self.folder / f"ours/room-left.{i}.exr",
+                  layered(0.1 * (i + 1) * numpy.ones_like(self.truths["room-left"]), self.alpha))
+        row = self.score(only=["room-left"])["views"][0]
+        self.assertEqual([row[name] for name in ("bias", "noise", "change")], [None] * 3)
+
+    def test_truths_that_are_not_finite(self):
+        self.put(lambda truth: truth)
+        for value in numpy.nan, numpy.inf:
+            truth = self.truths["room-left"].copy()
+            truth[7, 5, 2] = value
+            write(self.folder / f"truths/room-left-{HASH}.exr",
+                  layered(truth, self.alpha, "indirect"))
+            code, _, said = self.command()
+            self.assertEqual(code, 3)
+            self.assertIn(f"pixel (5, 7), channel indirect.B: found {value}", said)
+
+
+class Outputs(Undefined):
+    def test_spare_what_is_read_and_each_other(self):
+        self.put(lambda truth: truth)
+        files = ["suite.json", f"truths/room-right-{HASH}.exr", "ours/room-left.exr"]
+        os.symlink(self.folder / "suite.json", self.folder / "link")
+        before = {name: (self.folder / name).read_bytes() for name in files}
+        for name in *files, "link":
+            for option in "--output", "--page":
+                code, _, said = self.command("--only", "room-left", option, self.folder / name)
+                self.assertEqual(code, 2)
+                self.assertIn(f"{option} {self.folder / name}: found the file of", said)
+        code, _, said = self.command("--page", self.folder / "x", "-o", self.folder / "ours/../x")
+        self.assertEqual((code, (self.folder / "x").exists()), (2, False))
+        self.assertEqual({name: (self.folder / name).read_bytes() for name in files}, before)
+
+    def test_are_checked_before_the_work(self):
+        code, _, said = self.command("-o", self.folder / "none/score.json")
+        self.assertEqual(code, 1)  # images are missing, too: 3
+        self.assertIn("none: No such file", said)
+
+    def test_page_and_score_are_written(self):
+        self.put(lambda truth: truth)
+        os.symlink("made.html", self.folder / "page.html")
+        code, *_ = self.command("-o", self.folder / "a.json", "--page", self.folder / "page.html")
+        self.assertEqual(code, 0)
+        self.assertIn("<canvas", (self.folder / "made.html").read_text())
+        self.assertTrue((self.folder / "page.html").is_symlink())
+        self.assertEqual(json.loads((self.folder / "a.json").read_text())["complete"], True)
+
+
 class BadInput(Suite):
+    def test_suites(self):
+        self.put(lambda truth: truth)
+        good = json.loads((self.folder / "suite.json").read_text())
+        for change, place in (({"views": {}}, "schema 1 with views"), ({"hash": 1}, "/hash"),
+                              ({"views": [1]}, "/views/0/name"),
+                              ({"name": "a\x1b[2J"}, '/views/0/name: found "a\\u001b[2J"'),
+                              ({"truth": None}, "/views/0/truth: found null"),
+                              ({"exposure": numpy.nan}, "/views/0/exposure: found NaN"),
+                              ({"noise": "0"}, "/views/0/noise: found \"0\"; allowed: a finite")):
+            document = copy.deepcopy(good)
+            (document if change.keys() & document.keys() else document["views"][0]).update(change)
+            (self.folder / "suite.json").write_text(json.dumps(document))
+            self.assertIn(place, self.rejected())
+
+    def test_rows_that_no_chunk_has(self):
+        self.put(lambda truth: truth)
+        file = self.folder / "ours/room-left.exr"
+        data = bytearray(file.read_bytes())
+        at = exr.header(bytes(data))[1]
+        data[at + 8:at + 16] = data[at:at + 8]  # row 0 twice, row 1 missing
+        file.write_bytes(data)
+        self.assertIn("pixel (0, 1), channel R: found nan", self.rejected())
+
     def test_missing_views_are_named(self):
         self.put(lambda truth: truth)
         (self.folder / "ours/room-right.exr").unlink()

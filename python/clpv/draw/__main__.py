@@ -7,12 +7,13 @@
     report IN OUT   writes the page of IN/report.json and its images into the file OUT
 
 Without IN and OUT: checks that the required modules are installed. Exit codes are clpv's: 1 missing
-module, 2 usage, 3 invalid document.
+module or no output, 2 usage, 3 invalid document.
 """
 import importlib
 import pathlib
 import sys
 
+from clpv import output
 from clpv.draw.documents import BadDocument
 
 KINDS = "bench", "basis", "report"
@@ -37,6 +38,8 @@ def main(arguments):
             module.draw(*map(pathlib.Path, paths))
     except BadDocument as error:
         return fail(BAD_INPUT, error)
+    except output.BadOutput as error:
+        return fail(error.code, error)
     return 0
 
 

@@ -9,6 +9,7 @@ import math
 from matplotlib import pyplot
 from matplotlib.lines import Line2D
 
+from clpv import output
 from clpv.draw import documents, style
 from clpv.draw.documents import NUMBER, TEXT_OR_NULL
 
@@ -186,7 +187,7 @@ def save(figure, folder, name, context):
                 va="bottom", size=6, color=style.SOFT)
     figure.tight_layout(rect=(0, 0.015, 1, 1))
     for suffix in ("svg", "png"):
-        documents.write(folder / f"{name}.{suffix}", style.rendered(figure, suffix, dpi=150))
+        output.write(folder / f"{name}.{suffix}", style.rendered(figure, suffix, dpi=150))
 
 
 def draw(source, folder):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Reads and validates the JSON of clpv; writes files atomically."""
+"""Reads and validates the JSON of clpv."""
 import json
-import os
 
 NUMBER = (int, float)
 TEXT_OR_NULL = (str, type(None))
@@ -34,14 +33,3 @@ def checked(document, source, key, fields):
                 raise BadDocument(
                     f"{source}: /{key}/{i}/{name} is {json.dumps(value)}; allowed: {allowed}")
     return rows
-
-
-def write(path, data):
-    """Writes the bytes to a temporary file beside `path`, then renames it: readers see the old file
-    or the new one."""
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        beside.write_bytes(data)
-        os.replace(beside, path)
-    finally:
-        beside.unlink(missing_ok=True)

@@ -15,6 +15,7 @@ import numpy
 from markupsafe import Markup
 from matplotlib import pyplot
 
+from clpv import output
 from clpv.draw import bench, documents, style
 from clpv.draw.documents import NUMBER
 from clpv.score import page
@@ -145,4 +146,4 @@ def draw(source, target):
                                                [row["name"] for row in quality]),
         table1=table1([row for row in rows if row["suite"] == "table1"]), layouts=layouts,
         layouts_chart=inlined(bench.layouts(layouts)), colours=page_colours())
-    documents.write(target, html.encode("utf-8"))
+    output.write(target, html)

@@ -8,7 +8,7 @@ import matplotlib
 matplotlib.use("Agg")
 from matplotlib import pyplot, ticker  # noqa: E402  (the backend comes first)
 
-from clpv.draw import documents  # noqa: E402
+from clpv import output  # noqa: E402
 
 INK, SOFT, LINE = "#1c1e21", "#5d646e", "#d8dce1"
 # Distinguishable by colour-blind readers (Okabe and Ito).
@@ -105,4 +105,4 @@ class Sheet:
         """Writes PNG or JPEG, by the suffix."""
         suffix = path.suffix.lstrip(".")
         options = {"pil_kwargs": {"quality": 80, "optimize": True}} if suffix == "jpg" else {}
-        documents.write(path, rendered(self.figure, suffix, dpi=dpi, **options))
+        output.write(path, rendered(self.figure, suffix, dpi=dpi, **options))

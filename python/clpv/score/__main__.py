@@ -6,6 +6,7 @@ import json
 import pathlib
 import sys
 
+from clpv.output import BadOutput, Output, printable
 from clpv.score import page, suite
 from clpv.score.exr import BadImage
 
@@ -16,7 +17,7 @@ COLUMNS = [("NRMSE [%]", "nrmse", 100, 1), ("at best gain", "nrmse_best_gain", 1
 
 
 def table(score):
-    """Lines of text: a view each, then the mean."""
+    """Lines of text: a view each, then the mean. `-`: undefined."""
     columns = [column for column in COLUMNS if any(column[1] in row for row in score["views"])]
     lines = [["view", *(title for title, *_ in columns)]]
     for row in [*score["views"], {"view": "mean", **score["mean"]}]:
@@ -28,6 +29,19 @@ def table(score):
     return "\n".join("  ".join(
         cell.ljust(width) if i == 0 else cell.rjust(width)
         for i, (cell, width) in enumerate(zip(line, widths))) for line in lines)
+
+
+def report(score):
+    """Prints to stderr what is suspected in images, and where errors are undefined."""
+    method = printable(score["method"])
+    for row in score["views"]:
+        for suspicion in row["suspected"]:
+            print(f"clpv.score: {method}: {row['view']} {suspicion}", file=sys.stderr)
+    for measure, count in score["undefined"].items():
+        if count:
+            print(f"clpv.score: {method}: {measure} is undefined in {count} of "
+                  f"{len(score['views'])} views, whose truth is black, and so is its mean",
+                  file=sys.stderr)
 
 
 def main(arguments):
@@ -50,22 +64,25 @@ def main(arguments):
         parser.error("--method and --output: found several DIR; allowed: one")
     only = given.only or ["*"]
     try:
+        outputs = []
+        for option, path in ("--output", given.output), ("--page", given.page):
+            if path:
+                read = suite.inputs(given.folders, given.suite)
+                outputs.append(Output(path, [*read, *outputs], option))
         scores = [suite.score(folder, given.suite, given.method, only) for folder in given.folders]
         titles = [score["method"] for score in scores]
         if given.page and len(set(titles)) < len(titles):
             parser.error("--page: found folders of the same name; allowed: different names")
         if given.page:
-            page.write(given.page, given.suite, dict(zip(titles, given.folders)), only)
-    except BadImage as error:
-        print(f"clpv.score: {error}", file=sys.stderr)
-        return BAD_INPUT
+            outputs[-1].write(page.made(given.suite, dict(zip(titles, given.folders)), only))
+        if given.output:
+            outputs[0].write(json.dumps(scores[0], indent=1, allow_nan=False) + "\n")
+    except (BadImage, BadOutput) as error:
+        print(f"clpv.score: {printable(error)}", file=sys.stderr)
+        return getattr(error, "code", BAD_INPUT)
     for score in scores:
-        for row in score["views"]:
-            for suspicion in row["suspected"]:
-                print(f"clpv.score: {score['method']}: {row['view']} {suspicion}", file=sys.stderr)
-        print(*([score["method"]] if len(scores) > 1 else []), table(score), sep="\n")
-    if given.output:
-        given.output.write_text(json.dumps(scores[0], indent=1) + "\n")
+        report(score)
+        print(*([printable(score["method"])] if len(scores) > 1 else []), table(score), sep="\n")
     return 0
 
 

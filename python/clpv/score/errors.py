@@ -14,15 +14,17 @@ MIRRORS = {
 
 
 def root_of_ratio(power, of):
+    """None: undefined. No error at all is 0, also against black."""
     return float(numpy.sqrt(max(power, 0) / of)) if of > 0 else 0.0 if power == 0 else None
 
 
 def gained(a, b):
-    """Returns the factor of `a` that minimises the error, and the NRMSE with it."""
-    power = (a * a).sum()
+    """Returns the factor of `a` that minimises the error, and the NRMSE with it; None where black
+    has no such factor, and where only the truth is black."""
+    power, of = (a * a).sum(), (b * b).sum()
     gain = (a * b).sum() / power if power > 0 else None
     explained = 0 if gain is None else gain * (a * b).sum()
-    return gain, root_of_ratio((b * b).sum() - explained, (b * b).sum())
+    return gain, root_of_ratio(of - explained if of > 0 else power, of)
 
 
 def errors(frames, truth, valid, exposure):
@@ -31,7 +33,7 @@ def errors(frames, truth, valid, exposure):
     nrmse: root mean square error of all frames over the truth's root mean square. With several
     frames nrmse^2 = bias^2 + noise^2: bias is that of the mean of infinitely many such frames,
     noise their deviation from it. change: mean |difference| of consecutive frames over the truth's
-    mean. Sums are in double."""
+    mean. What a black truth leaves undefined is None. Sums are in double."""
     lit = frames[:, valid].astype(float)
     target = truth[valid].astype(float)
     power = (target * target).sum()
@@ -82,8 +84,10 @@ def suspicions(image, truth, valid):
                 f"looks mirrored, {name}: correlation {mirrored:.2f} with the truth, {straight:.2f} as it is"
             ]
     gain, error = gained(a[valid], b[valid])
-    if gain is None or error is None:
-        return ["is black"] if gain is None and (b[valid] != 0).any() else []
+    if gain is None:
+        return ["is black"] if (b[valid] != 0).any() else []
+    if error is None:
+        return ["is lit where the truth is black"]
     linear = flip.decoded(a)
     linear_gain, linear_error = gained(linear[valid], b[valid])
     if 0 <= a[valid].min() and a[valid].max() <= 1 and linear_error < EXPLAINED * error:

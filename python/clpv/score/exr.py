@@ -61,7 +61,8 @@ def scanlines(data, attributes, at):
     width, height = right - left + 1, bottom - top + 1
     channels = channel_list(attributes["channels"])
     bytes_of_row = width * sum(kind.itemsize for _, kind in channels)
-    planes = {name: numpy.empty((height, width), numpy.float32) for name, _ in channels}
+    # Rows that no chunk has stay NaN, which callers reject.
+    planes = {name: numpy.full((height, width), numpy.nan, numpy.float32) for name, _ in channels}
     compression = attributes["compression"][0]
     rows = ROWS[compression]
     for offset in struct.unpack_from(f"<{-(-height // rows)}Q", data, at):
@@ -181,11 +182,20 @@ def read(file):
 
 
 def colours(planes, file, layer=""):
-    """Returns R, G and B of a layer (height x width x 3) and its alpha, 1 where there is none."""
+    """Returns R, G and B of a layer (height x width x 3) and its alpha, 1 where there is none.
+    Throws BadImage for values that are not finite."""
     prefix = f"{layer}." if layer else ""
     if any(prefix + name not in planes for name in "RGB"):
         raise BadImage(
             f"{file}: found channels {', '.join(sorted(planes))}; allowed: {', '.join(prefix + c for c in 'RGB')}"
         )
     rgb = numpy.stack([planes[prefix + name] for name in "RGB"], axis=-1)
-    return rgb, planes.get(f"{prefix}A", numpy.ones(rgb.shape[:2], numpy.float32))
+    alpha = planes.get(f"{prefix}A", numpy.ones(rgb.shape[:2], numpy.float32))
+    values = numpy.concatenate([rgb, alpha[..., None]], axis=-1)
+    bad = numpy.argwhere(~numpy.isfinite(values))
+    if len(bad):
+        y, x, channel = bad[0]
+        raise BadImage(
+            f"{file}: pixel ({x}, {y}), channel {prefix}{'RGBA'[channel]}: found "
+            f"{values[y, x, channel]}, {len(bad)} such values; allowed: finite values")
+    return rgb, alpha

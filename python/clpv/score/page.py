@@ -54,8 +54,8 @@ def mean_of(frames):
     return numpy.mean(images, axis=0), numpy.min(masks, axis=0)
 
 
-def write(target, suite_folder, folders, only=("*",)):
-    """Writes the page. `folders`: {title: folder}, which suite.score() accepts. Throws BadImage for
+def made(suite_folder, folders, only=("*",)):
+    """HTML of a page. `folders`: {title: folder}, which suite.score() accepts. Throws BadImage for
     more than 30 MB."""
     views = []
     for each in suite.chosen(suite.read_suite(suite_folder), only):
@@ -67,5 +67,5 @@ def write(target, suite_folder, folders, only=("*",)):
     page = part("page.html").replace("VIEWER", viewer(views), 1)
     if len(page) > LARGEST:
         raise BadImage(
-            f"{target}: found {len(page)} bytes; allowed: {LARGEST}; use --only for fewer views")
-    target.write_text(page, encoding="utf-8")
+            f"--page: found {len(page)} bytes; allowed: {LARGEST}; use --only for fewer views")
+    return page

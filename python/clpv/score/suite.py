@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """A suite of views: suite.json names their truths. Scores a folder of images SCENE-CAMERA.exr."""
 import fnmatch
+import glob
 import json
+import math
 import re
 
 import numpy
@@ -12,6 +14,13 @@ from clpv.score.exr import BadImage
 SCHEMA = 1
 MEASURES = "nrmse", "nrmse_best_gain", "energy_ratio", "flip", "bias", "noise", "change"
 DIGITS = 5  # of printed errors
+FIELDS = {"name": str, "truth": str, "noise": (int, float), "exposure": (int, float)}  # of a view
+
+
+def is_valid(value, kind):
+    if kind is str:
+        return isinstance(value, str) and value.isprintable() and value != ""
+    return type(value) in kind and math.isfinite(value)
 
 
 def read_suite(folder):
@@ -22,16 +31,26 @@ def read_suite(folder):
     except OSError as error:
         raise BadImage(
             f"{file}: {error.strerror}; allowed: a folder that scripts/suite wrote") from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise BadImage(f"{file}: {error}") from None
-    if not isinstance(suite, dict) or suite.get("schema") != SCHEMA or not suite.get("views"):
+    views = suite.get("views") if isinstance(suite, dict) else None
+    if not isinstance(views, list) or not views or suite.get("schema") != SCHEMA:
         raise BadImage(f"{file}: allowed: schema {SCHEMA} with views")
+    if not is_valid(suite.get("hash"), str):
+        raise BadImage(f"{file}: /hash: found {json.dumps(suite.get('hash'))}; allowed: text")
+    for i, view in enumerate(views):
+        for name, kind in FIELDS.items():
+            value = view.get(name) if isinstance(view, dict) else None
+            if not is_valid(value, kind):
+                allowed = "printable text" if kind is str else "a finite number"
+                raise BadImage(
+                    f"{file}: /views/{i}/{name}: found {json.dumps(value)}; allowed: {allowed}")
     return suite
 
 
 def frames_of(folder, view):
     """Files of a view: VIEW.exr, or its frames VIEW.NUMBER.exr in the order of their numbers."""
-    numbered = [(int(found[1]), file) for file in folder.glob(f"{view}.*.exr")
+    numbered = [(int(found[1]), file) for file in folder.glob(f"{glob.escape(view)}.*.exr")
                 if (found := re.fullmatch(rf"{re.escape(view)}\.(\d+)\.exr", file.name))]
     single = folder / f"{view}.exr"
     if single.exists() and numbered:
@@ -41,23 +60,24 @@ def frames_of(folder, view):
 
 
 def read_image(file, truth):
-    """Returns colours and alpha. Throws BadImage for another size or values that are not finite."""
+    """Returns colours and alpha. Throws BadImage for another size."""
     rgb, alpha = exr.colours(exr.read(file), file)
     height, width = truth.shape[:2]
     if rgb.shape != truth.shape:
         raise BadImage(
             f"{file}: found {rgb.shape[1]} x {rgb.shape[0]} pixels; allowed: {width} x {height}")
-    bad = numpy.argwhere(~numpy.isfinite(rgb))
-    if len(bad):
-        y, x, channel = bad[0]
-        raise BadImage(
-            f"{file}: pixel ({x}, {y}), channel {'RGB'[channel]}: found {rgb[y, x, channel]}, "
-            f"{len(bad)} such values; allowed: finite values")
     return rgb, alpha
 
 
 def read_truth(folder, view):
     return exr.colours(exr.read(folder / view["truth"]), folder / view["truth"], "indirect")
+
+
+def inputs(folders, suite_folder):
+    """Files that a score of these folders may read: suite.json, all truths and images."""
+    truths = [suite_folder / view["truth"] for view in read_suite(suite_folder)["views"]]
+    images = [file for folder in folders for file in folder.glob("*.exr")]
+    return [suite_folder / "suite.json", *truths, *images]
 
 
 def score_view(files, folder, view):
@@ -97,7 +117,8 @@ def chosen(suite, only):
 
 def score(folder, suite_folder, method=None, only=("*",)):
     """Scores the images of `folder` for the views whose names match a pattern of `only`; `folder`
-    must have all of them. Returns the errors of each view and their means. Throws BadImage."""
+    must have all of them. Returns the errors of each view, their means, and in how many views each
+    is undefined (None); its mean is then None. Throws BadImage."""
     suite = read_suite(suite_folder)
     views = chosen(suite, only)
     files = {view["name"]: frames_of(folder, view["name"]) for view in views}
@@ -109,12 +130,13 @@ def score(folder, suite_folder, method=None, only=("*",)):
             f"{folder}: found no image of {', '.join(f'{name}.exr' for name in absent)}; allowed: all "
             f"{len(views)} views, or --only PATTERN")
     rows = [score_view(files[view["name"]], suite_folder, view) for view in views]
-    means = {}
+    means, undefined = {}, {}
     for measure in MEASURES:
-        values = [row[measure] for row in rows if row.get(measure) is not None]
-        if len(values) == len(rows):
-            means[measure] = round(sum(values) / len(values), DIGITS)
+        values = [row[measure] for row in rows if measure in row]
+        if len(values) == len(rows):  # bias, noise and change need frames of all views
+            undefined[measure] = values.count(None)
+            means[measure] = None if None in values else round(sum(values) / len(values), DIGITS)
     return {
         "schema": SCHEMA, "suite": suite["hash"], "method": method or folder.resolve().name,
-        "mean": means, "complete": len(views) == len(suite["views"]), "views": rows
+        "mean": means, "undefined": undefined, "complete": len(views) == len(suite["views"]), "views": rows
     }

@@ -14,7 +14,7 @@ scripts/measure writes results/docs. Only the standard library.
 import re
 import sys
 
-from .. import ROOT, RESULTS, expected, json_lines, verdicts
+from .. import ROOT, RESULTS, expected, json_lines, output, verdicts
 from . import benchmarks, quality, paper, standing  # they fill TABLES
 from .cells import LOADED, MEASURED, TABLES, read, result
 from .stages import print_stages
@@ -64,13 +64,17 @@ def written(text):
 
 def main():
     arguments = sys.argv[1:]
+    if arguments in (["-h"], ["--help"]):
+        print(__doc__.strip())
+        return 0
     if arguments == ["--list"]:
         print("\n".join(["measured-on", *TABLES]))
         return 0
     if arguments[:1] == ["--stages"] and len(arguments) > 1:
         return print_stages(arguments[1:])
     if arguments not in ([], ["--check"]):
-        sys.exit(__doc__.strip())
+        print(__doc__.strip(), file=sys.stderr)
+        return 2
     differing = []
     for name, document in (("claims", {"claims": verdicts.judged(result)}),
                            ("expected", expected.expected(result))):
@@ -79,14 +83,15 @@ def main():
         if not file.exists() or file.read_text(encoding="utf-8") != text:
             differing.append(str(file.relative_to(ROOT)))
             if not arguments:
-                file.parent.mkdir(exist_ok=True)
-                file.write_text(text, encoding="utf-8")
+                output.write(file, text)
     for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))]:
+        if page.is_symlink():
+            continue
         text = page.read_text(encoding="utf-8")
         if written(text) != text:
             differing.append(str(page.relative_to(ROOT)))
             if not arguments:
-                page.write_text(written(text), encoding="utf-8")
+                output.write(page, written(text))
     if arguments and differing:
         print(f"{', '.join(differing)}: tables differ from results/docs; run scripts/tables",
               file=sys.stderr)

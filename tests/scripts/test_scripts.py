@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: MIT
+"""Each script with outputs, in folders full of files that are none of its own: it leaves them as
+they are, whether it refuses the folder or wrote there before. Stubs stand for clpv and for tools
+that take minutes."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import unittest
+
+import bystanders
+from bystanders import ROOT
+from clpv import output
+
+BAD_INPUT, USAGE = 3, 2
+CLPV = """#!/usr/bin/python3
+import json, os, pathlib, sys
+arguments = sys.argv[1:]
+dump = os.environ.get("CLPV_PROGRAM_DUMP")
+if dump:
+    pathlib.Path(dump, "a.cl").write_text("kernel")
+if arguments[0] == "quality":
+    given = dict(each[2:].split("=", 1) for each in arguments if "=" in each)
+    truth = pathlib.Path(given["output"]).with_name("cornell-front-0123.exr")
+    truth.write_text("truth")
+    truth = pathlib.Path(os.environ["STORE"], truth.name)
+    truth.write_text("truth")
+    pathlib.Path(given["output"]).write_text(json.dumps({"ground_truths": [
+        {"file": str(truth), "camera": "front", "noise": 0.03, "spp": 1}]}))
+for option in "-o", "--stats":
+    if option in arguments:
+        pathlib.Path(arguments[arguments.index(option) + 1]).write_text(" ".join(arguments))
+"""
+OIIOTOOL = '#!/bin/bash\ncp "$1" "${@: -1}"\n'
+CLANG = """#!/bin/bash
+cat <<'END'
+.amdgpu_metadata
+  - .args:
+    .name: gather
+    .vgpr_count: 8
+    .vgpr_spill_count: 0
+    .private_segment_fixed_size: 0
+    .group_segment_fixed_size: 0
+END
+"""
+
+
+class InTree(unittest.TestCase):
+    """A tree with the scripts, a stub of clpv, and a folder full of bystanders."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name).resolve()
+        self.tree, self.full = self.folder / "tree", self.folder / "full"
+        shutil.copytree(ROOT / "scripts", self.tree / "scripts",
+                        ignore=shutil.ignore_patterns("__pycache__"))
+        for name in ("python", "scenes", "docs", "results", "LICENSE", "CMakeLists.txt",
+                     "README.md", "REPRODUCING.md", "CITATION.cff", "CHANGELOG.md"):
+            (self.tree / name).symlink_to(ROOT / name)
+        (self.folder / "store").mkdir()
+        for name, text in (("tree/build/clpv", CLPV), ("bin/oiiotool", OIIOTOOL),
+                           ("bin/clang-15", CLANG), ("tree/scripts/build", "#!/bin/sh\n"),
+                           ("tree/scripts/setup", "#!/bin/sh\n")):
+            file = self.folder / name
+            file.parent.mkdir(exist_ok=True)
+            file.write_text(text)
+            file.chmod(0o755)
+
+    def run_script(self, name, *arguments, cwd=None, **environment):
+        words = [str(self.tree / "scripts" / name), *map(str, arguments)]
+        path = f"{self.folder}/bin:/usr/bin:/bin:/usr/sbin:/sbin"
+        env = {
+            "PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "STORE": str(self.folder / "store"),
+            **environment
+        }
+        return subprocess.run(words, capture_output=True, text=True, check=False, env=env,
+                              cwd=cwd or self.folder)
+
+    def made(self, *arguments, **named):
+        found = self.run_script(*arguments, **named)
+        self.assertEqual(found.returncode, 0, found.stderr)
+        return found
+
+    def refused(self, code, words, *arguments, **named):
+        before = bystanders.seen(self.folder)
+        found = self.run_script(*arguments, **named)
+        self.assertEqual(found.returncode, code, found.stderr)
+        self.assertIn(words, found.stderr)
+        self.assertEqual(bystanders.seen(self.folder), before)
+
+    def add_bystanders(self, folder):
+        """Puts bystanders among what a script wrote. Returns what must stay."""
+        made = bystanders.fill(self.folder / "others")
+        for path in made.iterdir():
+            if not os.path.lexists(folder / path.name):
+                path.rename(folder / path.name)
+        ours = {str(folder / name) for name in self.listed(folder)}
+        return {
+            path: found for path, found in bystanders.seen(folder).items()
+            if path not in ours and found[3] is not None and not path.endswith(output.MARKER)
+        }
+
+    def listed(self, folder):
+        return (folder / output.MARKER).read_text().splitlines()[1:]
+
+
+class FullFolders(InTree):
+    """A folder that the script did not write stays as it is."""
+
+    def test_as_outputs(self):
+        bystanders.fill(self.full)
+        for script, *arguments in (
+            ("suite", "--scene=cornell", f"--output={self.full}"),
+            ("gpu_report", f"--output={self.full}"),
+            ("reproduce", "--no-build", "--part=lobes", f"--out={self.full}"),
+            ("frame", "--out", self.full)):
+            with self.subTest(script):
+                self.refused(USAGE, f"one that scripts/{script} wrote", script, *arguments)
+        self.refused(USAGE, "one that scripts/demo wrote", "demo", CLPV_OUT=str(self.full))
+        self.refused(BAD_INPUT, "one that scripts/reproduce wrote".replace("one", "a folder"),
+                     "archive", "--from", self.full)
+
+    def test_in_the_place_of_a_scripts_own(self):
+        bystanders.fill(self.tree / "build-intel")
+        self.refused(USAGE, "one that scripts/check_intel wrote", "check_intel")
+        (self.tree / "results").unlink()
+        bystanders.fill(self.tree / "results/mine")
+        self.refused(USAGE, "one that scripts/measure wrote", "measure", "mine")
+        if os.geteuid() == 0:
+            bystanders.fill(self.tree / "build-suites/sid-pocl")
+            self.refused(USAGE, "one that scripts/check_pocl wrote", "check_pocl", "sid")
+
+    def test_outside_of_a_scripts_folder(self):
+        bystanders.fill(self.full)
+        for name in "../../full", "../full", "/", ".", "..", "a/../..", "-x":
+            self.refused(USAGE, "allowed: a name such as trixie", "check_pocl", name)
+            if name != "-x":
+                self.refused(USAGE, "allowed: letters", "measure", name)
+
+    def test_a_tar_beside_a_new_folder(self):
+        (self.folder / "photos.tar").write_text("precious")
+        self.refused(USAGE, "photos.tar; allowed: none", "suite", "--scene=cornell",
+                     "--output=photos")
+
+
+class OwnFolders(InTree):
+    """Bystanders in a folder that the script wrote stay as they are, and out of tars."""
+
+    def test_suite(self):
+        made = self.folder / "made"
+        call = "suite", "--scene=cornell", "--output=made"
+        self.made(*call)
+        stays = self.add_bystanders(made)
+        self.made(*call)
+        self.assertEqual({path: bystanders.seen(made)[path] for path in stays}, stays)
+        with tarfile.open(self.folder / "made.tar") as tar:
+            names = tar.getnames()
+        self.assertEqual(sorted(names), sorted(f"made/{name}" for name in self.listed(made)))
+        for name in ("suite.json", "LICENSE", "score.md", "truths/cornell-front-0123.exr",
+                     "models/cornell.glb", "cameras/cornell.gltf", "clpv/output.py",
+                     "clpv/score/__main__.py"):
+            self.assertIn(f"made/{name}", names)
+
+    def test_the_scorer_of_a_suite_runs(self):
+        self.made("suite", "--scene=cornell", "--output=made")
+        found = subprocess.run([sys.executable, "-B", "-m", "clpv.score", "--help"],
+                               cwd=self.folder / "made", env={}, capture_output=True, check=False)
+        self.assertEqual(found.returncode, 0, found.stderr)
+
+    def test_archive(self):
+        made = output.Folder(self.folder / "made", "scripts/reproduce")
+        made.write("index.html", "page")
+        made.write("parts/lobes.json", "{}")
+        (made.path / "hostname").symlink_to("/etc/hostname")
+        stays = self.add_bystanders(made.path)
+        tar = made.path / "paper.tar"
+        for _ in range(2):  # the second time the tar of the first lies in the folder
+            self.made("archive", "--from=made", f"--output={tar}")
+            with tarfile.open(tar) as archive:
+                names = [name.split("/", 2)[1:] for name in archive.getnames()]
+            self.assertEqual([rest[0] for folder, *rest in names if folder == "paper"],
+                             ["index.html", "parts/lobes.json"])
+        self.assertEqual({path: bystanders.seen(made.path)[path] for path in stays}, stays)
+        self.refused(USAGE, "allowed: another file", "archive", "--from=made",
+                     "--output=made/index.html")
+        (made.path / "parts/lobes.json").unlink()
+        self.refused(BAD_INPUT, "parts/lobes.json: No such file", "archive", "--from=made",
+                     f"--output={tar}")
+
+    def test_gpu_report(self):
+        if not pathlib.Path("/usr/lib/clc/amdgcn--amdhsa.bc").is_file():
+            self.skipTest("skipped: libclc is not installed")
+        made = self.folder / "made"
+        call = "gpu_report", "--frames=default", "--output=made"
+        self.made(*call)
+        stays = self.add_bystanders(made)
+        self.made(*call)
+        self.assertEqual({path: bystanders.seen(made)[path] for path in stays}, stays)
+        self.assertIn("gather", (made / "README.md").read_text())
+
+    def test_demo(self):
+        (self.tree / "scripts/tables").unlink()
+        (self.tree / "scripts/tables").symlink_to("/bin/true")
+        (self.folder / "caller").mkdir()
+        for _ in range(2):
+            self.made("demo", "--centres", "mine.json", cwd=self.folder / "caller", CLPV_OUT="made")
+            made = self.folder / "caller/made"
+            self.assertIn("--centres mine.json", (made / "atrium-sh3.json").read_text())
+            if not (made / "README.md").exists():
+                stays = self.add_bystanders(made)
+        found = bystanders.seen(made)
+        stays = {path: each for path, each in stays.items() if "/atrium-" not in path}
+        self.assertEqual({path: found[path] for path in stays}, stays)
+        self.assertFalse((self.tree / "made").exists())
+
+    def test_tables(self):
+        for name in "docs", "README.md":
+            (self.tree / name).unlink()
+        shutil.copy(ROOT / "README.md", self.tree)
+        bystanders.fill(self.tree / "docs")
+        shutil.copy(ROOT / "docs/frame.md", self.tree / "docs/a.md")
+        page = "<!-- table: {} -->\n<!-- end -->\n"
+        stale = self.tree / "docs/stale.md"
+        stale.write_text(page.format("table1-shadows"))
+        stale.chmod(0o640)
+        (self.folder / "outside.md").write_text(page.format("table1-shadows"))
+        (self.tree / "docs/link.md").symlink_to(self.folder / "outside.md")
+        before = bystanders.seen(self.folder)
+        self.made("tables")
+        after = bystanders.seen(self.folder)
+        self.assertEqual([path for path in before if after[path] != before[path]], [str(stale)])
+        self.assertEqual(sorted(after), sorted(before))
+        self.assertEqual(after[str(stale)][:3], before[str(stale)][:3])
+
+    def test_charts_spare_their_inputs(self):
+        for chart, given, file in (("errors", "q.json", "q.json"), ("times", "s", "s/times.json"),
+                                   ("stability", "a=s", "s/stability.json")):
+            (self.folder / file).parent.mkdir(exist_ok=True)
+            (self.folder / file).write_text("{}")
+            self.refused(USAGE, "allowed: another file", "charts", chart, given, "-o", file)
+
+
+class Arguments(InTree):
+    def test_help_is_the_comment_and_changes_nothing(self):
+        for name in sorted(file.name for file in (ROOT / "scripts").iterdir()):
+            if not os.access(ROOT / "scripts" / name, os.X_OK) or name in ("measured", "stubs"):
+                continue  # scripts/stubs needs the native module
+            found = subprocess.run([ROOT / "scripts" / name, "--help"], capture_output=True,
+                                   text=True, check=False, cwd=self.folder)
+            self.assertEqual(found.returncode, 0, name)
+            self.assertIn(f"  scripts/{name}", found.stdout)
+
+    def test_unknown_arguments(self):
+        for name, argument in (("build", "--fast"), ("test", "gather"), ("fuzz", "none"),
+                               ("sanitize", "--fast"), ("check_intel", "x"), ("setup", "x"),
+                               ("format", "x"), ("tables", "x"), ("archive", "x")):
+            found = subprocess.run([ROOT / "scripts" / name, argument], capture_output=True,
+                                   text=True, check=False)
+            self.assertEqual(found.returncode, USAGE, (name, found.stderr))
+
+
+if __name__ == "__main__":
+    unittest.main()
