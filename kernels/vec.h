@@ -46,6 +46,11 @@ static inline Vec vec_cross(const Vec a, const Vec b) {
   return (Vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+// a in lanes inside the mask, b elsewhere.
+static inline Vec vec_selected(const intW mask, const Vec a, const Vec b) {
+  return (Vec){mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+
 // w.x a + w.y b + w.z c
 static inline Vec vec_blend(const Vec w, const Vec a, const Vec b, const Vec c) {
   return (Vec){w.x * a.x + w.y * b.x + w.z * c.x, w.x * a.y + w.y * b.y + w.z * c.y,

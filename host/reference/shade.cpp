@@ -63,13 +63,14 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
 }
 
 glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position,
-                             const glm::dvec3& normal) {
+                             const glm::dvec3& normal, const glm::dvec3& geometric) {
   const Incident incident = light_at(light.light, position);
-  const double cosine = glm::dot(normal, incident.towards);
-  if (cosine <= 0) return glm::dvec3(0);
+  const double cosine = glm::dot(normal, incident.towards),
+               facing = glm::dot(geometric, incident.towards);
+  if (cosine <= 0 || facing <= 0) return glm::dvec3(0);
   if (light.maps.empty()) return cosine * incident.irradiance;
   const ShadowMap& map = map_towards(light.maps, position - vector(light.maps.front().view.eye));
-  return cosine * visibility(map, position, normal, cosine) * incident.irradiance;
+  return cosine * visibility(map, position, geometric, facing) * incident.irradiance;
 }
 
 std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights,
@@ -80,7 +81,8 @@ std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights
     if (depth <= 0) continue;
     const glm::dvec3 position = surface_position(camera.view, pixel, depth);
     for (const MappedLight& light : lights) {
-      image[pixel] += direct_irradiance(light, position, glm::dvec3(camera.normal[pixel]));
+      image[pixel] += direct_irradiance(light, position, glm::dvec3(camera.normal[pixel]),
+                                        geometric_normal(camera.normal[pixel]));
     }
   }
   return image;

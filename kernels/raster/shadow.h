@@ -3,8 +3,8 @@
 //
 // The shadow filter has 4 x 4 taps: a box of three texels at any sub-texel position, hence the
 // weight clamp(2 - |distance|, 0, 1) per texel and axis. Each texel's depth is compared with the
-// depth of the receiver's tangent plane at that texel. A flat receiver of any slope then does not
-// shadow itself. A lift along the normal (shared/shade.h) covers rounding, interpolated normals and
+// depth of the plane of the receiver's triangle at that texel. A flat receiver of any slope then
+// does not shadow itself. A lift along the triangle's normal (shared/shade.h) covers rounding and
 // corners; occluders closer than the lift cast no shadow.
 #pragma once
 
@@ -24,8 +24,8 @@ typedef struct {
   float per_depth;  // 1: perspective, 0: orthographic
 } Receivers;
 
-// Sets up receivers. `offset`: from the light's eye to the surfaces [m]; `cosine`: between normal
-// and direction to the light.
+// Sets up receivers. `offset`: from the light's eye to the surfaces [m]; `normal`: the triangle's;
+// `cosine`: between it and the direction to the light.
 CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec normal,
                                 const realW cosine, Receivers* r) {
   const Vec right = vec_of(view.right), up = vec_of(view.up), forward = vec_of(view.forward);
@@ -158,21 +158,24 @@ typedef struct {
   __global const float* map;  // depths [m]
 } ShadowMap;
 
-// Irradiance [W/m^2] of a light on the surfaces that its view covers. `lit`: mask of the surfaces
-// to light; becomes that of the lit ones, outside which the result is undefined.
+// Irradiance [W/m^2] of a light on the surfaces that its view covers. `normal` weighs light,
+// `geometric` decides which side it comes from (shared/normal.h). `lit`: mask of the surfaces to
+// light; becomes that of the lit ones, outside which the result is undefined.
 CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shadow,
-                                    const Vec position, const Vec normal, intW* lit) {
+                                    const Vec position, const Vec normal, const Vec geometric,
+                                    intW* lit) {
   Vec towards;
   Vec irradiance = light_irradiance(light, position, &towards);
-  const realW cosine = vec_dot_unfused(normal, towards);
-  *lit &= cosine > ZERO;
+  const realW cosine = vec_dot_unfused(normal, towards),
+              facing = vec_dot_unfused(geometric, towards);
+  *lit &= (cosine > ZERO) & (facing > ZERO);
   irradiance = vec_times(irradiance, cosine);
   if (shadow.count == 0) return irradiance;
   const ClpvView view = shadow.views[shadow.which];
   const Vec offset = vec_minus(position, vec_of(view.eye));
   if (shadow.count > 1) *lit &= view_covers(shadow.views, shadow.count, shadow.which, offset);
   Receivers r;
-  find_receivers(view, offset, normal, cosine, &r);
+  find_receivers(view, offset, geometric, facing, &r);
   return vec_times(irradiance, find_visibility(view, shadow.map, r, *lit));
 }
 
