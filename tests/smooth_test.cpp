@@ -211,7 +211,7 @@ Errors errors_of_direct(SceneData scene) {
 TEST(Smooth, DirectLightIsThatOfPathTracing) {
   const std::pair<const char*, SceneData> scenes[] = {
       {"quad (0, .5, 1)", tilted_quad({0, 0.5f, 1})},
-      {"quad (.3, -.6, 1)", tilted_quad({0.3f, -0.6f, 1})},
+      {"quad (-.6, -.2, 1)", tilted_quad({-0.6f, -0.2f, 1})},
       {"box", smooth_box()},
       {"cylinder", cylinder()},
       {"torus", torus(16, 8)},
@@ -220,11 +220,7 @@ TEST(Smooth, DirectLightIsThatOfPathTracing) {
     SCOPED_TRACE(name);
     if (scene.vertices.size() > 4)  // a floor for their shadows
       add_quad(scene, {-6, -1.2f, -6}, {0, 0, 12}, {12, 0, 0}, 0);
-    // The quad's light must come from its front, +z.
     const Errors errors = errors_of_direct(scene);
-    RecordProperty(std::string(name) + " nrmse", std::to_string(errors.nrmse));
-    std::printf("%-18s NRMSE %.4f, energy %.4f of %zu pixels\n", name, errors.nrmse, errors.energy,
-                errors.pixels);
     EXPECT_GT(errors.pixels, 1000u);
     EXPECT_LT(errors.nrmse, 0.01);
     EXPECT_NEAR(errors.energy, 1, 0.01);
@@ -243,15 +239,18 @@ TEST(Smooth, AVirtualPointLightLiesOnItsTriangleWithTheLightThatItsNormalWeighs)
       false);
   rasterizer.rasterize_rsm(light.data, rsm);
   const SurfaceImage image = read_surface(session, rsm);
-  double flux = 0;
+  const glm::dvec3 towards = -glm::normalize(glm::dvec3(0.2, -1, -1));
+  const double weight =
+      glm::dot(glm::normalize(glm::dvec3(0, 0.5, 1)), towards) / towards.z;
+  const double across = 2.0 * rsm.view.half_width / rsm.view.width;  // of a texel [m]
+  std::size_t texels = 0;
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     if (image.depth[i] <= 0) continue;
-    flux += double{image.colour[i].x};
+    ++texels;
     ASSERT_NEAR(image.normal[i].z, 1, 1e-6);
+    ASSERT_NEAR(image.colour[i].x, 0.7 * 10 * across * across * weight, 1e-4 * across * across);
   }
-  const glm::dvec3 towards = -glm::normalize(glm::dvec3(0.2, -1, -1));
-  const double cosine = glm::dot(glm::normalize(glm::dvec3(0, 0.5, 1)), towards);
-  EXPECT_NEAR(flux, 0.7 * 10 * 6 * cosine, 0.02 * flux);
+  EXPECT_GT(texels, 500u);
 }
 
 TEST(Smooth, PathTracingLightsByTheTriangleAndWeighsByTheNormal) {
@@ -279,7 +278,7 @@ TEST(Smooth, GeometricNormalsKeepTheirDirection) {
     const glm::dvec3 n(r * std::cos(a), r * std::sin(a), z),
         shading = glm::normalize(n + glm::dvec3(0.1, -0.2, 0.15));
     const glm::vec4 stored = stored_normal(shading, n);
-    ASSERT_LT(glm::length(geometric_normal(stored) - n), 7e-4) << i;
+    ASSERT_LT(glm::length(geometric_normal(stored) - n), 9e-4) << i;
     ASSERT_EQ(stored_normal(n, n).w, 0) << "one normal";
   }
   for (int axis = 0; axis < 3; ++axis) {

@@ -9,7 +9,7 @@
 // Efficient Representations for Independent Unit Vectors', JCGT 3(2), 2014):
 //   (u, v) = (x, y) / (|x| + |y| + |z|), for z < 0 ((1 - |y|) sign x, (1 - |x|) sign y)
 //   number = (CLPV_NORMAL_STEPS u + CLPV_NORMAL_ZERO) + CLPV_NORMAL_BASE (the same of v)
-// 0: n_g = n_s. The error is below 7e-4 rad.
+// 0: n_g = n_s. The error is below 9e-4 rad.
 #pragma once
 
 #define CLPV_NORMAL_STEPS 2047.0f
