@@ -62,13 +62,13 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   const intW back = height < ZERO;
   // Rays start CLPV_NEAR_LIFT R above their own triangle.
   s->hit = listed & (fabs(height) > 2.0f * CLPV_NEAR_LIFT * reach * area2);
-  s->position = vec_blend(w, a.position, b.position, c.position);
+  s->position = vec_interpolated(w, a.position, b.position, c.position);
   const Vec front = vec_times(across, back ? (realW)(-1.0f) : ONE);
-  s->normal = normal_towards(front, vec_blend(w, a.normal, b.normal, c.normal));
+  s->normal = normal_towards(front, vec_interpolated(w, a.normal, b.normal, c.normal));
   s->geometric = geometric_towards(front, s->normal);
   s->albedo = material.base_colour;
 #if CLPV_COLOURED
-  s->albedo = vec_product(s->albedo, vec_blend(w, a.colour, b.colour, c.colour));
+  s->albedo = vec_product(s->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
 #endif
 #if CLPV_EMISSIVE
   const intW emits = (back == 0) | ((material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);

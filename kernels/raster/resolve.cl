@@ -65,14 +65,15 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const r
   const realW facing = vec_dot(face.normal, ray);
 
   const Vec front = vec_times(face.normal, facing > ZERO ? (realW)(-1.0f) : ONE);
-  surface->normal = normal_towards(front, vec_blend(w, a.normal, b.normal, c.normal));
+  surface->normal = normal_towards(front, vec_interpolated(w, a.normal, b.normal, c.normal));
   surface->geometric = geometric_towards(front, surface->normal);
   surface->albedo = material.base_colour;
 #if CLPV_EMISSIVE
   surface->emissive = material.emissive;
 #endif
 #if CLPV_COLOURED
-  surface->albedo = vec_product(surface->albedo, vec_blend(w, a.colour, b.colour, c.colour));
+  surface->albedo =
+      vec_product(surface->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
 #endif
 #if CLPV_TEXTURED
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
