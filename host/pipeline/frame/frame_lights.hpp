@@ -76,6 +76,7 @@ class FrameLights {
   static std::size_t slot(const Lit& lit, int cascade);
   void find_lights(const SceneCamera& camera);
   void find_scale(const ClpvGrid& coarsest);
+  void find_bounds(const ClpvGrid& coarsest);
   CacheKey key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const;
   void rasterize(const Lit& lit, const std::vector<ClpvView>& views,
                  std::vector<Surface>& surfaces);
@@ -90,6 +91,8 @@ class FrameLights {
   std::vector<Lit> lights_;
   std::string lit_by_;  ///< Camera::light for which lights_ were prepared
   float scale_ = 1;
+  Bounds bounds_;         ///< light_bounds()
+  Cached bounds_cached_;
   unsigned epoch_ = 0;  ///< part of every key
 };
 
