@@ -242,13 +242,13 @@ TEST(Smooth, AVirtualPointLightLiesOnItsTriangleWithTheLightThatItsNormalWeighs)
   const glm::dvec3 towards = -glm::normalize(glm::dvec3(0.2, -1, -1));
   const double weight =
       glm::dot(glm::normalize(glm::dvec3(0, 0.5, 1)), towards) / towards.z;
-  const double across = 2.0 * rsm.view.half_width / rsm.view.width;  // of a texel [m]
+  const double texel = 4.0 * rsm.view.half_width * rsm.view.half_height / (256 * 256);  // [m^2]
   std::size_t texels = 0;
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     if (image.depth[i] <= 0) continue;
     ++texels;
     ASSERT_NEAR(image.normal[i].z, 1, 1e-6);
-    ASSERT_NEAR(image.colour[i].x, 0.7 * 10 * across * across * weight, 1e-4 * across * across);
+    ASSERT_NEAR(image.colour[i].x, 0.7 * 10 * texel * weight, 1e-3 * texel);
   }
   EXPECT_GT(texels, 500u);
 }
@@ -278,7 +278,7 @@ TEST(Smooth, GeometricNormalsKeepTheirDirection) {
     const glm::dvec3 n(r * std::cos(a), r * std::sin(a), z),
         shading = glm::normalize(n + glm::dvec3(0.1, -0.2, 0.15));
     const glm::vec4 stored = stored_normal(shading, n);
-    ASSERT_LT(glm::length(geometric_normal(stored) - n), 9e-4) << i;
+    ASSERT_LT(glm::length(geometric_normal(stored) - n), 1e-3) << i;
     ASSERT_EQ(stored_normal(n, n).w, 0) << "one normal";
   }
   for (int axis = 0; axis < 3; ++axis) {

@@ -9,12 +9,13 @@
 // Efficient Representations for Independent Unit Vectors', JCGT 3(2), 2014):
 //   (u, v) = (x, y) / (|x| + |y| + |z|), for z < 0 ((1 - |y|) sign x, (1 - |x|) sign y)
 //   number = (CLPV_NORMAL_STEPS u + CLPV_NORMAL_ZERO) + CLPV_NORMAL_BASE (the same of v)
-// 0: n_g = n_s. The error is below 9e-4 rad.
+// 0: n_g = n_s. The error is below 1e-3 rad.
 #pragma once
 
 #define CLPV_NORMAL_STEPS 2047.0f
 #define CLPV_NORMAL_ZERO 2048.0f
 #define CLPV_NORMAL_BASE 4096.0f
 
-// Cosine from which both normals count as one.
-#define CLPV_SAME_NORMAL 0.999999f
+// Cosine from which both normals count as one: 2.6 degrees, at which the lift of shadow receivers
+// covers the difference of their planes.
+#define CLPV_SAME_NORMAL 0.999f

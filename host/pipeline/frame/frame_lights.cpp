@@ -39,13 +39,15 @@ void FrameLights::prepare(const SceneCamera& camera, const std::vector<ClpvGrid>
   find_scale(grids.back());
   find_bounds(grids.back());
   for (Lit& lit : lights_) {
-    const Bounds& bounds = rsm_follows_cascade(lit.light) ? bounds_ : buffers_.bounds;
+    const LightBounds bounds = rsm_follows_cascade(lit.light)
+                                   ? bounds_
+                                   : LightBounds{buffers_.bounds, buffers_.bounds};
     lit.shadow.light = lit.light;
-    lit.shadow.views = shadow_views(lit.light, bounds, options_.shadow_size);
+    lit.shadow.views = shadow_views(lit.light, bounds.shadows, options_.shadow_size);
     lit.rsms.resize(injected_volumes(options_));
     lit.wanted.clear();
     for (const ClpvGrid& grid : grids) {
-      std::vector<ClpvView> views = rsm_views(lit.light, grid, bounds, options_.rsm_size);
+      std::vector<ClpvView> views = rsm_views(lit.light, grid, bounds.rsms, options_.rsm_size);
       const CacheKey key = key_of(scaled(lit.light, scale_), views);
       lit.wanted.push_back({std::move(views), key});
     }

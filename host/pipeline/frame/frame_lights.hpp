@@ -17,6 +17,7 @@
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/raster/surface.hpp"
+#include "pipeline/raster/view.hpp"
 #include "scene/scene.hpp"
 #include "scene/sky.hpp"
 #include "volume/volume_format.hpp"
@@ -91,7 +92,7 @@ class FrameLights {
   std::vector<Lit> lights_;
   std::string lit_by_;  ///< Camera::light for which lights_ were prepared
   float scale_ = 1;
-  Bounds bounds_;         ///< light_bounds()
+  LightBounds bounds_;    ///< of the scene's current time
   Cached bounds_cached_;
   unsigned epoch_ = 0;  ///< part of every key
 };

@@ -220,8 +220,8 @@ bool may_be_clipped(const ClpvView& view, const Bounds& bounds) {
          (!parallel && reaches(-forward, view.near_depth));
 }
 
-Bounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
-                    const ClpvGrid& coarsest) {
+LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
+                         const ClpvGrid& coarsest) {
   const double half = 0.5 * static_cast<double>(coarsest.n) * coarsest.cell;
   const glm::dvec3 middle = vector(coarsest.origin) + half;
   /// Exponent k of the smallest cube of half edge 2^k half about the middle with the vertex; 0 in the
@@ -237,17 +237,17 @@ Bounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
   for (int k = 1; k < kMaxCubes && k <= last + kGapCubes + 1; ++k) {
     if (used[k]) last = k;
   }
-  if (std::none_of(used.begin() + last + 1, used.end(), [](bool u) { return u; })) return all;
-  // Depths also cover the cascade and a cell around it. RSMs clamp surfaces before them to the near
-  // plane, whose virtual point lights then lie outside.
-  const double outer = half + double{coarsest.cell};
-  Bounds bounds{glm::vec3(middle - outer), glm::vec3(middle + outer)};
+  if (std::none_of(used.begin() + last + 1, used.end(), [](bool u) { return u; })) return {all, all};
+  const double outer = half + double{coarsest.cell};  // virtual point lights move by half a cell
+  const Bounds cube{glm::vec3(middle - outer), glm::vec3(middle + outer)};
+  Bounds near{cube.upper, cube.lower};  // nothing yet
   for (const Vertex& v : vertices) {
     if (cube_of(v) > last) continue;
     const glm::vec3 p(vector(v.position));
-    bounds = {glm::min(bounds.lower, p), glm::max(bounds.upper, p)};
+    near = {glm::min(near.lower, p), glm::max(near.upper, p)};
   }
-  return bounds;
+  if (glm::any(glm::lessThan(near.upper, near.lower))) near = cube;
+  return {near, {glm::min(near.lower, cube.lower), glm::max(near.upper, cube.upper)}};
 }
 
 bool rsm_follows_cascade(const ClpvLight& light) {
