@@ -46,6 +46,22 @@ static inline Vec vec_cross(const Vec a, const Vec b) {
   return (Vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+// a in lanes inside the mask, b elsewhere.
+static inline Vec vec_selected(const intW mask, const Vec a, const Vec b) {
+  return (Vec){mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+
+// Attribute at barycentric weights w of corners a, b and c: a + w.y (b - a) + w.z (c - a), so that
+// a constant attribute stays that constant.
+static inline realW interpolated(const Vec w, const realW a, const realW b, const realW c) {
+  return a + w.y * (b - a) + w.z * (c - a);
+}
+static inline Vec vec_interpolated(const Vec w, const Vec a, const Vec b, const Vec c) {
+  return (Vec){a.x + w.y * (b.x - a.x) + w.z * (c.x - a.x),
+               a.y + w.y * (b.y - a.y) + w.z * (c.y - a.y),
+               a.z + w.y * (b.z - a.z) + w.z * (c.z - a.z)};
+}
+
 // w.x a + w.y b + w.z c
 static inline Vec vec_blend(const Vec w, const Vec a, const Vec b, const Vec c) {
   return (Vec){w.x * a.x + w.y * b.x + w.z * c.x, w.x * a.y + w.y * b.y + w.z * c.y,

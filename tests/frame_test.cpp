@@ -71,6 +71,27 @@ void expect_golden(const Image& image, const std::string& name) {
 static_assert(!std::is_move_constructible_v<Frame> && !std::is_copy_constructible_v<Frame> &&
               !std::is_move_assignable_v<Frame> && !std::is_copy_assignable_v<Frame>);
 
+// A block on a floor, and one small triangle 10 km away.
+TEST(Frame, AFarTriangleChangesNothing) {
+  const auto shown = [](bool far) {
+    SceneData scene;
+    scene.path = "far";
+    test::add_material(scene, glm::vec3(0.6f));
+    test::add_quad(scene, {-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, 0);
+    for (const glm::vec3 side : {glm::vec3(1, 0, 0), {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
+      const glm::vec3 across = glm::cross(glm::vec3(0, 1, 0), side);
+      test::add_quad(scene, 0.5f * (side - across), across, {0, 2, 0}, 0);
+    }
+    test::add_quad(scene, {-0.5f, 2, 0.5f}, {1, 0, 0}, {0, 0, -1}, 0);
+    if (far) test::add_triangle(scene, {1e4f, 0, 0}, {1e4f, 1, 0}, {1e4f, 0, 1}, 0);
+    scene.lights = {{"sun", test::directional_light({1, -1, -0.5f}, glm::vec3(10))}};
+    scene.cameras = {test::camera_at({4, 4, 5}, {-4, -3.5f, -5})};
+    return render(scene, small_options(scene), Show::full);
+  };
+  const Comparison result = compare(shown(true), "with", shown(false), "without");
+  EXPECT_LT(result.nrmse, 0.02);
+}
+
 TEST(Frame, AtriumEqualsItsGoldenImage) {
   const SceneData scene = load_scene(scene_file("atrium.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "atrium");

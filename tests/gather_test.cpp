@@ -216,7 +216,8 @@ TEST(Gather, SharesDoNotJumpWhereTheEyeCrossesIntoAnotherCell) {
   const auto seen_from = [&](float eye, const glm::dvec3& p) {
     const auto grids = cascade_grids({eye, 0.1f, 0.2f}, 2, double{kCell} * kGrid, kGrid);
     return reference::gather(*basis, TransportKind::sampled, {.grid = kGrid},
-                             {{grids[0], &fine}, {grids[1], &coarse}}, p, glm::dvec3(0, 1, 0))
+                             {{grids[0], &fine}, {grids[1], &coarse}}, p, glm::dvec3(0, 1, 0),
+                             glm::dvec3(0, 1, 0))
         .x;
   };
   const float boundary = 2 * kCell;  // of both cascades' cells

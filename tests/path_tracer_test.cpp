@@ -2,6 +2,7 @@
 // The path tracer against closed forms.
 #include "pathtracer/path_tracer.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -288,6 +289,54 @@ TEST(PathTracer, BackgroundIsZero) {
     EXPECT_EQ(image.direct[i], glm::vec3(0));
     EXPECT_EQ(image.irradiance[i], glm::vec3(0));
   }
+}
+
+/// A block of 1 x 2 x 1 m on a floor of 8 x 8 m, sun from the side, at `by`; with `far`, a triangle
+/// as far away.
+TracedImage trace_block(const glm::vec3& by, float far) {
+  SceneData scene;
+  scene.path = "block";
+  add_grey(scene, 0.6f);
+  add_quad(scene, glm::vec3(-4, 0, 4) + by, {8, 0, 0}, {0, 0, -8}, 0);
+  for (const glm::vec3 side : {glm::vec3(1, 0, 0), {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
+    const glm::vec3 across = glm::cross(glm::vec3(0, 1, 0), side);
+    add_quad(scene, 0.5f * (side - across) + by, across, {0, 2, 0}, 0);
+  }
+  add_quad(scene, glm::vec3(-0.5f, 2, 0.5f) + by, {1, 0, 0}, {0, 0, -1}, 0);
+  if (far > 0) add_triangle(scene, {far, 0, 0}, {far, 8, 0}, {far, 0, 8}, 0);
+  scene.lights = {sun({1, -1, -0.5f}, 10)};
+  PathTracerOptions options;
+  options.samples = 16;
+  ClpvView view = view_of(glm::vec3(4, 4, 5) + by, {-4, -3.5f, -5}, {0, 1, 0}, 0.45f, 48, 32);
+  view.near_depth = 0.05f;
+  return trace_paths(scene, view, options);
+}
+
+double difference(const std::vector<glm::vec3>& found, const std::vector<glm::vec3>& expected) {
+  double squares = 0, signal = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double e = double{expected[i].x}, off = double{found[i].x} - e;
+    squares += off * off, signal += e * e;
+  }
+  return std::sqrt(squares / signal);
+}
+
+TEST(PathTracer, LightDoesNotDependOnThePlaceOrOnFarSurfaces) {
+  const TracedImage still = trace_block({0, 0, 0}, 0);
+  for (const float moved : {1e4f, 1e5f, 5e5f}) {
+    SCOPED_TRACE(moved);
+    const TracedImage there = trace_block({moved, 0, moved}, 0);
+    EXPECT_LT(difference(there.direct, still.direct), 0.05);
+    EXPECT_LT(difference(there.irradiance, still.irradiance), 0.05);
+  }
+  for (const float far : {1e4f, 8e6f}) {
+    SCOPED_TRACE(far);
+    const TracedImage beside = trace_block({0, 0, 0}, far);
+    EXPECT_LT(difference(beside.direct, still.direct), 0.01);
+    EXPECT_LT(difference(beside.irradiance, still.irradiance), 0.05);
+  }
+  EXPECT_THAT(error_of(ExitCode::bad_input, [] { trace_block({4e6f, 0, 0}, 0); }),
+              ::testing::HasSubstr("0.25 m apart"));
 }
 
 TEST(PathTracer, RejectsWhatItCannotTrace) {

@@ -69,6 +69,50 @@ TEST(RayScene, SingleSidedSurfacesAreSeenFromTheirFrontAndShadeFromBoth) {
   EXPECT_NEAR(image.direct[0].x, 1, 1e-6);
 }
 
+// glTF: alpha of the cutoff and above is opaque. Factor, vertices and a texture have constant alpha.
+TEST(RayScene, AlphaOfTheCutoffIsOpaque) {
+  struct Case {
+    float factor, vertex;
+    int texel;  // of the texture's alpha; -1: no texture
+    float cutoff;
+  };
+  std::vector<Case> cases = {{0.3f, 1, -1, 0.3f}, {0.9f, 1, -1, 0.9f}, {1, 0.3f, -1, 0.3f},
+                             {1, 0.7f, -1, 0.7f}, {1, 1, -1, 1}};
+  for (const int texel : {1, 77, 128, 201, 254})
+    cases.push_back({1, 1, texel, static_cast<float>(texel) / 255.0f});
+  // Not a whole number of pixels: weights of all sizes.
+  const ClpvView view = view_of({0.1f, 3, 0.03f}, {0.05f, -1, 0.02f}, {0, 0, -1}, 0.3f, 61, 59);
+  PathTracerOptions options;
+  options.samples = 1;
+  Session& session = test_session();
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.cutoff);
+    SceneData scene = floor_scene(0.5);
+    ClpvMaterial& masked = scene.materials[add_material(
+        scene, glm::vec3(1), CLPV_MATERIAL_MASKED | CLPV_MATERIAL_DOUBLE_SIDED)];
+    masked.base_colour[3] = c.factor, masked.alpha_cutoff = c.cutoff;
+    if (c.texel >= 0) {
+      Texture texture = checker();
+      for (std::size_t i = 3; i < texture.rgba.size(); i += 4)
+        texture.rgba[i] = static_cast<std::uint8_t>(c.texel);
+      scene.textures = {texture};
+      masked.texture = 0;
+    }
+    add_quad(scene, {-2, 1, -2}, {0, 0, 4}, {4, 0, 0}, 1);
+    for (std::size_t i = 4; i < 8; ++i) scene.vertices[i].colour[3] = c.vertex;
+    scene.lights = {sun({0, -1, 0}, 1)};
+    Rasterizer rasterizer(session, upload_scene(session, scene));
+    Surface surface = make_surface(session, view, RsmFormat::float32, false);
+    rasterizer.rasterize_camera(surface);
+    const SurfaceImage drawn = read_surface(session, surface);
+    const TracedImage traced = trace_paths(scene, view, options);
+    for (std::size_t i = 0; i < traced.depth.size(); ++i) {
+      ASSERT_LT(drawn.depth[i], 2.1) << "the floor shows in pixel " << i;
+      ASSERT_LT(traced.depth[i], 2.1) << "the floor shows in pixel " << i;
+    }
+  }
+}
+
 /// Random triangles with bent normals and random textures: plain, with holes, seen from both sides
 /// or one.
 SceneData clutter() {

@@ -212,5 +212,23 @@ TEST(View, ShadowViewOfADirectionalLightHoldsTheScene) {
   }
 }
 
+// A far triangle must not coarsen the shadows of what is near; a scene without gaps keeps its bounds.
+TEST(View, LightBoundsLeaveOutWhatIsFarBehindAGap) {
+  const ClpvGrid coarsest{{-25, -25, -25}, 50.0f / 32, 32, {}};
+  const auto at = [](float x, float y) { return Vertex{{x, y, 0}, {}, {}, {}}; };
+  const Bounds all{glm::vec3(-7, 0, 0), glm::vec3(1e4f, 6, 0)};
+  const auto upper = [&](const std::vector<Vertex>& vertices) {
+    return light_bounds(vertices, all, coarsest).shadows.upper.x;
+  };
+  EXPECT_EQ(upper({at(-7, 0), at(5, 6), at(1e4f, 0)}), 5);
+  EXPECT_EQ(upper({at(-7, 0), at(5, 6), at(8e6f, 0), at(1e30f, 0)}), 5);
+  EXPECT_GT(upper({at(1e4f, 0)}), 25) << "the cascade";
+  EXPECT_EQ(upper({at(60, 0), at(5, 6), at(300, 0), at(2e3f, 0)}), 1e4f) << "no gap";
+  EXPECT_EQ(upper({at(5, 0)}), 1e4f) << "all in the cascade";
+  EXPECT_EQ(upper({at(90, 0), at(5, 6), at(1e4f, 0)}), 90);
+  const Bounds rsms = light_bounds({at(5, 6), at(1e4f, 0)}, all, coarsest).rsms;
+  EXPECT_TRUE(rsms.lower.y < -26 && rsms.upper.z > 26) << "cover the cascade";
+}
+
 }  // namespace
 }  // namespace clpv::view_test

@@ -154,6 +154,7 @@ glm::dvec3 PathSampler::sample_emitter(const Vertex& at, const glm::dvec2& rando
   if (radiance == glm::dvec3(0) || rays_.materials().hole(light.point)) return glm::dvec3(0);
   Hit end;
   end.position = light.position, end.geometric = glm::vec3(light_cosine < 0 ? front : -front);
+  end.point = light.point;
   const glm::vec3 origin = origin_of(at);
   ++ray_count_;
   if (rays_.occluded(origin, rays_.offset_origin(end) - origin, 1)) return glm::dvec3(0);

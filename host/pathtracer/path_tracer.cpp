@@ -63,6 +63,31 @@ glm::vec3 seen_through(const TracedImage& traced, std::size_t pixel) {
       *traced.medium, medium_part(*traced.medium, ray.origin, ray.direction, ray.length)));
 }
 
+void move(float position[3], const glm::dvec3& by) {
+  for (int axis = 0; axis < 3; ++axis) position[axis] = double{position[axis]} + by[axis];
+}
+
+void move(ClpvMedium& medium, const glm::dvec3& by) {
+  move(medium.lower, by), move(medium.upper, by);
+}
+
+/// What rays meet, relative to the eye, so that floats near it resolve small distances wherever the
+/// scene lies.
+struct CentredScene {
+  SceneData scene;
+  std::vector<SceneLight> lights;
+  ClpvView view;
+
+  CentredScene(const SceneData& at, const std::vector<SceneLight>& lit_by, const ClpvView& from)
+      : scene(at), lights(lit_by), view(from) {
+    const glm::dvec3 by = -vector(view.eye);
+    for (Vertex& v : scene.vertices) move(v.position, by);
+    for (SceneLight& light : lights) move(light.data.position, by), move(light.data.medium, by);
+    if (scene.medium) move(*scene.medium, by);
+    move(view.eye, by);
+  }
+};
+
 /// Traces one image, tile by tile.
 class ImageTracer {
  public:
@@ -266,8 +291,22 @@ class ImageTracer {
   double progress_start_ = 0, progress_end_ = 0, reported_ = 0;
 };
 
-void check(const SceneData& scene, const std::vector<SceneLight>& lights,
+/// Rejects eyes so far from the coordinates' origin that floats do not resolve what is near them.
+void require_resolved(const SceneData& scene, const ClpvView& view) {
+  const float farthest =
+      std::max({std::abs(view.eye[0]), std::abs(view.eye[1]), std::abs(view.eye[2])});
+  const float spacing =
+      std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
+  if (spacing <= view.near_depth) return;
+  throw Error(ExitCode::bad_input,
+              "{}: camera at {:.7g} {:.7g} {:.7g} m, where float coordinates are {:.4g} m apart; "
+              "allowed: up to the near plane, {:.4g} m",
+              scene.path, view.eye[0], view.eye[1], view.eye[2], spacing, view.near_depth);
+}
+
+void check(const SceneData& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
            const PathTracerOptions& options) {
+  require_resolved(scene, view);
   if (options.bounces < 0)
     throw Error(ExitCode::usage, "bounces: found {}; allowed: 1 or more, or all", options.bounces);
   if (options.samples > kMaxSamples)
@@ -297,13 +336,19 @@ double expected_count(std::uint32_t samples, double noise, double target) {
 TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& lights,
                         const ClpvView& view, const PathTracerOptions& options,
                         const TraceProgress& progress, Ranks& ranks) {
-  check(scene, lights, options);
-  ImageTracer tracer(scene, lights, view, options, progress, ranks);
+  check(scene, lights, view, options);
+  const CentredScene centred(scene, lights, view);
+  ImageTracer tracer(centred.scene, centred.lights, centred.view, options, progress, ranks);
+  const auto finished = [&] {
+    TracedImage image = tracer.finish();
+    image.view = view, image.medium = scene.medium;
+    return image;
+  };
   tracer.trace_primary_rays();
   if (options.samples > 0) {
     tracer.set_progress_range(0, 1);
     tracer.trace(options.samples);
-    return tracer.finish();
+    return finished();
   }
   tracer.trace(kFirstEstimate);  // nothing is known before it, and nothing reported
   std::uint32_t done = kFirstEstimate;
@@ -315,7 +360,7 @@ TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& l
     done = count;
     if (tracer.current_noise() <= options.noise) break;
   }
-  return tracer.finish();
+  return finished();
 }
 
 namespace {

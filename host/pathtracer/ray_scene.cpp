@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "reference/triangle.hpp"
@@ -87,7 +88,6 @@ struct RayScene::Impl {
   const SceneData* scene = nullptr;
   std::optional<reference::Materials> materials;
   std::array<std::vector<std::uint32_t>, 2> triangles;  // indices in scene->triangles, by geometry
-  float extent = 0;                                     // largest coordinate [m]
   RtcDevice device;
   RtcScene rtc;
 
@@ -176,10 +176,6 @@ RayScene::RayScene(const SceneData& scene) : impl_(std::make_unique<Impl>()) {
   }
   impl_->scene = &scene;
   impl_->materials.emplace(scene);
-  for (const Vertex& v : scene.vertices) {
-    impl_->extent = std::max(
-        {impl_->extent, std::abs(v.position[0]), std::abs(v.position[1]), std::abs(v.position[2])});
-  }
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     const bool masked = scene.materials[scene.triangles[i].material].flags & CLPV_MATERIAL_MASKED;
     impl_->triangles[masked ? kMasked : kOpaque].push_back(i);
@@ -237,14 +233,26 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, flo
   return ray.tfar < 0;
 }
 
+/// Interpolation, and a later ray's test of the same triangle, err by a few roundings of the position
+/// and of the corners as seen from it. The offset along the normal n is |n| . (bound of each axis), as
+/// in pbrt-v4, 6.8.6 (Pharr, Jakob, Humphreys 2023).
 glm::vec3 RayScene::offset_origin(const Hit& hit) const {
-  // Embree's robust intersection is exact to a few ulp of the triangle's coordinates; these offsets
-  // are tens of ulp.
-  constexpr float kPerPosition = 1e-5f, kPerExtent = 1e-6f;
-  const glm::vec3 size = glm::abs(hit.position);
-  const float offset =
-      kPerPosition * std::max({size.x, size.y, size.z}) + kPerExtent * impl_->extent;
-  return hit.position + offset * hit.geometric;
+  constexpr double kRoundings = 32;
+  constexpr double kRounding = 0.5 * double{std::numeric_limits<float>::epsilon()};
+  const glm::dvec3 position(hit.position), normal(hit.geometric);
+  glm::dvec3 reach(0);
+  for (const glm::dvec3& corner :
+       corners_of(*impl_->scene, impl_->scene->triangles[hit.point.triangle]))
+    reach = glm::max(reach, glm::abs(corner - position));
+  const glm::dvec3 bound = kRoundings * kRounding * (glm::abs(position) + reach);
+  const glm::dvec3 exact = position + glm::dot(glm::abs(normal), bound) * normal;
+  glm::vec3 origin(exact);
+  for (int axis = 0; axis < 3; ++axis) {  // rounded away from the surface
+    const float away = std::copysign(std::numeric_limits<float>::infinity(), hit.geometric[axis]);
+    if ((exact[axis] - double{origin[axis]}) * normal[axis] > 0)
+      origin[axis] = std::nextafter(origin[axis], away);
+  }
+  return origin;
 }
 
 }  // namespace clpv::pathtracer

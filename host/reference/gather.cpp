@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // E = 4 I(-n) / s^2 for face transports, E = alpha(-n) . c / s^2 for the sweep; c interpolated
-// trilinearly at p + h s n.
+// trilinearly at p + h s n_g.
 #include "reference/gather.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ glm::dvec3 irradiance(const Volume& volume, const TrilinearSample& sample,
 
 glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
-                  const glm::dvec3& normal) {
+                  const glm::dvec3& normal, const glm::dvec3& lift) {
   const std::vector<double> weights = gather_weights(basis, transport, options.lobes, normal);
   glm::dvec3 e(0);
   double rest = 1;  // weight of the coarser cascades
@@ -46,7 +46,7 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
     const glm::dvec3 at = (position - vector(grid.origin)) / double{grid.cell};
     const double share = share_of(position, grid, options.grid, options.blend_cells);
     // The first cell's centre is at 0.5.
-    const glm::dvec3 point = at + options.gather_offset * normal - 0.5;
+    const glm::dvec3 point = at + options.gather_offset * lift - 0.5;
     const double area = double{grid.cell} * grid.cell;
     TrilinearSample sample = trilinear_sample(point, options.grid);
     if (options.gather == Gathering::visible)
@@ -66,7 +66,7 @@ std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,
     if (depth <= 0) continue;
     image[pixel] =
         gather(basis, transport, options, cascades, surface_position(camera.view, pixel, depth),
-               glm::dvec3(camera.normal[pixel]));
+               glm::dvec3(camera.normal[pixel]), geometric_normal(camera.normal[pixel]));
   }
   return image;
 }

@@ -28,7 +28,7 @@ struct Cascade {
 /// `normal`. `cascades`: finest first.
 glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
-                  const glm::dvec3& normal);
+                  const glm::dvec3& normal, const glm::dvec3& lift);
 
 /// Returns the irradiance of every pixel of a G-buffer, row 0 first; 0 for pixels without a
 /// surface.

@@ -133,8 +133,12 @@ glm::vec4 look_up(const Texture& texture, const glm::vec2& uv) {
                       x1 = wrap(x + 1, texture.width, texture.wrap_u);
   const std::uint32_t y0 = wrap(y, texture.height, texture.wrap_v),
                       y1 = wrap(y + 1, texture.height, texture.wrap_v);
-  return glm::mix(glm::mix(texel(texture, x0, y0), texel(texture, x1, y0), weight.x),
-                  glm::mix(texel(texture, x0, y1), texel(texture, x1, y1), weight.x), weight.y);
+  // Unlike glm::mix(), equal texels keep their value.
+  const auto between = [](const glm::vec4& a, const glm::vec4& b, float t) {
+    return a + t * (b - a);
+  };
+  return between(between(texel(texture, x0, y0), texel(texture, x1, y0), weight.x),
+                 between(texel(texture, x0, y1), texel(texture, x1, y1), weight.x), weight.y);
 }
 
 glm::vec4 look_up(const std::vector<Texture>& levels, const glm::vec2& uv, const glm::dvec2& step_x,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/shared/normal.h"
 #include "reference/lighting.hpp"
 #include "reference/materials.hpp"
 #include "reference/screen_polygon.hpp"
@@ -19,6 +20,7 @@ constexpr double kEdgeTolerance = 1.0 / 64;  // [pixel]
 constexpr double kDepthTolerance = 1e-5;     // relative depth
 constexpr double kCutoffTolerance = 1e-3;    // alpha
 constexpr double kEdgeOnTolerance = 1e-4;    // cosine between ray and plane
+constexpr double kLargestWeight = 10;        // resolve.cl
 
 /// Step along a pixel's ray that increases depth by 1 m.
 glm::dvec3 along(const ClpvView& view, unsigned px, unsigned py) {
@@ -135,14 +137,30 @@ class ViewedScene {
   std::vector<Candidate> candidates_;
 };
 
-/// Interpolated unit normal on the visible side of the triangle.
-glm::dvec3 visible_normal(const SceneData& scene, const Candidate& candidate,
-                          const SurfacePoint& point, const glm::dvec3& ray) {
+/// Unit normals on the visible side of a triangle.
+struct Normals {
+  glm::dvec3 shading, geometric;
+};
+
+/// The interpolated normal, and the triangle's (CLPV_SAME_NORMAL: the interpolated one).
+Normals visible_normals(const SceneData& scene, const Candidate& candidate,
+                        const SurfacePoint& point, const glm::dvec3& ray) {
   const glm::dvec3 front =
       glm::dot(candidate.normal(), ray) > 0 ? -candidate.normal() : candidate.normal();
   glm::dvec3 blended(interpolate(scene, scene.triangles[point.triangle], point.weights, normal));
   if (blended == glm::dvec3(0)) blended = front;
-  return glm::normalize(glm::dot(blended, front) < 0 ? -blended : blended);
+  const glm::dvec3 shading = glm::normalize(glm::dot(blended, front) < 0 ? -blended : blended);
+  const bool apart = glm::length(front) > 0 && glm::dot(glm::normalize(front), shading) <=
+                                                   double{CLPV_SAME_NORMAL};
+  return {shading, apart ? glm::normalize(front) : shading};
+}
+
+/// Light from the unit direction `towards` that a surface receives, by that of its triangle.
+double light_weight(const Normals& normals, const glm::dvec3& towards) {
+  if (normals.shading == normals.geometric) return 1;
+  const double shading = glm::dot(normals.shading, towards),
+               geometric = glm::dot(normals.geometric, towards);
+  return shading > 0 && geometric > 0 ? std::min(shading / geometric, kLargestWeight) : 0;
 }
 
 /// Footprint of a pixel on the triangle's plane.
@@ -157,7 +175,7 @@ Footprint pixel_footprint(const ClpvView& view, const Candidate& candidate, cons
           on_plane(vector(view.up) * (scale * -2 * view.half_height / view.height))};
 }
 
-/// Renders a view; colour(albedo, px, py, depth) returns the image's colour.
+/// Renders a view; colour(albedo, normals, px, py, depth) returns the image's colour.
 template <typename Colour>
 RasterizedImage rasterize(const SceneData& scene, const ClpvView& view, bool camera,
                           Colour colour) {
@@ -181,9 +199,12 @@ RasterizedImage rasterize(const SceneData& scene, const ClpvView& view, bool cam
       const Footprint footprint = pixel_footprint(view, *hit.candidate, ray, hit.depth);
       const double depth = std::max<double>(hit.depth, view.near_depth);
       image.depth[at] = depth;
-      image.normal[at] = glm::vec4(glm::vec3(visible_normal(scene, *hit.candidate, point, ray)), 0);
+      const Normals normals = visible_normals(scene, *hit.candidate, point, ray);
+      image.normal[at] = camera ? stored_normal(normals.shading, normals.geometric)
+                                : glm::vec4(glm::vec3(normals.geometric), 0);
       image.colour[at] = glm::vec4(
-          colour(glm::dvec3(viewed.materials().albedo(point, footprint)), px, py, depth), 0);
+          colour(glm::dvec3(viewed.materials().albedo(point, footprint)), normals, px, py, depth),
+          0);
       if (camera) image.emissive[at] = glm::vec4(viewed.materials().emissive(point, footprint), 0);
     }
   }
@@ -193,18 +214,20 @@ RasterizedImage rasterize(const SceneData& scene, const ClpvView& view, bool cam
 }  // namespace
 
 RasterizedImage rasterize_camera(const SceneData& scene, const ClpvView& view) {
-  return rasterize(scene, view, true, [](const glm::dvec3& albedo, unsigned, unsigned, double) {
-    return glm::vec3(albedo);
-  });
+  return rasterize(scene, view, true,
+                   [](const glm::dvec3& albedo, const Normals&, unsigned, unsigned, double) {
+                     return glm::vec3(albedo);
+                   });
 }
 
 RasterizedImage rasterize_rsm(const SceneData& scene, const ClpvLight& light,
                               const ClpvView& view) {
   return rasterize(scene, view, false,
-                   [&](const glm::dvec3& albedo, unsigned px, unsigned py, double depth) {
-                     const glm::dvec3 irradiance =
-                         light_at(light, surface_position(view, px, py, depth)).irradiance;
-                     return glm::vec3(albedo * irradiance * footprint(view, px, py, depth));
+                   [&](const glm::dvec3& albedo, const Normals& normals, unsigned px, unsigned py,
+                       double depth) {
+                     const Incident in = light_at(light, surface_position(view, px, py, depth));
+                     return glm::vec3(albedo * in.irradiance * light_weight(normals, in.towards) *
+                                      footprint(view, px, py, depth));
                    });
 }
 

@@ -27,6 +27,58 @@ double tap_weight(double distance) {
   return std::clamp(CLPV_SHADOW_TAPS / 2 - std::abs(distance), 0.0, 1.0);
 }
 
+constexpr double kFarBelow = -1e30;  // [m]
+
+/// First texel of the filter along an axis of `size` texels.
+int first_tap(double texel, unsigned size) {
+  constexpr int kTaps = CLPV_SHADOW_TAPS;
+  const double at = std::clamp(texel, -double{kTaps}, double{size} + double{kTaps});
+  return std::clamp(static_cast<int>(std::floor(at)) - 1, 0,
+                    static_cast<int>(size) - kTaps);
+}
+
+/// The texels of a receiver's filter and their heights above its plane (kernels/raster/shadow.h).
+struct Filter {
+  glm::dvec2 distance[CLPV_SHADOW_TAPS][CLPV_SHADOW_TAPS];  ///< [texels] from the receiver
+  double depth[CLPV_SHADOW_TAPS][CLPV_SHADOW_TAPS];         ///< [m]; 0: no surface
+  double height[CLPV_SHADOW_TAPS][CLPV_SHADOW_TAPS];        ///< [m]; kFarBelow without a surface
+};
+
+Filter filter_at(const ShadowMap& map, const glm::dvec2& pixel, const glm::dvec3& position,
+                 const glm::dvec3& normal) {
+  const int left = first_tap(pixel.x, map.view.width), top = first_tap(pixel.y, map.view.height);
+  Filter filter;
+  for (int row = 0; row < CLPV_SHADOW_TAPS; ++row) {
+    for (int column = 0; column < CLPV_SHADOW_TAPS; ++column) {
+      const int x = left + column, y = top + row;
+      const double depth = map.depth[static_cast<std::size_t>(y) * map.view.width + x];
+      filter.distance[row][column] = glm::dvec2(x, y) - pixel;
+      filter.depth[row][column] = depth;
+      filter.height[row][column] =
+          depth > 0 ? glm::dot(normal, surface_position(map.view, x, y, depth) - position)
+                    : kFarBelow;
+    }
+  }
+  return filter;
+}
+
+/// Returns true if the receiver is below a surface of the map: if the height of one of the inner
+/// texels, extrapolated to the receiver from its outer neighbours, exceeds `rounding`.
+bool below_surface(const Filter& filter, double rounding) {
+  for (const int row : {1, 2}) {
+    for (const int column : {1, 2}) {
+      const double inner = filter.height[row][column],
+                   beside = filter.height[row][column == 1 ? 0 : 3],
+                   past = filter.height[row == 1 ? 0 : 3][column];
+      const glm::dvec2 distance = glm::abs(filter.distance[row][column]);
+      if (inner > rounding &&
+          inner + (inner - beside) * distance.x + (inner - past) * distance.y > rounding)
+        return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset) {
@@ -42,19 +94,22 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
                   double cosine) {
   const ProjectedPoint at = project(map.view, position);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  const double lift =
-      pixel_edge(map.view, at.depth) * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
-  const glm::dvec3 lifted = position + lift * normal;
-  const double receiver = plane_depth(map.view, at.pixel, lifted, normal);
+  const double edge = pixel_edge(map.view, at.depth);
+  const double lift = edge * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
+  const double rounding = edge * double{CLPV_SHADOW_ROUNDING_TEXELS} +
+                          std::abs(at.depth) * double{CLPV_SHADOW_ROUNDING_DEPTH};
+  const double farthest = plane_depth(map.view, at.pixel, position + lift * normal, normal);
+  const Filter filter = filter_at(map, at.pixel, position, normal);
+  const bool below = below_surface(filter, rounding);
   double blocked = 0, total = 0;
-  for (unsigned y = 0; y < map.view.height; ++y) {
-    const double wy = tap_weight(y - at.pixel.y);
-    for (unsigned x = 0; wy > 0 && x < map.view.width; ++x) {
-      const double weight = wy * tap_weight(x - at.pixel.x);
-      if (weight <= 0) continue;
-      const double depth = map.depth[static_cast<std::size_t>(y) * map.view.width + x];
+  for (int row = 0; row < CLPV_SHADOW_TAPS; ++row) {
+    for (int column = 0; column < CLPV_SHADOW_TAPS; ++column) {
+      const glm::dvec2& distance = filter.distance[row][column];
+      const double weight = tap_weight(distance.x) * tap_weight(distance.y),
+                   height = filter.height[row][column];
+      if (below && height <= -double{CLPV_SHADOW_BEYOND} * lift) continue;
       const bool blocks =
-          depth > 0 && depth < receiver && depth < plane_depth(map.view, {x, y}, lifted, normal);
+          below ? height > rounding : height > lift && filter.depth[row][column] < farthest;
       total += weight;
       blocked += blocks ? weight : 0;
     }
@@ -63,13 +118,14 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
 }
 
 glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position,
-                             const glm::dvec3& normal) {
+                             const glm::dvec3& normal, const glm::dvec3& geometric) {
   const Incident incident = light_at(light.light, position);
-  const double cosine = glm::dot(normal, incident.towards);
-  if (cosine <= 0) return glm::dvec3(0);
+  const double cosine = glm::dot(normal, incident.towards),
+               facing = glm::dot(geometric, incident.towards);
+  if (cosine <= 0 || facing <= 0) return glm::dvec3(0);
   if (light.maps.empty()) return cosine * incident.irradiance;
   const ShadowMap& map = map_towards(light.maps, position - vector(light.maps.front().view.eye));
-  return cosine * visibility(map, position, normal, cosine) * incident.irradiance;
+  return cosine * visibility(map, position, geometric, facing) * incident.irradiance;
 }
 
 std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights,
@@ -80,7 +136,8 @@ std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights
     if (depth <= 0) continue;
     const glm::dvec3 position = surface_position(camera.view, pixel, depth);
     for (const MappedLight& light : lights) {
-      image[pixel] += direct_irradiance(light, position, glm::dvec3(camera.normal[pixel]));
+      image[pixel] += direct_irradiance(light, position, glm::dvec3(camera.normal[pixel]),
+                                        geometric_normal(camera.normal[pixel]));
     }
   }
   return image;

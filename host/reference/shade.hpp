@@ -28,14 +28,15 @@ struct MappedLight {
 /// from the light to the point.
 const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset);
 
-/// Returns the share [0, 1] of the light that reaches a surface at `position` [m] with unit
-/// `normal` on the lit side. `cosine`: cosine between the normal and the direction to the light.
+/// Returns the share [0, 1] of the light that reaches a surface at `position` [m] whose triangle has
+/// the unit `normal`, on the lit side. `cosine`: between it and the direction to the light.
 double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal,
                   double cosine);
 
-/// Returns the irradiance of a light on that surface [W/m^2].
+/// Returns the irradiance of a light on a surface [W/m^2]: `normal` weighs light, `geometric`, its
+/// triangle's, decides which side it comes from (kernels/shared/normal.h).
 glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position,
-                             const glm::dvec3& normal);
+                             const glm::dvec3& normal, const glm::dvec3& geometric);
 
 /// Returns the irradiance of all lights for every pixel of a G-buffer; 0 for pixels without a
 /// surface.

@@ -30,13 +30,14 @@ inline glm::vec4 colour(const Vertex& v) {
   return {v.colour[0], v.colour[1], v.colour[2], v.colour[3]};
 }
 
-/// Interpolates get(vertex); `weights` are barycentric coordinates of the second and third vertex.
+/// Interpolates get(vertex); `weights` are barycentric coordinates of the second and third vertex. A
+/// constant stays that constant.
 template <typename Get>
 auto interpolate(const SceneData& scene, const Triangle& triangle, const glm::vec2& weights,
                  Get get) {
-  return (1 - weights.x - weights.y) * get(scene.vertices[triangle.vertex[0]]) +
-         weights.x * get(scene.vertices[triangle.vertex[1]]) +
-         weights.y * get(scene.vertices[triangle.vertex[2]]);
+  const auto first = get(scene.vertices[triangle.vertex[0]]);
+  return first + weights.x * (get(scene.vertices[triangle.vertex[1]]) - first) +
+         weights.y * (get(scene.vertices[triangle.vertex[2]]) - first);
 }
 
 }  // namespace clpv::reference

@@ -55,7 +55,11 @@ SurfaceImage random_surfaces(std::mt19937& random) {
     const float depth = 1.1f * uniform(random) - 0.1f;
     const glm::vec3 n(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.4995f);
     image.depth.push_back(depth > 0 ? kFarthest * depth * depth : 0.0f);
-    image.normal.emplace_back(glm::normalize(n), 0.0f);
+    // Every third surface's triangle has another normal, tilted by up to 45 degrees.
+    const glm::vec3 tilt(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.5f);
+    const glm::dvec3 shading(glm::normalize(n));
+    image.normal.push_back(stored_normal(
+        shading, pixel % 3 == 0 ? glm::normalize(shading + 0.8 * glm::dvec3(tilt)) : shading));
     image.colour.emplace_back(uniform(random), uniform(random), uniform(random), 1.0f);
     image.emissive.emplace_back(uniform(random), uniform(random), uniform(random), 0.0f);
   }

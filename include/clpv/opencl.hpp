@@ -50,7 +50,9 @@ struct Frame {
   cl_mem image = nullptr;
   cl_mem irradiance = nullptr;  ///< float4 E of red, green, blue [W/m^2], and 0, of indirect light
   cl_mem depth = nullptr;       ///< float [m] along the viewing direction; 0 without a surface
-  cl_mem normals = nullptr;     ///< float4 unit normal, and 0; 0 without a surface
+  /// Float4 unit normal, and the number of the triangle's (kernels/shared/normal.h); 0 without a
+  /// surface.
+  cl_mem normals = nullptr;
   Event done;                   ///< of the whole frame
 };
 

@@ -5,7 +5,8 @@
 //   E = 4 I(-n) / s^2           steps
 //   E = alpha(-n) . c / s^2     sweep
 //
-// not below 0, with the coefficients c interpolated trilinearly at p + offset s n. docs/method.md,
+// not below 0, with the coefficients c interpolated trilinearly at p + offset s n_g, n_g the normal
+// of the triangle (shared/normal.h). docs/method.md,
 // 'Gathering'; cascades.h has the weights of cascades.
 //
 // In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS
@@ -68,8 +69,8 @@ CLPV_INLINE void add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GAT
   g->remaining *= 1.0f - share;
   if (no_lane(weight > ZERO)) return;
   SamplePoints points;
-  find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), g->surfaces.normal,
-                      &points);
+  find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET),
+                      g->surfaces.geometric, &points);
   float shares[W];
   store_lanes(weight, shares);
   for (int i = 0; i < W; ++i) {

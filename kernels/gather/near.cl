@@ -4,9 +4,9 @@
 //
 //   D = (pi / K) sum_k d(w_k)                                [W/m^2], w_k cosine-distributed about
 //                                                            the normal n
-//   d(w) = L_hit - L(p + h s n, -w)                          if a surface is met along w within R
-//   d(w) = q (L(p + h s n + R w, -w) - L(p + h s n, -w))     else, q the weight of the correction
-//                                                            (miss_weight)
+//   d(w) = L_hit - L(p', -w)                 if a surface is met along w within R
+//   d(w) = q (L(p' + R w, -w) - L(p', -w))   else, q the weight of the correction (miss_weight)
+//   p' = p + h s n_g                         n_g the normal of the triangle (shared/normal.h)
 //
 // h: CLPV_GATHER_OFFSET. R and s: edge of a cell of the cascades at p, blended like their light.
 // near_trace.cl finds hits, near_light.cl their radiance; radiance.h has L. near_filter.cl adds D
@@ -48,7 +48,7 @@ __kernel void near(const ClpvView view, __global const float* points,
     return;
   }
   RadianceField here, there;
-  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.normal, lit,
+  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.geometric, lit,
                   &here);
   const VecLanes n = unpack(lit, p.normal);
   float trusts[W], x[W], y[W], z[W];
@@ -60,7 +60,8 @@ __kernel void near(const ClpvView view, __global const float* points,
   store_plane_vectors(vec(load_lanes(x), load_lanes(y), load_lanes(z)),
                       light + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at);
   const realW trust = load_lanes(trusts);
-  const Vec lifted = vec_add_scaled(p.position, (realW)(CLPV_GATHER_OFFSET) * p.reach, p.normal);
+  const Vec lifted =
+      vec_add_scaled(p.position, (realW)(CLPV_GATHER_OFFSET) * p.reach, p.geometric);
   Vec sum = vec(ZERO, ZERO, ZERO);
   float4 volumes[W];
   for (int i = 0; i < W; ++i) volumes[i] = 0.0f;

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "gather/pixel_planes.h"
+#include "raster/geometric_normal.h"
 #include "shared/near.h"
 
 // Tile of W x CLPV_PLANE_TILE pixels of this work-item.
@@ -26,7 +27,7 @@ enum { CLPV_TILE_HITS = W * CLPV_PLANE_TILE * CLPV_NEAR_RAYS };
 
 // Points of W pixels.
 typedef struct {
-  Vec position, normal, tangent, bitangent;
+  Vec position, normal, geometric, tangent, bitangent;
   realW reach;
 } NearPoints;
 
@@ -36,6 +37,8 @@ CLPV_INLINE void load_near_points(__global const float* points, const PlaneRow r
   p->position = load_plane_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
   p->normal = load_plane_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
   p->reach = load_lanes(points + CLPV_NEAR_REACH * r.plane + r.at);
+  p->geometric = unpack_geometric_normal(
+      load_lanes(points + CLPV_NEAR_GEOMETRIC * r.plane + r.at), p->normal);
   const Vec n = p->normal;
   const realW sign = n.z < ZERO ? -ONE : ONE;
   const realW a = -1.0f / (sign + n.z), b = n.x * n.y * a;

@@ -28,7 +28,7 @@
 typedef struct {
   intW hit;
   uintW radiance;        // place among the radiances
-  Vec position, normal;  // [m]; unit, towards the ray's origin
+  Vec position, normal, geometric;  // [m]; unit, towards the ray's origin (shared/normal.h)
   Vec albedo, emitted;   // [W/m^2/sr]
 } HitSurface;
 
@@ -62,12 +62,13 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   const intW back = height < ZERO;
   // Rays start CLPV_NEAR_LIFT R above their own triangle.
   s->hit = listed & (fabs(height) > 2.0f * CLPV_NEAR_LIFT * reach * area2);
-  s->position = vec_blend(w, a.position, b.position, c.position);
-  s->normal = normal_towards(vec_times(across, back ? (realW)(-1.0f) : ONE),
-                             vec_blend(w, a.normal, b.normal, c.normal));
+  s->position = vec_interpolated(w, a.position, b.position, c.position);
+  const Vec front = vec_times(across, back ? (realW)(-1.0f) : ONE);
+  s->normal = normal_towards(front, vec_interpolated(w, a.normal, b.normal, c.normal));
+  s->geometric = geometric_towards(front, s->normal);
   s->albedo = material.base_colour;
 #if CLPV_COLOURED
-  s->albedo = vec_product(s->albedo, vec_blend(w, a.colour, b.colour, c.colour));
+  s->albedo = vec_product(s->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
 #endif
 #if CLPV_EMISSIVE
   const intW emits = (back == 0) | ((material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);
@@ -119,7 +120,8 @@ __kernel void near_light(CLPV_NEAR_HITS, const ClpvLight light, __global const C
   if (!load_hit_surfaces(CLPV_PASS_HITS, &s)) return;
   const ShadowMap shadow = {views, count, which, map};
   intW lit = s.hit;
-  const Vec irradiance = shadowed_irradiance(light, shadow, s.position, s.normal, &lit);
+  const Vec irradiance =
+      shadowed_irradiance(light, shadow, s.position, s.normal, s.geometric, &lit);
   add_radiance(view, s, lit, vec_times(vec_product(s.albedo, irradiance), (realW)(M_1_PI_F)), fresh,
                counts, radiances);
 }
@@ -136,7 +138,7 @@ __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
   HitSurface s;
   if (!load_hit_surfaces(CLPV_PASS_HITS, &s)) return;
   RadianceField field;
-  sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), s.normal, s.hit,
+  sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), s.geometric, s.hit,
                   &field);
   const VecLanes n = unpack(s.hit, s.normal);
   float x[W], y[W], z[W];

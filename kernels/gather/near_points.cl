@@ -34,6 +34,7 @@ CLPV_INLINE realW find_reach(__global const ClpvGrid* grids, const uint cascades
 typedef struct {
   intW seen;
   Vec position, normal;
+  realW geometric;  // number of the geometric normal (shared/normal.h)
 } CameraPixels;
 
 // Loads the pixels (x, y), of those in the mask `inside`.
@@ -58,13 +59,15 @@ CLPV_INLINE void load_camera_pixels(const ClpvView view, __global const Place* p
   c->position = vec_masked(c->seen, position);
   c->normal =
       vec_masked(c->seen, vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z)));
+  c->geometric = c->seen ? CLPV_COLUMN(rows, w) : ZERO;
 }
 
-CLPV_INLINE void store_points(const PlaneRow r, const Vec position, const Vec normal,
-                              const realW reach, __global float* points) {
-  store_plane_vectors(position, points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
-  store_plane_vectors(normal, points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
+CLPV_INLINE void store_points(const PlaneRow r, const CameraPixels c, const realW reach,
+                              __global float* points) {
+  store_plane_vectors(c.position, points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
+  store_plane_vectors(c.normal, points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
   store_lanes(reach, points + CLPV_NEAR_REACH * r.plane + r.at);
+  store_lanes(c.geometric, points + CLPV_NEAR_GEOMETRIC * r.plane + r.at);
 }
 
 __kernel void near_points(const ClpvView view, __global const Place* places,
@@ -78,7 +81,7 @@ __kernel void near_points(const ClpvView view, __global const Place* places,
       (x >= 0) & (x < (int)r.width) & (r.y >= 0 && r.y < (int)plane_pixels(view.height) ? -1 : 0);
   CameraPixels c;
   load_camera_pixels(view, places, normals, x * CLPV_PLANE_STEP, r.y * CLPV_PLANE_STEP, inside, &c);
-  store_points(r, c.position, c.normal, find_reach(grids, cascades, c.position, c.seen), points);
+  store_points(r, c, find_reach(grids, cascades, c.position, c.seen), points);
 }
 
 #if CLPV_PLANE_LAYERS > 1
@@ -101,27 +104,25 @@ __kernel void near_others(const ClpvView view, __global const Place* places,
   const PlaneRow first = find_plane_row(view, get_global_id(0), get_global_id(1));
   if (!row_has_pixels(first) || first.y >= (int)plane_pixels(view.height)) return;
   const intW x = (first.x + lane_numbers()) * CLPV_PLANE_STEP;
-  intW found = (intW)(0);
-  Vec position = vec(ZERO, ZERO, ZERO), normal = position;
+  CameraPixels found = {(intW)(0), {ZERO, ZERO, ZERO}, {ZERO, ZERO, ZERO}, ZERO};
   for (int dy = 0; dy < CLPV_PLANE_STEP && first.y * CLPV_PLANE_STEP + dy < (int)view.height;
        ++dy) {
     for (int dx = 0; dx < CLPV_PLANE_STEP; ++dx) {
       CameraPixels c;
       load_camera_pixels(view, places, normals, x + dx, first.y * CLPV_PLANE_STEP + dy,
                          x + dx < (int)view.width, &c);
-      intW wanted = on_no_surface(points, first, 0, 1, c, c.seen & (found == 0));
+      intW wanted = on_no_surface(points, first, 0, 1, c, c.seen & (found.seen == 0));
       if (lane_bits(wanted) == 0u) continue;
       wanted = on_no_surface(points, first, -1, 2, c, wanted);
       if (lane_bits(wanted) == 0u) continue;
-      found |= wanted;
-      position = vec(wanted ? c.position.x : position.x, wanted ? c.position.y : position.y,
-                     wanted ? c.position.z : position.z);
-      normal = vec(wanted ? c.normal.x : normal.x, wanted ? c.normal.y : normal.y,
-                   wanted ? c.normal.z : normal.z);
+      found.seen |= wanted;
+      found.position = vec_selected(wanted, c.position, found.position);
+      found.normal = vec_selected(wanted, c.normal, found.normal);
+      found.geometric = wanted ? c.geometric : found.geometric;
     }
   }
   const PlaneRow second =
       find_plane_row(view, get_global_id(0), (int)(get_global_id(1) + second_layer_row(view)));
-  store_points(second, position, normal, find_reach(grids, cascades, position, found), points);
+  store_points(second, found, find_reach(grids, cascades, found.position, found.seen), points);
 }
 #endif

@@ -88,16 +88,17 @@ CLPV_RARE intW find_holes(const uintW triangle, const realW u, const realW v, CL
   gather_rows(triangles, triangle, &indices);
   const uintW ia = as_uintW(CLPV_COLUMN(indices, x)), ib = as_uintW(CLPV_COLUMN(indices, y)),
               ic = as_uintW(CLPV_COLUMN(indices, z)), im = as_uintW(CLPV_COLUMN(indices, w));
-  const realW w = 1.0f - u - v;
+  const Vec w = vec(1.0f - u - v, u, v);
   gather_rows(vertices + 2, 3u * ia, &a);
   gather_rows(vertices + 2, 3u * ib, &b);
   gather_rows(vertices + 2, 3u * ic, &c);
-  const realW vertex_alpha = w * CLPV_COLUMN(a, w) + u * CLPV_COLUMN(b, w) + v * CLPV_COLUMN(c, w);
+  const realW vertex_alpha =
+      interpolated(w, CLPV_COLUMN(a, w), CLPV_COLUMN(b, w), CLPV_COLUMN(c, w));
   gather_rows(vertices + 1, 3u * ia, &a);
   gather_rows(vertices + 1, 3u * ib, &b);
   gather_rows(vertices + 1, 3u * ic, &c);
-  const Uv uv = {w * CLPV_COLUMN(a, z) + u * CLPV_COLUMN(b, z) + v * CLPV_COLUMN(c, z),
-                 w * CLPV_COLUMN(a, w) + u * CLPV_COLUMN(b, w) + v * CLPV_COLUMN(c, w)};
+  const Uv uv = {interpolated(w, CLPV_COLUMN(a, z), CLPV_COLUMN(b, z), CLPV_COLUMN(c, z)),
+                 interpolated(w, CLPV_COLUMN(a, w), CLPV_COLUMN(b, w), CLPV_COLUMN(c, w))};
   gather_rows(materials, 3u * im, &base);
   gather_rows(materials + 1, 3u * im, &factors);
   gather_rows(materials + 2, 3u * im, &maps);

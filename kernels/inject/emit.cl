@@ -55,9 +55,10 @@ static inline SubTriangle find_sub_triangle(const ClpvEmitter emitter, const uin
 
 #if CLPV_TEXTURED || CLPV_MASKED
 
-#define CLPV_BLEND(w1, w2, corner, field)                                  \
-  ((1.0f - (w1) - (w2)) * (corner)[0]->field + (w1) * (corner)[1]->field + \
-   (w2) * (corner)[2]->field)
+// A constant field stays that constant.
+#define CLPV_BLEND(w1, w2, corner, field)                                \
+  ((corner)[0]->field + (w1) * ((corner)[1]->field - (corner)[0]->field) + \
+   (w2) * ((corner)[2]->field - (corner)[0]->field))
 
 // Mean emission of a material over a sub-triangle, relative to its emissive factor: from
 // CLPV_EMIT_SAMPLES^2 samples of its texture and, if masked, its alpha.

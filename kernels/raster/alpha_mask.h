@@ -47,18 +47,15 @@ CLPV_INLINE void load_mask(const ClpvView view, const uint triangle, const Scene
   mask->cutoff = material->alpha_cutoff;
 }
 
-static inline realW blended(const Vec w, const realW a, const realW b, const realW c) {
-  return w.x * a + w.y * b + w.z * c;
-}
-
 // Mask of the pixels from (px, py) on whose alpha, at `depth` [m], reaches the cutoff: no hole.
 CLPV_INLINE intW solid(const ClpvView view, const Mask* mask, const float px, const float py,
                        const realW depth, __global const uint* texels) {
   const realW x = px + to_realW(lane_numbers());
   const Vec w = weights_at(view, mask->face, mask->weights, x, (realW)(py), depth);
-  const Uv uv = {blended(w, mask->a.u, mask->b.u, mask->c.u),
-                 blended(w, mask->a.v, mask->b.v, mask->c.v)};
-  const realW alpha = mask->base_alpha * blended(w, mask->alpha_a, mask->alpha_b, mask->alpha_c) *
-                       sample_level_alpha(mask->level, texels, uv);
+  const Uv uv = {interpolated(w, mask->a.u, mask->b.u, mask->c.u),
+                 interpolated(w, mask->a.v, mask->b.v, mask->c.v)};
+  const realW vertex_alpha = interpolated(w, mask->alpha_a, mask->alpha_b, mask->alpha_c);
+  const realW alpha = mask->base_alpha * vertex_alpha *
+                      sample_level_alpha(mask->level, texels, uv);
   return alpha >= mask->cutoff;
 }

@@ -2,7 +2,11 @@
 // Evaluates the surface of each pixel from the triangle that draw_tiles.cl found: depth, normal,
 // albedo and emission for the camera, flux for a reflective shadow map.
 //
-//   P = albedo E A      [W]   E the light's irradiance across the ray, A the texel's footprint
+//   P = albedo E A (n_s . w) / (n_g . w)      [W]   E the light's irradiance across the ray, A the
+//                                                   texel's footprint, w towards the light
+//
+// n_g is the triangle's normal, n_s the interpolated one. A virtual point light lies on the
+// triangle and shines about n_g, with the light that n_s weighs.
 //
 // docs/method.md, 'Rasterize'. Reflective shadow maps: Dachsbacher and Stamminger 2005.
 //
@@ -11,8 +15,9 @@
 //                                                          (shared/mesh.h)
 //       colour_scale  Surface::colour_scale: flux [W] of a stored 1
 // Out:  depths        [m] along the view's forward axis, 0 for empty pixels
-//       normals       unit, towards the viewer; colours: albedo; emissives: radiance [W/m^2/sr];
-//                     fluxes: P [W]
+//       normals       unit, towards the viewer: n_s and the number of n_g (shared/normal.h); RSMs:
+//                     n_g
+//       colours       albedo; emissives: radiance [W/m^2/sr]; fluxes: P [W]
 // A work-item evaluates W pixels of a row. It selects instead of branching: empty pixels evaluate
 // triangle 0, and materials without a texture have a white one. From the host: CLPV_ORTHOGRAPHIC,
 // CLPV_SURFACE_PAPER, CLPV_TEXTURED (the scene has textures), CLPV_COLOURED (vertex colours other
@@ -28,8 +33,11 @@
 #define CLPV_FROM_LIGHT 0
 #endif
 
+// Largest (n_s . w) / (n_g . w), for surfaces that the light grazes.
+__constant const float largest_weight = 10.0f;
+
 typedef struct {
-  Vec normal;  // unit, towards the viewer
+  Vec normal, geometric;  // n_s and n_g: unit, towards the viewer
   Vec albedo;
   Vec emissive;  // [W/m^2/sr]
 } PixelSurface;
@@ -56,15 +64,16 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const r
   const Vec ray = along_ray(view, p.x, p.y);
   const realW facing = vec_dot(face.normal, ray);
 
-  const realW towards_viewer = facing > ZERO ? (realW)(-1.0f) : ONE;
-  surface->normal = normal_towards(vec_times(face.normal, towards_viewer),
-                                   vec_blend(w, a.normal, b.normal, c.normal));
+  const Vec front = vec_times(face.normal, facing > ZERO ? (realW)(-1.0f) : ONE);
+  surface->normal = normal_towards(front, vec_interpolated(w, a.normal, b.normal, c.normal));
+  surface->geometric = geometric_towards(front, surface->normal);
   surface->albedo = material.base_colour;
 #if CLPV_EMISSIVE
   surface->emissive = material.emissive;
 #endif
 #if CLPV_COLOURED
-  surface->albedo = vec_product(surface->albedo, vec_blend(w, a.colour, b.colour, c.colour));
+  surface->albedo =
+      vec_product(surface->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
 #endif
 #if CLPV_TEXTURED
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
@@ -114,7 +123,8 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
   PixelSurface surface;
   resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths, &hit, &surface);
   const uint first = p.py * view.width + p.px;
-  store_normals(p, vec_masked(hit, surface.normal), normals + first);
+  const realW geometric = pack_geometric_normal(surface.geometric, surface.normal);
+  store_normals(p, vec_masked(hit, surface.normal), hit ? geometric : ZERO, normals + first);
   store_colours(p, vec_masked(hit, surface.albedo), 1.0f, colours + first);
 #if CLPV_EMISSIVE
   const VecLanes emissive = unpack(hit, surface.emissive);
@@ -124,6 +134,16 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
 }
 
 #else
+
+// Light from the unit direction `towards` that a surface receives, by that of its triangle.
+CLPV_INLINE realW light_weight(const PixelSurface* surface, const Vec towards) {
+  const realW shading = vec_dot(surface->normal, towards),
+              geometric = vec_dot(surface->geometric, towards);
+  const intW lit = (shading > ZERO) & (geometric > ZERO);
+  const realW weight = lit ? shading / geometric : ZERO;
+  const intW same = vec_dot(surface->geometric, surface->normal) > (realW)(CLPV_SAME_NORMAL);
+  return same ? ONE : (weight < (realW)(largest_weight) ? weight : (realW)(largest_weight));
+}
 
 __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global const realW* keys,
                           __global const uintW* seen, __global const float4* vertices,
@@ -139,9 +159,9 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global c
   const realW depth = stored_depth(view, keys[p.row]);
   Vec towards;
   const Vec incident = vec_times(light_irradiance(light, row_positions(view, p, depth), &towards),
-                                 row_footprints(view, p, depth));
+                                 row_footprints(view, p, depth) * light_weight(&surface, towards));
   const uint first = p.py * view.width + p.px;
-  store_normals(p, vec_masked(hit, surface.normal), normals + first);
+  store_normals(p, vec_masked(hit, surface.geometric), ZERO, normals + first);
   store_colours(p, vec_masked(hit, vec_product(surface.albedo, incident)), colour_scale,
                 fluxes + first);
 }

@@ -7,6 +7,7 @@
 
 #include "lanes.h"
 #include "raster/texture.h"
+#include "shared/normal.h"
 #include "vec.h"
 
 #ifndef CLPV_TEXTURED
@@ -90,6 +91,14 @@ static inline Vec normal_towards(const Vec front, const Vec interpolated) {
                          usable ? interpolated.z : front.z);
   return vec_times(normal,
                    (vec_dot(normal, front) < ZERO ? -ONE : ONE) / sqrt(vec_dot(normal, normal)));
+}
+
+// Unit normal along `front`; `shading` where both are one, and for triangles without area.
+static inline Vec geometric_towards(const Vec front, const Vec shading) {
+  const realW square = vec_dot(front, front);
+  const Vec unit = vec_times(front, square > ZERO ? ONE / sqrt(square) : ZERO);
+  const intW apart = (square > ZERO) & (vec_dot(unit, shading) <= (realW)(CLPV_SAME_NORMAL));
+  return (Vec){apart ? unit.x : shading.x, apart ? unit.y : shading.y, apart ? unit.z : shading.z};
 }
 
 CLPV_INLINE void apply_texture(__global const float4* textures, __global const uint* texels,

@@ -3,9 +3,16 @@
 //
 // The shadow filter has 4 x 4 taps: a box of three texels at any sub-texel position, hence the
 // weight clamp(2 - |distance|, 0, 1) per texel and axis. Each texel's depth is compared with the
-// depth of the receiver's tangent plane at that texel. A flat receiver of any slope then does not
-// shadow itself. A lift along the normal (shared/shade.h) covers rounding, interpolated normals and
+// depth of the plane of the receiver's triangle at that texel. A flat receiver of any slope then
+// does not shadow itself. A lift along the triangle's normal (shared/shade.h) covers rounding and
 // corners; occluders closer than the lift cast no shadow.
+//
+// Under a roof, along the edge where it meets the receiver's wall, that would let light in: the roof
+// is closer than the lift, and texels beyond the edge lie behind the wall's plane. Whether a receiver
+// is below a surface is therefore found first. Heights of texels above its plane, extrapolated from
+// one of the four inner texels and its two outer neighbours to the filter's centre, are positive below
+// a plane, 0 on it, and negative in a concave corner, where the filter's texels are above the plane,
+// too. Below a surface there is no lift, and texels beyond the edge do not count.
 #pragma once
 
 #include "lanes.h"
@@ -14,18 +21,19 @@
 #include "shared/view.h"
 #include "vec.h"
 
-// W receivers in a shadow map, with their lifted tangent planes. At the texel (dx, dy) from the
-// receiver d (a + per_depth g) = b - (1 - per_depth) g, d its depth, g = dx slope_x + dy slope_y.
+// W receivers in a shadow map, with their tangent planes. A texel of depth d, at (dx, dy) from the
+// receiver, is d (a + per_depth g) + (1 - per_depth) g - b [m] above the plane, g = dx slope_x + dy
+// slope_y.
 typedef struct {
   realW x, y;  // pixel coordinates
   realW slope_x, slope_y;
   realW a, b;
-  realW depth;     // of the plane at (x, y)
-  float per_depth;  // 1: perspective, 0: orthographic
+  realW lift, rounding;  // [m]
+  float per_depth;       // 1: perspective, 0: orthographic
 } Receivers;
 
-// Sets up receivers. `offset`: from the light's eye to the surfaces [m]; `cosine`: between normal
-// and direction to the light.
+// Sets up receivers. `offset`: from the light's eye to the surfaces [m]; `normal`: the triangle's;
+// `cosine`: between it and the direction to the light.
 CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec normal,
                                 const realW cosine, Receivers* r) {
   const Vec right = vec_of(view.right), up = vec_of(view.up), forward = vec_of(view.forward);
@@ -36,7 +44,7 @@ CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec
   const float edge_x = 2.0f * view.half_width / width, edge_y = -2.0f * view.half_height / height;
   const realW square = 1.0f - cosine * cosine;
   const realW sine = sqrt(square > ZERO ? square : ZERO);
-  const realW lift = scale * edge_x * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
+  const realW edge = scale * edge_x;
   const realW along_x = vec_dot_unfused(normal, right), along_y = vec_dot_unfused(normal, up);
   const realW across = sx * along_x + sy * along_y;
   r->per_depth = view.orthographic != 0.0f ? 0.0f : 1.0f;
@@ -45,8 +53,10 @@ CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec
   r->slope_x = edge_x * along_x;
   r->slope_y = edge_y * along_y;
   r->a = vec_dot_unfused(normal, forward) + r->per_depth * across;
-  r->b = vec_dot_unfused(normal, offset) + lift - (1.0f - r->per_depth) * across;
-  r->depth = r->b / r->a;
+  r->b = vec_dot_unfused(normal, offset) - (1.0f - r->per_depth) * across;
+  r->lift = edge * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
+  r->rounding = edge * CLPV_SHADOW_ROUNDING_TEXELS +
+                fabs(vec_dot_unfused(offset, forward)) * CLPV_SHADOW_ROUNDING_DEPTH;
 }
 
 // First texel of the filter of each of W receivers along an axis, and its distance [texels] from
@@ -75,7 +85,7 @@ static inline float4 tap_weights(const float4 distance) {
 // One receiver, and the distances of its filter texels.
 typedef struct {
   float4 dx, dy;  // [texels] from the filter's centre
-  float slope_x, slope_y, a, b, depth, per_depth;
+  float slope_x, slope_y, a, b, lift, rounding, per_depth;
 } Receiver;
 
 // Element by element: Oclgrind crashes on (float8)(a, b).
@@ -86,14 +96,25 @@ static inline float8 two_rows(const float2 a) {
   return (float8)(a.x, a.x, a.x, a.x, a.y, a.y, a.y, a.y);
 }
 
-// Filter weights of the occluding texels of two rows; 0 for the others. `d`: depths of the texels
-// [m].
-CLPV_INLINE float8 blocked_weights(const Receiver r, const float8 d, const float2 dy,
-                                   const float8 wx, const float2 wy) {
-  const float8 weights = wx * two_rows(wy);
+// Heights of the texels of two rows above a receiver's plane [m]; those without a surface are far
+// below. `d`: their depths [m].
+CLPV_INLINE float8 texel_heights(const Receiver r, const float8 d, const float2 dy) {
   const float8 g = side_by_side(r.dx, r.dx) * r.slope_x + two_rows(dy) * r.slope_y;
-  const int8 before = d * (r.a + r.per_depth * g) > r.b - (1.0f - r.per_depth) * g;
-  return select((float8)(0.0f), weights, (d > 0.0f) & before & (d < r.depth));
+  const float8 height = d * (r.a + r.per_depth * g) + ((1.0f - r.per_depth) * g - r.b);
+  return select((float8)(-1e6f * r.lift), height, d > 0.0f);
+}
+
+// True if a receiver is below a surface of the map. `upper`, `lower`: heights of the filter's first
+// and last two rows.
+CLPV_INLINE bool below_surface(const Receiver r, const float8 upper, const float8 lower) {
+  const float4 inner = (float4)(upper.s5, upper.s6, lower.s1, lower.s2),
+               beside = (float4)(upper.s4, upper.s7, lower.s0, lower.s3),
+               past = (float4)(upper.s1, upper.s2, lower.s5, lower.s6);
+  const float4 x = fabs((float4)(r.dx.y, r.dx.z, r.dx.y, r.dx.z)),
+               y = fabs((float4)(r.dy.y, r.dy.y, r.dy.z, r.dy.z));
+  const float4 centre = inner + (inner - beside) * x + (inner - past) * y;
+  const int4 below = (inner > r.rounding) & (centre > r.rounding);
+  return (below.x | below.y | below.z | below.w) != 0;
 }
 
 // Weight of a receiver's occluding texels; `whole`: weight of all of its texels, 0 outside the map.
@@ -101,13 +122,20 @@ CLPV_INLINE float8 blocked_weights(const Receiver r, const float8 d, const float
 CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, const uint width,
                                  float* whole) {
   const float4 wx = tap_weights(r.dx), wy = tap_weights(r.dy), one = 1.0f;
-  const float8 upper = side_by_side(vload4(0, row), vload4(0, row + width));
-  const float8 lower = side_by_side(vload4(0, row + 2 * width), vload4(0, row + 3 * width));
-  const float8 above = blocked_weights(r, upper, r.dy.lo, side_by_side(wx, wx), wy.lo);
-  const float8 below = blocked_weights(r, lower, r.dy.hi, side_by_side(wx, wx), wy.hi);
-  const float4 blocked = above.lo + above.hi + below.lo + below.hi;
-  *whole = dot(wx, one) * dot(wy, one);
-  return dot(blocked, one);
+  const float8 wxs = side_by_side(wx, wx), upper_w = wxs * two_rows(wy.lo),
+               lower_w = wxs * two_rows(wy.hi), none = 0.0f;
+  const float8 upper_d = side_by_side(vload4(0, row), vload4(0, row + width));
+  const float8 lower_d = side_by_side(vload4(0, row + 2 * width), vload4(0, row + 3 * width));
+  const float8 upper = texel_heights(r, upper_d, r.dy.lo), lower = texel_heights(r, lower_d, r.dy.hi);
+  const bool below = below_surface(r, upper, lower);
+  const float lift = below ? r.rounding : r.lift,
+              depth = below ? INFINITY : (r.b + r.lift) / r.a,
+              least = below ? -CLPV_SHADOW_BEYOND * r.lift : -INFINITY;
+  const float8 blocked = select(none, upper_w, (upper > lift) & (upper_d < depth)) +
+                         select(none, lower_w, (lower > lift) & (lower_d < depth));
+  const float8 counted = select(none, upper_w, upper > least) + select(none, lower_w, lower > least);
+  *whole = dot(counted.lo + counted.hi, one);
+  return dot(blocked.lo + blocked.hi, one);
 }
 
 // Visible share of the light at W receivers, 0 to 1; 1 outside the map and the mask `lit`.
@@ -116,19 +144,20 @@ CLPV_INLINE realW find_visibility(const ClpvView view, __global const float* map
   const Taps tx = find_taps(r.x, (int)view.width), ty = find_taps(r.y, (int)view.height);
   int wanted[W], first[W];
   float distance_x[W], distance_y[W], slope_x[W], slope_y[W];
-  float a[W], b[W], depth[W], blocked[W], whole[W];
+  float a[W], b[W], lift[W], rounding[W], blocked[W], whole[W];
   store_lanes(lit, wanted);
   store_lanes(ty.first * (int)view.width + tx.first, first);
   store_lanes(tx.distance, distance_x), store_lanes(ty.distance, distance_y);
   store_lanes(r.slope_x, slope_x), store_lanes(r.slope_y, slope_y);
-  store_lanes(r.a, a), store_lanes(r.b, b), store_lanes(r.depth, depth);
+  store_lanes(r.a, a), store_lanes(r.b, b);
+  store_lanes(r.lift, lift), store_lanes(r.rounding, rounding);
   const float4 step = (float4)(0.0f, 1.0f, 2.0f, 3.0f);
   for (int i = 0; i < W; ++i) {
     blocked[i] = whole[i] = 0.0f;
     if (!wanted[i]) continue;
     const Receiver receiver = {
-        step + distance_x[i], step + distance_y[i], slope_x[i], slope_y[i], a[i], b[i], depth[i],
-        r.per_depth};
+        step + distance_x[i], step + distance_y[i], slope_x[i], slope_y[i], a[i], b[i], lift[i],
+        rounding[i], r.per_depth};
     blocked[i] = blocked_weight(receiver, map + first[i], view.width, whole + i);
   }
   const realW all = load_lanes(whole);
@@ -158,21 +187,24 @@ typedef struct {
   __global const float* map;  // depths [m]
 } ShadowMap;
 
-// Irradiance [W/m^2] of a light on the surfaces that its view covers. `lit`: mask of the surfaces
-// to light; becomes that of the lit ones, outside which the result is undefined.
+// Irradiance [W/m^2] of a light on the surfaces that its view covers. `normal` weighs light,
+// `geometric` decides which side it comes from (shared/normal.h). `lit`: mask of the surfaces to
+// light; becomes that of the lit ones, outside which the result is undefined.
 CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shadow,
-                                    const Vec position, const Vec normal, intW* lit) {
+                                    const Vec position, const Vec normal, const Vec geometric,
+                                    intW* lit) {
   Vec towards;
   Vec irradiance = light_irradiance(light, position, &towards);
-  const realW cosine = vec_dot_unfused(normal, towards);
-  *lit &= cosine > ZERO;
+  const realW cosine = vec_dot_unfused(normal, towards),
+              facing = vec_dot_unfused(geometric, towards);
+  *lit &= (cosine > ZERO) & (facing > ZERO);
   irradiance = vec_times(irradiance, cosine);
   if (shadow.count == 0) return irradiance;
   const ClpvView view = shadow.views[shadow.which];
   const Vec offset = vec_minus(position, vec_of(view.eye));
   if (shadow.count > 1) *lit &= view_covers(shadow.views, shadow.count, shadow.which, offset);
   Receivers r;
-  find_receivers(view, offset, normal, cosine, &r);
+  find_receivers(view, offset, geometric, facing, &r);
   return vec_times(irradiance, find_visibility(view, shadow.map, r, *lit));
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "lanes.h"
+#include "raster/geometric_normal.h"
 #include "raster/surface.h"
 #include "raster/tile_row.h"
 #include "vec.h"
@@ -43,6 +44,7 @@ typedef struct {
   uint first;  // index of the first pixel in the view
   realW depth;
   Vec position, normal;
+  Vec geometric;  // normal of the triangle (shared/normal.h)
 } Surfaces;
 
 // Loads the surfaces of W pixels. Lanes outside the view repeat the last pixel.
@@ -55,6 +57,7 @@ static inline void load_surfaces(const ClpvView view, const PixelRow p,
   gather_rows(normals, pixel, &rows);
   s->depth = (realW)CLPV_GATHER(depths, pixel);
   s->normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
+  s->geometric = unpack_geometric_normal(CLPV_COLUMN(rows, w), s->normal);
   s->position = row_positions(view, p, s->depth);
 }
 
@@ -69,6 +72,7 @@ static inline void load_points(const ClpvView view, const PixelRow p, __global c
   s->depth = CLPV_COLUMN(rows, w);
   gather_rows(normals, pixel, &rows);
   s->normal = vec(CLPV_COLUMN(rows, x), CLPV_COLUMN(rows, y), CLPV_COLUMN(rows, z));
+  s->geometric = unpack_geometric_normal(CLPV_COLUMN(rows, w), s->normal);
 }
 
 // Place of a surface: its depth in the view, or with CLPV_POINTS 1 a point without a view.
@@ -134,12 +138,14 @@ CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW
 
 #endif
 
-CLPV_INLINE void store_normals(const PixelRow p, const Vec n, __global SurfaceTexel* to) {
+// `geometric`: numbers of the geometric normals, for which the 8-bit format has no room.
+CLPV_INLINE void store_normals(const PixelRow p, const Vec n, const realW geometric,
+                               __global SurfaceTexel* to) {
 #if CLPV_SURFACE_PAPER
   store_texels(p.count, to_bytes(n.x * 127.5f + 127.5f), to_bytes(n.y * 127.5f + 127.5f),
                to_bytes(n.z * 127.5f + 127.5f), (bytesW)(255), to);
 #else
-  store_texels(p.count, n.x, n.y, n.z, ZERO, to);
+  store_texels(p.count, n.x, n.y, n.z, geometric, to);
 #endif
 }
 

@@ -133,8 +133,9 @@ CLPV_INLINE void sample_bilinear(__global const float4* table, __global const ui
   colour->z = filter_channel(f, 16);
 }
 
+// Divided, so that a texel of the cutoff's value equals it.
 static inline realW alpha_of(const uintW texel) {
-  return to_realW(as_intW(texel >> 24)) * (1.0f / 255.0f);
+  return to_realW(as_intW(texel >> 24)) / 255.0f;
 }
 
 // Bilinear look-up of alpha in a level, in [0, 1].

@@ -2,13 +2,14 @@
 // Layout of the near field's buffers (near_layout.h), shared by host and kernels.
 #pragma once
 
-// Planes of points, one number per pixel: position [m], normal, and reach R [m], 0 without a
-// surface in a cascade.
+// Planes of points, one number per pixel: position [m], normal, reach R [m], 0 without a surface in
+// a cascade, and the number of the geometric normal (normal.h).
 enum {
   CLPV_NEAR_POSITION = 0,
   CLPV_NEAR_NORMAL = 3,
   CLPV_NEAR_REACH = 6,
-  CLPV_NEAR_PLANES = 7,
+  CLPV_NEAR_GEOMETRIC = 7,
+  CLPV_NEAR_PLANES = 8,
 };
 
 // Planes of light, one number per pixel and channel: D and the gathered irradiance [W/m^2].

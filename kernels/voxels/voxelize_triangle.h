@@ -141,10 +141,10 @@ static inline BarycentricWeights voxel_weights(const ProjectedTriangle* t, const
   return weights;
 }
 
-// Vertex attribute `field`, interpolated between corners.
-#define CLPV_BLEND(weights, corner, field)                                                         \
-  ((1.0f - (weights).w1 - (weights).w2) * (corner)[0]->field + (weights).w1 * (corner)[1]->field + \
-   (weights).w2 * (corner)[2]->field)
+// Vertex attribute `field`, interpolated between corners; a constant one stays that constant.
+#define CLPV_BLEND(weights, corner, field)                                         \
+  ((corner)[0]->field + (weights).w1 * ((corner)[1]->field - (corner)[0]->field) + \
+   (weights).w2 * ((corner)[2]->field - (corner)[0]->field))
 
 #if CLPV_MASKED
 // Mask of those samples where the alpha of a masked material reaches its cutoff: no hole.

@@ -37,13 +37,17 @@ FrameLights::FrameLights(Session& session, const SceneData& scene, const SceneBu
 void FrameLights::prepare(const SceneCamera& camera, const std::vector<ClpvGrid>& grids) {
   find_lights(camera);
   find_scale(grids.back());
+  find_bounds(grids.back());
   for (Lit& lit : lights_) {
+    const LightBounds bounds = rsm_follows_cascade(lit.light)
+                                   ? bounds_
+                                   : LightBounds{buffers_.bounds, buffers_.bounds};
     lit.shadow.light = lit.light;
-    lit.shadow.views = shadow_views(lit.light, buffers_.bounds, options_.shadow_size);
+    lit.shadow.views = shadow_views(lit.light, bounds.shadows, options_.shadow_size);
     lit.rsms.resize(injected_volumes(options_));
     lit.wanted.clear();
     for (const ClpvGrid& grid : grids) {
-      std::vector<ClpvView> views = rsm_views(lit.light, grid, buffers_.bounds, options_.rsm_size);
+      std::vector<ClpvView> views = rsm_views(lit.light, grid, bounds.rsms, options_.rsm_size);
       const CacheKey key = key_of(scaled(lit.light, scale_), views);
       lit.wanted.push_back({std::move(views), key});
     }
@@ -71,6 +75,13 @@ void FrameLights::find_scale(const ClpvGrid& coarsest) {
   std::vector<ClpvLight> all;
   for (const Lit& lit : lights_) all.push_back(lit.light);
   scale_ = light_scale(options_.format(), all, coarsest.cell, other);
+}
+
+void FrameLights::find_bounds(const ClpvGrid& coarsest) {
+  const CacheKey key =
+      Fingerprint().add(coarsest.origin).add(coarsest.cell).add(buffers_.clusters->instant()).value();
+  bounds_cached_.update(
+      key, [&] { bounds_ = light_bounds(scene_.vertices, buffers_.bounds, coarsest); });
 }
 
 CacheKey FrameLights::key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const {

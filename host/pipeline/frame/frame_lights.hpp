@@ -17,6 +17,7 @@
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/raster/surface.hpp"
+#include "pipeline/raster/view.hpp"
 #include "scene/scene.hpp"
 #include "scene/sky.hpp"
 #include "volume/volume_format.hpp"
@@ -76,6 +77,7 @@ class FrameLights {
   static std::size_t slot(const Lit& lit, int cascade);
   void find_lights(const SceneCamera& camera);
   void find_scale(const ClpvGrid& coarsest);
+  void find_bounds(const ClpvGrid& coarsest);
   CacheKey key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const;
   void rasterize(const Lit& lit, const std::vector<ClpvView>& views,
                  std::vector<Surface>& surfaces);
@@ -90,6 +92,8 @@ class FrameLights {
   std::vector<Lit> lights_;
   std::string lit_by_;  ///< Camera::light for which lights_ were prepared
   float scale_ = 1;
+  LightBounds bounds_;    ///< of the scene's current time
+  Cached bounds_cached_;
   unsigned epoch_ = 0;  ///< part of every key
 };
 

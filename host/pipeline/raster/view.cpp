@@ -2,6 +2,7 @@
 #include "pipeline/raster/view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +17,8 @@ constexpr double kLightNear = 0.01;       // [m]; a lamp's own glass may be this
 constexpr double kSmallestMargin = 0.01;  // [m] between an orthographic eye and the nearest surface
 constexpr double kRelativeMargin = 1e-3;  // the same, relative to the scene's depth
 constexpr double kRounding = 1e-5;        // relative rounding of distances from the eye in kernels
+constexpr int kMaxCubes = 64;             // of light_bounds()
+constexpr int kGapCubes = 3;              // empty ones that are a gap
 
 struct Axes {
   glm::dvec3 right, up, forward;
@@ -215,6 +218,36 @@ bool may_be_clipped(const ClpvView& view, const Bounds& bounds) {
   return reaches(right - wider, -beside) || reaches(-right - wider, -beside) ||
          reaches(up - higher, -above) || reaches(-up - higher, -above) ||
          (!parallel && reaches(-forward, view.near_depth));
+}
+
+LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
+                         const ClpvGrid& coarsest) {
+  const double half = 0.5 * static_cast<double>(coarsest.n) * coarsest.cell;
+  const glm::dvec3 middle = vector(coarsest.origin) + half;
+  /// Exponent k of the smallest cube of half edge 2^k half about the middle with the vertex; 0 in the
+  /// cascade.
+  const auto cube_of = [&](const Vertex& v) {
+    const glm::dvec3 off = glm::abs(vector(v.position) - middle) / half;
+    const double farthest = std::max({off.x, off.y, off.z});
+    return farthest > 1 ? std::min(std::ilogb(farthest) + 1, kMaxCubes - 1) : 0;
+  };
+  std::array<bool, kMaxCubes> used{};
+  for (const Vertex& v : vertices) used[cube_of(v)] = true;
+  int last = 0;  // cube before the first gap
+  for (int k = 1; k < kMaxCubes && k <= last + kGapCubes + 1; ++k) {
+    if (used[k]) last = k;
+  }
+  if (std::none_of(used.begin() + last + 1, used.end(), [](bool u) { return u; })) return {all, all};
+  const double outer = half + double{coarsest.cell};  // virtual point lights move by half a cell
+  const Bounds cube{glm::vec3(middle - outer), glm::vec3(middle + outer)};
+  Bounds near{cube.upper, cube.lower};  // nothing yet
+  for (const Vertex& v : vertices) {
+    if (cube_of(v) > last) continue;
+    const glm::vec3 p(vector(v.position));
+    near = {glm::min(near.lower, p), glm::max(near.upper, p)};
+  }
+  if (glm::any(glm::lessThan(near.upper, near.lower))) near = cube;
+  return {near, {glm::min(near.lower, cube.lower), glm::max(near.upper, cube.upper)}};
 }
 
 bool rsm_follows_cascade(const ClpvLight& light) {

@@ -43,6 +43,19 @@ ClpvView spot_view(const ClpvLight& light, int size, const Bounds& bounds);
 /// direction once.
 std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds& bounds);
 
+/// Bounds that a directional light's shadow map and its RSMs are made for.
+struct LightBounds {
+  Bounds shadows, rsms;
+};
+
+/// Returns the bounds for cascades of which `coarsest` is the largest: `all`, the bounds of `vertices`,
+/// unless surfaces lie behind a gap. Seen from the cascade's middle, a gap spans distances from 2^k to
+/// 2^(k+3) times half its edge without a vertex; a far triangle then does not coarsen shadows. Surfaces
+/// left out still cast shadows. Bounds of RSMs then cover the cascade, too: surfaces before them are
+/// clamped to the near plane, and their virtual point lights must lie outside.
+LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
+                         const ClpvGrid& coarsest);
+
 /// Returns true if a light has its own reflective shadow maps per cascade. A directional light has;
 /// other lights use views of all surfaces that they light.
 bool rsm_follows_cascade(const ClpvLight& light);
