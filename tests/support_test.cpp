@@ -25,9 +25,20 @@ TEST(Version, HasAnEntryInTheCitationAndTheChanges) {
 }
 
 TEST(Printable, TextStaysAsItIs) {
-  for (const std::string text : {"", "a b~", "two\nlines\tand a tab", "\u00e9\u20ac\U0001F4A1",
-                                 "\u00a0", "\xc2", "\xff\x9b"})
+  for (const std::string text :
+       {"", "a b~", "two\nlines\tand a tab", "\u00e9\u20ac\U0001F4A1", "\u00a0"})
     EXPECT_EQ(printable(text), text);
+}
+
+TEST(Printable, BytesThatAreNotUtf8BecomeQuestionMarks) {
+  // Latin-1; overlong, surrogates, beyond U+10FFFF, no first bytes; cut off.
+  EXPECT_EQ(printable("caf\xe9 \xfc"), "caf? ?");
+  EXPECT_EQ(printable("\xc0\x80 \xe0\x80\xaf \xed\xa0\x80 \xf4\x90\x80\x80 \xf8 \xff"),
+            "?? ??? ??? ???? ? ?");
+  EXPECT_EQ(printable("\xe2\x82"), "??");
+  EXPECT_EQ(printable("\xe2\x82"
+                      "a"),
+            "??a");
 }
 
 TEST(Printable, ControlCharactersBecomeQuestionMarks) {

@@ -53,6 +53,7 @@ glm::dvec3 triangle_normal(const std::vector<LocalVertex>& vertices, const glm::
 struct Instance {
   std::shared_ptr<const LocalPrimitive> primitive;
   std::size_t node = 0;              ///< index in the tree
+  glm::dmat4 to_node{1.0};           ///< to the node's space; only of several meshes at one node
   std::shared_ptr<const Skin> skin;  ///< null: the node's transform applies
   std::vector<double> weights;       ///< of morph targets without a curve
   /// In the scene, whose vectors have their final size.
