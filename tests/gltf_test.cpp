@@ -389,7 +389,8 @@ TEST_F(GltfTest, InstancesAreDrawn) {
   attributes = {{"SCALE", model.accessor<float>("VEC3", {-1, 1, 1})},
                 {"_COLOR_0", model.accessor<float>("VEC3", {1, 0, 0})}};
   const SceneData mirrored = load();
-  EXPECT_THAT(position(mirrored, 0, 1), IsNear(glm::vec3(-1, 0, 10), kClose));
+  EXPECT_THAT(corners(mirrored, 0),
+              ElementsAre(glm::vec3(0, 0, 10), glm::vec3(0, 1, 10), glm::vec3(-1, 0, 10)));
   EXPECT_THAT(face_normal(mirrored, 0), IsNear(kZ, kClose)) << "its front stays outside";
   EXPECT_THAT(mirrored.notes, ::testing::Contains(HasSubstr("not read: _COLOR_0")));
 
@@ -429,6 +430,15 @@ TEST_F(GltfTest, DataUrisOfEverySpelling) {
     const SceneData scene = load_scene(folder.write("model.gltf", model.document.dump()));
     EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), kX, kY)) << uri;
   }
+}
+
+TEST_F(GltfTest, FilesOfEncodedUrisAreInputs) {
+  model.triangle();
+  model.finish("the%20buffer.bin");
+  folder.write("the buffer.bin", model.binary);
+  const SceneData scene = load_scene(folder.write("model.gltf", model.document.dump()));
+  EXPECT_THAT(scene.files,
+              ::testing::Contains(std::filesystem::canonical(folder.path()) / "the buffer.bin"));
 }
 
 TEST_F(GltfTest, LightsByBlenderThatLookPhotometricGetANote) {

@@ -44,7 +44,7 @@ inline constexpr int kNodeDepth = 1024;
 // of which may share a view.
 inline constexpr std::uint64_t kVertices = 16ull << 20;
 inline constexpr std::uint64_t kTriangles = 16ull << 20;
-inline constexpr std::size_t kInstances = 1u << 18;  // a matrix of 128 bytes each
+inline constexpr std::size_t kInstances = 1u << 18;  // 144 bytes each
 inline constexpr std::uint64_t kSparseElements = 64ull << 20;
 
 // Animation: times and values of all curves of a model (8 bytes each), keys of one camera or light

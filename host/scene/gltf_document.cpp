@@ -187,7 +187,8 @@ void load_model(json& parsed, std::span<const std::uint8_t> binary, GltfDocument
 std::vector<std::filesystem::path> GltfDocument::files() const {
   std::vector<std::filesystem::path> all{file};
   const auto add = [&](const std::string& uri) {
-    if (!uri.empty() && !is_data_uri(uri)) all.push_back(folder / uri);
+    if (uri.empty() || is_data_uri(uri)) return;
+    if (const auto name = percent_decoded(uri)) all.push_back(folder / *name);
   };
   for (const tinygltf::Buffer& buffer : model.buffers) add(buffer.uri);
   for (const tinygltf::Image& image : model.images) add(image.uri);

@@ -81,11 +81,11 @@ std::vector<std::string> others_in(const tinygltf::Value& attributes) {
 
 }  // namespace
 
-std::vector<glm::dmat4> read_instances(const GltfDocument& document, int node, std::size_t& budget,
-                                       Notes& notes) {
+std::vector<std::optional<glm::dmat4>> read_instances(const GltfDocument& document, int node,
+                                                      std::size_t& budget, Notes& notes) {
   const tinygltf::Node& source = entry(document.model.nodes, node);
   const auto found = source.extensions.find(kExtension);
-  if (found == source.extensions.end()) return {glm::dmat4(1.0)};
+  if (found == source.extensions.end()) return {std::nullopt};
   const tinygltf::Value& attributes = found->second.Get("attributes");
   const InstanceReader reader(document, node, attributes);
   if (reader.count() > budget) {
@@ -97,9 +97,9 @@ std::vector<glm::dmat4> read_instances(const GltfDocument& document, int node, s
     notes.add(fmt::format("{}: not read: {}", reader.place(), fmt::join(others, ", ")));
   if (source.skin >= 0) {
     notes.add(fmt::format("{}: a skin places the mesh, which is drawn once", reader.place()));
-    return {glm::dmat4(1.0)};
+    return {std::nullopt};
   }
-  std::vector<glm::dmat4> made;
+  std::vector<std::optional<glm::dmat4>> made;
   made.reserve(reader.count());
   for (std::size_t i = 0; i < reader.count(); ++i) made.push_back(reader.matrix(i));
   return made;

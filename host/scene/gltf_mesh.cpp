@@ -10,10 +10,10 @@
 namespace clpv {
 namespace {
 
-/// One place of a mesh: a node of the tree, and a transform to that node's space.
+/// One place of a mesh: a node of the tree, and the transform of an instance to that node's space.
 struct MeshPlace {
   std::size_t node;
-  glm::dmat4 to_node;
+  std::optional<glm::dmat4> to_node;
 };
 
 /// Weights of morph targets without a curve: those of the node, else of the mesh, else 0.
@@ -112,7 +112,7 @@ void append_meshes(const GltfDocument& document, PosedTree& posed, const Materia
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const int mesh = entry(document.model.nodes, nodes[i].index).mesh;
     if (mesh < 0) continue;
-    for (const glm::dmat4& to_node : read_instances(document, nodes[i].index, instances, notes))
+    for (const auto& to_node : read_instances(document, nodes[i].index, instances, notes))
       places[mesh].push_back({i, to_node});
   }
   Appender appender(document, scene, motion, notes);

@@ -61,11 +61,11 @@ std::map<int, NodeCurves> read_animations(const GltfDocument& document, Notes& n
 NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
                     const glm::dmat4& root);
 
-/// Transforms of a node's meshes to the node's space: by EXT_mesh_gpu_instancing, else one that is
-/// the identity. Subtracts from `budget`, the instances that the model may still have. Throws
-/// Error(bad_input).
-std::vector<glm::dmat4> read_instances(const GltfDocument& document, int node, std::size_t& budget,
-                                       Notes& notes);
+/// Transforms of the instances of a node's mesh to the node's space, by EXT_mesh_gpu_instancing;
+/// else one without a transform. Subtracts from `budget`, the instances that the model may still
+/// have. Throws Error(bad_input).
+std::vector<std::optional<glm::dmat4>> read_instances(const GltfDocument& document, int node,
+                                                      std::size_t& budget, Notes& notes);
 
 /// Reads and caches skins.
 class SkinReader {

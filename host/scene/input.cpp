@@ -4,31 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <optional>
 
 #include "support/error.hpp"
 
 namespace clpv {
 namespace fs = std::filesystem;
 namespace {
-
-std::optional<std::string> percent_decoded(std::string_view uri) {
-  std::string out;
-  out.reserve(uri.size());
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] != '%') {
-      out += uri[i];
-      continue;
-    }
-    if (i + 2 >= uri.size() || !std::isxdigit(static_cast<unsigned char>(uri[i + 1])) ||
-        !std::isxdigit(static_cast<unsigned char>(uri[i + 2]))) {
-      return std::nullopt;
-    }
-    out += static_cast<char>(std::stoi(std::string(uri.substr(i + 1, 2)), nullptr, 16));
-    i += 2;
-  }
-  return out;
-}
 
 constexpr std::string_view kDataScheme = "data:";
 
@@ -73,6 +54,24 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 }
 
 }  // namespace
+
+std::optional<std::string> percent_decoded(std::string_view uri) {
+  std::string out;
+  out.reserve(uri.size());
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] != '%') {
+      out += uri[i];
+      continue;
+    }
+    if (i + 2 >= uri.size() || !std::isxdigit(static_cast<unsigned char>(uri[i + 1])) ||
+        !std::isxdigit(static_cast<unsigned char>(uri[i + 2]))) {
+      return std::nullopt;
+    }
+    out += static_cast<char>(std::stoi(std::string(uri.substr(i + 1, 2)), nullptr, 16));
+    i += 2;
+  }
+  return out;
+}
 
 std::string excerpt(std::string_view text) {
   constexpr std::size_t kMaxLength = 160;

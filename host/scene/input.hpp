@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,9 @@ std::string excerpt(std::string_view text);
 /// outside `folder`, and all but regular files.
 std::filesystem::path resolve_uri(const std::filesystem::path& folder, const std::string& uri,
                                   const std::string& file, std::string_view place);
+
+/// Decodes "%20" and the like; empty if malformed.
+std::optional<std::string> percent_decoded(std::string_view uri);
 
 /// Returns true for "data:...", in any case (RFC 3986, section 3.1).
 bool is_data_uri(std::string_view uri);

@@ -76,7 +76,9 @@ struct Placement {
 
 Placement placement_of(const Instance& instance, PosedTree& posed) {
   if (!instance.skin || instance.primitive->influences.empty())
-    return {posed.to_world(instance.node) * instance.to_node, {}};
+    return {instance.to_node ? posed.to_world(instance.node) * *instance.to_node
+                             : posed.to_world(instance.node),
+            {}};
   Placement made{glm::dmat4(1.0), posed.joints(*instance.skin)};
   made.to_world = made.of(*instance.primitive, 0);  // for its determinant's sign
   return made;

@@ -69,9 +69,9 @@ inline constexpr std::string_view kJpegRed8x8 =
     "pKjU2Nzg5OkNERUZHSElKU1RVVldYWVpjZGVmZ2hpanN0dXZ3eHl6goOEhYaHiImKkpOUlZaXmJmaoqOkpaanqKmqsrO0t"
     "ba3uLm6wsPExcbHyMnK0tPU1dbX2Nna4uPk5ebn6Onq8vP09fb3+Pn6/9oADAMBAAIRAxEAPwDFoooryz7w/9k=";
 
-/// The pixels of kPngRgba2x2, lossless.
+/// The pixels of kPngRgba2x2, but alpha 10 of the blue one; lossless.
 inline constexpr std::string_view kWebpRgba2x2 =
-    "UklGRjQAAABXRUJQVlA4TCcAAAAvAUAAEB8gEEhSn3wNgQDBuXMDKCAhPJflArBXVSgJEABFGYnofzAA";
+    "UklGRjoAAABXRUJQVlA4TC4AAAAvAUAAEB8gEEhSn3wNgQDBuXMCAYJz54QExAB/VdOFmTNaBTVtG7D4TToi+h8c";
 /// 4 x 4 pixels of (200, 100, 50), lossy; and the same of alpha 128.
 inline constexpr std::string_view kWebpLossy =
     "UklGRj4AAABXRUJQVlA4IDIAAADQAQCdASoEAAQAAMASJaACdLoB+AADsAD+2ib/7vN+09e09f1M//jKnyA/4yp/xcwA"
