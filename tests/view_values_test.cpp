@@ -78,7 +78,7 @@ TEST_F(CameraByNumbers, LightScalesWithoutEffectOrMeaningAreRejected) {
   EXPECT_THAT(rejected(kCornell + " --light-scale 2 --sun 0,-1,0"), HasSubstr("--sun"));
   for (const char* bad : {"0", "-1", "nan", "inf", "1e7", "two"})
     EXPECT_THAT(rejected(kCornell + " --light-scale " + bad),
-                AllOf(HasSubstr("--light-scale"), HasSubstr("1e-06..1e+06"), HasSubstr(bad)));
+                AllOf(HasSubstr("--light-scale"), HasSubstr("1e-06..1000000"), HasSubstr(bad)));
 }
 
 TEST_F(CameraByNumbers, WorksInEveryCommandWithACamera) {

@@ -119,11 +119,14 @@ WebpChunks webp_chunks(Data bytes) {
 }
 
 std::optional<ImageHeader> webp_header(Data bytes) {
-  constexpr std::uint32_t kSide = 0x3fff;  // 14 bits
+  constexpr std::uint32_t kSide = 0x3fff;                        // 14 bits
+  constexpr std::size_t kLossyHeader = 10, kLosslessHeader = 5;  // start and sides
   constexpr std::array<std::uint8_t, 3> kLossyStart = {0x9d, 0x01, 0x2a};
   const WebpChunks chunks = webp_chunks(bytes);
   const Data image = chunks.image;
-  if (image.size() < kRiffChunkHeader + 10) return std::nullopt;
+  if (image.empty() ||
+      image.size() < kRiffChunkHeader + (chunks.lossless() ? kLosslessHeader : kLossyHeader))
+    return std::nullopt;
   if (chunks.lossless()) {
     const std::uint32_t sides = little_endian(image, kRiffChunkHeader + 1, 4);
     if (image[kRiffChunkHeader] != 0x2f) return std::nullopt;
