@@ -81,6 +81,23 @@ TEST_F(CameraByNumbers, LightScalesWithoutEffectOrMeaningAreRejected) {
                 AllOf(HasSubstr("--light-scale"), HasSubstr("1e-06..1000000"), HasSubstr(bad)));
 }
 
+TEST_F(CameraByNumbers, FileNamesInAnotherEncodingAreWrittenInUtf8) {
+  const std::string name = "caf\xe9.gltf";  // Latin-1
+  GltfBuilder model;
+  model.triangle();
+  model.write(folder, name);
+  EXPECT_EQ(image("render " + name + kSmall + " --stats stats.json").metadata.at("scene"),
+            "caf?.gltf");
+  EXPECT_EQ(json::parse(read_file(folder / "stats.json"))["options"]["scene"], "caf?.gltf");
+  EXPECT_EQ(image("pathtrace " + name + " --spp 1 --width 32 --height 18 --stats stats.json")
+                .metadata.at("scene"),
+            "caf?.gltf");
+  const Outcome quality =
+      run("quality " + name +
+          " --basis sh2 --width 16 --height 9 --grid 8 --noise 0.5 --cache cache --format json");
+  EXPECT_EQ(quality.exit_code, 0) << quality.err;
+}
+
 TEST_F(CameraByNumbers, WorksInEveryCommandWithACamera) {
   folder.write("p.csv", "0.28,0.27,0.3,0,-1,0\n");
   for (const std::string& command : std::vector<std::string>{

@@ -15,6 +15,7 @@
 #include "scene/gltf_parts.hpp"
 #include "scene/input.hpp"
 #include "support/error.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -272,7 +273,7 @@ MovingScene::MovingScene(const std::filesystem::path& path,
   add_defaults(description_.lights.has_value() || scene_.sky);
   check_camera_lights(scene_);
   if (moves()) scene_.start_reach = scene_.reach();
-  scene_.name = path.stem().string();
+  scene_.name = printable(path.stem().string());  // JSON and metadata have UTF-8 only
 }
 
 /// Updates what depends on the meshes.
