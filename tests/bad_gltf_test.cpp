@@ -55,6 +55,9 @@ struct BadGltfTest : AnimationTest {
   }
 
   json& attributes() { return primitive()["attributes"]; }
+  json& attributes_of_instances() {
+    return model.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  }
   int floats(const std::string& type, const std::vector<float>& values) {
     return model.accessor<float>(type, values);
   }
@@ -115,16 +118,60 @@ TEST_F(BadGltfTest, Documents) {
        {"/materials/0/doubleSided", "\"yes\"", "true or false"}},
       {{{texture + "/baseColorFactor", {1, 1, "red", 1}}},
        {texture + "/baseColorFactor", "\"red\""}},
-      {{{"/textures/0/source", nullptr}}, {"/textures/0", "no source"}},
       {{{"/images/0", json::object()}}, {"/images/0", "image[0]"}},
       {{{"/images/0/bufferView", 0}}, {"/images/0", "image[0]"}},
       {{{"/images/0/uri", "data:image/png;base64,!!"}}, {"/images/0", "decode"}},
       {{{camera + "/yfov", 4}}, {camera + "/yfov", "found 4"}},
       {{{camera, nullptr}}, {"/cameras/0"}},
-      {{{kLights + "/0/spot", nullptr}}, {kLights + "/0"}},
+      {{{kLights + "/0/spot", 7}}, {kLights + "/0/spot", "found 7"}},
       {{{kLights + "/0/type", "area"}}, {"lights/0/type", "\"area\"", "directional, spot, point"}},
       {{{kLights + "/0/spot", {{"innerConeAngle", 1}, {"outerConeAngle", 0.5}}}},
        {kLights + "/0/spot", "inner less"}},
+  });
+}
+
+TEST_F(BadGltfTest, Instances) {
+  const std::string node = "/nodes/0/extensions/EXT_mesh_gpu_instancing",
+                    attributes = node + "/attributes";
+  const int two = floats("VEC3", {0, 0, 0, 1, 0, 0}), three = floats("VEC3", std::vector<float>(9)),
+            turns = floats("VEC4", {0, 0, 0, 1, 0, 0, 0, 0.1f}), nan = floats("VEC3", {0, NAN, 0}),
+            words = model.accessor<std::uint16_t>("VEC3", {0, 0, 0}),
+            many = model.add("accessors",
+                             {{"componentType", 5126}, {"count", 3000000000u}, {"type", "VEC3"}});
+  model.document["nodes"][0].erase("skin");
+  attributes_of_instances() = {{"TRANSLATION", floats("VEC3", {0, 0, 0})}};
+  expect_all_rejected({
+      {{{node, 7}}, {node, "found 7"}},
+      {{{attributes, nullptr}}, {attributes, "nothing"}},
+      {{{attributes, json::object()}}, {attributes, "no attribute"}},
+      {{{attributes, {{"_ID", two}}}}, {attributes, "no attribute"}},
+      {{{attributes + "/TRANSLATION", 1000}}, {attributes + "/TRANSLATION", "1000"}},
+      {{{attributes, {{"TRANSLATION", two}, {"SCALE", three}}}},
+       {attributes + "/SCALE", "3 of VEC3", "2 of VEC3"}},
+      {{{attributes, {{"ROTATION", two}}}}, {attributes + "/ROTATION", "VEC4"}},
+      {{{attributes, {{"ROTATION", turns}}}},
+       {attributes + "/ROTATION", "a quaternion of length 0.1", "1"}},
+      {{{attributes, {{"SCALE", nan}}}}, {attributes + "/SCALE", "nan"}},
+      {{{attributes, {{"SCALE", words}}}}, {attributes + "/SCALE", "5123"}},
+      {{{attributes, {{"SCALE", many}}}}, {attributes, "3000000000 more instances", "262144"}},
+      {{{attributes, {{"SCALE", many}, {"TRANSLATION", many}}}, {"/nodes/0/skin", 0}},
+       {attributes, "3000000000 more instances"}},
+  });
+}
+
+TEST_F(BadGltfTest, TexturesByExtensions) {
+  const std::string texture = "/textures/0/extensions/EXT_texture_webp",
+                    material = "/materials/0/extensions/KHR_materials_pbrSpecularGlossiness";
+  expect_all_rejected({
+      {{{"/textures/0/extensions", 7}}, {"/textures/0/extensions", "found 7"}},
+      {{{texture, "webp"}}, {texture, "an object"}},
+      {{{texture + "/source", 1}}, {texture + "/source", "found 1"}},
+      {{{material, 7}}, {material, "found 7"}},
+      {{{material + "/diffuseFactor", {1, 1, 2, 1}}}, {material + "/diffuseFactor", "with 2"}},
+      {{{material + "/diffuseTexture", json::object()}}, {material + "/diffuseTexture/index"}},
+      {{{material + "/diffuseTexture/index", 1}}, {material + "/diffuseTexture/index", "found 1"}},
+      {{{"/extensionsRequired", {"KHR_texture_basisu"}}},
+       {"/extensionsRequired/0", "KHR_texture_basisu", "EXT_texture_webp"}},
   });
 }
 
@@ -249,11 +296,16 @@ TEST_F(BadGltfTest, BuffersViewsAndAccessors) {
   EXPECT_THAT(rejected_with({{"/buffers/1", {{"byteLength", 1u << 31}, {"uri", "model.bin"}}}}),
               AllOf(HasSubstr("/buffers/1/byteLength"), HasSubstr("in all")));
   EXPECT_THAT(rejected_with({{uri, "data:application/octet-stream;base64,!!"}}),
-              HasSubstr("/buffers/0"));
+              AllOf(HasSubstr(uri), HasSubstr("not base64")));
+  EXPECT_THAT(rejected_with({{uri, "data:;base64,AAAAA"}}), HasSubstr("not base64"));
+  EXPECT_THAT(rejected_with({{uri, "data:;base64"}}), HasSubstr("without a comma"));
+  EXPECT_THAT(rejected_with({{uri, "data:,%4"}}), HasSubstr("percent-encoding"));
   EXPECT_THAT(rejected_with({{uri, "data:text/html;base64,AAAA"}}),
+              AllOf(HasSubstr(size), HasSubstr("3 bytes of the URI")));
+  EXPECT_THAT(rejected_with({{uri, "dat:text/html;base64,AAAA"}}),
               AllOf(HasSubstr(uri), HasSubstr("no such file")));
-  EXPECT_THAT(rejected_with({{uri, nullptr}}),
-              AllOf(HasSubstr("/buffers/0"), HasSubstr("'uri' is missing")));
+  for (const json& none : {json(), json("")})
+    EXPECT_THAT(rejected_with({{uri, none}}), AllOf(HasSubstr("/buffers/0"), HasSubstr("no uri")));
   EXPECT_THAT(rejected_with({{"/buffers/1", {{"byteLength", 1}}}}),
               AllOf(HasSubstr("/buffers/1"), HasSubstr("no uri")));
 }
@@ -314,7 +366,13 @@ TEST_F(BadGltfTest, TooManyInstancesAndMorphTargets) {
   model = many;
   for (int i = 0; i < 20000; ++i) model.add("nodes", {{"mesh", 0}});
   EXPECT_THAT(rejected(), AllOf(HasSubstr(kPrimitive), HasSubstr("2000079999 vertices"),
-                                HasSubstr("20001 nodes")));
+                                HasSubstr("20001 places")));
+  model = many;
+  model.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] =
+      model.add("accessors", {{"componentType", 5126}, {"count", 1 << 18}, {"type", "VEC3"}});
+  EXPECT_THAT(rejected(), AllOf(HasSubstr(kPrimitive), HasSubstr("262144 places")));
+  model.document["nodes"].push_back(model.document["nodes"][0]);
+  EXPECT_THAT(rejected(), AllOf(HasSubstr("/nodes/1"), HasSubstr("262144 more instances")));
   model = many;
   for (int i = 0; i < 1000; ++i) primitive()["targets"].push_back({{"POSITION", zeros}});
   EXPECT_THAT(rejected(), AllOf(HasSubstr(kPrimitive + "/targets/223"),
@@ -359,7 +417,7 @@ TEST_F(BadImageTest, Images) {
   text.insert(33, "\x7f\xff\xff\xffzTXtComment");
   EXPECT_THAT(rejected_image(text), AllOf(HasSubstr("/images/0"), HasSubstr("truncated")));
   EXPECT_THAT(rejected_image("#!/bin/sh\necho hello, this is no image at all\n"),
-              AllOf(HasSubstr("'image.png'"), HasSubstr("23 21 2f 62"), HasSubstr("PNG or JPEG")));
+              AllOf(HasSubstr("'image.png'"), HasSubstr("23 21 2f 62"), HasSubstr("PNG, JPEG or still WebP")));
   for (const std::string_view encoded : {kPngRgba2x2, kJpegRed8x8}) {
     const std::string image = decode_base64(encoded);
     for (std::size_t length = 0; length + 12 < image.size(); length += 7)

@@ -7,6 +7,7 @@
 namespace clpv::test::gltf_material_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -66,6 +67,95 @@ TEST_F(GltfMaterialTest, ImagesOfOtherKindsBecomeRgba) {
   EXPECT_THAT(std::vector(cmyk.begin(), cmyk.begin() + 4), ElementsAre(200, 60, 30, 255));
   const auto exif = rgba(kJpegExif16x8);
   EXPECT_NEAR(exif[1], 200, 4) << "rows as stored, whatever Exif says";
+}
+
+TEST_F(GltfMaterialTest, WebpIsDecoded) {
+  const auto rgba = [&](std::string_view image) {
+    GltfTest::model = GltfBuilder();
+    textured(image);
+    GltfTest::model.document["textures"] = {
+        {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+    GltfTest::model.document["extensionsRequired"] = {"EXT_texture_webp"};
+    textured_triangle();
+    return load().textures.at(0).rgba;
+  };
+  EXPECT_THAT(rgba(kWebpRgba2x2),
+              ElementsAre(255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 10, 128, 128, 128, 255))
+      << "not multiplied by alpha";
+  for (const auto& [image, alpha] :
+       std::vector<std::pair<std::string_view, int>>{{kWebpLossy, 255}, {kWebpLossyAlpha, 128}}) {
+    const auto lossy = rgba(image);
+    ASSERT_EQ(lossy.size(), 64u);
+    const int expected[] = {200, 100, 50, alpha};
+    for (std::size_t i = 0; i < lossy.size(); ++i) EXPECT_NEAR(lossy[i], expected[i % 4], 2) << i;
+  }
+}
+
+TEST_F(GltfMaterialTest, TexturesByExtensionsAloneLeaveTheFactor) {
+  textured(kPngGrey)["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.25, 1, 1};
+  GltfTest::model.document["materials"][0]["emissiveFactor"] = {1, 0, 0};
+  textured_triangle();
+  json& texture = GltfTest::model.document["textures"][0];
+  json& material = GltfTest::model.document["materials"][0];
+  for (const char* extension :
+       {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif", "VENDOR_texture"}) {
+    texture = {{"extensions", {{extension, {{"source", 0}}}}}};
+    GltfTest::model.document["extensionsUsed"] = {extension};
+    for (const bool emissive : {false, true}) {
+      if (emissive) material["emissiveTexture"] = {{"index", 0}};
+      const SceneData scene = load();
+      EXPECT_TRUE(scene.textures.empty());
+      EXPECT_THAT(scene.materials[0].base_colour, ElementsAre(0.5f, 0.25f, 1, 1));
+      EXPECT_EQ(scene.materials[0].texture, CLPV_NO_TEXTURE);
+      EXPECT_EQ(scene.materials[0].emissive_texture, CLPV_NO_TEXTURE);
+      EXPECT_THAT(scene.notes,
+                  ::testing::Contains(AllOf(HasSubstr("/textures/0"), HasSubstr(extension))));
+    }
+    material.erase("emissiveTexture");
+    texture["source"] = 0;  // its own image is for readers without the extension
+    EXPECT_THAT(load().textures.at(0).rgba, ElementsAre(77, 77, 77, 255));
+  }
+  texture = json::object();
+  EXPECT_THAT(load().notes, ::testing::Contains(HasSubstr("/textures/0 has no source")));
+  material["emissiveTexture"] = {{"index", 1}};  // emission keeps its texture without the other
+  GltfTest::model.add("textures", {{"source", 0}});
+  const SceneData scene = load();
+  EXPECT_EQ(scene.materials[0].texture, CLPV_NO_TEXTURE);
+  EXPECT_EQ(scene.materials[0].emissive_texture, 0u);
+}
+
+TEST_F(GltfMaterialTest, TheDiffuseColourOfSpecularGlossinessIsTheBaseColour) {
+  textured(kPngGrey);
+  textured_triangle();
+  json& material = GltfTest::model.document["materials"][0];
+  material["pbrMetallicRoughness"] = {{"baseColorFactor", {1, 0, 0, 1}}};  // for other readers
+  json& given = material["extensions"]["KHR_materials_pbrSpecularGlossiness"];
+  given = {{"diffuseFactor", {0.1, 0.2, 0.3, 0.4}}};
+  GltfTest::model.document["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
+  SceneData scene = load();
+  EXPECT_THAT(scene.materials[0].base_colour, ElementsAre(0.1f, 0.2f, 0.3f, 0.4f));
+  EXPECT_TRUE(scene.textures.empty());
+  EXPECT_THAT(scene.notes, ::testing::Not(::testing::Contains(HasSubstr("not read"))));
+  given = {{"diffuseTexture",
+            {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}}}}}}}};
+  scene = load();
+  EXPECT_THAT(scene.materials[0].base_colour, ElementsAre(1, 1, 1, 1));
+  ASSERT_EQ(scene.materials[0].texture, 0u);
+  EXPECT_EQ(uv(scene, scene.triangles[0].vertex[0]), glm::vec2(0.5f, 0));
+  given = json::object();
+  EXPECT_THAT(load().materials[0].base_colour, ElementsAre(1, 1, 1, 1)) << "its default";
+}
+
+TEST_F(GltfMaterialTest, ImagesInDataUrisOfEverySpelling) {
+  textured(kPngGrey);
+  textured_triangle();
+  for (const std::string header :
+       {"data:image/png;base64,", "data:image/PNG;base64,", "data:image/jpg;base64,",
+        "data:image/webp;base64,", "data:;base64,", "data:image/png;charset=utf-8;base64,",
+        "DATA:IMAGE/PNG;BASE64,"}) {
+    GltfTest::model.document["images"][0]["uri"] = header + std::string(kPngGrey);
+    EXPECT_THAT(load().textures.at(0).rgba, ElementsAre(77, 77, 77, 255)) << header;
+  }
 }
 
 TEST_F(GltfMaterialTest, ImagesInBuffersAndDataUris) {

@@ -8,6 +8,7 @@
 namespace clpv::test::gltf_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -322,6 +323,143 @@ TEST_F(GltfTest, PunctualLights) {
   EXPECT_NEAR(std::cos(0.25f) * torch.cone_scale + torch.cone_offset, 1, 1e-4);
   EXPECT_NEAR(std::cos(0.5f) * torch.cone_scale + torch.cone_offset, 0, 1e-4);
   EXPECT_THAT(scene.notes, ElementsAre(HasSubstr("no camera")));
+}
+
+TEST_F(GltfTest, CamerasAndLightsIgnoreTheScaleOfTheirNode) {
+  model.triangle();
+  model.document["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  model.document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "directional"}}};
+  const json node = {{"camera", 0},
+                     {"translation", {1, 2, 3}},
+                     {"rotation", {0, 0.7071067811865476, 0, 0.7071067811865476}},
+                     {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}};
+  for (const json& scale :
+       std::vector<json>{{1, 1, 1}, {2, 3, 4}, {-1, 1, 1}, {1, -2, 1}, {1, 1, -1}, {-1, -1, -1}}) {
+    model.document["nodes"][1] = node;
+    model.document["nodes"][1]["scale"] = scale;
+    const SceneData scene = load();
+    EXPECT_THAT(scene.cameras.at(0).eye, IsNear(glm::vec3(1, 2, 3), kClose)) << scale;
+    EXPECT_THAT(scene.cameras.at(0).forward, IsNear(-kX, kClose)) << scale;
+    EXPECT_THAT(scene.cameras.at(0).up, IsNear(kY, kClose)) << scale;
+    EXPECT_THAT(glm::vec3(vector(scene.lights.at(0).data.direction)), IsNear(-kX, kClose)) << scale;
+  }
+}
+
+TEST_F(GltfTest, SharedNamesOfCamerasAndLightsGetANote) {
+  model.triangle();
+  model.document["cameras"] = {
+      {{"name", "wide"}, {"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  model.document["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"name", "lamp"}, {"type", "point"}}, {{"name", "sun"}, {"type", "directional"}}};
+  const auto light = [](int index) {
+    return json{{"extensions", {{"KHR_lights_punctual", {{"light", index}}}}}};
+  };
+  for (int i = 0; i < 2; ++i) model.add("nodes", {{"camera", 0}});
+  for (int i = 0; i < 3; ++i) model.add("nodes", light(0));
+  model.add("nodes", light(1));
+  const SceneData scene = load();
+  EXPECT_EQ(scene.camera("wide 2").name, "wide 2");
+  EXPECT_THAT(
+      scene.notes,
+      ElementsAre("2 cameras have the name 'wide': the second is called 'wide 2'",
+                  "3 lights have the name 'lamp': the others are called 'lamp 2' and so on"));
+}
+
+TEST_F(GltfTest, InstancesAreDrawn) {
+  const float h = std::sqrt(0.5f);
+  model.triangle();
+  model.document["nodes"][0]["translation"] = {0, 0, 10};
+  model.document["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  json& attributes =
+      model.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  attributes = {{"TRANSLATION", model.accessor<float>("VEC3", {0, 0, 0, 5, 0, 0})},
+                {"ROTATION", model.accessor<float>("VEC4", {0, 0, 0, 1, 0, 0, h, h})},
+                {"SCALE", model.accessor<float>("VEC3", {1, 1, 1, 2, 3, 1})}};
+  const SceneData scene = load();
+  ASSERT_EQ(scene.triangles.size(), 2u);
+  EXPECT_THAT(corners(scene, 0),
+              ElementsAre(glm::vec3(0, 0, 10), glm::vec3(1, 0, 10), glm::vec3(0, 1, 10)));
+  // Scaled, then turned by 90 degrees about z, then moved; the node moves all.
+  EXPECT_THAT(position(scene, 1, 0), IsNear(glm::vec3(5, 0, 10), 1e-5f));
+  EXPECT_THAT(position(scene, 1, 1), IsNear(glm::vec3(5, 2, 10), 1e-5f));
+  EXPECT_THAT(position(scene, 1, 2), IsNear(glm::vec3(2, 0, 10), 1e-5f));
+  EXPECT_THAT(scene.notes, ::testing::Not(::testing::Contains(HasSubstr("not read"))));
+
+  attributes = {{"SCALE", model.accessor<float>("VEC3", {-1, 1, 1})},
+                {"_COLOR_0", model.accessor<float>("VEC3", {1, 0, 0})}};
+  const SceneData mirrored = load();
+  EXPECT_THAT(corners(mirrored, 0),
+              ElementsAre(glm::vec3(0, 0, 10), glm::vec3(0, 1, 10), glm::vec3(-1, 0, 10)));
+  EXPECT_THAT(face_normal(mirrored, 0), IsNear(kZ, kClose)) << "its front stays outside";
+  EXPECT_THAT(mirrored.notes, ::testing::Contains(HasSubstr("not read: _COLOR_0")));
+
+  attributes = {{"ROTATION", model.accessor<std::int8_t>("VEC4", {0, 0, 127, 0}, true)}};
+  EXPECT_THAT(position(load(), 0, 1), IsNear(glm::vec3(-1, 0, 10), 1e-5f));
+}
+
+TEST_F(AnimationTest, InstancesMoveWithTheirNode) {
+  model.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+      model.accessor<float>("VEC3", {0, 0, 0, 5, 0, 0});
+  animate<float>(0, "translation", {0, 1}, {0, 0, 0, 0, 2, 0});
+  MovingScene moving = load();
+  moving.pose(0.5);
+  EXPECT_THAT(position(moving.scene(), 0, 0), IsNear(glm::vec3(0, 1, 0), kClose));
+  EXPECT_THAT(position(moving.scene(), 1, 0), IsNear(glm::vec3(5, 1, 0), kClose));
+}
+
+TEST_F(GltfTest, DataUrisOfEverySpelling) {
+  model.triangle();
+  model.finish("");
+  const std::string base64 = encode_base64(model.binary);
+  std::string percent, escaped;
+  for (const char c : model.binary)
+    percent += fmt::format("%{:02x}", static_cast<unsigned char>(c));
+  for (const char c : base64)
+    escaped += c == '=' || c == '+' || c == '/'
+                   ? fmt::format("%{:02X}", static_cast<unsigned char>(c))
+                   : std::string(1, c);
+  for (const std::string& uri :
+       {"data:application/octet-stream;base64," + base64,
+        "data:application/gltf-buffer;base64," + base64, "data:;base64," + base64,
+        "DATA:Application/Octet-Stream;BASE64," + base64,
+        "data:text/plain;charset=utf-8;base64," + base64, "data:model/gltf-binary;base64," + base64,
+        "data:;base64," + base64.substr(0, base64.find('=')), "data:;base64," + escaped,
+        "data:application/octet-stream," + percent}) {
+    model.document["buffers"][0]["uri"] = uri;
+    const SceneData scene = load_scene(folder.write("model.gltf", model.document.dump()));
+    EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), kX, kY)) << uri;
+  }
+}
+
+TEST_F(GltfTest, FilesOfEncodedUrisAreInputs) {
+  model.triangle();
+  model.finish("the%20buffer.bin");
+  folder.write("the buffer.bin", model.binary);
+  const SceneData scene = load_scene(folder.write("model.gltf", model.document.dump()));
+  EXPECT_THAT(scene.files,
+              ::testing::Contains(std::filesystem::canonical(folder.path()) / "the buffer.bin"));
+}
+
+TEST_F(GltfTest, LightsByBlenderThatLookPhotometricGetANote) {
+  model.triangle();
+  model.document["asset"]["generator"] = "Khronos glTF Blender I/O v4.2.57";
+  model.document["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "directional"}, {"intensity", 683}, {"color", {1, 0.9, 0.8}}}};
+  model.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  const auto note = ::testing::Contains(AllOf(HasSubstr("683"), HasSubstr("0.001464")));
+  EXPECT_THAT(load().notes, note);
+  MovingScene scaled(model.write(folder));
+  scaled.set_light_scale(1.0 / 683);
+  EXPECT_THAT(scaled.scene().notes, ::testing::Not(note));
+  EXPECT_THAT(scaled.scene().lights_for(scaled.scene().cameras[0]).at(0).data.intensity,
+              ElementsAre(::testing::FloatNear(1, 1e-6f), ::testing::FloatNear(0.9f, 1e-6f),
+                          ::testing::FloatNear(0.8f, 1e-6f)));
+  model.document["asset"]["generator"] = "another";
+  EXPECT_THAT(load().notes, ::testing::Not(note));
+  model.document["asset"]["generator"] = "Khronos glTF Blender I/O v4.2.57";
+  model.document["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 5;
+  EXPECT_THAT(load().notes, ::testing::Not(note));
 }
 
 TEST_F(GltfTest, ExtensionsThatAreNotReadGetANote) {

@@ -80,5 +80,54 @@ TEST(ImageHeader, APngIsLeftWithWhatItsPixelsNeedAndPlainTexts) {
   }
 }
 
+const std::string_view kWebps[] = {test::kWebpRgba2x2, test::kWebpLossy, test::kWebpLossyAlpha};
+
+TEST(ImageHeader, SizesOfWebps) {
+  const std::uint32_t sides[] = {2, 4, 4};
+  for (std::size_t i = 0; i < std::size(kWebps); ++i) {
+    const auto header = read_image_header(bytes_in(test::decode_base64(kWebps[i])));
+    ASSERT_TRUE(header);
+    EXPECT_EQ(header->format, ImageFormat::webp);
+    EXPECT_EQ(header->width, sides[i]);
+    EXPECT_EQ(header->height, sides[i]);
+    EXPECT_TRUE(header->complete);
+  }
+}
+
+TEST(ImageHeader, AWebpThatIsCutIsNotComplete) {
+  for (const std::string_view each : kWebps) {
+    const std::string webp = test::decode_base64(each);
+    for (std::size_t length = 0; length + 1 < webp.size(); ++length) {
+      const auto header = read_image_header(bytes_in(webp.substr(0, length)));
+      EXPECT_FALSE(header && header->complete) << length;
+    }
+  }
+}
+
+TEST(ImageHeader, AnAnimatedWebpIsNone) {
+  std::string webp = test::decode_base64(test::kWebpLossy);
+  for (const char* chunk : {"ANIM", "ANMF"}) {
+    webp.replace(12, 4, chunk);  // in place of the image
+    EXPECT_FALSE(read_image_header(bytes_in(webp)));
+  }
+}
+
+TEST(ImageHeader, AWebpIsLeftWithWhatItsPixelsNeed) {
+  const auto stripped = [](const std::string& webp, bool alpha) {
+    const auto kept = strip_webp(bytes_in(webp), alpha);
+    return std::string(kept.begin(), kept.end());
+  };
+  for (const std::string_view each : kWebps) {
+    const std::string webp = test::decode_base64(each);
+    EXPECT_EQ(stripped(webp, true), webp);
+  }
+  std::string more = test::decode_base64(test::kWebpLossyAlpha);
+  const std::string plain = more;
+  more.insert(30, std::string("ICCP\3\0\0\0abc\0", 12));  // after VP8X; of odd length
+  more += std::string("EXIF\2\0\0\0ab", 10);
+  EXPECT_EQ(stripped(more, true), plain);
+  EXPECT_EQ(stripped(more, false), test::decode_base64(test::kWebpLossy)) << "opaque";
+}
+
 }  // namespace
 }  // namespace clpv::image_header_test

@@ -4,6 +4,7 @@
 
 #include <glm/gtc/constants.hpp>
 
+#include "clpv/scene.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -62,6 +63,26 @@ struct SceneTest : ::testing::Test {
     return load_scene(folder.write("test.json", text), replacement);
   }
 };
+
+TEST_F(SceneTest, LightScaleMultipliesTheLightsOfModelAndFile) {
+  const auto intensity = [](const SceneData& scene) {
+    return scene.lights_for(scene.cameras.at(0)).at(0).data.intensity[0];
+  };
+  const std::string model = R"({"model": "models/model.gltf")",
+                    lamp = R"(, "lights": [{"kind": "point", "position": [0, 0, 0],
+                             "intensity_candela": 6}])";
+  EXPECT_EQ(intensity(load(model + "}")), 1);
+  EXPECT_EQ(intensity(load(model + R"(, "light_scale": 0.25})")), 0.25f);
+  EXPECT_EQ(intensity(load(model + lamp + R"(, "light_scale": 0.25})")), 1.5f);
+  const std::filesystem::path file =
+      folder.write("scaled.json", model + R"(, "light_scale": 0.25})");
+  EXPECT_EQ(clpv::Scene(file).lights().at(0).intensity[0], 0.25);
+  MovingScene scene(file);
+  scene.set_light_scale(3);  // in place of the file's
+  EXPECT_EQ(intensity(scene.scene()), 3);
+  scene.set_lights(scene.scene().lights);
+  EXPECT_EQ(intensity(scene.scene()), 1) << "a caller's lights are not scaled";
+}
 
 TEST_F(SceneTest, AllKeysOfASceneFile) {
   const SceneData scene = load(kFull);

@@ -52,6 +52,17 @@ TEST(TerminalJson, ControlCharactersAreEscaped) {
             "{\"a\": \"\u00e9\\u009b1\\u007f\"}\n");
 }
 
+TEST(Printable, BytesThatAreNotUtf8BecomeQuestionMarks) {
+  // Latin-1; overlong, surrogates, beyond U+10FFFF, no first bytes; cut off.
+  EXPECT_EQ(printable("caf\xe9 \xfc"), "caf? ?");
+  EXPECT_EQ(printable("\xc0\x80 \xe0\x80\xaf \xed\xa0\x80 \xf4\x90\x80\x80 \xf8 \xff"),
+            "?? ??? ??? ???? ? ?");
+  EXPECT_EQ(printable("\xe2\x82"), "??");
+  EXPECT_EQ(printable("\xe2\x82"
+                      "a"),
+            "??a");
+}
+
 TEST(Printable, ControlCharactersBecomeQuestionMarks) {
   EXPECT_EQ(printable("\x1b[31mred\x1b[0m\r\b\x7f"), "?[31mred?[0m???");
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a?b");

@@ -46,6 +46,58 @@ TEST_F(CameraByNumbers, RendersAndTraces) {
       1e-4);
 }
 
+TEST_F(CameraByNumbers, LightScaleMultipliesTheLightsOfTheFile) {
+  const auto pixels = [&](const std::string& words) { return image(words).pixels; };
+  const std::vector<float> one = pixels("render " + kCornell + kSmall + " --view direct"),
+                           half = pixels("render " + kCornell + kSmall +
+                                         " --view direct --light-scale 0.5"),
+                           traced = pixels("pathtrace " + kCornell + " --light-scale 0.5 --spp 1" +
+                                           " --width 32 --height 18 --view direct");
+  double largest = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    if (i % 4 == 3) continue;  // alpha
+    EXPECT_EQ(half[i], 0.5f * one[i]);
+    largest = std::max<double>(largest, one[i]);
+  }
+  EXPECT_GT(largest, 0);
+  EXPECT_NEAR(traced[4 * (9 * 32 + 3)], half[4 * (9 * 32 + 3)], 1e-3 * largest);
+  EXPECT_EQ(image("render " + kCornell + kSmall + " --light-scale 0.5").metadata.at("light_scale"),
+            "0.5");
+}
+
+TEST_F(CameraByNumbers, LightScalesWithoutEffectOrMeaningAreRejected) {
+  GltfBuilder model;
+  model.triangle();
+  model.write(folder);
+  const auto rejected = [&](const std::string& words) {
+    const Outcome outcome = run("render " + words + kSmall + " -o image.exr");
+    EXPECT_EQ(outcome.exit_code, 2) << words;
+    return outcome.err;
+  };
+  EXPECT_THAT(rejected("model.gltf --light-scale 2"), HasSubstr("has no lights"));
+  EXPECT_THAT(rejected(kCornell + " --light-scale 2 --sun 0,-1,0"), HasSubstr("--sun"));
+  for (const char* bad : {"0", "-1", "nan", "inf", "1e7", "two"})
+    EXPECT_THAT(rejected(kCornell + " --light-scale " + bad),
+                AllOf(HasSubstr("--light-scale"), HasSubstr("1e-06..1000000"), HasSubstr(bad)));
+}
+
+TEST_F(CameraByNumbers, FileNamesInAnotherEncodingAreWrittenInUtf8) {
+  const std::string name = "caf\xe9.gltf";  // Latin-1
+  GltfBuilder model;
+  model.triangle();
+  model.write(folder, name);
+  EXPECT_EQ(image("render " + name + kSmall + " --stats stats.json").metadata.at("scene"),
+            "caf?.gltf");
+  EXPECT_EQ(json::parse(read_file(folder / "stats.json"))["options"]["scene"], "caf?.gltf");
+  EXPECT_EQ(image("pathtrace " + name + " --spp 1 --width 32 --height 18 --stats stats.json")
+                .metadata.at("scene"),
+            "caf?.gltf");
+  const Outcome quality =
+      run("quality " + name +
+          " --basis sh2 --width 16 --height 9 --grid 8 --noise 0.5 --cache cache --format json");
+  EXPECT_EQ(quality.exit_code, 0) << quality.err;
+}
+
 TEST_F(CameraByNumbers, WorksInEveryCommandWithACamera) {
   folder.write("p.csv", "0.28,0.27,0.3,0,-1,0\n");
   for (const std::string& command : std::vector<std::string>{

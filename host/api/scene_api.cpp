@@ -49,7 +49,11 @@ std::vector<Camera> Scene::cameras() const {
 std::vector<Light> Scene::lights() const {
   const std::shared_lock lock(contents_->mutex);
   std::vector<Light> all;
-  for (const SceneLight& light : contents_->moving.scene().lights) all.push_back(light_of(light));
+  const SceneData& scene = contents_->moving.scene();
+  for (const SceneLight& light : scene.lights) {
+    Light& made = all.emplace_back(light_of(light));
+    for (double& channel : made.intensity) channel *= scene.light_scale;
+  }
   return all;
 }
 

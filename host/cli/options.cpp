@@ -171,11 +171,13 @@ void SceneChanges::apply(MovingScene& scene) const {
     scene.set_cameras({scene_camera(given, rejected_in("camera"))});
   }
   if (sun) scene.set_lights({scene_light(*sun, rejected_in("--sun"))});
+  if (light_scale > 0) scene.set_light_scale(light_scale);
   if (medium) scene.set_medium(*medium);
 }
 
 void SceneChanges::describe(nlohmann::json& inputs) const {
   if (sun) inputs["sun"] = fmt::format("{},{}", fmt::join(sun->direction, ","), sun->intensity[0]);
+  if (light_scale > 0) inputs["light_scale"] = light_scale;
   if (medium) {
     inputs["medium"] =
         fmt::format("{},{},{}", medium->scattering[0],
@@ -214,13 +216,23 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
       ->needs(eye)
       ->group(kGroup);
   const auto take_sun = [&changes](const std::string& text) { changes.sun = parse_sun(text); };
-  command
-      .add_option_function<std::string>(
-          "--sun", take_sun,
-          fmt::format("direction of a sun's light and its illuminance [lx] (default: {}), in place "
-                      "of all lights",
-                      kSunIlluminance))
-      ->type_name("X,Y,Z[,LUX]")
+  CLI::Option* sun =
+      command
+          .add_option_function<std::string>(
+              "--sun", take_sun,
+              fmt::format(
+                  "direction of a sun's light and its illuminance [lx] (default: {}), in place "
+                  "of all lights",
+                  kSunIlluminance))
+          ->type_name("X,Y,Z[,LUX]")
+          ->group(kGroup);
+  add_number(command, "--light-scale", changes.light_scale,
+             "factor of the intensities of the scene's lights (default: the scene file's, or 1); "
+             "0.001464 counts lux and candela by Blender in watts",
+             {1 / bounds::kLightScale, bounds::kLightScale,
+              fmt::format("{}..{}", 1 / bounds::kLightScale, bounds::kLightScale)})
+      ->type_name("X")
+      ->excludes(sun)
       ->group(kGroup);
   const auto take_medium = [&changes](const std::string& text) {
     changes.medium = parse_medium(text);

@@ -130,21 +130,22 @@ void require_extension(const std::string& option, const std::filesystem::path& f
 /// Creates the folder of an option if it is missing. Throws Error(run_time).
 void create_folder(const std::string& option, const std::filesystem::path& folder);
 
-/// A camera and a sun given by numbers, in place of the scene's.
+/// A camera, a sun and a medium given by numbers, in place of the scene's; a factor of its lights.
 struct SceneChanges {
   std::optional<Vec3> eye, target;  ///< both or none
   Camera camera;                    ///< its other numbers
   std::optional<Light> sun;
+  double light_scale = 0;            ///< 0: the scene's
   std::optional<ClpvMedium> medium;  ///< fills the scene's bounding box
 
   /// Throws Error(usage) for numbers that no camera or light has.
   void apply(MovingScene& scene) const;
-  /// Adds sun and medium to the inputs of an image; the camera's name has its numbers.
+  /// Adds sun, light scale and medium to the inputs of an image; the camera's name has its numbers.
   void describe(nlohmann::json& inputs) const;
 };
 
-/// Adds --eye, --target, --up, --fov, --near-plane, --sun and --medium. `camera`: the option that
-/// excludes --eye.
+/// Adds --eye, --target, --up, --fov, --near-plane, --sun, --light-scale and --medium. `camera`:
+/// the option that excludes --eye.
 void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& camera);
 
 /// The options of path tracing, shared by `pathtrace`, `quality` and `report`.

@@ -21,6 +21,7 @@
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace pathtrace_command {
@@ -34,14 +35,14 @@ struct Options : SceneRequest {
 };
 
 nlohmann::json resolved(const Options& options, const SceneCamera& camera) {
-  nlohmann::json json = {{"scene", options.scene},
+  nlohmann::json json = {{"scene", printable(options.scene)},
                          {"camera", camera.name},
                          {"time", options.time},
                          {"width", options.width},
                          {"height", options.height},
                          {"bounces", options.tracing.bounces},
                          {"seed", options.tracing.values.seed}};
-  if (!options.model.empty()) json["model"] = options.model;
+  if (!options.model.empty()) json["model"] = printable(options.model);
   options.changes.describe(json);
   if (options.tracing.values.samples > 0) {
     json["spp"] = options.tracing.values.samples;

@@ -92,8 +92,8 @@ void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOp
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options,
                         const SceneData& shown, const SceneCamera& camera, double seconds) {
   nlohmann::json all = to_json(options);
-  all.update({{"scene", request.scene},
-              {"model", request.model},
+  all.update({{"scene", printable(request.scene)},
+              {"model", printable(request.model)},
               {"camera", camera.name},
               {"time", seconds},
               {"exposure", request.exposure_of(shown)},

@@ -39,8 +39,9 @@ class ImageDecoder {
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  /// Opens an image of format "openexr", "png" or "jpeg"; the bytes must outlive it. Colours
-  /// are not multiplied by alpha. Returns null and sets `error` on failure. `name`: for errors.
+  /// Opens an image of format "openexr", "png", "jpeg" or "webp"; the bytes must outlive it.
+  /// Colours are not multiplied by alpha, except in WebP. Returns null and sets `error` on failure.
+  /// `name`: for errors.
   virtual std::unique_ptr<ImageDecoder> open(const std::string& format, const std::string& name,
                                              std::span<const std::uint8_t> bytes,
                                              std::string& error) const = 0;

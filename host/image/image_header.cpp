@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads the headers of PNG (ISO 15948, section 11.2.2) and JPEG files (ITU T.81, annex B). Decoders
-// allocate by the header's size before the caller can check it: libjpeg for progressive images,
-// OpenImageIO for interlaced ones.
+// Reads the headers of PNG (ISO 15948, section 11.2.2), JPEG (ITU T.81, annex B) and WebP files
+// (RFC 9649). Decoders allocate by the header's size before the caller can check it: libjpeg for
+// progressive images, OpenImageIO for interlaced ones, libwebp for all.
 #include "image/image_header.hpp"
 
 #include <fmt/format.h>
@@ -84,6 +84,76 @@ std::optional<ImageHeader> jpeg_header(Data bytes) {
   return std::nullopt;
 }
 
+std::uint32_t little_endian(Data bytes, std::size_t offset, std::size_t size) {
+  std::uint32_t value = 0;
+  for (std::size_t i = size; i-- > 0;) value = value << 8 | bytes[offset + i];
+  return value;
+}
+
+constexpr std::size_t kRiffHeader = 12, kRiffChunkHeader = 8;
+constexpr std::uint32_t kWebpAlpha = 0x10;         // flag of the chunk VP8X
+constexpr std::uint32_t kLosslessAlpha = 1 << 28;  // in the header of a VP8L image
+
+/// Chunks of a still WebP, with their headers.
+struct WebpChunks {
+  Data image;            ///< "VP8 " (lossy) or "VP8L" (lossless)
+  Data alpha;            ///< "ALPH" of a lossy image; may be empty
+  bool complete = true;  ///< all chunks up to the image fit into the file
+  bool lossless() const { return image[3] == 'L'; }
+};
+
+/// Finds the chunks of a still image; without `image` if there is none.
+WebpChunks webp_chunks(Data bytes) {
+  WebpChunks found;
+  bool has_alpha = false;
+  for (std::size_t at = kRiffHeader; bytes.size() - at >= kRiffChunkHeader;) {
+    const std::string_view type(reinterpret_cast<const char*>(bytes.data()) + at, 4);
+    const std::size_t room = bytes.size() - at - kRiffChunkHeader,
+                      size = little_endian(bytes, at + 4, 4), used = std::min(size, room);
+    const Data chunk = bytes.subspan(at, kRiffChunkHeader + used);
+    found.complete = size <= room;
+    if (type == "VP8X" && used > 0)
+      has_alpha = (little_endian(bytes, at + kRiffChunkHeader, 1) & kWebpAlpha) != 0;
+    if (type == "ALPH" && has_alpha) found.alpha = chunk;
+    if (type == "VP8 " || type == "VP8L") {
+      found.image = chunk;
+      break;
+    }
+    if (!found.complete) break;
+    at += std::min(chunk.size() + size % 2, bytes.size() - at);
+  }
+  return found;
+}
+
+std::optional<ImageHeader> webp_header(Data bytes) {
+  constexpr std::uint32_t kSide = 0x3fff;                        // 14 bits
+  constexpr std::size_t kLossyHeader = 10, kLosslessHeader = 5;  // start and sides
+  constexpr std::array<std::uint8_t, 3> kLossyStart = {0x9d, 0x01, 0x2a};
+  const WebpChunks chunks = webp_chunks(bytes);
+  const Data image = chunks.image;
+  if (image.empty() ||
+      image.size() < kRiffChunkHeader + (chunks.lossless() ? kLosslessHeader : kLossyHeader))
+    return std::nullopt;
+  if (chunks.lossless()) {
+    const std::uint32_t sides = little_endian(image, kRiffChunkHeader + 1, 4);
+    if (image[kRiffChunkHeader] != 0x2f) return std::nullopt;
+    return ImageHeader{ImageFormat::webp, (sides & kSide) + 1, (sides >> 14 & kSide) + 1,
+                       chunks.complete};
+  }
+  if (!starts_with(image.subspan(kRiffChunkHeader + 3), kLossyStart)) return std::nullopt;
+  return ImageHeader{ImageFormat::webp, little_endian(image, kRiffChunkHeader + 6, 2) & kSide,
+                     little_endian(image, kRiffChunkHeader + 8, 2) & kSide, chunks.complete};
+}
+
+void append_little_endian(std::vector<std::uint8_t>& to, std::uint32_t value, std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) to.push_back(static_cast<std::uint8_t>(value >> 8 * i));
+}
+
+void append_chunk(std::vector<std::uint8_t>& to, Data chunk) {
+  to.insert(to.end(), chunk.begin(), chunk.end());
+  if (chunk.size() % 2 != 0) to.push_back(0);
+}
+
 }  // namespace
 
 std::optional<ImageHeader> read_image_header(Data bytes) {
@@ -91,6 +161,10 @@ std::optional<ImageHeader> read_image_header(Data bytes) {
   constexpr std::array<std::uint8_t, 3> kJpeg = {0xff, 0xd8, 0xff};
   if (starts_with(bytes, kPng)) return png_header(bytes);
   if (starts_with(bytes, kJpeg)) return jpeg_header(bytes);
+  constexpr std::array<std::uint8_t, 4> kRiff = {'R', 'I', 'F', 'F'}, kWebp = {'W', 'E', 'B', 'P'};
+  if (bytes.size() >= kRiffHeader && starts_with(bytes, kRiff) &&
+      starts_with(bytes.subspan(8), kWebp))
+    return webp_header(bytes);
   return std::nullopt;
 }
 
@@ -128,6 +202,33 @@ std::string foreign_colour(Data png) {
     }
   });
   return srgb ? "" : found;
+}
+
+std::vector<std::uint8_t> strip_webp(Data bytes, bool alpha) {
+  const WebpChunks chunks = webp_chunks(bytes);
+  const ImageHeader header = *webp_header(bytes);
+  std::vector<std::uint8_t> kept;
+  const auto append_text = [&kept](std::string_view text) {
+    kept.insert(kept.end(), text.begin(), text.end());
+  };
+  append_text("RIFF");
+  append_little_endian(kept, 0, 4);  // size, set below
+  append_text("WEBP");
+  if (alpha && !chunks.lossless() && !chunks.alpha.empty()) {
+    append_text("VP8X");
+    append_little_endian(kept, 10, 4);
+    append_little_endian(kept, kWebpAlpha, 4);
+    append_little_endian(kept, header.width - 1, 3);
+    append_little_endian(kept, header.height - 1, 3);
+    append_chunk(kept, chunks.alpha);
+  }
+  const std::size_t image = kept.size();
+  append_chunk(kept, chunks.image);
+  if (!alpha && chunks.lossless())
+    kept[image + kRiffChunkHeader + 4] &= static_cast<std::uint8_t>(~(kLosslessAlpha >> 24));
+  for (std::size_t i = 0; i < 4; ++i)
+    kept[4 + i] = static_cast<std::uint8_t>((kept.size() - kRiffChunkHeader) >> 8 * i);
+  return kept;
 }
 
 }  // namespace clpv

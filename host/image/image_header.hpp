@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Size of an encoded image by its header, read without decoding, and removal of unneeded PNG
-// chunks.
+// Size of an encoded image by its header, read without decoding, and removal of unneeded chunks.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "image/primaries.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv {
 
@@ -41,20 +41,28 @@ struct ExrHeader : DeclaredImage {
   bool cube_map = false;
 };
 
-enum class ImageFormat { png, jpeg };
+enum class ImageFormat { png, jpeg, webp };
+
+template <>
+inline constexpr auto kNames<ImageFormat> = name_list("png", "jpeg", "webp");
 
 struct ImageHeader {
   ImageFormat format;
   std::uint32_t width, height;
-  bool complete;  ///< the end marker is present and, in a PNG, all chunks fit into the file
+  bool complete;  ///< the end marker is present, and all chunks fit into the file
 };
 
-/// Reads the header of a PNG or JPEG; empty for other or truncated bytes.
+/// Reads the header of a PNG, JPEG or WebP; empty for other or truncated bytes, and for an animated
+/// WebP.
 std::optional<ImageHeader> read_image_header(std::span<const std::uint8_t> bytes);
 
 /// Copies a complete PNG with only those chunks that its pixels need, and uncompressed texts.
 /// libpng would allocate memory for the declared size of compressed ones.
 std::vector<std::uint8_t> strip_png(std::span<const std::uint8_t> bytes);
+
+/// Copies a complete WebP with only the chunks that its pixels need. Without `alpha` the copy is
+/// opaque: OpenImageIO multiplies colours by alpha, which 8 bits do not undo.
+std::vector<std::uint8_t> strip_webp(std::span<const std::uint8_t> bytes, bool alpha);
 
 /// Returns the colour data of a complete PNG that says otherwise than sRGB, such as "gAMA 1"; empty
 /// if there is none. A chunk sRGB overrides the others.

@@ -259,6 +259,9 @@ nlohmann::json to_json(const RenderOptions& options) {
                   [&](const char* name, const auto& member, const std::string&, const auto&) {
                     if constexpr (NamedEnum<std::remove_cvref_t<decltype(member)>>) {
                       json[name] = text_of(member);
+                    } else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>,
+                                                        std::string>) {
+                      json[name] = printable(member);
                     } else {
                       json[name] = member;
                     }

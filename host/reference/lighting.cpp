@@ -27,8 +27,10 @@ Incident clear_light_at(const ClpvLight& light, const glm::dvec3& position) {
     case LightKind::point:
       break;
     case LightKind::spot: {
-      const double cone =
-          std::clamp(light.cone_offset - light.cone_scale * glm::dot(towards, direction), 0.0, 1.0);
+      const glm::dvec3 between = towards + direction;
+      const double opposite =
+          light.narrow_cone != 0 ? 0.5 * glm::dot(between, between) : glm::dot(towards, direction);
+      const double cone = std::clamp(light.cone_offset - light.cone_scale * opposite, 0.0, 1.0);
       attenuation *= cone * cone;
       break;
     }

@@ -40,9 +40,11 @@ inline constexpr std::size_t kMaterials = 1u << 14;
 inline constexpr int kNodeDepth = 1024;
 
 // Geometry after instancing: 768 MiB of vertices (48 bytes each), 256 MiB of triangles (16 bytes
-// each). Replaced elements of all sparse accessors, several of which may share a view.
+// each). Instances of EXT_mesh_gpu_instancing. Replaced elements of all sparse accessors, several
+// of which may share a view.
 inline constexpr std::uint64_t kVertices = 16ull << 20;
 inline constexpr std::uint64_t kTriangles = 16ull << 20;
+inline constexpr std::size_t kInstances = 1u << 18;  // 144 bytes each
 inline constexpr std::uint64_t kSparseElements = 64ull << 20;
 
 // Animation: times and values of all curves of a model (8 bytes each), keys of one camera or light
@@ -55,6 +57,7 @@ inline constexpr double kSeconds = 1e6;
 
 // Every light has RSMs and a shadow map.
 inline constexpr std::size_t kLights = 64;
+inline constexpr double kLightScale = 1e6;  // factor of all intensities, or 1 / factor
 inline constexpr std::size_t kCameras = 1024;
 
 // Coordinates [m]. At 1e7 m the resolution of a float is 1 m.

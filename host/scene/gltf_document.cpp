@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads glTF documents by tinygltf 2.7, which trusts indices and sizes, opens files of URIs, and
-// decodes images. Here it reads only checked JSON, opens only buffers in the model's folder, and
-// does not decode images.
+// Reads glTF documents by tinygltf 2.7, which trusts indices and sizes, opens files of URIs, knows
+// six spellings of data URIs, and decodes images. Here it reads only checked JSON, whose buffers
+// come from this file: it neither opens files nor decodes images.
 #include "scene/gltf_document.hpp"
 
 #include <nlohmann/json.hpp>
@@ -22,10 +22,16 @@ bool is_glb(const Bytes& bytes) {
   return bytes.size() >= 4 && little_endian_word(bytes, 0) == kMagic;
 }
 
-/// JSON of a .glb, its first chunk. Checks the version and the header of the second chunk, which
-/// tinygltf does not.
-std::string_view json_of_glb(const Bytes& bytes, const std::string& file) {
+/// The document's JSON, and the binary chunk of a .glb.
+struct Container {
+  std::string_view json;
+  std::span<const std::uint8_t> binary = {};
+};
+
+/// Chunks of a .glb (glTF 2.0, section 4.4): JSON, then an optional binary one; others are ignored.
+Container chunks_of_glb(const Bytes& bytes, const std::string& file) {
   constexpr std::size_t kChunkHeader = 8, kText = 12 + kChunkHeader;
+  constexpr std::uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
   if (bytes.size() < kText)
     reject(file, {}, fmt::format("a .glb of {} bytes", bytes.size()),
            "at least 20: it is truncated");
@@ -39,63 +45,94 @@ std::string_view json_of_glb(const Bytes& bytes, const std::string& file) {
                        length, size),
            "chunks within the file: it is truncated");
   }
-  if (end + kChunkHeader <= length &&
-      end + kChunkHeader + little_endian_word(bytes, end) > length) {
-    reject(file, {}, fmt::format("a second .glb chunk of {} bytes", little_endian_word(bytes, end)),
+  if (const auto type = little_endian_word(bytes, 16); type != kJson)
+    reject(file, {}, fmt::format("a first .glb chunk of type {:#x}", type), "JSON, 0x4e4f534a");
+  Container chunks{{reinterpret_cast<const char*>(bytes.data()) + kText, size}};
+  if (end + kChunkHeader > length) return chunks;
+  const std::size_t second = little_endian_word(bytes, end);
+  if (end + kChunkHeader + second > length) {
+    reject(file, {}, fmt::format("a second .glb chunk of {} bytes", second),
            fmt::format("at most {}, the rest of the file", length - end - kChunkHeader));
   }
-  return {reinterpret_cast<const char*>(bytes.data()) + kText, size};
+  if (little_endian_word(bytes, end + 4) == kBinary)
+    chunks.binary = std::span(bytes).subspan(end + kChunkHeader, second);
+  return chunks;
 }
 
-/// Buffers in files, in the order in which tinygltf opens them. After them it looks for image files
-/// and finds none: load_textures reads those in use.
-struct BufferFiles {
-  const GltfDocument& document;
-  const json& parsed;
-  std::vector<std::size_t> remaining = {};  ///< indices; the next buffer is the last
-  std::uint64_t bytes_left = bounds::kBufferBytes;
+/// Takes the URIs out of a list of the document, where placeholders stay.
+std::vector<std::string> take_uris(json& document, const char* list) {
+  std::vector<std::string> uris;
+  if (!document.contains(list)) return uris;
+  for (json& each : document[list]) {
+    std::string& uri = uris.emplace_back();
+    if (!each.contains("uri")) continue;
+    uri = std::move(each["uri"].get_ref<std::string&>());
+    each["uri"] = "-";
+  }
+  return uris;
+}
+
+/// Reads the bytes of buffers, in the order in which tinygltf asks for them. After them it looks
+/// for files of images and finds none: load_textures reads those in use.
+class BufferReader {
+ public:
+  BufferReader(const GltfDocument& document, const json& parsed,
+               const std::vector<std::string>& uris, std::span<const std::uint8_t> binary)
+      : document_(document), parsed_(parsed), uris_(uris), binary_(binary) {}
+
+  bool done() const { return next_ == uris_.size(); }
+
+  Bytes read_next() {
+    const std::size_t index = next_++;
+    const std::string& file = document_.file;
+    const std::string place = fmt::format("/buffers/{}", index);
+    auto [bytes, source] = content(uris_[index], place);
+    const std::size_t length = parsed_["buffers"][index]["byteLength"];
+    if (bytes.size() < length) {
+      reject(file, place + "/byteLength", fmt::format("{}", length),
+             fmt::format("at most the {} bytes of {}: truncated?", bytes.size(), source));
+    }
+    bytes_left_ -= bytes.size();
+    bytes.resize(length);
+    return std::move(bytes);
+  }
+
+ private:
+  struct Content {
+    Bytes bytes;
+    const char* source;
+  };
+
+  Content content(const std::string& uri, const std::string& place) const {
+    const std::string& file = document_.file;
+    const std::string uri_place = place + "/uri";
+    if (uri.empty()) {
+      if (binary_.empty()) reject(file, place, "no uri", "a uri, or the binary chunk of a .glb");
+      return {Bytes(binary_.begin(), binary_.end()), "the binary chunk"};
+    }
+    if (is_data_uri(uri)) return {decode_data_uri(uri, file, uri_place), "the URI"};
+    const auto path = resolve_uri(document_.folder, uri, file, uri_place);
+    return {read_file(path, bytes_left_, file, uri_place), "the file"};
+  }
+
+  const GltfDocument& document_;
+  const json& parsed_;
+  const std::vector<std::string>& uris_;
+  std::span<const std::uint8_t> binary_;
+  std::size_t next_ = 0;
+  std::uint64_t bytes_left_ = bounds::kBufferBytes;
 };
 
-BufferFiles find_buffer_files(const GltfDocument& document, const json& parsed) {
-  BufferFiles files{document, parsed};
-  for (std::size_t i = parsed.contains("buffers") ? parsed["buffers"].size() : 0; i-- > 0;) {
-    const json& buffer = parsed["buffers"][i];
-    if (buffer.contains("uri") && !tinygltf::IsDataURI(buffer["uri"].get_ref<const std::string&>()))
-      files.remaining.push_back(i);
-  }
-  return files;
-}
-
-bool read_next_buffer(Bytes* bytes, std::string*, const std::string&, void* user_data) {
-  auto& files = *static_cast<BufferFiles*>(user_data);
-  const std::size_t index = files.remaining.back();
-  files.remaining.pop_back();
-  const json& buffer = files.parsed["buffers"][index];
-  const std::string& file = files.document.file;
-  const std::string place = fmt::format("/buffers/{}", index), uri_place = place + "/uri";
-  const auto path = resolve_uri(files.document.folder, buffer["uri"], file, uri_place);
-  *bytes = read_file(path, files.bytes_left, file, uri_place);
-  files.bytes_left -= bytes->size();
-  const std::size_t length = buffer["byteLength"];
-  if (bytes->size() < length) {
-    reject(file, place + "/byteLength", fmt::format("{}", length),
-           fmt::format("at most the {} bytes of the file: truncated?", bytes->size()));
-  }
-  bytes->resize(length);
-  return true;
-}
-
-tinygltf::FsCallbacks callbacks(BufferFiles& files) {
+tinygltf::FsCallbacks callbacks(BufferReader& reader) {
   return {[](const std::string&, void* user_data) {
-            return !static_cast<BufferFiles*>(user_data)->remaining.empty();
+            return !static_cast<BufferReader*>(user_data)->done();
           },
-          [](const std::string& path, void*) { return path; }, read_next_buffer, nullptr, &files};
-}
-
-bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int,
-                  const unsigned char* bytes, int size, void*) {
-  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
-  return true;
+          [](const std::string& path, void*) { return path; },
+          [](Bytes* bytes, std::string*, const std::string&, void* user_data) {
+            *bytes = static_cast<BufferReader*>(user_data)->read_next();
+            return true;
+          },
+          nullptr, &reader};
 }
 
 /// JSON pointer of the entry at which tinygltf failed, in those lists, and in the order, in which
@@ -115,27 +152,42 @@ std::string place_of_failure(const tinygltf::Model& model, const json& document)
   return {};
 }
 
-void load_model(const Bytes& bytes, const json& parsed, GltfDocument& document) {
-  BufferFiles files = find_buffer_files(document, parsed);
+/// Gives a document what tinygltf requires and glTF, or common exporters, do not.
+void complete(json& document) {
+  const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+  if (!document.contains(lights)) return;
+  for (json& light : document.at(lights)) {
+    if (light["type"] == "spot" && !light.contains("spot")) light["spot"] = json::object();
+  }
+}
+
+void load_model(json& parsed, std::span<const std::uint8_t> binary, GltfDocument& document) {
+  std::vector<std::string> buffers = take_uris(parsed, "buffers"),
+                           images = take_uris(parsed, "images");
+  if (parsed.contains("buffers")) {
+    for (json& buffer : parsed["buffers"]) buffer["uri"] = "-";
+  }
+  complete(parsed);
+  BufferReader reader(document, parsed, buffers, binary);
   tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks(callbacks(files));
-  loader.SetImageLoader(keep_encoded, nullptr);
+  loader.SetFsCallbacks(callbacks(reader));
+  loader.SetImageLoader([](auto...) { return true; }, nullptr);
   std::string error, warning;
-  const auto size = static_cast<unsigned>(bytes.size());
-  const bool loaded =
-      is_glb(bytes)
-          ? loader.LoadBinaryFromMemory(&document.model, &error, &warning, bytes.data(), size)
-          : loader.LoadASCIIFromString(&document.model, &error, &warning,
-                                       reinterpret_cast<const char*>(bytes.data()), size, "");
-  if (!loaded)
+  const std::string text = parsed.dump();
+  if (!loader.LoadASCIIFromString(&document.model, &error, &warning, text.data(),
+                                  static_cast<unsigned>(text.size()), ""))
     reject(document.file, place_of_failure(document.model, parsed), excerpt(error), "glTF 2.0");
+  for (std::size_t i = 0; i < buffers.size(); ++i)
+    document.model.buffers[i].uri = std::move(buffers[i]);
+  for (std::size_t i = 0; i < images.size(); ++i)
+    document.model.images[i].uri = std::move(images[i]);
 }
 
 /// Adds all images of the document to the InputRecord: those that no material uses are not read.
 void record_images(const GltfDocument& document) {
   for (std::size_t i = 0; i < document.model.images.size(); ++i) {
     const std::string& uri = document.model.images[i].uri;
-    const auto path = uri.starts_with("data:") ? std::nullopt : percent_decoded(uri);
+    const auto path = is_data_uri(uri) ? std::nullopt : percent_decoded(uri);
     if (path && !path->empty())
       InputRecord::add({fmt::format("{} /images/{}/uri", document.file, i), document.folder / *path});
   }
@@ -154,12 +206,12 @@ GltfDocument read_gltf_document(const std::filesystem::path& path) {
   document.file = path.string();
   const Bytes bytes = read_file(path, bounds::kGlbBytes, document.file);
   document.folder = std::filesystem::canonical(path).parent_path();
-  const std::string_view text =
-      is_glb(bytes) ? json_of_glb(bytes, document.file)
-                    : std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const json parsed = parse_json(text, document.file);
+  const Container container =
+      is_glb(bytes) ? chunks_of_glb(bytes, document.file)
+                    : Container{{reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+  json parsed = parse_json(container.json, document.file);
   check_gltf(parsed, document.file);
-  load_model(bytes, parsed, document);
+  load_model(parsed, container.binary, document);
   record_images(document);
   check_accessors(document);
   return document;

@@ -24,7 +24,7 @@ const T& entry(const std::vector<T>& list, int index) {
 struct GltfDocument {
   std::string file;              ///< path from the user, for messages
   std::filesystem::path folder;  ///< canonical path of the folder to which reads are restricted
-  /// Indices are in range; Image::image has the encoded bytes of a data URI.
+  /// Indices are in range; images are not read.
   tinygltf::Model model;
 
   /// Bytes of a buffer view.

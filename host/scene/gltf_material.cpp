@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Reads materials. Metals reflect their base colour diffusely, unlike in glTF, as light propagation
-// volumes carry diffuse light only. Metalness, roughness and normal maps are not read.
+// volumes carry diffuse light only. Metalness, roughness, specular and normal maps are not read.
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_parts.hpp"
@@ -45,14 +49,29 @@ std::uint32_t wrap_of(int gltf) {
                                                          : CLPV_WRAP_REPEAT;
 }
 
-/// Index of a texture in the set; the first use adds it.
-std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& set) {
+/// Image of a texture: its own, which every reader knows, else a WebP. Without one, adds a note
+/// that names the extension that has it.
+std::optional<int> image_of(int texture, const GltfDocument& document, Notes& notes) {
   const tinygltf::Texture& source = entry(document.model.textures, texture);
-  if (source.source < 0) {
-    reject(document.file, fmt::format("/textures/{}", texture), "no source",
-           "a source: a PNG or JPEG image");
-  }
-  TextureRequest requested{source.source, CLPV_WRAP_REPEAT, CLPV_WRAP_REPEAT};
+  if (source.source >= 0) return source.source;
+  const auto webp = source.extensions.find("EXT_texture_webp");
+  if (webp != source.extensions.end() && webp->second.Has("source"))
+    return webp->second.Get("source").GetNumberAsInt();
+  std::vector<std::string> names;
+  for (const auto& [name, value] : source.extensions) names.push_back(name);
+  notes.add(fmt::format("/textures/{} {}: the material's factor alone is used", texture,
+                        names.empty() ? std::string("has no source")
+                                      : fmt::format("has an image by {} alone, which is not read",
+                                                    fmt::join(names, ", "))));
+  return std::nullopt;
+}
+
+/// Index of a texture in the set; the first use adds it. CLPV_NO_TEXTURE without an image to read.
+std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& set, Notes& notes) {
+  const tinygltf::Texture& source = entry(document.model.textures, texture);
+  const std::optional<int> image = image_of(texture, document, notes);
+  if (!image) return CLPV_NO_TEXTURE;
+  TextureRequest requested{*image, CLPV_WRAP_REPEAT, CLPV_WRAP_REPEAT};
   if (source.sampler >= 0) {
     const tinygltf::Sampler& sampler = entry(document.model.samplers, source.sampler);
     requested.wrap_u = wrap_of(sampler.wrapS);
@@ -67,6 +86,38 @@ std::uint32_t request(int texture, const GltfDocument& document, MaterialSet& se
   }
   set.textures.push_back(requested);
   return index;
+}
+
+/// Colour that a surface reflects diffusely: a factor and a texture.
+struct BaseColour {
+  std::array<double, 4> factor;
+  int texture = -1;
+  UvMapping mapping;
+};
+
+/// The diffuse colour of KHR_materials_pbrSpecularGlossiness where a material has it, else glTF's
+/// base colour.
+BaseColour base_colour_of(const tinygltf::Material& source) {
+  const auto found = source.extensions.find("KHR_materials_pbrSpecularGlossiness");
+  BaseColour made;
+  if (found == source.extensions.end()) {
+    const auto& pbr = source.pbrMetallicRoughness;
+    std::copy_n(pbr.baseColorFactor.begin(), 4, made.factor.begin());
+    made.texture = pbr.baseColorTexture.index;
+    made.mapping = mapping_of(pbr.baseColorTexture.texCoord, pbr.baseColorTexture.extensions);
+    return made;
+  }
+  const Value& given = found->second;
+  made.factor.fill(1);
+  for (std::size_t i = 0; i < 4 && given.Has("diffuseFactor"); ++i)
+    made.factor[i] = given.Get("diffuseFactor").Get(i).GetNumberAsDouble();
+  if (!given.Has("diffuseTexture")) return made;
+  const Value& texture = given.Get("diffuseTexture");
+  made.texture = texture.Get("index").GetNumberAsInt();
+  made.mapping = mapping_of(
+      static_cast<int>(number_in(texture, "texCoord", 0)),
+      texture.Has("extensions") ? texture.Get("extensions").Get<Value::Object>() : Value::Object());
+  return made;
 }
 
 void read_alpha(const tinygltf::Material& source, const std::string& place, ClpvMaterial& made,
@@ -88,8 +139,8 @@ void read_material(const GltfDocument& document, std::size_t index, MaterialSet&
   const tinygltf::Material& source = document.model.materials[index];
   const std::string place = fmt::format("/materials/{}", index);
   ClpvMaterial made = blank_material();
-  const auto& pbr = source.pbrMetallicRoughness;
-  std::copy_n(pbr.baseColorFactor.begin(), 4, made.base_colour);
+  const BaseColour colour = base_colour_of(source);
+  std::copy_n(colour.factor.begin(), 4, made.base_colour);
   double strength = 1;
   if (const auto found = source.extensions.find("KHR_materials_emissive_strength");
       found != source.extensions.end()) {
@@ -100,18 +151,16 @@ void read_material(const GltfDocument& document, std::size_t index, MaterialSet&
   read_alpha(source, place, made, notes);
 
   UvMapping mapping;
-  if (pbr.baseColorTexture.index >= 0) {
-    made.texture = request(pbr.baseColorTexture.index, document, set);
-    mapping = mapping_of(pbr.baseColorTexture.texCoord, pbr.baseColorTexture.extensions);
-  }
+  if (colour.texture >= 0) made.texture = request(colour.texture, document, set, notes);
+  if (made.texture != CLPV_NO_TEXTURE) mapping = colour.mapping;
   const bool emits = made.emissive[0] + made.emissive[1] + made.emissive[2] > 0;
   if (source.emissiveTexture.index >= 0 && emits) {
-    made.emissive_texture = request(source.emissiveTexture.index, document, set);
+    made.emissive_texture = request(source.emissiveTexture.index, document, set, notes);
     const UvMapping own =
         mapping_of(source.emissiveTexture.texCoord, source.emissiveTexture.extensions);
     if (made.texture == CLPV_NO_TEXTURE) {
       mapping = own;
-    } else if (!(own == mapping)) {
+    } else if (made.emissive_texture != CLPV_NO_TEXTURE && !(own == mapping)) {
       notes.add(
           place +
           "/emissiveTexture: uses the texture coordinates of baseColorTexture instead of its own");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Appends the meshes of a glTF document to a scene, one instance per node.
+// Appends the meshes of a glTF document to a scene, one or more instances per node.
 #include <algorithm>
 #include <map>
 
@@ -9,6 +9,12 @@
 
 namespace clpv {
 namespace {
+
+/// One place of a mesh: a node of the tree, and the transform of an instance to that node's space.
+struct MeshPlace {
+  std::size_t node;
+  std::optional<glm::dmat4> to_node;
+};
 
 /// Weights of morph targets without a curve: those of the node, else of the mesh, else 0.
 std::vector<double> stored_weights(const GltfDocument& document, const TreeNode& node,
@@ -37,12 +43,13 @@ class Appender {
         notes_(notes),
         skins_(document, motion.tree) {}
 
-  /// Appends an instance of the primitive for each node. Checks the bounds before it allocates.
+  /// Appends an instance of the primitive at each place. Checks the bounds before it allocates.
   void append(const std::shared_ptr<const LocalPrimitive>& primitive,
-              const std::vector<std::size_t>& nodes, PosedTree& posed) {
-    reserve(scene_, *primitive, nodes.size(), document_.file);
-    for (const std::size_t node : nodes) {
-      Instance made = instance(primitive, node);
+              const std::vector<MeshPlace>& places, PosedTree& posed) {
+    reserve(scene_, *primitive, places.size(), document_.file);
+    for (const MeshPlace& place : places) {
+      Instance made = instance(primitive, place.node);
+      made.to_node = place.to_node;
       clpv::append(made, posed, scene_);
       if (moves(made, motion_.tree)) motion_.meshes.push_back(std::move(made));
     }
@@ -100,15 +107,18 @@ void check_targets(const GltfDocument& document, int mesh, std::size_t index) {
 void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials,
                    SceneData& scene, Motion& motion, Notes& notes) {
   const std::vector<TreeNode>& nodes = motion.tree.nodes;
-  std::map<int, std::vector<std::size_t>> mesh_nodes;  // nodes by mesh: each primitive is read once
+  std::map<int, std::vector<MeshPlace>> places;  // by mesh: each primitive is read once
+  std::size_t instances = bounds::kInstances;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (const int mesh = entry(document.model.nodes, nodes[i].index).mesh; mesh >= 0)
-      mesh_nodes[mesh].push_back(i);
+    const int mesh = entry(document.model.nodes, nodes[i].index).mesh;
+    if (mesh < 0) continue;
+    for (const auto& to_node : read_instances(document, nodes[i].index, instances, notes))
+      places[mesh].push_back({i, to_node});
   }
   Appender appender(document, scene, motion, notes);
   std::vector<std::uint32_t> slots;
   GeometryBudget budget{bounds::kVertices, bounds::kTriangles, bounds::kMorphNumbers};
-  for (const auto& [mesh, at] : mesh_nodes) {
+  for (const auto& [mesh, at] : places) {
     for (std::size_t i = 0; i < entry(document.model.meshes, mesh).primitives.size(); ++i) {
       check_targets(document, mesh, i);
       budget.vertices = bounds::kVertices - scene.vertices.size();

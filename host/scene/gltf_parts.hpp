@@ -44,8 +44,8 @@ struct MaterialSet {
 MaterialSet read_materials(const GltfDocument& document, Notes& notes);
 
 /// Decodes the requested images on all cores after checks of their headers. The first bytes of an
-/// image determine whether it is PNG or JPEG. Row 0 is v = 0. Throws Error(bad_input) for the first
-/// invalid image in the document's order.
+/// image determine whether it is PNG, JPEG or WebP. Row 0 is v = 0. Throws Error(bad_input) for the
+/// first invalid image in the document's order.
 std::vector<Texture> load_textures(const GltfDocument& document,
                                    const std::vector<TextureRequest>& requests);
 
@@ -60,6 +60,12 @@ std::map<int, NodeCurves> read_animations(const GltfDocument& document, Notes& n
 /// Error(bad_input) for cycles, several parents and excessive depth.
 NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
                     const glm::dmat4& root);
+
+/// Transforms of the instances of a node's mesh to the node's space, by EXT_mesh_gpu_instancing;
+/// else one without a transform. Subtracts from `budget`, the instances that the model may still
+/// have. Throws Error(bad_input).
+std::vector<std::optional<glm::dmat4>> read_instances(const GltfDocument& document, int node,
+                                                      std::size_t& budget, Notes& notes);
 
 /// Reads and caches skins.
 class SkinReader {
@@ -78,10 +84,10 @@ class SkinReader {
 };
 
 /// Appends the meshes of all nodes of `motion.tree` to the scene, posed by `posed`, with morph
-/// targets and skins applied. Positions are in metres, normals unit, texture coordinates mapped by
-/// materials. Mirrored nodes keep their fronts outside. Moving instances are also added to
-/// `motion.meshes`; points and lines get a note. Throws Error(bad_input) for invalid attributes and
-/// for more geometry than the bounds allow.
+/// targets and skins applied, once per instance. Positions are in metres, normals unit, texture
+/// coordinates mapped by materials. Mirrored nodes keep their fronts outside. Moving instances are
+/// also added to `motion.meshes`; points and lines get a note. Throws Error(bad_input) for invalid
+/// attributes and for more geometry than the bounds allow.
 void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials,
                    SceneData& scene, Motion& motion, Notes& notes);
 

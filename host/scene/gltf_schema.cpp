@@ -26,13 +26,19 @@ constexpr double kMany = 4294967295;  // maximum of counts and offsets
 constexpr double kInt = 2147483647;   // maximum of counts and offsets that tinygltf stores as int
 // Maximum intensity and colour of a light: their product fits a float.
 constexpr double kBrightest = 1e15;
-constexpr std::size_t kTargets = 1024;  // maximum morph targets of a primitive
-constexpr double kAboveZero = 1e-9;     // minimum of positive numbers
+constexpr std::size_t kTargets = 1024;    // maximum morph targets of a primitive
+constexpr double kAboveZero = 1e-9;       // minimum of positive numbers
+constexpr double kRightAngle = 1.570797;  // pi/2 as a float, or in seven digits, rounded up
 const std::string kPunctual = "/extensions/KHR_lights_punctual";
 
 /// Supported extensions. A file that requires others is rejected.
-constexpr std::array kExtensions = {"KHR_lights_punctual", "KHR_texture_transform",
-                                    "KHR_mesh_quantization", "KHR_materials_emissive_strength"};
+constexpr std::array kExtensions = {"KHR_lights_punctual",
+                                    "KHR_texture_transform",
+                                    "KHR_mesh_quantization",
+                                    "KHR_materials_emissive_strength",
+                                    "KHR_materials_pbrSpecularGlossiness",
+                                    "EXT_texture_webp",
+                                    "EXT_mesh_gpu_instancing"};
 
 using Rules = std::vector<Rule>;
 
@@ -63,7 +69,8 @@ Rules document_rules() {
 
 Rules node_rules() {
   using namespace rule;
-  const std::string light = "/nodes/*/extensions/KHR_lights_punctual";
+  const std::string light = "/nodes/*/extensions/KHR_lights_punctual",
+                    instances = "/nodes/*/extensions/EXT_mesh_gpu_instancing";
   return {index("/scene", "/scenes"),
           list("/scenes/*/nodes", 0, bounds::kListEntries),
           index("/scenes/*/nodes/*", "/nodes"),
@@ -83,7 +90,10 @@ Rules node_rules() {
           vector("/nodes/*/scale", 3, -kAny, kAny),
           object("/nodes/*/extensions"),
           object(light),
-          index(light + "/light", kPunctual + "/lights").must()};
+          index(light + "/light", kPunctual + "/lights").must(),
+          object(instances),
+          object(instances + "/attributes").must(),
+          index(instances + "/attributes/*", "/accessors")};
 }
 
 Rules geometry_rules() {
@@ -142,7 +152,9 @@ Rules texture_info_rules(const std::string& place) {
 
 Rules material_rules() {
   using namespace rule;
-  const std::string strength = "/materials/*/extensions/KHR_materials_emissive_strength";
+  const std::string strength = "/materials/*/extensions/KHR_materials_emissive_strength",
+                    diffuse = "/materials/*/extensions/KHR_materials_pbrSpecularGlossiness",
+                    webp = "/textures/*/extensions/EXT_texture_webp";
   Rules rules = {object("/materials/*/pbrMetallicRoughness"),
                  vector("/materials/*/pbrMetallicRoughness/baseColorFactor", 4, 0, 1),
                  vector("/materials/*/emissiveFactor", 3, 0, 1),
@@ -152,7 +164,12 @@ Rules material_rules() {
                  object("/materials/*/extensions"),
                  object(strength),
                  number(strength + "/emissiveStrength", 0, bounds::kEmission),
+                 object(diffuse),
+                 vector(diffuse + "/diffuseFactor", 4, 0, 1),
                  index("/textures/*/source", "/images"),
+                 object("/textures/*/extensions"),
+                 object(webp),
+                 index(webp + "/source", "/images"),
                  index("/textures/*/sampler", "/samplers"),
                  choice("/samplers/*/wrapS", {10497, 33071, 33648}),
                  choice("/samplers/*/wrapT", {10497, 33071, 33648}),
@@ -160,6 +177,7 @@ Rules material_rules() {
                  index("/images/*/bufferView", "/bufferViews")};
   append(rules, texture_info_rules("/materials/*/pbrMetallicRoughness/baseColorTexture"));
   append(rules, texture_info_rules("/materials/*/emissiveTexture"));
+  append(rules, texture_info_rules(diffuse + "/diffuseTexture"));
   return rules;
 }
 
@@ -173,8 +191,9 @@ Rules view_rules() {
           vector(light + "/color", 3, 0, kBrightest),
           number(light + "/intensity", 0, kBrightest),
           number(light + "/range", kAboveZero, kAny),
-          number(light + "/spot/innerConeAngle", 0, std::numbers::pi / 2),
-          number(light + "/spot/outerConeAngle", kAboveZero, std::numbers::pi / 2 + kAboveZero)};
+          object(light + "/spot"),
+          number(light + "/spot/innerConeAngle", 0, kRightAngle),
+          number(light + "/spot/outerConeAngle", kAboveZero, kRightAngle)};
 }
 
 Rules animation_rules() {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Reads the cameras and lights of a glTF document.
+#include <algorithm>
+#include <map>
+#include <numbers>
 #include <set>
 
 #include "scene/bounds.hpp"
@@ -28,7 +31,7 @@ class ViewReader {
              fmt::format("at most {}", bounds::kCameras));
     }
     SceneCamera made;
-    made.name = unique(given.name.empty() ? source.name : given.name, "camera", camera_names_);
+    made.name = cameras_.unique(given.name.empty() ? source.name : given.name, "camera");
     place_camera(made, to_world, document_.file, node);
     made.vertical_fov = static_cast<float>(given.perspective.yfov);
     made.near_depth = static_cast<float>(given.perspective.znear * metres_per_unit_);
@@ -43,7 +46,7 @@ class ViewReader {
              fmt::format("at most {}", bounds::kLights));
     }
     SceneLight made;
-    made.name = unique(given.name.empty() ? source.name : given.name, "light", light_names_);
+    made.name = lights_.unique(given.name.empty() ? source.name : given.name, "light");
     ClpvLight& data = made.data;
     const LightKind kind = named<LightKind>("type", given.type);
     data.kind = static_cast<unsigned>(kind);
@@ -55,35 +58,66 @@ class ViewReader {
     if (kind != LightKind::directional)
       data.range = static_cast<float>(given.range * metres_per_unit_);
     if (kind == LightKind::spot) {
-      const double inner = given.spot.innerConeAngle, outer = given.spot.outerConeAngle;
-      if (inner >= outer) {
-        reject(document_.file, fmt::format("/extensions/KHR_lights_punctual/lights/{}/spot", index),
-               fmt::format("innerConeAngle {} and outerConeAngle {}", inner, outer),
-               "inner less than outer");
-      }
-      set_cone(data, inner, outer);
+      cone(data, given.spot, fmt::format("/extensions/KHR_lights_punctual/lights/{}/spot", index));
     }
     scene_.lights.push_back(made);
   }
 
- private:
-  static std::string place_of(int node) { return fmt::format("/nodes/{}", node); }
-
-  /// Returns `preferred`, or a name like it that is not in `used`, and adds it there.
-  static std::string unique(const std::string& preferred, const char* kind,
-                            std::set<std::string>& used) {
-    std::string name = preferred.empty() ? fmt::format("{} {}", kind, used.size()) : preferred;
-    for (int i = 2; used.contains(name); ++i)
-      name = fmt::format("{} {}", preferred.empty() ? kind : preferred, i);
-    used.insert(name);
-    return name;
+  /// Adds notes on cameras and lights that share names.
+  void finish() {
+    cameras_.add_notes("camera", notes_);
+    lights_.add_notes("light", notes_);
   }
+
+ private:
+  /// Names in use, and those given to others of the same name.
+  class Names {
+   public:
+    /// Returns `preferred`, or a name like it that is not in use, and uses it.
+    std::string unique(const std::string& preferred, const char* kind) {
+      std::string name = preferred.empty() ? fmt::format("{} {}", kind, used_.size()) : preferred;
+      for (int i = 2; used_.contains(name); ++i)
+        name = fmt::format("{} {}", preferred.empty() ? kind : preferred, i);
+      used_.insert(name);
+      if (!preferred.empty() && name != preferred) renamed_[preferred].push_back(name);
+      return name;
+    }
+
+    void add_notes(const char* kind, Notes& notes) const {
+      for (const auto& [name, others] : renamed_) {
+        notes.add(fmt::format("{} {}s have the name '{}': the {} called '{}'{}", others.size() + 1,
+                              kind, name, others.size() == 1 ? "second is" : "others are",
+                              others.front(), others.size() == 1 ? "" : " and so on"));
+      }
+    }
+
+   private:
+    std::set<std::string> used_;
+    std::map<std::string, std::vector<std::string>> renamed_;
+  };
+
+  void cone(ClpvLight& light, const tinygltf::SpotLight& given, const std::string& place) {
+    const double right_angle = std::numbers::pi / 2;  // the schema admits it rounded up
+    const double inner = std::min(given.innerConeAngle, right_angle),
+                 outer = std::min(given.outerConeAngle, right_angle);
+    if (inner > outer) {
+      reject(document_.file, place,
+             fmt::format("innerConeAngle {} and outerConeAngle {}", inner, outer),
+             "inner less than outer, or equal: a hard edge");
+    }
+    if (inner == outer)
+      notes_.add(fmt::format("{}: innerConeAngle and outerConeAngle are both {}: a hard edge",
+                             place, inner));
+    set_cone(light, inner, outer);
+  }
+
+  static std::string place_of(int node) { return fmt::format("/nodes/{}", node); }
 
   const GltfDocument& document_;
   double metres_per_unit_;
   SceneData& scene_;
   Notes& notes_;
-  std::set<std::string> camera_names_, light_names_;
+  Names cameras_, lights_;
 };
 
 }  // namespace
@@ -94,16 +128,18 @@ void append_views(const GltfDocument& document, const PosedTree& posed, double m
   for (std::size_t i = 0; i < motion.tree.nodes.size(); ++i) {
     const TreeNode& node = motion.tree.nodes[i];
     const tinygltf::Node& source = entry(document.model.nodes, node.index);
-    if (source.camera >= 0 && reader.camera(node.index, source, posed.to_world(i)) && node.moves) {
+    if (source.camera >= 0 && reader.camera(node.index, source, posed.unmirrored(i)) &&
+        node.moves) {
       motion.cameras.push_back({scene.cameras.size() - 1, i});
     }
     if (const auto found = source.extensions.find("KHR_lights_punctual");
         found != source.extensions.end()) {
       reader.light(node.index, source, found->second.Get("light").GetNumberAsInt(),
-                   posed.to_world(i));
+                   posed.unmirrored(i));
       if (node.moves) motion.lights.push_back({scene.lights.size() - 1, i});
     }
   }
+  reader.finish();
 }
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Resolves URIs of scenes and models.
+// Resolves URIs of scenes and models, and decodes data URIs.
 #include "scene/input.hpp"
 
 #include <algorithm>
@@ -11,6 +11,42 @@ namespace clpv {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr std::string_view kDataScheme = "data:";
+
+/// Compares ASCII without case.
+bool same_letters(std::string_view text, std::string_view lower) {
+  return std::ranges::equal(text, lower, {}, [](unsigned char c) { return std::tolower(c); });
+}
+
+/// Value of a base64 digit (RFC 4648, section 4); empty for other characters.
+std::optional<std::uint32_t> base64_digit(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  if (c == '+') return 62;
+  if (c == '/') return 63;
+  return std::nullopt;
+}
+
+/// Decodes base64, with or without padding; empty for other characters and for a single last digit.
+std::optional<Bytes> base64_decoded(std::string_view text) {
+  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
+  if (text.size() % 4 == 1) return std::nullopt;
+  Bytes out;
+  out.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0, count = 0;
+  for (const char c : text) {
+    const auto digit = base64_digit(c);
+    if (!digit) return std::nullopt;
+    bits = bits << 6 | *digit;
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    out.push_back(static_cast<std::uint8_t>(bits >> count));
+  }
+  return out;
+}
+
 bool lies_in(const fs::path& path, const fs::path& folder) {
   const auto [in_folder, in_path] =
       std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
@@ -21,6 +57,7 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 
 std::optional<std::string> percent_decoded(std::string_view uri) {
   std::string out;
+  out.reserve(uri.size());
   for (std::size_t i = 0; i < uri.size(); ++i) {
     if (uri[i] != '%') {
       out += uri[i];
@@ -63,6 +100,30 @@ fs::path resolve_uri(const fs::path& folder, const std::string& uri, const std::
   if (!fs::is_regular_file(real))
     reject_uri(fs::is_directory(real) ? "a folder" : "no regular file");
   return real;
+}
+
+bool is_data_uri(std::string_view uri) {
+  return same_letters(uri.substr(0, kDataScheme.size()), kDataScheme);
+}
+
+Bytes decode_data_uri(const std::string& uri, const std::string& file, std::string_view place) {
+  constexpr std::string_view kBase64 = ";base64";
+  const std::string_view text(uri);
+  const std::size_t comma = text.find(',');
+  const auto reject_data = [&](const char* reason) {
+    reject(file, place, fmt::format("URI '{}', {}", excerpt(text.substr(0, comma)), reason),
+           "data:TYPE;base64, and base64");
+  };
+  if (comma == std::string_view::npos) reject_data("data without a comma");
+  const std::string_view header = text.substr(0, comma);
+  const bool base64 = header.size() >= kBase64.size() &&
+                      same_letters(header.substr(header.size() - kBase64.size()), kBase64);
+  const std::optional<std::string> content = percent_decoded(text.substr(comma + 1));
+  if (!content) reject_data("whose data does not decode: malformed percent-encoding");
+  if (!base64) return {content->begin(), content->end()};
+  std::optional<Bytes> decoded = base64_decoded(*content);
+  if (!decoded) reject_data("whose data does not decode: not base64");
+  return std::move(*decoded);
 }
 
 }  // namespace clpv

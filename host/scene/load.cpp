@@ -17,9 +17,26 @@
 #include "scene/sky.hpp"
 #include "support/error.hpp"
 #include "support/input_record.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
+
+// Blender's 'Standard' export of lights writes lux and candela, 683 lm/W, in which a sun of 1 W/m^2
+// and a lamp of 10 W exceed kPhotometric. In watts, a sun has up to 1361 W/m^2 and lamps far less.
+constexpr double kLumensPerWatt = 683, kPhotometric = 500;
+const std::string kBlenderUnits = fmt::format(
+    "lights by Blender that look like lux and candela of {} lm/W: light scale {:.6f} (option "
+    "light-scale) counts them in watts, as emission",
+    kLumensPerWatt, 1 / kLumensPerWatt);
+
+/// Returns true if Blender wrote the model, and one of its lights is too bright for watts.
+bool looks_photometric(const GltfDocument& document, const SceneData& scene) {
+  return document.model.asset.generator.find("Blender") != std::string::npos &&
+         std::ranges::any_of(scene.lights, [](const SceneLight& light) {
+           return *std::ranges::max_element(light.data.intensity) >= kPhotometric;
+         });
+}
 
 /// Loads a .gltf or .glb at 0 s: geometry, materials, textures, cameras and lights, in metres and
 /// without defaults. Stores animated meshes, cameras and lights in `motion`.
@@ -39,6 +56,7 @@ SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, M
       std::async(std::launch::async, [&] { return load_textures(document, materials.textures); });
   append_meshes(document, posed, materials, scene, motion, notes);  // concurrent with load_textures
   append_views(document, posed, metres_per_unit, scene, motion, notes);
+  if (looks_photometric(document, scene)) notes.add(kBlenderUnits);
   scene.textures = textures.get();
   scene.materials = materials.materials;
   // GlTF's default material.
@@ -156,6 +174,7 @@ void MovingScene::add_defaults(bool has_lights) {
   }
   if (scene_.lights.empty() && !has_lights) {
     scene_.lights.push_back(added_sun());
+    scene_.light_scale = 1;
     scene_.notes.push_back(kAddedSun);
   }
 }
@@ -177,6 +196,7 @@ void MovingScene::load_scene_file(const std::filesystem::path& path,
   if (views.cameras) motion_.cameras.clear();
   if (views.lights) motion_.lights.clear();
   set_views(std::move(views));
+  scene_.light_scale = description_.light_scale.value_or(1);
   scene_.exposure = description_.exposure;
   scene_.cascade_size = description_.cascade_size;
   scene_.cascades = description_.cascades;
@@ -213,8 +233,19 @@ void MovingScene::set_lights(std::vector<SceneLight> lights) {
   motion_.lights.clear();
   description_.lights.reset();
   scene_.lights = std::move(lights);
+  scene_.light_scale = 1;
   std::erase(scene_.notes, kAddedSun);
+  std::erase(scene_.notes, kBlenderUnits);
   forget_missing_lights();
+}
+
+void MovingScene::set_light_scale(double scale) {
+  const bool added = std::ranges::find(scene_.notes, kAddedSun) != scene_.notes.end();
+  if (added || scene_.lights.empty())
+    throw Error(ExitCode::usage, "light-scale: found {}, allowed: none, since {} has no lights",
+                scale, scene_.path);
+  scene_.light_scale = static_cast<float>(scale);
+  std::erase(scene_.notes, kBlenderUnits);
 }
 
 void MovingScene::set_medium(std::optional<ClpvMedium> medium) {
@@ -263,10 +294,11 @@ MovingScene::MovingScene(const std::filesystem::path& path,
   note_small_scene(scene_, description_.metres_per_unit, notes);
   if (scene_.medium) set_medium(*scene_.medium);
   scene_.notes = notes.take();
+  if (description_.lights || description_.light_scale) std::erase(scene_.notes, kBlenderUnits);
   add_defaults(description_.lights.has_value() || scene_.sky);
   check_camera_lights(scene_);
   if (moves()) scene_.start_reach = scene_.reach();
-  scene_.name = path.stem().string();
+  scene_.name = printable(path.stem().string());  // JSON and metadata have UTF-8 only
 }
 
 bool MovingScene::meshes_changed() {

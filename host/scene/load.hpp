@@ -38,10 +38,14 @@ class MovingScene {
   /// Poses the scene at a time. Throws Error(bad_input) if values leave their bounds.
   void pose(double seconds);
 
-  /// Replace all cameras (at least one) or lights; they are then not animated. A camera whose only
-  /// light is gone gets all. Call before pose().
+  /// Replace all cameras (at least one) or lights; they are then not animated, and lights not
+  /// scaled. A camera whose only light is gone gets all. Call before pose().
   void set_cameras(std::vector<SceneCamera> cameras);
   void set_lights(std::vector<SceneLight> lights);
+
+  /// Replaces the factor of the intensities of the file's lights. Throws Error(usage) if it has
+  /// none.
+  void set_light_scale(double scale);
 
   /// Replaces the medium or removes it. One without a box, `lower` equal to `upper`, fills the
   /// scene's bounding box, which follows added, removed and moved meshes.

@@ -76,7 +76,9 @@ struct Placement {
 
 Placement placement_of(const Instance& instance, PosedTree& posed) {
   if (!instance.skin || instance.primitive->influences.empty())
-    return {posed.to_world(instance.node), {}};
+    return {instance.to_node ? posed.to_world(instance.node) * *instance.to_node
+                             : posed.to_world(instance.node),
+            {}};
   Placement made{glm::dmat4(1.0), posed.joints(*instance.skin)};
   made.to_world = made.of(*instance.primitive, 0);  // for its determinant's sign
   return made;
@@ -203,7 +205,7 @@ void reserve(SceneData& scene, const LocalPrimitive& primitive, std::size_t coun
   const std::uint64_t triangles = scene.triangles.size() + count * primitive.triangles.size();
   if (vertices > bounds::kVertices || triangles > bounds::kTriangles) {
     reject(file, primitive.place,
-           fmt::format("{} vertices and {} triangles so far, with this primitive at {} nodes",
+           fmt::format("{} vertices and {} triangles so far, with this primitive at {} places",
                        vertices, triangles, count),
            fmt::format("at most {} and {} in all", bounds::kVertices, bounds::kTriangles));
   }
@@ -258,11 +260,11 @@ void Motion::pose(SceneData& scene, double seconds) const {
   PosedTree posed(tree, seconds);
   for (const Instance& instance : meshes) place(instance, posed, scene);
   for (const MovingView& each : cameras) {
-    place_camera(scene.cameras[each.view], posed.to_world(each.node), tree.file,
+    place_camera(scene.cameras[each.view], posed.unmirrored(each.node), tree.file,
                  tree.nodes[each.node].index);
   }
   for (const MovingView& each : lights) {
-    place_light(scene.lights[each.view].data, posed.to_world(each.node), tree.file,
+    place_light(scene.lights[each.view].data, posed.unmirrored(each.node), tree.file,
                 tree.nodes[each.node].index);
   }
 }

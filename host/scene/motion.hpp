@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,9 +53,10 @@ glm::dvec3 triangle_normal(const std::vector<LocalVertex>& vertices, const glm::
 /// A primitive at a node, and the range of the scene's vertices and triangles that it fills.
 struct Instance {
   std::shared_ptr<const LocalPrimitive> primitive;
-  std::size_t node = 0;              ///< index in the tree
-  std::shared_ptr<const Skin> skin;  ///< null: the node's transform applies
-  std::vector<double> weights;       ///< of morph targets without a curve
+  std::size_t node = 0;               ///< index in the tree
+  std::optional<glm::dmat4> to_node;  ///< to the node's space, of an instance in that node
+  std::shared_ptr<const Skin> skin;   ///< null: the node's transform applies
+  std::vector<double> weights;        ///< of morph targets without a curve
   /// In the scene, whose vectors have their final size.
   std::uint32_t first_vertex = 0, first_triangle = 0;
 };

@@ -21,9 +21,8 @@ bool finite(const glm::dmat4& m) {
   return true;
 }
 
-/// Transform of a node to its parent's space.
-glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double seconds) {
-  if (!node.curves.moves()) return node.rest;
+/// Pose of an animated node.
+Pose pose_at(const NodeTree& tree, const TreeNode& node, double seconds) {
   Pose pose = node.pose;
   if (node.curves.translation) pose.translation = vector_at(*node.curves.translation, seconds);
   if (node.curves.scale) pose.scale = vector_at(*node.curves.scale, seconds);
@@ -35,7 +34,12 @@ glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double se
              "splines through lengths above 0.5");
     }
   }
-  return pose.matrix();
+  return pose;
+}
+
+/// Transform of a node to its parent's space.
+glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double seconds) {
+  return node.curves.moves() ? pose_at(tree, node, seconds).matrix() : node.rest;
 }
 
 }  // namespace
@@ -63,6 +67,14 @@ std::vector<glm::dmat4> NodeTree::to_world(double seconds) const {
     }
   }
   return made;
+}
+
+glm::dmat4 PosedTree::unmirrored(std::size_t index) const {
+  const TreeNode& node = tree_.nodes[index];
+  Pose pose = pose_at(tree_, node, seconds_);
+  if (!pose.scale || !glm::any(glm::lessThan(*pose.scale, glm::dvec3(0)))) return to_world_[index];
+  pose.scale = glm::abs(*pose.scale);
+  return (node.parent ? to_world_[*node.parent] : tree_.root) * pose.matrix();
 }
 
 std::span<const glm::dmat4> PosedTree::joints(const Skin& skin) {

@@ -68,6 +68,10 @@ class PosedTree {
   double seconds() const { return seconds_; }
   const glm::dmat4& to_world(std::size_t node) const { return to_world_[node]; }
 
+  /// Transform of a camera or light, which ignores its node's scale (glTF 2.0, section 3.10.2):
+  /// to_world() as if no number of that scale were negative. Their axes have no lengths.
+  glm::dmat4 unmirrored(std::size_t node) const;
+
   /// Joint matrices of a skin, one per joint, from the mesh's space to world space.
   std::span<const glm::dmat4> joints(const Skin& skin);
 

@@ -2,6 +2,7 @@
 // Notes of the loader to the user, bounded in number against hostile files.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,10 +11,11 @@
 
 namespace clpv {
 
-/// Stores the first bounds::kNotes notes and counts the others.
+/// Stores the first bounds::kNotes different notes and counts the others.
 class Notes {
  public:
   void add(std::string_view note) {
+    if (std::ranges::find(notes_, note) != notes_.end()) return;
     if (notes_.size() < bounds::kNotes) {
       notes_.emplace_back(note);
     } else {

@@ -44,6 +44,7 @@ std::vector<SceneLight> SceneData::lights_for(const SceneCamera& camera) const {
   for (const SceneLight& light : lights) {
     if (!camera.light.empty() && light.name != camera.light) continue;
     shining.push_back(light);
+    for (float& channel : shining.back().data.intensity) channel *= light_scale;
     if (medium) shining.back().data.medium = *medium;
   }
   return shining;

@@ -72,6 +72,7 @@ struct SceneData {
   std::vector<MeshRange> moving;     ///< animated vertices and triangles
   std::vector<SceneCamera> cameras;  ///< at least one after loading
   std::vector<SceneLight> lights;
+  float light_scale = 1;              ///< factor of the intensities of all lights
   std::shared_ptr<const Sky> sky;     ///< null without a sky
   std::optional<ClpvMedium> medium;   ///< fog or dust
   glm::vec3 lower{0}, upper{0};       ///< bounding box [m]
@@ -89,7 +90,7 @@ struct SceneData {
   /// names.
   const SceneCamera& camera(const std::string& name) const;
 
-  /// Lights for a camera, the one it names or all, in the scene's medium.
+  /// Lights for a camera, the one it names or all, scaled and in the scene's medium.
   std::vector<SceneLight> lights_for(const SceneCamera& camera) const;
 };
 

@@ -84,6 +84,7 @@ const std::vector<Rule>& rules() {
         text("/model"),
         number("/metres_per_unit", kTiny, 1e6),
         number("/exposure", -64, 64),
+        number("/light_scale", 1 / bounds::kLightScale, bounds::kLightScale),
         object("/cascades"),
         integer("/cascades/count", 1, 8),
         number("/cascades/size_metres", 1e-3, kFar),
@@ -300,6 +301,7 @@ SceneDescription read_scene_file(const std::filesystem::path& path) {
   }
   scene.metres_per_unit = parsed.value("metres_per_unit", 1.0);
   scene.exposure = parsed.value("exposure", 0.0f);
+  if (parsed.contains("light_scale")) scene.light_scale = parsed["light_scale"].get<float>();
   if (parsed.contains("cascades")) {
     const json& cascades = parsed["cascades"];
     if (cascades.contains("count")) scene.cascades = cascades["count"].get<int>();

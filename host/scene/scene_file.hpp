@@ -18,6 +18,7 @@ struct SceneDescription {
   std::filesystem::path model;  ///< resolved against the file's folder; empty if absent
   double metres_per_unit = 1;
   float exposure = 0;
+  std::optional<float> light_scale;
   std::optional<float> cascade_size;  ///< [m]
   std::optional<int> cascades;
   std::shared_ptr<const Sky> sky;    ///< null if absent

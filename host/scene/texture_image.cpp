@@ -35,15 +35,17 @@ void read_encoded(const GltfDocument& document, int index, EncodedImage& encoded
   encoded.place = encoded.name = fmt::format("/images/{}", index);
   if (image.bufferView >= 0) {
     encoded.bytes = document.view(image.bufferView);
-  } else if (!image.image.empty()) {
-    encoded.bytes = image.image;
+    return;
+  }
+  const std::string place = encoded.place + "/uri";
+  if (is_data_uri(image.uri)) {
+    encoded.owned = decode_data_uri(image.uri, document.file, place);
   } else {
-    const auto path =
-        resolve_uri(document.folder, image.uri, document.file, encoded.place + "/uri");
-    encoded.owned = read_file(path, bounds::kImageFileBytes, document.file, encoded.place + "/uri");
-    encoded.bytes = encoded.owned;
+    const auto path = resolve_uri(document.folder, image.uri, document.file, place);
+    encoded.owned = read_file(path, bounds::kImageFileBytes, document.file, place);
     encoded.name = path.filename().string();
   }
+  encoded.bytes = encoded.owned;
 }
 
 void check_encoded(const GltfDocument& document, EncodedImage& encoded) {
@@ -51,7 +53,7 @@ void check_encoded(const GltfDocument& document, EncodedImage& encoded) {
   if (!header) {
     reject(document.file, encoded.place,
            fmt::format("'{}' that begins with bytes {}", encoded.name, first_bytes(encoded.bytes)),
-           "a PNG or JPEG image, whatever its name");
+           "a PNG, JPEG or still WebP image, whatever its name");
   }
   if (header->width == 0 || header->height == 0 || header->width > bounds::kImageSide ||
       header->height > bounds::kImageSide) {
@@ -81,18 +83,17 @@ std::vector<std::uint8_t> to_rgba(const std::vector<std::uint8_t>& pixels, int c
   return rgba;
 }
 
-std::vector<std::uint8_t> decode(const GltfDocument& document, const EncodedImage& encoded) {
+/// Decodes bytes of the image, stripped of unneeded chunks; sets the number of channels.
+std::vector<std::uint8_t> decode(const GltfDocument& document, const EncodedImage& encoded,
+                                 std::span<const std::uint8_t> bytes, std::size_t& channels) {
   const auto fail = [&](const std::string& reason) {
     reject(document.file, encoded.place,
            fmt::format("'{}', which does not decode: {}", encoded.name, reason),
-           "a readable PNG or JPEG image");
+           "a readable PNG, JPEG or WebP image");
   };
-  const bool png = encoded.header.format == ImageFormat::png;
-  const Bytes stripped = png ? strip_png(encoded.bytes) : Bytes();
-  const std::span<const std::uint8_t> bytes = png ? stripped : encoded.bytes;
+  const std::string format(name_of(encoded.header.format));
   std::string error;
-  const auto decoder =
-      image_codec().open(png ? "png" : "jpeg", png ? "memory.png" : "memory.jpg", bytes, error);
+  const auto decoder = image_codec().open(format, "memory." + format, bytes, error);
   if (!decoder) fail(error);
   const CodedImage& image = decoder->described();
   if (image.width != static_cast<int>(encoded.header.width) ||
@@ -100,11 +101,34 @@ std::vector<std::uint8_t> decode(const GltfDocument& document, const EncodedImag
     fail(fmt::format("{} x {} pixels in its header, {} x {} in its decoder", encoded.header.width,
                      encoded.header.height, image.width, image.height));
   }
+  channels = image.channels.size();
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(image.width) *
-                                   static_cast<std::size_t>(image.height) * image.channels.size());
+                                   static_cast<std::size_t>(image.height) * channels);
   if (const std::string failure = decoder->read(pixels.data()); !failure.empty()) fail(failure);
-  return image.channels.size() == 4 ? pixels
-                                    : to_rgba(pixels, static_cast<int>(image.channels.size()));
+  return pixels;
+}
+
+/// RGBA of an image, not multiplied by alpha.
+std::vector<std::uint8_t> decode(const GltfDocument& document, const EncodedImage& encoded) {
+  const auto rgba_of = [&](std::span<const std::uint8_t> bytes) {
+    std::size_t channels = 0;
+    std::vector<std::uint8_t> pixels = decode(document, encoded, bytes, channels);
+    return channels == 4 ? pixels : to_rgba(pixels, static_cast<int>(channels));
+  };
+  switch (encoded.header.format) {
+    case ImageFormat::png:
+      return rgba_of(strip_png(encoded.bytes));
+    case ImageFormat::jpeg:
+      return rgba_of(encoded.bytes);
+    case ImageFormat::webp:
+      break;
+  }
+  const Bytes opaque = strip_webp(encoded.bytes, false), whole = strip_webp(encoded.bytes, true);
+  std::vector<std::uint8_t> rgba = rgba_of(opaque);
+  if (whole == opaque) return rgba;
+  const std::vector<std::uint8_t> transparent = rgba_of(whole);
+  for (std::size_t i = 3; i < rgba.size(); i += 4) rgba[i] = transparent[i];
+  return rgba;
 }
 
 /// Runs `work(i)` for i in 0..count-1 on all cores. Rethrows the exception of the lowest i.

@@ -113,11 +113,11 @@ SceneLight scene_light(const Light& light, const RejectMember& reject, double me
   if (light.kind == LightKind::spot) {
     check_number("inner_cone_degrees", light.inner_cone_degrees, 0, 90, reject);
     check_number("outer_cone_degrees", light.outer_cone_degrees, bounds::kMinLength, 90, reject);
-    if (light.inner_cone_degrees >= light.outer_cone_degrees) {
+    if (light.inner_cone_degrees > light.outer_cone_degrees) {
       reject("",
              fmt::format("inner_cone_degrees {} and outer_cone_degrees {}",
                          light.inner_cone_degrees, light.outer_cone_degrees),
-             "inner less than outer");
+             "inner at most outer");
     }
     set_cone(data, glm::radians(light.inner_cone_degrees), glm::radians(light.outer_cone_degrees));
   }
@@ -178,10 +178,9 @@ Light light_of(const SceneLight& light) {
              45,
              light.name};
   if (made.kind != LightKind::spot) return made;
-  const double outer = -double{data.cone_offset} / data.cone_scale;  // cosines (set_cone)
-  made.outer_cone_degrees = glm::degrees(std::acos(std::clamp(outer, 0.0, 1.0)));
-  made.inner_cone_degrees =
-      glm::degrees(std::acos(std::clamp(outer + 1 / double{data.cone_scale}, 0.0, 1.0)));
+  const Cone cone = cone_of(data);
+  made.outer_cone_degrees = std::min(glm::degrees(cone.outer), 90.0);
+  made.inner_cone_degrees = glm::degrees(cone.inner);
   return made;
 }
 

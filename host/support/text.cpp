@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
@@ -10,24 +11,32 @@
 namespace clpv {
 namespace {
 
-/// Bytes of the UTF-8 character that `text` begins with; 0 if its first byte begins none.
-std::size_t character_bytes(std::string_view text) {
+struct Character {
+  std::uint32_t code = 0;
+  std::size_t bytes = 0;  ///< 0: invalid
+};
+
+/// The first character of a text in UTF-8 (RFC 3629): neither overlong, nor a surrogate, nor above
+/// U+10FFFF.
+Character first_character(std::string_view text) {
+  constexpr std::uint32_t kLowest[] = {0, 0, 0x80, 0x800, 0x10000};  // by length
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (byte(0) < 0x80) return 1;
-  const std::size_t bytes = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
-  // 0xc0, 0xc1 and 0xf5 on begin no character; 0xe0 and 0xf0 have longer forms of shorter ones.
-  if (byte(0) < 0xc2 || byte(0) > 0xf4 || bytes > text.size()) return 0;
-  if ((byte(0) == 0xe0 && byte(1) < 0xa0) || (byte(0) == 0xf0 && byte(1) < 0x90)) return 0;
-  for (std::size_t i = 1; i < bytes; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  return bytes;
+  const std::uint32_t lead = byte(0);
+  if (lead < 0x80) return {lead, 1};
+  const std::size_t bytes = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : lead >= 0xc0 ? 2 : 0;
+  if (bytes == 0 || lead >= 0xf8 || bytes > text.size()) return {};
+  std::uint32_t code = lead & (0x7f >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return {};
+    code = code << 6 | (byte(i) & 0x3f);
+  }
+  const bool valid =
+      code >= kLowest[bytes] && code <= 0x10ffff && !(code >= 0xd800 && code < 0xe000);
+  return valid ? Character{code, bytes} : Character{};
 }
 
-/// True for U+007F to U+009F.
-bool is_control(std::string_view character) {
-  if (character.size() == 1) return character[0] == 0x7f;
-  return character.size() == 2 && character[0] == '\xc2' &&
-         static_cast<unsigned char>(character[1]) < 0xa0;
+bool is_control(std::uint32_t code) {
+  return (code < 0x20 && code != '\n' && code != '\t') || (code >= 0x7f && code < 0xa0);
 }
 
 }  // namespace
@@ -36,14 +45,13 @@ std::string printable(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
-    const std::size_t bytes = character_bytes(text);
-    const auto first = static_cast<unsigned char>(text[0]);
-    if (bytes == 0 || is_control(text.substr(0, bytes)) ||
-        (first < 0x20 && first != '\n' && first != '\t'))
+    const Character next = first_character(text);
+    const std::size_t bytes = std::max<std::size_t>(next.bytes, 1);
+    if (next.bytes == 0 || is_control(next.code))
       out += '?';
     else
       out += text.substr(0, bytes);
-    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+    text.remove_prefix(bytes);
   }
   return out;
 }
@@ -52,12 +60,12 @@ std::string terminal_json(std::string_view json) {
   std::string out;
   out.reserve(json.size());
   while (!json.empty()) {
-    const std::size_t bytes = std::max<std::size_t>(character_bytes(json), 1);
-    const std::string_view character = json.substr(0, bytes);
-    if (is_control(character))
-      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(character.back()));
+    const Character next = first_character(json);
+    const std::size_t bytes = std::max<std::size_t>(next.bytes, 1);
+    if (next.bytes != 0 && next.code >= 0x7f && is_control(next.code))
+      out += fmt::format("\\u{:04x}", next.code);
     else
-      out += character;
+      out += json.substr(0, bytes);
     json.remove_prefix(bytes);
   }
   return out;

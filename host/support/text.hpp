@@ -10,9 +10,8 @@
 
 namespace clpv {
 
-/// Returns `text` (UTF-8) with control characters (U+0000 to U+001F, U+007F to U+009F) replaced by
-/// '?', except newline and tab, and so each byte that is not UTF-8. Untrusted text must not control
-/// a terminal.
+/// Returns `text` with control characters (U+0000 to U+001F, U+007F to U+009F), except newline and
+/// tab, and bytes that are not UTF-8 replaced by '?'. Untrusted text must not control a terminal.
 std::string printable(std::string_view text);
 
 /// Returns JSON with U+007F to U+009F escaped, which JSON allows in strings and a terminal obeys.

@@ -12,6 +12,7 @@
 
 #include "pipeline/raster/view.hpp"
 #include "reference/rasterize.hpp"
+#include "scene/light_kind.hpp"
 #include "verify/check.hpp"
 #include "verify/tolerances.hpp"
 
@@ -235,6 +236,12 @@ ClpvLight spot() {
   return light;
 }
 
+ClpvLight narrow_spot() {
+  ClpvLight light = spot();
+  set_cone(light, 0.02, 0.04);
+  return light;
+}
+
 }  // namespace
 
 Cases rasterize_cases(const CheckScope&) {
@@ -258,6 +265,7 @@ Cases rasterize_cases(const CheckScope&) {
   add_light("lattice", lattice, sun(), lattice_view());
   add_light("directional", soup, sun(), directional_rsm_view(sun(), cascade, bounds, kLightSize));
   add_light("spot", sheet, spot(), spot_view(spot(), kLightSize, bounds));
+  add_light("narrow spot", sheet, narrow_spot(), spot_view(narrow_spot(), kLightSize, bounds));
   return cases;
 }
 

@@ -44,7 +44,8 @@ struct Light {
   Vec3 intensity{1, 1, 1};   ///< directional: irradiance across the direction [W/m^2]; others:
                              ///< radiant intensity [W/sr]
   double range = 0;          ///< [m], no light beyond it; 0: unlimited
-  /// Spot: full and no light at this angle; inner < outer <= 90.
+  /// Spot: full light up to one angle, none from the other; inner <= outer <= 90, 0 < outer. Equal
+  /// ones give a hard edge.
   double inner_cone_degrees = 0, outer_cone_degrees = 45;
   std::string name{};
 };

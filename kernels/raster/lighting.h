@@ -36,8 +36,13 @@ static inline Vec clear_irradiance(const ClpvLight light, const Vec position, Ve
   if (light.kind != CLPV_LIGHT_SPOT && light.kind != CLPV_LIGHT_POINT) return vec(ZERO, ZERO, ZERO);
   realW attenuation = 1.0f / (distance * distance);
   if (light.kind == CLPV_LIGHT_SPOT) {
-    const realW in_cone =
-        light.cone_offset - light.cone_scale * vec_dot_unfused(*towards, direction);
+    realW opposite = vec_dot_unfused(*towards, direction);  // -cos(angle)
+    if (light.narrow_cone) {  // 1 - cos(angle), of unit vectors
+      const Vec between = vec(towards->x + direction.x, towards->y + direction.y,
+                              towards->z + direction.z);
+      opposite = 0.5f * vec_dot_unfused(between, between);
+    }
+    const realW in_cone = light.cone_offset - light.cone_scale * opposite;
     const realW cone = in_cone > ZERO ? (in_cone < ONE ? in_cone : ONE) : ZERO;
     attenuation *= cone * cone;
   }

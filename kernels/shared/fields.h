@@ -12,7 +12,7 @@
     OFFSET(ClpvGrid, middle)                                                                       \
   SIZE(ClpvLight) OFFSET(ClpvLight, position) OFFSET(ClpvLight, kind) OFFSET(ClpvLight, direction) \
     OFFSET(ClpvLight, range) OFFSET(ClpvLight, intensity) OFFSET(ClpvLight, cone_scale)            \
-    OFFSET(ClpvLight, cone_offset) OFFSET(ClpvLight, medium)                                       \
+    OFFSET(ClpvLight, cone_offset) OFFSET(ClpvLight, narrow_cone) OFFSET(ClpvLight, medium)        \
   SIZE(ClpvMedium) OFFSET(ClpvMedium, lower) OFFSET(ClpvMedium, upper)                             \
     OFFSET(ClpvMedium, scattering) OFFSET(ClpvMedium, extinction) OFFSET(ClpvMedium, anisotropy)   \
   SIZE(ClpvVertex) OFFSET(ClpvVertex, position) OFFSET(ClpvVertex, normal) OFFSET(ClpvVertex, uv)  \

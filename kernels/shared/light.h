@@ -30,10 +30,12 @@ typedef struct {
   float range;         // [m]; no light beyond it; 0: unlimited
   float intensity[3];  // directional: irradiance across the direction [W/m^2]; others: radiant
                        // intensity [W/sr]
-  // Spot, glTF: attenuation = clamp(cos(angle) * cone_scale + cone_offset, 0, 1)^2.
+  // Spot, glTF: attenuation = clamp(c * cone_scale + cone_offset, 0, 1)^2 with c = cos(angle), or
+  // c = cos(angle) - 1 of a cone with a narrow edge: near 1, floats do not resolve cosines.
   float cone_scale;
   float cone_offset;
-  float unused[3];
+  unsigned int narrow_cone;  // 0 or 1
+  float unused[2];
   ClpvMedium medium;  // attenuates the light
 } ClpvLight;
 

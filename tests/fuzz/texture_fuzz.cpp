@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A texture: bytes of a buffer, which say themselves whether they are a PNG or a JPEG.
+// A texture: bytes of a buffer, which say themselves whether they are a PNG, a JPEG or a WebP.
 #include <span>
 
 #include "image/image_header.hpp"

@@ -83,4 +83,15 @@ inline constexpr std::string_view kJpegExif16x8 =
     "ADAREAAhEBAxEB/8QAFQABAQAAAAAAAAAAAAAAAAAABAf/xAAUEAEAAAAAAAAAAAAAAAAAAAAA/8QAFgEBAQEAAAAA"
     "AAAAAAAAAAAACAYJ/8QAFBEBAAAAAAAAAAAAAAAAAAAAAP/aAAwDAQACEQMRAD8AIOQTp0pWzD//2Q==";
 
+/// The pixels of kPngRgba2x2, but alpha 10 of the blue one; lossless.
+inline constexpr std::string_view kWebpRgba2x2 =
+    "UklGRjoAAABXRUJQVlA4TC4AAAAvAUAAEB8gEEhSn3wNgQDBuXMCAYJz54QExAB/VdOFmTNaBTVtG7D4TToi+h8c";
+/// 4 x 4 pixels of (200, 100, 50), lossy; and the same of alpha 128.
+inline constexpr std::string_view kWebpLossy =
+    "UklGRj4AAABXRUJQVlA4IDIAAADQAQCdASoEAAQAAMASJaACdLoB+AADsAD+2ib/7vN+09e09f1M//jKnyA/4yp/xcwA"
+    "AA==";
+inline constexpr std::string_view kWebpLossyAlpha =
+    "UklGRmIAAABXRUJQVlA4WAoAAAAQAAAAAwAAAwAAQUxQSAoAAAABB1DAiAhERP8DVlA4IDIAAADQAQCdASoEAAQAAMAS"
+    "JaACdLoB+AADsAD+2ib/7vN+09e09f1M//jKnyA/4yp/xcwAAA==";
+
 }  // namespace clpv::test

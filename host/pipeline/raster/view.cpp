@@ -92,11 +92,10 @@ ClpvView perspective_light_view(const Axes& axes, const ClpvLight& light, double
   return view;
 }
 
-/// Outer half-angle [rad] of a spot light: where cos(angle) * cone_scale + cone_offset is 0.
+/// Outer half-angle [rad] of a spot light.
 double outer_angle(const ClpvLight& light) {
   if (light.cone_scale <= 0) return 3.14159265358979;  // no cone: lit in all directions
-  return std::acos(
-      std::clamp(-static_cast<double>(light.cone_offset) / light.cone_scale, -1.0, 1.0));
+  return cone_of(light).outer;
 }
 
 bool too_wide_for_one_view(const ClpvLight& spot) {
