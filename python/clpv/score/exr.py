@@ -86,10 +86,11 @@ def in_display(file, planes, data, display):
     """Cuts planes of the data window to the display window, which must lie in it."""
     left, top, right, bottom = display
     if data[0] > left or data[1] > top or data[2] < right or data[3] < bottom:
-        raise BadImage(f"{file}: found only pixels {data[:2]} to {data[2:]} (dataWindow); allowed: all "
-                       f"of {display[:2]} to {display[2:]} (displayWindow)")
-    rows, columns = slice(top - data[1], bottom - data[1] + 1), slice(left - data[0],
-                                                                     right - data[0] + 1)
+        raise BadImage(
+            f"{file}: found only pixels {data[:2]} to {data[2:]} (dataWindow); allowed: all of "
+            f"{display[:2]} to {display[2:]} (displayWindow)")
+    rows = slice(top - data[1], bottom - data[1] + 1)
+    columns = slice(left - data[0], right - data[0] + 1)
     return {name: plane[rows, columns] for name, plane in planes.items()}
 
 
@@ -114,8 +115,8 @@ def to_rec709(file, planes, chromaticities):
     except numpy.linalg.LinAlgError:
         matrix = numpy.full((3, 3), numpy.nan)
     if not numpy.isfinite(matrix).all():
-        raise BadImage(f"{file}: found chromaticities {tuple(chromaticities)}; allowed: three colours "
-                       "and a white")
+        raise BadImage(f"{file}: found chromaticities {tuple(chromaticities)}; allowed: three "
+                       "colours and a white")
     for prefix in {name[:-1] for name in planes if name == "R" or name.endswith(".R")}:
         names = [prefix + colour for colour in "RGB"]
         if all(name in planes for name in names):
@@ -148,7 +149,10 @@ def by_openexr(file):
     parts = {}
     with OpenEXR.File(str(file), separate_channels=True) as image:
         for part in image.parts:
-            planes = {name: each.pixels.astype(numpy.float32) for name, each in part.channels.items()}
+            planes = {
+                name: channel.pixels.astype(numpy.float32)
+                for name, channel in part.channels.items()
+            }
             data, display = (tuple(int(edge) for corner in part.header[name] for edge in corner)
                              for name in ("dataWindow", "displayWindow"))
             planes = in_display(file, planes, data, display)
@@ -171,8 +175,8 @@ def read(file):
         attributes, at = header(data)
         if version & NOT_SCANLINES or attributes["compression"][0] not in ROWS:
             return by_openexr(file)
-        planes = in_display(file, scanlines(data, attributes, at), window(attributes["dataWindow"]),
-                            window(attributes["displayWindow"]))
+        planes = in_display(file, scanlines(data, attributes, at),
+                            window(attributes["dataWindow"]), window(attributes["displayWindow"]))
         if "chromaticities" in attributes:
             to_rec709(file, planes, struct.unpack("<8f", attributes["chromaticities"]))
         return planes
