@@ -30,14 +30,18 @@ def header(data):
     return attributes, at + 1
 
 
+def check_sampling(name, x, y):
+    if (x, y) != (1, 1):
+        raise ValueError(f"channel {name} sampled every {x} x {y} pixels")
+
+
 def channel_list(value):
     """Returns [(name, type)] in the order of the pixels."""
     at, found = 0, []
     while value[at]:
         end = value.index(0, at)
         kind, x, y = struct.unpack_from("<i4x2i", value, end + 1)
-        if (x, y) != (1, 1):
-            raise ValueError(f"channel {value[at:end].decode()} sampled every {x} x {y} pixels")
+        check_sampling(value[at:end].decode(), x, y)
         found.append((value[at:end].decode(), TYPES[kind]))
         at = end + 17
     return found
@@ -149,6 +153,8 @@ def by_openexr(file):
     parts = {}
     with OpenEXR.File(str(file), separate_channels=True) as image:
         for part in image.parts:
+            for name, channel in part.channels.items():
+                check_sampling(name, channel.xSampling, channel.ySampling)
             planes = {
                 name: channel.pixels.astype(numpy.float32)
                 for name, channel in part.channels.items()
@@ -180,7 +186,8 @@ def read(file):
         if "chromaticities" in attributes:
             to_rec709(file, planes, struct.unpack("<8f", attributes["chromaticities"]))
         return planes
-    except (struct.error, zlib.error, IndexError, KeyError, ValueError, RuntimeError) as error:
+    except (struct.error, zlib.error, IndexError, KeyError, ValueError, TypeError,
+            RuntimeError) as error:
         raise BadImage(f"{file}: damaged EXR ({type(error).__name__}: {error})") from None
 
 
