@@ -30,14 +30,18 @@ def header(data):
     return attributes, at + 1
 
 
+def check_sampling(name, x, y):
+    if (x, y) != (1, 1):
+        raise ValueError(f"channel {name} sampled every {x} x {y} pixels")
+
+
 def channel_list(value):
     """Returns [(name, type)] in the order of the pixels."""
     at, found = 0, []
     while value[at]:
         end = value.index(0, at)
         kind, x, y = struct.unpack_from("<i4x2i", value, end + 1)
-        if (x, y) != (1, 1):
-            raise ValueError(f"channel {value[at:end].decode()} sampled every {x} x {y} pixels")
+        check_sampling(value[at:end].decode(), x, y)
         found.append((value[at:end].decode(), TYPES[kind]))
         at = end + 17
     return found
@@ -87,10 +91,11 @@ def in_display(file, planes, data, display):
     """Cuts planes of the data window to the display window, which must lie in it."""
     left, top, right, bottom = display
     if data[0] > left or data[1] > top or data[2] < right or data[3] < bottom:
-        raise BadImage(f"{file}: found only pixels {data[:2]} to {data[2:]} (dataWindow); allowed: all "
-                       f"of {display[:2]} to {display[2:]} (displayWindow)")
-    rows, columns = slice(top - data[1], bottom - data[1] + 1), slice(left - data[0],
-                                                                     right - data[0] + 1)
+        raise BadImage(
+            f"{file}: found only pixels {data[:2]} to {data[2:]} (dataWindow); allowed: all of "
+            f"{display[:2]} to {display[2:]} (displayWindow)")
+    rows = slice(top - data[1], bottom - data[1] + 1)
+    columns = slice(left - data[0], right - data[0] + 1)
     return {name: plane[rows, columns] for name, plane in planes.items()}
 
 
@@ -115,8 +120,8 @@ def to_rec709(file, planes, chromaticities):
     except numpy.linalg.LinAlgError:
         matrix = numpy.full((3, 3), numpy.nan)
     if not numpy.isfinite(matrix).all():
-        raise BadImage(f"{file}: found chromaticities {tuple(chromaticities)}; allowed: three colours "
-                       "and a white")
+        raise BadImage(f"{file}: found chromaticities {tuple(chromaticities)}; allowed: three "
+                       "colours and a white")
     for prefix in {name[:-1] for name in planes if name == "R" or name.endswith(".R")}:
         names = [prefix + colour for colour in "RGB"]
         if all(name in planes for name in names):
@@ -149,7 +154,12 @@ def by_openexr(file):
     parts = {}
     with OpenEXR.File(str(file), separate_channels=True) as image:
         for part in image.parts:
-            planes = {name: each.pixels.astype(numpy.float32) for name, each in part.channels.items()}
+            for name, channel in part.channels.items():
+                check_sampling(name, channel.xSampling, channel.ySampling)
+            planes = {
+                name: channel.pixels.astype(numpy.float32)
+                for name, channel in part.channels.items()
+            }
             data, display = (tuple(int(edge) for corner in part.header[name] for edge in corner)
                              for name in ("dataWindow", "displayWindow"))
             planes = in_display(file, planes, data, display)
@@ -172,12 +182,13 @@ def read(file):
         attributes, at = header(data)
         if version & NOT_SCANLINES or attributes["compression"][0] not in ROWS:
             return by_openexr(file)
-        planes = in_display(file, scanlines(data, attributes, at), window(attributes["dataWindow"]),
-                            window(attributes["displayWindow"]))
+        planes = in_display(file, scanlines(data, attributes, at),
+                            window(attributes["dataWindow"]), window(attributes["displayWindow"]))
         if "chromaticities" in attributes:
             to_rec709(file, planes, struct.unpack("<8f", attributes["chromaticities"]))
         return planes
-    except (struct.error, zlib.error, IndexError, KeyError, ValueError, RuntimeError) as error:
+    except (struct.error, zlib.error, IndexError, KeyError, ValueError, TypeError,
+            RuntimeError) as error:
         raise BadImage(f"{file}: damaged EXR ({type(error).__name__}: {error})") from None
 
 
