@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 from support import bench_document, row, variant
+from clpv import output
 from clpv.draw import documents, report
 import numpy
 
@@ -102,6 +103,16 @@ class Page(unittest.TestCase):
         self.assertNotIn("<script>alert", html)
         self.assertEqual(html.count("<script"), 3)
         self.assertGreaterEqual(html.count("&lt;script&gt;alert(1)&lt;/script&gt; $x$"), 9)
+
+    def test_the_page_spares_its_inputs(self):
+        self.add_view()
+        self.page()
+        (self.folder / "link.html").symlink_to("truth.npy")
+        for name in "report.json", "link.html":
+            before = (self.folder / name).read_bytes()
+            with self.assertRaisesRegex(output.BadOutput, "allowed: another file"):
+                report.draw(self.folder, self.folder / name)
+            self.assertEqual((self.folder / name).read_bytes(), before)
 
     def test_says_what_is_missing(self):
         html = self.page()

@@ -177,6 +177,17 @@ def test_lobes_and_tables_have_the_expected_values(tmp_path):
     assert not [name for name in names if "private" in name or "figure1.jpg" in name]
 
 
+def test_a_part_that_lacks_a_file_is_measured_again(tmp_path):
+    out = measured.output.Folder(tmp_path / "out", "scripts/reproduce")
+    out.write("figure1.jpg", b"")
+    part = {"key": 1, "minutes": 0, "files": ["figure1.jpg"], "result": [2]}
+    out.write("parts/a.json", json.dumps(part))
+    assert reproduce.earlier(out, "parts/a.json", 1)["result"] == [2]
+    assert reproduce.earlier(out, "parts/a.json", 2) is None
+    (out.path / "figure1.jpg").unlink()
+    assert reproduce.earlier(out, "parts/a.json", 1) is None
+
+
 def test_parts_that_need_a_model_are_rejected_without_one():
     refused = subprocess.run(
         [str(ROOT / "scripts/reproduce"), "--no-build", "--part=light"],

@@ -133,6 +133,9 @@ def table1(rows):
 
 def draw(source, target):
     report = documents.read(source / "report.json")
+    images = [shot["values"] for shown in report["views"] for shot in shown["shots"]]
+    images += [shown["truth"] for shown in report["views"]]
+    made = output.Output(target, [source / name for name in ("report.json", *images)])
     rows = [row for given in report["benchmarks"]
             for row in documents.checked(given["document"], given["file"], "benchmarks", bench.ROW)]
     quality = variants(report["quality"], report["marked"])
@@ -146,4 +149,4 @@ def draw(source, target):
                                                [row["name"] for row in quality]),
         table1=table1([row for row in rows if row["suite"] == "table1"]), layouts=layouts,
         layouts_chart=inlined(bench.layouts(layouts)), colours=page_colours())
-    output.write(target, html)
+    made.write(html)
