@@ -26,6 +26,14 @@ glm::dvec3 geometric_normal(const glm::vec4& normal) {
   return glm::normalize(glm::dvec3(at, z));
 }
 
+glm::dvec3 lift_normal(const glm::dvec3& shading, const glm::dvec3& geometric) {
+  return glm::dot(shading, geometric) > double{CLPV_SAME_LIFT} ? shading : geometric;
+}
+
+glm::dvec3 lift_normal(const glm::vec4& normal) {
+  return lift_normal(glm::dvec3(normal), geometric_normal(normal));
+}
+
 glm::vec4 stored_normal(const glm::dvec3& shading, const glm::dvec3& geometric) {
   if (glm::dot(shading, geometric) > double{CLPV_SAME_NORMAL})
     return {glm::vec3(shading), 0.0f};

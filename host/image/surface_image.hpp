@@ -11,6 +11,9 @@ namespace clpv {
 
 /// Unit normal of the triangle of a camera's pixel, from its stored normal (kernels/shared/normal.h).
 glm::dvec3 geometric_normal(const glm::vec4& normal);
+/// Normal along which lookups in volumes and origins of rays are lifted.
+glm::dvec3 lift_normal(const glm::vec4& normal);
+glm::dvec3 lift_normal(const glm::dvec3& shading, const glm::dvec3& geometric);
 /// Stored normal with these unit vectors.
 glm::vec4 stored_normal(const glm::dvec3& shading, const glm::dvec3& geometric);
 

@@ -66,7 +66,7 @@ std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,
     if (depth <= 0) continue;
     image[pixel] =
         gather(basis, transport, options, cascades, surface_position(camera.view, pixel, depth),
-               glm::dvec3(camera.normal[pixel]), geometric_normal(camera.normal[pixel]));
+               glm::dvec3(camera.normal[pixel]), lift_normal(camera.normal[pixel]));
   }
   return image;
 }

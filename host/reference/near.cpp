@@ -27,7 +27,7 @@ bool close_to(double value, double limit) {
 
 /// A traced pixel.
 struct NearPoint {
-  glm::dvec3 position{0}, normal{0}, geometric{0};
+  glm::dvec3 position{0}, normal{0}, lift{0};
   double reach = 0;  ///< [m]; 0 without a surface in a cascade
   glm::dvec3 difference{0}, gathered{0};
   bool uncertain = false;  ///< light
@@ -103,7 +103,7 @@ glm::dvec3 NearField::radiance_of(const NearHit& hit, const NearPoint& point,
     irradiance += direct_irradiance(light, position, n, geometric);
   if (options.reflects)
     irradiance +=
-        field_irradiance(basis, field_at(position, options.gather.gather_offset, geometric), n);
+        field_irradiance(basis, field_at(position, options.gather.gather_offset, lift_normal(n, geometric)), n);
   const bool emitting = !back || double_sided(scene.scene.materials[triangle.material]);
   const glm::dvec3 emitted =
       emitting ? glm::dvec3(scene.materials.emissive(hit.point, footprint)) : glm::dvec3(0);
@@ -119,13 +119,13 @@ glm::dmat3 frame_about(const glm::dvec3& n) {
 
 void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions) const {
   const double offset = options.gather.gather_offset;
-  const RadianceField here = field_at(point.position, offset, point.geometric);
+  const RadianceField here = field_at(point.position, offset, point.lift);
   point.gathered = field_irradiance(basis, here, point.normal);
   const double share = trust(here, point.gathered, point.normal);
   const glm::dmat3 frame = frame_about(point.normal);
   for (const glm::vec3& direction : directions) {
     const glm::dvec3 w = frame * glm::dvec3(direction);
-    const NearRay ray{point.position + double{CLPV_NEAR_LIFT} * point.reach * point.geometric, w,
+    const NearRay ray{point.position + double{CLPV_NEAR_LIFT} * point.reach * point.lift, w,
                       point.reach};
     const std::optional<NearHit> hit =
         nearest_triangle(scene.scene, scene.materials, ray, point.uncertain);
@@ -133,7 +133,7 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
     if (hit) {
       point.difference += radiance_of(*hit, point, w, point.uncertain) - v;
     } else {
-      const glm::dvec3 end = point.position + point.reach * (offset * point.geometric + w);
+      const glm::dvec3 end = point.position + point.reach * (offset * point.lift + w);
       point.difference += share * (radiance(basis, field_at(end, 0, point.normal), -w) - v);
     }
   }
@@ -244,7 +244,7 @@ struct NearPixels {
     if (camera.depth[pixel] <= 0) return point;
     point.position = surface_position(camera.view, pixel, camera.depth[pixel]);
     point.normal = glm::dvec3(camera.normal[pixel]);
-    point.geometric = geometric_normal(camera.normal[pixel]);
+    point.lift = lift_normal(camera.normal[pixel]);
     point.reach = field.reach_at(point.position);
     return point;
   }

@@ -31,10 +31,10 @@ constexpr double kFarBelow = -1e30;  // [m]
 
 /// First texel of the filter along an axis of `size` texels.
 int first_tap(double texel, unsigned size) {
-  constexpr int kTaps = CLPV_SHADOW_TAPS;
-  const double at = std::clamp(texel, -double{kTaps}, double{size} + double{kTaps});
+  constexpr double kTaps = CLPV_SHADOW_TAPS;
+  const double at = std::clamp(texel, -kTaps, size + kTaps);
   return std::clamp(static_cast<int>(std::floor(at)) - 1, 0,
-                    static_cast<int>(size) - kTaps);
+                    static_cast<int>(size) - CLPV_SHADOW_TAPS);
 }
 
 /// The texels of a receiver's filter and their heights above its plane (kernels/raster/shadow.h).
@@ -63,7 +63,7 @@ Filter filter_at(const ShadowMap& map, const glm::dvec2& pixel, const glm::dvec3
 }
 
 /// Returns true if the receiver is below a surface of the map: if the height of one of the inner
-/// texels, extrapolated to the receiver from its outer neighbours, exceeds `rounding`.
+/// texels, extrapolated to the receiver from higher outer neighbours, exceeds `rounding`.
 bool below_surface(const Filter& filter, double rounding) {
   for (const int row : {1, 2}) {
     for (const int column : {1, 2}) {
@@ -71,9 +71,9 @@ bool below_surface(const Filter& filter, double rounding) {
                    beside = filter.height[row][column == 1 ? 0 : 3],
                    past = filter.height[row == 1 ? 0 : 3][column];
       const glm::dvec2 distance = glm::abs(filter.distance[row][column]);
-      if (inner > rounding &&
-          inner + (inner - beside) * distance.x + (inner - past) * distance.y > rounding)
-        return true;
+      const double fall = std::max(beside - inner, 0.0) * distance.x +
+                          std::max(past - inner, 0.0) * distance.y;
+      if (inner > rounding && inner - fall > rounding) return true;
     }
   }
   return false;

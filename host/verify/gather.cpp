@@ -60,7 +60,7 @@ std::vector<double> expected_pixels(const GatherWork& p) {
         image.depth[i] > 0
             ? reference::gather(*q.basis, q.transport, q.options, p.light.cascades,
                                 reference::surface_position(image.view, i, double{image.depth[i]}),
-                                glm::dvec3(image.normal[i]), geometric_normal(image.normal[i]))
+                                glm::dvec3(image.normal[i]), lift_normal(image.normal[i]))
             : glm::dvec3(0);
     append_pixel(values, e, 0);
   }

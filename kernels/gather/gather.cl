@@ -69,8 +69,8 @@ CLPV_INLINE void add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GAT
   g->remaining *= 1.0f - share;
   if (no_lane(weight > ZERO)) return;
   SamplePoints points;
-  find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET),
-                      g->surfaces.geometric, &points);
+  const Vec lift = lift_normal(g->surfaces.geometric, g->surfaces.normal);
+  find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), lift, &points);
   float shares[W];
   store_lanes(weight, shares);
   for (int i = 0; i < W; ++i) {

@@ -48,7 +48,7 @@ __kernel void near(const ClpvView view, __global const float* points,
     return;
   }
   RadianceField here, there;
-  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.geometric, lit,
+  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.lift, lit,
                   &here);
   const VecLanes n = unpack(lit, p.normal);
   float trusts[W], x[W], y[W], z[W];
@@ -60,8 +60,7 @@ __kernel void near(const ClpvView view, __global const float* points,
   store_plane_vectors(vec(load_lanes(x), load_lanes(y), load_lanes(z)),
                       light + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at);
   const realW trust = load_lanes(trusts);
-  const Vec lifted =
-      vec_add_scaled(p.position, (realW)(CLPV_GATHER_OFFSET) * p.reach, p.geometric);
+  const Vec lifted = vec_add_scaled(p.position, (realW)(CLPV_GATHER_OFFSET) * p.reach, p.lift);
   Vec sum = vec(ZERO, ZERO, ZERO);
   float4 volumes[W];
   for (int i = 0; i < W; ++i) volumes[i] = 0.0f;

@@ -27,7 +27,7 @@ enum { CLPV_TILE_HITS = W * CLPV_PLANE_TILE * CLPV_NEAR_RAYS };
 
 // Points of W pixels.
 typedef struct {
-  Vec position, normal, geometric, tangent, bitangent;
+  Vec position, normal, lift, tangent, bitangent;
   realW reach;
 } NearPoints;
 
@@ -37,8 +37,8 @@ CLPV_INLINE void load_near_points(__global const float* points, const PlaneRow r
   p->position = load_plane_vectors(points + CLPV_NEAR_POSITION * r.plane, r.plane, r.at);
   p->normal = load_plane_vectors(points + CLPV_NEAR_NORMAL * r.plane, r.plane, r.at);
   p->reach = load_lanes(points + CLPV_NEAR_REACH * r.plane + r.at);
-  p->geometric = unpack_geometric_normal(
-      load_lanes(points + CLPV_NEAR_GEOMETRIC * r.plane + r.at), p->normal);
+  const realW geometric = load_lanes(points + CLPV_NEAR_GEOMETRIC * r.plane + r.at);
+  p->lift = lift_normal(unpack_geometric_normal(geometric, p->normal), p->normal);
   const Vec n = p->normal;
   const realW sign = n.z < ZERO ? -ONE : ONE;
   const realW a = -1.0f / (sign + n.z), b = n.x * n.y * a;

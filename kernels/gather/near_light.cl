@@ -138,7 +138,8 @@ __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
   HitSurface s;
   if (!load_hit_surfaces(CLPV_PASS_HITS, &s)) return;
   RadianceField field;
-  sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), s.geometric, s.hit,
+  const Vec lift = lift_normal(s.geometric, s.normal);
+  sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), lift, s.hit,
                   &field);
   const VecLanes n = unpack(s.hit, s.normal);
   float x[W], y[W], z[W];

@@ -95,7 +95,7 @@ __kernel void near_trace(const ClpvView view, __global const float* points,
     NearPoints p;
     load_near_points(points, r, &p);
     if (no_lane(p.reach > ZERO)) continue;
-    const Vec from = vec_add_scaled(p.position, CLPV_NEAR_LIFT * p.reach, p.geometric);
+    const Vec from = vec_add_scaled(p.position, CLPV_NEAR_LIFT * p.reach, p.lift);
     for (uint k = 0; k < CLPV_NEAR_RAYS; ++k) {
       Rays rays;
       set_rays(from, find_near_directions(directions, r, &p, k), p.reach, &rays);

@@ -23,6 +23,13 @@ CLPV_INLINE realW pack_geometric_normal(const Vec geometric, const Vec shading) 
                                                                  : column + CLPV_NORMAL_BASE * row;
 }
 
+// Normals along which lookups in volumes and origins of rays are lifted.
+CLPV_INLINE Vec lift_normal(const Vec geometric, const Vec shading) {
+  const intW apart = vec_dot(geometric, shading) <= (realW)(CLPV_SAME_LIFT);
+  return (Vec){apart ? geometric.x : shading.x, apart ? geometric.y : shading.y,
+               apart ? geometric.z : shading.z};
+}
+
 // Geometric normals, of length 1, of pixels with these numbers and shading normals.
 CLPV_INLINE Vec unpack_geometric_normal(const realW number, const Vec shading) {
   const realW row = to_realW(to_intW(number * (1.0f / CLPV_NORMAL_BASE)));

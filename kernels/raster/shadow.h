@@ -12,7 +12,9 @@
 // is below a surface is therefore found first. Heights of texels above its plane, extrapolated from
 // one of the four inner texels and its two outer neighbours to the filter's centre, are positive below
 // a plane, 0 on it, and negative in a concave corner, where the filter's texels are above the plane,
-// too. Below a surface there is no lift, and texels beyond the edge do not count.
+// too. Neighbours that are lower do not count: they may lie on another surface, and where a plane
+// rises, one inner texel has higher ones. Below a surface there is no lift, and texels beyond the edge
+// do not count.
 #pragma once
 
 #include "lanes.h"
@@ -112,7 +114,7 @@ CLPV_INLINE bool below_surface(const Receiver r, const float8 upper, const float
                past = (float4)(upper.s1, upper.s2, lower.s5, lower.s6);
   const float4 x = fabs((float4)(r.dx.y, r.dx.z, r.dx.y, r.dx.z)),
                y = fabs((float4)(r.dy.y, r.dy.y, r.dy.z, r.dy.z));
-  const float4 centre = inner + (inner - beside) * x + (inner - past) * y;
+  const float4 centre = inner - max(beside - inner, 0.0f) * x - max(past - inner, 0.0f) * y;
   const int4 below = (inner > r.rounding) & (centre > r.rounding);
   return (below.x | below.y | below.z | below.w) != 0;
 }

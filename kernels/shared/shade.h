@@ -25,7 +25,7 @@ enum {
 
 // A receiver below a surface of the map (shadow.h) has no lift, but for rounding: [texels of the map]
 // and relative to its depth.
-#define CLPV_SHADOW_ROUNDING_TEXELS 0.01f
+#define CLPV_SHADOW_ROUNDING_TEXELS 0.004f
 #define CLPV_SHADOW_ROUNDING_DEPTH 2e-6f
 // [lifts] Texels farther below its plane than this are beyond the edge of its surface.
 #define CLPV_SHADOW_BEYOND 2.0f
