@@ -11,9 +11,12 @@ namespace clpv {
 /// Faces of a cell by outward normal: +x, -x, +y, -y, +z, -z.
 inline constexpr int kCellFaces = 6;
 
-/// Further bounces in the truncated Neumann series of `--bounces all`. The remainder is negligible
-/// except in a closed white room.
-inline constexpr int kFurtherBounces = 6;
+/// Sweeps for all bounces in a medium that scatters, along 24 directions.
+inline constexpr int kScatteredSweeps = 8;
+
+/// Largest share of a bounce's flux that the next one has in the series of `--bounces all`: white
+/// closed rooms have no finite light.
+inline constexpr double kMaxReturned = 0.98;
 
 /// 6 x 24: incident flux [W] on each face of a cell from a sweep's bins (radiance times s^2):
 /// Omega_b max(0, -w_b . a). It equals the flux that a sweep along 24 directions carries between

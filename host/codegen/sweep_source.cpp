@@ -68,13 +68,10 @@ OperationCount sweep_collect_operations() {
   return {.additions = kSweepBins * kFolds, .fused = products(folded(swept_projection()))};
 }
 
-std::string incident_flux_text() {
-  return matrix_macro("CLPV_INCIDENT", incident_flux());
-}
-
 std::string bounce_source_text(const Basis& basis) {
-  return coefficient_text(basis.size()) + incident_flux_text() +
-         matrix_macro("CLPV_LOBES", transposed(reflected_intensity(basis)));
+  return coefficient_text(basis.size()) + matrix_macro("CLPV_INCIDENT", incident_flux()) +
+         matrix_macro("CLPV_LOBES", transposed(reflected_intensity(basis))) +
+         fmt::format("#define CLPV_MAX_RETURNED {}f\n", kMaxReturned);
 }
 
 std::string scatter_source_text(double anisotropy) {

@@ -19,9 +19,8 @@ std::string sweep_collect_text();
 /// Operations per cell and channel.
 OperationCount sweep_collect_operations();
 
-/// For face_fluxes.h: CLPV_INCIDENT, 6 x 24.
-std::string incident_flux_text();
-/// For bounce.cl: Coefficients of `basis`, incident_flux_text(), and CLPV_LOBES, 6 x N.
+/// For bounce.cl: Coefficients of `basis`, CLPV_INCIDENT, 6 x 24, CLPV_LOBES, 6 x N, and
+/// CLPV_MAX_RETURNED.
 std::string bounce_source_text(const Basis& basis);
 
 /// For sweep_medium.cl: CLPV_SCATTERING, 3 x 24: scattering_matrix(anisotropy) by folded bins,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One bounce: Phi_a = R_a sum_b Omega_b max(0, -w_b . a) L_b s^2, emitted by the cosine about a.
-// All bounces without a medium: light = I + R D_1 + R (1 + E) D_2, a truncated Neumann series in
-// the coarsest cascade.
+// All bounces without a medium: light = I + R D_1 + S D_2 in every cascade, coarsest first.
 #include "reference/bounce.hpp"
 
 #include <algorithm>
@@ -47,16 +46,6 @@ IncidentFlux incident_flux_of(const Volume& swept) {
   };
 }
 
-/// Incident flux on the cells of a finer cascade, interpolated from light swept in a coarser one.
-IncidentFlux interpolated_flux(const ClpvGrid& coarse, const Volume& swept, const ClpvGrid& fine) {
-  const double area = double{fine.cell} * fine.cell / (double{coarse.cell} * coarse.cell);
-  return [=, flux = incident_flux(), &swept](int channel, const glm::ivec3& p) {
-    std::vector<double> sum = flux * trilinear(swept, channel, position_in(coarse, fine, p));
-    for (double& value : sum) value *= area;
-    return sum;
-  };
-}
-
 /// light += R D in every cascade.
 void add_one_bounce(const Basis& basis, const Transport& transport,
                     std::vector<SweptCascade> cascades,
@@ -67,25 +56,22 @@ void add_one_bounce(const Basis& basis, const Transport& transport,
     inject_reflected(basis, *reflectors[c], incident_flux_of(swept[c]), light[c]);
 }
 
-/// light += R D_1 + R (1 + E) D_2 in the coarsest cascade, R D in finer ones, D interpolated from
-/// the next coarser one.
+/// light += R D_1 + S D_2 in every cascade. The coarser cascade's last sweep enters at the border.
 void add_all_bounces(const Basis& basis, const Transport& transport,
                      const std::vector<SweptCascade>& cascades,
                      const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
-  const SweptCascade& coarsest = cascades.back();
-  const Volume first = swept_along_24(basis, transport, coarsest, light.back());
-  Volume reflected(first.n, basis.size());
-  inject_reflected(basis, *reflectors.back(), incident_flux_of(first), reflected);
-  inject_reflected(basis, *reflectors.back(), incident_flux_of(first), light.back());
-  const Volume second = swept_along_24(basis, transport, coarsest, reflected);
-  inject_reflected(basis, bounce_series(basis, transport, coarsest, *reflectors.back()),
-                   incident_flux_of(second), light.back());
-  for (std::size_t c = cascades.size() - 1; c-- > 0;) {
-    const std::vector<SweptCascade> coarser(cascades.begin() + static_cast<std::ptrdiff_t>(c) + 1,
-                                            cascades.end());
-    const Volume swept = sweep(basis, transport, coarser)[0];
-    inject_reflected(basis, *reflectors[c],
-                     interpolated_flux(cascades[c + 1].grid, swept, cascades[c].grid), light[c]);
+  for (std::size_t c = cascades.size(); c-- > 0;) {
+    std::vector<SweptCascade> nested(cascades.begin() + static_cast<std::ptrdiff_t>(c),
+                                     cascades.end());
+    nested[0].parts = 1;
+    const Volume first = sweep(basis, transport, nested)[0];
+    Volume reflected(first.n, basis.size());
+    inject_reflected(basis, *reflectors[c], incident_flux_of(first), reflected);
+    const Volume second = swept_along_24(basis, transport, cascades[c], reflected);
+    for (std::size_t i = 0; i < reflected.values.size(); ++i)
+      light[c].values[i] += reflected.values[i];
+    inject_reflected(basis, bounce_series(basis, transport, cascades[c], *reflectors[c]),
+                     incident_flux_of(second), light[c]);
   }
 }
 
@@ -131,24 +117,38 @@ Sources bounce_in_medium(const Basis& basis, const Transport& transport,
 
 Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
                      const Volume& reflectors) {
-  Volume series = reflectors;
-  for (int bounce = 0; bounce < kFurtherBounces; ++bounce) {
-    Volume reflected(series.n, basis.size());
+  // R X, X the incident flux while each face emits `flux`.
+  const auto returned = [&](const Volume& flux) {
+    Volume emitted(flux.n, basis.size());
     inject_reflected(
-        basis, series, [](int, const glm::ivec3&) { return std::vector<double>(kCellFaces, 1.0); },
-        reflected);
-    const Volume swept = swept_along_24(basis, transport, cascade, reflected);
+        basis, flux, [](int, const glm::ivec3&) { return std::vector<double>(kCellFaces, 1.0); },
+        emitted);
+    const Volume swept = swept_along_24(basis, transport, cascade, emitted);
     const IncidentFlux incident = incident_flux_of(swept);
-    for_each_cell(series.n, [&](const glm::ivec3& p) {
+    Volume reflected = reflectors;
+    for_each_cell(flux.n, [&](const glm::ivec3& p) {
       for (int channel = 0; channel < 3; ++channel) {
-        const std::vector<double> returned = incident(channel, p);
-        for (int side = 0; side < kCellFaces; ++side) {
-          series.at(channel, side, p.x, p.y, p.z) =
-              reflectors.value(channel, side, p.x, p.y, p.z) * (1 + returned[side]);
-        }
+        const std::vector<double> arriving = incident(channel, p);
+        for (int side = 0; side < kCellFaces; ++side)
+          reflected.at(channel, side, p.x, p.y, p.z) *= arriving[side];
       }
     });
-  }
+    return reflected;
+  };
+  const Volume first = returned(reflectors), second = returned(first);
+  Volume series = reflectors;
+  for_each_cell(series.n, [&](const glm::ivec3& p) {
+    for (int channel = 0; channel < 3; ++channel) {
+      const std::vector<double> reflectance = reflectors.cell(channel, p);
+      const double bound = std::min(std::ranges::max(reflectance), kMaxReturned);
+      for (int side = 0; side < kCellFaces; ++side) {
+        const double t1 = first.value(channel, side, p.x, p.y, p.z),
+                     t2 = second.value(channel, side, p.x, p.y, p.z),
+                     ratio = std::clamp(t2 / std::max(t1, 1e-6), 0.0, bound);
+        series.at(channel, side, p.x, p.y, p.z) += t1 + t2 / (1 - ratio);
+      }
+    }
+  });
   return series;
 }
 
@@ -168,7 +168,7 @@ std::vector<Volume> sweep_bounced(const Basis& basis, const Transport& transport
                                   const std::vector<const Volume*>& reflectors, Bounces bounces) {
   if (cascades.front().scattered != nullptr) {
     const Sources sources = bounce_in_medium(basis, transport, cascades, reflectors,
-                                             bounces == Bounces::all ? kFurtherBounces + 2 : 1);
+                                             bounces == Bounces::all ? kScatteredSweeps : 1);
     return sweep(basis, transport, sources.of(cascades, 0));
   }
   const std::vector<Volume> light = bounce(basis, transport, cascades, reflectors, bounces);

@@ -10,13 +10,13 @@
 
 namespace clpv::reference {
 
-/// Reflectance with the series of kFurtherBounces bounces inside one cascade: R (1 + E).
+/// Series S of all further bounces inside one cascade: flux that a face, and the faces that its light
+/// meets, reflect of 1 W of incident flux.
 Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
                      const Volume& reflectors);
 
 /// Sources of the sweep in every cascade, in `basis` [W/sr]: injected light and the light that
-/// `reflectors`, one volume per cascade, reflect. With all bounces, finer cascades interpolate
-/// incident flux from the next coarser one.
+/// `reflectors`, one volume per cascade, reflect.
 std::vector<Volume> bounce(const Basis& basis, const Transport& transport,
                            std::vector<SweptCascade> cascades,
                            const std::vector<const Volume*>& reflectors, Bounces bounces);

@@ -3,6 +3,7 @@
 // characteristics (docs/method.md, 'The sweep').
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -22,6 +23,8 @@ struct SweptCascade {
   const ClpvMedium* medium = nullptr;  ///< null: none
   /// The medium's source function, of scattered_in_cells(); null: 0.
   const Volume* scattered = nullptr;
+  /// Bits of visibility_masks(), which close links; null: none.
+  const std::vector<std::uint8_t>* occluded = nullptr;
 };
 
 /// Returns the centre of a fine grid's cell in cells of a coarse grid, relative to the centre of

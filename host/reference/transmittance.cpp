@@ -26,4 +26,25 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
   return 1.0 - std::clamp(blocked, 0.0, 1.0);
 }
 
+bool closed_link(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
+                 const glm::ivec3& side) {
+  constexpr int kPoints = 64;
+  for (int octant = 0; octant < 8; ++octant) {
+    const glm::ivec3 upper(octant & 1, octant >> 1 & 1, octant >> 2), cube = cell - 1 + upper;
+    bool crossed = true;
+    for (int axis = 0; axis < 3; ++axis)
+      crossed = crossed && (side[axis] == 0 || (side[axis] > 0) == (upper[axis] == 1));
+    if (!crossed) continue;
+    if (glm::any(glm::lessThan(cube, glm::ivec3(0))) ||
+        glm::any(glm::greaterThan(cube, glm::ivec3(n - 2))))
+      return false;
+    const int here = 7 - octant, there = here + side.x + 2 * side.y + 4 * side.z;
+    const auto first = static_cast<std::size_t>((cube.z * n + cube.y) * n + cube.x) * kPoints;
+    for (int point = 0; point < kPoints; ++point) {
+      if ((occluded[first + point] & (1 << here | 1 << there)) == 0) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace clpv::reference

@@ -3,6 +3,7 @@
 // clamp(B, 0, 1) (docs/method.md, 'Blockers').
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -15,5 +16,11 @@ namespace clpv::reference {
 /// corners, one channel.
 double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
                      const std::vector<double>& weights);
+
+/// Returns true if no point of the cubes that a link into `cell` from `side` crosses sees both of
+/// its centres (kernels/sweep/closed_links.cl). `occluded`: bits of visibility_masks(), n^3 cubes.
+/// Links from outside the grid are open.
+bool closed_link(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
+                 const glm::ivec3& side);
 
 }  // namespace clpv::reference

@@ -18,6 +18,7 @@
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/sweep/sweep.hpp"
+#include "pipeline/voxels/visibility.hpp"
 #include "reference/bounce.hpp"
 #include "reference/medium.hpp"
 #include "reference/sweep.hpp"
@@ -48,6 +49,7 @@ struct SweepWork {
   SweepProblem problem;
   std::vector<Volume> light, blockers, reflectors, swept;
   std::vector<ShadowedLight> lights;
+  Buffer occluded;
   Sweeper sweeper;
 
   SweepWork(Session& session, const SweepProblem& p)
@@ -55,6 +57,9 @@ struct SweepWork {
         lights(scaled(on_device(session, p.lights), p.medium_scale)),
         sweeper(session, *p.basis, problem.transport, with_sky(problem)) {
     const SweepOptions& o = p.options;
+    std::vector<std::uint8_t> bits;
+    for (const auto& cascade : p.occluded) bits.insert(bits.end(), cascade.begin(), cascade.end());
+    if (!bits.empty()) occluded = session.upload(bits, "occluded cells");
     for (std::size_t i = 0; i < p.grids.size(); ++i) {
       light.push_back(on_device(session, *p.light[i], o.format));
       if (o.blocking) blockers.push_back(on_device(session, *p.blockers[i], o.format));
@@ -67,7 +72,7 @@ struct SweepWork {
 
   void run() {
     for (std::size_t i = problem.grids.size(); i-- > 0;) {
-      if (problem.options.blocking) sweeper.set_blockers(i, blockers[i]);
+      if (problem.options.blocking) sweeper.set_blockers(i, blockers[i], occluded);
       if (bounces()) sweeper.set_reflectors(i, problem.grids[i], reflectors[i]);
       sweeper.sweep({i, problem.grids, light[i], problem.sky_scale, lights}, swept[i]);
     }
@@ -83,6 +88,7 @@ std::vector<double> expected_light(const SweepProblem& p) {
   for (std::size_t i = 0; i < p.grids.size(); ++i) {
     cascades.push_back(
         {p.grids[i], p.light[i].get(), o.blocking ? p.blockers[i].get() : nullptr, o.parts[i]});
+    if (!p.occluded.empty()) cascades.back().occluded = &p.occluded[i];
     if (o.bounces != Bounces::one) reflecting.push_back(p.reflectors[i].get());
     if (!o.medium) continue;
     scattered[i] = reference::scattered_in_cells(*o.medium, p.lights, p.grids[i]);
@@ -152,16 +158,17 @@ struct SweepCase {
   SweepForm form = SweepForm::bins;
   bool sky = false;
   bool medium = false;
+  bool closed = false;  ///< occluded cells close links
 
   std::string name() const {
     std::string directions;
     for (const int p : parts)
       directions += fmt::format("{}{}", directions.empty() ? "" : ",", kSweepBins * p * p);
-    return fmt::format("{}/{}^3/{}{}{}{}{}{}{}/{}", basis, grid, directions,
+    return fmt::format("{}/{}^3/{}{}{}{}{}{}{}{}/{}", basis, grid, directions,
                        bounces == Bounces::one ? "" : fmt::format("/{} bounces", name_of(bounces)),
                        blocking ? "" : "/free", blocked_by == Blocking::areas ? "" : "/one-sided",
                        form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "",
-                       medium ? "/medium" : "", format_name(format));
+                       medium ? "/medium" : "", closed ? "/closed" : "", format_name(format));
   }
 };
 
@@ -193,6 +200,19 @@ SharedVolume random_reflectors(int n, std::mt19937& random) {
   return volume;
 }
 
+/// Occlusion of one cascade. In 2 of 3 cubes each point is hidden from one of two groups of centres,
+/// so that links between the groups are closed.
+std::vector<std::uint8_t> random_walls(int n, std::mt19937& random) {
+  constexpr int kPoints = 64;
+  std::vector<std::uint8_t> occluded(visibility_bytes(n));
+  for (std::size_t cube = 0; cube < occluded.size(); cube += kPoints) {
+    const std::uint8_t group = random() % 256, walls = random() % 3 == 0 ? 0 : 255;
+    for (int point = 0; point < kPoints; ++point)
+      occluded[cube + point] = walls & (random() % 2 == 0 ? group : 255 - group);
+  }
+  return occluded;
+}
+
 Job job_of(Session& session, const SweepCase& c) {
   const std::shared_ptr<const Basis> basis = make_basis(c.basis);
   SweepProblem problem =
@@ -204,6 +224,9 @@ Job job_of(Session& session, const SweepCase& c) {
                     .format = c.format,
                     .form = c.form,
                     .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt});
+  std::mt19937 random(5);
+  for (std::size_t i = 0; c.closed && i < c.parts.size(); ++i)
+    problem.occluded.push_back(random_walls(c.grid, random));
   if (c.sky) problem.sky = uneven_sky(), problem.sky_scale = kSkyScale;
   return sweep_job(session, problem);
 }
@@ -262,7 +285,7 @@ SweepProblem random_sweep(const std::shared_ptr<const Basis>& basis, const Trans
 Cases sweep_cases(const CheckScope& scope) {
   // Cases of one grid size and basis share kernels.
   std::vector<SweepCase> cases = {
-      {.basis = "sh3", .grid = 9, .parts = {2, 1, 1}},
+      {.basis = "sh3", .grid = 9, .parts = {2, 1, 1}, .closed = true},
       {.basis = "sh3", .grid = 9, .parts = {1, 3}, .form = SweepForm::planes, .sky = true},
       {.basis = "bins24", .grid = 9, .parts = {1, 2}, .sky = true},
       {.basis = "sh2", .grid = 8, .parts = {1, 1}, .blocked_by = Blocking::one_sided},

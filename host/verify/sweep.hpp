@@ -2,6 +2,7 @@
 // Job of stages `sweep` and `bounce`: injected light of nested cascades to swept light.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -30,6 +31,8 @@ struct SweepProblem {
   float sky_scale = 1;
   std::vector<reference::MappedLight> lights = {};  ///< in SweepOptions::medium
   float medium_scale = 1;
+  /// Bits of visibility_masks() for each cascade, which close links; empty: none.
+  std::vector<std::vector<std::uint8_t>> occluded = {};
 };
 
 /// `cost` is that of one cascade with a dark border, one bounce and no medium; its time includes

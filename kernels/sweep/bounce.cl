@@ -2,33 +2,29 @@
 // Reflects swept light off the surfaces in a cascade's cells: one more bounce, or all bounces as a
 // truncated Neumann series.
 //
-//   I' = I + R D              inject_reflected       one bounce; only R D with `injected_share` 0
-//   I' = I + R D_1 + S D_2    inject_series          all bounces in the coarsest cascade; D_2:
-//                                                    incident flux of R D_1
-//   S = R (1 + X)             extend_series          X: flux that other surfaces return of 1 W
-//                                                    leaving a face
-//   I' = I + R D_coarser / 4  inject_interpolated    all bounces in a finer cascade
-//   I' = R or S               inject_unit            faces emit what they reflect of 1 W
+//   I' = I + R D              inject_reflected   one bounce; only R D with `injected_share` 0
+//   I' = I + R D_1 + S D_2    inject_series      all bounces; D_2: incident flux of R D_1
+//   S = R + T_1 + T_2 / (1 - q),  T_k = R X_k
+//                             reflect_returned   T_1
+//                             sum_series         S
 //
 // docs/method.md, 'More bounces'. D [W] is the incident flux on a face, R in [0, 1] the reflectance
-// of a face per channel, I the injected light, I' the sources of the next sweep. By reciprocity X
-// is the incident flux while every face emits what it reflects of 1 W: inject_unit, a sweep along
-// 24 directions and extend_series add one term of the series. X depends only on geometry. A face of
-// normal a that receives D_a (face_fluxes.h) emits, projected on the basis,
+// of a face per channel, I the injected light, I' the sources of the next sweep. X_k is the flux
+// that other surfaces return of 1 W leaving a face after k reflections. By reciprocity X_1 is the
+// incident flux while every face emits R, X_2 while it emits T_1 (inject_flux). q in [0, the cell's
+// largest R] is T_2 / T_1. S depends only on geometry. A face of normal a that receives D_a
+// (face_fluxes.h) emits, projected on the basis,
 //   I(w) = Phi_a max(0, w.a) / pi,   Phi_a = R_a D_a
 //
 // In:   swept             L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
 //       reflectors, series  R, S: volumes of six numbers per cell and channel, faces as in
 //                           shared/reflectors.h
-//       incident          D [W] of the next coarser cascade: a bordered volume for each channel and
-//                         face (sweep_collect.cl)
 //       injected          I: light volume [W/sr]
 // Out:  bounced           I': light volume [W/sr]
 // From the host (host/codegen/sweep_source.cpp): Coefficients of the basis, CLPV_LOBES, the lobe of
-// 1 W about each face's normal, and the text for face_fluxes.h.
+// 1 W about each face's normal, CLPV_MAX_RETURNED, the largest q, and the text for face_fluxes.h.
 // A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"
-#include "sweep/coarse_to_fine.h"
 #include "sweep/face_fluxes.h"
 #include "volume/light.h"
 
@@ -54,12 +50,21 @@ CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
   return sum;
 }
 
-// R (1 + X)
-CLPV_INLINE FaceFluxes sum_series(const FaceFluxes returned, const FaceFluxes reflectance) {
-  FaceFluxes series;
+// Sum of a geometric series of fluxes from the second on; `reflectance` bounds its ratio.
+CLPV_INLINE FaceFluxes sum_bounces(const FaceFluxes first, const FaceFluxes second,
+                                   const FaceFluxes reflectance) {
+  realW largest = 0.0f;
 #pragma unroll
-  for (int a = 0; a < CLPV_CELL_FACES; ++a) series.c[a] = reflectance.c[a] * (1.0f + returned.c[a]);
-  return series;
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) largest = fmax(largest, reflectance.c[a]);
+  largest = fmin(largest, CLPV_MAX_RETURNED);
+  FaceFluxes sum;
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) {
+    // q = T_2 / T_1, without dividing by 0
+    const realW ratio = second.c[a] / fmax(first.c[a], 1e-6f);
+    sum.c[a] = second.c[a] / (1.0f - fmin(fmax(ratio, ZERO), largest));
+  }
+  return sum;
 }
 
 // Intensity [W/sr] of light that leaves each face as a lobe.
@@ -128,62 +133,36 @@ __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_sw
   }
 }
 
-__kernel void inject_unit(CLPV_VOLUME_IN series, CLPV_VOLUME_OUT bounced) {
+__kernel void inject_flux(CLPV_VOLUME_IN flux, CLPV_VOLUME_OUT bounced) {
   const Tile t = find_tile();
   for (int r = 0; r < t.rows; ++r)
     light_store(bounced, t.channel, t.x, t.y + r, t.z,
-                reflected_intensity(faces_load(series, t.channel, t.x, t.y + r, t.z)));
+                reflected_intensity(faces_load(flux, t.channel, t.x, t.y + r, t.z)));
 }
 
-__kernel void extend_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
-                            CLPV_VOLUME_OUT series) {
+__kernel void reflect_returned(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
+                               CLPV_VOLUME_OUT returned) {
   const Tile t = find_tile();
   if (t.rows == 0) return;
   SweepTile bins[CLPV_AXIS_BINS];
   load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
   for (int r = 0; r < t.rows; ++r)
-    faces_store(series, t.channel, t.x, t.y + r, t.z,
-                sum_series(load_incident_flux(swept, bins, t, r),
-                           faces_load(reflectors, t.channel, t.x, t.y + r, t.z)));
+    faces_store(returned, t.channel, t.x, t.y + r, t.z,
+                reflect_flux(load_incident_flux(swept, bins, t, r),
+                             faces_load(reflectors, t.channel, t.x, t.y + r, t.z)));
 }
 
-// Incident flux on one face of a row of finer cells from (x, y, z) on, from the coarser cells'
-// faces: trilinear, and a quarter, since a finer face has a quarter of the area.
-CLPV_INLINE realW interpolate_flux(CLPV_BUFFER_IN incident, const int x, const int y, const int z) {
-  CLPV_BUFFER_IN from = incident + bordered_index(lower_cell(z), lower_cell(y), lower_cell(x));
-  const float tz = upper_weight(z), ty = upper_weight(y);
-  const realW v = interpolate_rows(from, 0, CLPV_SWEEP_PITCH, CLPV_BORDERED_PLANE, ty, tz);
-#if W == 8
-  return 0.25f * (x & 1 ? interpolate_odd(v) : interpolate_even(v));
-#else
-  const float tx = upper_weight(x);
-  return 0.25f * ((1.0f - tx) * v +
-                  tx * interpolate_rows(from, 1, CLPV_SWEEP_PITCH, CLPV_BORDERED_PLANE, ty, tz));
-#endif
-}
-
-CLPV_INLINE FaceFluxes interpolate_faces(CLPV_BUFFER_IN incident, const int x, const int y,
-                                         const int z) {
-  FaceFluxes flux;
-#pragma unroll
-  for (int a = 0; a < CLPV_CELL_FACES; ++a)
-    flux.c[a] = interpolate_flux(incident + a * CLPV_BORDERED_VOLUME, x, y, z);
-  return flux;
-}
-
-// dx, dy, dz: offset of the grid's origin from the coarser one's, in finer cells
-// (coarse_to_fine.h).
-__kernel void inject_interpolated(CLPV_BUFFER_IN incident, const int dx, const int dy, const int dz,
-                                  CLPV_VOLUME_IN reflectors, CLPV_VOLUME_IN injected,
-                                  CLPV_VOLUME_OUT bounced) {
+__kernel void sum_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_IN returned,
+                         CLPV_VOLUME_OUT series) {
   const Tile t = find_tile();
-  CLPV_BUFFER_IN fluxes = incident + t.channel * CLPV_CELL_FACES * CLPV_BORDERED_VOLUME;
+  if (t.rows == 0) return;
+  SweepTile bins[CLPV_AXIS_BINS];
+  load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
   for (int r = 0; r < t.rows; ++r) {
-    const FaceFluxes flux =
-        reflect_flux(interpolate_faces(fluxes, t.x + dx, t.y + r + dy, t.z + dz),
-                     faces_load(reflectors, t.channel, t.x, t.y + r, t.z));
-    light_store(bounced, t.channel, t.x, t.y + r, t.z,
-                add_coefficients(light_load(injected, t.channel, t.x, t.y + r, t.z),
-                                 reflected_intensity(flux)));
+    const FaceFluxes reflectance = faces_load(reflectors, t.channel, t.x, t.y + r, t.z),
+                     first = faces_load(returned, t.channel, t.x, t.y + r, t.z),
+                     second = reflect_flux(load_incident_flux(swept, bins, t, r), reflectance);
+    faces_store(series, t.channel, t.x, t.y + r, t.z,
+                add_fluxes(add_fluxes(reflectance, first), sum_bounces(first, second, reflectance)));
   }
 }

@@ -8,24 +8,13 @@
 //
 // In:   sums         L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
 // Out:  accumulated  nine coefficients per cell and channel [W/sr], any layout
-//       incident     with CLPV_WITH_INCIDENT: flux [W] on the six faces of each cell, a bordered
-//                    volume for each channel and face; bounces of the next finer cascade read it
-//                    (bounce.cl)
 // From the host (host/codegen/sweep_source.cpp): CLPV_PROJECTION, P by folded bins
-// (mirrored_bins.h), and with CLPV_WITH_INCIDENT the text for face_fluxes.h. A work-item computes a
-// tile of W x W cells of a slice and channel.
-#ifndef CLPV_WITH_INCIDENT
-#define CLPV_WITH_INCIDENT 0
-#endif
+// (mirrored_bins.h). A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"
-#include "shared/reflectors.h"
 #include "shared/sweep.h"
 #include "sweep/mirrored_bins.h"
 #include "sweep/sweep_tiles.h"
 #include "volume/light.h"
-#if CLPV_WITH_INCIDENT
-#include "sweep/face_fluxes.h"
-#endif
 
 __constant const float projection[CLPV_SWEEP_BINS][CLPV_N] = CLPV_PROJECTION;
 
@@ -38,11 +27,7 @@ CLPV_INLINE Coefficients project_bins(const Bins bins) {
   return c;
 }
 
-__kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated
-#if CLPV_WITH_INCIDENT
-                            , CLPV_BUFFER_OUT incident
-#endif
-) {
+__kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated) {
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
@@ -53,13 +38,5 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated
     if (y + r >= CLPV_GRID) break;
     const Bins bins = load_bins(volumes, tiles, r, x, y + r, z);
     light_store(accumulated, channel, x, y + r, z, project_bins(bins));
-#if CLPV_WITH_INCIDENT
-    const FaceFluxes flux = incident_flux(bins);
-    const int bordered = bordered_index(z, y + r, x);
-    CLPV_BUFFER_OUT faces = incident + channel * CLPV_CELL_FACES * CLPV_BORDERED_VOLUME;
-#pragma unroll
-    for (int i = 0; i < CLPV_CELL_FACES; ++i)
-      write_numbers(faces + i * CLPV_BORDERED_VOLUME, bordered, zero_outside(x, flux.c[i]));
-#endif
   }
 }

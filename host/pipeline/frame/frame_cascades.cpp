@@ -133,9 +133,20 @@ void FrameCascades::inject_geometry(int cascade, Volume& geometry) {
 }
 
 void FrameCascades::update_links(int cascade) {
-  if (const Volume* blockers = geometry(cascade))
-    links_[cascade].update(keys_[cascade].geometry,
-                           [&] { sweeper_->set_blockers(cascade, *blockers); });
+  const Volume* blockers = geometry(cascade);
+  if (blockers == nullptr) return;
+  links_[cascade].update(keys_[cascade].geometry, [&] {
+    const Buffer closing = occluded(cascade);
+    const StageScope scope(session_, {Pass::propagate, cascade});
+    sweeper_->set_blockers(cascade, *blockers, closing);
+  });
+}
+
+/// Bits that close links; without memory if nothing tests visibility or blocks.
+Buffer FrameCascades::occluded(int cascade) {
+  if (!visibility_ || !blockers_) return {};
+  update_visibility(cascade);
+  return visibility_->masks();
 }
 
 void FrameCascades::update_reflectors(int cascade) {
@@ -143,7 +154,6 @@ void FrameCascades::update_reflectors(int cascade) {
   CachedVolume& reflected = reflected_[cascade];
   reflected.cached.update(keys_[cascade].reflected, [&] {
     const StageScope scope(session_, {Pass::reflectors, cascade});
-    update_links(cascade);
     reflectors_->update(cascade, grids_[cascade], *reflected.volume);
     sweeper_->set_reflectors(cascade, grids_[cascade], *reflected.volume);
   });
@@ -162,13 +172,13 @@ void FrameCascades::propagate(int cascade) {
   accumulated.cached.update(keys_[cascade].accumulated, [&] {
     inject(cascade);
     update_blockers(cascade);
+    if (sweeper_) update_links(cascade);
     update_reflectors(cascade);
     const Volume& injected = *of_cascade(injected_, cascade).volume;
     const StageScope scope(session_, {Pass::propagate, cascade});
     if (propagator_)
       return propagator_->propagate({injected, geometry(cascade), *accumulated.volume},
                                     options_.iterations);
-    update_links(cascade);
     SweepInput input{static_cast<std::size_t>(cascade), grids_, injected, lights_.scale()};
     if (scene_.medium) input.lights = scaled(lights_.shadowed(), lights_.scale());
     sweeper_->sweep(input, *accumulated.volume);

@@ -73,6 +73,7 @@ class FrameCascades {
   void inject(int cascade);
   void update_blockers(int cascade);
   void update_links(int cascade);
+  Buffer occluded(int cascade);
   void update_reflectors(int cascade);
   void propagate(int cascade);
   void update_visibility(int cascade);

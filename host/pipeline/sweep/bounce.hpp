@@ -22,45 +22,33 @@ namespace clpv {
 /// bit.
 class Bouncer {
  public:
-  /// `series`: the coarsest cascade evaluates the series of all bounces; finer ones interpolate
-  /// incident flux.
+  /// `series`: evaluates the series of all bounces in every cascade.
   Bouncer(Session& session, const Basis& basis, const SweepOptions& options, bool series);
 
-  /// Sets the reflectors of a cascade (reflector_masks), which must outlive this object. For the
-  /// coarsest cascade it also restarts the series: S = R.
+  /// Sets the reflectors R of a cascade (reflector_masks), which must outlive this object.
   void set_reflectors(std::size_t cascade, const Volume& reflectors);
 
-  /// Writes S to `bounced`: in the coarsest cascade each face emits the light it reflects of 1 W.
-  void inject_unit(Volume& bounced);
-  /// Adds a term to the series, S = R (1 + E). `swept`: a sweep of the light of inject_unit().
-  void extend_series(const Buffer& swept);
+  /// Writes light of which each face emits this flux [W] to `bounced`.
+  void inject_flux(const Volume& flux, Volume& bounced);
+  /// Returns R X. `swept`: a sweep of inject_flux(R), whose incident flux is X.
+  const Volume& reflect_returned(std::size_t cascade, const Buffer& swept);
+  /// Sets the series S of a cascade. `swept`: a sweep of inject_flux() of reflect_returned().
+  void sum_series(std::size_t cascade, const Buffer& swept);
 
   /// Writes `share` I + R D. `swept` gives the incident flux D.
   void inject_reflected(std::size_t cascade, const Buffer& swept, float share,
                         const Volume& injected, Volume& bounced);
-  /// Writes I + R D_1 + S D_2 in the coarsest cascade.
-  void inject_series(const Buffer& first_swept, const Buffer& second_swept, const Volume& injected,
-                     Volume& bounced);
-
-  /// Incident flux on the faces of a cascade, written by sweep_collect.cl; null for the finest
-  /// cascade and without a series.
-  const Buffer* incident(std::size_t cascade) const {
-    return cascade == 0 || incident_.empty() ? nullptr : &incident_[cascade - 1];
-  }
-  /// Writes I + R D. D is interpolated from incident() of the next coarser cascade. `offset`:
-  /// offset_in_coarser().
-  void inject_interpolated(std::size_t cascade, const std::array<int, 3>& offset,
-                           const Volume& injected, Volume& bounced);
+  /// Writes I + R D_1 + S D_2.
+  void inject_series(std::size_t cascade, const Buffer& first_swept, const Buffer& second_swept,
+                     const Volume& injected, Volume& bounced);
 
  private:
   SweepVolumes volumes_;
   std::vector<const Volume*> reflectors_;
-  const Volume* series_ = nullptr;  ///< S so far: R of the coarsest cascade, or series_volume_
-  std::unique_ptr<Volume> series_volume_;  ///< null without a series
-  /// Flux on each face of all cascades except the finest; empty without a series.
-  std::vector<Buffer> incident_;
+  std::vector<Volume> series_;        ///< S of each cascade; empty without a series
+  std::unique_ptr<Volume> returned_;  ///< R X; null without a series
   Kernel inject_reflected_;
-  std::optional<Kernel> inject_unit_, extend_series_, inject_series_, inject_interpolated_;
+  std::optional<Kernel> inject_flux_, reflect_returned_, sum_series_, inject_series_;
 };
 
 }  // namespace clpv

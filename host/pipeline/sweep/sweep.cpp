@@ -87,10 +87,16 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   border_ = zeroed_buffer(
       session, 2 * ordinates * plane_numbers(options.grid) * number_bytes(options.format.storage),
       "boundary condition of the sweep");
-  if (options.blocking)
+  if (options.blocking) {
+    find_closed_links_.emplace(session, volumes_.program("sweep/closed_links.cl", ""),
+                               "find_closed_links");
     transmittance_.emplace(
         session, volumes_.program("sweep/sweep_links.cl", sweep_links_text(basis, transport)),
         "sweep_links");
+    closed_ = zeroed_buffer(
+        session, CLPV_SWEEP_BORDERED_VOLUME_OF(std::size_t(options.grid)) * sizeof(cl_uint),
+        "closed links of the sweep");
+  }
   if (options.medium)
     medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
   make_cascades(basis);
@@ -99,33 +105,31 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   bouncer_.emplace(session, basis, options, series);
   bounced_ = std::make_unique<Volume>(session, VolumeShape{options.grid, basis.size(), 3},
                                       "injected and reflected light", options.format);
-  if (!series) return;
-  last_swept_ = volumes_.make(3 * kSweepBins, "light of the first bounce");
-  ProgramSource collecting =
-      volumes_.program("sweep/sweep_collect.cl", sweep_collect_text() + incident_flux_text());
-  collecting.literals.flag("CLPV_WITH_INCIDENT", true);
-  collect_with_incident_.emplace(session, collecting, "sweep_collect");
+  if (series) last_swept_ = volumes_.make(3 * kSweepBins, "light of the first bounce");
 }
 
 void Sweeper::make_cascades(const Basis& basis) {
   const std::size_t count = options_.parts.size();
   const std::size_t links = options_.blocking ? link_volumes().count() : 1;
-  bool finer_has_few = false;
+  plan_ = sweep_plan(options_.bounces, scatters(options_.medium));
+  const bool has_few = !std::ranges::all_of(plan_, &SweepStep::all_directions);
   for (std::size_t c = 0; c < count; ++c) {
-    const bool coarsest = c + 1 == count;
-    std::vector<SweepStep> plan = sweep_plan(options_.bounces, scatters(options_.medium), coarsest);
-    const bool has_few = !std::ranges::all_of(plan, &SweepStep::all_directions);
-    Cascade cascade{
-        std::move(plan),
-        make_directions(basis, options_.parts[c], coarsest ? 0 : options_.parts[c + 1], c > 0),
-        {},
-        volumes_.make(links, "transmittance of the sweep's links")};
+    const int coarser = c + 1 == count ? 0 : options_.parts[c + 1];
+    Cascade cascade{make_directions(basis, options_.parts[c], coarser, c > 0),
+                    {},
+                    volumes_.make(links, "transmittance of the sweep's links")};
     if (has_few)
-      cascade.few =
-          make_directions(basis, kBounceParts, coarsest ? 0 : kBounceParts, finer_has_few);
-    finer_has_few = has_few;
+      cascade.few = make_directions(basis, kBounceParts,
+                                    coarser == 0 || last_light_enters() ? coarser : kBounceParts,
+                                    c > 0 && !last_light_enters());
     cascades_.push_back(std::move(cascade));
   }
+}
+
+/// Returns true if all sweeps of a cascade let in the light of the coarser one's last sweep; false
+/// if light of the same number of bounces enters.
+bool Sweeper::last_light_enters() const {
+  return options_.bounces == Bounces::all && !scatters(options_.medium);
 }
 
 /// Program of sweep_bins.cl or sweep_planes.cl, for light of `coefficients`.
@@ -195,29 +199,36 @@ void Sweeper::enter_medium(std::size_t cascade, const ClpvGrid& grid) {
   medium_->place(cascade, grid);
 }
 
-void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry) {
-  transmittance_.value().set(geometry.memory(), cascades_[cascade].links);
+void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded) {
+  if (occluded.exists()) {
+    const std::size_t n = options_.grid;
+    find_closed_links_.value().set(occluded, static_cast<cl_uint>(cascade), closed_);
+    find_closed_links_->launch({n, n, n}, {std::min(n, kRowGroup), 1, 1});
+  }
+  transmittance_.value().set(geometry.memory(), closed_, cascades_[cascade].links);
   volumes_.launch(*transmittance_, 1);
 }
 
 void Sweeper::set_reflectors(std::size_t cascade, const ClpvGrid& grid, const Volume& reflectors) {
   bouncer_.value().set_reflectors(cascade, reflectors);
-  const bool series = cascades_[cascade].plan.back().light == SweptLight::series;
+  const bool series = plan_.back().light == SweptLight::series;
   if (!series) return;
   enter_medium(cascade, grid);
-  for (int bounce = 0; bounce < kFurtherBounces; ++bounce) {
-    bouncer_->inject_unit(*bounced_);
+  const auto sweep_reflected = [&](const Volume& flux) {
+    bouncer_->inject_flux(flux, *bounced_);
     set_sources(*bounced_);
     launch(*cascades_[cascade].few, cascade, {}, false);
-    bouncer_->extend_series(swept_);
-  }
+  };
+  sweep_reflected(reflectors);
+  sweep_reflected(bouncer_->reflect_returned(cascade, swept_));
+  bouncer_->sum_series(cascade, swept_);
 }
 
 void Sweeper::sweep(const SweepInput& input, Volume& accumulated) {
   enter_medium(input.cascade, input.grids[input.cascade]);
   if (medium_) medium_->scatter_lights(input.grids[input.cascade], input.lights);
-  for (const SweepStep& step : cascades_[input.cascade].plan) run(step, input);
-  collect(input.cascade, accumulated);
+  for (const SweepStep& step : plan_) run(step, input);
+  collect(accumulated);
 }
 
 /// Sweeps the light of a step with its boundary condition, and stores the halo of the next finer
@@ -251,11 +262,7 @@ const Volume& Sweeper::light_of(const SweepStep& step, const SweepInput& input) 
       bouncer_->inject_reflected(c, swept_, 0, input.injected, *bounced_);
       break;
     case SweptLight::series:
-      bouncer_->inject_series(last_swept_, swept_, input.injected, *bounced_);
-      break;
-    case SweptLight::interpolated:
-      bouncer_->inject_interpolated(c, offset_in_coarser(input.grids[c + 1], input.grids[c]),
-                                    input.injected, *bounced_);
+      bouncer_->inject_series(c, last_swept_, swept_, input.injected, *bounced_);
       break;
   }
   return *bounced_;
@@ -272,7 +279,8 @@ void Sweeper::set_sources(const Volume& light) {
 bool Sweeper::light_border(bool all_directions, const SweepInput& input) {
   const std::size_t c = input.cascade;
   const auto directions_in = [&](std::size_t cascade) -> Directions& {
-    return all_directions ? cascades_[cascade].all : *cascades_[cascade].few;
+    return all_directions || (cascade != c && last_light_enters()) ? cascades_[cascade].all
+                                                                   : *cascades_[cascade].few;
   };
   Directions& directions = directions_in(c);
   if (!directions.border && !directions.sky_border) return false;
@@ -329,14 +337,10 @@ void Sweeper::darken_border(const Directions& directions) {
   session_.fill_zero(plane_buffer_, 2 * planes * sizeof(float));
 }
 
-/// Projects swept light on harmonics, and stores the incident flux that the next finer cascade
-/// interpolates.
-void Sweeper::collect(std::size_t cascade, Volume& accumulated) {
-  const Buffer* incident = bouncer_ ? bouncer_->incident(cascade) : nullptr;
-  Kernel& kernel = incident != nullptr ? *collect_with_incident_ : collect_;
-  kernel.set(swept_, accumulated.memory());
-  if (incident != nullptr) kernel.add(*incident);
-  volumes_.launch(kernel, 3);
+/// Projects swept light on harmonics.
+void Sweeper::collect(Volume& accumulated) {
+  collect_.set(swept_, accumulated.memory());
+  volumes_.launch(collect_, 3);
 }
 
 }  // namespace clpv

@@ -44,12 +44,13 @@ class Sweeper {
           const SweepOptions& options);
 
   /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3
-  /// samples.
-  void set_blockers(std::size_t cascade, const Volume& geometry);
+  /// samples. `occluded`: bits of visibility_masks() for all cascades, which close links; without
+  /// memory: none.
+  void set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded = {});
 
   /// Sets the reflectors of a cascade at `grid` (VoxelField), for SweepOptions::bounces other than
-  /// one. `reflectors` must outlive the sweeper. With all bounces, computes their series from the
-  /// reflectors and the links.
+  /// one. `reflectors` must outlive the sweeper. With all bounces, computes their series in this
+  /// cascade from the reflectors and the links.
   void set_reflectors(std::size_t cascade, const ClpvGrid& grid, const Volume& reflectors);
 
   /// Sweeps a cascade after the next coarser one. Writes light of swept_basis(), as radiance times
@@ -77,7 +78,6 @@ class Sweeper {
     Buffer sky = {};                   ///< swept_sky()
   };
   struct Cascade {
-    std::vector<SweepStep> plan;
     Directions all;
     std::optional<Directions> few;  ///< one per bin; none if no step of the plan has them
     Buffer links;                   ///< transmittance
@@ -93,18 +93,21 @@ class Sweeper {
   void darken_border(const Directions& directions);
   void launch(Directions& directions, std::size_t cascade, const ClpvSweepHalo& halo, bool lit,
               bool scattered = false);
-  void collect(std::size_t cascade, Volume& accumulated);
+  void collect(Volume& accumulated);
+  bool last_light_enters() const;
 
   Session& session_;
   SweepOptions options_;
   SweepVolumes volumes_;
   Buffer bins_, sources_, lit_;  ///< sources_, lit_: sweep_source.cl
+  Buffer closed_;                ///< closed_links.cl; zeros close no link
   /// Results of the last two sweeps; last_swept_: only for SweptLight::series.
   Buffer swept_, last_swept_;
   Buffer plane_buffer_, border_;
   Kernel source_, collect_;
-  std::optional<Kernel> transmittance_, collect_with_incident_;
+  std::optional<Kernel> find_closed_links_, transmittance_;
   std::optional<SweepMedium> medium_;
+  std::vector<SweepStep> plan_;
   std::vector<Cascade> cascades_;
   std::optional<Bouncer> bouncer_;   ///< none with one bounce
   std::unique_ptr<Volume> bounced_;  ///< injected and reflected light; null with one bounce

@@ -17,7 +17,7 @@ std::vector<SweepStep> scattering_plan(int sweeps) {
 
 }  // namespace
 
-std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters, bool coarsest) {
+std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters) {
   switch (bounces) {
     case Bounces::one:
       return {{.light = SweptLight::injected, .all_directions = true}};
@@ -26,8 +26,7 @@ std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters, bool coarsest)
       return {{.light = SweptLight::injected},
               {.light = SweptLight::reflected, .all_directions = true}};
     case Bounces::all:
-      if (scatters) return scattering_plan(kFurtherBounces + 2);
-      if (!coarsest) return {{.light = SweptLight::interpolated, .all_directions = true}};
+      if (scatters) return scattering_plan(kScatteredSweeps);
       return {{.light = SweptLight::injected},
               {.light = SweptLight::only_reflected, .dark_border = true},
               {.light = SweptLight::series, .all_directions = true}};

@@ -8,14 +8,13 @@
 
 namespace clpv {
 
-/// Light that a sweep starts from. I: injected light; R: reflectors; D: incident flux of the last
-/// sweep, D_1 of the one before it.
+/// Light that a sweep starts from. I: injected light; R: reflectors; S: their series; D: incident
+/// flux of the last sweep, D_1 of the one before it.
 enum class SweptLight {
   injected,        ///< I
   reflected,       ///< I + R D
   only_reflected,  ///< R D
-  series,          ///< I + R D_1 + R (1 + E) D
-  interpolated,    ///< I + R D, with D of the next coarser cascade
+  series,          ///< I + R D_1 + S D
 };
 
 struct SweepStep {
@@ -27,6 +26,6 @@ struct SweepStep {
 
 /// The last step has all directions, and its result is the light of the cascade. `scatters`: there
 /// is a medium that scatters light.
-std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters, bool coarsest);
+std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters);
 
 }  // namespace clpv

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: MIT
+// Pairs of the eight cell centres at the corners of a cube: closed_links.cl writes a bit for each,
+// sweep_links.cl reads them.
+#pragma once
+
+enum { CLPV_CENTRES = 8 };  // centre i is offset by (i & 1, i >> 1 & 1, i >> 2)
+
+// Number of the pair of centres i < j: 0 to 27.
+#define CLPV_PAIR(i, j) ((i) * (13 - (i)) / 2 + (j)-1)

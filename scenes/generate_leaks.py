@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Writes scenes whose insides no light should reach, or little: `generate_leaks.py FOLDER`.
+
+Python's standard library only; the same bytes every time. scripts/leaks measures them.
+
+A room of 4 x 3 x 4 m (albedo 0.8) stands 1.5 m above a ground of 30 x 30 m. Its walls are one
+double-sided sheet, two sheets some distance apart, or a solid of some thickness, in cells of 12.5 /
+32 m. `turned` is turned by 20 degrees about y, `slit` has a slit of half a cell in a wall, `door` two
+rooms with a door between them of which one is open to the sun, `corner` only two walls and a floor,
+`legs` only the ground and a floor on four thin legs. Each is lit by a sun, an even sky or a lamp
+outside.
+"""
+import json
+import math
+import os
+import sys
+
+from modelling.gltf import Document
+from modelling.mesh import Mesh
+
+CELL = 12.5 / 32
+LOWER, UPPER = (-2, 0, -2), (2, 3, 2)
+GREY = (0.8, 0.8, 0.8)
+SUN = [0.4, -1, 0.3]
+# Distance of the outer from the inner sheet in cells; None: one sheet.
+WALLS = {"sheet": None, "wall0.03": 0.03, "wall0.1": 0.1, "wall0.5": 0.5, "wall1": 1, "wall2": 2,
+         "wall3": 3}
+
+
+def rectangle(axis, at, low, high, towards):
+    """Corners of a rectangle across an axis, counter-clockwise seen from the side `towards`."""
+    u, v = (axis + 1) % 3, (axis + 2) % 3
+    corners = []
+    for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
+        p = [0, 0, 0]
+        p[axis], p[u], p[v] = at, (low, high)[a][u], (low, high)[b][v]
+        corners.append(tuple(p))
+    return corners if towards > 0 else corners[::-1]
+
+
+def box(low, high, inwards, without=()):
+    """Faces of a box; `without`: (axis, side) of those left out."""
+    return [rectangle(axis, (low, high)[side][axis], low, high, (1 if side else -1) * (-1 if inwards else 1))
+            for axis in range(3) for side in (0, 1) if (axis, side) not in without]
+
+
+def walls(thickness, low=LOWER, high=UPPER):
+    faces = box(low, high, True)
+    if thickness is not None:
+        t = thickness * CELL
+        faces += box([a - t for a in low], [a + t for a in high], False)
+    return faces
+
+
+def with_slit(faces):
+    """Replaces each face at x = -2 by two, half a cell apart."""
+    result = []
+    for face in faces:
+        if any(p[0] != -2 for p in face):
+            result.append(face)
+            continue
+        for low, high in ((0, 1.5 - CELL / 4), (1.5 + CELL / 4, 3)):
+            result.append([(x, min(max(y, low), high), z) for x, y, z in face])
+    return result
+
+
+def turned(faces, degrees):
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return [[(c * x + s * z, y, c * z - s * x) for x, y, z in face] for face in faces]
+
+
+def two_rooms():
+    """The room beyond x = 2 lacks its roof; a door of 0.9 x 2 m joins both."""
+    door = (2, 0, -0.45), (2, 2, 0.45)
+    wall = [rectangle(0, 2, low, high, 1)
+            for low, high in (((2, 0, -2), (2, 3, door[0][2])), ((2, 0, door[1][2]), (2, 3, 2)),
+                              ((2, 2, door[0][2]), (2, 3, door[1][2])))]
+    return (box(LOWER, UPPER, True, [(0, 1)]) + wall +
+            box((2, 0, -2), (6, 3, 2), True, [(0, 0), (1, 1)]))
+
+
+def legs():
+    faces = [rectangle(1, 0, LOWER, UPPER, 1)]
+    for x in (-1.9, 1.85):
+        for z in (-1.9, 1.85):
+            faces += box((x, -1.5, z), (x + 0.05, 0, z + 0.05), False, [(1, 0), (1, 1)])
+    return faces
+
+
+def shapes():
+    yield from ((name, walls(thickness)) for name, thickness in WALLS.items())
+    yield "turned", turned(walls(None), 20)
+    yield "slit", with_slit(walls(None))
+    yield "door", two_rooms()
+    yield "corner", box(LOWER, UPPER, True, [(0, 1), (1, 1), (2, 1)])
+    yield "legs", legs()
+
+
+LIGHTS = {
+    "sun": {"lights": [{"name": "sun", "kind": "directional", "direction": SUN,
+                        "illuminance_lux": 1e4}]},
+    "sky": {"lights": [], "sky": {"radiance": [1000, 1000, 1000]}},
+    "lamp": {"lights": [{"name": "lamp", "kind": "point", "position": [-4, 2, -4],
+                         "intensity_candela": 1e4}]},
+}
+
+
+def write(folder, offset=(0, 0, 0), names=None):
+    """Writes the shapes named, all by default, moved by `offset` [m]."""
+    os.makedirs(folder, exist_ok=True)
+    ground = [(-15, -1.5, 15), (15, -1.5, 15), (15, -1.5, -15), (-15, -1.5, -15)]
+    for name, faces in shapes():
+        if names and name not in names:
+            continue
+        mesh = Mesh()
+        for corners in faces + [ground]:
+            mesh.quad("grey", corners)
+        document = Document("clpv scenes/generate_leaks.py")
+        document.material("grey", GREY, double_sided=True)
+        document.node(name, document.mesh(name, mesh), translation=offset)
+        document.write(os.path.join(folder, name + ".glb"))
+        for light, values in LIGHTS.items():
+            scene = {
+                "model": name + ".glb", **values, "cameras": [{
+                    "name": "in", "eye": [-1, 1.6, -1.2], "target": [1, 1.2, 1.3],
+                    "vertical_fov_degrees": 90
+                }], "cascades": {"count": 3, "size_metres": 12.5}
+            }
+            with open(os.path.join(folder, f"{name}-{light}.json"), "w", encoding="utf-8") as file:
+                json.dump(scene, file, indent=1)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    write(sys.argv[1])

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Light inside a sealed room, which path tracing finds dark, over the irradiance of sunlit ground.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <vector>
+
+#include "pipeline/frame/frame.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace clpv::leaks_test {
+namespace {
+
+using namespace test;
+
+constexpr float kEdge = 4, kCell = 0.5f;
+const glm::vec3 kSun(0.4f, -1, 0.3f);
+
+/// A room of sheets 1.5 m above a ground, turned about y and moved.
+SceneData sealed_room(float degrees, const glm::vec3& offset) {
+  SceneData scene;
+  const unsigned grey = add_material(scene, glm::vec3(0.8f), CLPV_MATERIAL_DOUBLE_SIDED);
+  add_box(scene, glm::vec3(-kEdge / 2, 0, -kEdge / 2), kEdge, grey);
+  add_quad(scene, {-8, -1.5f, -8}, {0, 0, 16}, {16, 0, 0}, grey);
+  const glm::mat4 turn = glm::rotate(glm::mat4(1), glm::radians(degrees), glm::vec3(0, 1, 0));
+  for (ClpvVertex& vertex : scene.vertices) {
+    const glm::vec4 at(vertex.position[0], vertex.position[1], vertex.position[2], 1),
+        normal(vertex.normal[0], vertex.normal[1], vertex.normal[2], 0);
+    for (int axis = 0; axis < 3; ++axis) {
+      vertex.position[axis] = (turn * at)[axis] + offset[axis];
+      vertex.normal[axis] = (turn * normal)[axis];
+    }
+  }
+  scene.lights = {{"sun", directional_light(kSun)}};
+  return scene;
+}
+
+/// Mean irradiance inside over that of the ground.
+double leak(const SceneData& scene, const glm::vec3& eye, Bounces bounces) {
+  RenderOptions options;
+  options.bounces = bounces, options.near = Near::off;
+  options.grid = 16, options.cascades = 2, options.cascade_size = 16 * kCell;
+  options.directions = options.coarser_directions = Directions::of24;
+  options.width = 32, options.height = 18, options.rsm_size = 128, options.shadow_size = 256;
+  Frame frame(test_session(), scene, options);
+  SceneCamera camera = camera_at(eye, {1, -0.2f, 1.2f});
+  frame.render(camera);
+  const std::vector<float> pixels = frame.read(Show::irradiance);
+  double sum = 0;
+  for (std::size_t i = 0; i < pixels.size(); i += 4) sum += double{pixels[i]};
+  return sum / (static_cast<double>(pixels.size()) / 4) * glm::length(kSun);
+}
+
+// A sheet is no thicker than a point, and closes all the same.
+TEST(Leaks, ASealedRoomOfSheetsIsDark) {
+  for (const float degrees : {0.0f, 20.0f}) {
+    for (const float shift : {0.0f, 0.19f}) {
+      const glm::vec3 offset = kCell * glm::vec3(shift, 2 * shift, -shift);
+      const SceneData scene = sealed_room(degrees, offset);
+      const glm::vec3 eye = offset + glm::vec3(-1, 1.6f, -1.2f);
+      EXPECT_LT(leak(scene, eye, Bounces::one), 0.02) << degrees << ' ' << shift;
+      EXPECT_LT(leak(scene, eye, Bounces::all), 0.02) << degrees << ' ' << shift;
+    }
+  }
+}
+
+// The same camera finds light where the room has lost a wall.
+TEST(Leaks, AnOpenRoomIsLit) {
+  SceneData scene = sealed_room(0, glm::vec3(0));
+  scene.triangles.erase(scene.triangles.begin(), scene.triangles.begin() + 2);
+  EXPECT_GT(leak(scene, {-1, 1.6f, -1.2f}, Bounces::one), 0.02);
+}
+
+}  // namespace
+}  // namespace clpv::leaks_test
