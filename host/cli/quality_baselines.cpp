@@ -30,7 +30,8 @@ void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
       ->type_name("MS")
       ->needs(names);
   add(command, "--images", "DIR", baselines.images,
-      "folder for images: DIR/BASELINE/SCENE-CAMERA.exr")
+      "folder for images: DIR/BASELINE/SCENE-CAMERA.exr, characters other than letters, digits, - "
+      "and _ replaced")
       ->needs(names);
 }
 
