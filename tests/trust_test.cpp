@@ -368,26 +368,35 @@ struct Inputs : ::testing::Test {
 };
 
 TEST_F(Inputs, AreReplacedByNoOutput) {
+  const test::TemporaryFolder cache;
   const auto before = contents_of(folder.path());
   const std::string scene = " my.json" + kSmallSteps,
-                  film = "sequence" + scene + "--frames 3 --fps 1 --format png -o . ",
-                  cached = " --spp 1 --frames 1 --cache " + (folder / "../cache").string();
+                    film = "sequence" + scene + "--frames 3 --fps 1 --format png -o . ",
+                    cached = " --spp 1 --frames 1 --cache " + cache.path().string();
   ::setenv("CLPV_KERNEL_DIR", folder.path().c_str(), 1);
   const test::Outcome kernel = run_here("check --list --junit gather/gather.cl", folder.path());
   ::unsetenv("CLPV_KERNEL_DIR");
   EXPECT_EQ(kernel.exit_code, 2) << kernel.err;
   const std::string rendered = "render" + scene;
   const std::vector<std::string> commands{
-      rendered + "-o o.exr --stats o.exr", rendered + "-o o.exr --dump-normals ./o.exr",
-      rendered + "-o o.exr --stats my.json", rendered + "-o o.exr --stats model.gltf",
-      rendered + "-o o.exr --stats hard.json", rendered + "-o o.exr --stats link.json",
-      rendered + "-o 'a b.png'", rendered + "-o unused.png", rendered + "-o 'my sky.exr'",
+      rendered + "-o o.exr --stats o.exr",
+      rendered + "-o o.exr --dump-normals ./o.exr",
+      rendered + "-o o.exr --stats my.json",
+      rendered + "-o o.exr --stats model.gltf",
+      rendered + "-o o.exr --stats hard.json",
+      rendered + "-o o.exr --stats link.json",
+      rendered + "-o 'a b.png'",
+      rendered + "-o unused.png",
+      rendered + "-o 'my sky.exr'",
       rendered + "-o o.exr --centres centres.json --stats centres.json",
-      "pathtrace my.json -o 'my sky.exr'", "pathtrace my.json -o o.exr --stats my.json",
+      "pathtrace my.json -o 'my sky.exr'",
+      "pathtrace my.json -o o.exr --stats my.json",
       "query" + scene + "--points points.csv -o points.csv",
-      "query" + scene + "--points points.csv -o model.bin", film,
+      "query" + scene + "--points points.csv -o model.bin",
+      film,
       "sequence" + scene + "--frames 3 --fps 1 -o . --centres times.json",
-      "quality" + scene + cached + " -o my.json", "quality" + scene + cached + " -o hard.json",
+      "quality" + scene + cached + " -o my.json",
+      "quality" + scene + cached + " -o hard.json",
       "quality" + scene + cached + " -o link.json",
       "quality" + scene + cached + " --centres centres.json -o centres.json",
       "quality" + scene + cached + " --vary centres=times.json,centres.json -o centres.json",

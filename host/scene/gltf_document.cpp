@@ -137,7 +137,8 @@ void record_images(const GltfDocument& document) {
     const std::string& uri = document.model.images[i].uri;
     const auto path = uri.starts_with("data:") ? std::nullopt : percent_decoded(uri);
     if (path && !path->empty())
-      InputRecord::add({fmt::format("{} /images/{}/uri", document.file, i), document.folder / *path});
+      InputRecord::add(
+          {fmt::format("{} /images/{}/uri", document.file, i), document.folder / *path});
   }
 }
 
