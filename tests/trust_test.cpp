@@ -296,6 +296,7 @@ TEST_F(ScratchFolders, NothingGoesButMarkedFoldersOfKilledRuns) {
 }
 
 TEST_F(ScratchFolders, NothingIsRemovedWhereOthersMayWrite) {
+  set_log_level(false, 0);
   const fs::path left = killed();
   for (const mode_t mode : {0770u, 0707u, 01777u}) {
     ::chmod(own.c_str(), mode);
@@ -305,6 +306,7 @@ TEST_F(ScratchFolders, NothingIsRemovedWhereOthersMayWrite) {
     EXPECT_EQ(scratch.path().parent_path(), folder.path());
     EXPECT_EQ(mode_of(scratch.path()), 0700u);
   }
+  EXPECT_TRUE(fs::exists(left));
   fs::remove_all(own);
   fs::create_directory(folder / "elsewhere");
   fs::create_directory_symlink(folder / "elsewhere", own);
