@@ -193,8 +193,8 @@ TEST_F(OutputFile, AMountPointIsRejectedBeforeTheWork) {
   write_file(folder_ / "file", std::string_view("x"));
   const std::string file = (folder_ / "file").string();
   const test::Outcome outcome =
-      test::run("unshare -rm sh -c 'mount --bind " + file + " " + file + " && " CLPV_PROGRAM
-                " check --list --junit " + file + "'");
+      test::run("unshare -rm sh -c 'mount --bind " + file + " " + file +
+                " && " CLPV_PROGRAM " check --list --junit " + file + "'");
   if (outcome.exit_code != 1) GTEST_SKIP() << "nothing may be mounted here: " << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("file: cannot be written: it is a mount point"));
   EXPECT_EQ(entries(), 1u);

@@ -298,6 +298,7 @@ TEST_F(ScratchFolders, NothingGoesButMarkedFoldersOfKilledRuns) {
 }
 
 TEST_F(ScratchFolders, NothingIsRemovedWhereOthersMayWrite) {
+  set_log_level(false, 0);
   const fs::path left = killed();
   for (const mode_t mode : {0770u, 0707u, 01777u}) {
     ::chmod(own.c_str(), mode);
@@ -307,6 +308,7 @@ TEST_F(ScratchFolders, NothingIsRemovedWhereOthersMayWrite) {
     EXPECT_EQ(scratch.path().parent_path(), folder.path());
     EXPECT_EQ(mode_of(scratch.path()), 0700u);
   }
+  EXPECT_TRUE(fs::exists(left));
   fs::remove_all(own);
   fs::create_directory(folder / "elsewhere");
   fs::create_directory_symlink(folder / "elsewhere", own);
@@ -414,34 +416,44 @@ struct Inputs : ::testing::Test {
 };
 
 TEST_F(Inputs, AreReplacedByNoOutput) {
+  const test::TemporaryFolder cache;
   const auto before = contents_of(folder.path());
   const std::string scene = " my.json" + kSmallSteps,
                     film = "sequence" + scene + "--frames 3 --fps 1 --format png -o . ",
-                    cached = " --spp 1 --frames 1 --cache " + (folder / "../cache").string();
+                    cached = " --spp 1 --frames 1 --cache " + cache.path().string();
   ::setenv("CLPV_KERNEL_DIR", folder.path().c_str(), 1);
   const test::Outcome kernel = run_here("check --list --junit gather/gather.cl", folder.path());
   ::unsetenv("CLPV_KERNEL_DIR");
   EXPECT_EQ(kernel.exit_code, 2) << kernel.err;
   const std::string rendered = "render" + scene;
-  for (const std::string& command :
-       {rendered + "-o o.exr --stats o.exr", rendered + "-o o.exr --dump-normals ./o.exr",
-        rendered + "-o o.exr --stats my.json", rendered + "-o o.exr --stats model.gltf",
-        rendered + "-o o.exr --stats hard.json", rendered + "-o o.exr --stats link.json",
-        rendered + "-o 'a b.png'", rendered + "-o unused.png", rendered + "-o 'my sky.exr'",
-        rendered + "-o o.exr --centres centres.json --stats centres.json",
-        "pathtrace my.json -o 'my sky.exr'", std::string("pathtrace my.json -o o.exr --stats my.json"),
-        "query" + scene + "--points points.csv -o points.csv",
-        "query" + scene + "--points points.csv -o model.bin", film,
-        "sequence" + scene + "--frames 3 --fps 1 --stability -o . --centres stability.json",
-        "quality" + scene + cached + " -o my.json", "quality" + scene + cached + " -o hard.json",
-        "quality" + scene + cached + " -o link.json",
-        "quality" + scene + cached + " --centres centres.json -o centres.json",
-        "quality" + scene + cached + " --vary centres=stability.json,centres.json -o centres.json",
-        std::string("bench regression --scene my.json -o hard.json"),
-        std::string("bench regression --scene my.json -o o.json --log model.gltf"),
-        std::string("bench regression --scene my.json --log frame-0001.png"),
-        std::string("basis --centres figure3.png --figures ."),
-        std::string("report . --quality index.html")}) {
+  const std::vector<std::string> commands{
+      rendered + "-o o.exr --stats o.exr",
+      rendered + "-o o.exr --dump-normals ./o.exr",
+      rendered + "-o o.exr --stats my.json",
+      rendered + "-o o.exr --stats model.gltf",
+      rendered + "-o o.exr --stats hard.json",
+      rendered + "-o o.exr --stats link.json",
+      rendered + "-o 'a b.png'",
+      rendered + "-o unused.png",
+      rendered + "-o 'my sky.exr'",
+      rendered + "-o o.exr --centres centres.json --stats centres.json",
+      "pathtrace my.json -o 'my sky.exr'",
+      "pathtrace my.json -o o.exr --stats my.json",
+      "query" + scene + "--points points.csv -o points.csv",
+      "query" + scene + "--points points.csv -o model.bin",
+      film,
+      "sequence" + scene + "--frames 3 --fps 1 --stability -o . --centres stability.json",
+      "quality" + scene + cached + " -o my.json",
+      "quality" + scene + cached + " -o hard.json",
+      "quality" + scene + cached + " -o link.json",
+      "quality" + scene + cached + " --centres centres.json -o centres.json",
+      "quality" + scene + cached + " --vary centres=stability.json,centres.json -o centres.json",
+      "bench regression --scene my.json -o hard.json",
+      "bench regression --scene my.json -o o.json --log model.gltf",
+      "bench regression --scene my.json --log frame-0001.png",
+      "basis --centres figure3.png --figures .",
+      "report . --quality index.html"};
+  for (const std::string& command : commands) {
     const test::Outcome outcome = run_here(command, folder.path());
     EXPECT_EQ(outcome.exit_code, 2) << command << "\n" << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("allowed: another file")) << command;

@@ -29,7 +29,8 @@ void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
              "time of each baseline in place of the frame's [ms]", range)
       ->needs(names);
   add(command, "--images", "DIR", baselines.images,
-      "folder for images: DIR/BASELINE/SCENE-CAMERA.exr")
+      "folder for images: DIR/BASELINE/SCENE-CAMERA.exr, characters other than letters, digits, - "
+      "and _ replaced")
       ->needs(names);
 }
 

@@ -87,9 +87,10 @@ void require_distinct_names(const std::string& option, const std::vector<Subject
       const auto [other, first] =
           views.try_emplace(view_file_name(subject.scene.name, camera.name), view);
       if (first) continue;
-      throw Error(ExitCode::usage,
-                  "{}: {}.exr would be the file of {} and of {}; allowed: scenes of different names",
-                  option, other->first, other->second, view);
+      throw Error(
+          ExitCode::usage,
+          "{}: {}.exr would be the file of {} and of {}; allowed: scenes of different names",
+          option, other->first, other->second, view);
     }
   }
 }

@@ -42,8 +42,8 @@ std::filesystem::path quality_cache(const std::string& given);
 /// Error(usage) for a camera or model that matches no scene.
 std::vector<Subject> load_subjects(const QualitySubjects& given);
 
-/// Throws Error(usage) if two views have one view_file_name(), as scenes of one stem do. `option`: of
-/// the files.
+/// Throws Error(usage) if two views have one view_file_name(), as scenes of one stem do. `option`:
+/// of the files.
 void require_distinct_names(const std::string& option, const std::vector<Subject>& subjects);
 
 /// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar. Collective

@@ -124,9 +124,8 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
                                 const pathtracer::TraceProgress& progress, Ranks& ranks) {
   const ClpvView view = camera_view(camera, width, height);
   const CacheFolder cache(folder);
-  const std::string name =
-      fmt::format("{}-{}.exr", view_file_name(scene.name, camera.name),
-                  key(scene, camera, view, options));
+  const std::string name = fmt::format("{}-{}.exr", view_file_name(scene.name, camera.name),
+                                       key(scene, camera, view, options));
   bool cached = false;
   const std::string found = ranks.from_root([&] {
     std::string bytes = read_cached(cache, name, scene);

@@ -189,7 +189,8 @@ void record_images(const GltfDocument& document) {
     const std::string& uri = document.model.images[i].uri;
     const auto path = is_data_uri(uri) ? std::nullopt : percent_decoded(uri);
     if (path && !path->empty())
-      InputRecord::add({fmt::format("{} /images/{}/uri", document.file, i), document.folder / *path});
+      InputRecord::add(
+          {fmt::format("{} /images/{}/uri", document.file, i), document.folder / *path});
   }
 }
 

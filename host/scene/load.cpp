@@ -280,8 +280,7 @@ MovingScene::MovingScene(const std::filesystem::path& path,
     load_scene_file(path, replacement, notes);
     scene_.path = path.string();
   } else if (extension == ".gltf" || extension == ".glb") {
-    InputRecord::add({path.string() + " /model", description_.model});
-  const std::filesystem::path model = replacement.empty() ? path : replacement;
+    const std::filesystem::path model = replacement.empty() ? path : replacement;
     scene_ = load_gltf(model, 1.0, motion_, notes);
     scene_.path = model.string();
   } else {

@@ -24,9 +24,9 @@ std::optional<std::string> file_bytes(const std::filesystem::path& path,
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Returns the bytes of an input, a regular file, and adds it to the InputRecord. `file` and `place`
-/// name the document that refers to it, for errors. Throws Error(bad_input) if it is missing, not a
-/// regular file, unreadable or longer than `limit` bytes.
+/// Returns the bytes of an input, a regular file, and adds it to the InputRecord. `file` and
+/// `place` name the document that refers to it, for errors. Throws Error(bad_input) if it is
+/// missing, not a regular file, unreadable or longer than `limit` bytes.
 Bytes read_file(const std::filesystem::path& path, std::uint64_t limit, const std::string& file,
                 std::string_view place = {});
 

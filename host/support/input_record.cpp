@@ -61,7 +61,8 @@ InputRecord::~InputRecord() {
 
 void InputRecord::add(const NamedFile& input) {
   const std::lock_guard lock(record().mutex);
-  if (record().open && !input.path.empty()) record().files.try_emplace(identity_of(input.path), input);
+  if (record().open && !input.path.empty())
+    record().files.try_emplace(identity_of(input.path), input);
 }
 
 std::optional<NamedFile> InputRecord::find(const FileIdentity& file) {

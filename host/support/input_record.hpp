@@ -11,15 +11,15 @@
 
 namespace clpv {
 
-/// A file and what names it, for errors: an option, or a document and the place in it. An empty path
-/// means that the option is not given.
+/// A file and what names it, for errors: an option, or a document and the place in it. An empty
+/// path means that the option is not given.
 struct NamedFile {
   std::string option;
   std::filesystem::path path;
 };
 
-/// Device and inode of a file, so that links and hard links are the file itself. For a file that does
-/// not exist: those of its folder, and its name.
+/// Device and inode of a file, so that links and hard links are the file itself. For a file that
+/// does not exist: those of its folder, and its name.
 struct FileIdentity {
   dev_t device = 0;
   ino_t inode = 0;

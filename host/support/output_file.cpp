@@ -60,7 +60,8 @@ fs::path resolve(const fs::path& path) {
 /// Returns why a file in the target's folder could not be renamed to it, or the temporary file not
 /// be removed, else "".
 std::string obstacle(const fs::path& target) {
-  struct statx folder {}, old {};
+  struct statx folder {};
+  struct statx old {};
   const fs::path above = target.has_parent_path() ? target.parent_path() : ".";
   if (::statx(AT_FDCWD, above.c_str(), 0, 0, &folder) == 0 &&
       (folder.stx_attributes & STATX_ATTR_APPEND) != 0)
@@ -96,7 +97,8 @@ void spare_input(const fs::path& target) {
 /// Waits until a file or folder is on the disk and closes it. Returns the error, else 0.
 int sync_and_close(int descriptor) {
   const bool fails = ::fsync(descriptor) != 0;
-  const bool cannot = errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;  // file systems differ
+  const bool cannot =
+      errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;  // file systems differ
   const int error = fails && !cannot ? errno : 0;
   return ::close(descriptor) != 0 && error == 0 ? errno : error;
 }

@@ -24,8 +24,8 @@ class OutputFile {
   };
 
   /// Creates the temporary file. A result keeps mode, owner and group of the file that it replaces;
-  /// a new file has them from umask and user. Throws Error(run_time) with the path and the reason if
-  /// there is no folder, if no file can be written or renamed there, if owner or group would
+  /// a new file has them from umask and user. Throws Error(run_time) with the path and the reason
+  /// if there is no folder, if no file can be written or renamed there, if owner or group would
   /// change, or if anything but a regular file exists there; Error(usage) for a file of the
   /// InputRecord.
   explicit OutputFile(const std::filesystem::path& path, Kind kind = Kind::result);
@@ -57,9 +57,9 @@ void remove_unfinished_outputs();
 /// no file behind. Throws as OutputFile.
 void check_writable(const std::filesystem::path& path);
 
-/// check_writable() of all outputs. Throws Error(usage) if two outputs, or an output and an input of
-/// `inputs` or the InputRecord, are one file. Commands call it before they read anything, and again
-/// before long work, when all inputs are read.
+/// check_writable() of all outputs. Throws Error(usage) if two outputs, or an output and an input
+/// of `inputs` or the InputRecord, are one file. Commands call it before they read anything, and
+/// again before long work, when all inputs are read.
 void check_outputs(const std::vector<NamedFile>& outputs,
                    const std::vector<NamedFile>& inputs = {});
 

@@ -22,9 +22,8 @@ constexpr const char* kMark = "clpv-scratch";
 constexpr const char* kNewMark = "clpv-scratch.new";  // not locked yet
 
 [[noreturn]] void reject_above(const fs::path& above) {
-  throw Error(ExitCode::run_time,
-              "TMPDIR: found '{}' ({}); allowed: a folder that can be written", above.string(),
-              std::generic_category().message(errno));
+  throw Error(ExitCode::run_time, "TMPDIR: found '{}' ({}); allowed: a folder that can be written",
+              above.string(), std::generic_category().message(errno));
 }
 
 /// Returns true for a folder, and no link to one, that only this user can have written.
@@ -54,8 +53,8 @@ void remove_abandoned(const fs::path& own) {
   }
 }
 
-/// Marks a new folder. The mark appears under its name only when it is locked. Without locks, nobody
-/// removes folders of others. Returns the open mark.
+/// Marks a new folder. The mark appears under its name only when it is locked. Without locks,
+/// nobody removes folders of others. Returns the open mark.
 int mark_as_own(const fs::path& folder) {
   const int lock = lock_mark(folder / kNewMark, O_WRONLY | O_CREAT | O_EXCL);
   if (lock >= 0) ::rename((folder / kNewMark).c_str(), (folder / kMark).c_str());

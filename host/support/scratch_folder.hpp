@@ -6,8 +6,8 @@
 
 namespace clpv {
 
-/// A new folder run-XXXXXX in $TMPDIR/.clpv-scratch-UID, or below /tmp, that only this user can read.
-/// Its file `clpv-scratch`, locked until the process ends, marks it as clpv's.
+/// A new folder run-XXXXXX in $TMPDIR/.clpv-scratch-UID, or below /tmp, that only this user can
+/// read. Its file `clpv-scratch`, locked until the process ends, marks it as clpv's.
 class ScratchFolder {
  public:
   /// Also removes the marked folders of killed runs, and nothing else: if anyone but this user may

@@ -21,8 +21,8 @@ std::string terminal_json(std::string_view json);
 std::string xml_escaped(const std::string& text);
 
 /// Returns the part of a file name that stands for an untrusted name. It has 1 to 73 ASCII letters,
-/// digits, '-' and '_'. A name of 1 to 64 of them is its own part; of others, each other byte is '_',
-/// bytes after the 64th go, and '-' with 8 hexadecimal digits of a hash tells them apart.
+/// digits, '-' and '_'. A name of 1 to 64 of them is its own part; of others, each other byte is
+/// '_', bytes after the 64th go, and '-' with 8 hexadecimal digits of a hash tells them apart.
 std::string in_file_name(std::string_view name);
 
 /// Returns the stem "SCENE-CAMERA" of the files of a view.
