@@ -125,7 +125,7 @@ TEST(CommandLine, NamesOfOthersDoNotReachTheTerminal) {
   folder.write("room.json",
                nlohmann::json{{"model", test::kTiny},
                               {"cameras", {{{"name", name}, {"eye", {0, 1, 3}}, {"target", {0, 0, 0}}}}},
-                              {"lights", {{{"kind", "directional"}, {"direction", {0, -1, 0}}}}}}
+                              {"lights", {{{"kind", "directional"}, {"direction", {0, -1, 0}}, {"illuminance_lux", 5}}}}}
                    .dump());
   const std::string small = test::kSmallSteps + "--spp 1 --frames 1 --cache cache ";
   for (const std::string& arguments :
@@ -155,7 +155,7 @@ TEST(CommandLine, OneFilePrints) {
          std::filesystem::recursive_directory_iterator(CLPV_SOURCE_DIR + std::string(folder))) {
       if (!entry.is_regular_file() || entry.path().filename() == "print.cpp") continue;
       const std::string text = test::read_file(entry.path());
-      for (const char* way : {"fmt::print(", "printf(std", "fputs(", "puts(", "std::cout",
+      for (const char* way : {"fmt::print(", "printf(std", "fputs(", "std::puts(", "std::cout",
                               "std::cerr", "fwrite("})
         if (text.find(way) != std::string::npos) others.push_back(entry.path().string() + way);
     }
