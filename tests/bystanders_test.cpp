@@ -63,14 +63,41 @@ void age(const fs::path& path) {
 /// Fills a folder with files as anyone might have them, all of which are old.
 void plant(const test::TemporaryFolder& root, const std::string& folder) {
   const std::string here = folder + "/";
-  for (const char* name :
-       {"clpv-output/a", "clpv-abcdef/below/a", "clpv-images/1.exr", "clpv-master/README.md",
-        "clpv-test-abcdef/a", "run-abcdef/a", "claims/a.done", "my.program.backup.tar",
-        "a.program", "0123456789abcdef.program", "0123456789abcdef.json", ".a.exr.1-0.part",
-        ".a.exr.1-0.part.bak", ".index.html.1", "a.part", "index.html.tmp", "probe-1", "my.json",
-        "times.json", "stability.json", "index.html", "report.json", "pocl/kcache/a",
-        "kcache/tempfile", "core", "out", "-rf", " ", "with a blank", ".hidden", "readonly/a",
-        "sticky/a", "open/a", "cells/a.json", "references/tiny-view-0123456789abcdef.exr"})
+  for (const char* name : {"clpv-output/a",
+                           "clpv-abcdef/below/a",
+                           "clpv-images/1.exr",
+                           "clpv-master/README.md",
+                           "clpv-test-abcdef/a",
+                           "run-abcdef/a",
+                           "claims/a.done",
+                           "my.program.backup.tar",
+                           "a.program",
+                           "0123456789abcdef.program",
+                           "0123456789abcdef.json",
+                           ".a.exr.1-0.part",
+                           ".a.exr.1-0.part.bak",
+                           ".index.html.1",
+                           "a.part",
+                           "index.html.tmp",
+                           "probe-1",
+                           "my.json",
+                           "times.json",
+                           "stability.json",
+                           "index.html",
+                           "report.json",
+                           "pocl/kcache/a",
+                           "kcache/tempfile",
+                           "core",
+                           "out",
+                           "-rf",
+                           " ",
+                           "with a blank",
+                           ".hidden",
+                           "readonly/a",
+                           "sticky/a",
+                           "open/a",
+                           "cells/a.json",
+                           "references/tiny-view-0123456789abcdef.exr"})
     root.write(here + name, std::string("of a user: ") + name);
   const fs::path path = root / folder;
   fs::create_symlink("my.json", path / "link");
@@ -101,8 +128,7 @@ const std::multimap<std::string, Invocation>& runs() {
       {"render",
        {"render" + tiny + "-o a.exr --stats a.json --dump-normals n.json",
         {"a.exr", "a.json", "n.json"}}},
-      {"render",
-       {"render" + tiny + "-o a.png --view full,albedo", {"a-full.png", "a-albedo.png"}}},
+      {"render", {"render" + tiny + "-o a.png --view full,albedo", {"a-full.png", "a-albedo.png"}}},
       {"sequence",
        {"sequence" + tiny + "-o film --frames 2 --fps 1 --stability --video v.mp4",
         {"film/", "v.mp4"}}},
@@ -114,8 +140,9 @@ const std::multimap<std::string, Invocation>& runs() {
        {"pathtrace " + kTiny + " --width 12 --height 9 --spp 1 -o t.exr --stats t.json",
         {"t.exr", "t.json"}}},
       {"quality",
-       {"quality" + tiny + "--spp 1 --frames 1 --cache kept --baseline paths --baseline-time 1 "
-        "--images images -o quality.json",
+       {"quality" + tiny +
+            "--spp 1 --frames 1 --cache kept --baseline paths --baseline-time 1 "
+            "--images images -o quality.json",
         {"kept/", "images/", "quality.json"}}},
       {"quality", {"quality" + tiny + "--spp 1 --frames 1"}},
       {"basis", {"basis sh2 --figures figures", {"figures/"}}},
@@ -124,7 +151,8 @@ const std::multimap<std::string, Invocation>& runs() {
         {"b.jsonl", "b.json"},
         {"plots/"}}},
       {"report",
-       {"report page " + kTiny + " --width 12 --height 9 --spp 1 --cache seen", {"page/", "seen/"}}},
+       {"report page " + kTiny + " --width 12 --height 9 --spp 1 --cache seen",
+        {"page/", "seen/"}}},
       {"prepare", {"prepare" + tiny + "--claims shared", {}, {"shared/"}}},
   };
   return all;
@@ -138,7 +166,8 @@ class Bystanders : public ::testing::Test {
       root_.write(std::string("work/") + folder + "/notes.txt", "of a user");
     root_.write("work/points.csv", "0,0,0,0,1,0\n");
     // In place of ffmpeg.
-    root_.write("bin/ffmpeg", "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n: >\"${last#file:}\"\n");
+    root_.write("bin/ffmpeg",
+                "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n: >\"${last#file:}\"\n");
     ::chmod((root_ / "bin/ffmpeg").c_str(), 0755);
     ::chmod((root_ / "cache/clpv").c_str(), 0700);
     for (const char* folder : {"suite", "truths"}) fs::create_directory(root_ / "work" / folder);
@@ -161,7 +190,8 @@ class Bystanders : public ::testing::Test {
   /// True for a path that this run may create. Below its own cache and scratch folders clpv may
   /// create what it likes.
   static bool may_appear(const std::string& path, const Invocation& run) {
-    if (path.starts_with("cache/clpv/") || path == "tmp/.clpv-scratch-" + std::to_string(::geteuid()))
+    if (path.starts_with("cache/clpv/") ||
+        path == "tmp/.clpv-scratch-" + std::to_string(::geteuid()))
       return true;
     std::vector<std::string> outputs = run.outputs;
     outputs.insert(outputs.end(), run.perhaps.begin(), run.perhaps.end());
@@ -195,9 +225,12 @@ TEST_F(Bystanders, OnlyNamedOutputsAppear) {
     for (const auto& [path, state] : after)
       EXPECT_TRUE(before.contains(path) || may_appear(path, run)) << path << " has appeared";
     for (const std::string& output : run.outputs)
-      EXPECT_TRUE(std::ranges::any_of(after, [&](const auto& entry) {
-        return entry.first.starts_with("work/" + output) && !before.contains(entry.first);
-      })) << output << " is not written";
+      EXPECT_TRUE(std::ranges::any_of(after,
+                                      [&](const auto& entry) {
+                                        return entry.first.starts_with("work/" + output) &&
+                                               !before.contains(entry.first);
+                                      }))
+          << output << " is not written";
   }
 }
 
@@ -222,9 +255,12 @@ TEST(BystanderRuns, HaveEveryCommandAndOutput) {
     EXPECT_TRUE(first != last) << command->get_name() << ": runs() has no run of it";
     for (const std::string& option : output_options(*command)) {
       const std::string word = option == "--output" ? " -o " : " " + option + " ";
-      EXPECT_TRUE(std::any_of(first, last, [&](const auto& entry) {
-        return (entry.second.arguments + " ").find(word) != std::string::npos;
-      })) << command->get_name() << ": runs() has no " << option;
+      EXPECT_TRUE(std::any_of(first, last,
+                              [&](const auto& entry) {
+                                return (entry.second.arguments + " ").find(word) !=
+                                       std::string::npos;
+                              }))
+          << command->get_name() << ": runs() has no " << option;
     }
   }
 }

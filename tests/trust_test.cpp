@@ -296,7 +296,8 @@ TEST(ScratchFolders, AMissingTmpdirIsNamed) {
                 kSmallSteps + "-o " + (folder / "a.exr").string());
   EXPECT_EQ(drawing.exit_code, 1);
   EXPECT_THAT(drawing.err, HasSubstr("TMPDIR: found '/nonexistent'"));
-  EXPECT_EQ(cold.exit_code, 0) << "a frame that is compiled needs no such folder either\n" << cold.err;
+  EXPECT_EQ(cold.exit_code, 0) << "a frame that is compiled needs no such folder either\n"
+                               << cold.err;
   const bool helped = std::thread::hardware_concurrency() > 1;
   EXPECT_THAT(cold.err, HasSubstr(helped ? "TMPDIR: found '/nonexistent'" : ""));
 }

@@ -263,7 +263,8 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
   add_number(
       command, "--noise", options.values.noise,
       "relative standard error of the indirect light at which tracing stops (root mean square)",
-      {std::numeric_limits<double>::min(), kMaxNoise, fmt::format("more than 0, up to {}", kMaxNoise)})
+      {std::numeric_limits<double>::min(), kMaxNoise,
+       fmt::format("more than 0, up to {}", kMaxNoise)})
       ->excludes(samples)
       ->default_str(fmt::format("{}", options.values.noise))
       ->group(kGroup);

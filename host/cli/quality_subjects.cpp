@@ -49,7 +49,8 @@ std::vector<NamedFile> files_of(const QualitySubjects& given) {
 std::filesystem::path quality_cache(const std::string& given) {
   if (!given.empty()) return given;
   if (const auto folder = user_cache_folder()) return *folder / "quality";
-  throw Error(ExitCode::usage, "--cache: needed where neither XDG_CACHE_HOME nor HOME is an absolute path");
+  throw Error(ExitCode::usage,
+              "--cache: needed where neither XDG_CACHE_HOME nor HOME is an absolute path");
 }
 
 std::vector<Subject> load_subjects(const QualitySubjects& given) {
