@@ -46,9 +46,8 @@ std::vector<Value> values_of_bench(const nlohmann::json& report, const std::stri
   std::vector<Value> values;
   for (const nlohmann::json& row : report.at("benchmarks")) {
     if (row.at("status") == "ok")
-      values.push_back(
-          {row.at("name"), row.at("median").get<double>(), row.at("mad"),
-           row.value("repetitions", 2) > 1});
+      values.push_back({row.at("name"), row.at("median").get<double>(), row.at("mad"),
+                        row.value("repetitions", 2) > 1});
     else
       values.push_back({row.at("name"), {}, 0, false, row.at("status")});
   }
@@ -213,8 +212,8 @@ void require_ratios(const ReportChanges& found, double limit) {
                                    slower.size(), found.changes.size(), limit,
                                    fmt::join(slower, ", ")));
   if (!lost.empty())
-    problems.push_back(fmt::format("{} rows have lost their value: {}", lost.size(),
-                                   fmt::join(lost, ", ")));
+    problems.push_back(
+        fmt::format("{} rows have lost their value: {}", lost.size(), fmt::join(lost, ", ")));
   if (found.changes.empty())
     problems.push_back("no row has a value in both reports; allowed: one or more");
   if (problems.empty()) return;

@@ -180,7 +180,8 @@ TEST(BenchCompare, AGateWithoutAComparisonFails) {
            {bench, changed(bench, "/benchmarks/1/median", "10"), 3, "/benchmarks/1/median"},
            {report({{"a", 0, 0}}), report({{"a", 1, 0}}), 5, "a (inf)"},
            {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 10, 0}}), 5, "a (2)"},
-           {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 20, 0}, {"a", 10, 0}}), 5, "a (2.000)"},
+           {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 20, 0}, {"a", 10, 0}}), 5,
+            "a (2.000)"},
            {quality, changed(quality, "/cells", none), 5, "s:lit nrmse (not in this run)"},
            {quality, changed(quality, "/cells/0/rejected", "why"), 5, "s:lit nrmse (rejected)"},
            {quality, changed(quality, "/cells/0/nrmse", nullptr), 5, "s:lit nrmse (undefined)"},
@@ -197,7 +198,8 @@ TEST(BenchCompare, AGateWithoutAComparisonFails) {
     EXPECT_EQ(outcome.exit_code, gate.code) << gate.word << outcome.out << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(gate.word));
   }
-  EXPECT_THAT(compare_files(quality, quality).out, HasSubstr("s:dark nrmse: - (undefined in both)"));
+  EXPECT_THAT(compare_files(quality, quality).out,
+              HasSubstr("s:dark nrmse: - (undefined in both)"));
 }
 
 TEST(BenchCompare, LimitsAreNumbers) {
@@ -207,8 +209,9 @@ TEST(BenchCompare, LimitsAreNumbers) {
     EXPECT_EQ(outcome.exit_code, 2) << limit;
     EXPECT_THAT(outcome.err, HasSubstr("--fail-above")) << limit;
   }
-  for (const char* option : {"compare a.exr b.exr --amplify nan", "compare a.exr b.exr --exposure nan",
-                             "pathtrace x.json -o a.exr --noise nan"}) {
+  for (const char* option :
+       {"compare a.exr b.exr --amplify nan", "compare a.exr b.exr --exposure nan",
+        "pathtrace x.json -o a.exr --noise nan"}) {
     const test::Outcome outcome = test::run_here(option);
     EXPECT_EQ(outcome.exit_code, 2) << option;
     EXPECT_THAT(outcome.err, HasSubstr("found 'nan'")) << option;

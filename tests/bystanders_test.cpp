@@ -63,14 +63,41 @@ void age(const fs::path& path) {
 /// Fills a folder with files as anyone might have them, all of which are old.
 void plant(const test::TemporaryFolder& root, const std::string& folder) {
   const std::string here = folder + "/";
-  for (const char* name :
-       {"clpv-output/a", "clpv-abcdef/below/a", "clpv-images/1.exr", "clpv-master/README.md",
-        "clpv-test-abcdef/a", "run-abcdef/a", "claims/a.done", "my.program.backup.tar",
-        "a.program", "0123456789abcdef.program", "0123456789abcdef.json", ".a.exr.1-0.part",
-        ".a.exr.1-0.part.bak", ".index.html.1", "a.part", "index.html.tmp", "probe-1", "my.json",
-        "times.json", "stability.json", "index.html", "report.json", "pocl/kcache/a",
-        "kcache/tempfile", "core", "out", "-rf", " ", "with a blank", ".hidden", "readonly/a",
-        "sticky/a", "open/a", "cells/a.json", "references/tiny-view-0123456789abcdef.exr"})
+  for (const char* name : {"clpv-output/a",
+                           "clpv-abcdef/below/a",
+                           "clpv-images/1.exr",
+                           "clpv-master/README.md",
+                           "clpv-test-abcdef/a",
+                           "run-abcdef/a",
+                           "claims/a.done",
+                           "my.program.backup.tar",
+                           "a.program",
+                           "0123456789abcdef.program",
+                           "0123456789abcdef.json",
+                           ".a.exr.1-0.part",
+                           ".a.exr.1-0.part.bak",
+                           ".index.html.1",
+                           "a.part",
+                           "index.html.tmp",
+                           "probe-1",
+                           "my.json",
+                           "times.json",
+                           "stability.json",
+                           "index.html",
+                           "report.json",
+                           "pocl/kcache/a",
+                           "kcache/tempfile",
+                           "core",
+                           "out",
+                           "-rf",
+                           " ",
+                           "with a blank",
+                           ".hidden",
+                           "readonly/a",
+                           "sticky/a",
+                           "open/a",
+                           "cells/a.json",
+                           "references/tiny-view-0123456789abcdef.exr"})
     root.write(here + name, std::string("of a user: ") + name);
   const fs::path path = root / folder;
   fs::create_symlink("my.json", path / "link");
@@ -89,7 +116,8 @@ void plant(const test::TemporaryFolder& root, const std::string& folder) {
 /// A run of the program in folder `work`. An output that ends in '/' is a folder.
 struct Invocation {
   std::string arguments;
-  std::vector<std::string> outputs = {};
+  std::vector<std::string> outputs = {};  ///< all of which appear
+  std::vector<std::string> perhaps = {};  ///< which may appear
 };
 
 /// Runs of each command that writes all its outputs.
@@ -100,8 +128,7 @@ const std::multimap<std::string, Invocation>& runs() {
       {"render",
        {"render" + tiny + "-o a.exr --stats a.json --dump-normals n.json",
         {"a.exr", "a.json", "n.json"}}},
-      {"render",
-       {"render" + tiny + "-o a.png --view final,albedo", {"a-final.png", "a-albedo.png"}}},
+      {"render", {"render" + tiny + "-o a.png --view full,albedo", {"a-full.png", "a-albedo.png"}}},
       {"sequence",
        {"sequence" + tiny + "-o film --frames 2 --fps 1 --stability --video v.mp4",
         {"film/", "v.mp4"}}},
@@ -113,16 +140,20 @@ const std::multimap<std::string, Invocation>& runs() {
        {"pathtrace " + kTiny + " --width 12 --height 9 --spp 1 -o t.exr --stats t.json",
         {"t.exr", "t.json"}}},
       {"quality",
-       {"quality" + tiny + "--spp 1 --frames 1 --cache kept --baseline vpl --baseline-time 1 "
-        "--images images -o quality.json",
+       {"quality" + tiny +
+            "--spp 1 --frames 1 --cache kept --baseline paths --baseline-time 1 "
+            "--images images -o quality.json",
         {"kept/", "images/", "quality.json"}}},
       {"quality", {"quality" + tiny + "--spp 1 --frames 1"}},
       {"basis", {"basis sh2 --figures figures", {"figures/"}}},
       {"bench",
        {"bench ceilings --repetitions 1 --plot plots --log b.jsonl -o b.json",
-        {"plots/", "b.jsonl", "b.json"}}},
-      {"report", {"report page " + kTiny + " --width 12 --height 9 --spp 1", {"page/"}}},
-      {"prepare", {"prepare" + tiny + "--claims shared", {"shared/"}}},
+        {"b.jsonl", "b.json"},
+        {"plots/"}}},
+      {"report",
+       {"report page " + kTiny + " --width 12 --height 9 --spp 1 --cache seen",
+        {"page/", "seen/"}}},
+      {"prepare", {"prepare" + tiny + "--claims shared", {}, {"shared/"}}},
   };
   return all;
 }
@@ -135,14 +166,18 @@ class Bystanders : public ::testing::Test {
       root_.write(std::string("work/") + folder + "/notes.txt", "of a user");
     root_.write("work/points.csv", "0,0,0,0,1,0\n");
     // In place of ffmpeg.
-    root_.write("bin/ffmpeg", "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n: >\"${last#file:}\"\n");
+    root_.write("bin/ffmpeg",
+                "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n: >\"${last#file:}\"\n");
     ::chmod((root_ / "bin/ffmpeg").c_str(), 0755);
     ::chmod((root_ / "cache/clpv").c_str(), 0700);
-    ASSERT_EQ(program("pathtrace " + kTiny + " --width 6 --height 4 --spp 1 -o one.exr").exit_code, 0);
-    for (const char* image : {"suite/room-a.exr", "truths/room-a-0123456789abcdef.exr"}) {
-      fs::create_directories((root_ / "work" / image).parent_path());
-      fs::copy(root_ / "work/one.exr", root_ / "work" / image);
+    for (const char* folder : {"suite", "truths"}) fs::create_directory(root_ / "work" / folder);
+    for (const char* image : {"indirect -o one.exr", "indirect -o suite/room-a.exr",
+                              "direct,indirect -o truths/room-a-0123456789abcdef.exr"}) {
+      const test::Outcome traced =
+          program("pathtrace " + kTiny + " --width 6 --height 4 --spp 1 --view " + image);
+      ASSERT_EQ(traced.exit_code, 0) << traced.err;
     }
+    planted_ = snapshot_of(root_.path());
   }
 
   test::Outcome program(const std::string& arguments) const {
@@ -155,15 +190,19 @@ class Bystanders : public ::testing::Test {
   /// True for a path that this run may create. Below its own cache and scratch folders clpv may
   /// create what it likes.
   static bool may_appear(const std::string& path, const Invocation& run) {
-    if (path.starts_with("cache/clpv/") || path == "tmp/.clpv-scratch-" + std::to_string(::geteuid()))
+    if (path.starts_with("cache/clpv/") ||
+        path == "tmp/.clpv-scratch-" + std::to_string(::geteuid()))
       return true;
-    return std::ranges::any_of(run.outputs, [&](const std::string& output) {
+    std::vector<std::string> outputs = run.outputs;
+    outputs.insert(outputs.end(), run.perhaps.begin(), run.perhaps.end());
+    return std::ranges::any_of(outputs, [&](const std::string& output) {
       const std::string below = "work/" + output;
       return output.ends_with('/') ? path.starts_with(below) : path == below;
     });
   }
 
   test::TemporaryFolder root_;
+  Snapshot planted_;
 };
 
 TEST_F(Bystanders, OnlyNamedOutputsAppear) {
@@ -173,18 +212,25 @@ TEST_F(Bystanders, OnlyNamedOutputsAppear) {
     const test::Outcome outcome = program(run.arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const Snapshot after = snapshot_of(root_.path());
-    for (const auto& [path, state] : before) {
+    for (const auto& [path, state] : planted_) {
       const auto found = after.find(path);
       EXPECT_TRUE(found != after.end()) << path << " is gone";
-      const bool same = found == after.end() || may_appear(path, run) || found->second == state;
-      EXPECT_TRUE(same) << path << " has changed";
+      EXPECT_TRUE(found == after.end() || found->second == state) << path << " has changed";
+    }
+    for (const auto& [path, state] : before) {
+      const auto found = after.find(path);
+      const bool same = found != after.end() && found->second == state;
+      EXPECT_TRUE(same || may_appear(path, run)) << path << " has changed or is gone";
     }
     for (const auto& [path, state] : after)
       EXPECT_TRUE(before.contains(path) || may_appear(path, run)) << path << " has appeared";
     for (const std::string& output : run.outputs)
-      EXPECT_TRUE(std::ranges::any_of(after, [&](const auto& entry) {
-        return entry.first.starts_with("work/" + output) && !before.contains(entry.first);
-      })) << output << " is not written";
+      EXPECT_TRUE(std::ranges::any_of(after,
+                                      [&](const auto& entry) {
+                                        return entry.first.starts_with("work/" + output) &&
+                                               !before.contains(entry.first);
+                                      }))
+          << output << " is not written";
   }
 }
 
@@ -209,9 +255,12 @@ TEST(BystanderRuns, HaveEveryCommandAndOutput) {
     EXPECT_TRUE(first != last) << command->get_name() << ": runs() has no run of it";
     for (const std::string& option : output_options(*command)) {
       const std::string word = option == "--output" ? " -o " : " " + option + " ";
-      EXPECT_TRUE(std::any_of(first, last, [&](const auto& entry) {
-        return (entry.second.arguments + " ").find(word) != std::string::npos;
-      })) << command->get_name() << ": runs() has no " << option;
+      EXPECT_TRUE(std::any_of(first, last,
+                              [&](const auto& entry) {
+                                return (entry.second.arguments + " ").find(word) !=
+                                       std::string::npos;
+                              }))
+          << command->get_name() << ": runs() has no " << option;
     }
   }
 }

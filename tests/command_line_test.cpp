@@ -84,8 +84,8 @@ TEST(CommandLine, AClosedPipeEndsTheProgram) {
 
 TEST(CommandLine, WriteErrorsOfStdoutAreReported) {
   for (const char* arguments :
-       {"", "--help", "--help-all", "--version", "render --help", "devices", "devices --format json",
-        "basis sh2", "basis sh2 --format json", "check --list"}) {
+       {"", "--help", "--help-all", "--version", "render --help", "devices",
+        "devices --format json", "basis sh2", "basis sh2 --format json", "check --list"}) {
     const test::Outcome full = clpv(std::string(arguments) + " >/dev/full"),
                         closed = clpv(std::string(arguments) + " >&-");
     EXPECT_EQ(full.exit_code, 1) << arguments;
@@ -105,8 +105,8 @@ bool obeyed(const std::string& text) {
 TEST(CommandLine, NamesOfOthersDoNotReachTheTerminal) {
   const test::TemporaryFolder folder;
   const nlohmann::json name = "red\x1b[31m\a\x7f\u009b5m";
-  const nlohmann::json cell{{"scene", name},      {"camera", name},  {"rejected", ""},
-                            {"frame_ms", 1},      {"nrmse", 0.1},    {"options", {{name, name}}}},
+  const nlohmann::json cell{{"scene", name}, {"camera", name}, {"rejected", ""},
+                            {"frame_ms", 1}, {"nrmse", 0.1},   {"options", {{name, name}}}},
       row{{"name", name}, {"status", "ok"}, {"median", 1}, {"mad", 0}},
       lost{{"name", "lost"}, {"status", name}, {"median", 1}, {"mad", 0}};
   const auto bench = [](const nlohmann::json& rows) {
@@ -115,17 +115,21 @@ TEST(CommandLine, NamesOfOthersDoNotReachTheTerminal) {
   folder.write("quality.json", nlohmann::json{{"cells", {cell}}}.dump());
   folder.write("stats.json",
                nlohmann::json{{"frame_ms", 1}, {"stages", {{{"stage", name}, {"ms", 1}}}}}.dump());
-  folder.write("old.json", bench({row, {{"name", "lost"}, {"status", "ok"}, {"median", 1}, {"mad", 0}}}));
+  folder.write("old.json",
+               bench({row, {{"name", "lost"}, {"status", "ok"}, {"median", 1}, {"mad", 0}}}));
   folder.write("new.json", bench({row, lost}));
-  folder.write("centres.json",
-               nlohmann::json{{"name", name},
-                              {"centres", {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0},
-                                           {0, 0, 1}, {0, 0, -1}}}}
-                   .dump());
+  folder.write(
+      "centres.json",
+      nlohmann::json{
+          {"name", name},
+          {"centres", {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}}}
+          .dump());
   folder.write("room.json",
-               nlohmann::json{{"model", test::kTiny},
-                              {"cameras", {{{"name", name}, {"eye", {0, 1, 3}}, {"target", {0, 0, 0}}}}},
-                              {"lights", {{{"kind", "directional"}, {"direction", {0, -1, 0}}}}}}
+               nlohmann::json{
+                   {"model", test::kTiny},
+                   {"cameras", {{{"name", name}, {"eye", {0, 1, 3}}, {"target", {0, 0, 0}}}}},
+                   {"lights",
+                    {{{"kind", "directional"}, {"direction", {0, -1, 0}}, {"illuminance_lux", 5}}}}}
                    .dump());
   const std::string small = test::kSmallSteps + "--spp 1 --frames 1 --cache cache ";
   for (const std::string& arguments :
@@ -155,7 +159,7 @@ TEST(CommandLine, OneFilePrints) {
          std::filesystem::recursive_directory_iterator(CLPV_SOURCE_DIR + std::string(folder))) {
       if (!entry.is_regular_file() || entry.path().filename() == "print.cpp") continue;
       const std::string text = test::read_file(entry.path());
-      for (const char* way : {"fmt::print(", "printf(std", "fputs(", "puts(", "std::cout",
+      for (const char* way : {"fmt::print(", "printf(std", "fputs(", "std::puts(", "std::cout",
                               "std::cerr", "fwrite("})
         if (text.find(way) != std::string::npos) others.push_back(entry.path().string() + way);
     }

@@ -247,7 +247,7 @@ TEST(HostileSurroundings, Variables) {
   rejected("CLPV_PROGRAM_CACHE=none", 2, {"CLPV_PROGRAM_CACHE: found 'none', allowed: on, off"});
   rejected("CLPV_KERNEL_DIR=@/none", 2, {"CLPV_KERNEL_DIR: found", "a folder with kernel files"});
   rejected("CLPV_PROGRAM_CACHE=off CLPV_PROGRAM_DUMP=@/none", 1, {"none/", "there is no folder"});
-  rejected("env POCL_CACHE_DIR=@/file", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
+  rejected("env POCL_CACHE_DIR=@/file/below", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
 }
 
 /// The program for someone who is not root, for whom permissions count; empty where that cannot be

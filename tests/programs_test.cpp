@@ -91,15 +91,15 @@ TEST(Programs, APythonThatLacksModulesIsPassedOver) {
                     HasSubstr((folder / "bin/python3").string() + ": No module named numpy")));
 }
 
-// Python and daemons may ignore SIGCHLD. The first frame then waited without end, and an ffmpeg that
-// had failed replaced the film by nothing.
+// Python and daemons may ignore SIGCHLD. The first frame then waited without end, and an ffmpeg
+// that had failed replaced the film by nothing.
 TEST(Programs, AParentThatIgnoresSIGCHLDChangesNothing) {
   const test::TemporaryFolder folder;
   folder.write("bin/ffmpeg", "#!/bin/sh\ncat >/dev/null\nexit 3\n");
   ::chmod((folder / "bin/ffmpeg").c_str(), 0755);
   folder.write("film.mp4", "old");
-  const std::string ignoring = "cd " + folder.path().string() + " && PATH=" +
-                               (folder / "bin").string() +
+  const std::string ignoring = "cd " + folder.path().string() +
+                               " && PATH=" + (folder / "bin").string() +
                                ":$PATH exec env --ignore-signal=CHLD --block-signal=TERM "
                                "timeout -s KILL 300 " CLPV_PROGRAM;
   const test::Outcome film = test::run(ignoring + " sequence " + kTiny + kSmallSteps +

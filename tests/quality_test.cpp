@@ -95,10 +95,10 @@ QualityCell leaking(const std::string& basis, const std::string& camera) {
 
 // Undefined errors once counted as 0: the variant that leaked most came first.
 TEST(QualityReport, UndefinedIsNeverBestAndInNoMean) {
-  const std::vector<QualityCell> cells{leaking("leaks", "dark"),    cell("leaks", "lit", 0.1, 20),
+  const std::vector<QualityCell> cells{leaking("leaks", "dark"),     cell("leaks", "lit", 0.1, 20),
                                        cell("tight", "dark", 0, 10), cell("tight", "lit", 0.4, 20),
-                                       leaking("black", "dark"),    leaking("black", "lit"),
-                                       rejected("none", "dark"),    rejected("none", "lit")};
+                                       leaking("black", "dark"),     leaking("black", "lit"),
+                                       rejected("none", "dark"),     rejected("none", "lit")};
   const auto sums = summarise(cells);
   ASSERT_EQ(sums.size(), 4u);
   EXPECT_EQ(sums[0].variant[0].second, "tight");

@@ -31,8 +31,8 @@ TEST(Version, HasAnEntryInTheCitationAndTheChanges) {
 }
 
 TEST(Printable, TextStaysAsItIs) {
-  for (const std::string text : {"", "a b~", "two\nlines\tand a tab", "\u00e9\u20ac\U0001F4A1",
-                                 "\u00a0"})
+  for (const std::string text :
+       {"", "a b~", "two\nlines\tand a tab", "\u00e9\u20ac\U0001F4A1", "\u00a0"})
     EXPECT_EQ(printable(text), text);
 }
 

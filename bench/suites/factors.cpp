@@ -134,8 +134,8 @@ std::string factors_table(const std::vector<Row>& rows) {
                                  "mad", "MiB", "NRMSE", "changed from --preset paper");
   for (const Row& row : rows) {
     if (row.stage != kSum) continue;
-    text += fmt::format("{:<8} {:>10.2f} {:>8.2f} {:>9.2f} {:>7}  {}\n",
-                        row.problem->options.basis, row.times.median, row.times.mad,
+    text += fmt::format("{:<8} {:>10.2f} {:>8.2f} {:>9.2f} {:>7}  {}\n", row.problem->options.basis,
+                        row.times.median, row.times.mad,
                         static_cast<double>(row.volume_bytes) / (1 << 20),
                         row.difference ? fmt::format("{:.4f}", *row.difference) : "-",
                         row.changed.empty() ? "-" : row.changed);

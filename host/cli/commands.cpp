@@ -150,8 +150,8 @@ std::string rank_prefix(const Shared& shared) {
 int report_failure(const Shared& shared, ExitCode code, const std::string& message) {
   const bool limited = (code == ExitCode::run_time || code == ExitCode::device) &&
                        message.find("ulimit") == std::string::npos;
-  print_message(fmt::format("clpv: {}{}{}\n", rank_prefix(shared), message,
-                            limited ? limits_note() : ""));
+  print_message(
+      fmt::format("clpv: {}{}{}\n", rank_prefix(shared), message, limited ? limits_note() : ""));
   if (shared.started && !shared.started->alone()) shared.started->abort(code);
   return static_cast<int>(code);
 }

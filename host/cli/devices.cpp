@@ -59,7 +59,8 @@ void add_devices(CLI::App& app, Shared& shared) {
       list = {{choose_device(list.devices, shared.device)}, {}};
     }
     if (*format == "json") {
-      print_json(to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+      print_json(to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                 "\n");
     } else {
       print(list);
     }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 #include "support/log.hpp"
@@ -62,6 +63,16 @@ std::string read_whole(const fs::path& file) {
   throw Error(ExitCode::run_time, "{}: cannot be read", file.string());
 }
 
+/// Keeps matplotlib's list of fonts in clpv's cache, and its empty folder of settings out of HOME.
+/// Without a cache they are in the scratch folder.
+void choose_matplotlib_folder(const fs::path& scratch) {
+  fs::path folder = scratch / "matplotlib";
+  if (const auto cache = user_cache_folder();
+      cache && CacheFolder(*cache / "matplotlib").problem().empty())
+    folder = *cache / "matplotlib";
+  ::setenv("MPLCONFIGDIR", folder.c_str(), 1);
+}
+
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
@@ -70,6 +81,7 @@ std::string first_line(const std::string& text) {
 
 Drawing::Drawing(std::string kind, std::string asked_by)
     : kind_(std::move(kind)), asked_by_(std::move(asked_by)) {
+  choose_matplotlib_folder(folder());
   std::string tried;
   for (const fs::path& python : interpreters()) {
     const Process::Result ended = run(python, {});

@@ -44,7 +44,8 @@ void add_subject_options(CLI::App& command, QualitySubjects& subjects) {
 std::filesystem::path quality_cache(const std::string& given) {
   if (!given.empty()) return given;
   if (const auto folder = user_cache_folder()) return *folder / "quality";
-  throw Error(ExitCode::usage, "--cache: needed where neither XDG_CACHE_HOME nor HOME is an absolute path");
+  throw Error(ExitCode::usage,
+              "--cache: needed where neither XDG_CACHE_HOME nor HOME is an absolute path");
 }
 
 std::vector<Subject> load_subjects(const QualitySubjects& given) {

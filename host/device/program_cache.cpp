@@ -89,7 +89,8 @@ std::optional<ProgramCache> ProgramCache::of_user(const Device& device) {
     throw Error(ExitCode::usage, "CLPV_PROGRAM_CACHE: found '{}', allowed: on, off", value);
   if (value.empty() && driver_keeps_kernels(device)) return std::nullopt;
   if (const auto folder = user_cache_folder()) return ProgramCache(*folder);
-  spdlog::debug("neither XDG_CACHE_HOME nor HOME is an absolute path: compiled programs are not cached");
+  spdlog::debug(
+      "neither XDG_CACHE_HOME nor HOME is an absolute path: compiled programs are not cached");
   return std::nullopt;
 }
 

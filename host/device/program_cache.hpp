@@ -26,8 +26,8 @@ class ProgramCache {
   explicit ProgramCache(std::filesystem::path folder, std::uint64_t max_bytes = kDefaultMaxBytes);
 
   /// The user's cache: $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv. None if neither is an
-  /// absolute path, if CLPV_PROGRAM_CACHE is "off", or if the driver keeps compiled kernels itself, unless
-  /// CLPV_PROGRAM_CACHE is "on".
+  /// absolute path, if CLPV_PROGRAM_CACHE is "off", or if the driver keeps compiled kernels itself,
+  /// unless CLPV_PROGRAM_CACHE is "on".
   static std::optional<ProgramCache> of_user(const Device& device);
 
   /// Cache key of a program: device, driver and its settings, build options and text, in full.

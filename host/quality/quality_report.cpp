@@ -75,9 +75,8 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain,
                                    nrmse_best_gain, energy_ratio, flip, frame_ms, stage_ms,
                                    compute_units, settings, setup_s, measured_s)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, undefined, nrmse,
-                                   worst_nrmse, nrmse_best_gain, energy_ratio, flip, frame_ms,
-                                   stage_ms)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, undefined, nrmse, worst_nrmse,
+                                   nrmse_best_gain, energy_ratio, flip, frame_ms, stage_ms)
 
 nlohmann::json to_json(const QualityCell& cell) {
   nlohmann::json json = cell, varied = nlohmann::json::array();  // an array: objects lose the order

@@ -30,8 +30,8 @@ using Bytes = std::vector<std::uint8_t>;
 Bytes read_file(const std::filesystem::path& path, std::uint64_t limit, const std::string& file,
                 std::string_view place = {});
 
-/// Returns $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv; nothing if neither is an absolute path. Does
-/// not create the folder.
+/// Returns $XDG_CACHE_HOME/clpv, else $HOME/.cache/clpv; nothing if neither is an absolute path.
+/// Does not create the folder.
 std::optional<std::filesystem::path> user_cache_folder();
 
 /// Returns the 32-bit little-endian word at byte `at`. Requires at + 4 <= bytes.size().

@@ -63,8 +63,9 @@ void require_limits() {
                 kLeastFiles);
   }
   if (const std::uint64_t bytes = limit_of(RLIMIT_STACK); bytes < kLeastStack) {
-    throw Error(ExitCode::run_time, "stack (ulimit -s): found {} KiB, allowed for OpenCL: {} or more",
-                bytes / 1024, kLeastStack / 1024);
+    throw Error(ExitCode::run_time,
+                "stack (ulimit -s): found {} KiB, allowed for OpenCL: {} or more", bytes / 1024,
+                kLeastStack / 1024);
   }
   if (const std::uint64_t bytes = limit_of(RLIMIT_FSIZE); bytes < kLeastFileBytes) {
     throw Error(ExitCode::run_time,

@@ -16,8 +16,8 @@ inline constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::
 std::uint64_t address_space_left();
 
 /// Throws Error(run_time) with the limit and the least allowed if address space (`ulimit -v`), open
-/// files (`ulimit -n`), the stack (`ulimit -s`) or the size of files (`ulimit -f`) are too small for
-/// an OpenCL driver on the CPU.
+/// files (`ulimit -n`), the stack (`ulimit -s`) or the size of files (`ulimit -f`) are too small
+/// for an OpenCL driver on the CPU.
 void require_limits();
 
 /// Returns "; limits of this process: ..." with those that explain failures of libraries; empty if

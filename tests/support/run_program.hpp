@@ -36,13 +36,15 @@ inline Outcome run(const std::string& command) {
 
 /// "POCL_CACHE_DIR=... ", for a process whose XDG_CACHE_HOME is empty: PoCL would compile all
 /// kernels again there.
-inline std::string usual_kernels() {
-  if (const char* set = std::getenv("POCL_CACHE_DIR"))
-    return std::string("POCL_CACHE_DIR=") + set + " ";
+inline std::filesystem::path usual_kernels_folder() {
+  if (const char* set = std::getenv("POCL_CACHE_DIR")) return set;
   if (const char* cache = std::getenv("XDG_CACHE_HOME"))
-    return std::string("POCL_CACHE_DIR=") + cache + "/clpv/pocl ";
+    return std::filesystem::path(cache) / "clpv/pocl";
   const char* home = std::getenv("HOME");
-  return home != nullptr ? std::string("POCL_CACHE_DIR=") + home + "/.cache/clpv/pocl " : "";
+  return std::filesystem::path(home != nullptr ? home : "/nonexistent") / ".cache/clpv/pocl";
+}
+inline std::string usual_kernels() {
+  return "POCL_CACHE_DIR=" + usual_kernels_folder().string() + " ";
 }
 
 }  // namespace clpv::test
