@@ -226,12 +226,10 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
                   kSunIlluminance))
           ->type_name("X,Y,Z[,LUX]")
           ->group(kGroup);
-  add_number(command, "--light-scale", changes.light_scale,
+  add_number(command, "--light-scale", "X", changes.light_scale,
              "factor of the intensities of the scene's lights (default: the scene file's, or 1); "
              "0.001464 counts lux and candela by Blender in watts",
-             {1 / bounds::kLightScale, bounds::kLightScale,
-              fmt::format("{}..{}", 1 / bounds::kLightScale, bounds::kLightScale)})
-      ->type_name("X")
+             {1 / bounds::kLightScale, bounds::kLightScale})
       ->excludes(sun)
       ->group(kGroup);
   const auto take_medium = [&changes](const std::string& text) {
