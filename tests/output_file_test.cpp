@@ -183,7 +183,7 @@ TEST_F(OutputFile, AppendOnlyFoldersAndFilesAreRejectedBeforeTheWork) {
   EXPECT_THAT(message(below / "new"), HasSubstr("new: cannot be written: its folder"));
   EXPECT_THAT(message(file), HasSubstr("file: cannot be written: it is append-only"));
   test::run("chattr -a " + file.string() + "; chattr +i " + file.string());
-  EXPECT_THAT(message(file), HasSubstr("file: cannot be written: it is append-only or immutable"));
+  EXPECT_THAT(message(file), HasSubstr("file: cannot be written: Operation not permitted"));
   test::run("chattr -a " + below.string() + "; chattr -i " + file.string());
   EXPECT_TRUE(fs::is_empty(below));
   EXPECT_EQ(entries(), 2u);

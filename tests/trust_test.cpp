@@ -425,7 +425,9 @@ struct Inputs : ::testing::Test {
 TEST_F(Inputs, AreReplacedByNoOutput) {
   const test::TemporaryFolder cache;
   const auto before = contents_of(folder.path());
-  const std::string scene = " my.json" + kSmallSteps,
+  std::string steps = kSmallSteps;  // --centres replaces --basis
+  steps.erase(steps.find("--basis sh2 "), std::string_view("--basis sh2 ").size());
+  const std::string scene = " my.json" + steps,
                     film = "sequence" + scene + "--frames 3 --fps 1 --format png -o . ",
                     cached = " --spp 1 --frames 1 --cache " + cache.path().string();
   ::setenv("CLPV_KERNEL_DIR", folder.path().c_str(), 1);
@@ -468,17 +470,19 @@ TEST_F(Inputs, AreReplacedByNoOutput) {
   }
   const std::string centres = "--frames 3 --fps 1 --format png --centres frame-0002.png -o .";
   fs::remove(folder / "frame-0001.png");
-  EXPECT_EQ(run_here("sequence " + kTiny + kSmallSteps + centres, folder.path()).exit_code, 2);
+  const test::Outcome outcome = run_here("sequence " + kTiny + steps + centres, folder.path());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("frame-0002.png; allowed: another file"));
 }
 
 TEST_F(Inputs, AreNoneWhereOutputsOfEarlierRunsAreReplaced) {
   const std::string scene = " my.json" + kSmallSteps;
-  for (const char* sky : {"1", "2"}) {
-    folder.write("my.json", R"({"model": "model.gltf", "sky": {"radiance": [1, 1, )" +
-                                std::string(sky) + "]}}");
-    for (const std::string& command :
-         {"render" + scene + "-o o.exr --stats s.json",
-          "sequence" + scene + "--frames 2 --fps 1 --view radiance -o film"}) {
+  for (const char* lux : {"1", "2"}) {
+    folder.write("my.json", R"({"model": "model.gltf", "lights": [{"kind": "directional",
+        "direction": [0, -1, 0.1], "illuminance_lux": )" +
+                                std::string(lux) + "}]}");
+    for (const std::string& command : {"render" + scene + "-o o.exr --stats s.json",
+                                       "sequence" + scene + "--frames 2 --fps 1 -o film"}) {
       const test::Outcome outcome = run_here(command, folder.path());
       EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
       EXPECT_THAT(outcome.err, Not(HasSubstr("existed"))) << outcome.err;

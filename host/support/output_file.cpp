@@ -67,8 +67,7 @@ std::string obstacle(const fs::path& target) {
       (folder.stx_attributes & STATX_ATTR_APPEND) != 0)
     return fmt::format("its folder {} is append-only", above.string());
   if (::statx(AT_FDCWD, target.c_str(), AT_SYMLINK_NOFOLLOW, 0, &old) != 0) return {};
-  if ((old.stx_attributes & (STATX_ATTR_APPEND | STATX_ATTR_IMMUTABLE)) != 0)
-    return "it is append-only or immutable";
+  if ((old.stx_attributes & STATX_ATTR_APPEND) != 0) return "it is append-only";
   return (old.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0 ? "it is a mount point" : "";
 }
 
