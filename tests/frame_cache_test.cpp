@@ -254,7 +254,8 @@ TEST_F(CachedMedium, RecomputesOnlyWhatChanged) {
 
 TEST_F(CachedEmission, RecomputesOnlyWhatChanged) {
   Instants at;
-  const Passes all = with(with(with(with(kOfEveryFrame, kOfView), kOfLight), kOfCells), {Pass::emit});
+  const Passes all =
+      with(with(with(with(kOfEveryFrame, kOfView), kOfLight), kOfCells), {Pass::emit});
   EXPECT_EQ(passes(at), all);
   EXPECT_EQ(passes(at), kOfEveryFrame);
   at.eye.x += 0.5f * kCell;

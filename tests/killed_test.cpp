@@ -149,9 +149,8 @@ TEST_F(Killed, WhileQualityMeasures) {
 /// Long enough to be met at work: frames without end.
 std::string sequence(const fs::path& folder, int frames = 1000) {
   return "sequence " CLPV_SOURCE_DIR "/scenes/atrium_living.json --frames " +
-         std::to_string(frames) + " --fps 24 --width 16 --height 9" +
-         kSmall + "--basis sh2 --transport sampled --gather all --blockers seen -o " +
-         folder.string();
+         std::to_string(frames) + " --fps 24 --width 16 --height 9" + kSmall +
+         "--basis sh2 --transport sampled --gather all --blockers seen -o " + folder.string();
 }
 
 /// Numbers of the frames in a folder, and of those with a line in its times.jsonl.

@@ -262,8 +262,8 @@ TEST_F(QualityCommand, AnImageIsComparedWithTheTruthOfItsScene) {
                              " --view indirect --width 32 --height 18 --grid 8 --blockers none "
                              "--rsm-size 16 --camera left -o " +
                              file("ours/room-left.exr"),
-                    compare = "compare --suite " + file("ours") + " --truths " +
-                              file("cache/references");
+                    compare =
+                        "compare --suite " + file("ours") + " --truths " + file("cache/references");
   fs::create_directory(file("ours"));
   ASSERT_EQ(quality("--basis sh2 --transport sampled --camera left").exit_code, 0);
   ASSERT_EQ(test::run_here(render).exit_code, 0);

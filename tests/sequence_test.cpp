@@ -123,9 +123,16 @@ TEST_F(SequenceTest, InvalidLinesOfTimesAreSkipped) {
   const json before = summary(), line = lines("frame")[1];
   std::string text;
   for (const auto& [member, value] :
-       {std::pair<std::string, json>{"frame", -5}, {"frame", 0.5}, {"frame", 3}, {"frame", 1e30},
-        {"key", "another"}, {"settings", "another"}, {"frame_ms", -1}, {"frame_ms", "1"},
-        {"first", 1}, {"stages", {{{"stage", "none"}, {"ms", 1}, {"timer", "event"}}}}}) {
+       {std::pair<std::string, json>{"frame", -5},
+        {"frame", 0.5},
+        {"frame", 3},
+        {"frame", 1e30},
+        {"key", "another"},
+        {"settings", "another"},
+        {"frame_ms", -1},
+        {"frame_ms", "1"},
+        {"first", 1},
+        {"stages", {{{"stage", "none"}, {"ms", 1}, {"timer", "event"}}}}}) {
     json bad = line;
     bad["frame_ms"] = 1e6;
     bad[member] = value;

@@ -86,11 +86,10 @@ std::pair<fs::path, Image> truth_of(const fs::path& file, const Image& image,
       found.emplace_back(truth, std::move(read));
   }
   if (found.size() == 1) return std::move(found[0]);
-  throw Error(ExitCode::bad_input,
-              "{}: found {} ground truths {} of {}x{} pixels{} in {}; allowed: one", file.string(),
-              found.size(), hash.empty() ? in_list->second : stem + "-HASH.exr", image.width,
-              image.height, hash.empty() ? "" : " and of its scene, lights and camera",
-              truths.string());
+  throw Error(
+      ExitCode::bad_input, "{}: found {} ground truths {} of {}x{} pixels{} in {}; allowed: one",
+      file.string(), found.size(), hash.empty() ? in_list->second : stem + "-HASH.exr", image.width,
+      image.height, hash.empty() ? "" : " and of its scene, lights and camera", truths.string());
 }
 
 }  // namespace

@@ -8,10 +8,10 @@
 namespace clpv {
 
 /// Compares each folder/SCENE-CAMERA.exr with the view `indirect` of the ground truth
-/// truths/SCENE-CAMERA-HASH.exr of the same size that has its view_hash, or, where the image has none,
-/// that suite.json lists (in `truths` or above). Returns the errors of each view, sorted by name, and
-/// the mean NRMSE. Throws Error(bad_input) for a folder without an image, and for an image with no
-/// ground truth or several.
+/// truths/SCENE-CAMERA-HASH.exr of the same size that has its view_hash, or, where the image has
+/// none, that suite.json lists (in `truths` or above). Returns the errors of each view, sorted by
+/// name, and the mean NRMSE. Throws Error(bad_input) for a folder without an image, and for an
+/// image with no ground truth or several.
 nlohmann::json compare_suite(const std::filesystem::path& folder,
                              const std::filesystem::path& truths, float exposure);
 

@@ -133,7 +133,8 @@ void add_sequence(CLI::App& app, Shared& shared) {
       "Frame i shows FROM + i / RATE seconds, identical to `clpv render --time` of that time.\n"
       "An interrupted run resumes: frames whose file is whole and has the same inputs are not "
       "rendered again.\n"
-      "times.jsonl has the times of each frame, one line each, and a last line with n, min, median, "
+      "times.jsonl has the times of each frame, one line each, and a last line with n, min, "
+      "median, "
       "mad and\n"
       "max of each stage [ms].\n"
       "mpirun -n N clpv sequence ... distributes the frames over N ranks (docs/scale.md).");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // On-disk cache of compiled programs: later runs compile nothing.
 //
-// One file per program. The file holds the full key (device, driver, settings, options, source text), which
-// load() compares: sources whose file names collide never share a program. Files appear by rename,
-// so several processes may read and write one folder at once.
+// One file per program. The file holds the full key (device, driver, settings, options, source
+// text), which load() compares: sources whose file names collide never share a program. Files
+// appear by rename, so several processes may read and write one folder at once.
 #pragma once
 
 #include <cstdint>

@@ -34,8 +34,8 @@ void append_layer(Image& image, const Image& addition, const std::string& layer)
 /// A display value as 8 bits; NaN becomes 0.
 std::uint8_t byte_of(float value);
 
-/// Adds size, channels and values to a hash, those that a written file has: sRGB-encoded ones with 8
-/// bits, channels in any order.
+/// Adds size, channels and values to a hash, those that a written file has: sRGB-encoded ones with
+/// 8 bits, channels in any order.
 void add_pixels(Fingerprint& print, const Image& image);
 
 }  // namespace clpv

@@ -31,8 +31,9 @@ std::string view_hash(const SceneData& scene, const SceneCamera& camera, int wid
 /// missing. The file name contains a key over scene content, camera, size, options and program
 /// version, but no file paths. A damaged file is traced again, with a warning; one that CacheFolder
 /// does not trust is ignored. Collective over all `ranks`; each rank receives the result. Only rank
-/// 0 reads and writes the cache, whose folder other hosts need not share. A folder that cannot be written is a warning before tracing, and a
-/// failure to write one after it. Throws like pathtracer::trace_paths.
+/// 0 reads and writes the cache, whose folder other hosts need not share. A folder that cannot be
+/// written is a warning before tracing, and a failure to write one after it. Throws like
+/// pathtracer::trace_paths.
 GroundTruth cached_ground_truth(const std::filesystem::path& folder, const SceneData& scene,
                                 const SceneCamera& camera, int width, int height,
                                 const pathtracer::PathTracerOptions& options,

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kKey = "frame_key";        // metadata: the key of a frame
+constexpr const char* kKey = "frame_key";       // metadata: the key of a frame
 constexpr const char* kPixels = "pixels_hash";  // metadata: hash of the pixels
 constexpr std::size_t kKeyDigits = 16;
 
@@ -218,7 +218,8 @@ void Sequence::write_summary() {
   if (!ranks_.is_root()) return;
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < static_cast<std::size_t>(options_.frames); ++i)
-    keys.push_back(gathered[i % gathered.size()].substr(i / gathered.size() * kKeyDigits, kKeyDigits));
+    keys.push_back(
+        gathered[i % gathered.size()].substr(i / gathered.size() * kKeyDigits, kKeyDigits));
   TimesSummary summary;
   times_.read(keys, settings_, [&](const FrameLine& line) { summary.add(line); });
   nlohmann::json all = header_json();

@@ -104,9 +104,9 @@ class Sequence {
   Compilation compilation_;
   Ranks& ranks_;
   TimesFile times_;
-  std::string still_;     ///< key of all static content
-  std::string settings_;  ///< key of what this run's times share
-  std::string keys_;      ///< of this rank's frames, one after another
+  std::string still_;                 ///< key of all static content
+  std::string settings_;              ///< key of what this run's times share
+  std::string keys_;                  ///< of this rank's frames, one after another
   std::optional<Renderer> renderer_;  ///< empty before the first frame
 };
 

@@ -18,8 +18,8 @@ class TimesSummary {
   void add(const FrameLine& line);
 
   /// Number of frames, and of those without first frames (`steady`). For each of pose, frame, write
-  /// and each stage, cascade and light over steady frames: n, min, median, mad and max [ms]. A frame
-  /// without a stage took 0 ms for it.
+  /// and each stage, cascade and light over steady frames: n, min, median, mad and max [ms]. A
+  /// frame without a stage took 0 ms for it.
   nlohmann::json to_json() const;
 
  private:

@@ -58,8 +58,8 @@ std::string reason() {
   return std::generic_category().message(errno);
 }
 
-/// Exclusive among processes. Also makes each append at the end of the file on network file systems;
-/// where there are no locks, O_APPEND has to do.
+/// Exclusive among processes. Also makes each append at the end of the file on network file
+/// systems; where there are no locks, O_APPEND has to do.
 class Lock {
  public:
   explicit Lock(int descriptor) : descriptor_(descriptor) {
@@ -107,8 +107,8 @@ json to_json(const FrameLine& line) {
   for (json& stage : stages)
     for (const char* part : {"cascade", "light"})
       if (stage[part].is_null()) stage.erase(part);
-  return {{"frame", line.frame},     {"key", line.key},           {"settings", line.settings},
-          {"time", line.seconds},    {"first", line.first},       {"pose_ms", line.pose_ms},
+  return {{"frame", line.frame},       {"key", line.key},           {"settings", line.settings},
+          {"time", line.seconds},      {"first", line.first},       {"pose_ms", line.pose_ms},
           {"frame_ms", line.frame_ms}, {"write_ms", line.write_ms}, {"stages", std::move(stages)}};
 }
 
@@ -116,8 +116,9 @@ std::optional<FrameLine> frame_line(const std::string& text) {
   try {
     const json line = parse_json(text, "line");
     check_rules(line, line_rules(), "line");
-    FrameLine made{line["frame"],   line["key"],     line["settings"], line["time"], line["first"],
-                   line["pose_ms"], line["frame_ms"], line["write_ms"], {}};
+    FrameLine made{line["frame"],    line["key"],      line["settings"],
+                   line["time"],     line["first"],    line["pose_ms"],
+                   line["frame_ms"], line["write_ms"], {}};
     for (const json& stage : line["stages"]) {
       StageTime time{{named<Pass>("stage", stage["stage"].get<std::string>())},
                      stage["ms"],
@@ -134,8 +135,7 @@ std::optional<FrameLine> frame_line(const std::string& text) {
 
 TimesFile::TimesFile(fs::path path) : path_(std::move(path)) {
   // O_NONBLOCK: opening a FIFO would wait for its other end.
-  descriptor_ =
-      ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0666);
+  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(path_, reason());
   try {
     begin();

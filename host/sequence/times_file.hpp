@@ -34,8 +34,8 @@ std::optional<FrameLine> frame_line(const std::string& text);
 /// The file. Its first line identifies it; all others are independent.
 class TimesFile {
  public:
-  /// Creates the file if it is missing or empty. Throws Error(run_time) for a file that clpv did not
-  /// write, which stays as it is, and for one that cannot be opened.
+  /// Creates the file if it is missing or empty. Throws Error(run_time) for a file that clpv did
+  /// not write, which stays as it is, and for one that cannot be opened.
   explicit TimesFile(std::filesystem::path path);
   ~TimesFile();
   TimesFile(const TimesFile&) = delete;
@@ -43,12 +43,12 @@ class TimesFile {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Appends a line with one write; processes do not mix theirs. Throws Error(run_time), for example
-  /// for a full disk, and leaves the file as it was.
+  /// Appends a line with one write; processes do not mix theirs. Throws Error(run_time), for
+  /// example for a full disk, and leaves the file as it was.
   void append(const nlohmann::json& line);
 
-  /// Reads the last line of each frame from 0 to `keys.size()` - 1 that has the frame's key and these
-  /// settings, and calls `action` for them in order. Other lines, for example a torn one, are
+  /// Reads the last line of each frame from 0 to `keys.size()` - 1 that has the frame's key and
+  /// these settings, and calls `action` for them in order. Other lines, for example a torn one, are
   /// skipped. Memory: 8 bytes for each frame, and one line.
   void read(const std::vector<std::string>& keys, const std::string& settings,
             const std::function<void(const FrameLine&)>& action) const;
