@@ -69,7 +69,7 @@ TEST(RayScene, SingleSidedSurfacesAreSeenFromTheirFrontAndShadeFromBoth) {
   EXPECT_NEAR(image.direct[0].x, 1, 1e-6);
 }
 
-// glTF: alpha of the cutoff and above is opaque. Factor, vertices and a texture have constant alpha.
+// glTF: alpha of the cutoff and above is opaque. Factor, vertices or texels have one alpha.
 TEST(RayScene, AlphaOfTheCutoffIsOpaque) {
   struct Case {
     float factor, vertex;

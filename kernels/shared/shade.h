@@ -29,3 +29,5 @@ enum {
 #define CLPV_SHADOW_ROUNDING_DEPTH 2e-6f
 // [lifts] Texels farther below its plane than this are beyond the edge of its surface.
 #define CLPV_SHADOW_BEYOND 2.0f
+// Share of the filter's weight from which all texels occlude.
+#define CLPV_SHADOW_WHOLE 0.999f

@@ -78,8 +78,11 @@ void FrameLights::find_scale(const ClpvGrid& coarsest) {
 }
 
 void FrameLights::find_bounds(const ClpvGrid& coarsest) {
-  const CacheKey key =
-      Fingerprint().add(coarsest.origin).add(coarsest.cell).add(buffers_.clusters->instant()).value();
+  const CacheKey key = Fingerprint()
+                           .add(coarsest.origin)
+                           .add(coarsest.cell)
+                           .add(buffers_.clusters->instant())
+                           .value();
   bounds_cached_.update(
       key, [&] { bounds_ = light_bounds(scene_.vertices, buffers_.bounds, coarsest); });
 }
