@@ -95,8 +95,8 @@ bool below_surface(const Filter& filter, double rounding) {
                    beside = filter.height[row][column == 1 ? 0 : 3],
                    past = filter.height[row == 1 ? 0 : 3][column];
       const glm::dvec2 distance = glm::abs(filter.distance[row][column]);
-      const double fall = std::max(beside - inner, 0.0) * distance.x +
-                          std::max(past - inner, 0.0) * distance.y;
+      const double fall =
+          std::max(beside - inner, 0.0) * distance.x + std::max(past - inner, 0.0) * distance.y;
       if (inner > rounding && inner - fall > rounding) return true;
     }
   }
@@ -130,10 +130,11 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
   const bool mixed =
       lifted.blocked > 0 && lifted.blocked < double{CLPV_SHADOW_WHOLE} * lifted.whole;
   if (!mixed || !below_surface(filter, rounding)) return lifted.visible();
-  return weigh_taps(filter, [&](double height, double) {
-           if (height <= -double{CLPV_SHADOW_BEYOND} * lift) return Tap::beyond;
-           return height > rounding ? Tap::blocks : Tap::passes;
-         })
+  return weigh_taps(filter,
+                    [&](double height, double) {
+                      if (height <= -double{CLPV_SHADOW_BEYOND} * lift) return Tap::beyond;
+                      return height > rounding ? Tap::blocks : Tap::passes;
+                    })
       .visible();
 }
 

@@ -39,9 +39,8 @@ void FrameLights::prepare(const SceneCamera& camera, const std::vector<ClpvGrid>
   find_scale(grids.back());
   find_bounds(grids.back());
   for (Lit& lit : lights_) {
-    const LightBounds bounds = rsm_follows_cascade(lit.light)
-                                   ? bounds_
-                                   : LightBounds{buffers_.bounds, buffers_.bounds};
+    const LightBounds bounds =
+        rsm_follows_cascade(lit.light) ? bounds_ : LightBounds{buffers_.bounds, buffers_.bounds};
     lit.shadow.light = lit.light;
     lit.shadow.views = shadow_views(lit.light, bounds.shadows, options_.shadow_size);
     lit.rsms.resize(injected_volumes(options_));
