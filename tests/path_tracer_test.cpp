@@ -335,7 +335,10 @@ TEST(PathTracer, LightDoesNotDependOnThePlaceOrOnFarSurfaces) {
     EXPECT_LT(difference(beside.direct, still.direct), 0.01);
     EXPECT_LT(difference(beside.irradiance, still.irradiance), 0.05);
   }
-  EXPECT_THAT(error_of(ExitCode::bad_input, [] { trace_block({4e6f, 0, 0}, 0); }),
+  EXPECT_THAT(error_of(ExitCode::bad_input,
+                       [] {
+                         trace_block({4e6f, 0, 0}, 0);
+                       }),
               ::testing::HasSubstr("0.25 m apart"));
 }
 

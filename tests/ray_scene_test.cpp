@@ -69,15 +69,18 @@ TEST(RayScene, SingleSidedSurfacesAreSeenFromTheirFrontAndShadeFromBoth) {
   EXPECT_NEAR(image.direct[0].x, 1, 1e-6);
 }
 
-// glTF: alpha of the cutoff and above is opaque. Factor, vertices and a texture have constant alpha.
+// glTF: alpha of the cutoff and above is opaque. Factor, vertices or texels have one alpha.
 TEST(RayScene, AlphaOfTheCutoffIsOpaque) {
   struct Case {
     float factor, vertex;
     int texel;  // of the texture's alpha; -1: no texture
     float cutoff;
   };
-  std::vector<Case> cases = {{0.3f, 1, -1, 0.3f}, {0.9f, 1, -1, 0.9f}, {1, 0.3f, -1, 0.3f},
-                             {1, 0.7f, -1, 0.7f}, {1, 1, -1, 1}};
+  std::vector<Case> cases = {{0.3f, 1, -1, 0.3f},
+                             {0.9f, 1, -1, 0.9f},
+                             {1, 0.3f, -1, 0.3f},
+                             {1, 0.7f, -1, 0.7f},
+                             {1, 1, -1, 1}};
   for (const int texel : {1, 77, 128, 201, 254})
     cases.push_back({1, 1, texel, static_cast<float>(texel) / 255.0f});
   // Not a whole number of pixels: weights of all sizes.

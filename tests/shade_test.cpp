@@ -244,12 +244,13 @@ TEST(Shadow, ASealedBoxIsDark) {
     for (const glm::dvec3& out : kDirections) {
       const double height = out.y > 0 ? 3 : out.y < 0 ? 0 : 2;
       const SurfaceImage wall = look(
-          out, [&](const glm::dvec3& o, const glm::dvec3& d) { return plane_at(o, d, out, height); },
+          out,
+          [&](const glm::dvec3& o, const glm::dvec3& d) { return plane_at(o, d, out, height); },
           [&](const glm::dvec3&) { return -out; });
       const std::vector<double> e = lit(wall, {light});
       for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
-        const glm::dvec3 off = glm::abs(point_of(wall, pixel) - glm::dvec3(0, 1.5, 0)) -
-                               glm::dvec3(2, 1.5, 2);
+        const glm::dvec3 off =
+            glm::abs(point_of(wall, pixel) - glm::dvec3(0, 1.5, 0)) - glm::dvec3(2, 1.5, 2);
         if (std::max({off.x, off.y, off.z}) > 1e-4) continue;  // beyond the wall
         sum += e[pixel], ++pixels;
       }

@@ -53,8 +53,8 @@ SceneData smooth_box() {
     const glm::vec3 corner(i / 4 ? 1 : -1, i / 2 % 2 ? 1 : -1, i % 2 ? 1 : -1);
     add_vertex(scene, corner, glm::normalize(corner));
   }
-  add_faces(scene, {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4},
-                    {1, 5, 7, 3}});
+  add_faces(scene,
+            {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}});
   return scene;
 }
 
@@ -234,14 +234,13 @@ TEST(Smooth, AVirtualPointLightLiesOnItsTriangleWithTheLightThatItsNormalWeighs)
   Session& session = test_session();
   const SceneBuffers buffers = upload_scene(session, scene);
   Rasterizer rasterizer(session, buffers);
-  Surface rsm = make_surface(
-      session, directional_rsm_view(light.data, cascade, buffers.bounds, 256), RsmFormat::float32,
-      false);
+  Surface rsm =
+      make_surface(session, directional_rsm_view(light.data, cascade, buffers.bounds, 256),
+                   RsmFormat::float32, false);
   rasterizer.rasterize_rsm(light.data, rsm);
   const SurfaceImage image = read_surface(session, rsm);
   const glm::dvec3 towards = -glm::normalize(glm::dvec3(0.2, -1, -1));
-  const double weight =
-      glm::dot(glm::normalize(glm::dvec3(0, 0.5, 1)), towards) / towards.z;
+  const double weight = glm::dot(glm::normalize(glm::dvec3(0, 0.5, 1)), towards) / towards.z;
   const double texel = 4.0 * rsm.view.half_width * rsm.view.half_height / (256 * 256);  // [m^2]
   std::size_t texels = 0;
   for (std::size_t i = 0; i < image.depth.size(); ++i) {

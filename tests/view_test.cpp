@@ -212,7 +212,8 @@ TEST(View, ShadowViewOfADirectionalLightHoldsTheScene) {
   }
 }
 
-// A far triangle must not coarsen the shadows of what is near; a scene without gaps keeps its bounds.
+// A far triangle must not coarsen the shadows of what is near; a scene without gaps keeps its
+// bounds.
 TEST(View, LightBoundsLeaveOutWhatIsFarBehindAGap) {
   const ClpvGrid coarsest{{-25, -25, -25}, 50.0f / 32, 32, {}};
   const auto at = [](float x, float y) { return Vertex{{x, y, 0}, {}, {}, {}}; };

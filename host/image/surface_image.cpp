@@ -35,10 +35,9 @@ glm::dvec3 lift_normal(const glm::vec4& normal) {
 }
 
 glm::vec4 stored_normal(const glm::dvec3& shading, const glm::dvec3& geometric) {
-  if (glm::dot(shading, geometric) > double{CLPV_SAME_NORMAL})
-    return {glm::vec3(shading), 0.0f};
-  const glm::dvec3 on = geometric / (std::abs(geometric.x) + std::abs(geometric.y) +
-                                     std::abs(geometric.z));
+  if (glm::dot(shading, geometric) > double{CLPV_SAME_NORMAL}) return {glm::vec3(shading), 0.0f};
+  const glm::dvec3 on =
+      geometric / (std::abs(geometric.x) + std::abs(geometric.y) + std::abs(geometric.z));
   const glm::dvec2 at = on.z < 0 ? fold(glm::dvec2(on)) : glm::dvec2(on);
   const glm::dvec2 steps = glm::roundEven(kSteps * at) + kZero;
   return {glm::vec3(shading), static_cast<float>(steps.x + kBase * steps.y)};

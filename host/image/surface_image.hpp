@@ -9,7 +9,8 @@
 
 namespace clpv {
 
-/// Unit normal of the triangle of a camera's pixel, from its stored normal (kernels/shared/normal.h).
+/// Unit normal of the triangle of a camera's pixel, from its stored normal
+/// (kernels/shared/normal.h).
 glm::dvec3 geometric_normal(const glm::vec4& normal);
 /// Normal along which lookups in volumes and origins of rays are lifted.
 glm::dvec3 lift_normal(const glm::vec4& normal);

@@ -295,8 +295,7 @@ class ImageTracer {
 void require_resolved(const SceneData& scene, const ClpvView& view) {
   const float farthest =
       std::max({std::abs(view.eye[0]), std::abs(view.eye[1]), std::abs(view.eye[2])});
-  const float spacing =
-      std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
+  const float spacing = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
   if (spacing <= view.near_depth) return;
   throw Error(ExitCode::bad_input,
               "{}: camera at {:.7g} {:.7g} {:.7g} m, where float coordinates are {:.4g} m apart; "

@@ -68,8 +68,8 @@ using TraceProgress = std::function<void(double)>;
 /// Traces `scene` lit by `lights`, which replace SceneData::lights. All `ranks` call it; they share
 /// tiles and halves of paths, and each returns the whole image. Its bytes do not depend on the
 /// number of threads and ranks. Throws Error(bad_input) for a scene without surface or without
-/// light, and for an eye where floats are farther apart than its near plane; Error(usage) for options
-/// out of range.
+/// light, and for an eye where floats are farther apart than its near plane; Error(usage) for
+/// options out of range.
 TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& lights,
                         const ClpvView& view, const PathTracerOptions& options,
                         const TraceProgress& progress = {}, Ranks& ranks = single_rank());

@@ -53,8 +53,8 @@ class RayScene {
   bool occluded(const glm::vec3& origin, const glm::vec3& direction, float furthest) const;
 
   /// Origin for rays that leave the surface on the side of `geometric`: offset by a bound of the
-  /// triangle's own rounding errors, so that they do not hit it again. Needs position, geometric and
-  /// point.
+  /// triangle's own rounding errors, so that they do not hit it again. Needs position, geometric
+  /// and point.
   glm::vec3 offset_origin(const Hit& hit) const;
 
   struct Impl;  ///< Embree's objects; public for the filter functions in the .cpp

@@ -102,8 +102,8 @@ glm::dvec3 NearField::radiance_of(const NearHit& hit, const NearPoint& point,
   for (const MappedLight& light : scene.lights)
     irradiance += direct_irradiance(light, position, n, geometric);
   if (options.reflects)
-    irradiance +=
-        field_irradiance(basis, field_at(position, options.gather.gather_offset, lift_normal(n, geometric)), n);
+    irradiance += field_irradiance(
+        basis, field_at(position, options.gather.gather_offset, lift_normal(n, geometric)), n);
   const bool emitting = !back || double_sided(scene.scene.materials[triangle.material]);
   const glm::dvec3 emitted =
       emitting ? glm::dvec3(scene.materials.emissive(hit.point, footprint)) : glm::dvec3(0);

@@ -150,8 +150,8 @@ Normals visible_normals(const SceneData& scene, const Candidate& candidate,
   glm::dvec3 blended(interpolate(scene, scene.triangles[point.triangle], point.weights, normal));
   if (blended == glm::dvec3(0)) blended = front;
   const glm::dvec3 shading = glm::normalize(glm::dot(blended, front) < 0 ? -blended : blended);
-  const bool apart = glm::length(front) > 0 && glm::dot(glm::normalize(front), shading) <=
-                                                   double{CLPV_SAME_NORMAL};
+  const bool apart = glm::length(front) > 0 &&
+                     glm::dot(glm::normalize(front), shading) <= double{CLPV_SAME_NORMAL};
   return {shading, apart ? glm::normalize(front) : shading};
 }
 

@@ -62,6 +62,30 @@ Filter filter_at(const ShadowMap& map, const glm::dvec2& pixel, const glm::dvec3
   return filter;
 }
 
+/// Weights of the texels that occlude a receiver, and of all that count.
+struct Share {
+  double blocked = 0, whole = 0;
+  double visible() const { return whole > 0 ? 1 - blocked / whole : 1; }
+};
+
+enum class Tap { blocks, passes, beyond };
+
+/// Sums the weights of the texels by kind(height, depth).
+template <typename Kind>
+Share weigh_taps(const Filter& filter, const Kind& kind) {
+  Share share;
+  for (int row = 0; row < CLPV_SHADOW_TAPS; ++row) {
+    for (int column = 0; column < CLPV_SHADOW_TAPS; ++column) {
+      const glm::dvec2& distance = filter.distance[row][column];
+      const double weight = tap_weight(distance.x) * tap_weight(distance.y);
+      const Tap tap = kind(filter.height[row][column], filter.depth[row][column]);
+      share.blocked += tap == Tap::blocks ? weight : 0;
+      share.whole += tap == Tap::beyond ? 0 : weight;
+    }
+  }
+  return share;
+}
+
 /// Returns true if the receiver is below a surface of the map: if the height of one of the inner
 /// texels, extrapolated to the receiver from higher outer neighbours, exceeds `rounding`.
 bool below_surface(const Filter& filter, double rounding) {
@@ -71,8 +95,8 @@ bool below_surface(const Filter& filter, double rounding) {
                    beside = filter.height[row][column == 1 ? 0 : 3],
                    past = filter.height[row == 1 ? 0 : 3][column];
       const glm::dvec2 distance = glm::abs(filter.distance[row][column]);
-      const double fall = std::max(beside - inner, 0.0) * distance.x +
-                          std::max(past - inner, 0.0) * distance.y;
+      const double fall =
+          std::max(beside - inner, 0.0) * distance.x + std::max(past - inner, 0.0) * distance.y;
       if (inner > rounding && inner - fall > rounding) return true;
     }
   }
@@ -100,21 +124,18 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
                           std::abs(at.depth) * double{CLPV_SHADOW_ROUNDING_DEPTH};
   const double farthest = plane_depth(map.view, at.pixel, position + lift * normal, normal);
   const Filter filter = filter_at(map, at.pixel, position, normal);
-  const bool below = below_surface(filter, rounding);
-  double blocked = 0, total = 0;
-  for (int row = 0; row < CLPV_SHADOW_TAPS; ++row) {
-    for (int column = 0; column < CLPV_SHADOW_TAPS; ++column) {
-      const glm::dvec2& distance = filter.distance[row][column];
-      const double weight = tap_weight(distance.x) * tap_weight(distance.y),
-                   height = filter.height[row][column];
-      if (below && height <= -double{CLPV_SHADOW_BEYOND} * lift) continue;
-      const bool blocks =
-          below ? height > rounding : height > lift && filter.depth[row][column] < farthest;
-      total += weight;
-      blocked += blocks ? weight : 0;
-    }
-  }
-  return total > 0 ? 1 - blocked / total : 1;
+  const Share lifted = weigh_taps(filter, [&](double height, double depth) {
+    return height > lift && depth < farthest ? Tap::blocks : Tap::passes;
+  });
+  const bool mixed =
+      lifted.blocked > 0 && lifted.blocked < double{CLPV_SHADOW_WHOLE} * lifted.whole;
+  if (!mixed || !below_surface(filter, rounding)) return lifted.visible();
+  return weigh_taps(filter,
+                    [&](double height, double) {
+                      if (height <= -double{CLPV_SHADOW_BEYOND} * lift) return Tap::beyond;
+                      return height > rounding ? Tap::blocks : Tap::passes;
+                    })
+      .visible();
 }
 
 glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position,

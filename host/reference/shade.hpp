@@ -28,8 +28,8 @@ struct MappedLight {
 /// from the light to the point.
 const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset);
 
-/// Returns the share [0, 1] of the light that reaches a surface at `position` [m] whose triangle has
-/// the unit `normal`, on the lit side. `cosine`: between it and the direction to the light.
+/// Returns the share [0, 1] of the light that reaches a surface at `position` [m] whose triangle
+/// has the unit `normal`, on the lit side. `cosine`: between it and the direction to the light.
 double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal,
                   double cosine);
 

@@ -30,8 +30,8 @@ inline glm::vec4 colour(const Vertex& v) {
   return {v.colour[0], v.colour[1], v.colour[2], v.colour[3]};
 }
 
-/// Interpolates get(vertex); `weights` are barycentric coordinates of the second and third vertex. A
-/// constant stays that constant.
+/// Interpolates get(vertex); `weights` are barycentric coordinates of the second and third vertex.
+/// A constant stays that constant.
 template <typename Get>
 auto interpolate(const SceneData& scene, const Triangle& triangle, const glm::vec2& weights,
                  Get get) {

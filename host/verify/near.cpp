@@ -31,7 +31,7 @@ SurfaceImage near_surfaces(std::mt19937& random) {
   SurfaceImage image = random_surfaces(random);
   const ClpvView& view = image.view;
   const glm::dvec3 towards(-view.forward[0], -view.forward[1], -view.forward[2]),
-      tilted = glm::normalize(towards + glm::dvec3(0.1, 0.3, -0.2));
+      tilted = glm::normalize(towards + glm::dvec3(0.1, 0.6, -0.4));
   for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
     if (pixel % 7 == 3 || image.depth[pixel] == 0) continue;
     image.depth[pixel] = pixel % view.width < view.width / 2 ? 2.13f : 3.57f;

@@ -16,7 +16,8 @@ static inline realW fold_octahedron(const realW along, const realW other) {
 CLPV_INLINE realW pack_geometric_normal(const Vec geometric, const Vec shading) {
   const Vec g = geometric;
   const realW scale = 1.0f / (fabs(g.x) + fabs(g.y) + fabs(g.z)), x = g.x * scale, y = g.y * scale;
-  const realW u = g.z < ZERO ? fold_octahedron(x, y) : x, v = g.z < ZERO ? fold_octahedron(y, x) : y;
+  const realW u = g.z < ZERO ? fold_octahedron(x, y) : x,
+              v = g.z < ZERO ? fold_octahedron(y, x) : y;
   const realW column = to_realW(to_intW_rte(u * CLPV_NORMAL_STEPS)) + CLPV_NORMAL_ZERO,
               row = to_realW(to_intW_rte(v * CLPV_NORMAL_STEPS)) + CLPV_NORMAL_ZERO;
   return vec_dot(geometric, shading) > (realW)(CLPV_SAME_NORMAL) ? ZERO

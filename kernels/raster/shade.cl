@@ -29,7 +29,8 @@ __kernel void light_surfaces(const ClpvView camera, __global const float* depths
   load_surfaces(camera, p, depths, normals, &seen);
   intW lit = seen.depth > ZERO;
   const ShadowMap shadow = {views, count, which, map};
-  const Vec irradiance = shadowed_irradiance(light, shadow, seen.position, seen.normal, seen.geometric, &lit);
+  const Vec irradiance =
+      shadowed_irradiance(light, shadow, seen.position, seen.normal, seen.geometric, &lit);
   const VecLanes lanes = unpack(lit, irradiance);
   for (uint i = 0; i < p.count; ++i) {
     const float4 added = (float4)(lanes.x[i], lanes.y[i], lanes.z[i], 0.0f);

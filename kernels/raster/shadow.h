@@ -7,14 +7,14 @@
 // does not shadow itself. A lift along the triangle's normal (shared/shade.h) covers rounding and
 // corners; occluders closer than the lift cast no shadow.
 //
-// Under a roof, along the edge where it meets the receiver's wall, that would let light in: the roof
-// is closer than the lift, and texels beyond the edge lie behind the wall's plane. Whether a receiver
-// is below a surface is therefore found first. Heights of texels above its plane, extrapolated from
-// one of the four inner texels and its two outer neighbours to the filter's centre, are positive below
-// a plane, 0 on it, and negative in a concave corner, where the filter's texels are above the plane,
-// too. Neighbours that are lower do not count: they may lie on another surface, and where a plane
-// rises, one inner texel has higher ones. Below a surface there is no lift, and texels beyond the edge
-// do not count.
+// Under a roof, along the edge where it meets the receiver's wall, that would let light in: the
+// roof is closer than the lift, and texels beyond the edge lie behind the wall's plane. A receiver
+// that some texels occlude and others do not is therefore tested: heights of texels above its
+// plane, extrapolated from one of the four inner texels and its two outer neighbours to the
+// filter's centre, are positive if it is below a surface. They are negative in a concave corner,
+// whose texels are above the receiver's plane, too. Lower neighbours do not count: they may lie on
+// another surface, and where a plane rises, one inner texel has higher ones. A receiver below a
+// surface has no lift, and texels beyond the edge do not count.
 #pragma once
 
 #include "lanes.h"
@@ -119,25 +119,35 @@ CLPV_INLINE bool below_surface(const Receiver r, const float8 upper, const float
   return (below.x | below.y | below.z | below.w) != 0;
 }
 
-// Weight of a receiver's occluding texels; `whole`: weight of all of its texels, 0 outside the map.
+// Filter weights of the texels of two rows.
+CLPV_INLINE float8 row_weights(const float4 wx, const float2 wy) {
+  return side_by_side(wx, wx) * two_rows(wy);
+}
+
+// Weight of a receiver's occluding texels; `whole`: weight of all that count, 0 outside the map.
 // `row`: first row of the filter.
 CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, const uint width,
                                  float* whole) {
   const float4 wx = tap_weights(r.dx), wy = tap_weights(r.dy), one = 1.0f;
-  const float8 wxs = side_by_side(wx, wx), upper_w = wxs * two_rows(wy.lo),
-               lower_w = wxs * two_rows(wy.hi), none = 0.0f;
+  const float8 upper_w = row_weights(wx, wy.lo), lower_w = row_weights(wx, wy.hi), none = 0.0f;
   const float8 upper_d = side_by_side(vload4(0, row), vload4(0, row + width));
   const float8 lower_d = side_by_side(vload4(0, row + 2 * width), vload4(0, row + 3 * width));
-  const float8 upper = texel_heights(r, upper_d, r.dy.lo), lower = texel_heights(r, lower_d, r.dy.hi);
-  const bool below = below_surface(r, upper, lower);
-  const float lift = below ? r.rounding : r.lift,
-              depth = below ? INFINITY : (r.b + r.lift) / r.a,
-              least = below ? -CLPV_SHADOW_BEYOND * r.lift : -INFINITY;
-  const float8 blocked = select(none, upper_w, (upper > lift) & (upper_d < depth)) +
-                         select(none, lower_w, (lower > lift) & (lower_d < depth));
-  const float8 counted = select(none, upper_w, upper > least) + select(none, lower_w, lower > least);
+  const float8 upper = texel_heights(r, upper_d, r.dy.lo),
+               lower = texel_heights(r, lower_d, r.dy.hi);
+  const float depth = (r.b + r.lift) / r.a;  // of the lifted receiver
+  const float8 blocked = select(none, upper_w, (upper > r.lift) & (upper_d < depth)) +
+                         select(none, lower_w, (lower > r.lift) & (lower_d < depth));
+  const float sum = dot(blocked.lo + blocked.hi, one);
+  *whole = dot(wx, one) * dot(wy, one);
+  const bool mixed = sum > 0.0f && sum < CLPV_SHADOW_WHOLE * *whole;
+  if (!mixed || !below_surface(r, upper, lower)) return sum;
+  const float least = -CLPV_SHADOW_BEYOND * r.lift;
+  const float8 counted = select(none, upper_w, upper > least) +
+                         select(none, lower_w, lower > least);
+  const float8 above = select(none, upper_w, upper > r.rounding) +
+                       select(none, lower_w, lower > r.rounding);
   *whole = dot(counted.lo + counted.hi, one);
-  return dot(blocked.lo + blocked.hi, one);
+  return dot(above.lo + above.hi, one);
 }
 
 // Visible share of the light at W receivers, 0 to 1; 1 outside the map and the mask `lit`.

@@ -16,8 +16,7 @@
 #define CLPV_NORMAL_ZERO 2048.0f
 #define CLPV_NORMAL_BASE 4096.0f
 
-// Cosine from which both normals count as one; and 2.6 degrees, up to which lookups and rays are
-// lifted along n_s, so that almost flat meshes have the same light by a caller's G-buffer, which has
-// one normal.
+// Cosine from which both normals count as one; and that of 20 degrees, up to which lookups and rays
+// are lifted along n_s: on round meshes n_s changes smoothly from triangle to triangle.
 #define CLPV_SAME_NORMAL 0.999999f
-#define CLPV_SAME_LIFT 0.999f
+#define CLPV_SAME_LIFT 0.94f

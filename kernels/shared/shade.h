@@ -23,9 +23,11 @@ enum {
 #define CLPV_SHADOW_LIFT_FLAT 0.25f
 #define CLPV_SHADOW_LIFT_SLOPED 0.5f
 
-// A receiver below a surface of the map (shadow.h) has no lift, but for rounding: [texels of the map]
-// and relative to its depth.
+// A receiver below a surface of the map (shadow.h) has no lift, but for rounding: in texels of the
+// map, and relative to its depth.
 #define CLPV_SHADOW_ROUNDING_TEXELS 0.004f
 #define CLPV_SHADOW_ROUNDING_DEPTH 2e-6f
 // [lifts] Texels farther below its plane than this are beyond the edge of its surface.
 #define CLPV_SHADOW_BEYOND 2.0f
+// Share of the filter's weight from which all texels occlude.
+#define CLPV_SHADOW_WHOLE 0.999f

@@ -39,9 +39,8 @@ void FrameLights::prepare(const SceneCamera& camera, const std::vector<ClpvGrid>
   find_scale(grids.back());
   find_bounds(grids.back());
   for (Lit& lit : lights_) {
-    const LightBounds bounds = rsm_follows_cascade(lit.light)
-                                   ? bounds_
-                                   : LightBounds{buffers_.bounds, buffers_.bounds};
+    const LightBounds bounds =
+        rsm_follows_cascade(lit.light) ? bounds_ : LightBounds{buffers_.bounds, buffers_.bounds};
     lit.shadow.light = lit.light;
     lit.shadow.views = shadow_views(lit.light, bounds.shadows, options_.shadow_size);
     lit.rsms.resize(injected_volumes(options_));
@@ -78,8 +77,11 @@ void FrameLights::find_scale(const ClpvGrid& coarsest) {
 }
 
 void FrameLights::find_bounds(const ClpvGrid& coarsest) {
-  const CacheKey key =
-      Fingerprint().add(coarsest.origin).add(coarsest.cell).add(buffers_.clusters->instant()).value();
+  const CacheKey key = Fingerprint()
+                           .add(coarsest.origin)
+                           .add(coarsest.cell)
+                           .add(buffers_.clusters->instant())
+                           .value();
   bounds_cached_.update(
       key, [&] { bounds_ = light_bounds(scene_.vertices, buffers_.bounds, coarsest); });
 }

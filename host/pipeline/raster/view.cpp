@@ -223,8 +223,8 @@ LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
                          const ClpvGrid& coarsest) {
   const double half = 0.5 * static_cast<double>(coarsest.n) * coarsest.cell;
   const glm::dvec3 middle = vector(coarsest.origin) + half;
-  /// Exponent k of the smallest cube of half edge 2^k half about the middle with the vertex; 0 in the
-  /// cascade.
+  /// Exponent k of the smallest cube of half edge 2^k half about the middle with the vertex; 0 in
+  /// the cascade.
   const auto cube_of = [&](const Vertex& v) {
     const glm::dvec3 off = glm::abs(vector(v.position) - middle) / half;
     const double farthest = std::max({off.x, off.y, off.z});
@@ -236,7 +236,7 @@ LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
   for (int k = 1; k < kMaxCubes && k <= last + kGapCubes + 1; ++k) {
     if (used[k]) last = k;
   }
-  if (std::none_of(used.begin() + last + 1, used.end(), [](bool u) { return u; })) return {all, all};
+  if (std::find(used.begin() + last + 1, used.end(), true) == used.end()) return {all, all};
   const double outer = half + double{coarsest.cell};  // virtual point lights move by half a cell
   const Bounds cube{glm::vec3(middle - outer), glm::vec3(middle + outer)};
   Bounds near{cube.upper, cube.lower};  // nothing yet

@@ -48,11 +48,12 @@ struct LightBounds {
   Bounds shadows, rsms;
 };
 
-/// Returns the bounds for cascades of which `coarsest` is the largest: `all`, the bounds of `vertices`,
-/// unless surfaces lie behind a gap. Seen from the cascade's middle, a gap spans distances from 2^k to
-/// 2^(k+3) times half its edge without a vertex; a far triangle then does not coarsen shadows. Surfaces
-/// left out still cast shadows. Bounds of RSMs then cover the cascade, too: surfaces before them are
-/// clamped to the near plane, and their virtual point lights must lie outside.
+/// Returns the bounds for cascades of which `coarsest` is the largest: `all`, the bounds of
+/// `vertices`, unless surfaces lie behind a gap. Seen from the cascade's middle, a gap spans
+/// distances from 2^k to 2^(k+3) times half its edge without a vertex; a far triangle then does not
+/// coarsen shadows. Surfaces left out still cast shadows. Bounds of RSMs then cover the cascade,
+/// too: surfaces before them are clamped to the near plane, and their virtual point lights must lie
+/// outside.
 LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
                          const ClpvGrid& coarsest);
 
