@@ -64,6 +64,20 @@ struct SceneTest : ::testing::Test {
   }
 };
 
+TEST_F(SceneTest, NotesOnViewsThatTheFileReplacesAreLeftOut) {
+  GltfBuilder made = model();
+  made.add("nodes", {{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  made.finish("model.bin");
+  folder.write("models/model.gltf", made.document.dump());
+  const std::string model = R"({"model": "models/model.gltf")";
+  EXPECT_EQ(load(model + "}").notes.size(), 2u);
+  const std::string cameras = R"(, "cameras": [{"name": "a", "eye": [0, 0, 1],
+                                                "target": [0, 0, 0]}])";
+  EXPECT_THAT(load(model + cameras + "}").notes,
+              ::testing::ElementsAre(::testing::HasSubstr("2 lights have the name 'lamp'")));
+  EXPECT_THAT(load(model + cameras + R"(, "lights": []})").notes, ::testing::IsEmpty());
+}
+
 TEST_F(SceneTest, LightScaleMultipliesTheLightsOfModelAndFile) {
   const auto intensity = [](const SceneData& scene) {
     return scene.lights_for(scene.cameras.at(0)).at(0).data.intensity[0];

@@ -91,11 +91,16 @@ class SkinReader {
 void append_meshes(const GltfDocument& document, PosedTree& posed, const MaterialSet& materials,
                    SceneData& scene, Motion& motion, Notes& notes);
 
+/// Where notes on cameras and on lights go.
+struct ViewNotes {
+  Notes &cameras, &lights;
+};
+
 /// Appends the cameras and lights of the nodes of `motion.tree`, posed by `posed`, with unique
 /// names. `metres_per_unit` scales near planes and ranges; scales of nodes do not. Cameras and
 /// lights at moving nodes are also added to `motion`. Throws Error(bad_input).
 void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit,
-                  SceneData& scene, Motion& motion, Notes& notes);
+                  SceneData& scene, Motion& motion, const ViewNotes& notes);
 
 /// Reads primitive `index` of mesh `mesh` with joints, weights and morph targets; subtracts from
 /// `budget.morph_numbers`. Points and lines give no triangles and a note. `slots` is scratch

@@ -15,7 +15,8 @@ namespace {
 
 class ViewReader {
  public:
-  ViewReader(const GltfDocument& document, double metres_per_unit, SceneData& scene, Notes& notes)
+  ViewReader(const GltfDocument& document, double metres_per_unit, SceneData& scene,
+             const ViewNotes& notes)
       : document_(document), metres_per_unit_(metres_per_unit), scene_(scene), notes_(notes) {}
 
   /// Appends the camera of a node. Returns false for an orthographic one.
@@ -23,7 +24,7 @@ class ViewReader {
     const tinygltf::Camera& given = entry(document_.model.cameras, source.camera);
     const std::string place = fmt::format("/cameras/{}", source.camera);
     if (given.type != "perspective") {
-      notes_.add(fmt::format("{} ('{}') is orthographic: not read", place, given.name));
+      notes_.cameras.add(fmt::format("{} ('{}') is orthographic: not read", place, given.name));
       return false;
     }
     if (scene_.cameras.size() == bounds::kCameras) {
@@ -65,8 +66,8 @@ class ViewReader {
 
   /// Adds notes on cameras and lights that share names.
   void finish() {
-    cameras_.add_notes("camera", notes_);
-    lights_.add_notes("light", notes_);
+    cameras_.add_notes("camera", notes_.cameras);
+    lights_.add_notes("light", notes_.lights);
   }
 
  private:
@@ -106,8 +107,8 @@ class ViewReader {
              "inner less than outer, or equal: a hard edge");
     }
     if (inner == outer)
-      notes_.add(fmt::format("{}: innerConeAngle and outerConeAngle are both {}: a hard edge",
-                             place, inner));
+      notes_.lights.add(fmt::format(
+          "{}: innerConeAngle and outerConeAngle are both {}: a hard edge", place, inner));
     set_cone(light, inner, outer);
   }
 
@@ -116,14 +117,14 @@ class ViewReader {
   const GltfDocument& document_;
   double metres_per_unit_;
   SceneData& scene_;
-  Notes& notes_;
+  ViewNotes notes_;
   Names cameras_, lights_;
 };
 
 }  // namespace
 
 void append_views(const GltfDocument& document, const PosedTree& posed, double metres_per_unit,
-                  SceneData& scene, Motion& motion, Notes& notes) {
+                  SceneData& scene, Motion& motion, const ViewNotes& notes) {
   ViewReader reader(document, metres_per_unit, scene, notes);
   for (std::size_t i = 0; i < motion.tree.nodes.size(); ++i) {
     const TreeNode& node = motion.tree.nodes[i];

@@ -38,10 +38,16 @@ bool looks_photometric(const GltfDocument& document, const SceneData& scene) {
          });
 }
 
+/// Whether a model's cameras and lights are shown, and not those of a scene file.
+struct OwnViews {
+  bool cameras = true, lights = true;
+};
+
 /// Loads a .gltf or .glb at 0 s: geometry, materials, textures, cameras and lights, in metres and
 /// without defaults. Stores animated meshes, cameras and lights in `motion`.
+/// Notes name only what `own` says is shown.
 SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, Motion& motion,
-                    Notes& notes) {
+                    Notes& notes, OwnViews own = {}) {
   const GltfDocument document = read_gltf_document(path);
   std::vector<std::string> ignored = document.model.extensionsUsed;
   std::erase_if(ignored, reads_extension);
@@ -55,8 +61,10 @@ SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, M
   auto textures =
       std::async(std::launch::async, [&] { return load_textures(document, materials.textures); });
   append_meshes(document, posed, materials, scene, motion, notes);  // concurrent with load_textures
-  append_views(document, posed, metres_per_unit, scene, motion, notes);
-  if (looks_photometric(document, scene)) notes.add(kBlenderUnits);
+  Notes unused;
+  append_views(document, posed, metres_per_unit, scene, motion,
+               {own.cameras ? notes : unused, own.lights ? notes : unused});
+  if (own.lights && looks_photometric(document, scene)) notes.add(kBlenderUnits);
   scene.textures = textures.get();
   scene.materials = materials.materials;
   // GlTF's default material.
@@ -192,7 +200,13 @@ void MovingScene::load_scene_file(const std::filesystem::path& path,
     reject(path.string(), "/model", "no file '" + model.string() + "'",
            "an existing file; option model says where it lies");
   }
+<<<<<<< ours
   scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes);
+=======
+  scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes,
+                     {!views.cameras, !views.lights});
+  if (!description_.sky_map.empty()) scene_.files.push_back(description_.sky_map);
+>>>>>>> theirs
   if (views.cameras) motion_.cameras.clear();
   if (views.lights) motion_.lights.clear();
   set_views(std::move(views));
@@ -293,7 +307,7 @@ MovingScene::MovingScene(const std::filesystem::path& path,
   note_small_scene(scene_, description_.metres_per_unit, notes);
   if (scene_.medium) set_medium(*scene_.medium);
   scene_.notes = notes.take();
-  if (description_.lights || description_.light_scale) std::erase(scene_.notes, kBlenderUnits);
+  if (description_.light_scale) std::erase(scene_.notes, kBlenderUnits);
   add_defaults(description_.lights.has_value() || scene_.sky);
   check_camera_lights(scene_);
   if (moves()) scene_.start_reach = scene_.reach();
