@@ -200,13 +200,8 @@ void MovingScene::load_scene_file(const std::filesystem::path& path,
     reject(path.string(), "/model", "no file '" + model.string() + "'",
            "an existing file; option model says where it lies");
   }
-<<<<<<< ours
-  scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes);
-=======
   scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes,
                      {!views.cameras, !views.lights});
-  if (!description_.sky_map.empty()) scene_.files.push_back(description_.sky_map);
->>>>>>> theirs
   if (views.cameras) motion_.cameras.clear();
   if (views.lights) motion_.lights.clear();
   set_views(std::move(views));
