@@ -127,9 +127,8 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
   const Share lifted = weigh_taps(filter, [&](double height, double depth) {
     return height > lift && depth < farthest ? Tap::blocks : Tap::passes;
   });
-  const bool mixed =
-      lifted.blocked > 0 && lifted.blocked < double{CLPV_SHADOW_WHOLE} * lifted.whole;
-  if (!mixed || !below_surface(filter, rounding)) return lifted.visible();
+  const bool occluded = lifted.blocked >= double{CLPV_SHADOW_WHOLE} * lifted.whole;
+  if (occluded || !below_surface(filter, rounding)) return lifted.visible();
   return weigh_taps(filter,
                     [&](double height, double) {
                       if (height <= -double{CLPV_SHADOW_BEYOND} * lift) return Tap::beyond;

@@ -9,12 +9,12 @@
 //
 // Under a roof, along the edge where it meets the receiver's wall, that would let light in: the
 // roof is closer than the lift, and texels beyond the edge lie behind the wall's plane. A receiver
-// that some texels occlude and others do not is therefore tested: heights of texels above its
-// plane, extrapolated from one of the four inner texels and its two outer neighbours to the
-// filter's centre, are positive if it is below a surface. They are negative in a concave corner,
-// whose texels are above the receiver's plane, too. Lower neighbours do not count: they may lie on
-// another surface, and where a plane rises, one inner texel has higher ones. A receiver below a
-// surface has no lift, and texels beyond the edge do not count.
+// that not all texels occlude is therefore tested: heights of texels above its plane, extrapolated
+// from one of the four inner texels and its two outer neighbours to the filter's centre, are
+// positive if it is below a surface. They are negative in a concave corner, whose texels are above
+// the receiver's plane, too. Lower neighbours do not count: they may lie on another surface, and
+// where a plane rises, one inner texel has higher ones. A receiver below a surface has no lift, and
+// texels beyond the edge do not count.
 #pragma once
 
 #include "lanes.h"
@@ -109,13 +109,15 @@ CLPV_INLINE float8 texel_heights(const Receiver r, const float8 d, const float2 
 // True if a receiver is below a surface of the map. `upper`, `lower`: heights of the filter's first
 // and last two rows.
 CLPV_INLINE bool below_surface(const Receiver r, const float8 upper, const float8 lower) {
-  const float4 inner = (float4)(upper.s5, upper.s6, lower.s1, lower.s2),
-               beside = (float4)(upper.s4, upper.s7, lower.s0, lower.s3),
+  const float4 inner = (float4)(upper.s5, upper.s6, lower.s1, lower.s2);
+  const int4 above = inner > r.rounding;
+  if ((above.x | above.y | above.z | above.w) == 0) return false;
+  const float4 beside = (float4)(upper.s4, upper.s7, lower.s0, lower.s3),
                past = (float4)(upper.s1, upper.s2, lower.s5, lower.s6);
   const float4 x = fabs((float4)(r.dx.y, r.dx.z, r.dx.y, r.dx.z)),
                y = fabs((float4)(r.dy.y, r.dy.y, r.dy.z, r.dy.z));
   const float4 centre = inner - max(beside - inner, 0.0f) * x - max(past - inner, 0.0f) * y;
-  const int4 below = (inner > r.rounding) & (centre > r.rounding);
+  const int4 below = above & (centre > r.rounding);
   return (below.x | below.y | below.z | below.w) != 0;
 }
 
@@ -139,8 +141,7 @@ CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, co
                          select(none, lower_w, (lower > r.lift) & (lower_d < depth));
   const float sum = dot(blocked.lo + blocked.hi, one);
   *whole = dot(wx, one) * dot(wy, one);
-  const bool mixed = sum > 0.0f && sum < CLPV_SHADOW_WHOLE * *whole;
-  if (!mixed || !below_surface(r, upper, lower)) return sum;
+  if (sum >= CLPV_SHADOW_WHOLE * *whole || !below_surface(r, upper, lower)) return sum;
   const float least = -CLPV_SHADOW_BEYOND * r.lift;
   const float8 counted = select(none, upper_w, upper > least) +
                          select(none, lower_w, lower > least);
