@@ -94,11 +94,11 @@ std::vector<fs::path> write_basis_figures(BasisFigures figures, const fs::path& 
   if (figures.bases.empty()) {
     for (const char* name : kPaperBases) figures.bases.push_back(make_basis(name, figures.lambda));
   }
+  const Drawing drawing("basis", "--figures");
   create_folder("--figures", folder);
   const std::vector<fs::path> files{folder / "figure2.png", folder / "figure3.png",
                                     folder / "figure6.png"};
   check_outputs({{"--figures", files[0]}, {"--figures", files[1]}, {"--figures", files[2]}});
-  const Drawing drawing("basis", "--figures");
   Surfaces surfaces;
   nlohmann::json document{{"lambda", figures.lambda},
                           {"lobe", figures.lobes.kind == LobeKind::exact ? "exact" : "rotate"}};

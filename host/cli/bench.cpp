@@ -131,10 +131,12 @@ void run(Options options, const Shared& shared) {
   for (const std::string& basis : options.bench.suite.bases) make_basis(basis);
   options.bench.log = options.log;
   if (!options.output.empty()) require_extension("--output", options.output, {".json"});
-  if (!options.plot.empty()) create_folder("--plot", options.plot);
-  check_outputs(outputs_of(options));
   std::optional<const Drawing> plot;  // before the benchmark, to report whether charts can be drawn
-  if (!options.plot.empty()) plot.emplace("bench", "--plot");
+  if (!options.plot.empty()) {
+    plot.emplace("bench", "--plot");
+    create_folder("--plot", options.plot);
+  }
+  check_outputs(outputs_of(options));
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite =
       *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
