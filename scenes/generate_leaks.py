@@ -5,10 +5,9 @@
 Python's standard library only; the same bytes every time. scripts/leaks measures them.
 
 A room of 4 x 3 x 4 m (albedo 0.8) stands 1.5 m above a ground of 30 x 30 m. Its walls are one
-double-sided sheet, two sheets some distance apart, or a solid of some thickness, in cells of 12.5 /
-32 m. `turned` is turned by 20 degrees about y, `slit` has a slit of half a cell in a wall, `door` has
-two rooms with a door between them, one of them open to the sun, `corner` has two walls and a floor,
-`legs` a floor on four thin legs. Each is lit by a sun, an even sky or a lamp outside.
+double-sided sheet, or two sheets some cells of 12.5 / 32 m apart. `turned` is turned by 20 degrees
+about y, `slit` has a slit of half a cell in a wall, `door` has two rooms with a door between them,
+one of them open to the sun, `corner` has two walls and a floor, `legs` a floor on four thin legs. Each is lit by a sun, an even sky or a lamp outside.
 """
 import json
 import math
