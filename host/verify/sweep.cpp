@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -206,7 +207,10 @@ std::vector<std::uint8_t> random_walls(int n, std::mt19937& random) {
   constexpr int kPoints = 64;
   std::vector<std::uint8_t> occluded(visibility_bytes(n));
   for (std::size_t cube = 0; cube < occluded.size(); cube += kPoints) {
-    const std::uint8_t group = random() % 256, walls = random() % 3 == 0 ? 0 : 255;
+    const auto number = static_cast<int>(cube / kPoints);
+    // The last cubes along each axis lie outside the grid.
+    const bool outside = std::max({number % n, number / n % n, number / n / n}) == n - 1;
+    const std::uint8_t group = random() % 256, walls = outside || random() % 3 == 0 ? 0 : 255;
     for (int point = 0; point < kPoints; ++point)
       occluded[cube + point] = walls & (point < (cube % 5 == 0 ? 31 : 32) ? group : 255 - group);
   }
