@@ -9,7 +9,7 @@ enum {
 };
 
 // Centres that see fewer of the 64 points of a cube close no link there (closed_links.cl).
-enum { CLPV_MIN_SEEN = 32 };
+enum { CLPV_MIN_SEEN = 16 };
 
 // A bin of directions. Light travels from plane to plane, within a plane from row to row, and
 // within a row from column to column.
