@@ -5,11 +5,9 @@
 Python's standard library only; the same bytes every time. scripts/leaks measures them.
 
 A room of 4 x 3 x 4 m (albedo 0.8) stands 1.5 m above a ground of 30 x 30 m. Its walls are one
-double-sided sheet, two sheets some distance apart, or a solid of some thickness, in cells of 12.5 /
-32 m. `turned` is turned by 20 degrees about y, `slit` has a slit of half a cell in a wall, `door` two
-rooms with a door between them of which one is open to the sun, `corner` only two walls and a floor,
-`legs` only the ground and a floor on four thin legs. Each is lit by a sun, an even sky or a lamp
-outside.
+double-sided sheet, or two sheets some cells of 12.5 / 32 m apart. `turned` is turned by 20 degrees
+about y, `slit` has a slit of half a cell in a wall, `door` has two rooms with a door between them,
+one of them open to the sun, `corner` has two walls and a floor, `legs` a floor on four thin legs. Each is lit by a sun, an even sky or a lamp outside.
 """
 import json
 import math
@@ -22,6 +20,7 @@ from modelling.mesh import Mesh
 CELL = 12.5 / 32
 LOWER, UPPER = (-2, 0, -2), (2, 3, 2)
 GREY = (0.8, 0.8, 0.8)
+TURN = 20  # degrees
 SUN = [0.4, -1, 0.3]
 # Distance of the outer from the inner sheet in cells; None: one sheet.
 WALLS = {"sheet": None, "wall0.03": 0.03, "wall0.1": 0.1, "wall0.5": 0.5, "wall1": 1, "wall2": 2,
@@ -41,8 +40,9 @@ def rectangle(axis, at, low, high, towards):
 
 def box(low, high, inwards, without=()):
     """Faces of a box; `without`: (axis, side) of those left out."""
-    return [rectangle(axis, (low, high)[side][axis], low, high, (1 if side else -1) * (-1 if inwards else 1))
-            for axis in range(3) for side in (0, 1) if (axis, side) not in without]
+    sides = [(axis, side) for axis in range(3) for side in (0, 1) if (axis, side) not in without]
+    return [rectangle(axis, (low, high)[side][axis], low, high, 1 if side != inwards else -1)
+            for axis, side in sides]
 
 
 def walls(thickness, low=LOWER, high=UPPER):
@@ -65,9 +65,9 @@ def with_slit(faces):
     return result
 
 
-def turned(faces, degrees):
+def turned(points, degrees):
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return [[(c * x + s * z, y, c * z - s * x) for x, y, z in face] for face in faces]
+    return [(c * x + s * z, y, c * z - s * x) for x, y, z in points]
 
 
 def two_rooms():
@@ -90,7 +90,7 @@ def legs():
 
 def shapes():
     yield from ((name, walls(thickness)) for name, thickness in WALLS.items())
-    yield "turned", turned(walls(None), 20)
+    yield "turned", [turned(face, TURN) for face in walls(None)]
     yield "slit", with_slit(walls(None))
     yield "door", two_rooms()
     yield "corner", box(LOWER, UPPER, True, [(0, 1), (1, 1), (2, 1)])

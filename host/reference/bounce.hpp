@@ -10,8 +10,8 @@
 
 namespace clpv::reference {
 
-/// Series S of all further bounces inside one cascade: flux that a face, and the faces that its light
-/// meets, reflect of 1 W of incident flux.
+/// Series S of all further bounces inside one cascade: flux that a face, and the faces that its
+/// light meets, reflect of 1 W of incident flux.
 Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
                      const Volume& reflectors);
 

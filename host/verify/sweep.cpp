@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -200,15 +201,18 @@ SharedVolume random_reflectors(int n, std::mt19937& random) {
   return volume;
 }
 
-/// Occlusion of one cascade. In 2 of 3 cubes each point is hidden from one of two groups of centres,
-/// so that links between the groups are closed.
+/// Occlusion of one cascade. In 2 of 3 cubes each point is hidden from one of two groups of
+/// centres; where each group sees CLPV_MIN_SEEN of them, links between the groups are closed.
 std::vector<std::uint8_t> random_walls(int n, std::mt19937& random) {
   constexpr int kPoints = 64;
   std::vector<std::uint8_t> occluded(visibility_bytes(n));
   for (std::size_t cube = 0; cube < occluded.size(); cube += kPoints) {
-    const std::uint8_t group = random() % 256, walls = random() % 3 == 0 ? 0 : 255;
+    const auto number = static_cast<int>(cube / kPoints);
+    // The last cubes along each axis lie outside the grid.
+    const bool outside = std::max({number % n, number / n % n, number / n / n}) == n - 1;
+    const std::uint8_t group = random() % 256, walls = outside || random() % 3 == 0 ? 0 : 255;
     for (int point = 0; point < kPoints; ++point)
-      occluded[cube + point] = walls & (random() % 2 == 0 ? group : 255 - group);
+      occluded[cube + point] = walls & (point < (cube % 5 == 0 ? CLPV_MIN_SEEN - 1 : 32) ? group : 255 - group);
   }
   return occluded;
 }

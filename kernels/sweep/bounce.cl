@@ -163,6 +163,7 @@ __kernel void sum_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_V
                      first = faces_load(returned, t.channel, t.x, t.y + r, t.z),
                      second = reflect_flux(load_incident_flux(swept, bins, t, r), reflectance);
     faces_store(series, t.channel, t.x, t.y + r, t.z,
-                add_fluxes(add_fluxes(reflectance, first), sum_bounces(first, second, reflectance)));
+                add_fluxes(reflectance,
+                           add_fluxes(first, sum_bounces(first, second, reflectance))));
   }
 }
