@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "kernels/shared/normal.h"
 #include "reference/lighting.hpp"
 #include "reference/view.hpp"
 
@@ -115,7 +116,7 @@ const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec
 }
 
 double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal,
-                  double cosine) {
+                  double cosine, bool flat) {
   const ProjectedPoint at = project(map.view, position);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   const double edge = pixel_edge(map.view, at.depth);
@@ -128,7 +129,7 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
     return height > lift && depth < farthest ? Tap::blocks : Tap::passes;
   });
   const bool occluded = lifted.blocked >= double{CLPV_SHADOW_WHOLE} * lifted.whole;
-  if (occluded || !below_surface(filter, rounding)) return lifted.visible();
+  if (occluded || !flat || !below_surface(filter, rounding)) return lifted.visible();
   return weigh_taps(filter,
                     [&](double height, double) {
                       if (height <= -double{CLPV_SHADOW_BEYOND} * lift) return Tap::beyond;
@@ -145,7 +146,8 @@ glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& positio
   if (cosine <= 0 || facing <= 0) return glm::dvec3(0);
   if (light.maps.empty()) return cosine * incident.irradiance;
   const ShadowMap& map = map_towards(light.maps, position - vector(light.maps.front().view.eye));
-  return cosine * visibility(map, position, geometric, facing) * incident.irradiance;
+  const bool flat = glm::dot(geometric, normal) > double{CLPV_SAME_NORMAL};
+  return cosine * visibility(map, position, geometric, facing, flat) * incident.irradiance;
 }
 
 std::vector<glm::dvec3> direct_irradiance(const std::vector<MappedLight>& lights,

@@ -29,9 +29,10 @@ struct MappedLight {
 const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset);
 
 /// Returns the share [0, 1] of the light that reaches a surface at `position` [m] whose triangle
-/// has the unit `normal`, on the lit side. `cosine`: between it and the direction to the light.
+/// has the unit `normal`, on the lit side. `cosine`: between it and the direction to the light;
+/// `flat`: the shading normal is the triangle's.
 double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal,
-                  double cosine);
+                  double cosine, bool flat = true);
 
 /// Returns the irradiance of a light on a surface [W/m^2]: `normal` weighs light, `geometric`, its
 /// triangle's, decides which side it comes from (kernels/shared/normal.h).

@@ -14,11 +14,13 @@
 // positive if it is below a surface. They are negative in a concave corner, whose texels are above
 // the receiver's plane, too. Lower neighbours do not count: they may lie on another surface, and
 // where a plane rises, one inner texel has higher ones. A receiver below a surface has no lift, and
-// texels beyond the edge do not count.
+// texels beyond the edge do not count. Only receivers whose normals are one are tested: triangles of
+// a curved mesh lie above each other's planes.
 #pragma once
 
 #include "lanes.h"
 #include "raster/lighting.h"
+#include "shared/normal.h"
 #include "shared/shade.h"
 #include "shared/view.h"
 #include "vec.h"
@@ -218,6 +220,8 @@ CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shado
   if (shadow.count > 1) *lit &= view_covers(shadow.views, shadow.count, shadow.which, offset);
   Receivers r;
   find_receivers(view, offset, geometric, facing, &r);
+  const intW flat = vec_dot(geometric, normal) > (realW)(CLPV_SAME_NORMAL);
+  r.rounding = flat ? r.rounding : (realW)(INFINITY);  // below no surface
   return vec_times(irradiance, find_visibility(view, shadow.map, r, *lit));
 }
 
