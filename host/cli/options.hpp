@@ -92,7 +92,9 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, const char* 
     if constexpr (std::is_arithmetic_v<Member>) {
       member = option_number<Member>(name, text, range);
     } else {
-      member = option_number<typename Member::value_type>(name, text, range);
+      using Number = typename Member::value_type;
+      static_assert(std::is_same_v<Member, std::optional<Number>>);
+      member = option_number<Number>(name, text, range);
     }
   };
   CLI::Option* option = command.add_option_function<std::string>(name, take, help)->type_name(type);

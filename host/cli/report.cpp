@@ -37,7 +37,7 @@ struct Options {
   std::string folder, cache;
   QualitySubjects subjects;
   std::vector<std::string> quality, benchmarks, images;
-  std::string width = "240", height = "135";
+  int width = 240, height = 135;
   TracingOptions tracing;
 };
 
@@ -79,8 +79,8 @@ fs::path page_of(const Options& options) {
 }
 
 OptionValues sized(const Options& options, OptionValues given) {
-  given["width"] = options.width;
-  given["height"] = options.height;
+  given["width"] = std::to_string(options.width);
+  given["height"] = std::to_string(options.height);
   return given;
 }
 
