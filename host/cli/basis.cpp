@@ -146,7 +146,8 @@ void add_basis(CLI::App& app, Shared&) {
              "method of the clamped cosine: exact projection, or projection along +z and rotation "
              "by a table");
   add_number(*command, "--table-size", "N", options->lobes.table_size,
-             "number of entries in the table of rotated lobes", {2, kMaxTableSize});
+             "number of entries in the table of rotated lobes; 0: without a table",
+             {0, kMaxTableSize});
   CLI::Option* format = add_format(*command, options->format);
   add(*command, "--figures", "DIR", options->figures,
       "output folder for the paper's figures 2, 3 and 6, in place of the report")

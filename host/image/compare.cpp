@@ -17,14 +17,17 @@ namespace {
 // Keeps the relative error of black pixels finite, as is usual.
 constexpr double kRelativeFloor = 0.01;
 
-std::vector<std::size_t> colour_channels(const Image& image) {
+/// R, G and B; or the only channel beside alpha, such as Y.
+std::vector<std::size_t> colour_channels(const Image& image, const std::string& name) {
   const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B");
   if (r && g && b) return {*r, *g, *b};
   std::vector<std::size_t> indices;
   for (std::size_t c = 0; c < image.channels.size(); ++c) {
     if (image.channels[c] != "A") indices.push_back(c);
   }
-  return indices;
+  if (indices.size() == 1) return indices;
+  throw Error(ExitCode::bad_input, "{}: found channels {}; allowed: R, G and B, or one", name,
+              fmt::join(image.channels, ", "));
 }
 
 const float* pixel(const Image& image, std::size_t index) {
@@ -69,11 +72,12 @@ void check_comparable(const Image& a, const std::string& a_name, const Image& b,
     throw Error(ExitCode::bad_input, "{} has {} of {} x {}, {} has {}; allowed: the same pixels",
                 a_name, pixels_in(a), a.width, a.height, b_name, pixels_in(b));
   }
-  const std::size_t in_a = colour_channels(a).size(), in_b = colour_channels(b).size();
-  if (in_a != in_b || in_a == 0) {
+  const std::size_t in_a = colour_channels(a, a_name).size(),
+                    in_b = colour_channels(b, b_name).size();
+  if (in_a != in_b) {
     throw Error(ExitCode::bad_input,
-                "{} has {} colour channels, {} has {}; allowed: equal numbers, at least 1", a_name,
-                in_a, b_name, in_b);
+                "{} has {} colour channels, {} has {}; allowed: equal numbers", a_name, in_a,
+                b_name, in_b);
   }
   if (a.encoding != b.encoding) {
     const bool a_linear = a.encoding == Encoding::linear;
@@ -92,7 +96,7 @@ std::optional<double> ratio(double numerator, double denominator) {
 
 /// R, G and B as a display shows them; black where a pixel is not valid.
 Image shown(const Image& image, const std::vector<bool>& valid, float exposure) {
-  const std::vector<std::size_t> channels = colour_channels(image);
+  const std::vector<std::size_t> channels = colour_channels(image, {});
   Image rgb = make_image(image.width, image.height, {"R", "G", "B"});
   rgb.encoding = image.encoding;
   for (std::size_t p = 0; p < valid.size(); ++p) {
@@ -153,7 +157,8 @@ double pixel_luminance(const float* values, const std::vector<std::size_t>& chan
 Comparison compare(const Image& a, const std::string& a_name, const Image& b,
                    const std::string& b_name, float exposure) {
   check_comparable(a, a_name, b, b_name);
-  const std::vector<std::size_t> in_a = colour_channels(a), in_b = colour_channels(b);
+  const std::vector<std::size_t> in_a = colour_channels(a, a_name),
+                                 in_b = colour_channels(b, b_name);
   const auto alpha_a = a.channel("A"), alpha_b = b.channel("A");
   const std::size_t pixels = a.pixel_count(), channels = in_a.size();
 
@@ -211,7 +216,7 @@ nlohmann::json to_json(const Comparison& c) {
 }
 
 Image difference_image(const Image& a, const Image& b, float amplify) {
-  const std::vector<std::size_t> in_a = colour_channels(a), in_b = colour_channels(b);
+  const std::vector<std::size_t> in_a = colour_channels(a, {}), in_b = colour_channels(b, {});
   Image result = make_image(a.width, a.height, {"R", "G", "B"});
   result.encoding = a.encoding;
   for (std::size_t p = 0; p < a.pixel_count(); ++p) {

@@ -235,16 +235,19 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, flo
 
 /// Interpolation, and a later ray's test of the same triangle, err by a few roundings of the
 /// position and of the corners as seen from it. The offset along the normal n is |n| . (bound of
-/// each axis), as in pbrt-v4, 6.8.6 (Pharr, Jakob, Humphreys 2023).
+/// each axis), as in pbrt-v4, 6.8.6 (Pharr, Jakob, Humphreys 2023). That is 0 on a plane such as y =
+/// 0, where the test's own roundings along the other axes remain.
 glm::vec3 RayScene::offset_origin(const Hit& hit) const {
-  constexpr double kRoundings = 32;
+  constexpr double kRoundings = 32, kTestRoundings = 8;
   constexpr double kRounding = 0.5 * double{std::numeric_limits<float>::epsilon()};
   const glm::dvec3 position(hit.position), normal(hit.geometric);
   glm::dvec3 reach(0);
   for (const glm::dvec3& corner :
        corners_of(*impl_->scene, impl_->scene->triangles[hit.point.triangle]))
     reach = glm::max(reach, glm::abs(corner - position));
-  const glm::dvec3 bound = kRoundings * kRounding * (glm::abs(position) + reach);
+  const glm::dvec3 numbers = glm::abs(position) + reach;
+  const double largest = std::max({numbers.x, numbers.y, numbers.z});
+  const glm::dvec3 bound = kRounding * (kRoundings * numbers + kTestRoundings * largest);
   const glm::dvec3 exact = position + glm::dot(glm::abs(normal), bound) * normal;
   glm::vec3 origin(exact);
   for (int axis = 0; axis < 3; ++axis) {  // rounded away from the surface

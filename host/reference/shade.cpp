@@ -122,7 +122,9 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
   const double edge = pixel_edge(map.view, at.depth);
   const double lift = edge * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
   const double rounding = edge * double{CLPV_SHADOW_ROUNDING_TEXELS} +
-                          std::abs(at.depth) * double{CLPV_SHADOW_ROUNDING_DEPTH};
+                          std::abs(at.depth) * double{CLPV_SHADOW_ROUNDING_DEPTH} +
+                          (std::abs(position.x) + std::abs(position.y) + std::abs(position.z)) *
+                              double{CLPV_SHADOW_ROUNDING_PLACE};
   const double farthest = plane_depth(map.view, at.pixel, position + lift * normal, normal);
   const Filter filter = filter_at(map, at.pixel, position, normal);
   const Share lifted = weigh_taps(filter, [&](double height, double depth) {

@@ -55,8 +55,8 @@ reference::MappedLight near_light(const ClpvLight& light, bool shadows, std::mt1
 
 std::vector<reference::MappedLight> near_lights(std::mt19937& random) {
   const ClpvLight sun{
-      {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {}, {}};
-  const ClpvLight point{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, {}, {}};
+      {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, 0, {}, {}};
+  const ClpvLight point{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, 0, {}, {}};
   return {near_light(sun, true, random), near_light(point, true, random),
           near_light(sun, false, random)};
 }

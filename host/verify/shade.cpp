@@ -32,7 +32,7 @@ reference::ShadowMap random_map(const ClpvView& view, std::mt19937& random) {
 }
 
 const ClpvLight kSun{
-    {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, {}, {}};
+    {}, CLPV_LIGHT_DIRECTIONAL, {2 / 7.0f, -6 / 7.0f, 3 / 7.0f}, 0, {3, 2, 1}, 0, 0, 0, {}, {}};
 /// Cone from full light at acos(0.9) to dark at acos(0.7).
 const ClpvLight kSpot{{6, 8, -1},
                       CLPV_LIGHT_SPOT,
@@ -41,9 +41,10 @@ const ClpvLight kSpot{{6, 8, -1},
                       {100, 150, 200},
                       5,
                       -3.5f,
+                      0,
                       {},
                       {}};
-const ClpvLight kPoint{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, {}, {}};
+const ClpvLight kPoint{{5, 1.5f, 0.3f}, CLPV_LIGHT_POINT, {}, 0, {60, 50, 40}, 0, 0, 0, {}, {}};
 
 /// The sun's map is smaller than the camera's view: some surfaces lie on and beyond its edge.
 reference::MappedLight mapped(const ClpvLight& light, std::mt19937& random) {

@@ -221,6 +221,7 @@ CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shado
   Receivers r;
   find_receivers(view, offset, geometric, facing, &r);
   const intW flat = vec_dot(geometric, normal) > (realW)(CLPV_SAME_NORMAL);
+  r.rounding += CLPV_SHADOW_ROUNDING_PLACE * (fabs(position.x) + fabs(position.y) + fabs(position.z));
   r.rounding = flat ? r.rounding : (realW)(INFINITY);  // below no surface
   return vec_times(irradiance, find_visibility(view, shadow.map, r, *lit));
 }

@@ -48,7 +48,7 @@ Array real_array(const py::object& given, const char* what) {
                          ", allowed: an array of real numbers");
   }
   Array converted = Array::ensure(any);
-  if (!converted) throw py::error_already_set();  // no memory for the copy
+  if (!converted) throw std::bad_alloc();  // for the copy
   return converted;
 }
 

@@ -165,6 +165,8 @@ def by_openexr(file):
             planes = in_display(file, planes, data, display)
             to_rec709(file, planes, part.header.get("chromaticities", REC709))
             parts[part.name()] = planes
+    if not parts:
+        raise BadImage(f"{file}: found no readable part; allowed: 1 or more")
     return merged(parts) if len(parts) > 1 else planes
 
 

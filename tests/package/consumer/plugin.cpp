@@ -2,7 +2,7 @@
 // A plugin that renders: its only symbol is its own.
 #include <clpv/renderer.hpp>
 
-extern "C" int plugin_width(const char* scene) {
+extern "C" __attribute__((visibility("default"))) int plugin_width(const char* scene) {
   clpv::Renderer renderer{clpv::Scene(scene)};
   return renderer.render(clpv::View::full).width;
 }
