@@ -174,6 +174,9 @@ ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& a
   if (&kind != &after_kind)
     throw Error(ExitCode::bad_input, "{} is of {}, {} of {}; allowed: two reports of one command",
                 file, kind.command, after_file, after_kind.command);
+  if (before.contains("view") && after.contains("view") && before["view"] != after["view"])
+    throw Error(ExitCode::bad_input, "{} is of view {}, {} of {}; allowed: reports of one view",
+                file, before["view"].dump(), after_file, after["view"].dump());
   std::vector<Value> old_values = kind.values(before, file),
                      new_values = kind.values(after, after_file);
   const std::map<std::string, Value> old_named = by_name(old_values),

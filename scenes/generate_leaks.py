@@ -7,13 +7,16 @@ Python's standard library only; the same bytes every time. scripts/leaks measure
 A room of 4 x 3 x 4 m (albedo 0.8) stands 1.5 m above a ground of 30 x 30 m. Its walls are one
 double-sided sheet, or two sheets some cells of 12.5 / 32 m apart. `turned` is turned by 20 degrees
 about y, `slit` has a slit of half a cell in a wall, `door` has two rooms with a door between them,
-one of them open to the sun, `corner` has two walls and a floor, `legs` a floor on four thin legs. Each is lit by a sun, an even sky or a lamp outside.
+one of them open to the sun, `corner` has two walls and a floor, `legs` a floor on four thin legs.
+Each is lit by a sun, an even sky or a lamp outside.
 """
 import json
 import math
-import os
+import pathlib
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from clpv import output  # noqa: E402
 from modelling.gltf import Document
 from modelling.mesh import Mesh
 
@@ -108,7 +111,7 @@ LIGHTS = {
 
 def write(folder, offset=(0, 0, 0), names=None):
     """Writes the shapes named, all by default, moved by `offset` [m]."""
-    os.makedirs(folder, exist_ok=True)
+    file = output.Folder(folder, "scenes/generate_leaks.py").file
     ground = [(-15, -1.5, 15), (15, -1.5, 15), (15, -1.5, -15), (-15, -1.5, -15)]
     for name, faces in shapes():
         if names and name not in names:
@@ -119,7 +122,7 @@ def write(folder, offset=(0, 0, 0), names=None):
         document = Document("clpv scenes/generate_leaks.py")
         document.material("grey", GREY, double_sided=True)
         document.node(name, document.mesh(name, mesh), translation=offset)
-        document.write(os.path.join(folder, name + ".glb"))
+        document.write(file(name + ".glb"))
         for light, values in LIGHTS.items():
             scene = {
                 "model": name + ".glb", **values, "cameras": [{
@@ -127,11 +130,14 @@ def write(folder, offset=(0, 0, 0), names=None):
                     "vertical_fov_degrees": 90
                 }], "cascades": {"count": 3, "size_metres": 12.5}
             }
-            with open(os.path.join(folder, f"{name}-{light}.json"), "w", encoding="utf-8") as file:
-                json.dump(scene, file, indent=1)
+            output.write(file(f"{name}-{light}.json"), json.dumps(scene, indent=1) + "\n")
+
+
+def main(arguments):
+    if len(arguments) != 1:
+        sys.exit(__doc__)
+    write(arguments[0])
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    write(sys.argv[1])
+    sys.exit(output.exit_code(main, sys.argv[1:]))

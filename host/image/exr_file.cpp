@@ -52,6 +52,7 @@ void check_part(const fs::path& path, const ExrHeader& part, const ExrHeader& fi
 /// Checks all parts, and the size of the image that they make.
 void check_parts(const fs::path& path, const std::vector<ExrHeader>& parts,
                  const ImageLimits& limits) {
+  if (parts.empty()) reject_image(path, "found no parts; allowed: 1 or more");
   DeclaredImage all{.width = parts[0].display.width(), .height = parts[0].display.height()};
   std::set<std::string> names;
   for (const ExrHeader& part : parts) {

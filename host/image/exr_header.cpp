@@ -296,7 +296,6 @@ std::vector<ExrHeader> read_exr_header(const std::filesystem::path& path,
     chunks += min_chunks(part);
     if (!several) break;
   }
-  if (parts.empty()) reject(file.file(), {}, "no parts", fmt::format("1 to {}", kMaxParts));
   check_tables("all parts", chunks);
   return parts;
 }

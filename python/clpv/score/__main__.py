@@ -10,7 +10,7 @@ from clpv.output import BadOutput, Output, printable
 from clpv.score import page, suite
 from clpv.score.exr import BadImage
 
-BAD_INPUT = 3
+RUN_TIME, BAD_INPUT = 1, 3
 COLUMNS = [("NRMSE [%]", "nrmse", 100, 1), ("at best gain", "nrmse_best_gain", 100, 1),
            ("energy", "energy_ratio", 1, 3), ("FLIP", "flip", 1, 3), ("bias [%]", "bias", 100, 1),
            ("noise [%]", "noise", 100, 1), ("change [%]", "change", 100, 1)]
@@ -80,9 +80,16 @@ def main(arguments):
     except (BadImage, BadOutput) as error:
         print(f"clpv.score: {printable(error)}", file=sys.stderr)
         return getattr(error, "code", BAD_INPUT)
-    for score in scores:
-        report(score)
-        print(*([printable(score["method"])] if len(scores) > 1 else []), table(score), sep="\n")
+    try:
+        for score in scores:
+            report(score)
+            names = [printable(score["method"])] if len(scores) > 1 else []
+            sys.stdout.write("\n".join([*names, table(score), ""]))
+        sys.stdout.flush()
+    except (OSError, AttributeError) as error:  # a full disk; None where stdout is closed
+        sys.stdout = None  # Python would try again at its exit
+        print(f"clpv.score: stdout: cannot be written: {error}", file=sys.stderr)
+        return RUN_TIME
     return 0
 
 

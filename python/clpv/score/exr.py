@@ -173,6 +173,8 @@ def by_openexr(file):
 def read(file):
     """Returns the channels {name: float32 array of height x width} of the display window, R, G and B
     those of Rec. 709. Throws BadImage, also where pixels are missing."""
+    if file.exists() and not file.is_file():
+        raise BadImage(f"{file}: found no regular file; allowed: an EXR file")
     try:
         data = file.read_bytes()
     except OSError as error:

@@ -3,7 +3,6 @@
 import fnmatch
 import glob
 import json
-import math
 import re
 
 import numpy
@@ -12,6 +11,7 @@ from clpv.score import errors, exr
 from clpv.score.exr import BadImage
 
 SCHEMA = 1
+MAX_NUMBER = 1000  # noise, and exposures [EV], whose powers of 2 are finite
 MEASURES = "nrmse", "nrmse_best_gain", "energy_ratio", "flip", "bias", "noise", "change"
 DIGITS = 5  # of printed errors
 FIELDS = {"name": str, "truth": str, "noise": (int, float), "exposure": (int, float)}  # of a view
@@ -20,7 +20,7 @@ FIELDS = {"name": str, "truth": str, "noise": (int, float), "exposure": (int, fl
 def is_valid(value, kind):
     if kind is str:
         return isinstance(value, str) and value.isprintable() and value != ""
-    return type(value) in kind and math.isfinite(value)
+    return type(value) in kind and abs(value) <= MAX_NUMBER  # not NaN
 
 
 def read_suite(folder):
@@ -42,7 +42,7 @@ def read_suite(folder):
         for name, kind in FIELDS.items():
             value = view.get(name) if isinstance(view, dict) else None
             if not is_valid(value, kind):
-                allowed = "printable text" if kind is str else "a finite number"
+                allowed = "printable text" if kind is str else f"-{MAX_NUMBER}..{MAX_NUMBER}"
                 raise BadImage(
                     f"{file}: /views/{i}/{name}: found {json.dumps(value)}; allowed: {allowed}")
     return suite
