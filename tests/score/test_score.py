@@ -267,6 +267,7 @@ class BadInput(Suite):
                               ({"name": "a\x1b[2J"}, '/views/0/name: found "a\\u001b[2J"'),
                               ({"truth": None}, "/views/0/truth: found null"),
                               ({"exposure": numpy.nan}, "/views/0/exposure: found NaN"),
+                              ({"exposure": 1e308}, "/views/0/exposure: found 1e+308"),
                               ({"noise": "0"}, "/views/0/noise: found \"0\"; allowed: a finite")):
             document = copy.deepcopy(good)
             (document if change.keys() & document.keys() else document["views"][0]).update(change)

@@ -42,7 +42,7 @@ def read_suite(folder):
         for name, kind in FIELDS.items():
             value = view.get(name) if isinstance(view, dict) else None
             if not is_valid(value, kind):
-                allowed = "printable text" if kind is str else f"-{MAX_NUMBER}..{MAX_NUMBER}"
+                allowed = "printable text" if kind is str else f"a finite number, -{MAX_NUMBER}..{MAX_NUMBER}"
                 raise BadImage(
                     f"{file}: /views/{i}/{name}: found {json.dumps(value)}; allowed: {allowed}")
     return suite
