@@ -42,14 +42,8 @@ bool closed_link(const std::vector<std::uint8_t>& occluded, int n, const glm::iv
       return false;
     const int here = 7 - octant, there = here + side.x + 2 * side.y + 4 * side.z;
     const auto first = static_cast<std::size_t>((cube.z * n + cube.y) * n + cube.x) * kPoints;
-    int seen_here = 0, seen_there = 0;
-    for (int point = 0; point < kPoints; ++point) {
-      const bool sees_here = (occluded[first + point] & 1 << here) == 0,
-                 sees_there = (occluded[first + point] & 1 << there) == 0;
-      if (sees_here && sees_there) return false;
-      seen_here += sees_here, seen_there += sees_there;
-    }
-    if (seen_here < CLPV_MIN_SEEN || seen_there < CLPV_MIN_SEEN) return false;
+    for (int point = 0; point < kPoints; ++point)
+      if ((occluded[first + point] & (1 << here | 1 << there)) == 0) return false;
   }
   return true;
 }

@@ -202,7 +202,7 @@ SharedVolume random_reflectors(int n, std::mt19937& random) {
 }
 
 /// Occlusion of one cascade. In 2 of 3 cubes each point is hidden from one of two groups of
-/// centres; where each group sees CLPV_MIN_SEEN of them, links between the groups are closed.
+/// centres, so that links between the groups are closed.
 std::vector<std::uint8_t> random_walls(int n, std::mt19937& random) {
   constexpr int kPoints = 64;
   std::vector<std::uint8_t> occluded(visibility_bytes(n));
@@ -212,7 +212,7 @@ std::vector<std::uint8_t> random_walls(int n, std::mt19937& random) {
     const bool outside = std::max({number % n, number / n % n, number / n / n}) == n - 1;
     const std::uint8_t group = random() % 256, walls = outside || random() % 3 == 0 ? 0 : 255;
     for (int point = 0; point < kPoints; ++point)
-      occluded[cube + point] = walls & (point < (cube % 5 == 0 ? CLPV_MIN_SEEN - 1 : 32) ? group : 255 - group);
+      occluded[cube + point] = walls & (point < kPoints / 2 ? group : 255 - group);
   }
   return occluded;
 }

@@ -8,9 +8,6 @@ enum {
   CLPV_AXIS_BINS = 8,  // bins swept across x, which come first; as many across y, then z
 };
 
-// Centres that see fewer of the 64 points of a cube close no link there (closed_links.cl).
-enum { CLPV_MIN_SEEN = 16 };
-
 // A bin of directions. Light travels from plane to plane, within a plane from row to row, and
 // within a row from column to column.
 typedef struct {

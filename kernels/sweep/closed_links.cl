@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Finds links that triangles close: each centre sees at least CLPV_MIN_SEEN sample points of the
-// cubes between the cells, and no point sees both. Such links transmit nothing (docs/method.md,
-// 'The sweep').
+// Finds links that triangles close: no sample point of the cubes between two cells sees both
+// centres. Such links transmit nothing (docs/method.md, 'The sweep').
 //
 // In:   occluded  visibility of cell centres: 64 points in each cube between eight centres
 //                 (voxels/visibility.cl)
@@ -18,15 +17,6 @@ enum { CLPV_CUBE_WORDS = 8 };  // of eight points, a byte each
 // Returns true if a byte of the word is 0.
 static inline bool has_zero_byte(const ulong word) {
   return ((word - 0x0101010101010101ul) & ~word & 0x8080808080808080ul) != 0;
-}
-
-// Number of points that do not see a centre.
-static inline int hidden_points(const ulong* points, const int i) {
-  const ulong bit = (1ul << i) * 0x0101010101010101ul;
-  int hidden = 0;
-#pragma unroll
-  for (int w = 0; w < CLPV_CUBE_WORDS; ++w) hidden += (int)popcount(points[w] & bit);
-  return hidden;
 }
 
 // Returns true if no point sees both centres.
@@ -51,11 +41,9 @@ __kernel void find_closed_links(__global const ulong* occluded, const uint casca
   }
   uint bits = 0;
   if (any != 0) {
-    bool sees[CLPV_CENTRES];
-    for (int i = 0; i < CLPV_CENTRES; ++i) sees[i] = hidden_points(points, i) <= 64 - CLPV_MIN_SEEN;
     for (int i = 0; i < CLPV_CENTRES - 1; ++i) {
       for (int j = i + 1; j < CLPV_CENTRES; ++j)
-        if (sees[i] && sees[j] && closed_pair(points, i, j)) bits |= 1u << CLPV_PAIR(i, j);
+        if (closed_pair(points, i, j)) bits |= 1u << CLPV_PAIR(i, j);
     }
   }
   closed[bordered_index(z, y, x)] = bits;
