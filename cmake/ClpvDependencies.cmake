@@ -39,8 +39,8 @@ find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_library(TINYGLTF_LIBRARY tinygltf REQUIRED)
 find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 
-# What sources that include host/ are compiled with: the library itself, program, benchmarks, tests, Python module. A program
-# that links clpv::clpv gets none of it.
+# Settings of sources that include host/: the library itself, program, benchmarks, tests, Python module. A program that links
+# clpv::clpv gets none of them.
 add_library(clpv_internal INTERFACE)
 target_compile_definitions(clpv_internal INTERFACE
   CL_HPP_TARGET_OPENCL_VERSION=120 CL_HPP_MINIMUM_OPENCL_VERSION=120 CL_HPP_ENABLE_EXCEPTIONS

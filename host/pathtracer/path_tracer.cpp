@@ -71,8 +71,8 @@ void move(ClpvMedium& medium, const glm::dvec3& by) {
   move(medium.lower, by), move(medium.upper, by);
 }
 
-/// What rays meet, relative to the eye, so that floats near it resolve small distances wherever the
-/// scene lies.
+/// The scene relative to the eye, so that floats near it resolve small distances wherever the scene
+/// lies.
 struct CentredScene {
   SceneData scene;
   std::vector<SceneLight> lights;
