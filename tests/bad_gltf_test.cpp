@@ -177,6 +177,7 @@ TEST_F(BadGltfTest, TexturesByExtensions) {
 
 TEST_F(BadGltfTest, Nodes) {
   const json identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const json projective = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2};
   expect_all_rejected({
       {{{"/nodes/0/children", {0}}}, {"/scenes/0/nodes", "node 0, a child of node 0"}},
       {{{"/nodes/0/children", {1}}, {"/nodes/1/children", {0}}, {"/scenes", nullptr}},
@@ -190,6 +191,9 @@ TEST_F(BadGltfTest, Nodes) {
       {{{"/nodes/1/rotation", {0, 0, 0, 0}}}, {"/nodes/1/rotation", "a unit quaternion"}},
       {{{"/nodes/0/matrix", std::vector<int>(15, 1)}}, {"/nodes/0/matrix"}},
       {{{"/nodes/1/matrix", identity}}, {"/nodes/1/matrix", "translation by /animations/0"}},
+      {{{"/nodes/0/matrix", projective}}, {"/nodes/0/matrix", "last row 0, 0, 0, 2"}},
+      {{{"/nodes/0/matrix", identity}, {"/nodes/0/scale", {1, 1, 1}}},
+       {"/nodes/0", "a matrix, and a translation, rotation or scale"}},
       {{{"/nodes/0/weights", {1, 2, 3}}},
        {"/nodes/0/weights", "3 weights", "each of 1 morph targets"}},
       {{{"/nodes/0/weights", {"half"}}}, {"/nodes/0/weights/0"}},

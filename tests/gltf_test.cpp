@@ -231,6 +231,10 @@ TEST_F(GltfTest, VertexColoursOfEveryFormat) {
               IsNear(wanted, kClose));
   EXPECT_THAT(colour(Words{0, 0, 0, 0, 13107, 26214, 39321, 52428, 0, 0, 0, 0}, "VEC4", true),
               IsNear(wanted, kClose));
+  // They were once clamped to white.
+  EXPECT_THAT(test::error_of(ExitCode::bad_input,
+                             [&] { colour(Bytes(12, 51), "VEC4", false); }),
+              AllOf(HasSubstr("/attributes/COLOR_0"), HasSubstr("normalized integers")));
 }
 
 TEST_F(GltfTest, QuantizedAttributes) {

@@ -161,6 +161,14 @@ TEST_F(SequenceTest, FilesOfOthersAreNamedBeforeTheWorkAndStay) {
   EXPECT_THAT(outcome.err, HasSubstr("frame-0002.exr: cannot be written: it is a folder"));
   EXPECT_FALSE(fs::exists(frame(0)));
   fs::remove(frame(2));
+  fs::remove(times);
+  folder.write("out/frame-0001.exr", "my diary");
+  const Outcome foreign = sequence("--frames 3 --fps 10");
+  EXPECT_EQ(foreign.exit_code, 1);
+  EXPECT_THAT(foreign.err, HasSubstr("frame-0001.exr: found a file that clpv did not write"));
+  EXPECT_EQ(read_file(frame(1)), "my diary");
+  EXPECT_FALSE(fs::exists(frame(0)));
+  fs::remove(frame(1));
   ASSERT_EQ(sequence("--frames 1 --fps 10").exit_code, 0);
   EXPECT_EQ(read_file(folder / "out/times.json"), "mine");
 }

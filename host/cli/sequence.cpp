@@ -55,6 +55,20 @@ std::vector<NamedFile> prepare_outputs(const Options& options) {
   return outputs;
 }
 
+/// Throws Error(run_time) for a file in a frame's place that clpv did not write. In a folder with
+/// times.jsonl such files are damaged frames.
+void spare_files_of_others(const Options& options) {
+  std::error_code unknown;
+  if (fs::exists(fs::path(options.folder) / "times.jsonl", unknown)) return;
+  for (int i = 0; i < options.frames; ++i) {
+    const fs::path file = options.file(i);
+    if (fs::exists(file, unknown) && !is_frame(file))
+      throw Error(ExitCode::run_time,
+                  "{}: found a file that clpv did not write; allowed: none, or a frame",
+                  file.string());
+  }
+}
+
 /// Warns if the folder holds frames of a longer run beyond this one's.
 void warn_of_later_frames(const Options& options) {
   int last = options.frames;
@@ -75,6 +89,7 @@ void run(const Options& options, Shared& shared) {
   const RenderOptions resolved = resolve_request(request, moving.scene());
   check_outputs(outputs);
   InputRecord::close();  // from here on it reads its own frames
+  spare_files_of_others(options);
   const Device device = ranks.device(shared.device);
   const auto camera = [&](const SceneData& scene) -> const SceneCamera& {
     return scene.camera(request.camera);

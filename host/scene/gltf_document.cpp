@@ -152,6 +152,20 @@ std::string place_of_failure(const tinygltf::Model& model, const json& document)
   return {};
 }
 
+/// Throws Error(bad_input) for a node with a matrix and a translation, rotation or scale (glTF 2.0,
+/// 3.5.3): tinygltf drops one of the two.
+void check_transforms(const json& document, const std::string& file) {
+  if (!document.contains("nodes")) return;
+  for (std::size_t i = 0; i < document["nodes"].size(); ++i) {
+    const json& node = document["nodes"][i];
+    const bool parts =
+        node.contains("translation") || node.contains("rotation") || node.contains("scale");
+    if (parts && node.contains("matrix"))
+      reject(file, fmt::format("/nodes/{}", i), "a matrix, and a translation, rotation or scale",
+             "one of the two");
+  }
+}
+
 /// Gives a document what tinygltf requires and glTF, or common exporters, do not.
 void complete(json& document) {
   const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
@@ -212,6 +226,7 @@ GltfDocument read_gltf_document(const std::filesystem::path& path) {
                     : Container{{reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
   json parsed = parse_json(container.json, document.file);
   check_gltf(parsed, document.file);
+  check_transforms(parsed, document.file);
   load_model(parsed, container.binary, document);
   record_images(document);
   check_accessors(document);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Reads the node tree and the skins of a glTF document.
+#include <algorithm>
+#include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <set>
 
@@ -49,11 +51,22 @@ Pose stored_pose(const tinygltf::Node& node, const std::string& file, int index)
   return pose;
 }
 
+/// Throws Error(bad_input) for a matrix that is not affine (glTF 2.0, 3.5.3).
+void check_matrix(const tinygltf::Node& node, const std::string& file, int index) {
+  const std::vector<double>& m = node.matrix;  // by columns
+  if (m.empty()) return;
+  constexpr double kRounding = 1e-6;  // of exporters
+  if (std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1)}) > kRounding)
+    reject(file, place_of(index) + "/matrix",
+           fmt::format("last row {}, {}, {}, {}", m[3], m[7], m[11], m[15]), "0, 0, 0, 1");
+}
+
 TreeNode make_node(const GltfDocument& document, int index,
                    const std::map<int, NodeCurves>& curves) {
   const tinygltf::Node& source = entry(document.model.nodes, index);
   TreeNode made;
   made.index = index;
+  check_matrix(source, document.file, index);
   made.pose = stored_pose(source, document.file, index);
   made.rest = source.matrix.empty() ? made.pose.matrix() : glm::make_mat4(source.matrix.data());
   if (const auto found = curves.find(index); found != curves.end()) made.curves = found->second;

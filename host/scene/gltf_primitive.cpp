@@ -37,14 +37,16 @@ class PrimitiveReader {
       : document_(document), source_(source), place_(std::move(place)), mapping_(mapping) {}
 
   Attributes attributes(bool textured, Notes& notes) const {
-    const auto find = [&](const std::string& name, Types types, std::optional<std::size_t> count) {
-      return attribute(source_.attributes, "/attributes", name, types, count);
+    const auto find = [&](const std::string& name, Types types, std::optional<std::size_t> count,
+                          const ComponentTypes& numbers = kNumbers) {
+      return attribute(source_.attributes, "/attributes", name, types, count, numbers);
     };
     const auto position = find("POSITION", {TINYGLTF_TYPE_VEC3}, std::nullopt);
     if (!position) reject_here("no attribute POSITION", "POSITION, a VEC3");
     const std::size_t count = position->count();
     Attributes made{*position, find("NORMAL", {TINYGLTF_TYPE_VEC3}, count), std::nullopt,
-                    find("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, count), std::nullopt};
+                    find("COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, count, kFractions),
+                    std::nullopt};
     if (source_.indices >= 0) {
       made.indices = GltfAccessor(document_, source_.indices, place_ + "/indices",
                                   {TINYGLTF_TYPE_SCALAR}, kIndices);
@@ -63,7 +65,7 @@ class PrimitiveReader {
       return attribute(source_.attributes, "/attributes", name, {TINYGLTF_TYPE_VEC4},
                        from.position.count(), numbers);
     };
-    const auto joints = find("JOINTS_0", kJoints), weights = find("WEIGHTS_0", kNumbers);
+    const auto joints = find("JOINTS_0", kJoints), weights = find("WEIGHTS_0", kFractions);
     if (joints.has_value() != weights.has_value()) {
       reject(document_.file, place_ + "/attributes",
              joints ? "JOINTS_0 without WEIGHTS_0" : "WEIGHTS_0 without JOINTS_0", "both or none");

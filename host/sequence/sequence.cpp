@@ -59,6 +59,14 @@ bool holds_frame(const fs::path& file, const std::string& key) {
 
 }  // namespace
 
+bool is_frame(const fs::path& file) {
+  try {
+    return read_metadata(file).contains(kKey);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 fs::path SequenceOptions::file(int frame) const {
   return fs::path(folder) / fmt::format("frame-{:04}.{}", frame, name_of(format));
 }

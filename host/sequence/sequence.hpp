@@ -52,6 +52,9 @@ struct SequenceSubject {
   std::function<void(Session&, Frame&)> first_frame;  ///< called after the first frame
 };
 
+/// Returns true if the file has the metadata of a frame by clpv, of whatever scene.
+bool is_frame(const std::filesystem::path& file);
+
 /// Renders the frames; scene, device and device resources persist between frames. The ranks share
 /// them out.
 class Sequence {
