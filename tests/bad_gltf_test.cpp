@@ -421,7 +421,8 @@ TEST_F(BadImageTest, Images) {
   text.insert(33, "\x7f\xff\xff\xffzTXtComment");
   EXPECT_THAT(rejected_image(text), AllOf(HasSubstr("/images/0"), HasSubstr("truncated")));
   EXPECT_THAT(rejected_image("#!/bin/sh\necho hello, this is no image at all\n"),
-              AllOf(HasSubstr("'image.png'"), HasSubstr("23 21 2f 62"), HasSubstr("PNG, JPEG or still WebP")));
+              AllOf(HasSubstr("'image.png'"), HasSubstr("23 21 2f 62"),
+                    HasSubstr("PNG, JPEG or still WebP")));
   for (const std::string_view encoded : {kPngRgba2x2, kJpegRed8x8}) {
     const std::string image = decode_base64(encoded);
     for (std::size_t length = 0; length + 12 < image.size(); length += 7)

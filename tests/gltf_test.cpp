@@ -232,8 +232,7 @@ TEST_F(GltfTest, VertexColoursOfEveryFormat) {
   EXPECT_THAT(colour(Words{0, 0, 0, 0, 13107, 26214, 39321, 52428, 0, 0, 0, 0}, "VEC4", true),
               IsNear(wanted, kClose));
   // They were once clamped to white.
-  EXPECT_THAT(test::error_of(ExitCode::bad_input,
-                             [&] { colour(Bytes(12, 51), "VEC4", false); }),
+  EXPECT_THAT(test::error_of(ExitCode::bad_input, [&] { colour(Bytes(12, 51), "VEC4", false); }),
               AllOf(HasSubstr("/attributes/COLOR_0"), HasSubstr("normalized integers")));
 }
 

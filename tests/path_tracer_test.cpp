@@ -238,14 +238,17 @@ TEST(PathTracer, ReportsTheShareOfThePathsThatTheNoiseNeeds) {
   const ClpvView view = view_of({0.4, 0.5, 0.6}, {0.3, 0.1, -1}, {0, 1, 0}, 1, 32, 32);
   PathTracerOptions options;
   options.bounces = PathTracerOptions::kAllBounces;
-  options.noise = trace_paths(scene, view, [&] {
-                    PathTracerOptions few = options;
-                    few.samples = 1024;
-                    return few;
-                  }()).noise * 1.01;
+  options.noise = trace_paths(scene, view,
+                              [&] {
+                                PathTracerOptions few = options;
+                                few.samples = 1024;
+                                return few;
+                              }())
+                      .noise *
+                  1.01;
   std::vector<double> shares;
-  const TracedImage image =
-      pathtracer::trace_paths(scene, scene.lights, view, options, [&](double share) { shares.push_back(share); });
+  const TracedImage image = pathtracer::trace_paths(scene, scene.lights, view, options,
+                                                    [&](double share) { shares.push_back(share); });
   ASSERT_GE(image.samples, 768u);
   ASSERT_FALSE(shares.empty());
   EXPECT_TRUE(std::ranges::is_sorted(shares));

@@ -6,9 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <regex>
 #include <csignal>
 #include <functional>
+#include <regex>
 #include <set>
 #include <string_view>
 

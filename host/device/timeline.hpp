@@ -45,7 +45,7 @@ class Timeline {
 
   void begin(StageMark mark);  ///< starts a stage; times of repeated stages add up
   void end(cl::CommandQueue& queue);
-  void abandon();  ///< ends a stage that failed, without its time
+  void abandon();                    ///< ends a stage that failed, without its time
   void add(const cl::Event& event);  ///< counts a launch, whose event it adds to the current stage
   /// Calls `wait`, which waits for the device, and counts it.
   template <typename Wait>

@@ -75,9 +75,8 @@ void check_comparable(const Image& a, const std::string& a_name, const Image& b,
   const std::size_t in_a = colour_channels(a, a_name).size(),
                     in_b = colour_channels(b, b_name).size();
   if (in_a != in_b) {
-    throw Error(ExitCode::bad_input,
-                "{} has {} colour channels, {} has {}; allowed: equal numbers", a_name, in_a,
-                b_name, in_b);
+    throw Error(ExitCode::bad_input, "{} has {} colour channels, {} has {}; allowed: equal numbers",
+                a_name, in_a, b_name, in_b);
   }
   if (a.encoding != b.encoding) {
     const bool a_linear = a.encoding == Encoding::linear;

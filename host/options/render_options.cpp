@@ -255,17 +255,16 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
 
 nlohmann::json to_json(const RenderOptions& options) {
   nlohmann::json json;
-  for_each_option(options,
-                  [&](const char* name, const auto& member, const std::string&, const auto&) {
-                    if constexpr (NamedEnum<std::remove_cvref_t<decltype(member)>>) {
-                      json[name] = text_of(member);
-                    } else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>,
-                                                        std::string>) {
-                      json[name] = printable(member);
-                    } else {
-                      json[name] = member;
-                    }
-                  });
+  for_each_option(
+      options, [&](const char* name, const auto& member, const std::string&, const auto&) {
+        if constexpr (NamedEnum<std::remove_cvref_t<decltype(member)>>) {
+          json[name] = text_of(member);
+        } else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(member)>, std::string>) {
+          json[name] = printable(member);
+        } else {
+          json[name] = member;
+        }
+      });
   return json;
 }
 

@@ -235,8 +235,8 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, flo
 
 /// Interpolation, and a later ray's test of the same triangle, err by a few roundings of the
 /// position and of the corners as seen from it. The offset along the normal n is |n| . (bound of
-/// each axis), as in pbrt-v4, 6.8.6 (Pharr, Jakob, Humphreys 2023). That is 0 on a plane such as y =
-/// 0, where the test's own roundings along the other axes remain.
+/// each axis), as in pbrt-v4, 6.8.6 (Pharr, Jakob, Humphreys 2023). That is 0 on a plane such as y
+/// = 0, where the test's own roundings along the other axes remain.
 glm::vec3 RayScene::offset_origin(const Hit& hit) const {
   constexpr double kRoundings = 32, kTestRoundings = 8;
   constexpr double kRounding = 0.5 * double{std::numeric_limits<float>::epsilon()};

@@ -17,8 +17,9 @@ struct Incident {
 
 /// Returns the light at `position` [m]. Directional: constant. Point: intensity / r^2, 0 beyond the
 /// range. Spot: the same times the square of a ramp from the outer to the inner
-/// angle (KHR_lights_punctual; shared/light.h). The range is a hard edge, not the recommended smooth window, so that the
-/// inverse square is exact inside it. Times the transmittance of ClpvLight::medium.
+/// angle (KHR_lights_punctual; shared/light.h). The range is a hard edge, not the recommended
+/// smooth window, so that the inverse square is exact inside it. Times the transmittance of
+/// ClpvLight::medium.
 Incident light_at(const ClpvLight& light, const glm::dvec3& position);
 
 }  // namespace clpv::reference

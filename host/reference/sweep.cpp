@@ -135,8 +135,7 @@ class Sweep {
       for_each_cell(n_, [&](const glm::ivec3& p) {
         transmittances.at(0, 0, p.x, p.y, p.z) =
             cascade_.geometry == nullptr ? 1
-            : cascade_.occluded != nullptr &&
-                    closed_link(*cascade_.occluded, n_, p, -link.offset)
+            : cascade_.occluded != nullptr && closed_link(*cascade_.occluded, n_, p, -link.offset)
                 ? 0
                 : transmittance(*cascade_.geometry, p, -link.offset, link.blocked_by);
       });

@@ -266,8 +266,7 @@ void MovingScene::set_medium(std::optional<ClpvMedium> medium) {
 bool MovingScene::fit_medium() {
   if (!medium_fills_scene_) return false;
   ClpvMedium& medium = *scene_.medium;
-  const bool fits =
-      vector(medium.lower) == glm::dvec3(scene_.lower) &&
+  const bool fits = vector(medium.lower) == glm::dvec3(scene_.lower) &&
                     vector(medium.upper) == glm::dvec3(scene_.upper);
   for (int i = 0; i < 3; ++i) {
     medium.lower[i] = scene_.lower[i];

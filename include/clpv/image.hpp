@@ -36,7 +36,8 @@ struct Image {
   std::map<std::string, PixelWindow> windows;
   /// Names of the parts of an EXR file that has several. Their channels are layers of these names.
   std::vector<std::string> parts;
-  /// Properties that reading converted or ignored, such as "chromaticities ...: converted to Rec. 709".
+  /// Properties that reading converted or ignored, such as "chromaticities ...: converted to Rec.
+  /// 709".
   std::vector<std::string> notes;
 
   std::size_t pixel_count() const {

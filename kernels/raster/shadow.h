@@ -14,8 +14,8 @@
 // positive if it is below a surface. They are negative in a concave corner, whose texels are above
 // the receiver's plane, too. Lower neighbours do not count: they may lie on another surface, and
 // where a plane rises, one inner texel has higher ones. A receiver below a surface has no lift, and
-// texels beyond the edge do not count. Only receivers whose normals are one are tested: triangles of
-// a curved mesh lie above each other's planes.
+// texels beyond the edge do not count. Only receivers whose normals are one are tested: triangles
+// of a curved mesh lie above each other's planes.
 #pragma once
 
 #include "lanes.h"
@@ -221,7 +221,8 @@ CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shado
   Receivers r;
   find_receivers(view, offset, geometric, facing, &r);
   const intW flat = vec_dot(geometric, normal) > (realW)(CLPV_SAME_NORMAL);
-  r.rounding += CLPV_SHADOW_ROUNDING_PLACE * (fabs(position.x) + fabs(position.y) + fabs(position.z));
+  r.rounding +=
+      CLPV_SHADOW_ROUNDING_PLACE * (fabs(position.x) + fabs(position.y) + fabs(position.z));
   r.rounding = flat ? r.rounding : (realW)(INFINITY);  // below no surface
   return vec_times(irradiance, find_visibility(view, shadow.map, r, *lit));
 }

@@ -51,7 +51,7 @@ struct Errors {
 Errors errors;  // filled once, by add_errors
 
 // State of this process, guarded by the GIL.
-int running = 0;       // RunningCalls
+int running = 0;                   // RunningCalls
 std::atomic<bool> exiting{false};  // Python's exit has begun
 std::thread::id exiting_thread;
 pid_t device_user = 0;  // process that called note_device_use() first; a fork copies it

@@ -31,9 +31,9 @@ Handle handle_of(const py::object& given, const char* what, const char* pyopencl
   const bool object = py::hasattr(given, "int_ptr") && is_of_class(given, pyopencl_class);
   const py::object number = object ? py::object(given.attr("int_ptr")) : given;
   if (!py::isinstance<py::int_>(number)) {
-    throw py::type_error(fmt::format(
-        "{}: found {}, allowed: an object of pyopencl's class {}, or its int_ptr", what,
-        std::string(py::str(py::type::of(given))), pyopencl_class));
+    throw py::type_error(
+        fmt::format("{}: found {}, allowed: an object of pyopencl's class {}, or its int_ptr", what,
+                    std::string(py::str(py::type::of(given))), pyopencl_class));
   }
   return reinterpret_cast<Handle>(number.cast<std::uintptr_t>());
 }
