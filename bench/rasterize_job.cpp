@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Jobs of stage `rasterize`: RSMs, shadow maps or the camera's G-buffer, by clpv and by OpenGL.
+// Job of stage `rasterize`: RSMs, shadow maps or the camera's G-buffer.
+#include "bench/rasterize_job.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "bench/native/rasterize_gl.hpp"
-#include "bench/stage_jobs.hpp"
 #include "pathtracer/ray_scene.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/raster/rasterize.hpp"
@@ -22,19 +22,13 @@ namespace {
 constexpr std::size_t kCheckedTexels = 31;
 constexpr double kDepthTolerance = 1e-2, kMaxDifferentShare = 0.02;
 
-/// One pass of rasterising: its scene, light and views.
-struct RasterTask {
-  std::shared_ptr<const SceneData> scene;
-  Pass pass;
-  ClpvLight light{};  ///< unused by rasterize_camera
-  std::vector<ClpvView> views;
+}  // namespace
 
-  double pixels() const {
-    double sum = 0;
-    for (const ClpvView& view : views) sum += static_cast<double>(view.width) * view.height;
-    return sum;
-  }
-};
+double RasterTask::pixels() const {
+  double sum = 0;
+  for (const ClpvView& view : views) sum += static_cast<double>(view.width) * view.height;
+  return sum;
+}
 
 RasterTask make_task(std::shared_ptr<const SceneData> scene, const std::string& camera_name,
                      Pass pass, const RenderOptions& options) {
@@ -62,6 +56,8 @@ RasterTask make_task(std::shared_ptr<const SceneData> scene, const std::string& 
   }
   return task;
 }
+
+namespace {
 
 struct Rasterization {
   RasterTask task;
@@ -119,7 +115,9 @@ void compare(DepthComparison& comparison, const pathtracer::RayScene& rays, Pass
   }
 }
 
-Deviation compare(const RasterTask& task, const std::vector<std::vector<float>>& depths) {
+}  // namespace
+
+Deviation compare_with_rays(const RasterTask& task, const std::vector<std::vector<float>>& depths) {
   const pathtracer::RayScene rays(*task.scene);
   DepthComparison comparison;
   for (std::size_t v = 0; v < depths.size(); ++v)
@@ -127,7 +125,6 @@ Deviation compare(const RasterTask& task, const std::vector<std::vector<float>>&
   return {comparison.different / comparison.checked, kMaxDifferentShare, comparison.place};
 }
 
-/// Compulsory traffic: vertices and triangles read once per view, every pixel written once.
 Cost cost_of(const RasterTask& task) {
   const SceneData& scene = *task.scene;
   const double pixel =
@@ -142,8 +139,6 @@ Cost cost_of(const RasterTask& task) {
   cost.pixels = task.pixels();
   return cost;
 }
-
-}  // namespace
 
 Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene,
                   const std::string& camera, Pass pass, const RenderOptions& options) {
@@ -161,23 +156,9 @@ Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene,
     std::vector<std::vector<float>> depths;
     for (std::size_t v = 0; v < r->depths.size(); ++v)
       depths.push_back(session.read<float>(r->depths[v], bytes(v) / sizeof(float)));
-    return compare(r->task, depths);
+    return compare_with_rays(r->task, depths);
   };
   job.cost = cost_of(r->task);
-  return job;
-}
-
-Job rasterize_gl_job(Session&, std::shared_ptr<const SceneData> scene, const std::string& camera,
-                     Pass pass, const RenderOptions& options) {
-  const auto task =
-      std::make_shared<RasterTask>(make_task(std::move(scene), camera, pass, options));
-  const auto gl = std::make_shared<GlRasterizer>(*task->scene, pass, task->views, task->light);
-  Job job;
-  job.own_stages = true;  // nothing runs on the device: wall time
-  job.run = [gl] { gl->draw(); };
-  if (pass != Pass::rasterize_shadow)
-    job.compare = [gl, task] { return compare(*task, gl->depths()); };
-  job.cost = cost_of(*task);
   return job;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Jobs for the pipeline's stages inject, propagate, sweep, gather and rasterize, each with its cost
+// Jobs for the pipeline's stages inject, propagate, sweep and gather, each with its cost
 // and its CPU reference.
 #pragma once
 
@@ -83,16 +83,6 @@ inline constexpr StageJob kInject{Stage::inject, inject_job},
     kPropagate{Stage::propagate, propagate_job, Pass::propagate}, kSweep{Stage::sweep, sweep_job},
     kGather{Stage::gather, gather_job, Pass::gather};
 inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kSweep, kGather};
-
-/// Rasterises a scene for `camera` (empty: its first) and the first light that applies there.
-/// `pass` is rasterize_camera (the camera's G-buffer), rasterize_shadow (shadow maps) or
-/// rasterize_rsm (RSMs of all cascades). Throws Error(bad_input) if a pass needs a light and none
-/// applies.
-Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene,
-                  const std::string& camera, Pass pass, const RenderOptions& options);
-/// The same work by OpenGL (bench/native/rasterize_gl.hpp).
-Job rasterize_gl_job(Session& session, std::shared_ptr<const SceneData> scene,
-                     const std::string& camera, Pass pass, const RenderOptions& options);
 
 /// A case of `job` with `problem`, or with with_sweep(problem) for the sweep.
 Case stage_case(Bench& bench, const std::string& suite, const StageJob& job,

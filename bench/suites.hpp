@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/ceilings.hpp"
+#include "bench/rasterize_job.hpp"
 #include "bench/stage_jobs.hpp"
 #include "scene/scene.hpp"
 
@@ -46,8 +47,12 @@ Suite scaling_suite();
 Suite ceilings_suite();
 Suite frame_suite();
 Suite factors_suite();
-Suite native_suite();
-Suite rasterize_suite();
+/// Suite `rasterize`. With the job of a peer, which draws the same: `rasterize-PEER` with both.
+struct RasterPeer {
+  std::string name;
+  Job (*job)(RasterTask task) = nullptr;
+};
+Suite rasterize_suite(const RasterPeer& peer = {});
 Suite regression_suite();
 
 /// The suite's settings with `basis`.

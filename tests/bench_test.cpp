@@ -10,13 +10,10 @@
 #include <sstream>
 
 #include "bench/compare_runs.hpp"
-#include "bench/native/propagate_avx2.hpp"
-#include "bench/native/rasterize_gl.hpp"
 #include "bench/published.hpp"
 #include "bench/report.hpp"
-#include "bench/runner.hpp"
 #include "support/error.hpp"
-#include "tests/support/on_device.hpp"
+#include "tests/support/bench_rows.hpp"
 #include "tests/support/run_here.hpp"
 
 namespace clpv::bench::bench_test {
@@ -239,54 +236,6 @@ const std::vector<std::string> kRow = test::words_of(
     "host_bytes flops bytes reads_per_cell writes_per_cell gflops gbps max_rel_error tolerance "
     "ceiling_share");
 
-/// Small enough that compiling dominates the time.
-SuiteOptions small() {
-  SuiteOptions options;
-  options.settings.grid = 16, options.settings.rsm_size = 64, options.settings.shadow_size = 128;
-  options.settings.width = 96, options.settings.height = 54;
-  return options;
-}
-
-/// Rows of a suite in whose names `filter` is found, timed once on the tests' device.
-std::vector<Row> rows_of(const Suite& suite, const std::string& filter,
-                         const SuiteOptions& options = small()) {
-  std::vector<Row> rows;
-  for (const Group& group : suite.groups(test::test_session(), options)) {
-    std::vector<Case> cases = group();
-    std::erase_if(
-        cases, [&](const Case& c) { return !std::regex_search(c.row.name, std::regex(filter)); });
-    std::ranges::move(run_cases(test::test_session(), cases, {.repetitions = 1}),
-                      std::back_inserter(rows));
-  }
-  return rows;
-}
-
-std::vector<std::string> names_of(const std::vector<Row>& rows) {
-  std::vector<std::string> names;
-  for (const Row& row : rows) names.push_back(row.name);
-  return names;
-}
-
-void expect_right(const std::vector<Row>& rows) {
-  for (const Row& row : rows) {
-    EXPECT_EQ(row.status, Status::ok) << row.name << ": " << row.reason;
-    EXPECT_LE(row.max_rel_error.value_or(0), row.tolerance) << row.name;
-  }
-}
-
-TEST(BenchSuites, NativeComparesWithCodeByHand) {
-  if (!avx2_supported()) GTEST_SKIP() << "no AVX2";
-  const auto sh2 = make_basis("sh2");
-  EXPECT_THROW(PropagateAvx2(*sh2, make_transport(TransportKind::sampled, *sh2), 12), Error);
-  const std::vector<Row> rows = rows_of(native_suite(), "occlusion");
-  expect_right(rows);
-  EXPECT_THAT(names_of(rows),
-              ElementsAre("propagate/sh2/soa/float/occlusion", "native/sh2/soa/float/occlusion"));
-  EXPECT_THAT(native_suite().table(rows),
-              ::testing::ContainsRegex(
-                  "propagate/sh2/soa/float/occlusion .*[0-9]+[.][0-9]+ +[0-9.]+ +[0-9.e-]+\n"));
-}
-
 TEST(BenchSuites, RegressionHasTheSweepAndWhatItsProgramsTookToBuild) {
   SuiteOptions options = small();
   options.bases = {"bins24"};
@@ -356,28 +305,14 @@ TEST(BenchSuites, FactorsHaveSumsAndDifferencesFromThePreset) {
   EXPECT_THAT(factors_suite().table(rows), HasSubstr("0.0000  -\n"));
 }
 
-TEST(BenchSuites, EveryPassOfRasterizingIsRightAndThePeerDrawsTheSame) {
+TEST(BenchSuites, EveryPassOfRasterizingIsRight) {
   const std::vector<Row> rows = rows_of(rasterize_suite(), "");
-  ASSERT_EQ(rows.size(), 6u);
-  const std::string missing = gl_missing();
-  for (const Row& row : rows) {
-    const bool peer = row.name.ends_with("/opengl"), there = !peer || missing.empty();
-    EXPECT_EQ(row.status, there ? Status::ok : Status::unsupported)
-        << row.name << ": " << row.reason;
-    if (!there) {
-      EXPECT_EQ(row.reason, missing);
-      continue;
-    }
-    EXPECT_GT(row.wall_ms, 0) << row.name;
-    const bool shadow = row.stage == name_of(Pass::rasterize_shadow),
-               rsm = row.stage == name_of(Pass::rasterize_rsm);
-    EXPECT_EQ(row.max_rel_error.has_value(), !peer || !shadow) << row.name;
-    EXPECT_EQ(row.cost.pixels, shadow ? 128 * 128 : rsm ? 3 * 64 * 64 : 96 * 54);
-    EXPECT_GT(row.cost.triangles, rsm ? 30000 : 10000);
-  }
-  const std::string table = rasterize_suite().table(rows);
-  EXPECT_THAT(table, HasSubstr("ns/triangle"));
-  EXPECT_THAT(table, Not(HasSubstr("WRONG")));
+  expect_right(rows);
+  EXPECT_THAT(names_of(rows), ElementsAre("rasterize-camera", "rasterize-shadow", "rasterize-rsm"));
+  EXPECT_EQ(rows[0].cost.pixels, 96 * 54);
+  EXPECT_EQ(rows[1].cost.pixels, 128 * 128);
+  EXPECT_EQ(rows[2].cost.pixels, 3 * 64 * 64);
+  EXPECT_THAT(rasterize_suite().table(rows), HasSubstr("ns/triangle"));
 }
 
 const std::string kOneRow = "bases --basis sh2 --filter 'propagate/sh2/soa/float$' --repetitions 3";

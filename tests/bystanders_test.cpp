@@ -140,10 +140,8 @@ const std::multimap<std::string, Invocation>& runs() {
        {"pathtrace " + kTiny + " --width 12 --height 9 --spp 1 -o t.exr --stats t.json",
         {"t.exr", "t.json"}}},
       {"quality",
-       {"quality" + tiny +
-            "--spp 1 --frames 1 --cache kept --baseline paths --baseline-time 1 "
-            "--images images -o quality.json",
-        {"kept/", "images/", "quality.json"}}},
+       {"quality" + tiny + "--spp 1 --frames 1 --cache kept -o quality.json",
+        {"kept/", "quality.json"}}},
       {"quality", {"quality" + tiny + "--spp 1 --frames 1"}},
       {"basis", {"basis sh2 --figures figures", {"figures/"}}},
       {"bench",

@@ -12,13 +12,14 @@
 
 #include "support/error.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/gltf_builder.hpp"
+#include "tests/support/quality_room.hpp"
 #include "tests/support/run_here.hpp"
 
 namespace clpv::quality_test {
 namespace {
 
 namespace fs = std::filesystem;
+using test::QualityCommand;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
@@ -140,40 +141,6 @@ TEST(QualityStore, ReturnsStoredCells) {
   }
 }
 
-/// A floor and a wall, both 4 x 4 m, lit from the front.
-void write_room(const test::TemporaryFolder& folder) {
-  test::GltfBuilder room;
-  room.square(2);
-  room.add(
-      "nodes",
-      {{"mesh", 0}, {"rotation", {0.70710678, 0, 0, 0.70710678}}, {"translation", {0, 0, -2}}});
-  room.write(folder);
-  folder.write("room.json", R"({"model": "model.gltf", "cascades": {"count": 1, "size_metres": 20},
-    "cameras": [{"name": "left", "eye": [-1, 1.5, 3], "target": [0, 0.5, -1]},
-                {"name": "right", "eye": [1, 1.5, 3], "target": [0, 0.5, -1]}],
-    "lights": [{"name": "sun", "kind": "directional", "direction": [0, -1, -0.5], "illuminance_lux": 5}]})");
-}
-
-class QualityCommand : public ::testing::Test {
- protected:
-  void SetUp() override { write_room(folder_); }
-
-  test::Outcome quality(const std::string& arguments) const {
-    return test::run_here(
-        "quality " + file("room.json") + " --cache " + file("cache") +
-        " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --blockers none --rsm-size 64 " +
-        arguments);
-  }
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  std::size_t kept() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(file("cache/cells")), fs::directory_iterator{}));
-  }
-
- private:
-  test::TemporaryFolder folder_;
-};
-
 TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
   std::ofstream(file("cache")) << "a file, so that no folder of this name can be made";
   const test::Outcome outcome = quality("--basis sh2 --camera left --format json");
@@ -218,43 +185,6 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   EXPECT_EQ(same_times, 3);
   EXPECT_EQ(kept(), 4u);
   EXPECT_EQ(test::read_file(file("a.json")), second.out);
-}
-
-// A camera's name once led --images to any file of the user.
-TEST_F(QualityCommand, ASceneDoesNotChooseWhereImagesLie) {
-  nlohmann::json room = nlohmann::json::parse(test::read_file(file("room.json")));
-  room["cameras"][0]["name"] = "x/../../../victim";
-  room["cameras"][1]["name"] = "..";
-  std::ofstream(file("room.json")) << room.dump();
-  std::ofstream(file("victim.exr")) << "of the user";
-  const test::Outcome outcome =
-      quality("--baseline paths --baseline-time 1 --images " + file("out") + " --format json");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_EQ(test::read_file(file("victim.exr")), "of the user");
-  std::set<std::string> names;
-  for (const auto& image : fs::recursive_directory_iterator(file("out")))
-    names.insert(image.path().lexically_relative(file("out")));
-  EXPECT_THAT(names, ElementsAre("paths", testing::MatchesRegex("paths/room-__-[0-9a-f]*.exr"),
-                                 testing::MatchesRegex("paths/room-x_+victim-[0-9a-f]*.exr")));
-}
-
-// They were once found after the measuring, as unwritable, or replaced by each other.
-TEST_F(QualityCommand, ImagesAreCheckedBeforeTheWork) {
-  const std::string images = "--camera left --baseline paths --images " + file("out");
-  fs::create_directories(file("out/paths/room-left.exr"));
-  const test::Outcome folder = quality(images);
-  EXPECT_EQ(folder.exit_code, 1);
-  EXPECT_THAT(folder.err, HasSubstr("room-left.exr: cannot be written: it is a folder"));
-  fs::remove(file("out/paths/room-left.exr"));
-  fs::create_directory(file("b"));
-  fs::copy(file("room.json"), file("b/room.json"));
-  fs::copy(file("model.gltf"), file("b/model.gltf"));
-  fs::copy(file("model.bin"), file("b/model.bin"));
-  const test::Outcome same = quality(file("b/room.json") + " " + images);
-  EXPECT_EQ(same.exit_code, 2);
-  EXPECT_THAT(same.err, HasSubstr("--images: room-left.exr would be the file of"));
-  EXPECT_TRUE(fs::is_empty(file("out/paths")));
-  EXPECT_FALSE(fs::exists(file("cache/references"))) << "nothing was traced";
 }
 
 TEST_F(QualityCommand, AnImageIsComparedWithTheTruthOfItsScene) {

@@ -31,10 +31,10 @@ struct Options {
   bench::BenchOptions bench;
 };
 
-std::vector<std::string> suite_names() {
-  std::vector<std::string> names;
-  for (const bench::Suite& suite : bench::suites()) names.push_back(suite.name);
-  return names;
+std::vector<bench::Suite> suites_of(const Additions& additions) {
+  std::vector<bench::Suite> suites = bench::suites();
+  if (additions.suites) std::ranges::copy(*additions.suites, std::back_inserter(suites));
+  return suites;
 }
 
 std::regex parse_filter(const std::string& text) {
@@ -138,8 +138,8 @@ void run(Options options, const Shared& shared) {
   }
   check_outputs(outputs_of(options));
   const nlohmann::json before = earlier_run(options);
-  const bench::Suite& suite =
-      *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
+  const std::vector<bench::Suite> suites = suites_of(shared.additions);
+  const bench::Suite& suite = *std::ranges::find(suites, options.suite, &bench::Suite::name);
   load_suite_scene(options, suite);
   check_outputs(outputs_of(options));
   const Device device = choose_device(shared.device);
@@ -183,11 +183,12 @@ void add_bench(CLI::App& app, Shared& shared) {
       app.add_subcommand("bench", "Time stages and frames on this device, and check their outputs");
   auto options = std::make_shared<bench_command::Options>();
   std::string suites = "suite to run:";
-  for (const bench::Suite& suite : bench::suites())
+  std::vector<std::string> names;
+  for (const bench::Suite& suite : suites_of(shared.additions)) {
+    names.push_back(suite.name);
     suites += fmt::format("\n{}: {}", suite.name, suite.help);
-  command->add_option("SUITE", options->suite, suites)
-      ->required()
-      ->check(CLI::IsMember(suite_names()));
+  }
+  command->add_option("SUITE", options->suite, suites)->required()->check(CLI::IsMember(names));
   add(*command, "--scene", "SCENE", options->scene,
       "scene file or model (default: a generated hall; for table1: scenes/atrium.json)");
   add(*command, "--model", "PATH", options->model, "model file instead of the scene file's");

@@ -262,11 +262,12 @@ int parse_and_run(CLI::App& app, int argc, const char* const* argv) {
 
 }  // namespace
 
-int run_program(int argc, const char* const* argv) {
+int run_program(int argc, const char* const* argv, const Additions& additions) {
   const InputRecord record;
   record_kernel_files();
   CLI::App app;
   Shared shared;
+  shared.additions = additions;
   add_commands(app, shared);
   try {
     const int code = parse_and_run(app, argc, argv);

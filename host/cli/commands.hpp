@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "cli/additions.hpp"
 #include "parallel/ranks.hpp"
 
 namespace clpv {
@@ -16,6 +17,7 @@ struct Shared {
   std::string device;  ///< --device
   bool quiet = false;
   int verbosity = 0;
+  Additions additions;
   /// Returns the ranks of the launcher that started this process; the first call starts MPI.
   Ranks& ranks();
   std::unique_ptr<Ranks> started;  ///< null before the first call
@@ -39,7 +41,7 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
 /// The program without signal handling: parses, runs the command and logs errors to stderr. Returns
 /// the exit code. A failing rank aborts all ranks.
-int run_program(int argc, const char* const* argv);
+int run_program(int argc, const char* const* argv, const Additions& additions = {});
 
 // Each command is in cli/NAME.cpp. The callbacks throw clpv::Error; run_program turns it into an
 // exit code.

@@ -23,7 +23,6 @@
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
-#include "cli/quality_baselines.hpp"
 #include "cli/quality_subjects.hpp"
 #include "cli/unreached.hpp"
 #include "clpv/version.hpp"
@@ -38,7 +37,7 @@ namespace quality_command {
 
 struct Options {
   QualitySubjects subjects;
-  QualityBaselines baselines;
+  std::shared_ptr<QualityAddition> addition;  ///< null: none
   std::vector<std::string> varied;
   std::string output, cache, format;
   Show view = Show::indirect;
@@ -46,6 +45,9 @@ struct Options {
   bool fresh = false;
   TracingOptions tracing;
   OptionValues given;
+
+  /// The option that asks for cells of the addition; empty: none.
+  std::string asked() const { return addition ? addition->asked() : ""; }
 
   /// True if the command line names a frame option, apart from the size.
   bool named() const {
@@ -56,7 +58,7 @@ struct Options {
 };
 
 /// All combinations of the values of --vary. Without it: the frame that the options name; without
-/// any option and baseline: all bases and transports.
+/// any option: all bases and transports.
 std::vector<Variant> variants_of(const Options& options) {
   std::vector<VariedOption> varied;
   for (const std::string& text : options.varied) {
@@ -66,7 +68,7 @@ std::vector<Variant> variants_of(const Options& options) {
                   "--vary {}: all variants have one size; allowed: --width and --height", text);
     }
   }
-  if (varied.empty() && !options.named() && options.baselines.names.empty()) {
+  if (varied.empty() && !options.named() && options.asked().empty()) {
     varied.push_back({"basis", basis_names()});
     varied.push_back({"transport", names_of<TransportKind>()});
   }
@@ -200,8 +202,8 @@ void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
   const std::vector<Variant> variants = variants_of(options);
   const pathtracer::PathTracerOptions tracing = options.tracing.resolved();
-  if (!options.baselines.names.empty() && ranks.size() > 1)
-    throw Error(ExitCode::usage, "--baseline: found {} ranks; allowed: one", ranks.size());
+  if (!options.asked().empty() && ranks.size() > 1)
+    throw Error(ExitCode::usage, "{}: found {} ranks; allowed: one", options.asked(), ranks.size());
   if (!options.output.empty()) require_extension("--output", options.output, {".json"});
   std::vector<NamedFile> outputs{{"--output", options.output}};
   check_outputs(outputs);
@@ -210,7 +212,8 @@ void run(const Options& options, Shared& shared) {
   Session session(ranks.device(shared.device));
   std::vector<Subject> subjects = load_subjects(options.subjects);
   const std::vector<Group> groups = groups_of(options, subjects, variants);
-  std::ranges::move(image_files(options.baselines, subjects), std::back_inserter(outputs));
+  if (!options.asked().empty())
+    std::ranges::move(options.addition->outputs(subjects), std::back_inserter(outputs));
   check_outputs(outputs);
   for (Subject& subject : subjects) {
     const RenderOptions frame = with(options, {}, subject.scene);
@@ -218,10 +221,10 @@ void run(const Options& options, Shared& shared) {
   }
   std::vector<QualityCell> cells = measure_all(ranks, session, groups, store, options);
   if (!ranks.is_root()) return;
-  if (!options.baselines.names.empty()) {
+  if (!options.asked().empty()) {
     const auto frame = [&](const SceneData& scene) { return with(options, {}, scene); };
-    std::ranges::move(measure_baselines(options.baselines, session, subjects, frame,
-                                        tracing.bounces, options.view, options.frames),
+    std::ranges::move(options.addition->measure(session, subjects, frame, tracing.bounces,
+                                                options.view, options.frames),
                       std::back_inserter(cells));
   }
   const std::string json = document(cells, subjects, session, options).dump(2) + "\n";
@@ -240,9 +243,8 @@ void add_options(CLI::App& command, Options& options) {
   add(command, "--vary", "OPTION=a,b,c", options.varied,
       "render option and its values, repeatable; each combination is a variant. Without --vary: "
       "the frame\n"
-      "that the other options name, or all bases and transports if neither one nor --baseline is "
-      "named");
-  add_baseline_options(command, options.baselines);
+      "that the other options name, or all bases and transports if they name none");
+  if (options.addition) options.addition->add_options(command);
   add_choice(command, "--view", options.view, "view to compare");
   add_number(
       command, "--frames", "N", options.frames,
@@ -269,6 +271,7 @@ void add_quality(CLI::App& app, Shared& shared) {
   CLI::App* command =
       app.add_subcommand("quality", "Errors against path tracing, and times, of many variants");
   auto options = std::make_shared<quality_command::Options>();
+  options->addition = shared.additions.quality;
   add_options(*command, *options);
   command->footer(
       "nrmse: root mean square error over the ground truth's, over the valid pixels; best gain: "

@@ -14,6 +14,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / os.environ.get("CLPV_BUILD_DIR", "build")
 CLPV = BUILD / "clpv"
+LAB = BUILD / "clpv-lab"  # has other methods and peers too
 RESULTS = ROOT / "results"
 sys.path.insert(0, str(ROOT / "python"))
 from clpv import output  # noqa: E402

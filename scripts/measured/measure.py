@@ -31,7 +31,7 @@ import subprocess
 import sys
 import tempfile
 
-from . import CLPV, RESULTS, ROOT, charts, described, json_lines, output, rows
+from . import LAB, RESULTS, ROOT, charts, described, json_lines, output, rows
 
 FRAME_COUNT = 9
 STANDING_COUNT = 5
@@ -46,7 +46,7 @@ def run(*arguments, charts_of=()):
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "result.json"
         command = [
-            str(CLPV), *(argument.replace("FOLDER", folder) for argument in arguments),
+            str(LAB), *(argument.replace("FOLDER", folder) for argument in arguments),
             str(file)
         ]
         print("scripts/measure: clpv", *arguments, file=sys.stderr)
@@ -71,7 +71,7 @@ def write(folder, name, document):
 
 
 def measure_device(folder):
-    checks = subprocess.run([str(CLPV), "check", "--format=json"], stdout=subprocess.PIPE,
+    checks = subprocess.run([str(LAB), "check", "--format=json"], stdout=subprocess.PIPE,
                             text=True, check=False, cwd=ROOT)
     if checks.returncode != 0:
         print(f"scripts/measure: clpv check did not pass: exit code {checks.returncode}",
@@ -200,7 +200,7 @@ def search_centres(sponza):
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
     clpv([*search, rows.SEARCHED], env=environment)
     clpv([
-        str(CLPV), "render", "scenes/sponza.json", *sponza, "--dump-normals=out/normals.json", "-o",
+        str(LAB), "render", "scenes/sponza.json", *sponza, "--dump-normals=out/normals.json", "-o",
         "out/normals.png"
     ])
     clpv([*search, rows.SEARCHED_NORMALS, "--weights=out/normals.json"], env=environment)

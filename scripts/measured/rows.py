@@ -143,7 +143,7 @@ DOCS_SUITES = {
     "scaling": [],
     "native": ["--repetitions=41"],
     "frame": ["sponza", "--repetitions=9", "--basis=sh2", "--filter=best"],
-    "rasterize": ["sponza"],
+    "rasterize-opengl": ["sponza"],
 }
 CHARTS = {"layouts": ("layouts", "roofline"), "scaling": ("scaling",)}  # those in docs/images
 

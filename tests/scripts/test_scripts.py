@@ -58,7 +58,7 @@ class InTree(unittest.TestCase):
         self.tree, self.full = self.folder / "tree", self.folder / "full"
         shutil.copytree(ROOT / "scripts", self.tree / "scripts",
                         ignore=shutil.ignore_patterns("__pycache__"))
-        for name in ("python", "scenes", "docs", "results", "LICENSE", "CMakeLists.txt",
+        for name in ("python", "scenes", "docs", "lab", "results", "LICENSE", "CMakeLists.txt",
                      "README.md", "REPRODUCING.md", "CITATION.cff", "CHANGELOG.md"):
             (self.tree / name).symlink_to(ROOT / name)
         (self.folder / "store").mkdir()
@@ -218,7 +218,7 @@ class OwnFolders(InTree):
         self.assertFalse((self.tree / "made").exists())
 
     def test_tables(self):
-        for name in "docs", "README.md":
+        for name in "docs", "lab", "README.md":
             (self.tree / name).unlink()
         shutil.copy(ROOT / "README.md", self.tree)
         bystanders.fill(self.tree / "docs")

@@ -33,7 +33,8 @@ inline std::vector<std::string> words_of(std::string_view text) {
 }
 
 /// `clpv arguments`, in that folder.
-inline Outcome run_here(std::string_view arguments, const std::filesystem::path& folder = ".") {
+inline Outcome run_here(std::string_view arguments, const std::filesystem::path& folder = ".",
+                        const Additions& additions = {}) {
   std::vector<std::string> words = words_of(arguments);
   words.insert(words.begin(), "clpv");
   std::vector<const char*> pointers;
@@ -43,7 +44,7 @@ inline Outcome run_here(std::string_view arguments, const std::filesystem::path&
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   Outcome outcome;
-  outcome.exit_code = run_program(static_cast<int>(pointers.size()), pointers.data());
+  outcome.exit_code = run_program(static_cast<int>(pointers.size()), pointers.data(), additions);
   outcome.out = ::testing::internal::GetCapturedStdout();
   outcome.err = ::testing::internal::GetCapturedStderr();
   std::filesystem::current_path(before);

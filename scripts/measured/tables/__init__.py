@@ -2,7 +2,7 @@
 """Writes the tables of measured numbers in the docs, between <!-- table: NAME --> and <!-- end -->,
 from results/docs.
 
-    scripts/tables            rewrites them in README.md and docs/, and claims.json and
+    scripts/tables            rewrites them in README.md, docs/ and lab/, and claims.json and
                               expected.json in results/paper
     scripts/tables --check    changes nothing; fails if one of them differs from results/docs
     scripts/tables --list     names of all tables
@@ -84,7 +84,8 @@ def main():
             differing.append(str(file.relative_to(ROOT)))
             if not arguments:
                 output.write(file, text)
-    for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))]:
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md")),
+                 *sorted((ROOT / "lab").glob("**/*.md"))]:
         if page.is_symlink():
             continue
         text = page.read_text(encoding="utf-8")

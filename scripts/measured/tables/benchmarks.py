@@ -189,7 +189,7 @@ def rasterize():
         "", "clpv [ms]", "per triangle [ns]", "per pixel [ns]", "OpenGL [ms]", "OpenGL / clpv"
     ]]
     for stage, name in names.items():
-        ours, theirs = (found(bench("rasterize"), name=stage + peer) for peer in ("", "/opengl"))
+        ours, theirs = (found(bench("rasterize-opengl"), name=stage + peer) for peer in ("", "/opengl"))
         wall = ours["wall_ms"]
         lines.append([
             name,

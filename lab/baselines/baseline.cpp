@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quality/baseline.hpp"
+#include "baselines/baseline.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -40,7 +40,7 @@ bool has_cascades(Baseline baseline) {
 }
 
 /// Settings of radiance cascades by the number of samples, 12 directions each, and the stride of
-/// pixels, which is that of probes too. Searched: docs/lab/experiments.md.
+/// pixels, which is that of probes too. Searched: lab/docs/experiments.md.
 baselines::RadianceCascadeSettings cascade_settings(unsigned samples, unsigned stride) {
   return {.side = static_cast<unsigned>(std::sqrt(double(samples))),
           .spacing = static_cast<float>(stride),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Settings without a reason here were searched (docs/lab/experiments.md).
+// Settings without a reason here were searched (lab/docs/experiments.md).
 #include "baselines/radiance_cascades.hpp"
 
 #include <cmath>

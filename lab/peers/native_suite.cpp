@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "basis/basis.hpp"
-#include "bench/native/propagate_avx2.hpp"
-#include "bench/suites.hpp"
+#include "peers/peers.hpp"
+#include "peers/propagate_avx2.hpp"
 #include "reference/propagate.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"

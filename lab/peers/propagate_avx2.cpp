@@ -2,7 +2,7 @@
 // Propagation of sh2 by vectors of eight cells. A cell takes from each of its 6 neighbours the flux
 // through the neighbour's far face and 4 side faces, and reprojects it as a lobe. Kaplanyan and
 // Dachsbacher, 'Cascaded Light Propagation Volumes for Real-Time Indirect Illumination' (I3D 2010).
-#include "bench/native/propagate_avx2.hpp"
+#include "peers/propagate_avx2.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Baselines of clpv quality against path tracing and closed forms, and their options.
-#include "quality/baseline.hpp"
+#include "baselines/baseline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 
+#include "additions.hpp"
 #include "baselines/filter.hpp"
 #include "baselines/methods.hpp"
 #include "baselines/radiance_cascades.hpp"
@@ -18,8 +21,8 @@
 #include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/gltf_builder.hpp"
 #include "tests/support/on_device.hpp"
+#include "tests/support/quality_room.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/traced_scenes.hpp"
@@ -27,7 +30,10 @@
 namespace clpv::baseline_test {
 namespace {
 
+namespace fs = std::filesystem;
 using std::numbers::pi_v;
+using test::QualityCommand;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr int kWidth = 48, kHeight = 27;
@@ -306,7 +312,8 @@ TEST(BaselineCommand, MeasuresBesideFrames) {
       " --camera front --width 32 --height 18 --spp 64 --frames 1 --grid 16 --format json";
   const test::Outcome outcome =
       test::run_here(command + " --bounces all --baseline paths,vpl --baseline-time 5 --images " +
-                     (folder / "images").string() + " --output " + (folder / "a.json").string());
+                         (folder / "images").string() + " --output " + (folder / "a.json").string(),
+                     ".", lab_additions());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json cells = nlohmann::json::parse(outcome.out)["cells"];
   ASSERT_EQ(cells.size(), 3u);
@@ -322,9 +329,48 @@ TEST(BaselineCommand, MeasuresBesideFrames) {
   EXPECT_EQ(read_image(folder / "images/paths/cornell-front.exr").width, 32);
   EXPECT_EQ(test::read_file((folder / "a.json").string()), outcome.out);
 
-  const test::Outcome unknown = test::run_here(command + " --baseline nonsense");
+  const test::Outcome unknown =
+      test::run_here(command + " --baseline nonsense", ".", lab_additions());
   EXPECT_EQ(unknown.exit_code, static_cast<int>(ExitCode::usage));
   EXPECT_THAT(unknown.err, HasSubstr("ddgi-first"));
+}
+
+// A camera's name once led --images to any file of the user.
+TEST_F(QualityCommand, ASceneDoesNotChooseWhereImagesLie) {
+  nlohmann::json room = nlohmann::json::parse(test::read_file(file("room.json")));
+  room["cameras"][0]["name"] = "x/../../../victim";
+  room["cameras"][1]["name"] = "..";
+  std::ofstream(file("room.json")) << room.dump();
+  std::ofstream(file("victim.exr")) << "of the user";
+  const test::Outcome outcome =
+      quality("--baseline paths --baseline-time 1 --images " + file("out") + " --format json",
+              lab_additions());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(test::read_file(file("victim.exr")), "of the user");
+  std::set<std::string> names;
+  for (const auto& image : fs::recursive_directory_iterator(file("out")))
+    names.insert(image.path().lexically_relative(file("out")));
+  EXPECT_THAT(names, ElementsAre("paths", testing::MatchesRegex("paths/room-__-[0-9a-f]*.exr"),
+                                 testing::MatchesRegex("paths/room-x_+victim-[0-9a-f]*.exr")));
+}
+
+// They were once found after the measuring, as unwritable, or replaced by each other.
+TEST_F(QualityCommand, ImagesAreCheckedBeforeTheWork) {
+  const std::string images = "--camera left --baseline paths --images " + file("out");
+  fs::create_directories(file("out/paths/room-left.exr"));
+  const test::Outcome folder = quality(images, lab_additions());
+  EXPECT_EQ(folder.exit_code, 1);
+  EXPECT_THAT(folder.err, HasSubstr("room-left.exr: cannot be written: it is a folder"));
+  fs::remove(file("out/paths/room-left.exr"));
+  fs::create_directory(file("b"));
+  fs::copy(file("room.json"), file("b/room.json"));
+  fs::copy(file("model.gltf"), file("b/model.gltf"));
+  fs::copy(file("model.bin"), file("b/model.bin"));
+  const test::Outcome same = quality(file("b/room.json") + " " + images, lab_additions());
+  EXPECT_EQ(same.exit_code, 2);
+  EXPECT_THAT(same.err, HasSubstr("--images: room-left.exr would be the file of"));
+  EXPECT_TRUE(fs::is_empty(file("out/paths")));
+  EXPECT_FALSE(fs::exists(file("cache/references"))) << "nothing was traced";
 }
 
 }  // namespace

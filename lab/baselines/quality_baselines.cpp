@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/quality_baselines.hpp"
+#include "baselines/quality_baselines.hpp"
 
 #include <fmt/format.h>
 
@@ -19,53 +19,56 @@ std::filesystem::path image_file(const std::string& images, Baseline baseline,
 
 }  // namespace
 
-void add_baseline_options(CLI::App& command, QualityBaselines& baselines) {
-  CLI::Option* names = add_choices(command, "--baseline", baselines.names,
+void QualityBaselines::add_options(CLI::App& command) {
+  CLI::Option* names = add_choices(command, "--baseline", names_,
                                    "other methods to compare with, repeatable; each takes the time "
                                    "of the frame without G-buffer, shadow\n"
                                    "maps and shading");
   const NumberRange range{1e-3, 1e7, "0.001..1e7 ms"};
-  add_number(command, "--baseline-time", "MS", baselines.time,
+  add_number(command, "--baseline-time", "MS", time_,
              "time of each baseline in place of the frame's [ms]", range)
       ->needs(names);
-  add(command, "--images", "DIR", baselines.images,
+  add(command, "--images", "DIR", images_,
       "folder for images: DIR/BASELINE/SCENE-CAMERA.exr, characters other than letters, digits, - "
       "and _ replaced")
       ->needs(names);
 }
 
-std::vector<NamedFile> image_files(const QualityBaselines& baselines,
-                                   const std::vector<Subject>& subjects) {
-  if (baselines.images.empty()) return {};
+std::string QualityBaselines::asked() const {
+  return names_.empty() ? "" : "--baseline";
+}
+
+std::vector<NamedFile> QualityBaselines::outputs(const std::vector<Subject>& subjects) const {
+  if (images_.empty()) return {};
   require_distinct_names("--images", subjects);
   std::vector<NamedFile> files;
-  for (const Baseline baseline : baselines.names) {
-    create_folder("--images", std::filesystem::path(baselines.images) / name_of(baseline));
+  for (const Baseline baseline : names_) {
+    create_folder("--images", std::filesystem::path(images_) / name_of(baseline));
     for (const Subject& subject : subjects)
       for (const SceneCamera& camera : subject.cameras)
-        files.push_back({"--images", image_file(baselines.images, baseline, subject, camera)});
+        files.push_back({"--images", image_file(images_, baseline, subject, camera)});
   }
   return files;
 }
 
-std::vector<QualityCell> measure_baselines(
-    const QualityBaselines& baselines, Session& session, const std::vector<Subject>& subjects,
-    const std::function<RenderOptions(const SceneData&)>& options_of, int bounces, Show show,
-    int frames) {
+std::vector<QualityCell> QualityBaselines::measure(
+    Session& session, const std::vector<Subject>& subjects,
+    const std::function<RenderOptions(const SceneData&)>& frame_of, int bounces, Show show,
+    int frames) const {
   std::size_t views = 0;
   for (const Subject& subject : subjects) views += subject.cameras.size();
-  Progress progress("baselines", views * baselines.names.size());
+  Progress progress("baselines", views * names_.size());
   std::vector<QualityCell> cells;
   for (const Subject& subject : subjects) {
-    const RenderOptions options = options_of(subject.scene);
+    const RenderOptions options = frame_of(subject.scene);
     Frame frame(session, subject.scene, options);
     for (std::size_t c = 0; c < subject.cameras.size(); ++c) {
       const SceneCamera& camera = subject.cameras[c];
       const baselines::View view(subject.scene, camera, options.width, options.height, bounces,
                                  static_cast<int>(session.device().compute_units));
       BaselineBudget budget = baseline_budget(session, frame, camera, frames);
-      if (baselines.time > 0) budget.budget_ms = baselines.time;
-      for (const Baseline baseline : baselines.names) {
+      if (time_ > 0) budget.budget_ms = time_;
+      for (const Baseline baseline : names_) {
         MeasuredBaseline measured;
         QualityCell& cell = measured.cell;
         try {
@@ -74,10 +77,10 @@ std::vector<QualityCell> measure_baselines(
           if (error.code() != ExitCode::usage) throw;
           cell.rejected = error.what();
         }
-        if (!baselines.images.empty() && cell.rejected.empty()) {
+        if (!images_.empty() && cell.rejected.empty()) {
           measured.image.metadata[kViewHash] =
               view_hash(subject.scene, camera, options.width, options.height);
-          write_exr(image_file(baselines.images, baseline, subject, camera), measured.image);
+          write_exr(image_file(images_, baseline, subject, camera), measured.image);
         }
         cell.scene = subject.scene.name, cell.camera = camera.name;
         cell.variant = {{"baseline", std::string(name_of(baseline))}};

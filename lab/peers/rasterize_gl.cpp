@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // OpenGL ES rasteriser: shaders, textures, framebuffers and draw calls.
-#include "bench/native/rasterize_gl.hpp"
+#include "peers/rasterize_gl.hpp"
 
 #include "support/error.hpp"
 

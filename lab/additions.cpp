@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#include "additions.hpp"
+
+#include "baselines/quality_baselines.hpp"
+#include "peers/peers.hpp"
+
+namespace clpv {
+
+Additions lab_additions() {
+  static const std::vector<bench::Suite> suites{
+      bench::native_suite(), bench::rasterize_suite({"opengl", bench::rasterize_gl_job})};
+  return {std::make_shared<QualityBaselines>(), &suites};
+}
+
+}  // namespace clpv
