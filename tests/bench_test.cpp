@@ -338,7 +338,7 @@ TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {
   EXPECT_EQ(row["samples_ms"].size(), 3u);
   EXPECT_EQ(row["name"], "propagate/sh2/soa/float");
   EXPECT_EQ(row["status"], "ok");
-  EXPECT_LE(row["max_rel_error"], row["tolerance"]);
+  EXPECT_LE(row["max_rel_error"].get<double>(), row["tolerance"]);
   EXPECT_GT(row["flops"],
             32.0 * 32 * 32 * 3 * 8 * 36);  // at least 36 multiply-adds per cell, channel and step
   EXPECT_THAT(test::read_file(folder / "plots/roofline.svg"), HasSubstr("<svg"));

@@ -64,7 +64,7 @@ void expect_golden(const Image& image, const std::string& name) {
   const fs::path path = fs::path(CLPV_SOURCE_DIR) / "tests/golden" / (name + ".exr");
   if (std::getenv("CLPV_WRITE_GOLDEN") != nullptr) return write_exr(path, image);
   const Comparison result = compare(image, "this run", read_image(path), path.string());
-  EXPECT_LT(result.nrmse, kGoldenTolerance) << path;
+  EXPECT_LT(result.nrmse.value(), kGoldenTolerance) << path;
 }
 
 // A frame's stages refer to its other parts.
@@ -89,7 +89,7 @@ TEST(Frame, AFarTriangleChangesNothing) {
     return render(scene, small_options(scene), Show::full);
   };
   const Comparison result = compare(shown(true), "with", shown(false), "without");
-  EXPECT_LT(result.nrmse, 0.02);
+  EXPECT_LT(result.nrmse.value(), 0.02);
 }
 
 TEST(Frame, AtriumEqualsItsGoldenImage) {
@@ -136,7 +136,7 @@ TEST(Frame, VolumesOf16BitsServeLuxAndCandleLight) {
     Image image = render(other, options, Show::indirect);
     for (std::size_t at = 0; at < image.pixels.size(); ++at)
       if (at % 4 != 3) image.pixels[at] /= brightness;
-    EXPECT_LT(compare(image, "other", usual, "usual").nrmse, 1e-3) << brightness;
+    EXPECT_LT(compare(image, "other", usual, "usual").nrmse.value(), 1e-3) << brightness;
   }
 }
 

@@ -163,7 +163,7 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
     EXPECT_EQ(one["rejected"], "") << one.dump();
     EXPECT_GT(one["nrmse"], 0.01);
     EXPECT_LT(one["nrmse"], 5);
-    EXPECT_LE(one["nrmse_best_gain"], one["nrmse"]);
+    EXPECT_LE(one["nrmse_best_gain"].get<double>(), one["nrmse"]);
     EXPECT_GT(one["energy_ratio"], 0.05);
     EXPECT_GT(one["stage_ms"]["propagate"], 0);
     EXPECT_GT(one["frame_ms"], one["stage_ms"]["propagate"]);
