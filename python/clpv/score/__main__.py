@@ -55,6 +55,8 @@ def main(arguments):
                         help="name of the method in the JSON (default: that of DIR)")
     parser.add_argument("--only", metavar="PATTERN", action="append",
                         help="views, such as 'cornell-*'; repeatable (default: all)")
+    parser.add_argument("--layer", choices=suite.LAYERS, default=suite.LIGHT,
+                        help="layer of the truths to compare with (default: %(default)s)")
     parser.add_argument("-o", "--output", metavar="FILE.json", type=pathlib.Path,
                         help="writes the score")
     parser.add_argument("--page", metavar="FILE.html", type=pathlib.Path,
@@ -62,6 +64,8 @@ def main(arguments):
     given = parser.parse_args(arguments)
     if len(given.folders) > 1 and (given.method or given.output):
         parser.error("--method and --output: found several DIR; allowed: one")
+    if given.page and given.layer != suite.LIGHT:
+        parser.error(f"--page: found --layer {given.layer}; allowed: {suite.LIGHT}")
     only = given.only or ["*"]
     try:
         outputs = []
@@ -69,7 +73,8 @@ def main(arguments):
             if path:
                 read = suite.inputs(given.folders, given.suite)
                 outputs.append(Output(path, [*read, *outputs], option))
-        scores = [suite.score(folder, given.suite, given.method, only) for folder in given.folders]
+        scores = [suite.score(folder, given.suite, given.method, only, given.layer)
+                  for folder in given.folders]
         titles = [score["method"] for score in scores]
         if given.page and len(set(titles)) < len(titles):
             parser.error("--page: found folders of the same name; allowed: different names")

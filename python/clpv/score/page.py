@@ -59,7 +59,7 @@ def made(suite_folder, folders, only=("*",)):
     more than 30 MB."""
     views = []
     for each in suite.chosen(suite.read_suite(suite_folder), only):
-        truth, alpha = suite.read_truth(suite_folder, each)
+        truth, alpha, _ = suite.read_truth(suite_folder, each)
         shots = [(title, *mean_of(
             [suite.read_image(file, truth) for file in suite.frames_of(folder, each["name"])]))
                  for title, folder in folders.items()]
