@@ -7,28 +7,10 @@ import pathlib
 import sys
 
 from clpv.output import BadOutput, Output, printable
-from clpv.score import page, suite
+from clpv.score import page, suite, table
 from clpv.score.exr import BadImage
 
 RUN_TIME, BAD_INPUT = 1, 3
-COLUMNS = [("NRMSE [%]", "nrmse", 100, 1), ("at best gain", "nrmse_best_gain", 100, 1),
-           ("energy", "energy_ratio", 1, 3), ("FLIP", "flip", 1, 3), ("bias [%]", "bias", 100, 1),
-           ("noise [%]", "noise", 100, 1), ("change [%]", "change", 100, 1)]
-
-
-def table(score):
-    """Lines of text: a view each, then the mean. `-`: undefined."""
-    columns = [column for column in COLUMNS if any(column[1] in row for row in score["views"])]
-    lines = [["view", *(title for title, *_ in columns)]]
-    for row in [*score["views"], {"view": "mean", **score["mean"]}]:
-        lines.append([
-            row["view"], *("-" if row.get(key) is None else f"{factor * row[key]:.{digits}f}"
-                           for _, key, factor, digits in columns)
-        ])
-    widths = [max(map(len, column)) for column in zip(*lines)]
-    return "\n".join("  ".join(
-        cell.ljust(width) if i == 0 else cell.rjust(width)
-        for i, (cell, width) in enumerate(zip(line, widths))) for line in lines)
 
 
 def report(score):
@@ -79,7 +61,7 @@ def main(arguments):
         if given.page and len(set(titles)) < len(titles):
             parser.error("--page: found folders of the same name; allowed: different names")
         if given.page:
-            outputs[-1].write(page.made(given.suite, dict(zip(titles, given.folders)), only))
+            outputs[-1].write(page.made(given.suite, zip(titles, given.folders), only))
         if given.output:
             outputs[0].write(json.dumps(scores[0], indent=1, allow_nan=False) + "\n")
     except (BadImage, BadOutput) as error:
@@ -89,7 +71,7 @@ def main(arguments):
         for score in scores:
             report(score)
             names = [printable(score["method"])] if len(scores) > 1 else []
-            sys.stdout.write("\n".join([*names, table(score), ""]))
+            sys.stdout.write("\n".join([*names, table.text(score), ""]))
         sys.stdout.flush()
     except (OSError, AttributeError) as error:  # a full disk; None where stdout is closed
         sys.stdout = None  # Python would try again at its exit

@@ -93,13 +93,24 @@ def inputs(folders, suite_folder):
     return [suite_folder / "suite.json", *truths, *images]
 
 
-def score_view(files, folder, view, layer):
+def shared(alpha, images):
+    """Pixels with a surface in the truth and in all images."""
+    return numpy.logical_and.reduce([alpha > 0, *(mask > 0 for _, mask in images)])
+
+
+def read_view(folder, view, files, layer=LIGHT):
+    """Returns what score_view() takes: view, truth, its alpha, its other layers, and images with
+    their alpha, of `files`."""
     truth, alpha, others = read_truth(folder, view, layer)
     images = [read_image(file, truth, layer) for file in files]
-    valid = numpy.logical_and.reduce([alpha > 0, *(mask > 0 for _, mask in images)])
-    if not valid.any():
+    if not shared(alpha, images).any():
         raise BadImage(
             f"{files[0]}: found no pixel with alpha above 0 where the truth has a surface")
+    return view, truth, alpha, others, images
+
+
+def score_view(view, truth, alpha, others, images, layer=LIGHT):
+    valid = shared(alpha, images)
     frames = numpy.stack([rgb for rgb, _ in images])
     exposure = view["exposure"] if layer == LIGHT else None
     found = errors.errors(frames, truth, valid, exposure)
@@ -113,7 +124,7 @@ def score_view(files, folder, view, layer):
         suspected.append(
             f"has no surface in {100 * missing:.0f} % of the truth's: other camera or scene")
     return {
-        "view": view["name"], **rounded, "frames": len(files), "truth_noise": view["noise"],
+        "view": view["name"], **rounded, "frames": len(images), "truth_noise": view["noise"],
         "suspected": suspected
     }
 
@@ -144,7 +155,10 @@ def score(folder, suite_folder, method=None, only=("*",), layer=LIGHT):
         raise BadImage(
             f"{folder}: found no image of {', '.join(f'{name}.exr' for name in absent)}; allowed: all "
             f"{len(views)} views, or --only PATTERN")
-    rows = [score_view(files[view["name"]], suite_folder, view, layer) for view in views]
+    rows = [
+        score_view(*read_view(suite_folder, view, files[view["name"]], layer), layer)
+        for view in views
+    ]
     means, undefined = {}, {}
     for measure in MEASURES:
         values = [row[measure] for row in rows if measure in row]
