@@ -28,6 +28,7 @@ TEST_F(BadInputTest, TextsThatAreNoJson) {
   const std::pair<std::string, const char*> texts[] = {
       {"", "invalid JSON"},
       {" ", "invalid JSON"},
+      {R"({"cameras": [{"eye": [0, 0, 0], "eye": [1, 1, 1]}]})", "duplicate key \"eye\""},
       {zeros, "invalid JSON"},
       {"\x89PNG\r\n\x1a\n", "invalid JSON"},
       {std::string("\xff\xfe{\0}\0", 6), "invalid JSON"},
