@@ -245,6 +245,8 @@ class BadInput(Suite):
             (document if change.keys() & document.keys() else document["views"][0]).update(change)
             (self.folder / "suite.json").write_text(json.dumps(document))
             self.assertIn(place, self.rejected())
+        (self.folder / "suite.json").write_text(json.dumps(good).replace("{", '{"schema": 1, ', 1))
+        self.assertIn('duplicate key "schema"', self.rejected())
 
     def test_rows_that_no_chunk_has(self):
         self.put(lambda truth: truth)

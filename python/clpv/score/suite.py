@@ -25,11 +25,20 @@ def is_valid(value, kind):
     return type(value) in kind and abs(value) <= MAX_NUMBER  # not NaN
 
 
+def unique(pairs):
+    """An object of JSON, whose keys must be unique: json would keep the last value of each."""
+    made = dict(pairs)
+    if len(made) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise ValueError(f"duplicate key {json.dumps(next(k for k in keys if keys.count(k) > 1))}")
+    return made
+
+
 def read_suite(folder):
     """Returns the document suite.json of a folder. Throws BadImage."""
     file = folder / "suite.json"
     try:
-        suite = json.loads(file.read_text())
+        suite = json.loads(file.read_text(), object_pairs_hook=unique)
     except OSError as error:
         raise BadImage(
             f"{file}: {error.strerror}; allowed: a folder that scripts/suite wrote") from None
