@@ -52,13 +52,13 @@ def unseen(image, shown):
 def text_of(camera):
     """A camera as scene files have it, and as options of `clpv render`."""
     def rounded(values):
-        return [round(value, 4) for value in values]
+        return [float(f"{value:.6g}") for value in values]
 
     entry = {"name": "view", "eye": rounded(camera.eye), "target": rounded(camera.target),
              "up": rounded(camera.up), "vertical_fov_degrees": round(camera.fov, 2)}
-    options = " ".join(f"--{name}={','.join(map(str, entry[name]))}"
+    options = " ".join(f"--{name}={','.join(f'{value:g}' for value in entry[name])}"
                        for name in ("eye", "target", "up"))
-    return f"```\n{json.dumps(entry)}\n```\n```\n{options} --fov={entry['vertical_fov_degrees']}\n```"
+    return f"```\n{json.dumps(entry)}\n```\n```\n{options} --fov={camera.fov:.4g}\n```"
 
 
 def sun_direction(azimuth, elevation):

@@ -124,7 +124,7 @@ def viewer(source, methods):
         raise documents.BadDocument(error) from None
 
 
-def draw(source, target):
+def draw(source: pathlib.Path, target: pathlib.Path) -> None:
     report = documents.read(source / "report.json")
     methods = [(method["title"], source / str(i)) for i, method in enumerate(report["methods"])]
     read = suite.inputs([folder for _, folder in methods], source) if methods else []

@@ -3,7 +3,10 @@
 import fnmatch
 import glob
 import json
+import pathlib
 import re
+from collections.abc import Sequence
+from typing import Any
 
 import numpy
 
@@ -149,7 +152,8 @@ def chosen(suite, only):
     return views
 
 
-def score(folder, suite_folder, method=None, only=("*",), layer=LIGHT):
+def score(folder: pathlib.Path, suite_folder: pathlib.Path, method: str | None = None,
+          only: Sequence[str] = ("*", ), layer: str = LIGHT) -> dict[str, Any]:
     """Scores the images of `folder` for the views whose names match a pattern of `only`; `folder`
     must have all of them. layer: of the truths, to compare with. Returns the errors of each view,
     their means, and in how many views each is undefined (None); its mean is then None. Throws
