@@ -122,24 +122,31 @@ void add_image(const Drawing& drawing, std::size_t number, const std::string& vi
   write_exr(drawing.folder() / std::to_string(number) / (view + ".exr"), image);
 }
 
-/// Writes what a variant renders of all cameras of a subject. A scene with more than the variant
-/// has, as a sky, is left out, with a warning.
+/// Options of a variant for a scene, or none, with a warning: the published scheme has no sky.
+std::optional<RenderOptions> options_for(const PageVariant& variant, const Options& options,
+                                         const SceneData& scene) {
+  try {
+    return resolve_options(sized(options, variant.given), scene);
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::usage || scene.sky == nullptr) throw;
+    spdlog::warn("{}: not on the page by {}: {}", scene.path, variant.title, error.what());
+    return std::nullopt;
+  }
+}
+
+/// Writes what a variant renders of all cameras of a subject.
 void add_variant(Session& session, const Options& options, const Subject& subject,
                  std::size_t number, const Drawing& drawing, Progress& progress) {
   const PageVariant variant = page_variants(options)[number];
-  std::optional<RenderOptions> resolved;
-  try {
-    resolved = resolve_options(sized(options, variant.given), subject.scene);
-  } catch (const Error& error) {
-    spdlog::warn("{}: not on the page by {}: {}", subject.scene.path, variant.title, error.what());
-    return;
-  }
+  const auto resolved = options_for(variant, options, subject.scene);
   for (const SceneCamera& camera : subject.cameras) {
-    Frame frame(session, subject.scene, *resolved);
-    frame.render(camera);
-    warn_of_unreached(session, frame, fmt::format("{}, {}", camera.name, variant.title));
-    add_image(drawing, number, view_file_name(subject.scene.name, camera.name),
-              view_image(frame, Show::indirect));
+    if (resolved) {
+      Frame frame(session, subject.scene, *resolved);
+      frame.render(camera);
+      warn_of_unreached(session, frame, fmt::format("{}, {}", camera.name, variant.title));
+      add_image(drawing, number, view_file_name(subject.scene.name, camera.name),
+                view_image(frame, Show::indirect));
+    }
     progress.advance();
   }
 }

@@ -120,7 +120,7 @@ def test_values_of_a_click_and_why_a_view_is_black():
 
 
 def test_a_camera_as_text_can_be_rendered():
-    camera = clpv.Camera(eye=(1, 2, 3), target=(1, 2, 4.00001), up=(0, 1, 0), fov=50)
+    camera = clpv.Camera(eye=(1, 2, 3), target=(1, 2, 4.0000001), up=(0, 1, 0), fov=50)
     entry, options = (part for part in view_controls.text_of(camera).split("\n")
                       if part[0] in "{-")
     assert json.loads(entry) == {"name": "view", "eye": [1, 2, 3], "target": [1, 2, 4],
