@@ -50,7 +50,7 @@ class Viewer:
         self.controls.back.on_click(self.jump)
         self.controls.copied.on_click(self.copy_camera)
         self.controls.saved.on_click(self.save)
-        server.scene.on_click(self.read_pixel)
+        server.scene.on_click()(self.read_pixel)
         server.gui.add_command("return to the camera", hotkey="R").on_trigger(self.jump)
         server.on_client_connect(self.connect)
         server.on_client_disconnect(self.disconnect)
@@ -212,7 +212,7 @@ def require_free(host, port):
             probe.bind(address)
     except OSError as error:
         raise RuntimeError(
-            f"{host}:{port}: {error.strerror}; choose another port or host") from None
+            f"{host}:{port}: {error.strerror}; choose another --port or --host") from None
 
 
 def show(scene: "clpv.Scene | str | os.PathLike[str]", *,

@@ -133,7 +133,7 @@ def test_addresses_of_both_versions_of_ip():
     view.require_free("127.0.0.1", port)
     if socket.has_ipv6:
         view.require_free("::1", port)
-    with pytest.raises(RuntimeError, match="another port or host"):
+    with pytest.raises(RuntimeError, match="another --port or --host"):
         view.require_free("203.0.113.1", port)  # of no interface
 
 

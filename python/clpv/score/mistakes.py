@@ -78,7 +78,7 @@ def suspicions(image, truth, valid, layers, noise):
             looks = [words] if words else []
             if factor != 1:
                 looks.append(f"{1 / gain:.2g}x too bright" if gain < 1 else f"{gain:.2g}x too dark")
-            if looks and before > 0:
+            if looks and 0 < before < numpy.inf:
                 after = difference(factor * a, b)
                 tried.append((after / before / EXPLAINED**len(looks), [
                     f"looks {' and '.join(looks)}: corrected, its mean error falls from "
