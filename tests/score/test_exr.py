@@ -129,6 +129,8 @@ class Odd(test_score.Suite):
                 "line order": self.with_value(b"lineOrder\0lineOrder\0", 9),
                 "duplicate channel": self.edited(lambda data, _: data.__setitem__(
                     data.index(b"chlist\0") + 11, ord("B"))),
+                "unsorted channels": self.edited(lambda data, _: data.__setitem__(
+                    data.index(b"chlist\0") + 11, ord("Z"))),
                 "other channel": self.made({**self.planes, "Z": nan})
         }.items():
             self.file.write_bytes(data)
