@@ -13,6 +13,7 @@
 
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
+#include "support/log.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -139,13 +140,15 @@ const Kind& kind_of(const nlohmann::json& report, const std::string& file) {
               file);
 }
 
-/// Values by name. Further ones of a name get its number: "gather (2)".
-std::map<std::string, Value> by_name(std::vector<Value>& values) {
+/// Values by name. Further ones of a name get its number: "gather (2)". Warns of them.
+std::map<std::string, Value> by_name(std::vector<Value>& values, const std::string& file) {
   std::map<std::string, int> counts;
   std::map<std::string, Value> map;
   for (Value& value : values) {
-    if (const int number = ++counts[value.name]; number > 1)
-      value.name += fmt::format(" ({})", number);
+    const int number = ++counts[value.name];
+    if (number == 2)
+      spdlog::warn("{}: several rows '{}': compared in their order", file, value.name);
+    if (number > 1) value.name += fmt::format(" ({})", number);
     map[value.name] = value;
   }
   return map;
@@ -179,8 +182,8 @@ ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& a
                 file, before["view"].dump(), after_file, after["view"].dump());
   std::vector<Value> old_values = kind.values(before, file),
                      new_values = kind.values(after, after_file);
-  const std::map<std::string, Value> old_named = by_name(old_values),
-                                     new_named = by_name(new_values);
+  const std::map<std::string, Value> old_named = by_name(old_values, file),
+                                     new_named = by_name(new_values, after_file);
   ReportChanges result;
   for (const Value& value : new_values) {
     const auto old_value = old_named.find(value.name);

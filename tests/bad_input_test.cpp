@@ -28,6 +28,7 @@ TEST_F(BadInputTest, TextsThatAreNoJson) {
   const std::pair<std::string, const char*> texts[] = {
       {"", "invalid JSON"},
       {" ", "invalid JSON"},
+      {R"({"cameras": [{"eye": [0, 0, 0], "eye": [1, 1, 1]}]})", "duplicate key \"eye\""},
       {zeros, "invalid JSON"},
       {"\x89PNG\r\n\x1a\n", "invalid JSON"},
       {std::string("\xff\xfe{\0}\0", 6), "invalid JSON"},
@@ -178,27 +179,35 @@ TEST_F(BadSceneFileTest, EachMember) {
 }
 
 TEST_F(BadSceneFileTest, Cameras) {
-  const std::string other = R"({"name": "a", "eye": [0, 0, 0], "target": [1, 0, 0])";
-  expect_rows(
-      R"("lights": [{"name": "sun", "kind": "directional", "direction": [0, -1, 0], "illuminance_lux": 1}],
-      "cameras": [)" +
-          other + ", ",
-      "}]",
-      {
-          // of members of one name the last counts
-          {R"("fov": 3)", {"/cameras/0/fov", "vertical_fov_degrees"}},
-          {R"("eye": [0, 0])", {"/cameras/0/eye", "an array of 2", "3 numbers"}},
-          {R"("eye": [1, 0, 0])", {"/cameras/0/target", "the eye itself"}},
-          {R"("target": [0, 5, 0])", {"/cameras/0/up", "not parallel to the viewing direction"}},
-          {R"("up": [1, 0, 0])", {"/cameras/0/up"}},
-          {R"("up": [0, 0, 0])", {"/cameras/0/up", "no length"}},
-          {R"("vertical_fov_degrees": 0)", {"/cameras/0/vertical_fov_degrees"}},
-          {R"("vertical_fov_degrees": 180)", {"/cameras/0/vertical_fov_degrees"}},
-          {R"("near": 0)", {"/cameras/0/near"}},
-          {R"("light": "moon")", {"/cameras/0/light", "'moon'", "'sun'"}},
-          {R"("name": "\u001b[31m", "light": "\u0000")", {"/cameras/0"}},
-          {R"("up": [0, 1, 0]}, )" + other, {"/cameras/1/name", "duplicate name 'a'"}},
-      });
+  const json sound = {{"name", "a"}, {"eye", {0, 0, 0}}, {"target", {1, 0, 0}}};
+  const auto expect_camera_rejected = [&](const json& cameras,
+                                          const std::vector<std::string>& words) {
+    expect_rejected(
+        R"("model": "model.gltf", "lights": [{"name": "sun", "kind": "directional",
+           "direction": [0, -1, 0], "illuminance_lux": 1}], "cameras": )" +
+            cameras.dump(),
+        words);
+  };
+  const std::vector<std::pair<std::string, std::vector<std::string>>> changes = {
+      {R"("fov": 3)", {"/cameras/0/fov", "vertical_fov_degrees"}},
+      {R"("eye": [0, 0])", {"/cameras/0/eye", "an array of 2", "3 numbers"}},
+      {R"("eye": [1, 0, 0])", {"/cameras/0/target", "the eye itself"}},
+      {R"("target": [0, 5, 0])", {"/cameras/0/up", "not parallel to the viewing direction"}},
+      {R"("up": [1, 0, 0])", {"/cameras/0/up"}},
+      {R"("up": [0, 0, 0])", {"/cameras/0/up", "no length"}},
+      {R"("vertical_fov_degrees": 0)", {"/cameras/0/vertical_fov_degrees"}},
+      {R"("vertical_fov_degrees": 180)", {"/cameras/0/vertical_fov_degrees"}},
+      {R"("near": 0)", {"/cameras/0/near"}},
+      {R"("light": "moon")", {"/cameras/0/light", "'moon'", "'sun'"}},
+      {R"("name": "\u001b[31m", "light": "\u0000")", {"/cameras/0"}},
+  };
+  for (const auto& [members, words] : changes) {
+    json camera = sound;
+    camera.update(json::parse("{" + members + "}"));
+    expect_camera_rejected(json::array({camera}), words);
+  }
+  expect_camera_rejected(json::array({sound, sound}),
+                         {"/cameras/1/name", "duplicate name 'a'"});
 }
 
 TEST_F(BadSceneFileTest, Lights) {

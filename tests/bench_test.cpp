@@ -179,6 +179,8 @@ TEST(BenchCompare, AGateWithoutAComparisonFails) {
            {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 10, 0}}), 5, "a (2)"},
            {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 20, 0}, {"a", 10, 0}}), 5,
             "a (2.000)"},
+           {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 10, 0}, {"a", 10, 0}}), 0,
+            "several rows 'a': compared in their order"},
            {quality, changed(quality, "/cells", none), 5, "s:lit nrmse (not in this run)"},
            {quality, changed(quality, "/cells/0/rejected", "why"), 5, "s:lit nrmse (rejected)"},
            {quality, changed(quality, "/cells/0/nrmse", nullptr), 5, "s:lit nrmse (undefined)"},

@@ -54,6 +54,23 @@ TEST_F(Drawing, AReportIsOnePageWithItsViews) {
     EXPECT_TRUE(html.find(part) != std::string::npos) << part;
 }
 
+TEST_F(Drawing, AReportOfASceneWithASkyLeavesOutWhatHasNone) {
+  std::filesystem::copy(CLPV_SOURCE_DIR "/scenes/cornell.glb", folder_.path());
+  folder_.write("sky.json", R"({"model": "cornell.glb", "metres_per_unit": 1,
+                                "sky": {"radiance": [1, 1, 1]},
+                                "cameras": [{"name": "front", "eye": [0.28, 0.27, -0.8],
+                                             "target": [0.28, 0.27, 0]}]})");
+  const test::Outcome outcome =
+      run_here("report " + file("page") + " " + file("sky.json") +
+               " --width 24 --height 18 --spp 4 --cache " + file("cache"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("sky.json: not on the page by published scheme (sh2)"));
+  EXPECT_THAT(outcome.err, HasSubstr("a sky"));
+  const std::string html = test::read_file(file("page/index.html"));
+  EXPECT_THAT(html, HasSubstr("<td>sky-front</td><td>clpv</td>"));
+  EXPECT_EQ(html.find("<td>published scheme"), std::string::npos);
+}
+
 TEST_F(Drawing, AReportRejectsWithItsOwnExitCode) {
   folder_.write("other.json", R"({"schema": 1})");
   folder_.write("shape.json", R"({"variants": [{"rejected": 0}]})");

@@ -185,6 +185,10 @@ TEST(ExrHeader, ChannelsAreCountedAndEndWhereTheySay) {
   EXPECT_THAT(rejection(channels(channel("B") + '\0' + "more")),
               HasSubstr("4 bytes after the last channel"));
   EXPECT_THAT(rejection(channels("B\0"s + "123")), HasSubstr("found 16 bytes"));
+  for (const char* second : {"B", "A"}) {
+    EXPECT_THAT(rejection(channels(channel("B") + channel(second) + '\0')),
+                HasSubstr("found channel '"s + second + "' after 'B'; allowed: unique names"));
+  }
   EXPECT_THAT(rejection(one(attribute(std::string(256, 'n'), "int", "1234"))),
               HasSubstr("no end of a name in 256 bytes"));
 }

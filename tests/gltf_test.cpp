@@ -370,6 +370,24 @@ TEST_F(GltfTest, SharedNamesOfCamerasAndLightsGetANote) {
                   "3 lights have the name 'lamp': the others are called 'lamp 2' and so on"));
 }
 
+TEST_F(GltfTest, NamesOfTheFileAreNotMadeUpForOthers) {
+  model.triangle();
+  for (const char* name : {"wide", "wide 2", "camera 2"}) {
+    model.document["cameras"].push_back({{"name", name},
+                                         {"type", "perspective"},
+                                         {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+  }
+  model.document["cameras"].push_back(
+      {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+  for (const int camera : {0, 0, 3, 3, 1, 2})
+    model.add("nodes", {{"camera", camera},
+                        {"translation", {static_cast<double>(camera), 0, 0}}});
+  const SceneData scene = load();
+  EXPECT_EQ(scene.camera("wide 2").eye.x, 1);
+  EXPECT_EQ(scene.camera("wide 3").eye.x, 0);
+  EXPECT_EQ(scene.camera("camera 2").eye.x, 2);
+}
+
 TEST_F(GltfTest, InstancesAreDrawn) {
   const float h = std::sqrt(0.5f);
   model.triangle();

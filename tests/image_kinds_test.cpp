@@ -195,6 +195,19 @@ TEST(ExrParts, AreSelectedByNameInCompareAndRejectedAsASky) {
               HasSubstr("'beauty', 'sun'"));
 }
 
+TEST(ExrParts, OfTheNameOfALayerAreNoted) {
+  const Image image = exr({named("main", {"sun.B", "sun.G", "sun.R"}, 1),
+                           named("sun", {"B", "G", "R"}, 2)});
+  const Image sun = extract_layer(image, "sun", "a");
+  EXPECT_EQ(sun.at(7, 5, 0), 2 * pattern("", 7, 5));
+  EXPECT_THAT(sun.notes, ElementsAre("layer 'sun' is read, not 'main.sun'"));
+  EXPECT_THAT(extract_layer(image, "main.sun", "a").notes, IsEmpty());
+  EXPECT_THAT(rejection({named("a", {"b.Y"}, 1), named("a.b", {"Y"}, 2)}),
+              HasSubstr("part 'a.b', channel 'Y': found a.b.Y twice"));
+  EXPECT_THAT(rejection({named("a", {"Y", "a.Y"}, 1), named("b", {"Y"}, 2)}),
+              HasSubstr("part 'a', channel 'a.Y': found a.Y twice"));
+}
+
 TEST(ExrParts, HaveUniqueNamesAndOneDisplayWindow) {
   EXPECT_THAT(rejection({named("a", {"Y"}, 1), named("a", {"Y"}, 2)}),
               HasSubstr("found two parts of the name 'a'"));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/drawing.hpp"
@@ -17,12 +18,12 @@
 #include "cli/render_request.hpp"
 #include "cli/unreached.hpp"
 #include "clpv/version.hpp"
-#include "image/compare.hpp"
 #include "image/image_io.hpp"
+#include "image/tone_map.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
+#include "support/log.hpp"
 #include "support/output_file.hpp"
 #include "support/print.hpp"
 #include "support/progress.hpp"
@@ -98,15 +99,6 @@ float exposure_of(const Image& truth) {
   return sum > 0 ? static_cast<float>(std::log2(kMean * count / sum)) : 0;
 }
 
-/// Adds linear values of an image. Returns the file's name.
-std::string add_values(const Drawing& drawing, const std::string& stem, const Image& image) {
-  const std::string name = stem + ".npy";
-  write_npy(drawing.folder() / name, image.pixels,
-            std::array{static_cast<std::size_t>(image.height),
-                       static_cast<std::size_t>(image.width), image.channels.size()});
-  return name;
-}
-
 fs::path file_of(const std::string& folder, const Subject& subject, const SceneCamera& camera) {
   return fs::path(folder) / (view_file_name(subject.scene.name, camera.name) + ".exr");
 }
@@ -123,70 +115,96 @@ Image read_image_of_method(const fs::path& path) {
   return image;
 }
 
-Image render_indirect(Session& session, const Subject& subject, const SceneCamera& camera,
-                      const Options& options, const PageVariant& variant) {
-  Frame frame(session, subject.scene,
-              resolve_options(sized(options, variant.given), subject.scene));
-  frame.render(camera);
-  warn_of_unreached(session, frame, fmt::format("{}, {}", camera.name, variant.title));
-  return view_image(frame, Show::indirect);
+/// Writes an image of method `number` where the scorer finds it.
+void add_image(const Drawing& drawing, std::size_t number, const std::string& view,
+               const Image& image) {
+  fs::create_directories(drawing.folder() / std::to_string(number));
+  write_exr(drawing.folder() / std::to_string(number) / (view + ".exr"), image);
 }
 
-/// View of one camera: the ground truth, and each image with its errors: of our variants, then of
-/// other methods.
-nlohmann::json view(Session& session, const Options& options, const Subject& subject,
-                    std::size_t index, const Drawing& drawing, const std::string& stem,
-                    Progress& progress) {
-  const SceneCamera& camera = subject.cameras[index];
-  const GroundTruth& traced = subject.truths[index];
-  const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
-  const float exposure = exposure_of(truth);
-  nlohmann::json shots = nlohmann::json::array();
-  const auto add_shot = [&](const std::string& title, const std::string& source, const Image& image,
-                            const nlohmann::json& given) {
-    nlohmann::json shot = to_json(compare(image, source, truth, "truth", exposure));
-    shot.update({{"title", title},
-                 {"options", given},
-                 {"values", add_values(drawing, fmt::format("{}-{}", stem, shots.size()), image)}});
-    shots.push_back(std::move(shot));
-  };
-  for (const PageVariant& variant : page_variants(options)) {
-    add_shot(variant.title, variant.title,
-             render_indirect(session, subject, camera, options, variant),
-             as_arguments(variant.given));
+/// Options of a variant for a scene, or none, with a warning: the published scheme has no sky.
+std::optional<RenderOptions> options_for(const PageVariant& variant, const Options& options,
+                                         const SceneData& scene) {
+  try {
+    return resolve_options(sized(options, variant.given), scene);
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::usage || scene.sky == nullptr) throw;
+    spdlog::warn("{}: not on the page by {}: {}", scene.path, variant.title, error.what());
+    return std::nullopt;
+  }
+}
+
+/// Writes what a variant renders of all cameras of a subject.
+void add_variant(Session& session, const Options& options, const Subject& subject,
+                 std::size_t number, const Drawing& drawing, Progress& progress) {
+  const PageVariant variant = page_variants(options)[number];
+  const auto resolved = options_for(variant, options, subject.scene);
+  for (const SceneCamera& camera : subject.cameras) {
+    if (resolved) {
+      Frame frame(session, subject.scene, *resolved);
+      frame.render(camera);
+      warn_of_unreached(session, frame, fmt::format("{}, {}", camera.name, variant.title));
+      add_image(drawing, number, view_file_name(subject.scene.name, camera.name),
+                view_image(frame, Show::indirect));
+    }
     progress.advance();
   }
-  for (const std::string& folder : options.images) {
-    const fs::path file = file_of(folder, subject, camera);
-    add_shot(fs::weakly_canonical(folder).filename().string(), file.string(),
-             read_image_of_method(file), nullptr);
-  }
-  return {{"scene", subject.scene.name},
-          {"camera", camera.name},
-          {"exposure", exposure},
-          {"truth", add_values(drawing, stem + "-truth", truth)},
-          {"shots", shots}};
 }
 
-nlohmann::json views(Session& session, const Options& options, const Drawing& drawing) {
+/// Writes truth and images of others of each view. Returns the views as of suite.json.
+nlohmann::json add_truths(const Options& options, const Subject& subject, const Drawing& drawing) {
+  nlohmann::json views = nlohmann::json::array();
+  for (std::size_t i = 0; i < subject.cameras.size(); ++i) {
+    const GroundTruth& traced = subject.truths[i];
+    const std::string name = view_file_name(subject.scene.name, subject.cameras[i].name);
+    const std::string file = fmt::format("truths/{}.exr", name);
+    write_exr(drawing.folder() / file, traced.image);
+    for (std::size_t k = 0; k < options.images.size(); ++k) {
+      add_image(drawing, page_variants(options).size() + k, name,
+                read_image_of_method(file_of(options.images[k], subject, subject.cameras[i])));
+    }
+    const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
+    views.push_back({{"name", name},
+                     {"truth", file},
+                     {"noise", traced.noise},
+                     {"exposure", exposure_of(truth)}});
+  }
+  return views;
+}
+
+/// Titles of all methods, in the order of their folders.
+nlohmann::json methods(const Options& options) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const PageVariant& variant : page_variants(options))
+    all.push_back({{"title", variant.title}, {"options", as_arguments(variant.given)}});
+  for (const std::string& folder : options.images)
+    all.push_back(
+        {{"title", fs::weakly_canonical(folder).filename().string()}, {"options", nullptr}});
+  return all;
+}
+
+/// Writes the suite of all views, and the images of all methods.
+void add_views(Session& session, const Options& options, const Drawing& drawing) {
   nlohmann::json all = nlohmann::json::array();
   std::vector<Subject> subjects = load_subjects(options.subjects);
-  if (!options.images.empty()) require_distinct_names("--images", subjects);
+  require_distinct_names("report", subjects);
   for (const Subject& subject : subjects)  // before minutes of tracing
     for (const SceneCamera& camera : subject.cameras)
       for (const std::string& folder : options.images)
         read_image_of_method(file_of(folder, subject, camera));
   check_outputs({{"DIR", page_of(options)}});
+  fs::create_directory(drawing.folder() / "truths");
+  const std::size_t variants = page_variants(options).size();
   for (Subject& subject : subjects) {
     const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
     trace_truths(subject, size.width, size.height, options.tracing.resolved(),
                  quality_cache(options.cache) / "references");
-    Progress progress("report", subject.cameras.size() * page_variants(options).size());
-    for (std::size_t i = 0; i < subject.cameras.size(); ++i)
-      all.push_back(
-          view(session, options, subject, i, drawing, fmt::format("view{}", all.size()), progress));
+    for (nlohmann::json& view : add_truths(options, subject, drawing)) all.push_back(view);
+    Progress progress("report", subject.cameras.size() * variants);
+    for (std::size_t i = 0; i < variants; ++i)
+      add_variant(session, options, subject, i, drawing, progress);
   }
-  return all;
+  drawing.add("suite.json", {{"schema", 1}, {"hash", "report"}, {"views", all}});
 }
 
 void run(const Options& options, const Shared& shared) {
@@ -201,7 +219,11 @@ void run(const Options& options, const Shared& shared) {
   const Drawing drawing("report", "clpv report");
   const Device device = choose_device(shared.device);
   Session session(device, ProgramCache::of_user(device));
-  report["views"] = views(session, options, drawing);
+  report["methods"] = nlohmann::json::array();
+  if (!options.subjects.scenes.empty()) {
+    add_views(session, options, drawing);
+    report["methods"] = methods(options);
+  }
   session.store_programs();
   const RenderOptions best;
   report["marked"] = {{{"preset", "paper"}},

@@ -141,13 +141,21 @@ Image ExrFile::decode_part(std::size_t index) {
   return image;
 }
 
-/// Names of the channels of all parts; several parts are layers.
+/// Names of the channels of all parts; several parts are layers. Rejects a part and a layer of one
+/// name: `a.b.R` may be R of part a.b, or b.R of part a.
 std::vector<std::string> ExrFile::channel_names() {
   std::vector<std::string> names;
+  std::set<std::string> unique;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const std::string layer = parts_.size() > 1 ? parts_[i].name + "." : "";
-    for (const std::string& channel : open_part(i).channels)
+    for (const std::string& channel : open_part(i).channels) {
       names.push_back(channel.starts_with(layer) ? channel : layer + channel);
+      if (!unique.insert(names.back()).second) {
+        reject_image(path_, fmt::format("part '{}', channel '{}': found {} twice; allowed: unique "
+                                        "names of parts and layers",
+                                        parts_[i].name, channel, names.back()));
+      }
+    }
   }
   return names;
 }

@@ -118,11 +118,16 @@ struct ExrPart : ExrHeader {
 };
 
 /// Counts the entries of a channel list: names, each followed by 16 bytes of type and sampling,
-/// ended by an empty name. Rejects channels of less resolution, and bytes after the end.
+/// ended by an empty name. Rejects channels of less resolution, bytes after the end, and names that
+/// are not sorted: the values of such files may be in either order.
 std::int64_t count_channels(Cursor list, std::string_view place) {
   constexpr std::size_t kChannelBytes = 16, kSamplingAt = 8;
   std::int64_t count = 0;
-  for (std::string name; !(name = list.name(place)).empty(); ++count) {
+  std::string before;
+  for (std::string name; !(name = list.name(place)).empty(); before = name, ++count) {
+    if (name <= before)
+      reject(list.file(), place, fmt::format("channel '{}' after '{}'", name, before),
+             "unique names in alphabetical order");
     const auto bytes = list.take(kChannelBytes, place);
     const std::int32_t x = number_at(bytes, kSamplingAt), y = number_at(bytes, kSamplingAt + 4);
     if (x != 1 || y != 1) {

@@ -21,18 +21,25 @@ bool has_colours(const Image& image, const std::string& layer) {
   return image.channel(layer + ".R") && image.channel(layer + ".G") && image.channel(layer + ".B");
 }
 
-/// The layer itself, or that of the only part which has it; empty for none or several.
-std::optional<std::string> found_layer(const Image& image, const std::string& layer) {
+/// Layers that a name may mean: itself, or that of a part; those with colours, if any have them.
+std::vector<std::string> meant_layers(const Image& image, const std::string& layer) {
   const std::vector<std::string> all = layers(image);
-  if (std::ranges::count(all, layer) > 0) return layer;
   std::vector<std::string> found;
+  if (std::ranges::count(all, layer) > 0) found.push_back(layer);
   for (const std::string& part : image.parts) {
     const std::string name = layer.empty() ? part : part + "." + layer;
     if (std::ranges::count(all, name) > 0) found.push_back(name);
   }
   if (std::ranges::any_of(found, [&](const auto& name) { return has_colours(image, name); }))
     std::erase_if(found, [&](const auto& name) { return !has_colours(image, name); });
-  return found.size() == 1 ? std::optional(found[0]) : std::nullopt;
+  return found;
+}
+
+/// The layer itself, or that of the only part which has it; empty for none or several.
+std::optional<std::string> found_layer(const Image& image, const std::string& layer) {
+  const std::vector<std::string> all = layers(image), meant = meant_layers(image, layer);
+  if (std::ranges::count(all, layer) > 0) return layer;
+  return meant.size() == 1 ? std::optional(meant[0]) : std::nullopt;
 }
 
 }  // namespace
@@ -85,6 +92,10 @@ Image extract_layer(const Image& image, const std::string& layer, const std::str
   result.metadata = image.metadata;
   result.encoding = image.encoding;
   result.notes = image.notes;
+  for (const std::string& other : meant_layers(image, layer)) {
+    if (other != *found)
+      result.notes.push_back(fmt::format("layer '{}' is read, not '{}'", *found, other));
+  }
   if (const auto window = image.windows.find(*found); window != image.windows.end())
     result.windows[""] = window->second;
   for (std::size_t p = 0; p < image.pixel_count(); ++p) {

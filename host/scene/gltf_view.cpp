@@ -17,7 +17,12 @@ class ViewReader {
  public:
   ViewReader(const GltfDocument& document, double metres_per_unit, SceneData& scene,
              const ViewNotes& notes)
-      : document_(document), metres_per_unit_(metres_per_unit), scene_(scene), notes_(notes) {}
+      : document_(document), metres_per_unit_(metres_per_unit), scene_(scene), notes_(notes) {
+    const tinygltf::Model& model = document.model;
+    for (const auto& camera : model.cameras) cameras_.reserve(camera.name);
+    for (const auto& light : model.lights) lights_.reserve(light.name);
+    for (const auto& node : model.nodes) cameras_.reserve(node.name), lights_.reserve(node.name);
+  }
 
   /// Appends the camera of a node. Returns false for an orthographic one.
   bool camera(int node, const tinygltf::Node& source, const glm::dmat4& to_world) {
@@ -74,10 +79,16 @@ class ViewReader {
   /// Names in use, and those given to others of the same name.
   class Names {
    public:
+    /// Keeps a name of the file from being made up for another.
+    void reserve(const std::string& name) { reserved_.insert(name); }
+
     /// Returns `preferred`, or a name like it that is not in use, and uses it.
     std::string unique(const std::string& preferred, const char* kind) {
       std::string name = preferred.empty() ? fmt::format("{} {}", kind, used_.size()) : preferred;
-      for (int i = 2; used_.contains(name); ++i)
+      const auto taken = [&] {
+        return used_.contains(name) || (name != preferred && reserved_.contains(name));
+      };
+      for (int i = 2; taken(); ++i)
         name = fmt::format("{} {}", preferred.empty() ? kind : preferred, i);
       used_.insert(name);
       if (!preferred.empty() && name != preferred) renamed_[preferred].push_back(name);
@@ -93,7 +104,7 @@ class ViewReader {
     }
 
    private:
-    std::set<std::string> used_;
+    std::set<std::string> used_, reserved_;
     std::map<std::string, std::vector<std::string>> renamed_;
   };
 

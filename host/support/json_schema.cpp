@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -250,6 +251,25 @@ void check_extent(std::string_view text, const std::string& file) {
   }
 }
 
+/// Rejects a key that an object has twice: parsers would keep one of its values.
+class UniqueKeys {
+ public:
+  explicit UniqueKeys(const std::string& file) : file_(file) {}
+
+  bool operator()(int, json::parse_event_t event, const json& parsed) {
+    if (event == json::parse_event_t::object_start) objects_.emplace_back();
+    if (event == json::parse_event_t::object_end) objects_.pop_back();
+    if (event == json::parse_event_t::key &&
+        !objects_.back().insert(parsed.get<std::string>()).second)
+      reject(file_, {}, fmt::format("duplicate key {}", quoted(parsed)), "unique keys of an object");
+    return true;
+  }
+
+ private:
+  const std::string& file_;
+  std::vector<std::set<std::string>> objects_;
+};
+
 }  // namespace
 
 void check_rules(const json& document, std::span<const Rule> rules, const std::string& file) {
@@ -267,8 +287,9 @@ json parse_json(std::string_view text, const std::string& file) {
            fmt::format("at most {}", bounds::kJsonBytes));
   }
   check_extent(text, file);
+  UniqueKeys unique(file);
   try {
-    return json::parse(text);
+    return json::parse(text, std::ref(unique));
   } catch (const json::exception& error) {  // its text has line, column and what was expected
     // "[json.exception.parse_error.101] parse error at line 1, column 2: ...".
     std::string what = error.what();

@@ -65,7 +65,7 @@ void check_no_other_keys(const nlohmann::json& document, std::span<const Rule> r
                          const std::string& file);
 
 /// Parses JSON after bounding its length, nesting and number of values. Throws Error(bad_input)
-/// with line and column of a syntax error.
+/// with line and column of a syntax error, or the duplicate key of an object.
 nlohmann::json parse_json(std::string_view text, const std::string& file);
 
 /// Reads JSON from a file. Throws Error(bad_input) if it is unreadable, longer than `limit` bytes

@@ -25,8 +25,8 @@ as W/sr.
     clpv.score                           python3 -m clpv.score DIR: errors of images by any
                                          renderer; works without the native module
     clpv.draw                            charts (needs matplotlib); works without the native module
-    clpv.view                            python3 -m clpv.view SCENE: viewer in the browser (needs
-                                         viser)
+    clpv.view                            python3 -m clpv.view SCENE, clpv.view.show(scene): viewer in
+                                         the browser (needs viser)
     Error, UsageError, InputError, DeviceError, ResourceError, ValidationError
 """
 import importlib

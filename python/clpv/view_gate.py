@@ -39,6 +39,14 @@ def is_camera(message):
                     for side in (message.image_width, message.image_height)))
 
 
+def is_click(message):
+    """True for a click on the image."""
+    return (message.event_type == "click" and is_vector(message.ray_origin, 3)
+            and is_vector(message.ray_direction, 3) and isinstance(message.screen_pos, (list, tuple))
+            and len(message.screen_pos) == 1 and is_vector(message.screen_pos[0], 2)
+            and all(is_number(x, 0, 1) for x in message.screen_pos[0]) and message.modifier is None)
+
+
 def is_loopback(host):
     try:
         return ipaddress.ip_address(host).is_loopback
@@ -100,6 +108,7 @@ class Gate:
             raise ConnectionClosedError(None, None) from error
         kind = type(message)
         allowed = (kind is _messages.ViewerCameraMessage and is_camera(message)
+                   or kind is _messages.ScenePointerMessage and is_click(message)
                    or kind is _messages.CommandTriggerMessage and isinstance(message.uuid, str)
                    or kind is _messages.GuiUpdateMessage and self.is_update(message))
         return message if allowed else Ignored()

@@ -7,6 +7,7 @@ import re
 import tempfile
 import unittest
 
+import exr_files
 from support import bench_document, row, variant
 from clpv import output
 from clpv.draw import documents, report
@@ -15,10 +16,10 @@ import numpy
 NASTY = "<script>alert(1)</script> $x$ \"'&"
 
 
-def uniform(columns, value):
-    pixels = numpy.full((1, columns, 4), value, dtype="f4")
-    pixels[..., 3] = 1
-    return pixels
+def channels(colours, prefix=""):
+    """Planes of an image, two pixels wide, of the colours."""
+    return {f"{prefix}{name}": numpy.array([[colour, colour]], "f4")
+            for name, colour in zip("RGBA", (*colours, 1))}
 
 
 class Page(unittest.TestCase):
@@ -26,27 +27,24 @@ class Page(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        self.document = {"subtitle": NASTY, "views": [], "quality": [], "benchmarks": [],
+        self.document = {"subtitle": NASTY, "methods": [], "quality": [], "benchmarks": [],
                          "marked": [{"preset": "best"}]}
 
-    def image(self, stem, pixels):
-        numpy.save(self.folder / f"{stem}.npy", pixels)
-        return f"{stem}.npy"
-
-    def add_view(self):
-        shot = {
-            "title": "ours", "options": NASTY, "nrmse_valid": 0.1, "nrmse_best_gain": 0.0,
-            "energy_ratio": 1.1, "flip": 0.02, "values": self.image("shot", uniform(2, 1.1))
-        }
-        black = {
-            **shot, "title": "other", "options": None, "nrmse_valid": None, "nrmse_best_gain": None,
-            "energy_ratio": None, "values": self.image("other",
-                                                       uniform(2, 0)[..., :3])
-        }
-        self.document["views"].append({
-            "scene": NASTY, "camera": NASTY, "exposure": 0,
-            "truth": self.image("truth", uniform(2, 1)), "shots": [shot, black]
-        })
+    def add_views(self):
+        """A lit view and a black one; the second method lacks the second."""
+        self.document["methods"] = [{"title": "ours", "options": NASTY},
+                                    {"title": NASTY, "options": None}]
+        for place in "truths", "0", "1":
+            (self.folder / place).mkdir()
+        views = []
+        for name, light in ("lit", 1.0), ("black", 0.0):
+            truth = f"truths/{name}.exr"
+            exr_files.write(self.folder / truth, channels([light] * 3, "indirect."))
+            views.append({"name": name, "truth": truth, "noise": 0.02, "exposure": 0})
+            exr_files.write(self.folder / f"0/{name}.exr", channels([1.1] * 3))
+        exr_files.write(self.folder / "1/lit.exr", channels([0.5, 0.5, 0.5]))
+        (self.folder / "suite.json").write_text(
+            json.dumps({"schema": 1, "hash": "report", "views": views}))
 
     def page(self):
         (self.folder / "report.json").write_text(json.dumps(self.document))
@@ -59,14 +57,15 @@ class Page(unittest.TestCase):
                       re.DOTALL)[1])
 
     def test_the_viewer_has_linear_values(self):
-        self.add_view()
+        self.add_views()
         truth, ours, _ = self.views(self.page())[0]["images"]
+        self.assertEqual(truth["title"], "path tracing")
         for image, value in ((truth, 1), (ours, 1.1)):
             halves = numpy.frombuffer(base64.b64decode(image["halves"]), "<f2")
             numpy.testing.assert_allclose(halves, numpy.full(6, value), rtol=1e-3)
 
     def test_has_everything_inside(self):
-        self.add_view()
+        self.add_views()
         self.document["quality"] = [{
             "file": "q.json", "document": {"variants": [variant({"preset": "best"})]}
         }]
@@ -77,10 +76,11 @@ class Page(unittest.TestCase):
                 row("layouts", "gather", status="unsupported", reason="no images"))
         }]
         html = self.page()
-        self.assertIn("<td>ours</td><td>10.0</td><td>0.0</td><td>1.10</td><td>0.020</td>", html)
-        self.assertIn("<td>other</td><td>-</td>", html)
-        self.assertEqual([image["title"] for image in self.views(html)[0]["images"]],
-                         ["path tracing", "ours", "other"])
+        self.assertRegex(html, "<td>lit</td><td>ours</td><td>10.0</td><td>0.0</td><td>1.100</td>")
+        self.assertIn("<td>black</td><td>ours</td><td>-</td>", html)
+        self.assertIn("looks 2x too dark", html)
+        self.assertEqual([[image["title"] for image in view["images"]] for view in self.views(html)],
+                         [["path tracing", "ours", NASTY], ["path tracing", "ours"]])
         self.assertIn('<tr class="marked"><td>best</td><td>45.0 %', html)
         self.assertIn("<td>4.25</td>", html)
         self.assertIn("no images", html)
@@ -88,7 +88,7 @@ class Page(unittest.TestCase):
         self.assertNotIn("<link", html)
 
     def test_escapes_what_users_wrote(self):
-        self.add_view()
+        self.add_views()
         options = {"preset": NASTY}
         self.document["quality"] = [{
             "file": "q.json", "document": {"variants": [variant(options)]}
@@ -105,9 +105,9 @@ class Page(unittest.TestCase):
         self.assertGreaterEqual(html.count("&lt;script&gt;alert(1)&lt;/script&gt; $x$"), 9)
 
     def test_the_page_spares_its_inputs(self):
-        self.add_view()
+        self.add_views()
         self.page()
-        (self.folder / "link.html").symlink_to("truth.npy")
+        (self.folder / "link.html").symlink_to("truths/lit.exr")
         for name in "report.json", "link.html":
             before = (self.folder / name).read_bytes()
             with self.assertRaisesRegex(output.BadOutput, "allowed: another file"):
@@ -116,8 +116,9 @@ class Page(unittest.TestCase):
 
     def test_says_what_is_missing(self):
         html = self.page()
-        for what in ("No views", "--quality FILE", "clpv bench table1", "clpv bench layouts"):
-            self.assertIn(what, html)
+        self.assertIn("Not given: scenes; --quality; --bench of clpv bench table1; --bench of clpv "
+                      "bench layouts.", html)
+        self.assertNotIn("<h2>", html)
 
     def test_the_chart_follows_the_page_and_names_its_points(self):
         self.document["quality"] = [{
@@ -131,6 +132,12 @@ class Page(unittest.TestCase):
 
     def test_the_front_has_what_none_beats(self):
         self.assertEqual(report.front_of([(4, 30), (2, 60), (1, 50), (5, 30)]), [(1, 50), (4, 30)])
+
+    def test_a_damaged_image_is_named(self):
+        self.add_views()
+        (self.folder / "0/lit.exr").write_bytes(b"x" * 100)
+        with self.assertRaisesRegex(documents.BadDocument, "0/lit.exr: no EXR file"):
+            self.page()
 
     def test_rejects_a_document_of_another_shape(self):
         self.document["quality"] = [{

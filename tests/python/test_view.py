@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 
 import clpv
-from clpv import view, view_gate
+from clpv import view, view_controls, view_frames, view_gate
 from conftest import CORNELL, ROOT
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -48,33 +48,93 @@ def test_the_camera_of_a_browser():
         return types.SimpleNamespace(
             camera=types.SimpleNamespace(wxyz=wxyz, position=(1, 2, 3), fov=math.pi / 3))
 
-    ahead = view.camera_of(handle((1, 0, 0, 0)))
+    ahead = view_frames.camera_of(handle((1, 0, 0, 0)))
     assert ahead.eye == (1, 2, 3) and ahead.target == (1, 2, 4) and ahead.up == (0, -1, 0)
     assert ahead.fov == pytest.approx(60)
-    turned = view.camera_of(handle((math.sqrt(0.5), 0, math.sqrt(0.5), 0)))  # by 90 degrees about y
+    turned = view_frames.camera_of(handle((math.sqrt(0.5), 0, math.sqrt(0.5), 0)))  # by 90 degrees about y
     assert np.allclose(np.subtract(turned.target, turned.eye), (1, 0, 0))
 
 
 def test_sizes_and_suns():
-    assert view.size_of(288, 16 / 9) == (512, 288)
-    assert view.size_of(288, 0.01)[0] == 64 and view.size_of(720, 50)[0] == 1920
-    assert np.allclose(view.sun_direction(0, 90), (0, -1, 0), atol=1e-9)
-    assert np.allclose(np.linalg.norm(view.sun_direction(70, 20)), 1)
+    assert view_frames.size_of(288, 16 / 9) == (512, 288)
+    assert view_frames.size_of(288, 0.01)[0] == 64 and view_frames.size_of(720, 50)[0] == 1920
+    assert np.allclose(view_controls.sun_direction(0, 90), (0, -1, 0), atol=1e-9)
+    assert np.allclose(np.linalg.norm(view_controls.sun_direction(70, 20)), 1)
 
 
 def test_a_view_that_rests_is_drawn_again_with_more_rays():
-    client, other = view.Client(None), view.Client(None)
+    client, other = view_frames.Client(None), view_frames.Client(None)
     client.changed = other.changed = 0
     drawn = []
     for now in (0, 0.1, 0.4, 0.5, 2, 3):
-        due = view.next_client([client], now)
+        due = view_frames.next_client([client], now)
         if due:
-            drawn.append((now, *view.LEVELS[due.shown][1:]))
+            drawn.append((now, *view_frames.LEVELS[due.shown][1:]))
             due.shown += 1
     assert drawn == [(0, 288, "2"), (0.4, 720, "4"), (2, 720, "64")]
-    assert view.next_client([client, other], 3) is other
+    assert view_frames.next_client([client, other], 3) is other
     client.touch()
-    assert view.next_client([client], client.changed) is client and client.shown == 0
+    assert view_frames.next_client([client], client.changed) is client and client.shown == 0
+
+
+def test_path_tracing_follows_the_last_level():
+    client = view_frames.Client(None)
+    client.changed, client.shown = 0, len(view_frames.LEVELS)
+    assert view_frames.next_client([client], 9) is None
+    assert view_frames.next_client([client], 9, traced=True) is client
+    assert view_frames.next_client([client], view_frames.TRACED_AFTER - 0.1, traced=True) is None
+    client.shown += 1
+    assert view_frames.next_client([client], 9, traced=True) is None
+
+
+def image_of(*pixels):
+    """One row of R, G, B, A."""
+    return clpv.Image(np.array([pixels], np.float32))
+
+
+def test_depth_and_normals_are_shown_as_what_they_are():
+    depths = view_controls.displayed(image_of((1, 1, 1, 1), (100, 100, 100, 1), (0, 0, 0, 0)),
+                                     "depth", 0, 10)[0, :, 0]
+    assert depths[0] == 127 and 127 < depths[1] < 255 and depths[2] == 0
+    normals = view_controls.displayed(image_of((0, 0, -1, 1), (-1, 0, 0, 1), (0, 0, 0, 0)),
+                                      "normal", 0, 10)
+    assert normals.tolist() == [[[127, 127, 0], [0, 127, 127], [0, 0, 0]]]
+    lit = image_of((0.18, 0.18, 0.18, 1))
+    assert (view_controls.displayed(lit, "full", 1, 10) == lit.display(1)[..., :3]).all()
+
+
+def test_values_of_a_click_and_why_a_view_is_black():
+    image = image_of((0.25, 0.5, 1, 1), (3, 3, 3, 0))
+    assert view_controls.value_at(image, "full", 0.3, 1) == (
+        "pixel (0, 0), full: 0.25 0.5 1 W/m^2/sr")
+    assert view_controls.value_at(image, "depth", 0, 0) == "pixel (0, 0), depth: 0.25 m"
+    assert view_controls.value_at(image, "normal", 0, 0) == "pixel (0, 0), normal: 0.25 0.5 1"
+    assert view_controls.value_at(image, "full", 1, 1) == "pixel (1, 0): no surface"
+
+    def unseen(pixel):
+        made = image_of(pixel)
+        return view_controls.unseen(made, view_controls.displayed(made, "full", 0, 1))
+
+    assert unseen((1, 1, 1, 1)) == ""
+    assert "All is black" in unseen((0, 0, 0, 1)) and "No surface" in unseen((0, 0, 0, 0))
+
+
+def test_a_camera_as_text_can_be_rendered():
+    camera = clpv.Camera(eye=(1, 2, 3), target=(1, 2, 4.0000001), up=(0, 1, 0), fov=50)
+    entry, options = (part for part in view_controls.text_of(camera).split("\n")
+                      if part[0] in "{-")
+    assert json.loads(entry) == {"name": "view", "eye": [1, 2, 3], "target": [1, 2, 4],
+                                 "up": [0, 1, 0], "vertical_fov_degrees": 50}
+    assert options == "--eye=1,2,3 --target=1,2,4 --up=0,1,0 --fov=50"
+
+
+def test_addresses_of_both_versions_of_ip():
+    port = free_port()
+    view.require_free("127.0.0.1", port)
+    if socket.has_ipv6:
+        view.require_free("::1", port)
+    with pytest.raises(RuntimeError, match="another --port or --host"):
+        view.require_free("203.0.113.1", port)  # of no interface
 
 
 def run(*arguments, **environment):
@@ -100,7 +160,7 @@ def test_bad_arguments(tmp_path):
 
 
 def test_the_frame_rate_is_of_the_last_second_of_motion():
-    rate = view.Rate()
+    rate = view_frames.Rate()
     assert rate.shown == "-", "nothing moved yet"
     for i in range(30):
         rate.add(10 + i / 10)
@@ -151,6 +211,20 @@ def test_hosts_and_origins():
             assert "Host: found" in gate.refusal(headers(Host=host))
     assert everywhere.refusal(headers(Host=["192.168.1.7:8080"])) is None
     assert here.refusal(headers(Host=["192.168.1.7:8080"]))
+
+
+def test_clicks_on_the_image_only():
+    def click(**changes):
+        return types.SimpleNamespace(**{
+            "event_type": "click", "ray_origin": (0, 0, 0), "ray_direction": (0, 0, 1),
+            "screen_pos": ((0.5, 0.5), ), "modifier": None, **changes})
+
+    assert view_gate.is_click(click())
+    for change in ({"event_type": "rect-select"}, {"ray_origin": None}, {"screen_pos": ()},
+                   {"screen_pos": ((0.5, 2), )}, {"screen_pos": ((math.nan, 0), )},
+                   {"screen_pos": ((0.1, 0.1), (0.2, 0.2))}, {"modifier": "shift"},
+                   {"ray_direction": ("x", 0, 0)}):
+        assert not view_gate.is_click(click(**change)), change
 
 
 @pytest.fixture(scope="module")
@@ -332,6 +406,75 @@ def test_a_resting_camera_gets_64_rays_and_a_moving_one_2(viewer, monkeypatch):
         assert drawn_in(60, 3) == [(288, "2"), (720, "4"), (720, "64")]
         client.send(moved(position=(0.28, 0.27, -0.2)))
         assert drawn_in(60, 4)[3] == (288, "2")
+
+
+def test_a_click_shows_values_and_buttons_give_camera_and_image(viewer):
+    made, port = viewer
+    with browser(port) as client:
+        before = made.frames
+        client.send(moved())
+        assert drawn_after(made, before)
+
+        def said(words, seconds=30):
+            end = time.monotonic() + seconds
+            while words not in made.controls.said.content and time.monotonic() < end:
+                time.sleep(0.02)
+            return words in made.controls.said.content
+
+        client.send(message("ScenePointerMessage", event_type="click", ray_origin=(0, 0, 0),
+                            ray_direction=(0, 0, 1), screen_pos=((0.5, 0.5), ), modifier=None))
+        assert said("full: ")
+        client.send(message("GuiUpdateMessage", uuid=made.controls.copied._impl.uuid,
+                            updates={"value": True}))
+        assert said("--eye=0.278,0.273,-0.18")
+        client.send(message("GuiUpdateMessage", uuid=made.controls.saved._impl.uuid,
+                            updates={"value": True}))
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
+            if b"clpv-full.png" in client.recv(timeout=30):
+                return
+        raise AssertionError("no file")
+
+
+def test_path_tracing_beside_a_view_that_rests(viewer, monkeypatch):
+    made, port = viewer
+    rights, send = [], made.send
+
+    def noted(client, image, name, right=None):
+        shown = send(client, image, name, right)
+        if right:
+            rights.append((image.array.shape, right.array.shape, shown.shape))
+        return shown
+
+    monkeypatch.setattr(made, "send", noted)
+    monkeypatch.setattr(view, "PATHS", 1)
+    made.controls.traced.value = True
+    try:
+        with browser(port) as client:
+            client.send(moved())
+            end = time.monotonic() + 60
+            while not rights and time.monotonic() < end:
+                time.sleep(0.05)
+    finally:
+        made.controls.traced.value = False
+    (height, width, _), (half_height, half_width, _), shown = rights[0]
+    assert (half_height, half_width) == (height // 2, width // 2) and shown == (height, width, 3)
+
+
+def test_the_lights_move_again_without_the_sun():
+    scene = clpv.Scene(ROOT / "scenes/atrium_living.json")
+    assert scene.moves
+    controls = types.SimpleNamespace(sun_light=lambda: sun)
+    made = types.SimpleNamespace(controls=controls, sun=None, scene=scene, lights=scene.lights,
+                                 load=lambda: clpv.Scene(ROOT / "scenes/atrium_living.json"),
+                                 renderers=view_frames.Renderers(scene, ""))
+    sun = clpv.Light(direction=(0, -1, 0), name="sun")
+    view.Viewer.update_lights(made)
+    assert made.scene.lights == (sun, )
+    sun = None
+    view.Viewer.update_lights(made)
+    assert made.scene is not scene and made.renderers.scene is made.scene
+    assert made.scene.lights == made.lights and made.scene.moves
 
 
 class Tab:

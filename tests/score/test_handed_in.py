@@ -35,6 +35,8 @@ def faults(document):
         f"view {row.get('view')}: allowed: {', '.join(names)}" for row in views
         if row.get("view") not in names
     ]
+    if "layer" in document:
+        found.append(f"layer: found {document['layer']}; allowed: none, indirect light")
     if not views or len({row.get("view") for row in views}) < len(views):
         found.append(f"views: found {len(views)}, some twice or none")
     if document.get("complete") != (len(views) == len(names)):
@@ -70,6 +72,7 @@ class HandedIn(unittest.TestCase):
         for change, words in [(lambda d: d.update(schema=0), "schema: found 0"),
                               (lambda d: d.update(suite="x"), "suite: found x"),
                               (lambda d: d.update(method=" "), "method"),
+                              (lambda d: d.update(layer="depth"), "layer: found depth"),
                               (lambda d: d.update(complete=None), "complete: found None"),
                               (lambda d: d["views"][0].update(view="cellar-stairs"),
                                "view cellar-stairs"),

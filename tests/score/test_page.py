@@ -24,6 +24,8 @@ move('split', 0); found.ours = sum();
 move('exposure', 4); found.brighter = sum();
 for (const map of ['relative', 'FLIP', 'signed']) { move('show', map); found[map] = sum(); }
 move('split', 100); found.none = sum();
+found.fits = [canvas, control('split')].map(each => each.getBoundingClientRect().width);
+found.room = document.querySelector('.frame').clientWidth;
 move('zoom', 8); found.wide = canvas.getBoundingClientRect().width;
 const box = canvas.getBoundingClientRect();
 canvas.dispatchEvent(new PointerEvent('pointermove', {clientX: box.left + 8 * 10 + 4, clientY: box.top + 8 * 12 + 4}));
@@ -37,7 +39,7 @@ document.documentElement.dataset.found = JSON.stringify(found);
 class Page(test_score.Suite):
     def folders(self):
         self.put(lambda truth: 1.5 * truth)
-        return {"mine": self.folder / "ours"}
+        return [("mine", self.folder / "ours")]
 
     @unittest.skipUnless(CHROMIUM, "skipped: no chromium here")
     def test_controls_change_what_is_drawn(self):
@@ -55,6 +57,8 @@ class Page(test_score.Suite):
         for name in "relative", "FLIP", "signed":
             self.assertGreater(found[name], found["none"], name)
         self.assertEqual(found["wide"], 8 * test_score.SIZE[0])
+        self.assertEqual(*found["fits"])  # the slider's ends are the image's
+        self.assertGreater(found["fits"][0], 0.6 * found["room"])
         self.assertNotEqual(found["other"], found["ours"])
         truth = self.truths["room-left"][12, 10]
         self.assertIn("pixel 10, 12", found["values"])
@@ -63,8 +67,10 @@ class Page(test_score.Suite):
         self.assertAlmostEqual(float(lines[2].split()[-3]), 1.5 * truth[0], delta=2e-3 * truth[0])
 
     def test_names_are_data(self):
-        made = page.made(self.folder, {"</script><b>": self.folders()["mine"]})
+        made = page.made(self.folder, [("</script><b>DATA TABLE", self.folders()[0][1])])
         self.assertNotIn("</script><b>", made)
+        self.assertEqual(made.count("<canvas"), 1)
+        self.assertIn("<td>&lt;/script&gt;&lt;b&gt;DATA TABLE</td><td>50.0</td>", made)
 
     def test_too_large(self):
         limit, page.LARGEST = page.LARGEST, 1000

@@ -19,8 +19,9 @@ import unittest
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts")]
-from clpv.score import __main__ as command, exr, flip, suite as scored  # noqa: E402
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts"), str(ROOT / "tests/draw")]
+from clpv.score import __main__ as command, exr, flip, mistakes, suite as scored  # noqa: E402
+from exr_files import write  # noqa: E402
 from measured import suite  # noqa: E402
 
 CLPV = os.environ["CLPV"]
@@ -30,31 +31,6 @@ SHOWN = {
     "nrmse": "nrmse_valid", "nrmse_best_gain": "nrmse_best_gain", "energy_ratio": "energy_ratio",
     "flip": "flip"
 }
-
-
-def write(file, planes, data=None, display=None, more=b""):
-    """An uncompressed EXR of floats. data, display: windows (left, top, right, bottom)."""
-    def attribute(name, kind, value):
-        return name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
-
-    names, (height, width) = sorted(planes), next(iter(planes.values())).shape
-    data = data or (0, 0, width - 1, height - 1)
-    window, shown = struct.pack("<4i", *data), struct.pack("<4i", *(display or data))
-    channels = b"".join(name.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1)
-                        for name in names) + b"\0"
-    head = struct.pack("<2i", exr.MAGIC, 2) + attribute(b"channels", b"chlist", channels) + \
-        attribute(b"compression", b"compression", b"\0") + attribute(b"dataWindow", b"box2i", window) + \
-        attribute(b"displayWindow", b"box2i", shown) + attribute(b"lineOrder", b"lineOrder", b"\0") + \
-        attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) + \
-        attribute(b"screenWindowCenter", b"v2f", bytes(8)) + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + more + b"\0"
-    rows = [
-        b"".join(planes[name][y].astype("<f4").tobytes() for name in names) for y in range(height)
-    ]
-    first, size = len(head) + 8 * height, 8 + len(rows[0])
-    chunks = b"".join(
-        struct.pack("<2i", data[1] + y, len(row)) + row for y, row in enumerate(rows))
-    file.write_bytes(head + struct.pack(f"<{height}Q", *(first + y * size
-                                                         for y in range(height))) + chunks)
 
 
 def layered(rgb, alpha, layer=""):
@@ -107,10 +83,6 @@ class Suite(unittest.TestCase):
         with self.assertRaises(exr.BadImage) as caught:
             self.score()
         return str(caught.exception)
-
-    def suspected(self, change):
-        self.put(change)
-        return self.score()["views"][0]["suspected"]
 
 
 class Numbers(Suite):
@@ -273,6 +245,8 @@ class BadInput(Suite):
             (document if change.keys() & document.keys() else document["views"][0]).update(change)
             (self.folder / "suite.json").write_text(json.dumps(document))
             self.assertIn(place, self.rejected())
+        (self.folder / "suite.json").write_text(json.dumps(good).replace("{", '{"schema": 1, ', 1))
+        self.assertIn('duplicate key "schema"', self.rejected())
 
     def test_rows_that_no_chunk_has(self):
         self.put(lambda truth: truth)
@@ -281,7 +255,7 @@ class BadInput(Suite):
         at = exr.header(bytes(data))[1]
         data[at + 8:at + 16] = data[at:at + 8]  # row 0 twice, row 1 missing
         file.write_bytes(data)
-        self.assertIn("pixel (0, 1), channel R: found nan", self.rejected())
+        self.assertIn("rows from 0, 640 bytes, in place of rows from 1", self.rejected())
 
     def test_missing_views_are_named(self):
         self.put(lambda truth: truth)
@@ -319,14 +293,76 @@ class BadInput(Suite):
         with self.assertRaisesRegex(exr.BadImage, "found channels Y; allowed: R, G, B"):
             self.score(only=["room-left"])
 
-    def test_suspicions(self):
-        self.assertEqual(self.suspected(lambda truth: 3.1 * truth), ["looks 3.1x too bright"])
-        self.assertEqual(self.suspected(lambda truth: truth / 4), ["looks 4x too dark"])
-        self.assertIn("sRGB",
-                      self.suspected(lambda truth: flip.encoded(numpy.clip(truth, 0, 1)))[0])
-        self.assertIn("mirrored, left to right", self.suspected(lambda truth: truth[:, ::-1])[0])
-        self.assertEqual(self.suspected(lambda truth: 0 * truth), ["is black"])
-        self.assertEqual(self.suspected(lambda truth: 1.5 * truth + 0.01), [])
+
+class Mistakes(Suite):
+    """Each likely mistake is named, also in an image with errors of its own."""
+    def setUp(self):
+        super().setUp()
+        random, light = numpy.random.default_rng(2), smooth_image(9)
+        albedo = random.uniform(0.05, 0.95, (*SIZE[::-1], 3))
+        self.irradiance, self.direct = numpy.pi * light, 20 * light[:, ::-1] * albedo
+        self.truth = (light * albedo) * self.alpha[..., None]
+        self.method = self.truth * (1 + 0.2 * numpy.sin(numpy.arange(SIZE[0]))[:, None])
+        file = self.folder / f"truths/room-left-{HASH}.exr"
+        layers = {"indirect": self.truth, "direct": self.direct, "albedo": albedo,
+                  "depth": 3 + light, "normal": 2 * albedo - 1}
+        write(file, {name: plane for layer, rgb in layers.items()
+                     for name, plane in layered(rgb, self.alpha, layer).items()})
+
+    def suspected(self, image, **options):
+        write(self.folder / "ours/room-left.exr", layered(image, self.alpha))
+        return self.score(only=["room-left"], **options)["views"][0]["suspected"]
+
+    def test_are_named(self):
+        once = numpy.clip(self.method, 0, 1)
+        blurred = mistakes.blurred(self.truth, self.alpha > 0)
+        for words, image in (("3.1x too bright:", 3.1 * self.method),
+                             ("4x too dark:", self.method / 4),
+                             ("sRGB-encoded:", flip.encoded(once)),
+                             ("sRGB-encoded and 3", flip.encoded(once / 3)),
+                             ("decoded from sRGB once too often:", flip.decoded(self.method)),
+                             ("mirrored, left to right:", self.method[:, ::-1]),
+                             ("like one with R and B swapped:", self.method[..., ::-1]),
+                             ("shifted by (1, 0) pixels:", numpy.roll(self.method, 1, 1)),
+                             ("shifted by (-1, 1) pixels:", numpy.roll(self.method, (1, -1), (0, 1))),
+                             ("blurred or antialiased", blurred),
+                             ("like one with direct light:", self.method + self.direct),
+                             ("like irradiance instead of radiance:", self.irradiance),
+                             ("like irradiance instead of radiance and 3.1x too dark:",
+                              self.irradiance / numpy.pi)):
+            found = self.suspected(image)
+            self.assertEqual(len(found), 1, words)
+            self.assertIn(f"looks {words}", found[0])
+        self.assertEqual(self.suspected(0 * self.truth), ["is black"])
+
+    def test_errors_of_a_method_are_none(self):
+        for image in (self.truth, self.method, 1.5 * self.truth + 0.01, 0.7 * self.method):
+            self.assertEqual(self.suspected(image), [])
+
+    def test_other_layers_are_compared(self):
+        depth = 3 + smooth_image(9)
+        self.assertEqual(self.suspected(depth, layer="depth"), [])
+        self.assertIn("3.3x too bright", self.suspected(3.28 * depth, layer="depth")[0])
+        row = self.score(only=["room-left"], layer="depth")["views"][0]
+        self.assertNotIn("flip", row)
+        self.assertAlmostEqual(row["nrmse"], 2.28, places=4)
+        self.assertIn("mapped from -1..1 to 0..1",
+                      self.suspected(self.albedo(), layer="normal")[0])
+        document = self.score(only=["room-left"], layer="normal")
+        self.assertEqual(document["layer"], "normal")
+        self.assertNotIn("layer", self.score(only=["room-left"]))
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            self.assertEqual(
+                command.main([str(self.folder / "ours"), "--suite", str(self.folder), "--only",
+                              "room-left", "--layer", "albedo"]), 0)
+        self.assertRegex(printed.getvalue(), r"room-left +0\.0")
+
+    def albedo(self):
+        return exr.colours(exr.read(self.folder / f"truths/room-left-{HASH}.exr"), "", "albedo")[0]
+
+    def test_a_layer_that_truths_lack_is_named(self):
+        with self.assertRaisesRegex(exr.BadImage, "allowed: irradiance.R, irradiance.G"):
+            self.suspected(self.truth, layer="irradiance")
 
 
 class Files(unittest.TestCase):

@@ -124,6 +124,28 @@ class FullFolders(InTree):
         self.refused(BAD_INPUT, "one that scripts/reproduce wrote".replace("one", "a folder"),
                      "archive", "--from", self.full)
 
+    def test_as_folders_of_tests(self):
+        bystanders.fill(self.full / "runs")
+        (self.folder / "bin/chromium").symlink_to("/bin/true")
+        (self.tree / "tests").symlink_to(ROOT / "tests")
+        for script, *arguments in (("docs/run_tutorial", "clpv", self.full),
+                                   ("report/screenshot", "clpv", "cornell.json", self.full),
+                                   ("oclgrind/run", self.full, "runs", "true")):
+            with self.subTest(script):
+                self.refused(USAGE, f"one that tests/{script} wrote", f"../tests/{script}",
+                             *arguments)
+
+    def test_what_a_test_wrote_is_removed_the_next_time(self):
+        (self.folder / "bin/oclgrind").write_text("#!/bin/sh\necho Instructions executed for kernel\n")
+        (self.folder / "bin/oclgrind").chmod(0o755)
+        (self.tree / "tests").symlink_to(ROOT / "tests")
+        for left in "programs/a.cl", "old":
+            self.made("../tests/oclgrind/run", self.full, "runs", "true")
+            (self.full / "runs" / left).write_text("old")
+        self.made("../tests/oclgrind/run", f"{self.full}/", "runs", "true")
+        self.assertEqual(sorted(path.name for path in (self.full / "runs").rglob("*")),
+                         [".clpv-output", "output.txt", "programs", "reports.log"])
+
     def test_in_the_place_of_a_scripts_own(self):
         bystanders.fill(self.tree / "build-intel")
         self.refused(USAGE, "one that scripts/check_intel wrote", "check_intel")

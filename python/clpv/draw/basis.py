@@ -5,6 +5,8 @@ figures.json: "lambda" of all bases; "lobe": exact or rotate; "kernels": "lambda
 single kernel, then of those of srbf8v2; "lobes": "basis", "axis", "relative_l2" and "minimum" of
 each. surfaces.npy: their values on the grid of sphere.py, kernels first, in the same order.
 """
+import pathlib
+
 import numpy
 
 from clpv.draw import documents, sphere, style
@@ -106,7 +108,7 @@ def figure6(lobes):
                  len(MAIN_AXES), tiles)
 
 
-def draw(source, folder):
+def draw(source: pathlib.Path, folder: pathlib.Path) -> None:
     document = documents.read(source / "figures.json")
     surfaces = numpy.load(source / "surfaces.npy")
     kernels = len(document["kernels"])

@@ -5,6 +5,7 @@ Each function turns rows into a figure, or returns None if no row belongs to its
 fields of rows, not names. """
 import itertools
 import math
+import pathlib
 
 from matplotlib import pyplot
 from matplotlib.lines import Line2D
@@ -190,7 +191,7 @@ def save(figure, folder, name, context):
         output.write(folder / f"{name}.{suffix}", style.rendered(figure, suffix, dpi=150))
 
 
-def draw(source, folder):
+def draw(source: pathlib.Path, folder: pathlib.Path) -> None:
     document = documents.read(source / "bench.json")
     rows, context = documents.checked(document, "bench.json", "benchmarks",
                                       ROW), document["context"]

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The report page: one self-contained HTML file.
 
-report.json: "subtitle"; "views", each with "scene", "camera", "exposure", "truth", and "shots" with
-"title", "options" (null: an image of another method), "values" and the numbers of `clpv compare`.
-Truth and values are files (.npy: rows, columns, R G B or R G B A, linear). "quality" and
-"benchmarks": {"file", "document"} of `clpv quality` and `clpv bench` with --output. "marked":
-options of variants to highlight.
+With methods, its folder is a suite as the scorer reads it (clpv.score.suite); images of method i lie
+in the folder i. report.json: "subtitle"; "methods", each with "title" and "options" (null: images of
+another program); "quality" and "benchmarks": {"file", "document"} of `clpv quality` and `clpv bench`
+with --output; "marked": options of variants to highlight.
 """
 import pathlib
 import re
@@ -18,7 +17,8 @@ from matplotlib import pyplot
 from clpv import output
 from clpv.draw import bench, documents, style
 from clpv.draw.documents import NUMBER
-from clpv.score import page
+from clpv.score import page, suite
+from clpv.score.exr import BadImage
 
 VARIANT = {
     "options": dict, "rejected": int, "nrmse": NUMBER, "worst_nrmse": NUMBER,
@@ -48,21 +48,6 @@ def page_colours():
     screens."""
     return {"ink": style.INK, "soft": style.SOFT, "line": style.LINE,
             **{f"c{i}": colour for i, colour in enumerate(style.COLOURS)}}
-
-
-def viewer(views, folder):
-    """HTML of the viewer with all views."""
-    def values(name):
-        pixels = numpy.load(folder / name)
-        return pixels[..., :3], pixels[...,
-                                       3] if pixels.shape[2] > 3 else numpy.ones(pixels.shape[:2])
-
-    return Markup(
-        page.viewer([
-            page.view(f"{shown['scene']}, {shown['camera']}", shown["exposure"],
-                      *values(shown["truth"]), [(shot["title"], *values(shot["values"]))
-                                                for shot in shown["shots"]]) for shown in views
-        ]))
 
 
 def variants(quality, marked):
@@ -131,22 +116,34 @@ def table1(rows):
                    for line, cells in lines.items()]
 
 
-def draw(source, target):
+def viewer(source, methods):
+    """HTML of the images, empty without methods."""
+    try:
+        return Markup(page.viewer(source, methods)) if methods else ""
+    except BadImage as error:
+        raise documents.BadDocument(error) from None
+
+
+def draw(source: pathlib.Path, target: pathlib.Path) -> None:
     report = documents.read(source / "report.json")
-    images = [shot["values"] for shown in report["views"] for shot in shown["shots"]]
-    images += [shown["truth"] for shown in report["views"]]
-    made = output.Output(target, [source / name for name in ("report.json", *images)])
+    methods = [(method["title"], source / str(i)) for i, method in enumerate(report["methods"])]
+    read = suite.inputs([folder for _, folder in methods], source) if methods else []
+    made = output.Output(target, [source / "report.json", *read])
     rows = [row for given in report["benchmarks"]
             for row in documents.checked(given["document"], given["file"], "benchmarks", bench.ROW)]
     quality = variants(report["quality"], report["marked"])
     layouts = [row for row in rows if row["suite"] == "layouts"]
+    tables = table1([row for row in rows if row["suite"] == "table1"])
+    missing = [words for given, words in ((methods, "scenes"), (quality, "--quality"),
+                                          (tables[1], "--bench of clpv bench table1"),
+                                          (layouts, "--bench of clpv bench layouts")) if not given]
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent),
                                      autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined)
     html = environment.get_template("page.html").render(
-        subtitle=report["subtitle"], views=report["views"], viewer=viewer(report["views"], source),
-        quality=quality, quality_chart=inlined(error_against_cost(quality),
-                                               [row["name"] for row in quality]),
-        table1=table1([row for row in rows if row["suite"] == "table1"]), layouts=layouts,
-        layouts_chart=inlined(bench.layouts(layouts)), colours=page_colours())
+        subtitle=report["subtitle"], methods=report["methods"],
+        viewer=viewer(source, methods), quality=quality,
+        quality_chart=inlined(error_against_cost(quality), [row["name"] for row in quality]),
+        table1=tables, layouts=layouts, layouts_chart=inlined(bench.layouts(layouts)),
+        missing=missing, colours=page_colours())
     made.write(html)

@@ -7,28 +7,10 @@ import pathlib
 import sys
 
 from clpv.output import BadOutput, Output, printable
-from clpv.score import page, suite
+from clpv.score import page, suite, table
 from clpv.score.exr import BadImage
 
 RUN_TIME, BAD_INPUT = 1, 3
-COLUMNS = [("NRMSE [%]", "nrmse", 100, 1), ("at best gain", "nrmse_best_gain", 100, 1),
-           ("energy", "energy_ratio", 1, 3), ("FLIP", "flip", 1, 3), ("bias [%]", "bias", 100, 1),
-           ("noise [%]", "noise", 100, 1), ("change [%]", "change", 100, 1)]
-
-
-def table(score):
-    """Lines of text: a view each, then the mean. `-`: undefined."""
-    columns = [column for column in COLUMNS if any(column[1] in row for row in score["views"])]
-    lines = [["view", *(title for title, *_ in columns)]]
-    for row in [*score["views"], {"view": "mean", **score["mean"]}]:
-        lines.append([
-            row["view"], *("-" if row.get(key) is None else f"{factor * row[key]:.{digits}f}"
-                           for _, key, factor, digits in columns)
-        ])
-    widths = [max(map(len, column)) for column in zip(*lines)]
-    return "\n".join("  ".join(
-        cell.ljust(width) if i == 0 else cell.rjust(width)
-        for i, (cell, width) in enumerate(zip(line, widths))) for line in lines)
 
 
 def report(score):
@@ -55,6 +37,8 @@ def main(arguments):
                         help="name of the method in the JSON (default: that of DIR)")
     parser.add_argument("--only", metavar="PATTERN", action="append",
                         help="views, such as 'cornell-*'; repeatable (default: all)")
+    parser.add_argument("--layer", choices=suite.LAYERS, default=suite.LIGHT,
+                        help="layer of the truths to compare with (default: %(default)s)")
     parser.add_argument("-o", "--output", metavar="FILE.json", type=pathlib.Path,
                         help="writes the score")
     parser.add_argument("--page", metavar="FILE.html", type=pathlib.Path,
@@ -62,6 +46,8 @@ def main(arguments):
     given = parser.parse_args(arguments)
     if len(given.folders) > 1 and (given.method or given.output):
         parser.error("--method and --output: found several DIR; allowed: one")
+    if given.page and given.layer != suite.LIGHT:
+        parser.error(f"--page: found --layer {given.layer}; allowed: {suite.LIGHT}")
     only = given.only or ["*"]
     try:
         outputs = []
@@ -69,12 +55,13 @@ def main(arguments):
             if path:
                 read = suite.inputs(given.folders, given.suite)
                 outputs.append(Output(path, [*read, *outputs], option))
-        scores = [suite.score(folder, given.suite, given.method, only) for folder in given.folders]
+        scores = [suite.score(folder, given.suite, given.method, only, given.layer)
+                  for folder in given.folders]
         titles = [score["method"] for score in scores]
         if given.page and len(set(titles)) < len(titles):
             parser.error("--page: found folders of the same name; allowed: different names")
         if given.page:
-            outputs[-1].write(page.made(given.suite, dict(zip(titles, given.folders)), only))
+            outputs[-1].write(page.made(given.suite, zip(titles, given.folders), only))
         if given.output:
             outputs[0].write(json.dumps(scores[0], indent=1, allow_nan=False) + "\n")
     except (BadImage, BadOutput) as error:
@@ -84,7 +71,7 @@ def main(arguments):
         for score in scores:
             report(score)
             names = [printable(score["method"])] if len(scores) > 1 else []
-            sys.stdout.write("\n".join([*names, table(score), ""]))
+            sys.stdout.write("\n".join([*names, table.text(score), ""]))
         sys.stdout.flush()
     except (OSError, AttributeError) as error:  # a full disk; None where stdout is closed
         sys.stdout = None  # Python would try again at its exit

@@ -1,16 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Errors of an image against a ground truth, as `clpv compare` computes them, and what is
-suspicious in it."""
+"""Errors of an image against a ground truth, as `clpv compare` computes them."""
 import numpy
 
 from clpv.score import flip
-
-GAIN_LIMIT = 1.8  # of another exposure
-EXPLAINED = 0.6  # share of the error that remains once a suspicion is corrected
-MIRRORS = {
-    "left to right": numpy.s_[:, ::-1], "upside down": numpy.s_[::-1],
-    "rotated by half a turn": numpy.s_[::-1, ::-1]
-}
 
 
 def root_of_ratio(power, of):
@@ -33,7 +25,8 @@ def errors(frames, truth, valid, exposure):
     nrmse: root mean square error of all frames over the truth's root mean square. With several
     frames nrmse^2 = bias^2 + noise^2: bias is that of the mean of infinitely many such frames,
     noise their deviation from it. change: mean |difference| of consecutive frames over the truth's
-    mean. What a black truth leaves undefined is None. Sums are in double."""
+    mean. exposure: of FLIP; None: values are not light, and have none. What a black truth leaves
+    undefined is None. Sums are in double."""
     lit = frames[:, valid].astype(float)
     target = truth[valid].astype(float)
     power = (target * target).sum()
@@ -42,9 +35,11 @@ def errors(frames, truth, valid, exposure):
     result = {
         "nrmse": root_of_ratio(((lit - target)**2).sum() / len(lit),
                                power), "best_gain": gain, "nrmse_best_gain": nrmse_best_gain,
-        "energy_ratio": lit.sum() / len(lit) / total if total else None, "flip": numpy.mean(
-            [flip_map(frame, truth, valid, exposure)[valid].mean() for frame in frames])
+        "energy_ratio": lit.sum() / len(lit) / total if total else None
     }
+    if exposure is not None:
+        result["flip"] = numpy.mean(
+            [flip_map(frame, truth, valid, exposure)[valid].mean() for frame in frames])
     if len(lit) > 1:
         variance = lit.var(axis=0, ddof=1).sum()
         off = ((lit.mean(axis=0) - target) ** 2).sum()
@@ -63,38 +58,3 @@ def flip_map(image, truth, valid, exposure):
         for values in (image, truth)
     ]
     return flip.flip(*shown)
-
-
-def correlation(a, b):
-    a, b = a - a.mean(), b - b.mean()
-    power = (a * a).sum() * (b * b).sum()
-    return (a * b).sum() / numpy.sqrt(power) if power > 0 else 0.0
-
-
-def suspicions(image, truth, valid):
-    """Sentences about an image that is not what it should be: mirrored, sRGB-encoded, of another
-    exposure."""
-    a, b = image.astype(float), truth.astype(float)
-    straight = correlation(a[valid], b[valid])
-    for name, turned in MIRRORS.items():
-        both = valid & valid[turned]
-        mirrored = correlation(a[turned][both], b[both])
-        if mirrored > 0.5 and mirrored > straight + 0.2:
-            return [
-                f"looks mirrored, {name}: correlation {mirrored:.2f} with the truth, {straight:.2f} as it is"
-            ]
-    gain, error = gained(a[valid], b[valid])
-    if gain is None:
-        return ["is black"] if (b[valid] != 0).any() else []
-    if error is None:
-        return ["is lit where the truth is black"]
-    linear = flip.decoded(a)
-    linear_gain, linear_error = gained(linear[valid], b[valid])
-    if 0 <= a[valid].min() and a[valid].max() <= 1 and linear_error < EXPLAINED * error:
-        return [
-            f"looks sRGB-encoded: decoded, its error falls from {100 * error:.0f} to {100 * linear_error:.0f} %"
-        ]
-    as_it_is = root_of_ratio(((a - b)[valid] ** 2).sum(), (b[valid] ** 2).sum())
-    if error < EXPLAINED * as_it_is and not 1 / GAIN_LIMIT < gain < GAIN_LIMIT:
-        return [f"looks {1 / gain:.2g}x too bright" if gain < 1 else f"looks {gain:.2g}x too dark"]
-    return []

@@ -6,7 +6,12 @@ import zlib
 
 import numpy
 
-MAGIC, NOT_SCANLINES = 20000630, 0x1a00  # in the version: tiled, deep, several parts
+MAGIC, VERSION, LONG_NAMES = 20000630, 2, 0x400
+NOT_SCANLINES = 0x1a00  # in the version: tiled, deep, several parts
+KINDS = {"channels": "chlist", "compression": "compression", "dataWindow": "box2i",
+         "displayWindow": "box2i", "lineOrder": "lineOrder", "chromaticities": "chromaticities",
+         "envmap": "envmap"}  # types of attributes that are read
+CUBE_MAP, LINE_ORDERS = b"\1", (b"\0", b"\1")
 TYPES = {0: numpy.dtype("<u4"), 1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
 ROWS = {0: 1, 2: 1, 3: 16}  # of a chunk, by compression: none, ZIPS, ZIP
 REC709 = 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.3290  # x and y of red, green, blue and white
@@ -20,12 +25,19 @@ class BadImage(Exception):
 
 
 def header(data):
-    """Returns attributes {name: bytes} and the offset behind them."""
-    at, attributes = 8, {}
+    """Returns attributes {name: bytes}, of the types that they should have, and the offset behind
+    them."""
+    at, attributes, names = 8, {}, set()
     while data[at]:
-        name, kind = data.index(0, at), data.index(0, data.index(0, at) + 1)
+        end = data.index(0, at)
+        kind = data.index(0, end + 1)
         size = struct.unpack_from("<i", data, kind + 1)[0]
-        attributes[data[at:name].decode()] = data[kind + 5:kind + 5 + size]
+        name, type_name = data[at:end].decode(), data[end + 1:kind].decode()
+        if size < 0 or name in names:
+            raise ValueError(f"attribute {name}: duplicate, or of {size} bytes")
+        names.add(name)
+        if KINDS.get(name) == type_name:
+            attributes[name] = data[kind + 5:kind + 5 + size]
         at = kind + 5 + size
     return attributes, at + 1
 
@@ -44,6 +56,9 @@ def channel_list(value):
         check_sampling(value[at:end].decode(), x, y)
         found.append((value[at:end].decode(), TYPES[kind]))
         at = end + 17
+    names = [name for name, _ in found]
+    if names != sorted(set(names)):
+        raise ValueError(f"channels {', '.join(names)}: not unique and sorted")
     return found
 
 
@@ -51,7 +66,8 @@ def unzipped(data, size):
     """Inverts ZIP compression: bytes are differences, those at even places first."""
     if len(data) == size:
         return data  # what does not shrink is stored as it is
-    deltas = numpy.frombuffer(zlib.decompress(data), numpy.uint8).astype(numpy.uint64)
+    data = zlib.decompressobj().decompress(data, size + 1)
+    deltas = numpy.frombuffer(data, numpy.uint8).astype(numpy.uint64)
     deltas[1:] += 128  # differences are stored with an offset of 128
     values = numpy.cumsum(deltas).astype(numpy.uint8)
     half = (len(values) + 1) // 2
@@ -65,16 +81,20 @@ def scanlines(data, attributes, at):
     width, height = right - left + 1, bottom - top + 1
     channels = channel_list(attributes["channels"])
     bytes_of_row = width * sum(kind.itemsize for _, kind in channels)
-    # Rows that no chunk has stay NaN, which callers reject.
-    planes = {name: numpy.full((height, width), numpy.nan, numpy.float32) for name, _ in channels}
+    planes = {name: numpy.empty((height, width), numpy.float32) for name, _ in channels}
     compression = attributes["compression"][0]
     rows = ROWS[compression]
-    for offset in struct.unpack_from(f"<{-(-height // rows)}Q", data, at):
+    if attributes["lineOrder"] not in LINE_ORDERS:
+        raise ValueError(f"lineOrder {attributes['lineOrder']}")
+    for i, offset in enumerate(struct.unpack_from(f"<{-(-height // rows)}Q", data, at)):
         y, size = struct.unpack_from("<2i", data, offset)
-        first, count = y - top, min(rows, bottom - y + 1)
+        first, count = rows * i, min(rows, height - rows * i)
         chunk = data[offset + 8:offset + 8 + size]
         if compression:
             chunk = unzipped(chunk, count * bytes_of_row)
+        if y != top + first or len(chunk) != count * bytes_of_row:
+            raise ValueError(f"rows from {y}, {len(chunk)} bytes, in place of rows from "
+                             f"{top + first}, {count * bytes_of_row} bytes")
         place = 0
         for row in range(first, first + count):
             for name, kind in channels:
@@ -129,17 +149,19 @@ def to_rec709(file, planes, chromaticities):
             planes.update(zip(names, converted.astype(numpy.float32)))
 
 
-def merged(parts):
+def merged(file, parts):
     """Channels of all parts {name: planes}, as 'PART.CHANNEL'; those of the only part with R, G and
-    B also as they are."""
-    planes = {
-        channel if channel.startswith(f"{part}.") else f"{part}.{channel}": plane
-        for part, channels in parts.items() for channel, plane in channels.items()
-    }
+    B also as they are, where no other has the name."""
+    planes = {}
+    for part, channels in parts.items():
+        for channel, plane in channels.items():
+            name = channel if channel.startswith(f"{part}.") else f"{part}.{channel}"
+            if name in planes:
+                raise BadImage(f"{file}: part '{part}', channel '{channel}': found {name} twice; "
+                               "allowed: unique names of parts and layers")
+            planes[name] = plane
     shown = [channels for channels in parts.values() if all(name in channels for name in "RGB")]
-    for channels in shown if len(shown) == 1 else ():
-        planes.update(channels)
-    return planes
+    return {**shown[0], **planes} if len(shown) == 1 else planes
 
 
 def by_openexr(file):
@@ -167,7 +189,7 @@ def by_openexr(file):
             parts[part.name()] = planes
     if not parts:
         raise BadImage(f"{file}: found no readable part; allowed: 1 or more")
-    return merged(parts) if len(parts) > 1 else planes
+    return merged(file, parts) if len(parts) > 1 else planes
 
 
 def read(file):
@@ -183,7 +205,11 @@ def read(file):
         magic, version = struct.unpack_from("<2i", data)
         if magic != MAGIC:
             raise BadImage(f"{file}: no EXR file")
+        if version & ~NOT_SCANLINES & ~LONG_NAMES != VERSION:
+            raise BadImage(f"{file}: found EXR of version {version:#x}; allowed: {VERSION}")
         attributes, at = header(data)
+        if attributes.get("envmap") == CUBE_MAP:
+            raise BadImage(f"{file}: found a cube map (attribute envmap); allowed: flat images")
         if version & NOT_SCANLINES or attributes["compression"][0] not in ROWS:
             return by_openexr(file)
         planes = in_display(file, scanlines(data, attributes, at),
@@ -191,8 +217,8 @@ def read(file):
         if "chromaticities" in attributes:
             to_rec709(file, planes, struct.unpack("<8f", attributes["chromaticities"]))
         return planes
-    except (struct.error, zlib.error, IndexError, KeyError, ValueError, TypeError,
-            RuntimeError) as error:
+    except (struct.error, zlib.error, IndexError, KeyError, ValueError, TypeError, RuntimeError,
+            MemoryError) as error:
         raise BadImage(f"{file}: damaged EXR ({type(error).__name__}: {error})") from None
 
 
@@ -206,11 +232,10 @@ def colours(planes, file, layer=""):
         )
     rgb = numpy.stack([planes[prefix + name] for name in "RGB"], axis=-1)
     alpha = planes.get(f"{prefix}A", numpy.ones(rgb.shape[:2], numpy.float32))
-    values = numpy.concatenate([rgb, alpha[..., None]], axis=-1)
-    bad = numpy.argwhere(~numpy.isfinite(values))
-    if len(bad):
-        y, x, channel = bad[0]
-        raise BadImage(
-            f"{file}: pixel ({x}, {y}), channel {prefix}{'RGBA'[channel]}: found "
-            f"{values[y, x, channel]}, {len(bad)} such values; allowed: finite values")
+    for name, plane in planes.items():
+        bad = numpy.argwhere(~numpy.isfinite(plane))
+        if len(bad) and name.rpartition(".")[0] == layer:
+            y, x = bad[0]
+            raise BadImage(f"{file}: pixel ({x}, {y}), channel {name}: found {plane[y, x]}, "
+                           f"{len(bad)} such values; allowed: finite values")
     return rgb, alpha

@@ -3,16 +3,21 @@
 import fnmatch
 import glob
 import json
+import pathlib
 import re
+from collections.abc import Sequence
+from typing import Any
 
 import numpy
 
-from clpv.score import errors, exr
+from clpv.score import errors, exr, mistakes
 from clpv.score.exr import BadImage
 
 SCHEMA = 1
 MAX_NUMBER = 1000  # noise, and exposures [EV], whose powers of 2 are finite
 MEASURES = "nrmse", "nrmse_best_gain", "energy_ratio", "flip", "bias", "noise", "change"
+LIGHT = "indirect"  # layer that a score is of
+LAYERS = LIGHT, "depth", "normal", "albedo", "direct", "irradiance"  # of a truth
 DIGITS = 5  # of printed errors
 FIELDS = {"name": str, "truth": str, "noise": (int, float), "exposure": (int, float)}  # of a view
 
@@ -23,11 +28,20 @@ def is_valid(value, kind):
     return type(value) in kind and abs(value) <= MAX_NUMBER  # not NaN
 
 
+def unique(pairs):
+    """An object of JSON, whose keys must be unique: json would keep the last value of each."""
+    made = dict(pairs)
+    if len(made) < len(pairs):
+        keys = [key for key, _ in pairs]
+        raise ValueError(f"duplicate key {json.dumps(next(k for k in keys if keys.count(k) > 1))}")
+    return made
+
+
 def read_suite(folder):
     """Returns the document suite.json of a folder. Throws BadImage."""
     file = folder / "suite.json"
     try:
-        suite = json.loads(file.read_text())
+        suite = json.loads(file.read_text(), object_pairs_hook=unique)
     except OSError as error:
         raise BadImage(
             f"{file}: {error.strerror}; allowed: a folder that scripts/suite wrote") from None
@@ -59,9 +73,12 @@ def frames_of(folder, view):
     return [single] if single.exists() else [file for _, file in sorted(numbered)]
 
 
-def read_image(file, truth):
-    """Returns colours and alpha. Throws BadImage for another size."""
-    rgb, alpha = exr.colours(exr.read(file), file)
+def read_image(file, truth, layer=LIGHT):
+    """Returns colours and alpha: of a layer other than light if the file has it, else its own.
+    Throws BadImage for another size."""
+    planes = exr.read(file)
+    has_layer = layer != LIGHT and f"{layer}.R" in planes
+    rgb, alpha = exr.colours(planes, file, layer if has_layer else "")
     height, width = truth.shape[:2]
     if rgb.shape != truth.shape:
         raise BadImage(
@@ -69,8 +86,16 @@ def read_image(file, truth):
     return rgb, alpha
 
 
-def read_truth(folder, view):
-    return exr.colours(exr.read(folder / view["truth"]), folder / view["truth"], "indirect")
+def read_truth(folder, view, layer=LIGHT):
+    """Returns colours and alpha of a layer, and the colours of layers that mistakes are known by
+    {name: colours}."""
+    file = folder / view["truth"]
+    planes = exr.read(file)
+    known = [name for name in mistakes.LAYERS if layer == LIGHT and f"{name}.R" in planes]
+    return *exr.colours(planes, file, layer), {
+        name: exr.colours(planes, file, name)[0]
+        for name in known
+    }
 
 
 def inputs(folders, suite_folder):
@@ -80,26 +105,38 @@ def inputs(folders, suite_folder):
     return [suite_folder / "suite.json", *truths, *images]
 
 
-def score_view(files, folder, view):
-    truth, alpha = read_truth(folder, view)
-    images = [read_image(file, truth) for file in files]
-    valid = numpy.logical_and.reduce([alpha > 0, *(mask > 0 for _, mask in images)])
-    if not valid.any():
+def shared(alpha, images):
+    """Pixels with a surface in the truth and in all images."""
+    return numpy.logical_and.reduce([alpha > 0, *(mask > 0 for _, mask in images)])
+
+
+def read_view(folder, view, files, layer=LIGHT):
+    """Returns what score_view() takes: view, truth, its alpha, its other layers, and images with
+    their alpha, of `files`."""
+    truth, alpha, others = read_truth(folder, view, layer)
+    images = [read_image(file, truth, layer) for file in files]
+    if not shared(alpha, images).any():
         raise BadImage(
             f"{files[0]}: found no pixel with alpha above 0 where the truth has a surface")
+    return view, truth, alpha, others, images
+
+
+def score_view(view, truth, alpha, others, images, layer=LIGHT):
+    valid = shared(alpha, images)
     frames = numpy.stack([rgb for rgb, _ in images])
-    found = errors.errors(frames, truth, valid, view["exposure"])
+    exposure = view["exposure"] if layer == LIGHT else None
+    found = errors.errors(frames, truth, valid, exposure)
     rounded = {
         name: None if value is None else round(float(value), DIGITS)
         for name, value in found.items()
     }
     missing = 1 - valid.sum() / (alpha > 0).sum()
-    suspected = errors.suspicions(frames.mean(axis=0), truth, valid)
+    suspected = mistakes.suspicions(frames.mean(axis=0), truth, valid, others, view["noise"])
     if missing > 0.02:
         suspected.append(
             f"has no surface in {100 * missing:.0f} % of the truth's: other camera or scene")
     return {
-        "view": view["name"], **rounded, "frames": len(files), "truth_noise": view["noise"],
+        "view": view["name"], **rounded, "frames": len(images), "truth_noise": view["noise"],
         "suspected": suspected
     }
 
@@ -115,10 +152,12 @@ def chosen(suite, only):
     return views
 
 
-def score(folder, suite_folder, method=None, only=("*",)):
+def score(folder: pathlib.Path, suite_folder: pathlib.Path, method: str | None = None,
+          only: Sequence[str] = ("*", ), layer: str = LIGHT) -> dict[str, Any]:
     """Scores the images of `folder` for the views whose names match a pattern of `only`; `folder`
-    must have all of them. Returns the errors of each view, their means, and in how many views each
-    is undefined (None); its mean is then None. Throws BadImage."""
+    must have all of them. layer: of the truths, to compare with. Returns the errors of each view,
+    their means, and in how many views each is undefined (None); its mean is then None. Throws
+    BadImage."""
     suite = read_suite(suite_folder)
     views = chosen(suite, only)
     files = {view["name"]: frames_of(folder, view["name"]) for view in views}
@@ -129,7 +168,10 @@ def score(folder, suite_folder, method=None, only=("*",)):
         raise BadImage(
             f"{folder}: found no image of {', '.join(f'{name}.exr' for name in absent)}; allowed: all "
             f"{len(views)} views, or --only PATTERN")
-    rows = [score_view(files[view["name"]], suite_folder, view) for view in views]
+    rows = [
+        score_view(*read_view(suite_folder, view, files[view["name"]], layer), layer)
+        for view in views
+    ]
     means, undefined = {}, {}
     for measure in MEASURES:
         values = [row[measure] for row in rows if measure in row]
@@ -138,5 +180,6 @@ def score(folder, suite_folder, method=None, only=("*",)):
             means[measure] = None if None in values else round(sum(values) / len(values), DIGITS)
     return {
         "schema": SCHEMA, "suite": suite["hash"], "method": method or folder.resolve().name,
-        "mean": means, "undefined": undefined, "complete": len(views) == len(suite["views"]), "views": rows
+        **({} if layer == LIGHT else {"layer": layer}), "mean": means, "undefined": undefined,
+        "complete": len(views) == len(suite["views"]), "views": rows
     }

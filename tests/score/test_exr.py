@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""Odd EXR files: the scorer reads what `clpv compare` reads, and nothing that it rejects."""
+import json
+import struct
+import subprocess
+import unittest
+import zlib
+
+import numpy
+
+import test_score
+from exr_files import write
+from clpv.score import exr
+
+REC2020 = 0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329
+
+
+def attribute(name, kind, value):
+    return name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
+
+
+def zipped(rows, more=b""):
+    """Rows of bytes as ZIPS, `more` behind each."""
+    for row in rows:
+        values = numpy.frombuffer(row, numpy.uint8).astype(int)
+        halves = numpy.concatenate([values[0::2], values[1::2]])
+        halves[1:] = (numpy.diff(halves) + 128) % 256
+        yield zlib.compress(halves.astype(numpy.uint8).tobytes() + more)
+
+
+class Odd(test_score.Suite):
+    def setUp(self):
+        super().setUp()
+        self.file = self.folder / "ours/room-left.exr"
+        self.planes = test_score.layered(1.1 * self.truths["room-left"], self.alpha)
+
+    def made(self, planes=None, **options):
+        write(self.file, planes or self.planes, **options)
+        return bytearray(self.file.read_bytes())
+
+    def split(self):
+        """A file and the offset of its table of chunks."""
+        data = self.made()
+        return data, exr.header(bytes(data))[1]
+
+    def edited(self, change):
+        data, table = self.split()
+        change(data, table)
+        return data
+
+    def with_value(self, name, value):
+        """An attribute's first byte of value replaced."""
+        def change(data, _):
+            data[data.index(name) + len(name) + 4] = value
+        return self.edited(change)
+
+    def with_chunk(self, row, number, value):
+        """y (number 0) or size (1) of a chunk replaced."""
+        def change(data, table):
+            offset = struct.unpack_from("<Q", data, table + 8 * row)[0]
+            struct.pack_into("<i", data, offset + 4 * number, value)
+        return self.edited(change)
+
+    def compressed(self, more):
+        data, table = self.split()
+        data[data.index(b"compression\0compression\0") + 28] = 2
+        count = test_score.SIZE[1]
+        size = 4 * 4 * test_score.SIZE[0]
+        first = table + 8 * count
+        rows = [data[first + (8 + size) * y + 8:first + (8 + size) * (y + 1)] for y in range(count)]
+        chunks = [struct.pack("<2i", y, len(row)) + row for y, row in enumerate(zipped(rows, more))]
+        places = numpy.cumsum([first] + [len(chunk) for chunk in chunks[:-1]])
+        return data[:table] + struct.pack(f"<{count}Q", *places) + b"".join(chunks)
+
+    def with_lines_downwards(self):
+        data, table = self.split()
+        data[data.index(b"lineOrder\0lineOrder\0") + 24] = 1
+        count = test_score.SIZE[1]
+        places = struct.unpack_from(f"<{count}Q", data, table)
+        size = places[1] - places[0]
+        chunks = [data[place:place + size] for place in reversed(places)]
+        return data[:table] + struct.pack(f"<{count}Q", *reversed(places)) + b"".join(chunks)
+
+    def ours(self):
+        try:
+            return self.score(only=["room-left"])["views"][0]["nrmse"]
+        except exr.BadImage:
+            return None
+
+    def theirs(self):
+        done = subprocess.run([
+            test_score.CLPV, "compare", "-q", "--suite", self.folder / "ours", "--truths",
+            self.folder / "truths"
+        ], capture_output=True, text=True, check=False)
+        if done.returncode:
+            self.assertEqual(done.returncode, 3, done.stderr)
+            return None
+        return round(json.loads(done.stdout)["views"][0]["nrmse_valid"], 5)
+
+    def test_files_that_both_read_alike(self):
+        foreign = struct.pack("<8f", *REC2020)
+        for name, data in {
+                "plain": self.made(), "ZIPS": self.compressed(b""),
+                "long names": self.edited(lambda data, _: data.__setitem__(5, 4)),
+                "lines from the bottom": self.with_lines_downwards(),
+                "chromaticities of another type":
+                    self.made(more=attribute(b"chromaticities", b"string", foreign)),
+                "primaries": self.made(more=attribute(b"chromaticities", b"chromaticities",
+                                                      foreign)),
+                "environment, flat": self.made(more=attribute(b"envmap", b"envmap", b"\0"))
+        }.items():
+            self.file.write_bytes(data)
+            found = self.theirs()
+            self.assertIsNotNone(found, name)
+            self.assertEqual(self.ours(), found, name)
+
+    def test_files_that_both_reject(self):
+        window = struct.pack("<4i", 0, 0, test_score.SIZE[0] - 1, test_score.SIZE[1] - 1)
+        nan = numpy.full_like(self.alpha, numpy.nan)
+        for name, data in {
+                "duplicate attribute":
+                    self.made(more=attribute(b"displayWindow", b"box2i", window)),
+                "cube map": self.made(more=attribute(b"envmap", b"envmap", b"\1")),
+                "version": self.edited(lambda data, _: data.__setitem__(4, 3)),
+                "flag": self.edited(lambda data, _: data.__setitem__(5, 0x20)),
+                "row -1": self.with_chunk(5, 0, -1), "row of another": self.with_chunk(5, 0, 4),
+                "long chunk": self.with_chunk(0, 1, 9999),
+                "long ZIPS": self.compressed(b"\x80" * 7),
+                "line order": self.with_value(b"lineOrder\0lineOrder\0", 9),
+                "duplicate channel": self.edited(lambda data, _: data.__setitem__(
+                    data.index(b"chlist\0") + 11, ord("B"))),
+                "unsorted channels": self.edited(lambda data, _: data.__setitem__(
+                    data.index(b"chlist\0") + 11, ord("Z"))),
+                "other channel": self.made({**self.planes, "Z": nan})
+        }.items():
+            self.file.write_bytes(data)
+            self.assertIsNone(self.theirs(), name)
+            self.assertIsNone(self.ours(), name)
+
+    def test_sizes_that_fit_no_memory(self):
+        huge = 0, 0, 2**31 - 2, 2**31 - 2
+        self.file.write_bytes(self.made(data=huge))
+        self.assertIsNone(self.ours())
+
+
+if __name__ == "__main__":
+    unittest.main()
