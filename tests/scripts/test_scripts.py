@@ -193,7 +193,7 @@ class OwnFolders(InTree):
 
     def test_gpu_report(self):
         if not pathlib.Path("/usr/lib/clc/amdgcn--amdhsa.bc").is_file():
-            self.skipTest("skipped: libclc is not installed")
+            self.skipTest("libclc is not installed (Debian: apt install libclc-15)")
         made = self.folder / "made"
         call = "gpu_report", "--frames=default", "--output=made"
         self.made(*call)
