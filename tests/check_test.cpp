@@ -15,6 +15,8 @@ void expect_agreement(Stage stage, Session& session) {
   EXPECT_FALSE(results.empty());
   for (const verify::CheckResult& result : results) {
     const verify::Deviation& found = result.deviation;
+    EXPECT_EQ(result.stage, name_of(stage));
+    EXPECT_GT(result.seconds, 0) << result.stage << " " << result.variant;
     EXPECT_TRUE(result.passed()) << result.stage << " " << result.variant << ": " << found.worst
                                  << ", allowed " << found.allowed << "; " << found.place
                                  << result.reason;

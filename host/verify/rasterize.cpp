@@ -169,7 +169,7 @@ void append(CheckResults& results, const SurfaceImage& device,
   }
   const double pixels = expected.uncertain.size();
   results.push_back(result_of("rasterize", variant, values));
-  results.push_back(result_of("rasterize-edges", variant,
+  results.push_back(result_of("rasterize", variant + ", edges",
                               {differing / pixels, tolerance("rasterize-edges"),
                                fmt::format("{} of {} pixels, {} of them uncertain", differing,
                                            pixels, std::ranges::count(expected.uncertain, true))}));
