@@ -32,8 +32,8 @@ TEST_P(Kernels, AgreeWithTheReference) {
   expect_agreement(GetParam(), test::test_session());
 }
 
-// Kernels with the other number of lanes: one on a CPU, as GPUs get them. Workloads of tests/oclgrind
-// also run them, on smaller scenes.
+// Kernels with the other number of lanes: one on a CPU, as GPUs get them. Workloads of
+// tests/oclgrind also run them, on smaller scenes.
 TEST(LongCheck, KernelsAgreeInTheOtherNumberOfLanes) {
   Device device = test::test_session().device();
   device.lanes = device.lanes == 8 ? 1 : 8;

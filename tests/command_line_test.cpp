@@ -44,7 +44,8 @@ TEST(CommandLine, ExitCodes) {
 }
 
 TEST(CommandLine, UsageErrorsNameTheProgram) {
-  for (const char* arguments : {"render", "render a.json --width x", "--frobnicate", "check --stage x"})
+  for (const char* arguments :
+       {"render", "render a.json --width x", "--frobnicate", "check --stage x"})
     EXPECT_THAT(clpv(arguments).err, ::testing::StartsWith("clpv: ")) << arguments;
   EXPECT_EQ(clpv("render --help").err, "");
 }

@@ -153,7 +153,8 @@ void run(const Options& options, const Shared& shared) {
   if (json)
     print_json(report_of(results, device).dump(2) + "\n");
   else
-    print_data("{} comparisons, {} results: {}\n", cases.size(), results.size(), counts_of(results));
+    print_data("{} comparisons, {} results: {}\n", cases.size(), results.size(),
+               counts_of(results));
   if (!options.junit.empty()) write_file(options.junit, verify::junit(results, device.name));
   if (verify::passed(results)) return;
   throw Error(ExitCode::validation,
