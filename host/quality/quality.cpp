@@ -166,7 +166,8 @@ std::optional<double> mean_of(const std::vector<const QualityCell*>& cells, Valu
 }
 
 QualitySummary summary_of(const Variant& variant, const std::vector<QualityCell>& cells) {
-  QualitySummary sum{.variant = variant};
+  QualitySummary sum;
+  sum.variant = variant;
   std::vector<const QualityCell*> rendered;
   for (const QualityCell& cell : cells) {
     if (cell.variant != variant) continue;

@@ -20,7 +20,7 @@ SKIPPED [2] tests/python/test_view.py:410: no Chromium
 test_a (test_page.Page.test_a) ... skipped 'needs a page'
 </system-out></testcase>
 <testcase name="clang.syntax" time="0" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/>
-<system-out>skipped: no clang++ (Debian: apt install {})</system-out></testcase>
+	<system-out>skipped: no clang++ (Debian: apt install {})</system-out></testcase>
 <testcase name="long" time="12.34" status="run"/><testcase name="b" time="1" status="run"/>
 </testsuite>
 """
