@@ -149,7 +149,7 @@ const std::multimap<std::string, Invocation>& runs() {
         {"b.jsonl", "b.json"},
         {"plots/"}}},
       {"report",
-       {"report page " + kTiny + " --width 12 --height 9 --spp 1 --cache seen",
+       {"report page " + test::kTinyRoom + " --width 12 --height 9 --spp 1 --cache seen",
         {"page/", "seen/"}}},
       {"prepare", {"prepare" + tiny + "--claims shared", {}, {"shared/"}}},
   };

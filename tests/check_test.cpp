@@ -15,6 +15,8 @@ void expect_agreement(Stage stage, Session& session) {
   EXPECT_FALSE(results.empty());
   for (const verify::CheckResult& result : results) {
     const verify::Deviation& found = result.deviation;
+    EXPECT_EQ(result.stage, name_of(stage));
+    EXPECT_GT(result.seconds, 0) << result.stage << " " << result.variant;
     EXPECT_TRUE(result.passed()) << result.stage << " " << result.variant << ": " << found.worst
                                  << ", allowed " << found.allowed << "; " << found.place
                                  << result.reason;
@@ -30,8 +32,9 @@ TEST_P(Kernels, AgreeWithTheReference) {
   expect_agreement(GetParam(), test::test_session());
 }
 
-// Kernels with the other number of lanes: one on a CPU, as GPUs get them.
-TEST(Check, KernelsAgreeInTheOtherNumberOfLanes) {
+// Kernels with the other number of lanes: one on a CPU, as GPUs get them. Workloads of
+// tests/oclgrind also run them, on smaller scenes.
+TEST(LongCheck, KernelsAgreeInTheOtherNumberOfLanes) {
   Device device = test::test_session().device();
   device.lanes = device.lanes == 8 ? 1 : 8;
   Session session(device);

@@ -43,6 +43,13 @@ TEST(CommandLine, ExitCodes) {
             5);
 }
 
+TEST(CommandLine, UsageErrorsNameTheProgram) {
+  for (const char* arguments :
+       {"render", "render a.json --width x", "--frobnicate", "check --stage x"})
+    EXPECT_THAT(clpv(arguments).err, ::testing::StartsWith("clpv: ")) << arguments;
+  EXPECT_EQ(clpv("render --help").err, "");
+}
+
 TEST(CommandLine, LanesAreOneOrEight) {
   const test::Outcome option = clpv("--lanes 2 devices"),
                       variable = test::run("CLPV_LANES=2 " CLPV_PROGRAM " devices");
@@ -66,7 +73,7 @@ TEST(CommandLine, HelpIsShortAndHelpAllIsWhole) {
     EXPECT_THAT(brief, ::testing::Not(HasSubstr(rare)));
     EXPECT_THAT(whole, HasSubstr(rare));
   }
-  EXPECT_THAT(brief, ::testing::ContainsRegex("--help-all lists [0-9]+ more options"));
+  EXPECT_THAT(brief, ::testing::ContainsRegex("--help-all lists [0-9]+ more options?,"));
   EXPECT_THAT(clpv("--help").out,
               AllOf(HasSubstr("Look:"), HasSubstr("Measure:"), HasSubstr("Verify:"),
                     ::testing::Not(HasSubstr("prepare"))));

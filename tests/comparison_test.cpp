@@ -83,8 +83,8 @@ TEST(Junit, ListsStagesCasesAndFailures) {
                     "errors=\"1\" skipped=\"1\">"),
           HasSubstr(
               "<testsuite name=\"inject\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"0\">"),
-          HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\" time=\"0.000\"/>"),
-          HasSubstr("name=\"a&lt;b\" time=\"0.000\">"),
+          HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\" time=\"0.000000\"/>"),
+          HasSubstr("name=\"a&lt;b\" time=\"0.000000\">"),
           HasSubstr("cell &quot;1&quot; &amp; more</failure>"),
           HasSubstr("<error>signal &lt;11></error>"),
           HasSubstr("<skipped message=\"no images\"/>")));

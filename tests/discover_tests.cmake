@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
 # Registers each file of a GoogleTest program as one ctest test: STEM for STEM_test.cpp. A file's tests share one process, and so
-# the device and compiled kernels.
+# the device and compiled kernels. Suites whose names begin with Long are STEM.long, which `scripts/test --long` runs
+# (`ctest --build-config long`).
 #
 #   cmake -DPROGRAM=FILE -DOUTPUT=FILE.cmake -DCACHE=FOLDER -P discover_tests.cmake
 #
 # All tests keep compiled programs in CACHE: clpv's, and PoCL's unless POCL_CACHE_DIR is set. PATH begins with /usr/bin, since drawing
-# needs the modules of Debian's Python. Time-outs have room for a machine five times slower. LONG tests start first, so that none of them runs alone at the end.
+# needs the modules of Debian's Python. Time-outs have room for a machine five times slower. FIRST are the longest, so that none of
+# them runs alone at the end.
 cmake_minimum_required(VERSION 3.22)
-set(LONG check killed helpers drawing starved bench soak quality hostile sequence frame)
+set(FIRST check killed helpers drawing starved bench soak quality hostile sequence frame)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${OUTPUT}.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(STRINGS ${OUTPUT}.json lines REGEX "\"(name|file)\":")
 foreach(line IN LISTS lines)
@@ -16,23 +18,41 @@ foreach(line IN LISTS lines)
   if(CMAKE_MATCH_2 STREQUAL "file")
     string(REGEX REPLACE ".*/([^/]*)_test\\\\?\\.cpp$" "\\1" stem "${CMAKE_MATCH_3}")
     list(APPEND stems ${stem})
-    list(APPEND filter_${stem} "${suite}.${test}")
+    list(APPEND ${kind}_${stem} "${suite}.${test}")
   elseif(indentation LESS 8)
     set(suite "${CMAKE_MATCH_3}")
   else()
     set(test "${CMAKE_MATCH_3}")
+    set(kind usual)
+    if(suite MATCHES "^Long")
+      set(kind long)
+    endif()
   endif()
 endforeach()
 list(REMOVE_DUPLICATES stems)
 set(text "")
+
+# Appends a test of ctest with these tests of the program.
+function(append name tests properties)
+  list(JOIN tests ":" filter)
+  string(APPEND text "add_test([[${name}]] [[${PROGRAM}]] [[--gtest_filter=${filter}]])\n"
+    "set_tests_properties([[${name}]] PROPERTIES TIMEOUT 3000 ${properties} ENVIRONMENT [[XDG_CACHE_HOME=${CACHE}]]\n"
+    "  ENVIRONMENT_MODIFICATION PATH=path_list_prepend:/usr/bin)\n")
+  set(text "${text}" PARENT_SCOPE)
+endfunction()
+
 foreach(stem IN LISTS stems)
   set(cost 0)
-  if(stem IN_LIST LONG)
+  if(stem IN_LIST FIRST)
     set(cost 100)
   endif()
-  list(JOIN filter_${stem} ":" filter)
-  string(APPEND text "add_test([[${stem}]] [[${PROGRAM}]] [[--gtest_filter=${filter}]])\n"
-    "set_tests_properties([[${stem}]] PROPERTIES TIMEOUT 3000 COST ${cost} ENVIRONMENT [[XDG_CACHE_HOME=${CACHE}]]\n"
-    "  ENVIRONMENT_MODIFICATION PATH=path_list_prepend:/usr/bin)\n")
+  if(usual_${stem})
+    append(${stem} "${usual_${stem}}" "COST ${cost}")
+  endif()
+  if(long_${stem})
+    string(APPEND text "if(CTEST_CONFIGURATION_TYPE STREQUAL long)\n")
+    append(${stem}.long "${long_${stem}}" "LABELS long")
+    string(APPEND text "endif()\n")
+  endif()
 endforeach()
 file(WRITE ${OUTPUT} "${text}")

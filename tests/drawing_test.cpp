@@ -8,6 +8,7 @@
 
 #include "image/image_io.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::drawing_test {
 namespace {
@@ -43,10 +44,8 @@ TEST_F(Drawing, BasisFiguresAreWrittenAndListed) {
 
 TEST_F(Drawing, AReportIsOnePageWithItsViews) {
   const test::Outcome outcome =
-      run_here("report " + file("page") +
-               " " CLPV_SOURCE_DIR
-               "/scenes/cornell.json --camera front --width 48 --height 27 --spp 4 --cache " +
-               file("cache"));
+      run_here("report " + file("page") + " " + test::kTinyRoom +
+               " --width 48 --height 27 --spp 4 --cache " + file("cache"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("index.html"));
   const std::string html = test::read_file(file("page/index.html"));

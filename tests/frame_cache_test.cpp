@@ -16,6 +16,7 @@
 #include "pipeline/frame/frame_keys.hpp"
 #include "scene/load.hpp"
 #include "tests/support/gltf_builder.hpp"
+#include "tests/support/on_device.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace clpv::frame_cache_test {
@@ -120,7 +121,7 @@ class CachedFrame : public ::testing::Test {
   test::TemporaryFolder folder_;
   MovingScene moving_;
   RenderOptions options_;
-  Session session_{choose_device()};
+  Session& session_ = test::test_session();
   SceneData scene_;
   Frame frame_;
 };

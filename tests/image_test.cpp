@@ -280,10 +280,16 @@ TEST(ToneCurve, RisesAndStaysInRange) {
   }
 }
 
-TEST(DisplayImage, ExposureDoublesAndBackgroundStaysClear) {
+TEST(DisplayImage, ExposureDoublesAndBackgroundIsBlackOrClear) {
   Image image = make_image(2, 1, {"R", "G", "B", "A"});
   image.pixels = {0.1f, 0.2f, 0.3f, 1, 5, 5, 5, 0};
-  const Image shown = display_image(image, 1, ToneMap::none);
+  const Image opaque = display_image(image, 1, ToneMap::none),
+              shown = display_image(image, 1, ToneMap::none, Background::transparent);
+  EXPECT_EQ(opaque.channels, (std::vector<std::string>{"R", "G", "B"}));
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(opaque.at(0, 0, c), shown.at(0, 0, c));
+    EXPECT_EQ(opaque.at(1, 0, c), 0.0f);
+  }
   EXPECT_EQ(shown.encoding, Encoding::srgb);
   EXPECT_NEAR(shown.at(0, 0, 0), srgb_encode(0.2f), 1e-6);
   EXPECT_NEAR(shown.at(0, 0, 2), srgb_encode(0.6f), 1e-6);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Runs ended from outside. Killed at random moments (fixed seed), they leave complete files or
 // none, and the next run is right. Interrupted, they report which results exist.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "image/image_io.hpp"
+#include "support/interrupt.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -263,6 +265,26 @@ TEST_F(Killed, AnInterruptWhileCompilingIsAnsweredAtOnce) {
               HasSubstr("clpv: stopping after this kernel; once more to stop now"));
   EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; kernels were being compiled"));
   EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+}
+
+// Ctrl-C also reaches the linker of a driver, whose compiler then wrote "1 error generated." after
+// clpv's message.
+TEST(Interrupt, ACompilersWordsAfterItAreLost) {
+  const auto interrupted_work = [] {
+    catch_interrupts();
+    const auto say = [](const std::string& words) { fmt::print(stderr, "{}", words); };
+    {
+      const Uninterruptible work("this test");
+      say("before, ");
+      ::raise(SIGINT);
+      say("1 error generated.");
+    }
+    say("after");
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(interrupted_work(), ::testing::ExitedWithCode(0),
+              ::testing::AllOf(HasSubstr("before"), HasSubstr("stopping after this test"),
+                               HasSubstr("after"), ::testing::Not(HasSubstr("generated"))));
 }
 
 }  // namespace

@@ -29,9 +29,10 @@ const std::string kSmall =
 class Mpi : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (std::string(CLPV_MPIEXEC).empty()) GTEST_SKIP() << "clpv is built without MPI";
+    if (std::string(CLPV_MPIEXEC).empty())
+      GTEST_SKIP() << "clpv is built without MPI (Debian: apt install libopenmpi-dev)";
     if (run(CLPV_MPIEXEC " --version | grep -qE 'Open MPI|OpenRTE'").exit_code != 0)
-      GTEST_SKIP() << CLPV_MPIEXEC " is not Open MPI's, whose options this needs";
+      GTEST_SKIP() << CLPV_MPIEXEC " is not that of Open MPI (Debian: apt install openmpi-bin)";
     write_moving_scene(folder);
   }
 

@@ -55,7 +55,7 @@ TEST(Programs, NothingOfTheCurrentFolderRuns) {
   for (const std::string& command :
        {std::string("basis sh2 --figures figures"),
         std::string("bench ceilings --repetitions 1 --plot plots"),
-        "report page " + kTiny + " --width 12 --height 9 --spp 1 --cache cache",
+        "report page " + test::kTinyRoom + " --width 12 --height 9 --spp 1 --cache cache",
         "sequence " + kTiny + kSmallSteps + "--frames 1 --fps 1 -o film --video -v.mp4"}) {
     const test::Outcome outcome = traps.run(command);
     const bool no_ffmpeg = outcome.err.find("--video needs ffmpeg") != std::string::npos;

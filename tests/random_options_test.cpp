@@ -29,8 +29,8 @@ using namespace test;
 using ::testing::HasSubstr;
 
 constexpr double kPatience = 60;  // of processor time [s], so that other processes do not count
-constexpr int kKernels = 2;       // combinations of options that compile
-constexpr int kNumbers = 12;      // combinations of other options with each
+constexpr int kKernels = 1, kLongKernels = 8;  // combinations of options that compile
+constexpr int kNumbers = 12;                   // combinations of other options with each
 const Caps kCaps{{"width", 24},       {"height", 24},     {"grid", 12},    {"rsm-size", 48},
                  {"shadow-size", 48}, {"iterations", 12}, {"cascades", 4}, {"table-size", 1024}};
 
@@ -193,6 +193,21 @@ class RandomOptions : public ::testing::Test {
     return outcome;
   }
 
+  void expect_images_or_reasons(int kernels) {
+    const int numbers = number_from("CLPV_RANDOM_NUMBERS", kNumbers);
+    for (int k = 0; k < kernels;) {
+      OptionValues compiled = drawn(true, 4);
+      compiled.try_emplace("grid", "6");
+      if (!expect_image_or_reason(compiled, {}))
+        continue;  // they contradict each other, or the scene
+      ++k;
+      for (int n = 1; n < numbers; ++n) expect_image_or_reason(compiled, drawn(false, 2));
+    }
+    EXPECT_GE(codes_[0], kernels);
+    for (const auto& [code, count] : codes_) RecordProperty(fmt::format("code_{}", code), count);
+    fmt::print("exit codes: {}\n", codes_);
+  }
+
   static bool names(const std::string& message, const std::string& option) {
     return message.find("--" + option + " ") != std::string::npos ||
            message.find(option + ": found") != std::string::npos;
@@ -214,21 +229,15 @@ class RandomOptions : public ::testing::Test {
   std::map<int, int> codes_;
 };
 
-// CLPV_RANDOM_KERNELS, CLPV_RANDOM_NUMBERS and CLPV_RANDOM_SEED make other and longer runs.
 TEST_F(RandomOptions, GiveAnImageOrAReason) {
-  const int kernels = number_from("CLPV_RANDOM_KERNELS", kKernels),
-            numbers = number_from("CLPV_RANDOM_NUMBERS", kNumbers);
-  for (int k = 0; k < kernels;) {
-    OptionValues compiled = drawn(true, 4);
-    compiled.try_emplace("grid", "6");
-    if (!expect_image_or_reason(compiled, {}))
-      continue;  // they contradict each other, or the scene
-    ++k;
-    for (int n = 1; n < numbers; ++n) expect_image_or_reason(compiled, drawn(false, 2));
-  }
-  EXPECT_GE(codes_[0], kernels);
-  for (const auto& [code, count] : codes_) RecordProperty(fmt::format("code_{}", code), count);
-  fmt::print("exit codes: {}\n", codes_);
+  expect_images_or_reasons(kKernels);
+}
+
+struct LongRandomOptions : RandomOptions {};
+
+// CLPV_RANDOM_KERNELS, CLPV_RANDOM_NUMBERS and CLPV_RANDOM_SEED make other and longer runs.
+TEST_F(LongRandomOptions, GiveAnImageOrAReason) {
+  expect_images_or_reasons(number_from("CLPV_RANDOM_KERNELS", kLongKernels));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ class Generator : public testing::TestWithParam<const char*> {};
 
 TEST_P(Generator, ReproducesTheCommittedFiles) {
   if (test::run("python3 -c 'import sys; sys.exit(sys.version_info < (3, 9))'").exit_code != 0) {
-    GTEST_SKIP() << "needs python3, 3.9 or later";
+    GTEST_SKIP() << "python3 is not 3.9 or later (Debian: apt install python3)";
   }
   const std::string name = GetParam();
   const test::TemporaryFolder folder;

@@ -19,8 +19,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kSmall =
-    " --width 48 --height 27 --grid 16 --rsm-size 64 --shadow-size 128 --directions 24";
+constexpr const char *kSmall = " --width 48 --height 27 --grid 16 --rsm-size 64 --shadow-size 128",
+                     *kSwept = " --directions 24",
+                     *kStepped = " --transport sampled --gather all --blockers seen --cascades 1";
 
 /// PATH while this lives.
 class Path {
@@ -41,8 +42,9 @@ struct SequenceTest : ::testing::Test {
   fs::path frame(int i, const std::string& extension = "exr") const {
     return folder / fmt::format("out/frame-{:04}.{}", i, extension);
   }
+  std::string method = kStepped;  ///< the fewest programs
   Outcome clpv(const std::string& arguments) const {
-    return run_here(arguments + kSmall, folder.path());
+    return run_here(arguments + kSmall + method, folder.path());
   }
   Outcome sequence(const std::string& arguments) const {
     return clpv("sequence moving.json -o out " + arguments);
@@ -72,6 +74,7 @@ struct SequenceTest : ::testing::Test {
 
 TEST_F(SequenceTest, EveryFrameIsTheOneRenderedAlone) {
   // The camera crosses cells of 0.25 m; a wall, a sun and a lamp move.
+  method = kSwept;
   const Outcome outcome = sequence("--frames 3 --fps 3 --from 0.1");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   for (int i = 0; i < 3; ++i) {

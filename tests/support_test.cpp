@@ -75,6 +75,14 @@ TEST(Printable, ErrorsAndXmlAre) {
   EXPECT_EQ(xml_escaped("<a\x01&\x1b\n>"), "&lt;a?&amp;?\n>");
 }
 
+TEST(Nearest, HasAtMostTwoEdits) {
+  const std::vector<std::string> names{"basis", "bases", "grid"};
+  EXPECT_EQ(nearest("bsis", names), "basis");
+  EXPECT_EQ(nearest("gird", names), "grid");
+  EXPECT_EQ(nearest("bass", names), "basis") << "the first of two";
+  EXPECT_EQ(nearest("width", names), "");
+}
+
 TEST(InFileName, HasOnlyPlainCharactersAndTellsNamesApart) {
   std::set<std::string> parts;
   const std::string wide = "\xc3\xbc", longer(65, 'a');

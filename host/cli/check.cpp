@@ -153,11 +153,12 @@ void run(const Options& options, const Shared& shared) {
   if (json)
     print_json(report_of(results, device).dump(2) + "\n");
   else
-    print_data("{}\n", counts_of(results));
+    print_data("{} comparisons, {} results: {}\n", cases.size(), results.size(),
+               counts_of(results));
   if (!options.junit.empty()) write_file(options.junit, verify::junit(results, device.name));
   if (verify::passed(results)) return;
   throw Error(ExitCode::validation,
-              "comparisons on {}: {}; allowed: none wrong or failed, at least one ok", device.name,
+              "results on {}: {}; allowed: none wrong or failed, at least one ok", device.name,
               counts_of(results));
 }
 
@@ -195,7 +196,7 @@ void add_check(CLI::App& app, Shared& shared) {
   add(*command, "--claims", "DIR", options->claims, "folder shared with other helpers")->group("");
   add_format(*command, options->format);
   add(*command, "--junit", "FILE.xml", options->junit,
-      "output file in JUnit format, one test case per comparison");
+      "output file in JUnit format, one test case per result");
   command->footer(
       "A comparison is ok, wrong (beyond its tolerance), failed (the driver reported an error, "
       "crashed, or took too long)\n"

@@ -5,7 +5,6 @@
 
 #include <CL/opencl.hpp>
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <sstream>
 
@@ -20,12 +19,10 @@
 #include "support/log.hpp"
 #include "support/print.hpp"
 #include "support/progress.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
-
-// Edits of a misspelt command: "rendr" and "qualtiy" have one and two.
-constexpr std::size_t kMaxEdits = 2;
 
 /// Rank 0 logs at the requested level; other ranks log only problems unless --verbose is given.
 void set_log(const Shared& shared) {
@@ -53,22 +50,6 @@ void reject_ranks_except(CLI::App& app, const std::vector<std::string>& names) {
   }
 }
 
-/// Levenshtein distance: number of inserted, deleted and replaced letters.
-std::size_t edits(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
 /// Throws Error(usage) that suggests the closest command for an unknown one.
 void reject_misspelt_command(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining();
@@ -79,10 +60,8 @@ void reject_misspelt_command(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands({})) {
     if (!command->get_group().empty()) names.push_back(command->get_name());
   }
-  const auto nearest =
-      std::ranges::min_element(names, {}, [&](const std::string& n) { return edits(*word, n); });
-  if (edits(*word, *nearest) <= kMaxEdits)
-    throw Error(ExitCode::usage, "unknown command '{}'; did you mean {}?", *word, *nearest);
+  if (const std::string meant = nearest(*word, names); !meant.empty())
+    throw Error(ExitCode::usage, "unknown command '{}'; did you mean {}?", *word, meant);
   throw Error(ExitCode::usage, "unknown command '{}'; allowed: {}", *word, fmt::join(names, ", "));
 }
 
@@ -92,21 +71,17 @@ void reject_misspelt_option(const CLI::App& app) {
       app.get_subcommands().empty()
           ? std::vector<const CLI::App*>{&app}
           : std::vector<const CLI::App*>{app.get_subcommands().front(), &app};
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands) {
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
   for (const std::string& word : app.remaining(true)) {
-    if (!word.starts_with("--")) continue;
     const std::string given = word.substr(0, word.find('='));
-    std::string nearest;
-    for (const CLI::App* command : commands) {
-      for (const CLI::Option* option : command->get_options()) {
-        for (const std::string& name : option->get_lnames()) {
-          if (nearest.empty() || edits(given, "--" + name) < edits(given, nearest))
-            nearest = "--" + name;
-        }
-      }
-    }
-    if (edits(given, nearest) > kMaxEdits) continue;
-    throw Error(ExitCode::usage, "{}: unknown option '{}'; did you mean {}?",
-                commands.front()->get_name(), given, nearest);
+    if (!word.starts_with("--")) continue;
+    if (const std::string meant = nearest(given, names); !meant.empty())
+      throw Error(ExitCode::usage, "{}: unknown option '{}'; did you mean {}?",
+                  commands.front()->get_name(), given, meant);
   }
 }
 
@@ -133,8 +108,8 @@ class ShortHelp : public CLI::Formatter {
       return option->get_group().starts_with(kMoreOptions);
     });
     if (more == 0 || !short_) return CLI::Formatter::make_footer(app);
-    return fmt::format("\n--help-all lists {} more options, by stage.\n{}", more,
-                       CLI::Formatter::make_footer(app));
+    return fmt::format("\n--help-all lists {} more option{}, by stage.\n{}", more,
+                       more == 1 ? "" : "s", CLI::Formatter::make_footer(app));
   }
 
  private:
@@ -242,7 +217,7 @@ int answer(const CLI::App& app, const CLI::ParseError& error) {
   std::ostringstream out, err;
   app.exit(error, out, err);
   print_text(out.str());
-  print_message(err.str());
+  if (!err.str().empty()) print_message("clpv: " + err.str());
   return error.get_exit_code() == 0 ? 0 : static_cast<int>(ExitCode::usage);
 }
 

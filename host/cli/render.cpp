@@ -71,7 +71,7 @@ void write_images(Frame& frame, const Options& options, float exposure,
     return write_exr(output, all);
   }
   for (const Show view : views) {
-    Image shown = display_image(view_image(frame, view), exposure, options.request.tonemap);
+    Image shown = options.request.displayed(view_image(frame, view), exposure);
     shown.metadata = metadata;
     write_png(png_path(output, view, views.size() > 1), shown);
   }

@@ -47,6 +47,9 @@ void add_shown_options(CLI::App& command, RenderRequest& request) {
   add_number(command, "--exposure", "EV", request.exposure,
              "exposure of a PNG [EV] (default: the scene's)", {-kMaxExposure, kMaxExposure});
   add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
+  command.add_flag_callback(
+      "--alpha", [&request] { request.background = Background::transparent; },
+      "transparent background of a PNG (default: black)");
 }
 
 RenderOptions resolve_request(const RenderRequest& request, const SceneData& scene) {
@@ -97,7 +100,8 @@ nlohmann::json describe(const RenderRequest& request, const RenderOptions& optio
               {"camera", camera.name},
               {"time", seconds},
               {"exposure", request.exposure_of(shown)},
-              {"tonemap", name_of(request.tonemap)}});
+              {"tonemap", name_of(request.tonemap)},
+              {"alpha", request.background == Background::transparent}});
   request.changes.describe(all);
   return all;
 }

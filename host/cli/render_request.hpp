@@ -32,10 +32,14 @@ void add_scene_request(CLI::App& command, SceneRequest& request);
 
 struct RenderRequest : SceneRequest {
   ToneMap tonemap = ToneMap::aces;
+  Background background = Background::black;
   std::optional<float> exposure;
   OptionValues frame;
 
   float exposure_of(const SceneData& shown) const { return exposure.value_or(shown.exposure); }
+  Image displayed(const Image& image, float ev) const {
+    return display_image(image, ev, tonemap, background);
+  }
 };
 
 /// Adds the options for scene, camera and frames.

@@ -97,8 +97,10 @@ void run(const Options& options, Shared& shared) {
   log_scene(moving.scene(), camera(moving.scene()), resolved);
   if (!moving.moves()) spdlog::warn("{}: nothing moves: all frames are equal", request.scene);
 
-  SequenceSubject subject{
-      request.camera, request.exposure_of(moving.scene()), request.tonemap, {}, {}};
+  SequenceSubject subject{request.camera, {}, {}, {}};
+  subject.displayed = [&, exposure = request.exposure_of(moving.scene())](const Image& image) {
+    return request.displayed(image, exposure);
+  };
   subject.describe = [&](const SceneData& posed, double seconds) {
     return describe(request, resolved, posed, camera(posed), seconds);
   };

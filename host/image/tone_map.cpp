@@ -38,14 +38,15 @@ float srgb_decode(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-Image display_image(const Image& image, float exposure, ToneMap curve) {
+Image display_image(const Image& image, float exposure, ToneMap curve, Background background) {
   const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
              a = image.channel("A");
   if (!r || !g || !b || image.encoding != Encoding::linear) {
     throw std::logic_error("display_image: needs linear R, G and B");
   }
+  const bool clear = a && background == Background::transparent;
   Image display = make_image(image.width, image.height, {"R", "G", "B"});
-  if (a) display = make_image(image.width, image.height, {"R", "G", "B", "A"});
+  if (clear) display = make_image(image.width, image.height, {"R", "G", "B", "A"});
   display.encoding = Encoding::srgb;
   display.metadata = image.metadata;
   const float gain = std::exp2(exposure);
@@ -53,7 +54,7 @@ Image display_image(const Image& image, float exposure, ToneMap curve) {
     const float* in = &image.pixels[p * image.channels.size()];
     float* out = &display.pixels[p * display.channels.size()];
     const float alpha = a ? in[*a] : 1.0f;
-    if (a) out[3] = std::clamp(alpha, 0.0f, 1.0f);
+    if (clear) out[3] = std::clamp(alpha, 0.0f, 1.0f);
     if (!(alpha > 0)) continue;
     const glm::vec3 colour = tone_curve(curve, gain * glm::vec3(in[*r], in[*g], in[*b]));
     for (int c = 0; c < 3; ++c) out[c] = srgb_encode(colour[c]);

@@ -26,8 +26,12 @@ float srgb_decode(float encoded);
 /// Rec. 709 luminance.
 float luminance(const glm::vec3& linear);
 
+/// Background of a display image: black, without channel A, or transparent where there is an A.
+enum class Background { black, transparent };
+
 /// Display image of a linear image with R, G, B and optionally A: tone_curve(2^exposure * colour),
 /// sRGB-encoded. Alpha is clamped to [0, 1]; colour is 0 where alpha is 0.
-Image display_image(const Image& image, float exposure, ToneMap curve);
+Image display_image(const Image& image, float exposure, ToneMap curve,
+                    Background background = Background::black);
 
 }  // namespace clpv

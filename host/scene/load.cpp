@@ -198,7 +198,7 @@ void MovingScene::load_scene_file(const std::filesystem::path& path,
   std::error_code unknown;
   if (replacement.empty() && !std::filesystem::exists(model, unknown)) {
     reject(path.string(), "/model", "no file '" + model.string() + "'",
-           "an existing file; option model says where it lies");
+           "an existing file, or option model with the path of one");
   }
   scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes,
                      {!views.cameras, !views.lights});

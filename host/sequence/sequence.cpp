@@ -143,7 +143,7 @@ void Sequence::measure_stability() {
 void Sequence::for_all_images(const std::function<void(const Image&)>& action) {
   for_all_frames("video", "the video is not written", [&](int i) {
     const Image image = read_image(options_.file(i));
-    action(image.encoding == Encoding::srgb ? image : displayed(image));
+    action(image.encoding == Encoding::srgb ? image : subject_.displayed(image));
   });
 }
 
@@ -198,7 +198,7 @@ bool Sequence::render(int number) {
 void Sequence::write(FrameLine line, Frame& frame, const nlohmann::json& description) {
   const Clock::time_point started = Clock::now();
   const Image image = view_image(frame, options_.view);
-  Image shown = options_.format == FrameFormat::exr ? image : displayed(image);
+  Image shown = options_.format == FrameFormat::exr ? image : subject_.displayed(image);
   shown.metadata = metadata_of(description);
   shown.metadata[kKey] = line.key;
   shown.metadata[kPixels] = pixels_hash(shown);

@@ -45,8 +45,7 @@ struct SequenceOptions {
 /// Content of the frames, and a function that receives the first.
 struct SequenceSubject {
   std::string camera;
-  float exposure;
-  ToneMap tonemap;
+  std::function<Image(const Image& linear)> displayed;  ///< for PNG
   /// Inputs of a frame, by name.
   std::function<nlohmann::json(const SceneData& posed, double seconds)> describe;
   std::function<void(Session&, Frame&)> first_frame;  ///< called after the first frame
@@ -88,9 +87,6 @@ class Sequence {
 
   template <typename Action>
   void for_all_frames(const char* title, const char* lost, const Action& action);
-  Image displayed(const Image& image) const {
-    return display_image(image, subject_.exposure, subject_.tonemap);
-  }
   const SceneCamera& camera() const { return moving_.scene().camera(subject_.camera); }
   nlohmann::json described(double seconds) const;
   std::string key(const nlohmann::json& described) const;

@@ -16,7 +16,7 @@
 namespace clpv::verify {
 namespace {
 
-constexpr unsigned kGrid = 4;
+constexpr unsigned kEmitGrid = 4;
 constexpr float kScale = 0.25f;
 
 /// Emission of the triangles: a texture, the same texture masked, and a double-sided colour.
@@ -35,8 +35,8 @@ SceneData emissive_soup() {
 }
 
 Deviation compare_scene(Session& session, const SceneData& scene) {
-  const std::vector<ClpvGrid> grids = {{{-1, 2, 2.5f}, 0.5f, kGrid, {}},
-                                       {{-2, 1, 1.5f}, 1, kGrid, {}}};
+  const std::vector<ClpvGrid> grids = {{{-1, 2, 2.5f}, 0.5f, kEmitGrid, {}},
+                                       {{-2, 1, 1.5f}, 1, kEmitGrid, {}}};
   const EmissionPlan plan = plan_emission(scene, emissive_triangles(scene), grids);
   const SceneBuffers buffers = upload_scene(session, scene);
   Emitter emitter(session, buffers);

@@ -19,7 +19,7 @@
 namespace clpv::verify {
 namespace {
 
-constexpr int kGrid = 9;  // odd, so that no pitch is a power of two
+constexpr int kGatherGrid = 9;  // odd, so that no pitch is a power of two
 constexpr int kCascades = 3;
 constexpr double kFinestEdge = 4;  // [m]; the coarsest is 16 m across
 
@@ -130,7 +130,7 @@ Cases gather_cases(const CheckScope& scope) {
   Cases cases;
   const auto add = [&](const std::string& basis, TransportKind transport, const std::string& name,
                        GatherOptions options) {
-    options.grid = kGrid;
+    options.grid = kGatherGrid;
     cases.push_back(
         job_case(Stage::gather, fmt::format("{}/{}/{}", basis, name_of(transport), name),
                  [=](Session& session) {

@@ -23,17 +23,18 @@
 namespace clpv::verify {
 namespace {
 
-constexpr int kGrid = 5;  // odd and small: many texels per cell, several segments in some cells
+constexpr int kInjectGrid =
+    5;  // odd and small: many texels per cell, several segments in some cells
 constexpr unsigned kWidth = 37, kHeight = 23;  // no multiples of a work-group
 // [cells]; excludes points close to a cell boundary, where rounding decides. Exceeds the position
 // error of 8-bit normals.
 constexpr double kMargin = 0.01;
 
-const ClpvGrid kCells = {{-1.5f, 0.5f, 2.0f}, 0.5f, kGrid, {}};
+const ClpvGrid kCells = {{-1.5f, 0.5f, 2.0f}, 0.5f, kInjectGrid, {}};
 
 /// A view from above or from a corner that shows the grid and some space beside it.
 ClpvView view_of_grid(bool orthographic, float distance) {
-  const glm::vec3 centre = glm::vec3(vector(kCells.origin)) + 0.5f * kCells.cell * kGrid;
+  const glm::vec3 centre = glm::vec3(vector(kCells.origin)) + 0.5f * kCells.cell * kInjectGrid;
   SceneCamera camera;
   camera.forward =
       glm::normalize(orthographic ? glm::vec3(0.2f, -1, 0.1f) : glm::vec3(-1, -0.7f, 0.5f));
@@ -263,7 +264,7 @@ InjectProblem random_injection(Session& session, const std::shared_ptr<const Bas
                                const InjectOptions& options, bool light, bool orthographic,
                                RsmFormat format, bool points) {
   InjectProblem problem{basis, options, kCells, {}, {}};
-  problem.options.grid = kGrid;
+  problem.options.grid = kInjectGrid;
   const auto surface = [&](bool above, unsigned seed) {
     SurfaceImage image = random_surface(*basis, options.lobes, above, light, format, seed);
     if (points) image = as_points(std::move(image));

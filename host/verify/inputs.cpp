@@ -15,8 +15,8 @@
 namespace clpv::verify {
 namespace {
 
-constexpr unsigned kWidth = 45, kHeight = 31;  // no multiples of a work-group
-constexpr float kFarthest = 12;                // [m]
+constexpr unsigned kInputWidth = 45, kInputHeight = 31;  // no multiples of a work-group
+constexpr float kFarthest = 12;                          // [m]
 constexpr double kHeightError = 1e-6;  // height of a rotated centre in float32; measured 3e-7
 
 void add_materials(SceneData& scene, std::mt19937& random) {
@@ -50,8 +50,8 @@ SurfaceImage random_surfaces(std::mt19937& random) {
   view.right[2] = view.up[1] = view.forward[0] = 1;
   view.half_width = 1.2f, view.half_height = 0.8f;
   view.near_depth = 0.01f, view.far_depth = 100;
-  view.width = kWidth, view.height = kHeight;
-  for (unsigned pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+  view.width = kInputWidth, view.height = kInputHeight;
+  for (unsigned pixel = 0; pixel < kInputWidth * kInputHeight; ++pixel) {
     const float depth = 1.1f * uniform(random) - 0.1f;
     const glm::vec3 n(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.4995f);
     image.depth.push_back(depth > 0 ? kFarthest * depth * depth : 0.0f);

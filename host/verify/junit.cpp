@@ -12,7 +12,7 @@ namespace {
 
 std::string test_case(const CheckResult& result) {
   const std::string head =
-      fmt::format("    <testcase classname=\"clpv.{}\" name=\"{}\" time=\"{:.3f}\"",
+      fmt::format("    <testcase classname=\"clpv.{}\" name=\"{}\" time=\"{:.6f}\"",
                   xml_escaped(result.stage), xml_escaped(result.variant), result.seconds);
   const auto with = [&](const std::string& element) {
     return fmt::format("{}>\n      {}\n    </testcase>\n", head, element);

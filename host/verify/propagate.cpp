@@ -24,7 +24,7 @@
 namespace clpv::verify {
 namespace {
 
-constexpr int kGrid = 7;  // no multiple of a work-group: tests borders and partial work-groups
+constexpr int kStepsGrid = 7;  // no multiple of a work-group: tests borders and partial work-groups
 constexpr int kFormatGrid = 17;  // whole blocks of 8 cells plus one cell
 constexpr int kSteps = 5;        // light crosses the grid and meets blockers
 
@@ -137,7 +137,7 @@ void add_constants(const std::string& basis, const LobeOptions& lobes, bool thor
                    const Add& add_case) {
   const auto add = [&](TransportKind kind, bool blockers) {
     add_case(basis,
-             {.kind = kind, .lobes = lobes, .options = {.grid = kGrid}, .blockers = blockers});
+             {.kind = kind, .lobes = lobes, .options = {.grid = kStepsGrid}, .blockers = blockers});
   };
   for (const ConstantsCase& c : kConstants) {
     if (!thorough && c.basis == basis) add(c.kind, c.blockers);
@@ -153,9 +153,10 @@ void add_constants(const std::string& basis, const LobeOptions& lobes, bool thor
 /// image.
 void add_run_time_lobes(const std::string& basis, bool full, const Add& add_case) {
   const auto add = [&](TransportKind transport, LobeKind kind, TableStorage table) {
-    add_case(basis, {.kind = transport,
-                     .lobes = {.kind = kind, .table_functions = kind == LobeKind::rotate},
-                     .options = {.grid = kGrid, .lobe_time = LobeTime::kernel, .table = table}});
+    add_case(basis,
+             {.kind = transport,
+              .lobes = {.kind = kind, .table_functions = kind == LobeKind::rotate},
+              .options = {.grid = kStepsGrid, .lobe_time = LobeTime::kernel, .table = table}});
   };
   add(TransportKind::sampled, LobeKind::rotate, TableStorage::buffer);
   if (!full) return;
@@ -224,7 +225,7 @@ Cases propagate_cases(const CheckScope& scope) {
   for (const char* name : {"sh2", "bins24"}) {
     if (!scope.thorough && std::string(name) != "sh2") continue;
     for (const TransportKind transport : stepped_transports())
-      add(name, {.kind = transport, .blocking = Blocking::areas, .options = {.grid = kGrid}});
+      add(name, {.kind = transport, .blocking = Blocking::areas, .options = {.grid = kStepsGrid}});
   }
   // Basis and transport do not affect formats.
   for (const VolumeFormat& format : scope.formats)

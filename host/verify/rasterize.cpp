@@ -19,7 +19,7 @@
 namespace clpv::verify {
 namespace {
 
-constexpr int kWidth = 41, kHeight = 27;  // no multiples of a tile
+constexpr int kRasterWidth = 41, kRasterHeight = 27;  // no multiples of a tile
 constexpr int kLightSize = 37;
 
 class SceneMaker {
@@ -169,7 +169,7 @@ void append(CheckResults& results, const SurfaceImage& device,
   }
   const double pixels = expected.uncertain.size();
   results.push_back(result_of("rasterize", variant, values));
-  results.push_back(result_of("rasterize-edges", variant,
+  results.push_back(result_of("rasterize", variant + ", edges",
                               {differing / pixels, tolerance("rasterize-edges"),
                                fmt::format("{} of {} pixels, {} of them uncertain", differing,
                                            pixels, std::ranges::count(expected.uncertain, true))}));
@@ -178,7 +178,7 @@ void append(CheckResults& results, const SurfaceImage& device,
 CheckResults compare_camera(Session& session, const SceneData& scene, const std::string& name) {
   SceneCamera camera;
   camera.near_depth = 0.3f;
-  const ClpvView view = camera_view(camera, kWidth, kHeight);
+  const ClpvView view = camera_view(camera, kRasterWidth, kRasterHeight);
   Rasterizer rasterizer(session, upload_scene(session, scene));
   Surface surface = make_surface(session, view, RsmFormat::float32, true);
   rasterizer.rasterize_camera(surface);

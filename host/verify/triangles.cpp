@@ -21,8 +21,8 @@
 namespace clpv::verify {
 namespace {
 
-constexpr int kGrid = 9;  // no multiple of a work-group
-const ClpvGrid kCells = {{-2.5f, 0.5f, 1.0f}, 0.5f, kGrid, {}};
+constexpr int kTrianglesGrid = 9;  // no multiple of a work-group
+const ClpvGrid kTrianglesCells = {{-2.5f, 0.5f, 1.0f}, 0.5f, kTrianglesGrid, {}};
 
 /// Returns "x,y,z" of the sample that contains a number, for n samples along each axis.
 std::string sample_of(std::size_t number, std::size_t n) {
@@ -45,18 +45,19 @@ Cases cases_of_formats(Stage stage, const CheckScope& scope,
 Deviation compare_blockers(Session& session, const VolumeFormat& format) {
   const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
-  Volume geometry(session, {kGrid + 1, 3, 1}, "check: blockers", format);
-  VoxelField(session, buffers, blocker_masks(buffers, kGrid, 1, format))
-      .update(0, kCells, geometry);
+  Volume geometry(session, {kTrianglesGrid + 1, 3, 1}, "check: blockers", format);
+  VoxelField(session, buffers, blocker_masks(buffers, kTrianglesGrid, 1, format))
+      .update(0, kTrianglesCells, geometry);
   const std::vector<float> found = geometry.read(session);
-  const reference::BlockerBounds expected = reference::voxelize_blockers(scene, kCells);
+  const reference::BlockerBounds expected = reference::voxelize_blockers(scene, kTrianglesCells);
   Deviation result{0, tolerance("blockers", format.storage)};
   for (std::size_t at = 0; at < found.size(); ++at) {
     const double share = found[at], lower = expected.lower.values[at],
                  upper = expected.upper.values[at];
     result.take(std::max(lower - share, share - upper), [&] {
-      return fmt::format("corner {} axis {}: {}, expected {} to {}", sample_of(at, kGrid + 1),
-                         at / (found.size() / 3), share, lower, upper);
+      return fmt::format("corner {} axis {}: {}, expected {} to {}",
+                         sample_of(at, kTrianglesGrid + 1), at / (found.size() / 3), share, lower,
+                         upper);
     });
   }
   return result;
@@ -65,19 +66,20 @@ Deviation compare_blockers(Session& session, const VolumeFormat& format) {
 Deviation compare_reflectors(Session& session, const VolumeFormat& format) {
   const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
-  Volume reflectors(session, {kGrid, kCellFaces, 3}, "check: reflectors", format);
-  VoxelField(session, buffers, reflector_masks(buffers, kGrid, format))
-      .update(0, kCells, reflectors);
+  Volume reflectors(session, {kTrianglesGrid, kCellFaces, 3}, "check: reflectors", format);
+  VoxelField(session, buffers, reflector_masks(buffers, kTrianglesGrid, format))
+      .update(0, kTrianglesCells, reflectors);
   const std::vector<float> found = reflectors.read(session);
-  const reference::ReflectingAreas expected = reference::voxelize_reflectors(scene, kCells);
+  const reference::ReflectingAreas expected =
+      reference::voxelize_reflectors(scene, kTrianglesCells);
   Deviation result{0, tolerance("reflectors", format.storage)};
   for (std::size_t at = 0; at < found.size(); ++at) {
     const double wanted = expected.areas.values[at], tolerated = expected.tolerance.values[at];
     result.take(std::abs(found[at] - wanted) - tolerated, [&] {
-      const std::size_t plane = at / (kGrid * kGrid * kGrid);
+      const std::size_t plane = at / (kTrianglesGrid * kTrianglesGrid * kTrianglesGrid);
       return fmt::format("cell {} side {} channel {}: {:.6g}, expected {:.6g}",
-                         sample_of(at, kGrid), plane % kCellFaces, plane / kCellFaces, found[at],
-                         wanted);
+                         sample_of(at, kTrianglesGrid), plane % kCellFaces, plane / kCellFaces,
+                         found[at], wanted);
     });
   }
   return result;
@@ -87,11 +89,11 @@ Deviation compare_visibility(Session& session) {
   constexpr std::size_t kCascade = 1;  // not the first
   const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
-  const reference::Occlusion expected = reference::occlude(scene, kCells);
-  VoxelField visibility(session, buffers, visibility_masks(kGrid, kCascade + 1));
-  visibility.update(0, kCells);
-  visibility.update(kCascade, kCells);
-  const std::size_t bytes = visibility_bytes(kGrid);
+  const reference::Occlusion expected = reference::occlude(scene, kTrianglesCells);
+  VoxelField visibility(session, buffers, visibility_masks(kTrianglesGrid, kCascade + 1));
+  visibility.update(0, kTrianglesCells);
+  visibility.update(kCascade, kTrianglesCells);
+  const std::size_t bytes = visibility_bytes(kTrianglesGrid);
   const auto found = session.read<std::uint8_t>(visibility.masks(), bytes * (kCascade + 1));
   Deviation result{0, tolerance("visibility")};
   for (std::size_t point = 0; point < bytes; ++point) {
@@ -100,7 +102,7 @@ Deviation compare_visibility(Session& session) {
     const unsigned wrong = (lower & ~bits) | (bits & ~upper);
     result.take(std::popcount(wrong), [&] {
       return fmt::format("cube {} point {}: {:08b}, expected {:08b} to {:08b}",
-                         sample_of(point / 64, kGrid), point % 64, bits, lower, upper);
+                         sample_of(point / 64, kTrianglesGrid), point % 64, bits, lower, upper);
     });
   }
   return result;

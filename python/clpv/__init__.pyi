@@ -231,10 +231,10 @@ class Image:
         """'linear' in light, or 'srgb'."""
     def save(self, path: _Path, exposure: float = 0.0) -> None:
         """Writes a linear image with channels R, G, B and optionally A: .exr as float32 with metadata, .png tone-mapped
-        (ACES) after multiplication by 2^exposure [EV].
+        (ACES) after multiplication by 2^exposure [EV], on a black background.
         """
     def display(self, exposure: float = 0.0) -> NDArray[np.uint8]:
-        """uint8 array (height, width, channels), tone-mapped and sRGB-encoded as save() does for .png."""
+        """uint8 array (height, width, channels), tone-mapped and sRGB-encoded as save() does for .png, with A."""
     def _repr_png_(self) -> bytes | None: ...
 
 class Light:

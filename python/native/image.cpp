@@ -155,11 +155,11 @@ void add_image(py::module_& module) {
       py::arg("path"), py::arg("exposure") = 0.0f,
       "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with "
       "metadata, .png tone-mapped\n"
-      "(ACES) after multiplication by 2^exposure [EV].");
+      "(ACES) after multiplication by 2^exposure [EV], on a black background.");
   type.def(
       "display",
       [](const Image& image, float exposure) {
-        Image shown = display_image(image, exposure, ToneMap::aces);
+        Image shown = display_image(image, exposure, ToneMap::aces, Background::transparent);
         const auto shape = shape_of(shown);
         py::array_t<std::uint8_t> bytes(shape);
         std::uint8_t* out = bytes.mutable_data();
@@ -169,7 +169,7 @@ void add_image(py::module_& module) {
       },
       py::arg("exposure") = 0.0f,
       "uint8 array (height, width, channels), tone-mapped and sRGB-encoded as save() does for "
-      ".png.");
+      ".png, with A.");
   type.def(
       "_repr_png_",
       [](const Image& image) -> py::object {

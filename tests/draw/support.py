@@ -31,6 +31,7 @@ def bench_document(*rows):
     return {
         "context": {
             "device": "a device", "platform": "a platform", "driver": "1", "git_describe": "abc",
+            "clpv_version": "1.2.3",
             "ceilings": {"gflops": 200.0, "bandwidths": [{"working_set": 2**20, "gbps": 100.0}]}
         }, "benchmarks": list(rows)
     }

@@ -4,14 +4,17 @@ import base64
 import json
 import pathlib
 import re
+import sys
 import tempfile
 import unittest
 
-import exr_files
 from support import bench_document, row, variant
 from clpv import output
 from clpv.draw import documents, report
 import numpy
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "score"))
+import exr_writer  # noqa: E402
 
 NASTY = "<script>alert(1)</script> $x$ \"'&"
 
@@ -39,10 +42,10 @@ class Page(unittest.TestCase):
         views = []
         for name, light in ("lit", 1.0), ("black", 0.0):
             truth = f"truths/{name}.exr"
-            exr_files.write(self.folder / truth, channels([light] * 3, "indirect."))
+            exr_writer.write(self.folder / truth, channels([light] * 3, "indirect."))
             views.append({"name": name, "truth": truth, "noise": 0.02, "exposure": 0})
-            exr_files.write(self.folder / f"0/{name}.exr", channels([1.1] * 3))
-        exr_files.write(self.folder / "1/lit.exr", channels([0.5, 0.5, 0.5]))
+            exr_writer.write(self.folder / f"0/{name}.exr", channels([1.1] * 3))
+        exr_writer.write(self.folder / "1/lit.exr", channels([0.5, 0.5, 0.5]))
         (self.folder / "suite.json").write_text(
             json.dumps({"schema": 1, "hash": "report", "views": views}))
 

@@ -8,7 +8,7 @@
 int main(int, char** arguments) {
   clpv::Options options;
   for (const auto& [name, value] : std::map<std::string, std::string>{{"width", "12"},
-                                                                      {"height", "9"},
+                                                                      {"height", "5"},
                                                                       {"grid", "3"},
                                                                       {"cascades", "2"},
                                                                       {"cascade-size", "5"},
@@ -27,11 +27,11 @@ int main(int, char** arguments) {
   renderer.irradiance(points, directions);
   renderer.radiance(points, directions);
 
-  points.resize(12 * 9, {0.1f, 0.2f, 0.3f}), directions.resize(12 * 9, {0, 2, 0});
+  points.resize(12 * 5, {0.1f, 0.2f, 0.3f}), directions.resize(12 * 5, {0, 2, 0});
   directions[3] = {0, 0, 0}, points[4][0] = NAN;
-  std::vector<float> depths(12 * 9, 1.5f);
+  std::vector<float> depths(12 * 5, 1.5f);
   depths[5] = -INFINITY;
-  renderer.light({.width = 12, .height = 9, .normals = directions, .positions = points},
+  renderer.light({.width = 12, .height = 5, .normals = directions, .positions = points},
                  clpv::Vec3{0, 1, 1});
-  renderer.light({.width = 12, .height = 9, .normals = directions, .depths = depths}, "");
+  renderer.light({.width = 12, .height = 5, .normals = directions, .depths = depths}, "");
 }

@@ -23,7 +23,16 @@ run(${WORK}/without_page/bin/clpv --version)
 file(WRITE ${WORK}/finder/CMakeLists.txt
      "cmake_minimum_required(VERSION 3.22)\nproject(finder CXX)\nfind_package(clpv QUIET)\nif(clpv_DIR)\nmessage(FATAL_ERROR \"found \${clpv_DIR}\")\nendif()\n")
 run(${CMAKE_COMMAND} -E env PATH=${BUILD}:$ENV{PATH} ${CMAKE_COMMAND} -S ${WORK}/finder -B ${WORK}/finder/build -G ${GENERATOR})
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix
+                OUTPUT_VARIABLE said ERROR_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
+# It says where Python finds the module.
+if(EXISTS ${BUILD}/python/clpv/__init__.py AND said MATCHES "_native")
+  if(NOT said MATCHES "export PYTHONPATH=([^\n]+)")
+    message(FATAL_ERROR "cmake --install names no PYTHONPATH: ${said}")
+  endif()
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${CMAKE_MATCH_1} /usr/bin/python3 -B -c
+      "import clpv; assert clpv.__file__.startswith('${WORK}/prefix/'), clpv.__file__; clpv.devices()")
+endif()
 # The demo explains itself without a build.
 execute_process(COMMAND ${SOURCE}/scripts/demo --help OUTPUT_VARIABLE said ERROR_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
 if(NOT said MATCHES "RENDER_OPTION")

@@ -15,6 +15,10 @@ SMALL = {"basis": "sh2", "width": 48, "height": 27, "grid": 16, "rsm_size": 64}
 FRONT = clpv.Camera(eye=(0.278, 0.273, -0.18), target=(0.278, 0.273, 0.28), fov=75)
 
 
+def pytest_configure(config):
+    config.addinivalue_line("markers", "long: by `scripts/test --long`")
+
+
 def program(*arguments):
     words = [str(BUILD / "clpv"), *map(str, arguments)]
     return subprocess.run(words, check=True, capture_output=True, text=True).stdout

@@ -186,7 +186,7 @@ def test_meshes_change_while_frames_render():
 
 
 def test_scene_of_trimesh():
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
     box = trimesh.creation.box((1, 1, 1))
     given = trimesh.Scene()
     given.add_geometry(box, geom_name="box")

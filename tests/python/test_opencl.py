@@ -10,6 +10,8 @@ import pytest
 import clpv
 from conftest import CORNELL, FRONT, ROOT, SMALL
 
+MISSING = "pyopencl is not installed (Debian: apt install python3-pyopencl)"
+
 
 def test_handles_of_another_kind_are_named(scene):
     with pytest.raises(
@@ -32,7 +34,7 @@ def test_handles_of_another_kind_are_named(scene):
 
 
 def test_frames_and_light_in_pyopencls_queue(scene, renderer):
-    cl = pytest.importorskip("pyopencl")
+    cl = pytest.importorskip("pyopencl", reason=MISSING)
     context = cl.create_some_context(interactive=False)
     queue = cl.CommandQueue(context)
     made = clpv.Renderer(scene, context=context, queue=queue.int_ptr, **SMALL)
@@ -58,6 +60,6 @@ def test_frames_and_light_in_pyopencls_queue(scene, renderer):
 
 
 def test_the_example_runs():
-    pytest.importorskip("pyopencl")
+    pytest.importorskip("pyopencl", reason=MISSING)
     example = runpy.run_path(str(pathlib.Path(ROOT) / "examples/lookup.py"))
     example["main"](CORNELL)

@@ -14,7 +14,7 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 os.environ.setdefault("CLPV_BUILD_DIR", os.environ["CLPV_BUILD"])
 sys.path.insert(0, str(ROOT / "scripts"))
-pytest.importorskip("jinja2", reason="all of it")
+pytest.importorskip("jinja2", reason="all of it: Jinja2 is not installed (Debian: apt install python3-jinja2)")
 import measured  # noqa: E402
 from measured import expected, reproduce, verdicts  # noqa: E402
 
@@ -36,7 +36,8 @@ def test_a_verdict_is_made_from_its_points(outcomes, sentence):
 
 
 def test_outcomes_of_fresh_measurements_count(monkeypatch):
-    numpy = pytest.importorskip("numpy")
+    numpy = pytest.importorskip(
+        "numpy", reason="NumPy is not installed (Debian: apt install python3-numpy)")
     points = [(0.1, numpy.float64(1) > 0, "a"), (0.4, numpy.float64(0) > 0, "b")]
     rows = [("light", "statement", "rule", "lambda", "command", lambda read: points)]
     monkeypatch.setattr(verdicts.judge, "CLAIMS", rows)

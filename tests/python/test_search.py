@@ -12,7 +12,7 @@ import pytest
 import clpv
 from conftest import CORNELL, program
 
-pytest.importorskip("scipy", reason="all of it: SciPy is not installed")
+pytest.importorskip("scipy", reason="all of it: SciPy is not installed (Debian: apt install python3-scipy)")
 from clpv import search  # noqa: E402
 
 SLANTED = np.array([[1, 2, -3], [0, math.sqrt(14), 0]]) / math.sqrt(14), np.array([0.75, 0.25])

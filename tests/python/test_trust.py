@@ -68,24 +68,23 @@ if child == 0:
   {}
 _, status = os.waitpid(child, 0)
 print("child", os.waitstatus_to_exitcode(status), flush=True)
-renderer.render()
 """
+IN_A_CHILD = ("renderer.render()", "clpv.Renderer(scene)", "renderer.stats", "scene.lights = []",
+              "clpv.pathtrace(scene, samples=1)", "clpv.devices()", "renderer.volumes()")
 
 
-@pytest.mark.parametrize("work", [
-    "renderer.render()", "clpv.Renderer(scene)", "renderer.stats", "scene.lights = []",
-    "clpv.pathtrace(scene, samples=1)", "clpv.devices()", "renderer.volumes()"
-])
-def test_a_forked_child_is_refused_by_name(work):  # a render there once hung
-    ended = run(
-        FORK.format(f"try: {work}\n  except clpv.Error as e: print(e, flush=True)\n  os._exit(0)"))
-    for word in "forked", "'spawn'", "child 0":
-        assert word in ended.stdout, ended.stderr
-    assert ended.returncode == 0
+def test_a_forked_child_is_refused_by_name():  # a render there once hung
+    ended = run("".join(
+        FORK.format(f"try: {work}\n  except clpv.Error as e: print(e, flush=True)\n  os._exit(0)")
+        for work in IN_A_CHILD) + "renderer.render()\n")
+    lines = ended.stdout.splitlines()
+    assert ended.returncode == 0 and len(lines) == 2 * len(IN_A_CHILD), ended.stderr
+    for work, words, code in zip(IN_A_CHILD, lines[::2], lines[1::2]):
+        assert "forked" in words and "'spawn'" in words and code == "child 0", work
 
 
 def test_a_fork_before_any_render_works():
-    code = FORK.replace("renderer.render()\n", "").format(
+    code = FORK.format(
         f"print(clpv.Renderer(scene, **{SMALL!r}).render().width, flush=True)\n  os._exit(0)"
     )  # as multiprocessing ends
     ended = subprocess.run(

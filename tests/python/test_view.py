@@ -230,7 +230,7 @@ def test_clicks_on_the_image_only():
 @pytest.fixture(scope="module")
 def viewer():
     """A viewer of the scene that draws on its own thread; its port."""
-    pytest.importorskip("viser", reason="viser is not installed")
+    pytest.importorskip("viser", reason="viser is not installed (pip install viser)")
     port = free_port()
     gate = view_gate.Gate("127.0.0.1")
     server = gate.open("127.0.0.1", port)
@@ -552,8 +552,8 @@ def wait_for(port):
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium (Debian: apt install chromium)")
 def test_a_page_shows_the_scene_and_follows_a_drag(tmp_path):
-    pytest.importorskip("viser", reason="viser is not installed")
-    pytest.importorskip("PIL", reason="Pillow is not installed")
+    pytest.importorskip("viser", reason="viser is not installed (pip install viser)")
+    pytest.importorskip("PIL", reason="Pillow is not installed (pip install pillow)")
     keep = os.environ.get("CLPV_SCREENSHOTS")  # folder for the screenshots
     scene = os.environ.get("CLPV_VIEW_SCENE", str(CORNELL)).split()
     port, debug = free_port(), free_port()

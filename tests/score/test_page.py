@@ -41,7 +41,7 @@ class Page(test_score.Suite):
         self.put(lambda truth: 1.5 * truth)
         return [("mine", self.folder / "ours")]
 
-    @unittest.skipUnless(CHROMIUM, "skipped: no chromium here")
+    @unittest.skipUnless(CHROMIUM, "no Chromium (Debian: apt install chromium)")
     def test_controls_change_what_is_drawn(self):
         file = self.folder / "page.html"
         file.write_text(page.made(self.folder, self.folders()) + DRIVER)

@@ -19,9 +19,9 @@ import unittest
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts"), str(ROOT / "tests/draw")]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts")]
 from clpv.score import __main__ as command, exr, flip, mistakes, suite as scored  # noqa: E402
-from exr_files import write  # noqa: E402
+from exr_writer import write  # noqa: E402
 from measured import suite  # noqa: E402
 
 CLPV = os.environ["CLPV"]

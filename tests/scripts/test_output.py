@@ -20,7 +20,7 @@ from clpv import output
 from clpv.output import BadOutput, Folder, Output
 
 NOBODY = 65534
-IS_ROOT = unittest.skipUnless(os.geteuid() == 0, "skipped: needs root")
+IS_ROOT = unittest.skipUnless(os.geteuid() == 0, "needs root")
 
 
 class InFolder(unittest.TestCase):
@@ -113,7 +113,7 @@ class Files(InFolder):
                             (self.file, "Operation not permitted")):
             if shutil.which("chattr") is None or subprocess.run(
                     ["chattr", "+a", name], capture_output=True, check=False).returncode:
-                self.skipTest("skipped: chattr +a does not work here")
+                self.skipTest("chattr +a does not work here")
             try:
                 self.assertIn(words, self.rejected(Output, self.file))
             finally:

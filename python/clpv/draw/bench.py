@@ -183,12 +183,16 @@ def frame(rows):
 
 
 def save(figure, folder, name, context):
+    """Writes the chart with a footer below it, which the margins include."""
     device = f"{context['device']} ({context['platform']} {context['driver']})"[:DEVICE_CHARS]
-    figure.text(0.995, 0.004, f"clpv {context['git_describe']} on {device}", ha="right",
-                va="bottom", size=6, color=style.SOFT)
-    figure.tight_layout(rect=(0, 0.015, 1, 1))
+    version = context["git_describe"]
+    if version == "unknown":  # a build from a source archive
+        version = context["clpv_version"]
+    figure.tight_layout()
+    figure.text(1, 0, f"clpv {version} on {device}", ha="right", va="top", size=6, color=style.SOFT)
     for suffix in ("svg", "png"):
-        output.write(folder / f"{name}.{suffix}", style.rendered(figure, suffix, dpi=150))
+        output.write(folder / f"{name}.{suffix}",
+                     style.rendered(figure, suffix, dpi=150, bbox_inches="tight"))
 
 
 def draw(source: pathlib.Path, folder: pathlib.Path) -> None:

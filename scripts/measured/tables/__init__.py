@@ -15,12 +15,13 @@ import re
 import sys
 
 from .. import ROOT, RESULTS, expected, json_lines, output, verdicts
-from . import benchmarks, quality, paper, standing  # they fill TABLES
+from . import benchmarks, quality, paper, standing, tutorial  # they fill TABLES
 from .cells import LOADED, MEASURED, TABLES, read, result
 from .stages import print_stages
 
 __all__ = [
-    "MEASURED", "TABLES", "benchmarks", "main", "paper", "quality", "read", "result", "standing"
+    "MEASURED", "TABLES", "benchmarks", "main", "paper", "quality", "read", "result", "standing",
+    "tutorial"
 ]
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 def drawn(lines):
@@ -50,7 +51,8 @@ def block(match):
         return match[0]
     if name not in TABLES:
         sys.exit(f"scripts/tables: no table '{name}'; allowed: measured-on, {', '.join(TABLES)}")
-    return match[1] + drawn(TABLES[name]()) + match[3]
+    content = TABLES[name]()
+    return match[1] + (content if isinstance(content, str) else drawn(content)) + match[3]
 
 
 def written(text):

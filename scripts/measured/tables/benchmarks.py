@@ -169,7 +169,7 @@ def frames():
 @table
 def frames_recomputed():
     lines = [["recomputed", "frame [ms]", "blockers and visibility [ms]"]]
-    for recompute, name in (("everything", "everything"), ("light",
+    for recompute, name in (("everything", "light, blockers and visibility"), ("light",
                                                            "light, as if lights had changed"),
                             ("nothing", "nothing: only the camera moves")):
         rows = [row for row in bench("frame") if row["recompute"] == recompute]

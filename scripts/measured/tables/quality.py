@@ -3,7 +3,6 @@
 truth's."""
 from .. import rows as known
 from ..rows import PAPER
-from .benchmarks import stage_ms
 from .cells import found, load, number, percent, table
 
 
@@ -154,17 +153,14 @@ def quality_steps():
 
 @table
 def readme():
-    """Frame times beside errors."""
-    lines = [["", "propagate", "gather", "frame", "error"]]
-    for name, quality in {"the defaults": known.BEST, "`--preset fast`": known.FAST,
-                          "published scheme, sh2, in buffers": PAPER,
-                          "published scheme, sh2, in images of halves": PAPER}.items():
-        frame = found(load("frames")["frames"], given=known.FRAMES[name])
-        times = stage_ms(frame, "propagate"), stage_ms(frame, "gather"), frame and frame["frame_ms"]
-        error = mean("quality", quality, 0)
+    """Frame times beside errors, of the same frames."""
+    lines = [["", "propagation", "frame", "error"]]
+    for name, options in {"the defaults": known.BEST, "`--preset fast`": known.FAST,
+                          "`--preset fine`": known.FINE, "published scheme, sh2": PAPER}.items():
+        row = found(load("quality")["variants"], options=options)
         lines.append([
-            name, *(f"{number(time)} ms" if time else "-" for time in times),
-            "-" if error == "-" else f"{error} %"
+            name, f"{number(row['stage_ms']['propagate'])} ms", f"{number(row['frame_ms'])} ms",
+            f"{percent(row['nrmse'])} %"
         ])
     return lines
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""EXR files as others write them."""
+"""Writes EXR files for tests."""
 import struct
 
-import support  # noqa: F401, the paths of the modules
 from clpv.score import exr
 
 

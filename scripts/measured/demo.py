@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""The picture of scripts/demo: the atrium by direct light, with a bounce, with all bounces under a
+sky, and path traced.
+
+    PYTHONPATH=scripts python3 -m measured.demo DIR [--width N] [--height N] [RENDER_OPTION...]
+
+DIR: output folder. Other options go to `clpv render`.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+
+import numpy
+
+from . import CLPV, ROOT, output
+from .tables.stages import print_stages
+from clpv.draw import style
+from clpv.score import exr
+
+SCENE = ROOT / "scenes/atrium.json"
+EXPOSURE = -0.7  # [EV]
+SKY = {"radiance": [1.2, 1.6, 2.4], "ground": [0, 0, 0]}  # [W/m^2/sr]
+WIDTH, HEIGHT = 384, 216  # three of this width fit a screen
+TRUTH = 0.5  # width of the path-traced picture over that of the others
+NOISE = 0.1  # of the path-traced light; adds little to the error
+DPI = 100
+
+
+def displayed(light):
+    """sRGB values of linear ones: exposure and curve `aces`, as a PNG of clpv has them."""
+    x = light.clip(0) * 2**EXPOSURE
+    x = ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clip(0, 1)
+    return numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * x**(1 / 2.4) - 0.055)
+
+
+class Demo:
+    """Images in linear EXR, in a folder of scripts/demo."""
+
+    def __init__(self, folder, size, options):
+        self.folder, self.options, self.size = folder, options, size
+        self.stats = folder.file("frame.json")
+        self.small = [max(1, round(TRUTH * length)) for length in size]
+
+    def run(self, *arguments):
+        """Returns what clpv prints. Its own message and exit code end the demo."""
+        try:
+            return subprocess.run([CLPV, *map(str, arguments)], check=True, text=True,
+                                  stdout=subprocess.PIPE).stdout
+        except subprocess.CalledProcessError as error:
+            sys.exit(error.returncode if error.returncode > 0 else 1)
+
+    def image(self, command, scene, name, views, size, *options):
+        file = self.folder.file(name)
+        self.run(command, scene, "-o", file, "--view", *views, f"--width={size[0]}",
+                 f"--height={size[1]}", *options)
+        return file
+
+    def shown(self, file, layer):
+        rgb, alpha = exr.colours(exr.read(file), file, layer)
+        return displayed(rgb * alpha[..., None])
+
+    def make(self):
+        """Returns [(caption, sRGB image)], and the error of a frame with all bounces."""
+        scene = json.loads(SCENE.read_text())
+        scene.update(model=str(SCENE.parent / scene["model"]), sky=SKY)
+        self.folder.write("day.json", json.dumps(scene, indent=2).encode())
+        day = self.folder.path / "day.json"
+        sun = self.image("render", SCENE, "sun.exr", ("direct", "full"), self.size, *self.options)
+        whole = self.image("render", day, "day.exr", ("full", "direct"), self.size, "--bounces=all",
+                           "--stats", self.stats, *self.options)
+        light = self.image("render", day, "light.exr", ("indirect",), self.small, "--bounces=all",
+                           *self.options)
+        truth = self.image("pathtrace", day, "truth.exr", ("full", "indirect"), self.small,
+                           "--bounces=all", f"--noise={NOISE}")
+        errors = json.loads(self.run("compare", light, f"{truth}:indirect"))
+        return [("Direct light of the sun", self.shown(sun, "direct")),
+                ("and its first bounce", self.shown(sun, "full")),
+                ("and all bounces, of sun and sky", self.shown(whole, "full")),
+                ("Path traced", self.shown(truth, "full"))
+               ], errors["nrmse_valid"]
+
+
+def picture(tiles):
+    """Bytes of a PNG: the tiles side by side at their sizes, with captions below."""
+    gap, line = 4, 22  # [pixels]
+    width = sum(image.shape[1] + gap for _, image in tiles) + gap
+    height = max(image.shape[0] for _, image in tiles) + line + 2 * gap
+    figure = style.pyplot.figure(figsize=(width / DPI, height / DPI), facecolor="white", dpi=DPI)
+    left = gap
+    for caption, image in tiles:
+        figure.figimage(image, left, line + gap, resize=False)
+        figure.text((left + image.shape[1] / 2) / width, line / height, caption, ha="center",
+                    va="top", fontsize=9)
+        left += image.shape[1] + gap
+    return style.rendered(figure, "png", dpi=DPI)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/demo", add_help=False, allow_abbrev=False)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--width", type=int, default=WIDTH)
+    parser.add_argument("--height", type=int, default=HEIGHT)
+    arguments, options = parser.parse_known_args()
+    folder = output.Folder(arguments.folder, "scripts/demo")
+    demo = Demo(folder, (arguments.width, arguments.height), options)
+    tiles, error = demo.make()
+    folder.write("demo.png", picture(tiles))
+    print_stages([demo.stats])
+    milliseconds = json.loads(demo.stats.read_text())["frame_ms"]
+    print(f"All bounces: {milliseconds:.0f} ms per frame of {arguments.width}x{arguments.height}; "
+          f"error of indirect light {100 * error:.0f} % (NRMSE against path tracing at "
+          f"{demo.small[0]}x{demo.small[1]})")
+    print(f"Picture: {folder.path}/demo.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(output.exit_code(main))

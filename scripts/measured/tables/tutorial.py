@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""Numbers of docs/tutorial.md and of README.md's picture, which tests/docs/run_tutorial --write
+measures."""
+from .cells import load, number, percent, table
+
+MEANINGS = {
+    "nrmse_valid": "root mean square error divided by the root mean square of the truth",
+    "energy_ratio": "mean of the image divided by the mean of the truth",
+    "flip": "mean difference that an observer sees, from 0 to 1",
+}
+
+
+def variants(part):
+    rows = load("tutorial")[part]
+    return [["", "NRMSE", "energy", "frame"]] + [[
+        f"`{name}`", f"{percent(row['nrmse'])} %", f"{row['energy']:.2f}",
+        f"{number(row['frame_ms'])} ms"
+    ] for name, row in sorted(rows.items(), key=lambda row: row[1]["nrmse"])]
+
+
+@table
+def tutorial_compare():
+    found = load("tutorial")["compare"]
+    return [["key", "here", "meaning"]] + [[f"`{key}`", f"{found[key]:.2f}", meaning]
+                                           for key, meaning in MEANINGS.items()]
+
+
+@table
+def tutorial_grid():
+    return variants("grid")
+
+
+@table
+def tutorial_transport():
+    return variants("transport")
+
+
+@table
+def tutorial_bench():
+    rows = load("tutorial")["bench"]
+    return [["row", "median ms", "mad"]] + [[
+        f"`{name}`", number(row["median"]), number(row["mad"])
+    ] for name, row in rows.items()]
+
+
+@table
+def demo_caption():
+    found = load("tutorial")["demo"]
+    return (f"*The atrium by direct light of the sun alone, with its first bounce, with all bounces of sun and "
+            f"sky, and path traced: made by `scripts/demo`. All bounces take {found['frame_ms']} ms per frame of "
+            f"{found['width']}x{found['height']} on two CPU cores. The error of their indirect light (normalised root mean "
+            f"square, NRMSE) is {100 * found['error']:.0f} %.*\n")
