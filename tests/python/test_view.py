@@ -550,6 +550,20 @@ def wait_for(port):
     raise AssertionError(f"nothing listens on port {port}")
 
 
+@pytest.mark.skipif(not socket.has_ipv6, reason="no IPv6")
+def test_the_address_of_ipv6_is_printed_and_served():
+    pytest.importorskip("viser", reason="viser is not installed")
+    port = free_port()
+    words = [sys.executable, "-m", "clpv.view", CORNELL, "--host", "::1", "--port", port]
+    with started(words, stdout=subprocess.PIPE) as viewer:
+        assert viewer.stdout.readline() == f"clpv.view: http://[::1]:{port}\n"
+        for host, status in ((f"[::1]:{port}", 200), ("evil.example", 403)):
+            connection = http.client.HTTPConnection("::1", port)
+            connection.request("GET", "/", headers={"Host": host})
+            assert connection.getresponse().status == status
+            connection.close()
+
+
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium (Debian: apt install chromium)")
 def test_a_page_shows_the_scene_and_follows_a_drag(tmp_path):
     pytest.importorskip("viser", reason="viser is not installed")
