@@ -126,6 +126,8 @@ class Odd(test_score.Suite):
                 "row -1": self.with_chunk(5, 0, -1), "row of another": self.with_chunk(5, 0, 4),
                 "long chunk": self.with_chunk(0, 1, 9999),
                 "long ZIPS": self.compressed(b"\x80" * 7),
+                "far chunk": self.edited(lambda data, table: data.__setitem__(
+                    slice(table, table + 8), b"\xff" * 8)),
                 "line order": self.with_value(b"lineOrder\0lineOrder\0", 9),
                 "duplicate channel": self.edited(lambda data, _: data.__setitem__(
                     data.index(b"chlist\0") + 11, ord("B"))),
