@@ -20,6 +20,7 @@
 #include "clpv/version.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
+#include "options/validate.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
@@ -126,7 +127,9 @@ void add_image(const Drawing& drawing, std::size_t number, const std::string& vi
 std::optional<RenderOptions> options_for(const PageVariant& variant, const Options& options,
                                          const SceneData& scene) {
   try {
-    return resolve_options(sized(options, variant.given), scene);
+    const RenderOptions resolved = resolve_options(sized(options, variant.given), scene);
+    validate(resolved, scene);
+    return resolved;
   } catch (const Error& error) {
     if (error.code() != ExitCode::usage || scene.sky == nullptr) throw;
     spdlog::warn("{}: not on the page by {}: {}", scene.path, variant.title, error.what());

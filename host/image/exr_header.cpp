@@ -113,22 +113,30 @@ struct ExrPart : ExrHeader {
   std::int64_t rows = 1;                         ///< rows of a chunk of a part without tiles
   std::int64_t tile_width = 0, tile_height = 0;  ///< 0 without attribute `tiles`
   std::int64_t chunks = 0;                       ///< value of `chunkCount`
+  bool compressed = true;
+  std::int64_t pixel_bytes = 0;  ///< of all channels
   std::string type;
   bool empty = true;  ///< true without attributes
 };
 
-/// Counts the entries of a channel list: names, each followed by 16 bytes of type and sampling,
+struct ChannelList {
+  std::int64_t count = 0, pixel_bytes = 0;
+};
+
+/// Reads the entries of a channel list: names, each followed by 16 bytes of type and sampling,
 /// ended by an empty name. Rejects channels of less resolution, bytes after the end, and names that
 /// are not sorted: the values of such files may be in either order.
-std::int64_t count_channels(Cursor list, std::string_view place) {
+ChannelList read_channels(Cursor list, std::string_view place) {
   constexpr std::size_t kChannelBytes = 16, kSamplingAt = 8;
-  std::int64_t count = 0;
+  constexpr std::int32_t kHalf = 1;
+  ChannelList found;
   std::string before;
-  for (std::string name; !(name = list.name(place)).empty(); before = name, ++count) {
+  for (std::string name; !(name = list.name(place)).empty(); before = name, ++found.count) {
     if (name <= before)
       reject(list.file(), place, fmt::format("channel '{}' after '{}'", name, before),
              "unique names in alphabetical order");
     const auto bytes = list.take(kChannelBytes, place);
+    found.pixel_bytes += number_at(bytes, 0) == kHalf ? 2 : 4;
     const std::int32_t x = number_at(bytes, kSamplingAt), y = number_at(bytes, kSamplingAt + 4);
     if (x != 1 || y != 1) {
       reject(list.file(), place,
@@ -138,7 +146,7 @@ std::int64_t count_channels(Cursor list, std::string_view place) {
   if (list.left() != 0) {
     reject(list.file(), place, fmt::format("{} bytes after the last channel", list.left()), "none");
   }
-  return count;
+  return found;
 }
 
 /// Rejects a preview whose width and height do not match its size: OpenEXR trusts width and height.
@@ -207,14 +215,15 @@ void store_value(ExrPart& part, const Cursor& file, std::string_view place, std:
     part.tile_height = little_endian_word(bytes, 4);
   } else if (name == "compression" && type == "compression") {
     part.rows = kChunkRows[std::min<std::size_t>(bytes[0], kChunkRows.size() - 1)];
+    part.compressed = bytes[0] != 0;
   } else if (name == "chunkCount" && type == "int") {
     part.chunks = number_at(bytes, 0);
   } else if (name == "type" && type == "string") {
     part.type.assign(bytes.begin(), bytes.end());
   }
   if (type == "chlist") {
-    const std::int64_t channels = count_channels(Cursor(file.file(), bytes), place);
-    if (name == "channels") part.channels = channels;
+    const ChannelList found = read_channels(Cursor(file.file(), bytes), place);
+    if (name == "channels") part.channels = found.count, part.pixel_bytes = found.pixel_bytes;
   }
 }
 
@@ -270,6 +279,26 @@ void set_chunk_size(ExrPart& part, std::uint32_t flags, bool typed) {
   part.chunk_height = part.tiled ? part.tile_height : part.rows;
 }
 
+/// Rejects rows without compression that are shorter or longer than their pixels: OpenEXR fills
+/// them up. `table`: offset of the offsets of chunks in the file, of one part.
+void check_chunks(const std::string& file, std::span<const unsigned char> bytes, std::size_t table,
+                  const ExrPart& part) {
+  constexpr std::size_t kSizeAt = 4, kPixelsAt = 8;
+  if (part.compressed || part.tiled || part.deep) return;
+  for (std::int64_t row = 0; row < part.height; ++row) {
+    const std::size_t at = table + static_cast<std::size_t>(row * kOffsetBytes);
+    const std::uint64_t offset =
+        little_endian_word(bytes, at) | std::uint64_t{little_endian_word(bytes, at + 4)} << 32;
+    // OpenEXR recovers missing offsets, and rejects those behind the end.
+    if (offset == 0 || offset > bytes.size() || bytes.size() - offset < kPixelsAt) continue;
+    const std::int64_t size = number_at(bytes, offset + kSizeAt),
+                       expected = part.width * part.pixel_bytes;
+    if (size != expected)
+      reject(file, fmt::format("row {}", row), fmt::format("{} bytes", size),
+             fmt::format("{}", expected));
+  }
+}
+
 }  // namespace
 
 std::vector<ExrHeader> read_exr_header(const std::filesystem::path& path,
@@ -299,6 +328,7 @@ std::vector<ExrHeader> read_exr_header(const std::filesystem::path& path,
              fmt::format("up to {}", kMaxParts));
     check_tables(fmt::format("part {}", index), min_chunks(part));
     chunks += min_chunks(part);
+    if (!several) check_chunks(file.file(), bytes, bytes.size() - file.left(), part);
     if (!several) break;
   }
   check_tables("all parts", chunks);

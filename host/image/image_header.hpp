@@ -19,7 +19,7 @@ struct DeclaredImage {
   std::int64_t width = 0, height = 0;  ///< of the data window [pixels]
   /// Size of a tile, or of the rows decoded at once [pixels].
   std::int64_t chunk_width = 0, chunk_height = 0;
-  std::int64_t channels = 0;  ///< upper bound: duplicate names count once in the image
+  std::int64_t channels = 0;
   bool tiled = false;
   bool deep = false;  ///< deep image or volume
 };

@@ -43,9 +43,9 @@ def value_at(image, view, x, y):
 def unseen(image, shown):
     """Why a view is black, or an empty text."""
     if not (image.array[..., 3] > 0).any():
-        return "No surface is in view; R returns to the camera."
+        return "No surface in view; R returns."
     if shown.max() <= 2:
-        return "All is black, as inside or behind a wall; R returns to the camera."
+        return "Black, as behind a wall; R returns."
     return ""
 
 
@@ -68,8 +68,8 @@ def sun_direction(azimuth, elevation):
 
 
 class Controls:
-    """The panel beside the image. Clients share it. What changes its height lies at its end, so
-    that no control moves."""
+    """The panel beside the image. Clients share it. Above the controls is one line; what changes
+    its height lies at the end, so that no control moves."""
 
     def __init__(self, server, gate, scene, has_sun, changed):
         gui = server.gui
@@ -91,25 +91,26 @@ class Controls:
 
         defaults = {option["name"]: option["value"] for option in clpv.options()}
         views = VIEWS if scene.medium is None else (*VIEWS, "medium")
+        self.status = gui.add_markdown("starting")
         self.view = choice("view", views, "full")
         self.basis = choice("basis", clpv.bases(), defaults["basis"])
         self.transport = choice("transport", ("sweep", "exact", "sampled"), defaults["transport"])
-        self.bounces = choice("bounces (sweep)", ("1", "2", "all"), defaults["bounces"])
-        self.near = checkbox("near field (sweep)", True)
-        self.traced = checkbox("path tracing on the right, at rest")
+        self.bounces = choice("bounces", ("1", "2", "all"), defaults["bounces"])
+        self.near = checkbox("near field", True)
+        self.traced = checkbox("path tracing beside")
         self.exposure = slider("exposure [EV]", -10, 10, 0.25, max(-10, min(10, scene.exposure)))
         self.time = slider("time [s]", 0, 20, 0.05, 0, visible=scene.moves)
-        with gui.add_folder("sun", visible=has_sun):
-            self.sun = checkbox("sun instead of the lights")
-            self.azimuth = slider("azimuth [degrees]", 0, 360, 1, 30)
-            self.elevation = slider("elevation [degrees]", 1, 90, 1, 60)
+        with gui.add_folder("sun", visible=has_sun, expand_by_default=False):
+            self.sun = checkbox("in place of lights")
+            self.azimuth = slider("azimuth [°]", 0, 360, 1, 30)
+            self.elevation = slider("elevation [°]", 1, 90, 1, 60)
             self.lux = slider("illuminance [lx]", 0, 50, 0.5, 10)
         names = [camera.name for camera in scene.cameras]
         self.camera = choice("camera", names, names[0])
         self.back, self.copied, self.saved = (button(name) for name in (
             "return to the camera (R)", "camera as text", "save the image"))
         gui.add_markdown("W A S D Q E walk, through walls too; a click shows a pixel's values.")
-        self.said, self.status = gui.add_markdown(""), gui.add_markdown("starting")
+        self.said, self.times = gui.add_markdown(""), gui.add_markdown("")
         for control in (self.view, self.basis, self.transport, self.bounces, self.near, self.traced,
                         self.exposure, self.time, self.sun, self.azimuth, self.elevation, self.lux):
             control.on_update(lambda _: changed())
@@ -132,7 +133,7 @@ class Controls:
     def show(self, stats, size, rate, why):
         rows = "\n".join(f"| {stage} | {stats[stage]:.1f} |" for stage in STAGES
                          if stats[stage] > 0)
-        self.status.content = (
-            f"{why}\n\n{size[0]} x {size[1]}, {rate} frames/s in motion, "
-            f"{stats['device_bytes'] / 2**20:.0f} MiB\n\n| stage | ms |\n|---|---|\n{rows}\n"
-            f"| frame | {stats['frame']:.1f} |")
+        self.status.content = why or (
+            f"{size[0]} x {size[1]}, {rate} frames/s, {stats['frame']:.0f} ms")
+        self.times.content = (f"| stage | ms |\n|---|---|\n{rows}\n| frame | {stats['frame']:.1f} |"
+                              f"\n\n{stats['device_bytes'] / 2**20:.0f} MiB on the device")

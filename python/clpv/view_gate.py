@@ -135,6 +135,7 @@ class Gate:
 
     def open(self, host, port):
         """A ViserServer behind this gate. Raises RuntimeError for another version of viser."""
+        import rich
         import viser
         import viser.infra
         import websockets.asyncio.server
@@ -148,6 +149,8 @@ class Gate:
         def checked_server(**options):
             return inner_server(**{**options, "message_class": self})
 
+        # viser prints the address of IPv6 without brackets.
         with unittest.mock.patch.object(websockets.asyncio.server, "serve", self.serve), \
-                unittest.mock.patch.object(viser.infra, "WebsockServer", checked_server):
+                unittest.mock.patch.object(viser.infra, "WebsockServer", checked_server), \
+                unittest.mock.patch.object(rich, "print", lambda *_: None):
             return viser.ViserServer(host=host, port=port, label="clpv", verbose=False)

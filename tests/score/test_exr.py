@@ -124,8 +124,10 @@ class Odd(test_score.Suite):
                 "version": self.edited(lambda data, _: data.__setitem__(4, 3)),
                 "flag": self.edited(lambda data, _: data.__setitem__(5, 0x20)),
                 "row -1": self.with_chunk(5, 0, -1), "row of another": self.with_chunk(5, 0, 4),
-                "long chunk": self.with_chunk(0, 1, 9999),
+                "long chunk": self.with_chunk(0, 1, 9999), "short chunk": self.with_chunk(9, 1, 10),
                 "long ZIPS": self.compressed(b"\x80" * 7),
+                "far chunk": self.edited(lambda data, table: data.__setitem__(
+                    slice(table, table + 8), b"\xff" * 8)),
                 "line order": self.with_value(b"lineOrder\0lineOrder\0", 9),
                 "duplicate channel": self.edited(lambda data, _: data.__setitem__(
                     data.index(b"chlist\0") + 11, ord("B"))),

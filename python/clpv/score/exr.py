@@ -218,7 +218,7 @@ def read(file):
             to_rec709(file, planes, struct.unpack("<8f", attributes["chromaticities"]))
         return planes
     except (struct.error, zlib.error, IndexError, KeyError, ValueError, TypeError, RuntimeError,
-            MemoryError) as error:
+            MemoryError, OverflowError) as error:
         raise BadImage(f"{file}: damaged EXR ({type(error).__name__}: {error})") from None
 
 
