@@ -277,10 +277,11 @@ TEST_F(SequenceTest, AMissingFfmpegIsReportedBeforeTheWork) {
 }
 
 TEST_F(SequenceTest, StabilityCoversAllFramesButTheFirst) {
+  method = kSwept;
   ASSERT_EQ(sequence("--frames 3 --fps 10 --stability --traced 4").exit_code, 0);
   const json stability = written("stability.json");
   EXPECT_EQ(stability["schema"], 1);
-  EXPECT_EQ(stability["options"]["grid"], 5);
+  EXPECT_EQ(stability["options"]["grid"], 16);
   ASSERT_EQ(stability["frames"].size(), 2u);
   for (const json& frame : stability["frames"]) {
     EXPECT_FALSE(frame["still"].get<bool>()) << "a sun moves";
