@@ -56,7 +56,8 @@ TEST(Helpers, ALibraryHasNone) {
 
 const std::string kFrame = " -v render " CLPV_SOURCE_DIR
                            "/tests/oclgrind/tiny.gltf --grid 5 --cascades 1 --cascade-size 5 "
-                           "--rsm-size 8 --shadow-size 8 --width 24 --height 18 -o ";
+                           "--rsm-size 8 --shadow-size 8 --transport sampled --gather all "
+                           "--blockers seen --width 24 --height 18 -o ";
 
 /// The variables of empty caches in that folder.
 std::string caches(const fs::path& folder) {

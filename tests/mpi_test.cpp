@@ -23,7 +23,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const std::string kSmall =
-    " --basis sh2 --gather all --blockers seen --grid 8 --cascades 1 --rsm-size 16 --shadow-size "
+    " --basis sh2 --gather all --blockers seen --grid 5 --cascades 1 --rsm-size 16 --shadow-size "
     "16 ";
 
 class Mpi : public ::testing::Test {

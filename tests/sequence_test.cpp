@@ -19,9 +19,11 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char *kSmall = " --width 48 --height 27 --grid 16 --rsm-size 64 --shadow-size 128",
-                     *kSwept = " --directions 24",
-                     *kStepped = " --transport sampled --gather all --blockers seen --cascades 1";
+constexpr const char* kSmall = " --width 48 --height 27 --rsm-size 64";
+// Grids of other tests, whose programs these tests share.
+constexpr const char *kSwept = " --grid 16",
+                     *kStepped =
+                         " --grid 5 --transport sampled --gather all --blockers seen --cascades 1";
 
 /// PATH while this lives.
 class Path {
@@ -231,7 +233,7 @@ TEST_F(SequenceTest, TimesOfEveryStageAreSummedUp) {
   const json times = summary();
   ASSERT_EQ(frames.size(), 4u);
   EXPECT_EQ(times["fps"], 10);
-  EXPECT_EQ(times["options"]["grid"], 16);
+  EXPECT_EQ(times["options"]["grid"], 5);
   EXPECT_TRUE(frames[0]["first"].get<bool>());
   ASSERT_EQ(times["steady"], 3);
   const json& stages = times["stages"];
@@ -275,6 +277,7 @@ TEST_F(SequenceTest, AMissingFfmpegIsReportedBeforeTheWork) {
 }
 
 TEST_F(SequenceTest, StabilityCoversAllFramesButTheFirst) {
+  method = kSwept;
   ASSERT_EQ(sequence("--frames 3 --fps 10 --stability --traced 4").exit_code, 0);
   const json stability = written("stability.json");
   EXPECT_EQ(stability["schema"], 1);

@@ -19,10 +19,7 @@ static_assert(std::size(kStages) == kNames<Stage>.size());
 /// Runs the comparison; an error becomes a result.
 CheckResults results_of(const Case& compared, Session& session) {
   const auto result = [&](Status status, const char* reason) {
-    CheckResults one(1);
-    one[0].stage = name_of(compared.stage), one[0].variant = compared.name;
-    one[0].status = status, one[0].reason = reason;
-    return one;
+    return CheckResults{result_of(name_of(compared.stage), compared.name, status, reason)};
   };
   const auto of_error = [&](const Error& error) {
     return result(error.code() == ExitCode::device ? Status::unsupported : Status::failed,
@@ -46,6 +43,14 @@ CheckResults results_of(const Case& compared, Session& session) {
 CheckResult result_of(std::string_view stage, const std::string& variant,
                       const Deviation& deviation) {
   return {std::string(stage), variant, deviation, deviation.passed() ? Status::ok : Status::wrong};
+}
+
+CheckResult result_of(std::string_view stage, const std::string& variant, Status status,
+                      const std::string& reason) {
+  CheckResult result;
+  result.stage = stage, result.variant = variant;
+  result.status = status, result.reason = reason;
+  return result;
 }
 
 Case deviation_case(Stage stage, const std::string& name,

@@ -34,6 +34,10 @@ using CheckResults = std::vector<CheckResult>;
 CheckResult result_of(std::string_view stage, const std::string& variant,
                       const Deviation& deviation);
 
+/// Returns a result of status `failed` or `unsupported`, for a reason.
+CheckResult result_of(std::string_view stage, const std::string& variant, Status status,
+                      const std::string& reason);
+
 /// One case of the table. Nothing is built before compare() is called.
 struct Case {
   Stage stage;

@@ -46,7 +46,8 @@ std::string counts(CheckResults::const_iterator first, CheckResults::const_itera
 
 std::string junit(CheckResults results, const std::string& device) {
   if (std::ranges::none_of(results, &CheckResult::passed))
-    results.push_back({"check", "at least one comparison is ok", {}, Status::failed, "none is"});
+    results.push_back(
+        result_of("check", "at least one comparison is ok", Status::failed, "none is"));
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"clpv check on {}\" {}>\n",
       xml_escaped(device), counts(results.begin(), results.end()));

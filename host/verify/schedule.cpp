@@ -68,15 +68,10 @@ class Dispatch {
   }
 
   CheckResults results_of(std::size_t number) const {
+    if (const auto failure = failures_.find(number); failure != failures_.end())
+      return {result_of(name_of(cases_[number].stage), cases_[number].name, Status::failed,
+                        failure->second)};
     CheckResults results;
-    if (const auto failure = failures_.find(number); failure != failures_.end()) {
-      CheckResult& failed = results.emplace_back();
-      failed.stage = name_of(cases_[number].stage);
-      failed.variant = cases_[number].name;
-      failed.status = Status::failed;
-      failed.reason = failure->second;
-      return results;
-    }
     for (const nlohmann::json& result :
          nlohmann::json::parse(helpers_.claims().result(claim_of(number))))
       results.push_back(from_json(result));

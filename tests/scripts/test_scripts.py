@@ -172,6 +172,9 @@ class FullFolders(InTree):
         if os.geteuid() == 0:
             bystanders.fill(self.tree / "build-suites/sid-pocl")
             self.refused(USAGE, "one that scripts/check_pocl wrote", "check_pocl", "sid")
+            if shutil.which("debootstrap"):
+                bystanders.fill(self.full)
+                self.refused(USAGE, "one that scripts/bare wrote", "bare", self.full)
 
     def test_outside_of_a_scripts_folder(self):
         bystanders.fill(self.full)
@@ -305,7 +308,7 @@ class Arguments(InTree):
     def test_unknown_arguments(self):
         for name, argument in (("build", "--fast"), ("test", "gather"), ("fuzz", "none"),
                                ("sanitize", "--fast"), ("check_intel", "x"), ("setup", "x"),
-                               ("format", "x"), ("tables", "x"), ("archive", "x")):
+                               ("format", "x"), ("tables", "x"), ("archive", "x"), ("bare", "-x")):
             found = subprocess.run([ROOT / "scripts" / name, argument], capture_output=True,
                                    text=True, check=False)
             self.assertEqual(found.returncode, USAGE, (name, found.stderr))

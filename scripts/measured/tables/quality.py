@@ -156,7 +156,7 @@ def readme():
     """Frame times beside errors, of the same frames."""
     lines = [["", "propagation", "frame", "error"]]
     for name, options in {"the defaults": known.BEST, "`--preset fast`": known.FAST,
-                          "`--preset fine`": known.FINE, "published scheme, sh2": PAPER}.items():
+                          "published scheme, sh2": PAPER}.items():
         row = found(load("quality")["variants"], options=options)
         lines.append([
             name, f"{number(row['stage_ms']['propagate'])} ms", f"{number(row['frame_ms'])} ms",
