@@ -73,7 +73,7 @@ static_assert(!std::is_move_constructible_v<Frame> && !std::is_copy_constructibl
 
 // A block on a floor, and one small triangle 10 km away.
 TEST(Frame, AFarTriangleChangesNothing) {
-  const auto shown = [](bool far) {
+  const auto shown = [](bool far, const ClpvLight& light) {
     SceneData scene;
     scene.path = "far";
     test::add_material(scene, glm::vec3(0.6f));
@@ -84,12 +84,16 @@ TEST(Frame, AFarTriangleChangesNothing) {
     }
     test::add_quad(scene, {-0.5f, 2, 0.5f}, {1, 0, 0}, {0, 0, -1}, 0);
     if (far) test::add_triangle(scene, {1e4f, 0, 0}, {1e4f, 1, 0}, {1e4f, 0, 1}, 0);
-    scene.lights = {{"sun", test::directional_light({1, -1, -0.5f}, glm::vec3(10))}};
+    scene.lights = {{"light", light}};
     scene.cameras = {test::camera_at({4, 4, 5}, {-4, -3.5f, -5})};
     return render(scene, small_options(scene), Show::full);
   };
-  const Comparison result = compare(shown(true), "with", shown(false), "without");
-  EXPECT_LT(result.nrmse.value(), 0.02);
+  for (const ClpvLight& light : {test::directional_light({1, -1, -0.5f}, glm::vec3(10)),
+                                 test::point_light({-3, 4, 2}, glm::vec3(100)),
+                                 test::spot_light({-3, 4, 2}, {3, -4, -2}, 0.3f, 0.6f)}) {
+    const Comparison result = compare(shown(true, light), "with", shown(false, light), "without");
+    EXPECT_LT(result.nrmse.value(), 0.02) << light.kind;
+  }
 }
 
 TEST(Frame, AtriumEqualsItsGoldenImage) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -145,6 +147,30 @@ TEST_P(EachTransport, AreasBlockTheirShareOfEachFace) {
     }
   }
   EXPECT_EQ(along_axes, 6);
+}
+
+/// Transmittance of a link into the middle one of 3^3 cells. `hidden`: centres that the two points
+/// at lower x in each row of a cube do not see, and those that the others do not see.
+double open_share(double transmittance, const std::array<std::uint8_t, 2>& hidden,
+                  const glm::ivec3& side) {
+  constexpr int kCells = 3;
+  std::vector<std::uint8_t> occluded(std::size_t{64} * kCells * kCells * kCells);
+  for (std::size_t i = 0; i < occluded.size(); ++i) occluded[i] = hidden[i % 4 / 2];
+  return reference::open_share(transmittance, occluded, kCells, glm::ivec3(1), side);
+}
+
+TEST(Transmittance, AWallClosesLinks) {
+  constexpr std::array<std::uint8_t, 2> kNone = {0, 0}, kWall = {0xaa, 0x55}, kAll = {0xff, 0xff};
+  for (const glm::ivec3 side : {glm::ivec3(1, 0, 0), {-1, 1, 0}, {1, 1, -1}}) {
+    EXPECT_EQ(open_share(0.3, kNone, side), 0.3);
+    EXPECT_EQ(open_share(0.3, kWall, side), 0);
+    EXPECT_EQ(open_share(1, kWall, side), 0);
+    // Enclosed centres see nothing.
+    EXPECT_EQ(open_share(0.42, kAll, side), 0) << "a full wall along a corner";
+    EXPECT_NEAR(open_share(0.71, kAll, side), 0.5, 0.01);
+    EXPECT_EQ(open_share(1, kAll, side), 1);
+  }
+  EXPECT_EQ(open_share(0.3, kWall, {0, 1, -1}), 0.3) << "along the wall";
 }
 
 }  // namespace

@@ -133,11 +133,12 @@ class Sweep {
     for (const SweepLink& link : links) {
       Volume& transmittances = transmittance_[link_of(link.offset)];
       for_each_cell(n_, [&](const glm::ivec3& p) {
-        transmittances.at(0, 0, p.x, p.y, p.z) =
-            cascade_.geometry == nullptr ? 1
-            : cascade_.occluded != nullptr && closed_link(*cascade_.occluded, n_, p, -link.offset)
-                ? 0
+        double& t = transmittances.at(0, 0, p.x, p.y, p.z);
+        t = cascade_.geometry == nullptr
+                ? 1
                 : transmittance(*cascade_.geometry, p, -link.offset, link.blocked_by);
+        if (cascade_.geometry != nullptr && cascade_.occluded != nullptr)
+          t = open_share(t, *cascade_.occluded, n_, p, -link.offset);
       });
     }
   }

@@ -6,6 +6,57 @@
 #include "kernels/shared/sweep.h"
 
 namespace clpv::reference {
+namespace {
+
+constexpr int kPointsOfCube = 64;  // in each cube
+
+/// Cube at an octant of a cell, in which the cell's centre is number 7 - octant.
+glm::ivec3 cube_at(const glm::ivec3& cell, int octant) {
+  return cell - 1 + glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
+}
+
+/// Returns true if a cube lies between the centres of a grid of n cells along each axis.
+bool between_centres(int n, const glm::ivec3& cube) {
+  return glm::all(glm::greaterThanEqual(cube, glm::ivec3(0))) &&
+         glm::all(glm::lessThanEqual(cube, glm::ivec3(n - 2)));
+}
+
+/// Index of a cube's first point.
+std::size_t first_point(int n, const glm::ivec3& cube) {
+  return static_cast<std::size_t>((cube.z * n + cube.y) * n + cube.x) * kPointsOfCube;
+}
+
+/// Returns true if the centre of a cell sees few of the points about it.
+bool enclosed_centre(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell) {
+  int seen = 8 * kPointsOfCube;
+  for (int octant = 0; octant < 8; ++octant) {
+    const glm::ivec3 cube = cube_at(cell, octant);
+    if (!between_centres(n, cube)) continue;
+    for (int point = 0; point < kPointsOfCube; ++point)
+      seen -= occluded[first_point(n, cube) + point] >> (7 - octant) & 1;
+  }
+  return seen < CLPV_ENCLOSED;
+}
+
+/// Returns true if a link into `cell` from `side` is closed: in the cubes that it crosses, no point
+/// sees both centres. Links from outside the grid are open.
+bool closed_link(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
+                 const glm::ivec3& side) {
+  for (int octant = 0; octant < 8; ++octant) {
+    const glm::ivec3 cube = cube_at(cell, octant), upper = cube - cell + 1;
+    bool crossed = true;
+    for (int axis = 0; axis < 3; ++axis)
+      crossed = crossed && (side[axis] == 0 || (side[axis] > 0) == (upper[axis] == 1));
+    if (!crossed) continue;
+    if (!between_centres(n, cube)) return false;
+    const int here = 7 - octant, there = here + side.x + 2 * side.y + 4 * side.z;
+    for (int point = 0; point < kPointsOfCube; ++point)
+      if ((occluded[first_point(n, cube) + point] & (1 << here | 1 << there)) == 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
                      const std::vector<double>& weights) {
@@ -28,24 +79,12 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
   return 1.0 - std::clamp(blocked, 0.0, 1.0);
 }
 
-bool closed_link(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
-                 const glm::ivec3& side) {
-  constexpr int kPoints = 64;
-  for (int octant = 0; octant < 8; ++octant) {
-    const glm::ivec3 upper(octant & 1, octant >> 1 & 1, octant >> 2), cube = cell - 1 + upper;
-    bool crossed = true;
-    for (int axis = 0; axis < 3; ++axis)
-      crossed = crossed && (side[axis] == 0 || (side[axis] > 0) == (upper[axis] == 1));
-    if (!crossed) continue;
-    if (glm::any(glm::lessThan(cube, glm::ivec3(0))) ||
-        glm::any(glm::greaterThan(cube, glm::ivec3(n - 2))))
-      return false;
-    const int here = 7 - octant, there = here + side.x + 2 * side.y + 4 * side.z;
-    const auto first = static_cast<std::size_t>((cube.z * n + cube.y) * n + cube.x) * kPoints;
-    for (int point = 0; point < kPoints; ++point)
-      if ((occluded[first + point] & (1 << here | 1 << there)) == 0) return false;
-  }
-  return true;
+double open_share(double transmittance, const std::vector<std::uint8_t>& occluded, int n,
+                  const glm::ivec3& cell, const glm::ivec3& side) {
+  if (!closed_link(occluded, n, cell, side)) return transmittance;
+  if (!enclosed_centre(occluded, n, cell) && !enclosed_centre(occluded, n, cell + side)) return 0;
+  constexpr double kWall = double{CLPV_WALL_TRANSMITTANCE};
+  return std::max(0.0, (transmittance - kWall) / (1 - kWall));
 }
 
 }  // namespace clpv::reference

@@ -17,10 +17,10 @@ namespace clpv::reference {
 double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::ivec3& side,
                      const std::vector<double>& weights);
 
-/// Returns true if a link into `cell` from `side` is closed (kernels/sweep/closed_links.cl): in the
-/// cubes that it crosses, no point sees both centres. `occluded`: bits of visibility_masks(), n^3
-/// cubes. Links from outside the grid are open.
-bool closed_link(const std::vector<std::uint8_t>& occluded, int n, const glm::ivec3& cell,
-                 const glm::ivec3& side);
+/// Returns the transmittance of a link into `cell` from `side` that transmits `transmittance` if it
+/// is open (kernels/sweep/closed_links.cl, sweep_links.cl). `occluded`: bits of visibility_masks(),
+/// n^3 cubes.
+double open_share(double transmittance, const std::vector<std::uint8_t>& occluded, int n,
+                  const glm::ivec3& cell, const glm::ivec3& side);
 
 }  // namespace clpv::reference

@@ -202,7 +202,8 @@ SharedVolume random_reflectors(int n, std::mt19937& random) {
 }
 
 /// Occlusion of one cascade. In 2 of 3 cubes each point is hidden from one of two groups of
-/// centres, so that links between the groups are closed.
+/// centres, so that links between the groups are closed. 1 of 10 centres is enclosed: it sees no
+/// point inside the grid.
 std::vector<std::uint8_t> random_walls(int n, std::mt19937& random) {
   constexpr int kPoints = 64;
   std::vector<std::uint8_t> occluded(visibility_bytes(n));
@@ -214,6 +215,17 @@ std::vector<std::uint8_t> random_walls(int n, std::mt19937& random) {
     for (int point = 0; point < kPoints; ++point)
       occluded[cube + point] = walls & (point < kPoints / 2 ? group : 255 - group);
   }
+  reference::for_each_cell(n, [&](const glm::ivec3& p) {
+    if (random() % 10 != 0) return;
+    for (int octant = 0; octant < 8; ++octant) {
+      const glm::ivec3 cube = p - 1 + glm::ivec3(octant & 1, octant >> 1 & 1, octant >> 2);
+      if (glm::any(glm::lessThan(cube, glm::ivec3(0))) ||
+          glm::any(glm::greaterThan(cube, glm::ivec3(n - 2))))
+        continue;
+      const auto first = static_cast<std::size_t>((cube.z * n + cube.y) * n + cube.x) * kPoints;
+      for (int point = 0; point < kPoints; ++point) occluded[first + point] |= 1 << (7 - octant);
+    }
+  });
   return occluded;
 }
 

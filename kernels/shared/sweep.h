@@ -8,6 +8,12 @@ enum {
   CLPV_AXIS_BINS = 8,  // bins swept across x, which come first; as many across y, then z
 };
 
+// Minimum number of the 512 sample points about a cell's centre that the centre sees, unless it is
+// enclosed. In the corner of a room it sees 64.
+enum { CLPV_ENCLOSED = 64 };
+// Largest transmittance of a link through a full wall: along a corner.
+#define CLPV_WALL_TRANSMITTANCE 0.42265f
+
 // A bin of directions. Light travels from plane to plane, within a plane from row to row, and
 // within a row from column to column.
 typedef struct {

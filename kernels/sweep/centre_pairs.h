@@ -3,7 +3,10 @@
 // sweep_links.cl reads them.
 #pragma once
 
-enum { CLPV_CENTRES = 8 };  // centre i is offset by (i & 1, i >> 1 & 1, i >> 2)
+enum {
+  CLPV_CENTRES = 8,        // centre i is offset by (i & 1, i >> 1 & 1, i >> 2)
+  CLPV_ENCLOSED_BIT = 28,  // after the pairs
+};
 
 // Number of the pair of centres i < j: 0 to 27.
 #define CLPV_PAIR(i, j) ((i) * (13 - (i)) / 2 + (j)-1)

@@ -4,6 +4,8 @@
 //
 //   T = 1 - clamp(B, 0, 1)      (docs/method.md, 'Blockers')
 //   T = 0                       if the link is closed
+//   T = max(0, (T - w) / (1 - w))   if it is closed and one of its centres is enclosed;
+//                               w: CLPV_WALL_TRANSMITTANCE
 //
 // In:   blockers       geometry volume, samples at the cells' corners
 //       closed         closed pairs of centres in each cube between cells (closed_links.cl)
@@ -34,8 +36,8 @@ static inline bool crosses(const int o, const int sx, const int sy, const int sz
          (sz == 0 || (o >> 2) == (sz > 0));
 }
 
-// Sets T to 0 on links that are closed in all cubes that they cross. A cell's centre is number
-// 7 - o in the cube at its octant o.
+// Reduces T on links that are closed in all cubes that they cross. A cell's centre is number 7 - o
+// in the cube at its octant o.
 CLPV_INLINE Links close_links(Links links, __global const int* closed, const int x, const int y,
                               const int z) {
   intW cubes[8];
@@ -54,7 +56,11 @@ CLPV_INLINE Links close_links(Links links, __global const int* closed, const int
       if (crosses(o, sx, sy, sz))
         bits &= cubes[o] >> CLPV_PAIR(min(here, there), max(here, there));
     }
-    links.c[link] *= to_realW(1 - bits);
+    const intW neighbour = read_words(closed, bordered_index(z + sz, y + sy, x + sx));
+    const intW enclosed = (cubes[7] | neighbour) >> CLPV_ENCLOSED_BIT & bits;
+    const float wall = CLPV_WALL_TRANSMITTANCE;
+    const realW t = links.c[link], reduced = fmax((t - wall) * (1.0f / (1.0f - wall)), ZERO);
+    links.c[link] = to_realW(1 - bits) * t + to_realW(enclosed) * reduced;
   }
   return links;
 }
