@@ -139,7 +139,7 @@ void Frame::require_lookups(const char* what) const {
 std::string Frame::lookup_source() const {
   require_lookups("lookup source");
   return program_text(
-             with_radiance({"gather/lookup.h", {}, {}}, *swept_, gather_options(options_))) +
+             with_radiance({"gather/lookup.h"}, *swept_, gather_options(options_))) +
          "#line 1 \"kernel\"\n";
 }
 
@@ -231,7 +231,7 @@ std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
   Buffer radiances = session_.buffer(numbers * sizeof(float), "radiance at points");
   if (!radiance_) {
     radiance_.emplace(
-        session_, with_radiance({"gather/radiance.cl", {}, {}}, *swept_, gather_options(options_)),
+        session_, with_radiance({"gather/radiance.cl"}, *swept_, gather_options(options_)),
         "radiance");
   }
   radiance_->set(points.view, places, vectors, radiances);
