@@ -108,8 +108,8 @@ Job stream_job(Session& session, std::size_t bytes) {
                         std::max<std::size_t>(1, bytes / 3 / (kWidth * sizeof(float)) / size.items),
                     vectors = per_item * size.items, values = vectors * kWidth;
   const std::size_t block = session.device().type == "cpu" ? per_item : 1;
-  const ProgramSource source{
-      "ceilings.cl", Literals().integer("CLPV_WIDTH", kWidth).number("CLPV_BLOCK", block)};
+  const ProgramSource source{"ceilings.cl",
+                             Literals().integer("CLPV_WIDTH", kWidth).number("CLPV_BLOCK", block)};
   auto kernel = std::make_shared<Kernel>(session, source, "stream");
   const Buffer a = session.upload(std::vector<float>(values, 1.0f), "ceilings, stream"),
                b = session.upload(std::vector<float>(values, 2.0f), "ceilings, stream"),

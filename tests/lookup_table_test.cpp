@@ -80,8 +80,7 @@ TEST_P(EachStorage, TablesKeepTheirEntriesWhileOthersAreFreed) {
       const std::vector<float> rubbish(static_cast<std::size_t>(options.table_size), 1e15f);
       const LookupTable table(test_session(), *basis, options, GetParam(), TableUse::lobes);
       test_session().upload(rubbish, "what takes a freed table's place");
-      EXPECT_EQ(entries(table, *basis, options),
-                gram_tables(*basis, options.table_size).values())
+      EXPECT_EQ(entries(table, *basis, options), gram_tables(*basis, options.table_size).values())
           << "round " << round << ", " << options.table_size << " entries";
     }
   }

@@ -55,7 +55,8 @@ std::vector<glm::dvec3> joined(std::vector<glm::dvec3> a, const std::vector<glm:
   return a;
 }
 
-/// For each centre the number of an earlier one that is its antipode and has its lambda, or its own.
+/// For each centre the number of an earlier one that is its antipode and has its lambda, or its
+/// own.
 std::vector<int> opposites_of(const Basis& basis) {
   std::vector<int> opposites;
   for (std::size_t i = 0; i < basis.centres().size(); ++i) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "support/literals.hpp"
 #include "options/choices.hpp"
+#include "support/literals.hpp"
 
 namespace clpv {
 

@@ -62,8 +62,8 @@ LinkTransmittance::LinkTransmittance(Session& session, const LinkConstants& cons
                                      const VolumeFormat& format)
     : stencil_(grid, format, lanes_of(session.device(), format)),
       operations_(constants.operations),
-      kernel_(session,
-              {"steps/transmittance.cl", stencil_.literals().add(constants.literals)}, "transmit"),
+      kernel_(session, {"steps/transmittance.cl", stencil_.literals().add(constants.literals)},
+              "transmit"),
       transmittance_(session, {grid, constants.links, 1}, "transmittance", format) {}
 
 void LinkTransmittance::transmit(const Volume& geometry) {
