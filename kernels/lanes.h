@@ -39,7 +39,7 @@
 #define CLPV_GATHER_MEMBER(from, at, member)                                                       \
   ((from)[(at).s0] member, (from)[(at).s1] member, (from)[(at).s2] member, (from)[(at).s3] member, \
    (from)[(at).s4] member, (from)[(at).s5] member, (from)[(at).s6] member, (from)[(at).s7] member)
-#elif W == 1
+#else
 #define CLPV_VECTOR(name) name
 #define CLPV_ROUNDED(name) name##_rte
 #define load_lanes(from) (*(from))
@@ -128,7 +128,7 @@ static inline int max_lane_int(const intW v) {
   return -min_lane_int(-v);
 }
 
-#elif W == 1
+#else
 
 typedef struct {
   float4 r0;

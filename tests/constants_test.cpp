@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Constants for kernels as text, and the order of bins and links that kernels of the sweep rely on.
-#include "codegen/constants.hpp"
-
+// Tables for kernels as text, and the order of bins and links that kernels of the sweep rely on.
 #include <gtest/gtest.h>
 
+#include "basis/matrix.hpp"
 #include "basis/sweep.hpp"
 #include "kernels/shared/sweep.h"
+#include "support/literals.hpp"
 
 namespace clpv::test::constants_test {
 namespace {
@@ -15,7 +15,8 @@ TEST(Constants, RoundingErrorsOfZerosAreZeroAndNotCounted) {
   matrix(0, 0) = 0.5;
   matrix(0, 1) = -1e-14;
   matrix(1, 1) = -0.5;
-  EXPECT_EQ(matrix_macro("M", matrix), "#define M {{0.5f, 0.0f}, \\\n  {0.0f, (-0.5f)}}\n");
+  EXPECT_EQ(Literals().matrix("CLPV_M", matrix).defined().at("CLPV_M"),
+            "{{0.5f, 0.0f}, \\\n  {0.0f, (-0.5f)}}");
   EXPECT_EQ(products(matrix), 2);
 }
 

@@ -7,11 +7,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <vector>
 
+#include "pipeline/inject/lobe_literals.hpp"
 #include "pipeline/steps/propagate.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace clpv::lookup_table_test {
 namespace {
@@ -33,19 +36,26 @@ TEST(LookupTable, RejectsImagesThatTheDeviceLacks) {
 }
 
 /// Entries 0 .. size - 1 as a kernel reads them.
-std::vector<float> entries(const LookupTable& table, int size) {
+std::vector<float> entries(const LookupTable& table, const Basis& basis,
+                           const LobeOptions& options) {
   Session& session = test_session();
-  // A program needs a file; this one has only definitions.
-  ProgramSource source{"shared/sort.h", {}, {}};
-  source.generated =
-      table.macros() +
-      "__kernel void entries(__global float* out CLPV_AND_TABLE) {\n"
-      "  const int i = (int)get_global_id(0);\n  out[i] = CLPV_TABLE_READ(table, i);\n}\n";
+  const test::TemporaryFolder folder;
+  folder.write("entries.cl",
+               "#include \"basis/lobe.h\"\n"
+               "__kernel void entries(__global float* out CLPV_AND_H) {\n"
+               "  const int i = (int)get_global_id(0);\n"
+               "  out[i] = table_entry(singular_table, i);\n}\n");
+  setenv("CLPV_KERNEL_DIR", folder.path().c_str(), 1);
+  ProgramSource source{"entries.cl", lobe_literals(basis, options)};
+  add_coefficient_literals(source.literals, basis.size(), "float");
+  table.add_literals(source.literals);
+  const auto size = static_cast<std::size_t>(options.table_size);
   Kernel kernel(session, source, "entries");
-  const Buffer out = session.buffer(static_cast<std::size_t>(size) * sizeof(float), "entries");
+  const Buffer out = session.buffer(size * sizeof(float), "entries");
   table.add_to(kernel.set(out));
-  kernel.launch(static_cast<std::size_t>(size), 1);
-  return session.read<float>(out, static_cast<std::size_t>(size));
+  kernel.launch(size, 1);
+  unsetenv("CLPV_KERNEL_DIR");
+  return session.read<float>(out, size);
 }
 
 class EachStorage : public ::testing::TestWithParam<TableStorage> {};
@@ -70,8 +80,7 @@ TEST_P(EachStorage, TablesKeepTheirEntriesWhileOthersAreFreed) {
       const std::vector<float> rubbish(static_cast<std::size_t>(options.table_size), 1e15f);
       const LookupTable table(test_session(), *basis, options, GetParam(), TableUse::lobes);
       test_session().upload(rubbish, "what takes a freed table's place");
-      EXPECT_EQ(entries(table, options.table_size),
-                gram_tables(*basis, options.table_size).values())
+      EXPECT_EQ(entries(table, *basis, options), gram_tables(*basis, options.table_size).values())
           << "round " << round << ", " << options.table_size << " entries";
     }
   }

@@ -152,9 +152,7 @@ class CachedSession : public ProgramCacheTest {
 
   static ProgramSource source(int value) {
     const int lanes = choose_device().lanes;  // as a session adds them
-    return {.file = "answer.cl",
-            .literals = Literals().integer("CLPV_ANSWER", value).integer("CLPV_W", lanes),
-            .generated = {}};
+    return {"answer.cl", Literals().integer("CLPV_ANSWER", value).integer("CLPV_W", lanes)};
   }
   std::string key(int value) const {
     return ProgramCache::key(choose_device(), source(value).options, program_text(source(value)));

@@ -80,18 +80,14 @@ TEST(KernelFiles, UnknownAndEndlessOnesAreRejected) {
   EXPECT_THROW(assemble_kernel_source("loop.cl"), Error);
 }
 
-TEST(ProgramText, LiteralsThenLanesAndGeneratedThenFile) {
+TEST(ProgramText, LiteralsThenFile) {
   KernelFolder folder;
-  folder.write("lanes.h", "typedef float realW;\n");
   folder.write("a.cl", "int a;\n");
   const std::string text =
-      program_text({.file = "a.cl",
-                    .literals = Literals().flag("CLPV_B", true).number("CLPV_A", 3),
-                    .generated = "int g;"});
+      program_text({"a.cl", Literals().flag("CLPV_B", true).number("CLPV_A", 3)});
   EXPECT_EQ(text,
             "#line 1 \"literals\"\n#define CLPV_A 3u\n#define CLPV_B 1\n"
-            "#line 1 \"lanes.h\"\ntypedef float realW;\n"
-            "#line 1 \"generated\"\nint g;\n#line 1 \"a.cl\"\nint a;\n");
+            "#line 1 \"a.cl\"\nint a;\n");
 }
 
 TEST(Literals, OneNameHasOneValue) {

@@ -81,7 +81,7 @@ TEST(Session, MemoryMayOutliveItsSession) {
 TEST(Kernel, MissingArgumentsAreReported) {
   Session session(choose_device());
   const Buffer bytes = session.buffer(1024, "sizes");
-  Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
+  Kernel kernel(session, {"sizes.cl"}, "sizes");
   EXPECT_EQ(session.build_ms(), 0) << "described, not built";
   kernel.set(bytes).launch(1, 1);
   EXPECT_THAT([&] { kernel.set().launch(1, 1); },
@@ -93,11 +93,11 @@ TEST(Kernel, ADescribedProgramIsBuiltOnce) {
   { const Kernel gone(session, {"sizes.cl", Literals().flag("CLPV_GONE", true), {}}, "sizes"); }
   session.build_described();
   EXPECT_EQ(session.build_ms(), 0) << "nobody holds it";
-  const Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
+  const Kernel kernel(session, {"sizes.cl"}, "sizes");
   session.build_described();
   const double built = session.build_ms();
   EXPECT_GT(built, 0);
-  const Kernel again(session, {"sizes.cl", {}, {}}, "sizes");
+  const Kernel again(session, {"sizes.cl"}, "sizes");
   session.build_described();
   EXPECT_EQ(session.build_ms(), built);
 }
@@ -105,7 +105,7 @@ TEST(Kernel, ADescribedProgramIsBuiltOnce) {
 TEST(Session, ImpossibleLaunchNamesKernelAndCode) {
   Session session(choose_device());
   const Buffer bytes = session.buffer(1024, "sizes");
-  Kernel kernel(session, {"sizes.cl", {}, {}}, "sizes");
+  Kernel kernel(session, {"sizes.cl"}, "sizes");
   const std::size_t too_large = 1u << 20;
   EXPECT_THAT(
       test::error_of(ExitCode::run_time, [&] { kernel.set(bytes).launch(too_large, too_large); }),

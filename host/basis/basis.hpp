@@ -10,10 +10,12 @@
 #include <vector>
 
 #include "basis/matrix.hpp"
+#include "support/literals.hpp"
 
 namespace clpv {
 
-/// N functions b_i on the unit sphere, with the integrals and kernel code that stages need.
+/// N functions b_i on the unit sphere, with the integrals that stages need, and
+/// their tables for kernels.
 /// Immutable. Stages use any basis through this interface and never depend on its name.
 class Basis {
  public:
@@ -34,10 +36,8 @@ class Basis {
   /// 'The clamped cosine').
   virtual void cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const = 0;
 
-  /// Returns OpenCL C for the struct `Coefficients` with an array c of N floats, which defines:
-  ///   static Coefficients basis_functions(float x, float y, float z)             b_i(w), w unit
-  ///   static Coefficients cosine_integrals(float x, float y, float z)  alpha_i(d), d unit
-  virtual std::string kernel_source() const = 0;
+  /// Adds CLPV_BASIS and the tables of the functions' header (kernels/basis/basis.h).
+  virtual void add_literals(Literals& literals) const = 0;
 
   /// Number of bands of spherical harmonics, in the order of SphericalHarmonics; 0: another basis.
   virtual int bands() const { return 0; }
@@ -84,7 +84,7 @@ inline constexpr double kMaxCondition = 1e7;  ///< beyond it float coefficients 
 std::unique_ptr<Basis> make_basis(const std::string& name, double lambda = kDefaultLambda);
 std::vector<std::string> basis_names();
 
-inline constexpr std::size_t kMaxCentres = 64;  ///< kernels have unrolled code for each function
+inline constexpr std::size_t kMaxCentres = 64;  ///< kernels unroll loops over functions
 /// Closer centres make the Gram matrix singular.
 inline constexpr double kMinCentreDistance = 1e-3;
 

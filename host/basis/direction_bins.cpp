@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "basis/transport.hpp"
-#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -146,90 +145,27 @@ void DirectionBins::cosine_integrals(const glm::dvec3& d, std::span<double> alph
   for (double& value : alpha) value *= std::numbers::pi / sum;
 }
 
-std::string DirectionBins::kernel_basis() const {
-  static const char* const kNames[] = {"x", "y", "z"};
-  std::string text =
-      "static inline float unit_step(const float s) { return fma(0.5f, sign(s), 0.5f); }\n"
-      "static inline Coefficients basis_functions(const float x, const float y, const float z) {\n "
-      " Coefficients r;\n";
-  std::string sum;
-  for (int face = 0; face < 6; ++face) {
-    const FaceAxes axes = axes_of(face);
-    const std::string n = fmt::format("n{}", face);
-    text += fmt::format("  const float {} = {}{};\n", n, axes.sign < 0 ? "-" : "", kNames[axes.n]);
-    text += fmt::format(
-        "  const float f{0} = unit_step({1} - fabs({2})) * unit_step({1} - fabs({3}));\n", face, n,
-        kNames[axes.u], kNames[axes.v]);
-    sum += fmt::format("{}f{}", face == 0 ? "" : " + ", face);
+void DirectionBins::add_literals(Literals& literals) const {
+  std::vector<int> placed(size_, 0);  // patches of each bin so far
+  const int patches = static_cast<int>(patches_.size()) / size_;
+  Matrix x(patches, size_), y = x, z = x, width = x, per_width = x;
+  for (const Patch& patch : patches_) {
+    const int row = placed[patch.bin]++;
+    x(row, patch.bin) = patch.area.x;
+    y(row, patch.bin) = patch.area.y;
+    z(row, patch.bin) = patch.area.z;
+    width(row, patch.bin) = patch.width;
+    per_width(row, patch.bin) = 1 / patch.width;
   }
-  text += fmt::format("  const float whole = 1.0f / ({});\n", sum);
-  for (int face = 0; face < 6; ++face) {
-    const FaceAxes axes = axes_of(face);
-    for (const auto& [letter, axis] : {std::pair{'u', axes.u}, {'v', axes.v}}) {
-      for (int i = 0; i + 1 < side_; ++i) {
-        text += fmt::format("  const float {}{}_{} = unit_step(fma({}, n{}, {}));\n", letter, face,
-                            i, float_literal(-lines_[i]), face, kNames[axis]);
-      }
-    }
-    const auto share = [&](char letter, int i) {
-      const std::string above = i == 0 ? "1.0f" : fmt::format("{}{}_{}", letter, face, i - 1);
-      return i + 1 == side_ ? above : fmt::format("({} - {}{}_{})", above, letter, face, i);
-    };
-    for (int i = 0; i < side_ * side_; ++i) {
-      text += fmt::format("  r.c[{}] = f{} * whole * {} * {};\n", face * side_ * side_ + i, face,
-                          share('u', i % side_), share('v', i / side_));
-    }
-  }
-  return text + "  return r;\n}\n";
-}
-
-// Evaluates one patch of each of 8 bins at a time: scalar code would take most of injection's time.
-std::string DirectionBins::kernel_cosine() const {
-  constexpr int kLanes = 8;
-  std::vector<std::vector<Patch>> of_bin(size_);
-  for (const Patch& patch : patches_) of_bin[patch.bin].push_back(patch);
-  std::string text =
-      "static inline Coefficients cosine_integrals(const float x, const float y, const float z) {\n"
-      "  const float8 none = (float8)(0.0f), whole = (float8)(1.0f);\n  float8 t, lit;\n";
-  std::string all;
-  for (int first = 0; first < size_; first += kLanes) {
-    text += fmt::format("  float8 part{} = none;\n", first / kLanes);
-    all += fmt::format("{}part{}", first == 0 ? "" : " + ", first / kLanes);
-  }
-  for (std::size_t turn = 0; turn < of_bin.front().size(); ++turn) {
-    for (int first = 0; first < size_; first += kLanes) {
-      const auto lanes = [&](auto value) {
-        std::string numbers;
-        for (int lane = 0; lane < kLanes; ++lane) {
-          const Patch& patch = of_bin[first + lane][turn];
-          numbers += fmt::format("{}{}", lane == 0 ? "" : ", ", float_literal(value(patch)));
-        }
-        return "(float8)(" + numbers + ")";
-      };
-      const std::string half = lanes([](const Patch& p) { return 0.5 * p.width; });
-      text += fmt::format("  t = {} * x + {} * y + {} * z;\n",
-                          lanes([](const Patch& p) { return p.area.x; }),
-                          lanes([](const Patch& p) { return p.area.y; }),
-                          lanes([](const Patch& p) { return p.area.z; }));
-      text += fmt::format("  lit = clamp(t * {} + 0.5f, none, whole);\n",
-                          lanes([](const Patch& p) { return 1 / p.width; }));
-      text += fmt::format("  part{0} += {1} * lit * lit + fmax(none, t - {1});\n", first / kLanes,
-                          half);
-    }
-  }
-  text +=
-      fmt::format("  const float8 all = {};\n  const float4 half_all = all.lo + all.hi;\n", all);
-  text += fmt::format(
-      "  const float scale = {} / (half_all.x + half_all.y + half_all.z + half_all.w);\n  "
-      "Coefficients r;\n",
-      float_literal(std::numbers::pi));
-  for (int i = 0; i < size_; ++i)
-    text += fmt::format("  r.c[{}] = part{}.s{} * scale;\n", i, i / kLanes, i % kLanes);
-  return text + "  return r;\n}\n";
-}
-
-std::string DirectionBins::kernel_source() const {
-  return kernel_basis() + kernel_cosine();
+  literals.word("CLPV_BASIS", "CLPV_BINS")
+      .integer("CLPV_SIDE", side_)
+      .reals("CLPV_LINES", lines_)
+      .integer("CLPV_BIN_PATCHES", patches)
+      .matrix("CLPV_PATCH_X", x)
+      .matrix("CLPV_PATCH_Y", y)
+      .matrix("CLPV_PATCH_Z", z)
+      .matrix("CLPV_PATCH_WIDTH", width)
+      .matrix("CLPV_PATCH_PER_WIDTH", per_width);
 }
 
 }  // namespace clpv

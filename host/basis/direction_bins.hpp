@@ -38,7 +38,7 @@ class DirectionBins : public Basis {
   /// taken as uniform over the patch's width. Scaled to the exact sum pi. The error is at most 1 %
   /// (bins24) or 3.3 % (bins96) of the mean pi / N.
   void cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const override;
-  std::string kernel_source() const override;
+  void add_literals(Literals& literals) const override;
   std::vector<glm::dvec3> creases() const override;
 
  private:
@@ -49,8 +49,6 @@ class DirectionBins : public Basis {
                    ///< / 2
   };
   void add_patch(int bin, const SphericalPolygon& polygon);
-  std::string kernel_basis() const;
-  std::string kernel_cosine() const;
 
   int side_;
   std::vector<double> lines_;  ///< l_j, side - 1 numbers

@@ -3,10 +3,13 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "support/error.hpp"
+#include "support/literals.hpp"
 
 namespace clpv {
 namespace {
@@ -69,6 +72,26 @@ double condition_number(const Matrix& a) {
   const auto smallest = static_cast<double>(ascending(0)),
              largest = static_cast<double>(ascending(a.rows() - 1));
   return smallest > 0 ? largest / smallest : std::numeric_limits<double>::infinity();
+}
+
+Matrix transposed(const Matrix& matrix) {
+  Matrix result(matrix.columns(), matrix.rows());
+  for (int r = 0; r < matrix.rows(); ++r) {
+    for (int c = 0; c < matrix.columns(); ++c) result(c, r) = matrix(r, c);
+  }
+  return result;
+}
+
+int products(const Matrix& matrix) {
+  double largest = 0;
+  for (int r = 0; r < matrix.rows(); ++r) {
+    for (const double number : matrix.row(r)) largest = std::max(largest, std::abs(number));
+  }
+  int count = 0;
+  for (int r = 0; r < matrix.rows(); ++r) {
+    for (const double number : matrix.row(r)) count += is_negligible(number, largest) ? 0 : 1;
+  }
+  return count;
 }
 
 }  // namespace clpv

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "basis/clamped_cosine.hpp"
-#include "basis/kernel_text.hpp"
 
 namespace clpv {
 namespace {
@@ -84,41 +83,21 @@ void SphericalHarmonics::cosine_integrals(const glm::dvec3& d, std::span<double>
   for (std::size_t i = 0; i < functions_.size(); ++i) alpha[i] *= cosine_band(functions_[i].band);
 }
 
-std::string SphericalHarmonics::kernel_function(const std::string& name, bool cosine) const {
-  std::string text = fmt::format(
-      "static inline Coefficients {}(const float x, const float y, const float z) {{\n", name);
-  text += "  Coefficients r;\n";
-  if (bands_ > 2) text += "  const float zz = z * z;\n";
-  for (int m = 2; m < bands_; ++m) {  // re1 = x, im1 = y
-    const std::string re = m == 2 ? "x" : fmt::format("re{}", m - 1),
-                      im = m == 2 ? "y" : fmt::format("im{}", m - 1);
-    text += fmt::format("  const float re{} = fma(x, {}, -(y * {})), im{} = fma(x, {}, y * {});\n",
-                        m, re, im, m, im, re);
-  }
+void SphericalHarmonics::add_literals(Literals& literals) const {
+  Matrix values(size_, (bands_ + 1) / 2), cosines = values;
   for (int i = 0; i < size_; ++i) {
     const Function& f = functions_[i];
-    const double factor = cosine ? cosine_band(f.band) : 1;
-    const int m = std::abs(f.order);
     // Q_lm is even or odd in z: a polynomial in z^2, times z if odd.
     const std::size_t odd = (f.polynomial.size() - 1) % 2;
-    std::vector<double> even;
-    for (std::size_t k = odd; k < f.polynomial.size(); k += 2)
-      even.push_back(factor * f.polynomial[k]);
-    if (factor == 0) even.assign(1, 0.0);
-    std::string value = horner(even, "zz");
-    if (factor != 0 && odd == 1) value = "z * " + value;
-    if (factor != 0 && m > 0) {
-      const std::string factor_xy =
-          m == 1 ? (f.order < 0 ? "y" : "x") : fmt::format("{}{}", f.order < 0 ? "im" : "re", m);
-      value = factor_xy + " * " + value;
+    for (std::size_t k = odd; k < f.polynomial.size(); k += 2) {
+      values(i, static_cast<int>(k / 2)) = f.polynomial[k];
+      cosines(i, static_cast<int>(k / 2)) = cosine_band(f.band) * f.polynomial[k];
     }
-    text += fmt::format("  r.c[{}] = {};\n", i, value);
   }
-  return text + "  return r;\n}\n";
-}
-
-std::string SphericalHarmonics::kernel_source() const {
-  return kernel_function("basis_functions", false) + kernel_function("cosine_integrals", true);
+  literals.word("CLPV_BASIS", "CLPV_HARMONICS")
+      .integer("CLPV_BANDS", bands_)
+      .matrix("CLPV_Y", values)
+      .matrix("CLPV_COSINE_Y", cosines);
 }
 
 }  // namespace clpv

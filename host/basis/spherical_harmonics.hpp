@@ -16,7 +16,7 @@ class SphericalHarmonics : public Basis {
   using Basis::evaluate;
   void evaluate(const glm::dvec3& w, std::span<double> b) const override;
   void cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const override;
-  std::string kernel_source() const override;
+  void add_literals(Literals& literals) const override;
   int bands() const override { return bands_; }
 
  private:
@@ -24,7 +24,6 @@ class SphericalHarmonics : public Basis {
     int band, order;
     std::vector<double> polynomial;  ///< K_lm Q_lm: [i] is the coefficient of z^i
   };
-  std::string kernel_function(const std::string& name, bool cosine) const;
 
   int bands_;
   std::vector<Function> functions_;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "basis/srbf.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "basis/srbf_kernel.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -53,6 +53,50 @@ std::vector<glm::dvec3> tetrahedron() {
 std::vector<glm::dvec3> joined(std::vector<glm::dvec3> a, const std::vector<glm::dvec3>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
+}
+
+/// For each centre the number of an earlier one that is its antipode and has its lambda, or its
+/// own.
+std::vector<int> opposites_of(const Basis& basis) {
+  std::vector<int> opposites;
+  for (std::size_t i = 0; i < basis.centres().size(); ++i) {
+    opposites.push_back(static_cast<int>(i));
+    for (std::size_t j = 0; j < i; ++j) {
+      const glm::dvec3 sum = basis.centres()[i] + basis.centres()[j];
+      if (glm::dot(sum, sum) < 1e-24 && basis.lambdas()[i] == basis.lambdas()[j])
+        opposites[i] = static_cast<int>(j);
+    }
+  }
+  return opposites;
+}
+
+// Coefficients in u = t^2 of a Chebyshev series in x = 2u - 1.
+std::vector<double> powers_of(const std::vector<double>& chebyshev) {
+  std::vector<double> before{1}, now{-1, 2}, sum(chebyshev.size(), 0.0);  // T_0, T_1 in u
+  const auto add = [&](const std::vector<double>& p, double c) {
+    for (std::size_t i = 0; i < p.size(); ++i) sum[i] += c * p[i];
+  };
+  add(before, chebyshev[0]);
+  for (std::size_t k = 1; k < chebyshev.size(); ++k) {
+    add(now, chebyshev[k]);
+    std::vector<double> next(now.size() + 1, 0.0);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      next[i + 1] += 4 * now[i];
+      next[i] -= 2 * now[i];
+    }
+    for (std::size_t i = 0; i < before.size(); ++i) next[i] -= before[i];
+    before = now;
+    now = next;
+  }
+  return sum;
+}
+
+/// Returns true if the powers' terms cancel, as they do for lambda above about 0.5.
+bool cancels(const std::vector<double>& powers, const std::vector<double>& chebyshev) {
+  constexpr double kCancellation = 4;  // two bits of a float's 24
+  double size = 0;
+  for (const double term : powers) size += std::abs(term);
+  return size >= kCancellation * chebyshev[0];
 }
 
 void require_usable(const std::string& name, const std::vector<glm::dvec3>& centres,
@@ -128,8 +172,34 @@ void Srbf::cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const 
     alpha[i] = cosines_.at(lambdas_[i])(glm::dot(d, centres_[i]));
 }
 
-std::string Srbf::kernel_source() const {
-  return srbf_kernel_source(*this, cosines_);
+void Srbf::add_literals(Literals& literals) const {
+  std::map<double, std::vector<double>> chebyshev, powers;
+  std::size_t terms = 1;
+  bool by_chebyshev = false;
+  for (const auto& [lambda, cosine] : cosines_) {
+    chebyshev[lambda] = cosine.chebyshev();
+    powers[lambda] = powers_of(chebyshev[lambda]);
+    terms = std::max(terms, chebyshev[lambda].size());
+    by_chebyshev = by_chebyshev || cancels(powers[lambda], chebyshev[lambda]);
+  }
+  Matrix centres(size_, 3), poisson(size_, 3), even(size_, static_cast<int>(terms));
+  std::vector<double> slope;
+  for (int i = 0; i < size_; ++i) {
+    const double lambda = lambdas_[i];
+    for (int axis = 0; axis < 3; ++axis) centres(i, axis) = centres_[i][axis];
+    const double numbers[] = {1 - lambda * lambda, 1 + lambda * lambda, 2 * lambda};
+    std::ranges::copy(numbers, poisson.row(i).begin());
+    std::ranges::copy((by_chebyshev ? chebyshev : powers)[lambda], even.row(i).begin());
+    slope.push_back(cosines_.at(lambda).slope());
+  }
+  literals.word("CLPV_BASIS", "CLPV_RADIAL")
+      .matrix("CLPV_CENTRES", centres)
+      .integers("CLPV_OPPOSITES", opposites_of(*this))
+      .matrix("CLPV_POISSON", poisson)
+      .reals("CLPV_COSINE_SLOPE", slope)
+      .integer("CLPV_COSINE_TERMS", terms)
+      .flag("CLPV_COSINE_CHEBYSHEV", by_chebyshev)
+      .matrix("CLPV_COSINE_EVEN", even);
 }
 
 }  // namespace clpv

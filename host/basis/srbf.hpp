@@ -26,7 +26,7 @@ class Srbf : public Basis {
   using Basis::evaluate;
   void evaluate(const glm::dvec3& w, std::span<double> b) const override;
   void cosine_integrals(const glm::dvec3& d, std::span<double> alpha) const override;
-  std::string kernel_source() const override;
+  void add_literals(Literals& literals) const override;
 
  private:
   std::map<double, CosineOfPoisson> cosines_;  ///< by lambda

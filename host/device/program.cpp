@@ -85,10 +85,6 @@ std::string program_text(const ProgramSource& source) {
   if (!source.literals.defined().empty()) text += "#line 1 \"literals\"\n";
   for (const auto& [name, value] : source.literals.defined())
     text += fmt::format("#define {} {}\n", name, value);
-  if (!source.generated.empty()) {
-    text += assemble_kernel_source("lanes.h");  // whose types and CLPV_INLINE generated text uses
-    text += "#line 1 \"generated\"\n" + source.generated + "\n";
-  }
   return text + assemble_kernel_source(source.file);
 }
 

@@ -19,7 +19,7 @@ namespace clpv {
 namespace {
 
 ProgramSource words_program() {
-  return {.file = "buffer_ops.cl", .literals = {}, .generated = {}};
+  return {"buffer_ops.cl"};
 }
 constexpr std::size_t kWordsGroup = 64;
 constexpr double kNoticeMs = 1000;             // longer waits are explained in the log

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// CPU reference of stage `inject` (kernels/inject/inject.cl), in double: light and surfels of an
-// RSM or G-buffer into volumes (docs/method.md, 'Injection', 'Blockers').
+// CPU reference of stage `inject` (kernels/inject/light.cl and surfels.cl), in double: light and
+// surfels of an RSM or G-buffer into volumes (docs/method.md, 'Injection', 'Blockers').
 #pragma once
 
 #include "basis/basis.hpp"

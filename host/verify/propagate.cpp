@@ -12,7 +12,6 @@
 #include <string>
 #include <string_view>
 
-#include "codegen/transport_source.hpp"
 #include "pipeline/steps/propagate.hpp"
 #include "reference/propagate.hpp"
 #include "support/named_enum.hpp"

@@ -38,7 +38,7 @@ constexpr Place kHost[] = {
 Deviation compare_sizes(Session& session) {
   const std::size_t count = std::size(kHost);
   Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
-  Kernel(session, {"sizes.cl", {}, {}}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));
+  Kernel(session, {"sizes.cl"}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));
   const auto device = session.read<std::uint32_t>(bytes, count);
 
   Deviation result{0, tolerance("sizes")};

@@ -14,11 +14,11 @@
 
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
-#include "codegen/sweep_source.hpp"
-#include "codegen/transmittance_source.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/raster/shadow_maps.hpp"
+#include "pipeline/steps/transmittance.hpp"
 #include "pipeline/sweep/sweep.hpp"
+#include "pipeline/sweep/sweep_literals.hpp"
 #include "pipeline/voxels/visibility.hpp"
 #include "reference/bounce.hpp"
 #include "reference/medium.hpp"
@@ -142,7 +142,7 @@ Cost cost_of(const SweepWork& p) {
   const int areas = blocking_size(q.transport.blocking, *q.basis);
   cost.bytes +=
       corners * static_cast<double>(bytes_per_cell(format, areas)) + cells * links * number;
-  cost.flops += cells * transmittance_source(*q.basis, q.transport).operations.flops();
+  cost.flops += cells * link_constants(*q.basis, q.transport).operations.flops();
   cost.reads_per_cell += 8 * accesses_per_cell(format, areas) + 4 * kSweepBins;
   cost.writes_per_cell += links;
   return cost;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "volume/accumulator.hpp"
 
-#include "codegen/constants.hpp"
-
 namespace clpv {
 namespace {
 
@@ -10,7 +8,8 @@ namespace {
 constexpr std::size_t kLocalX = 64;
 
 ProgramSource source_of(const VolumeShape& shape, Storage storage) {
-  ProgramSource source{"volume/convert.cl", {}, coefficient_text(shape.coefficients)};
+  ProgramSource source{"volume/convert.cl"};
+  add_coefficient_literals(source.literals, shape.coefficients);
   source.literals.integer("CLPV_GRID", shape.n);
   add_format_literals(source.literals, {Layout::image, storage});
   return source;

@@ -106,6 +106,10 @@ void add_format_literals(Literals& literals, const VolumeFormat& format, int lan
       .integer("CLPV_W", lanes);
 }
 
+void add_coefficient_literals(Literals& literals, int coefficients, const std::string& number) {
+  literals.integer("CLPV_N", coefficients).word("CLPV_COEFFICIENT", number);
+}
+
 int accesses_per_cell(const VolumeFormat& format, int coefficients) {
   return format.layout == Layout::image ? texels_per_cell(coefficients) : coefficients;
 }

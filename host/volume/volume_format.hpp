@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/literals.hpp"
 #include "options/choices.hpp"
+#include "support/literals.hpp"
 
 namespace clpv {
 
@@ -40,6 +40,12 @@ int lanes_of(const Device& device, const VolumeFormat& format);
 
 /// Adds the literals that kernels/volume/instance.h needs.
 void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes = 1);
+
+/// Adds the literals that kernels/volume/coefficients.h needs. `number`: type of a coefficient,
+/// "realW" for those of W cells (kernels/lanes.h), or "float" for kernels that read one cell at a
+/// time.
+void add_coefficient_literals(Literals& literals, int coefficients,
+                              const std::string& number = "realW");
 
 /// Number of loads or stores for one cell of one channel: texels for images, numbers for buffers.
 int accesses_per_cell(const VolumeFormat& format, int coefficients);

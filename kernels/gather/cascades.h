@@ -5,29 +5,18 @@
 // the cube about the eye; a coarser cascade gets the weight that finer ones leave. Light is
 // therefore continuous, also when a grid moves by a cell, and 0 outside all cascades.
 //
-// From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET.
+// From the host: CLPV_GRID, CLPV_INVERSE_BLEND.
 #pragma once
 
-#include "volume/coefficients.h"
 #include "lanes.h"
 #include "shared/grid.h"
 #include "vec.h"
-
-#ifndef CLPV_VISIBLE
-#define CLPV_VISIBLE 0  // 1: occluded cells do not light a surface (visibility.cl)
-#endif
 
 // Clamps to [0, maximum]; NaN becomes 0.
 CLPV_INLINE realW clamp_to(const realW v, const float maximum) {
   const realW upper = (realW)(maximum);
   return v > ZERO ? (v < upper ? v : upper) : ZERO;
 }
-
-#if CLPV_PACKED
-#include "gather/gather_packed.h"
-#else
-#include "gather/gather_image.h"
-#endif
 
 // Share of a cascade in the weight that finer ones leave, in [0, 1].
 CLPV_INLINE realW cascade_share(const ClpvGrid grid, const Vec position) {
@@ -38,10 +27,11 @@ CLPV_INLINE realW cascade_share(const ClpvGrid grid, const Vec position) {
   return clamp_to(inside * CLPV_INVERSE_BLEND, 1.0f);
 }
 
-// The points position + offset * s * lift [m] in a cascade, s its cell.
-CLPV_INLINE void find_cascade_points(const ClpvGrid grid, const Vec position, const realW offset,
-                                     const Vec lift, SamplePoints* points) {
+// The points position + offset * s * lift [m] in a cascade, s its cell, in cells from the first
+// centre.
+CLPV_INLINE Vec find_cascade_points(const ClpvGrid grid, const Vec position, const realW offset,
+                                    const Vec lift) {
   const Vec at = vec_times(vec_minus(position, vec_of(grid.origin)), (realW)(1.0f / grid.cell));
   const Vec lifted = vec_add_scaled(at, offset, lift);
-  find_sample_points(vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f), points);
+  return vec(lifted.x - 0.5f, lifted.y - 0.5f, lifted.z - 0.5f);
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Samples accumulated volumes in images, by the device's filter or from texels (volume/image.h),
-// for gather.cl.
-//
-// OpenCL 1.2 has no arrays of images: CLPV_EACH_CASCADE(DO), from the host, writes DO(0) DO(1) ...
-// for each cascade, each with its own parameter and code.
+// for gather_images.cl.
 #pragma once
 
 #include "volume/light.h"
+#include "lanes.h"
+#include "vec.h"
 
 typedef struct {
   Coefficients r, g, b;
@@ -34,10 +33,3 @@ CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
   return (float4)(dot_coefficients(weights, sampled.r), dot_coefficients(weights, sampled.g),
                   dot_coefficients(weights, sampled.b), 0.0f);
 }
-
-#define CLPV_GATHERED __read_only image3d_t
-#define CLPV_GATHERED_VOLUME(c) , CLPV_GATHERED volume##c
-#define CLPV_ADD_NUMBERED(c) \
-  CLPV_ADD_CASCADE(c, volume##c);
-#define CLPV_GATHERED_VOLUMES CLPV_EACH_CASCADE(CLPV_GATHERED_VOLUME)
-#define CLPV_ADD_CASCADES CLPV_EACH_CASCADE(CLPV_ADD_NUMBERED)

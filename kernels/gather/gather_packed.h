@@ -9,8 +9,12 @@
 // A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b 0)(r g b 0). The eight
 // cells about a point are read as whole vectors.
 //
-// From the host: CLPV_PAIRS.
+// From the host: CLPV_GRID, CLPV_PAIRS; CLPV_VISIBLE 1: occluded cells do not light a surface
+// (visibility.cl).
 #pragma once
+
+#include "gather/cascades.h"
+#include "volume/coefficients.h"
 
 // Steps from a record to its neighbours; 0 in a grid of one cell.
 enum {
@@ -28,9 +32,7 @@ typedef struct {
 // Records of a cascade, and its occlusion bits (visibility.cl).
 typedef struct {
   __global const float8* cells;
-#if CLPV_VISIBLE
   __global const uchar* occluded;
-#endif
 } PackedCascade;
 
 // W points: number of the lowest of the eight cells about each, and its position between their
@@ -38,10 +40,8 @@ typedef struct {
 typedef struct {
   int number[W];
   float x[W], y[W], z[W];
-#if CLPV_VISIBLE
   int visibility_point[W];
   float visibility_x[W], visibility_y[W], visibility_z[W];
-#endif
 } SamplePoints;
 
 // At the last centre the eight cells are the last ones, so that offsets between them are literals.
@@ -55,7 +55,7 @@ CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
   const intW number = (z * CLPV_GRID + y) * CLPV_GRID + x;
   store_lanes(number, points->number);
   store_lanes(t.x, points->x), store_lanes(t.y, points->y), store_lanes(t.z, points->z);
-#if CLPV_VISIBLE
+  if (!CLPV_VISIBLE) return;
   const Vec q = vec(clamp_to(t.x * 4.0f - 0.5f, 3.0f), clamp_to(t.y * 4.0f - 0.5f, 3.0f),
                     clamp_to(t.z * 4.0f - 0.5f, 3.0f));
   const intW qx = min(to_intW(q.x), (intW)(2)), qy = min(to_intW(q.y), (intW)(2)),
@@ -64,7 +64,6 @@ CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
   store_lanes(q.x - to_realW(qx), points->visibility_x);
   store_lanes(q.y - to_realW(qy), points->visibility_y);
   store_lanes(q.z - to_realW(qz), points->visibility_z);
-#endif
 }
 
 // Trilinear weights of the eight corners about a point (x, y, z) in [0, 1]^3; corner bits: 1 x, 2
@@ -79,7 +78,6 @@ CLPV_INLINE float8 corner_weights(const float x, const float y, const float z) {
   return along_x * along_y * along_z;
 }
 
-#if CLPV_VISIBLE
 // Visible share of all weight below which all cells count.
 __constant const float min_visible = 1.0f / 64.0f;
 
@@ -88,11 +86,12 @@ __constant const float min_visible = 1.0f / 64.0f;
 CLPV_INLINE float8 visible_shares(__global const uchar* at, const float8 weights) {
   const int8 bit = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
   float8 visible = 0.0f;
-#define CLPV_ADD_POINT(i, next) \
-  visible += ((int8)((int)at[next]) & bit) != 0 ? (float8)(0.0f) : (float8)(weights.s##i);
-  CLPV_ADD_POINT(0, 0) CLPV_ADD_POINT(1, 1) CLPV_ADD_POINT(2, 4) CLPV_ADD_POINT(3, 5)
-  CLPV_ADD_POINT(4, 16) CLPV_ADD_POINT(5, 17) CLPV_ADD_POINT(6, 20) CLPV_ADD_POINT(7, 21)
-#undef CLPV_ADD_POINT
+#pragma unroll
+  for (int i = 0; i < 8; ++i) {
+    const int occluded = at[(i & 1) + 4 * (i >> 1 & 1) + 16 * (i >> 2)];
+    const float weight = ((const float*)&weights)[i];
+    visible += ((int8)(occluded) & bit) != 0 ? (float8)(0.0f) : (float8)(weight);
+  }
   return visible;
 }
 
@@ -110,16 +109,12 @@ CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoin
   *weights = visible;
   return 1.0f / total;
 }
-#endif
 
 CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* points, const int i,
                                Sampled* r) {
   __global const float8* v = cascade.cells + points->number[i] * CLPV_PAIRS;
   float8 w = corner_weights(points->x[i], points->y[i], points->z[i]);
-  float scale = 1.0f;
-#if CLPV_VISIBLE
-  scale = apply_visibility(cascade, points, i, &w);
-#endif
+  const float scale = CLPV_VISIBLE ? apply_visibility(cascade, points, i, &w) : 1.0f;
 #pragma unroll
   for (int j = 0; j < CLPV_PAIRS; ++j)
     r->pair[j] = w.s0 * v[j] + w.s1 * v[j + CLPV_DX] + w.s2 * v[j + CLPV_DY] +
@@ -145,19 +140,20 @@ CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
   return sum.lo + sum.hi;
 }
 
-// Packed volumes of all cascades in one buffer, finest first.
-#define CLPV_GATHERED const PackedCascade
+// Parameters: packed volumes of all cascades in one buffer, finest first, and with CLPV_VISIBLE
+// their occlusion bits.
 #if CLPV_VISIBLE
-#define CLPV_GATHERED_VOLUMES , __global const float8 *packed, __global const uchar *occluded
-#define CLPV_PACKED_CASCADE(c) \
-  { packed + (size_t)c * CLPV_CELLS * CLPV_PAIRS, occluded + (size_t)c * CLPV_CELLS * 64 }
+#define CLPV_AND_VOLUMES , __global const float8 *packed, __global const uchar *occluded
+#define CLPV_PASS_VOLUMES , packed, occluded
+#define CLPV_OCCLUDED occluded
 #else
-#define CLPV_GATHERED_VOLUMES , __global const float8 *packed
-#define CLPV_PACKED_CASCADE(c) \
-  { packed + (size_t)c * CLPV_CELLS * CLPV_PAIRS }
+#define CLPV_AND_VOLUMES , __global const float8 *packed
+#define CLPV_PASS_VOLUMES , packed
+#define CLPV_OCCLUDED ((__global const uchar*)0)
 #endif
-#define CLPV_ADD_CASCADES                                  \
-  for (uint c = 0; c < cascades; ++c) {                    \
-    const PackedCascade cascade = CLPV_PACKED_CASCADE(c);  \
-    CLPV_ADD_CASCADE(c, cascade);                          \
-  }
+
+CLPV_INLINE PackedCascade packed_cascade(const uint c CLPV_AND_VOLUMES) {
+  const PackedCascade cascade = {packed + (size_t)c * CLPV_CELLS * CLPV_PAIRS,
+                                 CLPV_OCCLUDED + (size_t)c * CLPV_CELLS * 64};
+  return cascade;
+}

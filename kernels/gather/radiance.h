@@ -11,16 +11,13 @@
 // sweep', 'Gathering'.
 #pragma once
 
-#include "gather/cascades.h"
+#include "basis/basis.h"
+#include "gather/gather_packed.h"
 
 // Parameters: grids and packed volumes of all cascades, and the unit [W/sr] of a stored 1.
 #define CLPV_RADIANCE \
-  __global const ClpvGrid *grids, const uint cascades, const float unit CLPV_GATHERED_VOLUMES
-#if CLPV_VISIBLE
-#define CLPV_PASS_RADIANCE grids, cascades, unit, packed, occluded
-#else
-#define CLPV_PASS_RADIANCE grids, cascades, unit, packed
-#endif
+  __global const ClpvGrid *grids, const uint cascades, const float unit CLPV_AND_VOLUMES
+#define CLPV_PASS_RADIANCE grids, cascades, unit CLPV_PASS_VOLUMES
 
 // C at W points.
 typedef struct {
@@ -56,9 +53,8 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
     remaining *= 1.0f - share;
     if (no_lane(weight > ZERO)) continue;
     SamplePoints points;
-    find_cascade_points(grid, position, offset, lift, &points);
-    const PackedCascade cascade = CLPV_PACKED_CASCADE(c);
-    add_field(cascade, &points, weight, field);
+    find_sample_points(find_cascade_points(grid, position, offset, lift), &points);
+    add_field(packed_cascade(c CLPV_PASS_VOLUMES), &points, weight, field);
   }
 }
 

@@ -5,15 +5,21 @@
 //   CLPV_BLOCKS_BY_AREA 1:   |n_x|, |n_y|, |n_z|; the larger of each area
 //                       0:   the lobe about the normal; the lobe of the larger mean
 //
-// From the host: with lobes CLPV_INTEGRALS, those of the basis's functions, and what lobe.h needs.
+// From the host: with lobes CLPV_INTEGRALS, those of the basis's functions, and those of
+// basis/lobe.h.
 #pragma once
 
+#include "volume/coefficients.h"
+
 #if CLPV_BLOCKS_BY_AREA
+
+#define CLPV_AND_H
+#define CLPV_PASS_H
 
 CLPV_INLINE Coefficients project_blockers(const Coefficients a) { return a; }
 
 CLPV_INLINE Coefficients surfel_blocker(const float x, const float y,
-                                        const float z CLPV_AND_TABLE) {
+                                        const float z CLPV_AND_H) {
   const Coefficients areas = {{fabs(x), fabs(y), fabs(z)}};
   return areas;
 }
@@ -25,15 +31,15 @@ CLPV_INLINE Coefficients merge_blockers(const Coefficients a, const Coefficients
 
 #else
 
-#include "inject/lobe.h"
+#include "basis/lobe.h"
 
 __constant const float integrals[CLPV_N] = CLPV_INTEGRALS;
 
 CLPV_INLINE Coefficients project_blockers(const Coefficients a) { return project_sum(a); }
 
 CLPV_INLINE Coefficients surfel_blocker(const float x, const float y,
-                                        const float z CLPV_AND_TABLE) {
-  return lobe_integrals(x, y, z CLPV_PASS_TABLE);
+                                        const float z CLPV_AND_H) {
+  return lobe_integrals(x, y, z CLPV_PASS_H);
 }
 
 CLPV_INLINE Coefficients merge_blockers(const Coefficients a, const Coefficients b) {

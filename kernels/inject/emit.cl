@@ -53,8 +53,6 @@ static inline SubTriangle find_sub_triangle(const ClpvEmitter emitter, const uin
   return sub;
 }
 
-#if CLPV_TEXTURED || CLPV_MASKED
-
 // A constant field stays that constant.
 #define CLPV_BLEND(w1, w2, corner, field)                                \
   ((corner)[0]->field + (w1) * ((corner)[1]->field - (corner)[0]->field) + \
@@ -67,11 +65,7 @@ CLPV_INLINE void mean_emission(const SubTriangle sub, __global const ClpvVertex*
                                __global const float4* textures, __global const uint* texels,
                                float mean[3]) {
   mean[0] = mean[1] = mean[2] = 1.0f;
-#if CLPV_MASKED
-  const bool masked = (material->flags & CLPV_MATERIAL_MASKED) != 0;
-#else
-  const bool masked = false;
-#endif
+  const bool masked = CLPV_MASKED && (material->flags & CLPV_MATERIAL_MASKED) != 0;
   if (material->emissive_texture == white && !masked) return;
   const float step = sub.size * (1.0f / CLPV_EMIT_SAMPLES), reach = CLPV_EMIT_FOOTPRINT * step;
   const float u1 = corner[1]->uv[0] - corner[0]->uv[0], v1 = corner[1]->uv[1] - corner[0]->uv[1];
@@ -92,22 +86,18 @@ CLPV_INLINE void mean_emission(const SubTriangle sub, __global const ClpvVertex*
     if (material->emissive_texture != white)
       sample_trilinear(textures, texels, (uintW)(material->emissive_texture), uv, to_second,
                        to_third, &sample);
-#if CLPV_MASKED
     if (masked) {
       const realW alpha =
           material->base_colour[3] * CLPV_BLEND(w1, w2, corner, colour[3]) *
           sample_alpha(textures, texels, (uintW)(material->texture * CLPV_TEXTURE_LEVELS), uv);
       sample = vec_times(sample, alpha >= (realW)(material->alpha_cutoff) ? ONE : ZERO);
     }
-#endif
     red += sample.x, green += sample.y, blue += sample.z;
   }
   const float each = 1.0f / (CLPV_EMIT_SAMPLES * CLPV_EMIT_SAMPLES);
   mean[0] = each * sum_lanes(red), mean[1] = each * sum_lanes(green),
   mean[2] = each * sum_lanes(blue);
 }
-
-#endif
 
 __kernel void emit(__global const ClpvEmitter* emitters, const uint count, const uint points,
                    const uint capacity, const float scale, __global const ClpvVertex* vertices,
@@ -136,9 +126,8 @@ __kernel void emit(__global const ClpvEmitter* emitters, const uint count, const
   const float twice = sqrt(x * x + y * y + z * z);  // twice the triangle's area
   if (!(twice > 0.0f)) return;
   float mean[3] = {1.0f, 1.0f, 1.0f};
-#if CLPV_TEXTURED || CLPV_MASKED
-  mean_emission(sub, corner, material, white, textures, texels, mean);
-#endif
+  if (CLPV_TEXTURED || CLPV_MASKED)
+    mean_emission(sub, corner, material, white, textures, texels, mean);
   const float flux = scale * (M_PI_F * 0.5f) * twice * (sub.size * sub.size),
               facing = emitter.side / twice;
   positions[i] = (float4)(at[0], at[1], at[2], 1.0f);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Finds the cell of each texel of a surface: the first step of injection (inject.cl).
+// Finds the cell of each texel of a surface: the first step of injection (light.cl,
+// surfels.cl).
 //
 //   light:     cell of p + n s / 2       half a cell off the surface, so that a surface does not
 //                                        light itself
@@ -8,7 +9,7 @@
 //
 // docs/method.md, 'Injection' and 'Blockers'.
 //
-// In:   depths   [m]; with CLPV_POINTS positions [m] instead (emit.cl)
+// In:   places   depths [m]; with CLPV_POINTS positions [m] instead (emit.cl)
 //       normals; colours: flux [W], see surface.h for colour_scale
 //       stride   blocking: subsampling; a texel represents stride x stride texels
 //                (shared/thinned.h)
@@ -47,11 +48,7 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
 }
 
 __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
-#if CLPV_POINTS
-                         __global const float* restrict positions,
-#else
-                         __global const float* restrict depths,
-#endif
+                         __global const float* restrict places,
                          __global const SurfaceTexel* restrict normals,
                          __global const SurfaceTexel* restrict colours, const float colour_scale,
                          __global uint* restrict keys
@@ -68,20 +65,16 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
   if (first >= width || row >= height) return;
   const uint last = min(first + CLPV_STRIP, width);
   const uint py = CLPV_TAKEN_TEXEL(row, stride);
-  const uint n = CLPV_KEYS(grid.n);
+  const uint n = grid.n + CLPV_GEOMETRY;
   const float per_metre = 1.0f / grid.cell;
   for (uint column = first; column < last; ++column) {
     const uint px = CLPV_TAKEN_TEXEL(column, stride), texel = py * view.width + px,
                i = row * width + column;
     const float3 normal = load_normal(normals, texel);
-#if CLPV_POINTS
-    const float depth = 1.0f;
+    const float depth = CLPV_POINTS ? 1.0f : places[texel];
     const float3 position =
-        (float3)(positions[4 * texel], positions[4 * texel + 1], positions[4 * texel + 2]);
-#else
-    const float depth = depths[texel];
-    const float3 position = surface_position(view, (float)px, (float)py, depth);
-#endif
+        CLPV_POINTS ? (float3)(places[4 * texel], places[4 * texel + 1], places[4 * texel + 2])
+                    : surface_position(view, (float)px, (float)py, depth);
     float x = (position.x - grid.origin[0]) * per_metre,
           y = (position.y - grid.origin[1]) * per_metre,
           z = (position.z - grid.origin[2]) * per_metre;
@@ -94,7 +87,8 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
     const float3 flux = load_colour(colours, texel, colour_scale);
     valid = valid & all_finite(flux.x, flux.y, flux.z) & not_zero(flux.x, flux.y, flux.z);
 #endif
-    x += CLPV_CELL_SHIFT, y += CLPV_CELL_SHIFT, z += CLPV_CELL_SHIFT;
+    const float shift = 0.5f * CLPV_GEOMETRY;  // corners lie half a cell off the centres
+    x += shift, y += shift, z += shift;
     valid = valid & in_grid((float)n, x, y, z);  // false for points that are not finite
     const uint cx = valid ? (uint)x : 0, cy = valid ? (uint)y : 0, cz = valid ? (uint)z : 0;
     keys[i] = valid ? cell_key(n, cx, cy, cz) : CLPV_NO_CELL;

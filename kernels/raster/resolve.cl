@@ -29,10 +29,6 @@
 #include "raster/tile_row.h"
 #include "raster/triangle.h"
 
-#ifndef CLPV_FROM_LIGHT
-#define CLPV_FROM_LIGHT 0
-#endif
-
 // Largest (n_s . w) / (n_g . w), for surfaces that the light grazes.
 __constant const float largest_weight = 10.0f;
 
@@ -68,14 +64,11 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const r
   surface->normal = normal_towards(front, vec_interpolated(w, a.normal, b.normal, c.normal));
   surface->geometric = geometric_towards(front, surface->normal);
   surface->albedo = material.base_colour;
-#if CLPV_EMISSIVE
-  surface->emissive = material.emissive;
-#endif
-#if CLPV_COLOURED
-  surface->albedo =
-      vec_product(surface->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
-#endif
-#if CLPV_TEXTURED
+  if (CLPV_EMISSIVE) surface->emissive = material.emissive;
+  if (CLPV_COLOURED)
+    surface->albedo =
+        vec_product(surface->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
+  if (!CLPV_TEXTURED) return;
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
   const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
   const realW scale = CLPV_IS_ORTHOGRAPHIC(view) ? ONE : depth;
@@ -85,11 +78,9 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const r
   const Uv step_x = uv_step(face, weights, along, right, uv1, uv2);
   const Uv step_y = uv_step(face, weights, along, down, uv1, uv2);
   apply_texture(textures, texels, material.texture, uv, step_x, step_y, &surface->albedo);
-#if CLPV_EMISSIVE
-  apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y,
-                &surface->emissive);
-#endif
-#endif
+  if (CLPV_EMISSIVE)
+    apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y,
+                  &surface->emissive);
 }
 
 // Evaluates the surfaces of W pixels and stores their depths. `hit`: mask of the pixels that are

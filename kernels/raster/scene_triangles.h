@@ -10,12 +10,6 @@
 #include "shared/normal.h"
 #include "vec.h"
 
-#ifndef CLPV_TEXTURED
-#define CLPV_TEXTURED 1
-#define CLPV_COLOURED 1
-#define CLPV_EMISSIVE 1
-#endif
-
 // Parameters of the scene's buffers, in rows of float4.
 #define CLPV_SCENE                                                       \
   __global const float4 *vertices, __global const float4 *triangles,     \
@@ -33,17 +27,17 @@ typedef struct {
 CLPV_INLINE void load_corner(__global const float4* vertices, const uintW index,
                              VertexAttributes* corner) {
   Rows first, second;
-  gather_rows(vertices, 3u * index, &first);
-  gather_rows(vertices + 1, 3u * index, &second);
+  const uintW row = CLPV_VERTEX_ROWS * index;
+  gather_rows(vertices + CLPV_VERTEX_POSITION, row, &first);
+  gather_rows(vertices + CLPV_VERTEX_UV, row, &second);
   corner->position = vec(CLPV_COLUMN(first, x), CLPV_COLUMN(first, y), CLPV_COLUMN(first, z));
   corner->normal = vec(CLPV_COLUMN(first, w), CLPV_COLUMN(second, x), CLPV_COLUMN(second, y));
   corner->uv.u = CLPV_COLUMN(second, z);
   corner->uv.v = CLPV_COLUMN(second, w);
-#if CLPV_COLOURED
+  if (!CLPV_COLOURED) return;
   Rows third;
-  gather_rows(vertices + 2, 3u * index, &third);
+  gather_rows(vertices + CLPV_VERTEX_COLOUR, row, &third);
   corner->colour = vec(CLPV_COLUMN(third, x), CLPV_COLUMN(third, y), CLPV_COLUMN(third, z));
-#endif
 }
 
 typedef struct {
@@ -54,18 +48,18 @@ typedef struct {
 CLPV_INLINE void load_material(__global const float4* materials, const uintW index,
                                MaterialLanes* material) {
   Rows base, textures;
-  gather_rows(materials, 3u * index, &base);
-  gather_rows(materials + 2, 3u * index, &textures);
+  const uintW row = CLPV_MATERIAL_ROWS * index;
+  gather_rows(materials + CLPV_MATERIAL_COLOUR, row, &base);
+  gather_rows(materials + CLPV_MATERIAL_TEXTURES, row, &textures);
   material->base_colour = vec(CLPV_COLUMN(base, x), CLPV_COLUMN(base, y), CLPV_COLUMN(base, z));
   material->texture = as_uintW(CLPV_COLUMN(textures, x));
   material->flags = as_uintW(CLPV_COLUMN(textures, z));
-#if CLPV_EMISSIVE
+  if (!CLPV_EMISSIVE) return;
   Rows emissive;
-  gather_rows(materials + 1, 3u * index, &emissive);
+  gather_rows(materials + CLPV_MATERIAL_EMISSIVE, row, &emissive);
   material->emissive =
       vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
   material->emissive_texture = as_uintW(CLPV_COLUMN(textures, y));
-#endif
 }
 
 // W triangles of the scene.

@@ -11,14 +11,37 @@
 
 #include "shared/view.h"
 
-#ifndef CLPV_SURFACE_PAPER
-#define CLPV_SURFACE_PAPER 0
-#endif
-
+// `scale` of a colour: value of a stored 1 (largest flux of a texel of the light [W]; 1 for
+// albedo). Only the 8-bit format uses it.
 #if CLPV_SURFACE_PAPER
 typedef uchar4 SurfaceTexel;
+
+static inline float3 load_normal(__global const SurfaceTexel* normals, const uint pixel) {
+  __global const uchar* n = (__global const uchar*)(normals + pixel);
+  const float x = n[0] * (2.0f / 255.0f) - 1.0f, y = n[1] * (2.0f / 255.0f) - 1.0f,
+              z = n[2] * (2.0f / 255.0f) - 1.0f;
+  const float scale = rsqrt(x * x + y * y + z * z);
+  return (float3)(scale * x, scale * y, scale * z);
+}
+
+static inline float3 load_colour(__global const SurfaceTexel* colours, const uint pixel,
+                                 const float scale) {
+  __global const uchar* c = (__global const uchar*)(colours + pixel);
+  return (float3)(c[0] * (scale / 255.0f), c[1] * (scale / 255.0f), c[2] * (scale / 255.0f));
+}
 #else
 typedef float4 SurfaceTexel;
+
+static inline float3 load_normal(__global const SurfaceTexel* normals, const uint pixel) {
+  __global const float* n = (__global const float*)(normals + pixel);
+  return (float3)(n[0], n[1], n[2]);
+}
+
+static inline float3 load_colour(__global const SurfaceTexel* colours, const uint pixel,
+                                 const float scale) {
+  __global const float* c = (__global const float*)(colours + pixel);
+  return (float3)(c[0], c[1], c[2]);
+}
 #endif
 
 // Nonzero for an orthographic view. The literal CLPV_ORTHOGRAPHIC (0 or 1) from the host
@@ -41,9 +64,11 @@ static inline float3 surface_position(const ClpvView view, const float px, const
   const float2 s = screen_point(view, px, py);
   const float scale = view.orthographic != 0.0f ? 1.0f : depth;
   const float sx = scale * s.x, sy = scale * s.y;
-#define CLPV_AT(a) (view.eye[a] + depth * view.forward[a] + sx * view.right[a] + sy * view.up[a])
-  return (float3)(CLPV_AT(0), CLPV_AT(1), CLPV_AT(2));
-#undef CLPV_AT
+  float at[3];
+#pragma unroll
+  for (int a = 0; a < 3; ++a)
+    at[a] = view.eye[a] + depth * view.forward[a] + sx * view.right[a] + sy * view.up[a];
+  return (float3)(at[0], at[1], at[2]);
 }
 
 // Unit direction of a pixel's ray, away from the eye.
@@ -52,9 +77,11 @@ static inline float3 pixel_ray(const ClpvView view, const float px, const float 
   const float sx = view.orthographic != 0.0f ? 0.0f : s.x,
               sy = view.orthographic != 0.0f ? 0.0f : s.y;
   const float scale = rsqrt(1.0f + sx * sx + sy * sy);
-#define CLPV_ALONG(a) (scale * (view.forward[a] + sx * view.right[a] + sy * view.up[a]))
-  return (float3)(CLPV_ALONG(0), CLPV_ALONG(1), CLPV_ALONG(2));
-#undef CLPV_ALONG
+  float along[3];
+#pragma unroll
+  for (int a = 0; a < 3; ++a)
+    along[a] = scale * (view.forward[a] + sx * view.right[a] + sy * view.up[a]);
+  return (float3)(along[0], along[1], along[2]);
 }
 
 // Footprint [m^2] of a pixel across its ray: distance^2 times the pixel's solid angle in
@@ -66,30 +93,4 @@ static inline float pixel_footprint(const ClpvView view, const float px, const f
   if (view.orthographic != 0.0f) return pixel;
   const float2 s = screen_point(view, px, py);
   return depth * depth * pixel * rsqrt(1.0f + s.x * s.x + s.y * s.y);
-}
-
-static inline float3 load_normal(__global const SurfaceTexel* normals, const uint pixel) {
-#if CLPV_SURFACE_PAPER
-  __global const uchar* n = (__global const uchar*)(normals + pixel);
-  const float x = n[0] * (2.0f / 255.0f) - 1.0f, y = n[1] * (2.0f / 255.0f) - 1.0f,
-              z = n[2] * (2.0f / 255.0f) - 1.0f;
-  const float scale = rsqrt(x * x + y * y + z * z);
-  return (float3)(scale * x, scale * y, scale * z);
-#else
-  __global const float* n = (__global const float*)(normals + pixel);
-  return (float3)(n[0], n[1], n[2]);
-#endif
-}
-
-// `scale`: value of a stored 1 (largest flux of a texel of the light [W]; 1 for albedo). Used by
-// the 8-bit format alone.
-static inline float3 load_colour(__global const SurfaceTexel* colours, const uint pixel,
-                                 const float scale) {
-#if CLPV_SURFACE_PAPER
-  __global const uchar* c = (__global const uchar*)(colours + pixel);
-  return (float3)(c[0] * (scale / 255.0f), c[1] * (scale / 255.0f), c[2] * (scale / 255.0f));
-#else
-  __global const float* c = (__global const float*)(colours + pixel);
-  return (float3)(c[0], c[1], c[2]);
-#endif
 }

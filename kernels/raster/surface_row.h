@@ -25,9 +25,11 @@ static inline Vec row_positions(const ClpvView view, const PixelRow p, const rea
   const ScreenPoints s = find_screen_points(view, p);
   const realW scale = view.orthographic != 0.0f ? ONE : depth;
   const realW sx = scale * s.x, sy = scale * s.y;
-#define CLPV_AT(a) (view.eye[a] + depth * view.forward[a] + sx * view.right[a] + sy * view.up[a])
-  return vec(CLPV_AT(0), CLPV_AT(1), CLPV_AT(2));
-#undef CLPV_AT
+  realW at[3];
+#pragma unroll
+  for (int a = 0; a < 3; ++a)
+    at[a] = view.eye[a] + depth * view.forward[a] + sx * view.right[a] + sy * view.up[a];
+  return vec(at[0], at[1], at[2]);
 }
 
 // Footprints [m^2] of the pixels across their rays.
@@ -76,9 +78,6 @@ static inline void load_points(const ClpvView view, const PixelRow p, __global c
 }
 
 // Place of a surface: its depth in the view, or with CLPV_POINTS 1 a point without a view.
-#ifndef CLPV_POINTS
-#define CLPV_POINTS 0
-#endif
 #if CLPV_POINTS
 typedef float4 Place;
 #define CLPV_LOAD_SURFACES load_points
@@ -87,17 +86,28 @@ typedef float Place;
 #define CLPV_LOAD_SURFACES load_surfaces
 #endif
 
+// Numbers of stored texels. `scale`: as in load_colour().
 #if CLPV_SURFACE_PAPER
-typedef uchar Channel;  // of a stored texel
+typedef uchar Channel;
 typedef bytesW channelW;
 // Same as a saturating conversion of value + 0.5f, which PoCL does not inline (lanes.h).
 static inline bytesW to_bytes(const realW value) {
   const realW all = (realW)(255.0f);
   return to_bytesW(to_intW((value > ZERO ? (value < all ? value : all) : ZERO) + 0.5f));
 }
+static inline bytesW stored_normal(const realW n) { return to_bytes(n * 127.5f + 127.5f); }
+static inline bytesW stored_geometric(const realW geometric) { return (bytesW)(255); }
+static inline bytesW stored_colour(const realW c, const float scale) {
+  return to_bytes(c * (255.0f / scale));
+}
+static inline bytesW stored_alpha(void) { return (bytesW)(255); }
 #else
 typedef float Channel;
 typedef realW channelW;
+static inline realW stored_normal(const realW n) { return n; }
+static inline realW stored_geometric(const realW geometric) { return geometric; }
+static inline realW stored_colour(const realW c, const float scale) { return c; }
+static inline realW stored_alpha(void) { return ONE; }
 #endif
 
 #if W == 8
@@ -129,7 +139,7 @@ CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW
     vstore4(i % 2 == 0 ? twos[i / 2].lo : twos[i / 2].hi, i, numbers);
 }
 
-#elif W == 1
+#else
 
 CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW y,
                               const channelW z, const channelW w, __global SurfaceTexel* to) {
@@ -141,22 +151,12 @@ CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW
 // `geometric`: numbers of the geometric normals, for which the 8-bit format has no room.
 CLPV_INLINE void store_normals(const PixelRow p, const Vec n, const realW geometric,
                                __global SurfaceTexel* to) {
-#if CLPV_SURFACE_PAPER
-  store_texels(p.count, to_bytes(n.x * 127.5f + 127.5f), to_bytes(n.y * 127.5f + 127.5f),
-               to_bytes(n.z * 127.5f + 127.5f), (bytesW)(255), to);
-#else
-  store_texels(p.count, n.x, n.y, n.z, geometric, to);
-#endif
+  store_texels(p.count, stored_normal(n.x), stored_normal(n.y), stored_normal(n.z),
+               stored_geometric(geometric), to);
 }
 
-// `scale`: as in load_colour().
 CLPV_INLINE void store_colours(const PixelRow p, const Vec c, const float scale,
                                __global SurfaceTexel* to) {
-#if CLPV_SURFACE_PAPER
-  const float byte = 255.0f / scale;
-  store_texels(p.count, to_bytes(c.x * byte), to_bytes(c.y * byte), to_bytes(c.z * byte),
-               (bytesW)(255), to);
-#else
-  store_texels(p.count, c.x, c.y, c.z, ONE, to);
-#endif
+  store_texels(p.count, stored_colour(c.x, scale), stored_colour(c.y, scale),
+               stored_colour(c.z, scale), stored_alpha(), to);
 }

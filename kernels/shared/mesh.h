@@ -37,6 +37,18 @@ typedef struct {
   unsigned int unused;
 } ClpvMaterial;
 
+// Rows of four floats of these structs, for kernels that gather a row per lane.
+enum {
+  CLPV_VERTEX_POSITION,  // and x of the normal
+  CLPV_VERTEX_UV,        // after y and z of the normal
+  CLPV_VERTEX_COLOUR,
+  CLPV_VERTEX_ROWS,
+  CLPV_MATERIAL_COLOUR = 0,
+  CLPV_MATERIAL_EMISSIVE,  // and alpha_cutoff
+  CLPV_MATERIAL_TEXTURES,  // texture, emissive_texture, flags
+  CLPV_MATERIAL_ROWS,
+};
+
 // Mip levels of every texture in the table; the level of 1 x 1 texels repeats. Level l of texture t
 // is entry t * CLPV_TEXTURE_LEVELS + l. The maximum side is 2^(CLPV_TEXTURE_LEVELS - 1).
 enum { CLPV_TEXTURE_LEVELS = 16 };

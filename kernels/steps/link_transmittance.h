@@ -7,13 +7,15 @@
 //
 // B is the blocking potential along the link, B_a or c_i a mean over the corners of the face, edge
 // or corner that it passes. A sweep has links from 26 neighbours, steps have 30: six neighbours
-// with five faces each. docs/method.md, 'Blockers'. From the host
-// (host/codegen/transmittance_source.cpp): CLPV_LINKS, struct Links, and for each link
+// with five faces each. docs/method.md, 'Blockers'.
+//
+// From the host (host/pipeline/steps/transmittance.cpp): CLPV_LINKS, and for each link
 // CLPV_LINK_SIDES, the side of the cell that it passes (-1, 0 or 1 along each axis), and
 // CLPV_LINK_BLOCKED, half the weights of the blockers' numbers, divided by the number of corners.
 #pragma once
 
 #include "volume/geometry.h"
+#include "volume/links.h"
 
 __constant const int link_sides[3 * CLPV_LINKS] = CLPV_LINK_SIDES;
 __constant const float link_blocked[CLPV_LINKS][CLPV_N] = CLPV_LINK_BLOCKED;

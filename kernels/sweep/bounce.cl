@@ -21,8 +21,8 @@
 //                           shared/reflectors.h
 //       injected          I: light volume [W/sr]
 // Out:  bounced           I': light volume [W/sr]
-// From the host (host/codegen/sweep_source.cpp): Coefficients of the basis, CLPV_LOBES, the lobe of
-// 1 W about each face's normal, CLPV_MAX_RETURNED, the largest q, and the text for face_fluxes.h.
+// From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_LOBES, the lobe of 1 W about each
+// face's normal, CLPV_MAX_RETURNED, the largest q, and those of face_fluxes.h.
 // A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"
 #include "sweep/face_fluxes.h"

@@ -3,8 +3,8 @@
 //
 //   D_a = sum_b Omega_b max(0, -w_b.a) L_b s^2      (docs/method.md, 'More bounces')
 //
-// From the host (host/codegen/sweep_source.cpp): CLPV_INCIDENT, Omega_b max(0, -w_b.a) for each
-// face and bin.
+// From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_INCIDENT, Omega_b max(0, -w_b.a) for
+// each face and bin.
 #pragma once
 
 #include "shared/reflectors.h"

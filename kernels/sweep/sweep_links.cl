@@ -11,9 +11,9 @@
 //       closed         closed pairs of centres in each cube between cells (closed_links.cl)
 // Out:  transmittance  T in [0, 1], a volume for each axis and link that directions across it use
 //                      (sweep_layout.h)
-// From the host (host/codegen/transmittance_source.cpp, sweep_source.cpp): the text for
-// link_transmittance.h, and CLPV_VOLUME_LINKS, the link of each volume: CLPV_AXIS_LINKS across x,
-// then as many across y and z. A work-item computes a tile of W x W cells of a slice.
+// From the host (host/pipeline/sweep/sweep_literals.cpp): those of link_transmittance.h,
+// and CLPV_VOLUME_LINKS, the link of each volume: CLPV_AXIS_LINKS across x, then as many across y
+// and z. A work-item computes a tile of W x W cells of a slice.
 #include "volume/coefficients.h"
 #include "steps/link_transmittance.h"
 #include "sweep/centre_pairs.h"

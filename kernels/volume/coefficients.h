@@ -3,10 +3,16 @@
 // a blocker, of six faces, or nine harmonics. Loops over them are unrolled, so that they stay in
 // registers.
 //
-// From the host (coefficient_text), since generated text before this file uses them: CLPV_N, type
-// Coefficient (realW, or float where one cell is read at a time) and struct Coefficients, an array
-// c of them.
+// From the host (add_coefficient_literals): CLPV_N; CLPV_COEFFICIENT, the type of one of them:
+// realW, those of W cells, or float where one cell is read at a time.
 #pragma once
+
+#include "lanes.h"
+
+typedef CLPV_COEFFICIENT Coefficient;
+typedef struct {
+  Coefficient c[CLPV_N];
+} Coefficients;
 
 CLPV_INLINE Coefficients zero_coefficients(void) {
   Coefficients r;

@@ -9,12 +9,6 @@
 #define CLPV_AOS 1
 #define CLPV_TILED 2
 #define CLPV_IMAGE 3
-#ifndef CLPV_LAYOUT
-#define CLPV_LAYOUT CLPV_SOA
-#endif
-#ifndef CLPV_STORAGE_HALF
-#define CLPV_STORAGE_HALF 0
-#endif
 
 // Joins two names: light, load -> light_load.
 #define CLPV_PASTE2(a, b) a##_##b

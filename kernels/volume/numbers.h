@@ -6,14 +6,9 @@
 #include "lanes.h"
 
 #if CLPV_STORAGE_HALF
-#define CLPV_NUMBER half
-#else
-#define CLPV_NUMBER float
-#endif
-#define CLPV_BUFFER_IN __global const CLPV_NUMBER*
-#define CLPV_BUFFER_OUT __global CLPV_NUMBER*
+#define CLPV_BUFFER_IN __global const half*
+#define CLPV_BUFFER_OUT __global half*
 
-#if CLPV_STORAGE_HALF
 // Conversion through a private vector: PoCL 3.1 assumes 16-byte alignment in vload_half8 and
 // vstore_half8.
 CLPV_INLINE float8 halves_to_floats(const ushort8 bits) {
@@ -42,6 +37,9 @@ CLPV_INLINE void write_eight(CLPV_BUFFER_OUT to, const int at, const float8 valu
   ((__global HalfRow*)(to + at))->bits = floats_to_halves(value);
 }
 #else
+#define CLPV_BUFFER_IN __global const float*
+#define CLPV_BUFFER_OUT __global float*
+
 CLPV_INLINE float read_number(CLPV_BUFFER_IN from, const int at) { return from[at]; }
 CLPV_INLINE void write_number(CLPV_BUFFER_OUT to, const int at, const float value) {
   to[at] = value;
@@ -53,17 +51,10 @@ CLPV_INLINE void write_eight(CLPV_BUFFER_OUT to, const int at, const float8 valu
 #endif
 
 // W numbers from index `at` on.
-CLPV_INLINE realW read_numbers(CLPV_BUFFER_IN from, const int at) {
 #if W == 8
-  return read_eight(from, at);
+#define read_numbers read_eight
+#define write_numbers write_eight
 #else
-  return read_number(from, at);
+#define read_numbers read_number
+#define write_numbers write_number
 #endif
-}
-CLPV_INLINE void write_numbers(CLPV_BUFFER_OUT to, const int at, const realW value) {
-#if W == 8
-  write_eight(to, at, value);
-#else
-  write_number(to, at, value);
-#endif
-}

@@ -51,10 +51,8 @@ __kernel void voxelize_blockers(const ClpvRegion region, __global const uint* cl
   __global uint* mine = masks + (size_t)cascade * CLPV_BLOCKER_MASKS;
   __global const ClpvVertex* const corner[3] = {
       vertices + triangle.vertex[0], vertices + triangle.vertex[1], vertices + triangle.vertex[2]};
-#if CLPV_MASKED
   __global const ClpvMaterial* material = materials + triangle.material;
-  const bool masked = (material->flags & CLPV_MATERIAL_MASKED) != 0;
-#endif
+  const bool masked = CLPV_MASKED && (material->flags & CLPV_MATERIAL_MASKED) != 0;
   GridCorners corners;
   if (!find_grid_corners(&region, corner, &corners)) return;
   int2 samples[3];  // range of samples along each axis that the triangle may cover
@@ -72,9 +70,7 @@ __kernel void voxelize_blockers(const ClpvRegion region, __global const uint* cl
         const float u = (float)(i * W);
         intW covered = voxel_covered(&t, u, (float)v);
         if (lane_bits(covered) == 0) continue;
-#if CLPV_MASKED
         if (masked) covered &= voxel_solid(&t, corner, material, textures, texels, u, (float)v);
-#endif
         set_row(&region, mine, axis, i * W, v, covered, voxel_depth(&t, u, (float)v));
       }
     }

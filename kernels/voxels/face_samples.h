@@ -4,11 +4,6 @@
 
 #include "voxels/voxelize_triangle.h"
 
-#ifndef CLPV_TEXTURED
-#define CLPV_TEXTURED 1
-#define CLPV_COLOURED 1
-#endif
-
 // Corners and material of a triangle.
 typedef struct {
   __global const ClpvVertex* corner[3];
@@ -37,11 +32,10 @@ CLPV_INLINE void find_face_samples(const ProjectedTriangle* t, const TriangleSur
     const float u = (float)(CLPV_VOXEL_SAMPLES * i + vector * W);
     intW covered = 0;
     if (v >= rows.x && v <= rows.y) covered = voxel_covered(t, u, (float)v);
-#if CLPV_MASKED
-    if ((surface->material->flags & CLPV_MATERIAL_MASKED) != 0 && lane_bits(covered) != 0)
+    if (CLPV_MASKED && (surface->material->flags & CLPV_MATERIAL_MASKED) != 0 &&
+        lane_bits(covered) != 0)
       covered &= voxel_solid(t, surface->corner, surface->material, surface->textures,
                              surface->texels, u, (float)v);
-#endif
     const intW cell = to_intW(voxel_depth(t, u, (float)v) + 1.0f) - 1;
     samples->covered[row][vector] = covered;
     samples->cell[row][vector] = cell;
@@ -57,15 +51,12 @@ CLPV_INLINE void find_albedo(const ProjectedTriangle* t, const TriangleSurface* 
                              const realW u, const realW v, const realW across, Vec* albedo) {
   __global const ClpvVertex* const* corner = surface->corner;
   *albedo = vec_load(surface->material->base_colour);
-#if CLPV_TEXTURED || CLPV_COLOURED
   const BarycentricWeights w = voxel_weights(t, u, v);
-#endif
-#if CLPV_COLOURED
-  *albedo =
-      vec_product(*albedo, vec(CLPV_BLEND(w, corner, colour[0]), CLPV_BLEND(w, corner, colour[1]),
-                               CLPV_BLEND(w, corner, colour[2])));
-#endif
-#if CLPV_TEXTURED
+  if (CLPV_COLOURED)
+    *albedo =
+        vec_product(*albedo, vec(CLPV_BLEND(w, corner, colour[0]), CLPV_BLEND(w, corner, colour[1]),
+                                 CLPV_BLEND(w, corner, colour[2])));
+  if (!CLPV_TEXTURED) return;
   const float u1 = corner[1]->uv[0] - corner[0]->uv[0], v1 = corner[1]->uv[1] - corner[0]->uv[1];
   const float u2 = corner[2]->uv[0] - corner[0]->uv[0], v2 = corner[2]->uv[1] - corner[0]->uv[1];
   const float right1 = (t->v[2] - t->v[0]) * t->inverse_area,
@@ -79,5 +70,4 @@ CLPV_INLINE void find_albedo(const ProjectedTriangle* t, const TriangleSurface* 
   sample_trilinear(surface->textures, surface->texels, (uintW)(surface->material->texture), at,
                    right, below, &factor);
   *albedo = vec_product(*albedo, factor);
-#endif
 }

@@ -18,10 +18,6 @@ __constant const float voxel_tolerance = 1.0f / 256.0f;  // [samples]
 // [samples] coordinates are clamped to it, so that floats hold them as integers.
 __constant const float voxel_limit = 8e6f;
 
-#ifndef CLPV_MASKED
-#define CLPV_MASKED 1  // 0: no material of the scene is masked
-#endif
-
 // A triangle projected along an axis.
 typedef struct {
   float u[3], v[3];
@@ -146,7 +142,6 @@ static inline BarycentricWeights voxel_weights(const ProjectedTriangle* t, const
   ((corner)[0]->field + (weights).w1 * ((corner)[1]->field - (corner)[0]->field) + \
    (weights).w2 * ((corner)[2]->field - (corner)[0]->field))
 
-#if CLPV_MASKED
 // Mask of those samples where the alpha of a masked material reaches its cutoff: no hole.
 CLPV_INLINE intW voxel_solid(const ProjectedTriangle* t, __global const ClpvVertex* const corner[3],
                              __global const ClpvMaterial* material, __global const float4* textures,
@@ -159,4 +154,3 @@ CLPV_INLINE intW voxel_solid(const ProjectedTriangle* t, __global const ClpvVert
                        sample_alpha(textures, texels, finest, uv);
   return alpha >= material->alpha_cutoff;
 }
-#endif

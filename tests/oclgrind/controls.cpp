@@ -7,7 +7,7 @@ int main() {
   using namespace clpv;
   constexpr std::size_t kItems = 8, kGroup = 4, kBytes = kItems * sizeof(cl_int);
   Session session(choose_device());
-  const ProgramSource source{"controls.cl", {}, {}};
+  const ProgramSource source{"controls.cl"};
   const Buffer written = session.buffer(kBytes, "written"),
                unwritten = session.buffer(kBytes, "unwritten");
   session.fill_zero(written, kBytes);

@@ -138,8 +138,7 @@ void Frame::require_lookups(const char* what) const {
 
 std::string Frame::lookup_source() const {
   require_lookups("lookup source");
-  return program_text(
-             with_radiance({"gather/lookup.h", {}, {}}, *swept_, gather_options(options_))) +
+  return program_text(with_radiance({"gather/lookup.h"}, *swept_, gather_options(options_))) +
          "#line 1 \"kernel\"\n";
 }
 
@@ -230,9 +229,9 @@ std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
   const std::size_t numbers = points.position.size() * 4;
   Buffer radiances = session_.buffer(numbers * sizeof(float), "radiance at points");
   if (!radiance_) {
-    radiance_.emplace(
-        session_, with_radiance({"gather/radiance.cl", {}, {}}, *swept_, gather_options(options_)),
-        "radiance");
+    radiance_.emplace(session_,
+                      with_radiance({"gather/radiance.cl"}, *swept_, gather_options(options_)),
+                      "radiance");
   }
   radiance_->set(points.view, places, vectors, radiances);
   gatherer_.add_radiance(*radiance_);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/gather/gather.hpp"
 
-#include "codegen/constants.hpp"
-#include "codegen/gather_source.hpp"
 #include "pipeline/raster/surface.hpp"
 #include "support/error.hpp"
 
@@ -16,32 +14,44 @@ LobeOptions looked_up(TransportKind transport, const GatherOptions& options) {
   return lobes;
 }
 
-std::string cascade_macro(std::size_t cascades) {
-  std::string text = "#define CLPV_EACH_CASCADE(DO)";
-  for (std::size_t c = 0; c < cascades; ++c) text += fmt::format(" DO({})", c);
-  return text + "\n";
+/// Number of float8 in a record, each with two coefficients of three channels.
+int packed_pairs(const Basis& basis) {
+  return (basis.size() + 1) / 2;
 }
 
-void add_literals(Literals& literals, const Basis& basis, const GatherOptions& options,
-                  bool packed) {
+/// "DO(0) DO(1)": the numbers of all cascades, for kernels/gather/gather_images.cl.
+std::string each_cascade(std::size_t cascades) {
+  std::string text;
+  for (std::size_t c = 0; c < cascades; ++c) text += fmt::format("DO({}) ", c);
+  return text;
+}
+
+void add_literals(Literals& literals, const Basis& basis, const GatherOptions& options) {
   literals.integer("CLPV_GRID", options.grid)
-      .flag("CLPV_PACKED", packed)
-      .flag("CLPV_VISIBLE", options.gather == Gathering::visible)
-      .integer("CLPV_PAIRS", packed_pairs(basis))
       .real("CLPV_GATHER_OFFSET", options.gather_offset)
       .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells);
+  add_coefficient_literals(literals, basis.size(), "float");
+  basis.add_literals(literals);
+}
+
+void add_packed_literals(Literals& literals, const Basis& basis, const GatherOptions& options) {
+  literals.flag("CLPV_VISIBLE", options.gather == Gathering::visible)
+      .integer("CLPV_PAIRS", packed_pairs(basis));
 }
 
 ProgramSource source_of(const Basis& basis, TransportKind transport, const GatherOptions& options,
                         bool packed, const LookupTable& table) {
-  ProgramSource source{"gather/gather.cl", {}, {}};
-  add_literals(source.literals, basis, options, packed);
-  if (!packed) {
+  ProgramSource source{packed ? "gather/gather.cl" : "gather/gather_images.cl"};
+  add_literals(source.literals, basis, options);
+  source.literals.flag("CLPV_FACE_TRANSPORT", has_faces(transport))
+      .flag("CLPV_FROM_TABLE", table.exists());
+  table.add_literals(source.literals);
+  if (packed) {
+    add_packed_literals(source.literals, basis, options);
+  } else {
     add_format_literals(source.literals, options.format, 8);  // pixels; cells are read one by one
     source.literals.flag("CLPV_FILTERED", options.filtered);
   }
-  source.generated =
-      table.macros() + gather_source(basis, transport, options.lobes, table.exists());
   return source;
 }
 
@@ -49,8 +59,8 @@ ProgramSource source_of(const Basis& basis, TransportKind transport, const Gathe
 
 ProgramSource with_radiance(ProgramSource source, const Basis& swept,
                             const GatherOptions& options) {
-  add_literals(source.literals, swept, options, true);
-  source.generated = radiance_source(swept);
+  add_literals(source.literals, swept, options);
+  add_packed_literals(source.literals, swept, options);
   return source;
 }
 
@@ -64,7 +74,8 @@ Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport
       source_(source_of(basis, transport, options, packs(), table_)),
       stencil_(options.grid, options.format, lanes_of(session.device(), options.format)) {
   if (!packs()) return;
-  ProgramSource pack{"gather/pack.cl", stencil_.literals(), coefficient_text(basis.size())};
+  ProgramSource pack{"gather/pack.cl", stencil_.literals()};
+  add_coefficient_literals(pack.literals, basis.size());
   pack.literals.integer("CLPV_PAIRS", pairs_);
   pack_.emplace(session, pack, "pack");
   gather_kernel(0, false);
@@ -75,8 +86,9 @@ Kernel& Gatherer::gather_kernel(std::size_t cascades, bool points) {
   if (const auto found = gather_.find(key); found != gather_.end()) return found->second;
   ProgramSource source = source_;
   if (points) source.literals.flag("CLPV_POINTS", true);
-  if (!packs()) source.generated += cascade_macro(cascades);
-  return gather_.try_emplace(key, session_, source, "gather").first->second;
+  if (!packs()) source.literals.word("CLPV_EACH_CASCADE(DO)", each_cascade(cascades));
+  return gather_.try_emplace(key, session_, source, packs() ? "gather" : "gather_images")
+      .first->second;
 }
 
 void Gatherer::require_fit(const Surface& camera, const GatheredLight& light) const {

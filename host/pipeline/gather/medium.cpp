@@ -13,7 +13,7 @@ unsigned medium_pixels(unsigned pixels) {
 }
 
 ProgramSource medium_source(const Basis& basis, const MediumOptions& options) {
-  ProgramSource source = with_radiance({"gather/medium.cl", {}, {}}, basis, options.gather);
+  ProgramSource source = with_radiance({"gather/medium.cl"}, basis, options.gather);
   source.literals.integer("CLPV_PLANE_STEP", kMediumStep)
       .integer("CLPV_PLANE_LAYERS", 1)
       .integer("CLPV_LIGHT_STEPS", options.light_steps)

@@ -29,7 +29,7 @@ unsigned tiles_down(unsigned rows) {
 
 ProgramSource near_source(const char* file, const SceneBuffers& buffers,
                           const NearOptions& options) {
-  ProgramSource source{file, {}, {}};
+  ProgramSource source{file};
   source.literals.integer("CLPV_PLANE_STEP", options.step)
       .integer("CLPV_PLANE_LAYERS", layers(options.step))
       .number("CLPV_NEAR_RAYS", options.rays)

@@ -10,7 +10,7 @@ constexpr cl_uint kRow = 256;      // points per row, since injection reads surf
 const cl::NDRange kEmitGroup(16);  // work-items with textures run long
 
 ProgramSource emit_program(const SceneBuffers& scene) {
-  ProgramSource source{"inject/emit.cl", {}, {}};
+  ProgramSource source{"inject/emit.cl"};
   source.literals.flag("CLPV_TEXTURED", scene.textured).flag("CLPV_MASKED", scene.masked);
   return source;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/inject/inject.hpp"
 
-#include "codegen/inject_source.hpp"
 #include "kernels/shared/sort.h"
 #include "kernels/shared/thinned.h"
+#include "pipeline/inject/lobe_literals.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -43,19 +43,40 @@ bool Injector::looks_up(Kind kind) const {
   return kind == Kind::light || blocks_by_lobes(options_.blocking);
 }
 
+Literals Injector::light_literals() const {
+  Literals literals = lobe_literals(basis_, options_.lobes);
+  add_coefficient_literals(literals, basis_.size());
+  table_.add_literals(literals);
+  return literals.flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);
+}
+
+Literals Injector::blocking_literals() const {
+  Literals literals;
+  add_coefficient_literals(literals, blocking_size(options_.blocking, basis_));
+  switch (options_.blocking) {
+    case Blocking::areas:
+      return literals.flag("CLPV_BLOCKS_BY_AREA", true);
+    case Blocking::one_sided:
+      table_.add_literals(literals);
+      return literals.flag("CLPV_BLOCKS_BY_AREA", false)
+          .reals("CLPV_INTEGRALS", basis_.integrals())
+          .add(lobe_literals(basis_, options_.lobes));
+  }
+  return literals;
+}
+
 Injector::Kernels Injector::make_kernels(const Variant& variant) const {
   const Kind kind = variant.kind;
   const bool light = kind == Kind::light;
-  const Literals both = Literals()
-                            .flag("CLPV_GEOMETRY", !light)
-                            .flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
-  ProgramSource find{"inject/find_cells.cl", both, {}}, sum{"inject/inject.cl", both, {}};
-  find.literals.number("CLPV_STRIP", strip_).flag("CLPV_POINTS", variant.points);
-  sum.literals.integer("CLPV_GRID", options_.grid).flag("CLPV_UNIT_FLUX", options_.unit_flux_lobes);
+  const Literals both = Literals().flag("CLPV_SURFACE_PAPER", variant.format == RsmFormat::paper);
+  ProgramSource find{"inject/find_cells.cl", both},
+      sum{light ? "inject/light.cl" : "inject/surfels.cl", both};
+  find.literals.flag("CLPV_GEOMETRY", !light)
+      .number("CLPV_STRIP", strip_)
+      .flag("CLPV_POINTS", variant.points);
+  sum.literals.integer("CLPV_GRID", options_.grid)
+      .add(light ? light_literals() : blocking_literals());
   add_format_literals(sum.literals, Accumulator::cells_format(options_.format));
-  sum.generated = (looks_up(kind) ? table_.macros() : LookupTable::no_macros()) +
-                  (light ? inject_source(basis_, options_.lobes)
-                         : blocker_source(basis_, options_.lobes, options_.blocking));
   return {Kernel(session_, find, "find_cells"), Kernel(session_, sum, "sum_segments"),
           Kernel(session_, sum, "join_segments")};
 }

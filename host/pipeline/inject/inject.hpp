@@ -50,6 +50,8 @@ class Injector {
     bool points;  ///< points that no view contains
     auto operator<=>(const Variant&) const = default;
   };
+  Literals light_literals() const;
+  Literals blocking_literals() const;
   Kernels make_kernels(const Variant& variant) const;
   Kernels& kernels(const Variant& variant);
   bool looks_up(Kind kind) const;  ///< true if the kernel uses a look-up table

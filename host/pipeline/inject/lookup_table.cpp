@@ -30,9 +30,16 @@ void require_image(const Device& device, std::size_t entries) {
 
 }  // namespace
 
+std::vector<int> parts_of(const Parameters& parameters) {
+  return {parameters.index.begin(), parameters.index.end()};
+}
+
 LookupTable::LookupTable(Session& session, const Basis& basis, const LobeOptions& options,
                          TableStorage storage, TableUse use)
-    : values_(table_of(basis, options, use)), storage_(storage) {
+    : values_(table_of(basis, options, use)),
+      function_parts_(parts_of(function_parameters(basis))),
+      size_(options.table_size),
+      storage_(storage) {
   if (!values_) return;
   if (storage == TableStorage::image) {
     require_image(session.device(), values_->size());
@@ -42,18 +49,11 @@ LookupTable::LookupTable(Session& session, const Basis& basis, const LobeOptions
   }
 }
 
-std::string LookupTable::no_macros(const TableName& name) {
-  return fmt::format("#define CLPV_AND_{0}\n#define CLPV_PASS_{0}\n", name.macro);
-}
-
-std::string LookupTable::macros(const TableName& name) const {
-  if (!values_) return no_macros(name);
-  const bool image = storage_ == TableStorage::image;
-  return fmt::format(
-      "#define CLPV_AND_{0} , {1} {2}\n#define CLPV_PASS_{0} , {2}\n#define CLPV_TABLE_READ(table, "
-      "i) {3}\n",
-      name.macro, image ? "__read_only image1d_buffer_t" : "__global const float*", name.argument,
-      image ? "read_imagef(table, i).x" : "(table)[i]");
+void LookupTable::add_literals(Literals& literals) const {
+  if (!values_) return;
+  literals.flag("CLPV_TABLE_IMAGE", storage_ == TableStorage::image)
+      .integer("CLPV_TABLE_SIZE", size_)
+      .integers("CLPV_POISSON_PARTS", function_parts_);
 }
 
 void LookupTable::add_to(Kernel& kernel) const {

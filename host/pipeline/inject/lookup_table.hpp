@@ -4,10 +4,9 @@
 
 #include <CL/opencl.hpp>
 #include <optional>
-#include <string>
+#include <vector>
 
 #include "basis/basis.hpp"
-#include "basis/kernel_text.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "device/kernel.hpp"
 #include "device/session.hpp"
@@ -18,11 +17,11 @@ namespace clpv {
 /// Contents of a look-up table: lobes or basis functions.
 enum class TableUse { lobes, functions };
 
-/// An optional table that is a kernel's last argument, or the second to last of two. Kernels access
-/// it by the macros that macros() defines; the names of the macros follow the name of the table:
-///   CLPV_AND_TABLE               ", TYPE table" at the end of a parameter list, or nothing
-///   CLPV_PASS_TABLE              ", table" at the end of a call, or nothing
-///   CLPV_TABLE_READ(table, i)    entry i
+/// Number of the part of a table that each member of a family uses.
+std::vector<int> parts_of(const Parameters& parameters);
+
+/// An optional table that is a kernel's last argument, or the second to last of two
+/// (kernels/basis/table.h).
 class LookupTable {
  public:
   /// Creates no table if `options` disable it or the basis has no centres. Throws Error(usage) for
@@ -32,13 +31,15 @@ class LookupTable {
               TableStorage storage, TableUse use);
 
   bool exists() const { return values_.has_value(); }
-  std::string macros(const TableName& name = {}) const;
-  static std::string no_macros(const TableName& name = {});  ///< macros for no table
-  /// Sets the last argument of a kernel compiled with macros(); does nothing without a table.
+  /// Literals of kernels/basis/table.h, the same for both uses; none without a table.
+  void add_literals(Literals& literals) const;
+  /// Sets the last argument of a kernel; does nothing without a table.
   void add_to(Kernel& kernel) const;
 
  private:
   std::optional<std::vector<float>> values_;  ///< tables, concatenated
+  std::vector<int> function_parts_;
+  int size_;  ///< entries of a part
   TableStorage storage_;
   Buffer buffer_;
   cl::Image1DBuffer image_;

@@ -21,7 +21,7 @@ constexpr std::size_t kMaxChunks = 512, kMinChunk = 256,
                       kLongestChunk = CLPV_LONGEST_LOOP / CLPV_LONGEST_RUN * CLPV_LONGEST_RUN;
 // Few, long work-items: small groups spread them over all compute units.
 const cl::NDRange kLocal(16);
-const ProgramSource kSource{"inject/sort_by_cell.cl", {}, {}};
+const ProgramSource kSource{"inject/sort_by_cell.cl"};
 
 std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;

@@ -7,7 +7,7 @@ namespace {
 constexpr std::size_t kPixelsPerGroup = 64;
 
 Kernel made_kernel(Session& session, bool points) {
-  ProgramSource source{"raster/given_surface.cl", {}, {}};
+  ProgramSource source{"raster/given_surface.cl"};
   source.literals.flag("CLPV_POINTS", points);
   return {session, source, "given_surface"};
 }

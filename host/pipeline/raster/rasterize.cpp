@@ -18,8 +18,8 @@ constexpr std::size_t kMostAhead = std::size_t{1} << 22;  // triangles (256 MiB)
 constexpr std::size_t kClippedParts = CLPV_CLIP_CORNERS - 2;  // triangles that one can become
 constexpr std::size_t kSpare = 4;  // lists grow by an extra 1/4, since cameras move
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
-const ProgramSource kSetUp{"raster/rasterize.cl", {}, {}}, kBin{"raster/bin_tiles.cl", {}, {}},
-    kDraw{"raster/draw_tiles.cl", {}, {}};
+const ProgramSource kSetUp{"raster/rasterize.cl"}, kBin{"raster/bin_tiles.cl"},
+    kDraw{"raster/draw_tiles.cl"};
 
 unsigned tile_count(const ClpvView& view) {
   return tiles_along(view.width) * tiles_along(view.height);
@@ -92,8 +92,7 @@ Kernel& Rasterizer::resolve(const Resolving& wanted) {
                                  .flag("CLPV_TEXTURED", scene_.textured)
                                  .flag("CLPV_COLOURED", scene_.coloured)
                                  .flag("CLPV_EMISSIVE", wanted.emissive)
-                                 .flag("CLPV_MEDIUM", wanted.from_light && scene_.medium),
-                             {}};
+                                 .flag("CLPV_MEDIUM", wanted.from_light && scene_.medium)};
   const char* name = wanted.from_light ? "resolve_rsm" : "resolve_camera";
   return resolve_.try_emplace(wanted, session_, source, name).first->second;
 }

@@ -11,7 +11,7 @@ constexpr std::size_t kShadeGroup = 64;  // pixels per work-group
 constexpr unsigned kMinShadowTexels = CLPV_SHADOW_TAPS;
 
 ProgramSource shade_source(bool medium) {
-  ProgramSource source{"raster/shade.cl", {}, {}};
+  ProgramSource source{"raster/shade.cl"};
   if (medium) source.literals.flag("CLPV_MEDIUM", true);
   return source;
 }

@@ -7,10 +7,50 @@
 #include <string_view>
 #include <vector>
 
-#include "codegen/transport_source.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
+namespace {
+
+/// 30 x N: half the flux through each face by each function's coefficient.
+Matrix half_fluxes(const FaceTransport& scheme) {
+  Matrix rows(static_cast<int>(scheme.faces.size()),
+              static_cast<int>(scheme.faces.front().flux.size()));
+  for (int f = 0; f < rows.rows(); ++f) {
+    for (int i = 0; i < rows.columns(); ++i) rows(f, i) = 0.5 * scheme.faces[f].flux[i];
+  }
+  return rows;
+}
+
+/// Tables of kernels/steps/face_flux.h.
+Literals face_flux_literals(const Basis& basis, const FaceTransport& scheme) {
+  Literals literals;
+  add_coefficient_literals(literals, basis.size());
+  return literals.integer("CLPV_LINKS", scheme.faces.size())
+      .matrix("CLPV_FACE_FLUX", half_fluxes(scheme));
+}
+
+/// Lobes of kernels/steps/propagate.cl.
+Literals constant_lobes(const FaceTransport& scheme) {
+  std::vector<int> normals;
+  for (const Face& face : scheme.faces)
+    normals.push_back(static_cast<int>(std::ranges::find(kAxes, face.normal) - kAxes.begin()));
+  return Literals()
+      .integers("CLPV_FACE_NORMAL", normals)
+      .matrix("CLPV_LOBES", transposed(scheme.lobes));
+}
+
+}  // namespace
+
+OperationCount step_operations(const Transport& transport, bool blocking) {
+  const auto& scheme = std::get<FaceTransport>(transport.scheme);
+  const int faces = static_cast<int>(scheme.faces.size());
+  OperationCount count;
+  count.fused = products(half_fluxes(scheme)) + products(scheme.lobes);
+  count.additions = faces;  // 2 max(0, h) = h + |h|
+  (blocking ? count.fused : count.additions) += faces;
+  return count;
+}
 
 Propagator::Propagator(Session& session, const Basis& basis, const Transport& transport,
                        const PropagateOptions& options)
@@ -38,13 +78,13 @@ Propagator::Propagator(Session& session, const Basis& basis, const Transport& tr
 Kernel& Propagator::step(bool blocking) {
   std::optional<Kernel>& step = steps_[blocking ? 1 : 0];
   if (step) return *step;
-  ProgramSource program{"steps/propagate.cl", stencil_.literals(),
-                        transport_source(basis_, transport_)};
-  if (lobes_) program.generated = lobes_->macros() + program.generated + lobes_->text();
-  if (blocking) program.generated += link_text(transmitter_->transmittance().shape().coefficients);
-  program.literals.flag("CLPV_BLOCKING", blocking);
-  if (lobes_) lobes_->add_literals(program.literals);
-  return step.emplace(session_, program, "propagate_step");
+  ProgramSource program{lobes_ ? "steps/propagate_lobes.cl" : "steps/propagate.cl",
+                        stencil_.literals()};
+  const auto& scheme = std::get<FaceTransport>(transport_.scheme);
+  program.literals.flag("CLPV_BLOCKING", blocking)
+      .add(face_flux_literals(basis_, scheme))
+      .add(lobes_ ? lobes_->literals() : constant_lobes(scheme));
+  return step.emplace(session_, program, lobes_ ? "propagate_lobes" : "propagate_step");
 }
 
 void Propagator::transmit(const Volume& geometry) {

@@ -28,6 +28,9 @@ struct PropagateVolumes {
   Volume& accumulated;  ///< output: injected field plus the output of every step [W/sr]
 };
 
+/// Operations per cell and channel of a step with constant lobes.
+OperationCount step_operations(const Transport& transport, bool blocking);
+
 /// Runs the propagation steps of one basis and transport, for volumes of one grid size.
 class Propagator {
  public:

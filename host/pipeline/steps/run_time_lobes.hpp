@@ -4,7 +4,6 @@
 #pragma once
 
 #include <CL/opencl.hpp>
-#include <string>
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
@@ -13,26 +12,20 @@
 
 namespace clpv {
 
-/// Arguments and literals for kernels/steps/run_time_lobes.h.
+/// Arguments and literals for kernels/steps/propagate_lobes.cl.
 class RunTimeLobes {
  public:
   /// Throws Error(usage) for a transport without lobes. Otherwise throws as LookupTable does.
   RunTimeLobes(Session& session, const Basis& basis, const Transport& transport,
                TableStorage storage);
 
-  /// Source text before and after that of the transport.
-  std::string macros() const { return table_.macros() + functions_.macros(kFunctionsTable); }
-  const std::string& text() const { return text_; }
-  void add_literals(Literals& literals) const;
+  const Literals& literals() const { return literals_; }
   /// Sets the last arguments of a step.
   void add_to(Kernel& step) const;
 
  private:
   LookupTable table_, functions_;
-  std::string text_;
-  bool unit_flux_;
-  bool evaluates_;  ///< the kernel also evaluates basis functions, at face centres; integrals over
-                    ///< faces are constants
+  Literals literals_;
   Buffer normals_;
   Buffer links_;  ///< direction of the link through each face, and the face's solid angle
 };

@@ -4,12 +4,22 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
-#include "codegen/transmittance_source.hpp"
 #include "device/session.hpp"
+#include "pipeline/steps/operations.hpp"
 #include "pipeline/steps/stencil.hpp"
 #include "volume/volume.hpp"
 
 namespace clpv {
+
+/// Constants of kernels/steps/link_transmittance.h for one transport and blocking mode. Links are
+/// numbered like FaceTransport::faces or sweep_links().
+struct LinkConstants {
+  Literals literals;  ///< those of the geometry volume's coefficients, CLPV_LINKS, CLPV_LINK_SIDES
+                      ///< and CLPV_LINK_BLOCKED
+  OperationCount operations;  ///< per cell, each sum over corners counted for each link
+  int links = 0;
+};
+LinkConstants link_constants(const Basis& basis, const Transport& transport);
 
 /// Evaluates 1 - B of every link once. Propagation steps then read numbers and evaluate no basis,
 /// so their time does not depend on the blockers.
@@ -26,7 +36,7 @@ class LinkTransmittance {
   const OperationCount& operations() const { return operations_; }
 
  private:
-  LinkTransmittance(Session& session, const TransmittanceSource& source, int grid,
+  LinkTransmittance(Session& session, const LinkConstants& constants, int grid,
                     const VolumeFormat& format);
 
   Stencil stencil_;

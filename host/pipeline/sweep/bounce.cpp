@@ -2,7 +2,7 @@
 #include "pipeline/sweep/bounce.hpp"
 
 #include "basis/bounce.hpp"
-#include "codegen/sweep_source.hpp"
+#include "pipeline/sweep/sweep_literals.hpp"
 
 namespace clpv {
 namespace {
@@ -14,10 +14,10 @@ constexpr int kChannels = 3;
 Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& options, bool series)
     : volumes_(session, options.grid, options.format),
       reflectors_(options.parts.size()),
-      inject_reflected_(session, volumes_.program("sweep/bounce.cl", bounce_source_text(basis)),
+      inject_reflected_(session, volumes_.program("sweep/bounce.cl", bounce_literals(basis)),
                         "inject_reflected") {
   if (!series) return;
-  const ProgramSource program = volumes_.program("sweep/bounce.cl", bounce_source_text(basis));
+  const ProgramSource program = volumes_.program("sweep/bounce.cl", bounce_literals(basis));
   inject_flux_.emplace(session, program, "inject_flux");
   reflect_returned_.emplace(session, program, "reflect_returned");
   sum_series_.emplace(session, program, "sum_series");

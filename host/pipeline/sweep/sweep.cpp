@@ -10,8 +10,7 @@
 #include "basis/bounce.hpp"
 #include "basis/sky_light.hpp"
 #include "basis/sweep.hpp"
-#include "codegen/constants.hpp"
-#include "codegen/sweep_source.hpp"
+#include "pipeline/sweep/sweep_literals.hpp"
 
 namespace clpv {
 namespace {
@@ -56,7 +55,7 @@ bool within(const ClpvSweepHalo& halo, int grid) {
 
 /// Kernels that set the boundary condition of a cascade whose bins have parts^2 parts.
 ProgramSource border_program(const char* file, const SweepOptions& options, int parts, int lanes) {
-  ProgramSource source{file, {}, {}};
+  ProgramSource source{file};
   source.literals.integer("CLPV_GRID", options.grid).integer("CLPV_PARTS", parts * parts);
   add_format_literals(source.literals, options.format, lanes);
   return source;
@@ -69,9 +68,9 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
     : session_(session),
       options_(options),
       volumes_(session, options.grid, options.format),
-      source_(session, volumes_.program("sweep/sweep_source.cl", coefficient_text(basis.size())),
+      source_(session, volumes_.program("sweep/sweep_source.cl", source_literals(basis)),
               "sweep_source"),
-      collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_text()),
+      collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals()),
                "sweep_collect") {
   const std::size_t plane = plane_numbers(options.grid) * sizeof(float);
   const std::size_t ordinates =
@@ -88,10 +87,10 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
       session, 2 * ordinates * plane_numbers(options.grid) * number_bytes(options.format.storage),
       "boundary condition of the sweep");
   if (options.blocking) {
-    find_closed_links_.emplace(session, volumes_.program("sweep/closed_links.cl", ""),
+    find_closed_links_.emplace(session, volumes_.program("sweep/closed_links.cl"),
                                "find_closed_links");
     transmittance_.emplace(
-        session, volumes_.program("sweep/sweep_links.cl", sweep_links_text(basis, transport)),
+        session, volumes_.program("sweep/sweep_links.cl", sweep_links_literals(basis, transport)),
         "sweep_links");
     closed_ = zeroed_buffer(
         session, CLPV_SWEEP_BORDERED_VOLUME_OF(std::size_t(options.grid)) * sizeof(cl_uint),
@@ -134,7 +133,7 @@ bool Sweeper::last_light_enters() const {
 
 /// Program of sweep_bins.cl or sweep_planes.cl, for light of `coefficients`.
 ProgramSource Sweeper::sweep_program(int coefficients, const SweepMeans& means, int parts) const {
-  ProgramSource source{whole_bins() ? "sweep/sweep_bins.cl" : "sweep/sweep_planes.cl", {}, {}};
+  ProgramSource source{whole_bins() ? "sweep/sweep_bins.cl" : "sweep/sweep_planes.cl"};
   source.literals.integer("CLPV_GRID", options_.grid)
       .integer("CLPV_PARTS", parts * parts)
       .integer("CLPV_SOURCES", coefficients)

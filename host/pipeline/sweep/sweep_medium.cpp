@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "basis/sweep.hpp"
-#include "codegen/sweep_source.hpp"
+#include "pipeline/sweep/sweep_literals.hpp"
 #include "pipeline/sweep/sweep_tables.hpp"
 
 namespace clpv {
@@ -14,7 +14,7 @@ constexpr std::size_t kSourceVolumes = 3 * kSweepBins;
 
 ProgramSource scattering_program(const SweepVolumes& volumes, const ClpvMedium& medium) {
   ProgramSource source =
-      volumes.program("sweep/sweep_medium.cl", scatter_source_text(double{medium.anisotropy}));
+      volumes.program("sweep/sweep_medium.cl", scattering_literals(double{medium.anisotropy}));
   source.literals.flag("CLPV_MEDIUM", true);
   return source;
 }

@@ -21,8 +21,8 @@ Buffer zeroed_buffer(Session& session, std::size_t bytes, const char* what) {
 SweepVolumes::SweepVolumes(Session& session, int grid, const VolumeFormat& format)
     : session_(session), grid_(grid), format_(format), tile_(lanes_of(session.device(), format)) {}
 
-ProgramSource SweepVolumes::program(const char* file, std::string generated) const {
-  ProgramSource source{file, {}, std::move(generated)};
+ProgramSource SweepVolumes::program(const char* file, Literals literals) const {
+  ProgramSource source{file, std::move(literals)};
   source.literals.integer("CLPV_GRID", grid_);
   add_format_literals(source.literals, format_, tile_);
   return source;

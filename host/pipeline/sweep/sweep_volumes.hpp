@@ -16,8 +16,9 @@ class SweepVolumes {
  public:
   SweepVolumes(Session& session, int grid, const VolumeFormat& format);
 
-  /// Program with a work-item per tile; its literals are grid, lanes, layout and storage.
-  ProgramSource program(const char* file, std::string generated) const;
+  /// Program with a work-item per tile; its literals are grid, lanes, layout and storage, and
+  /// `literals`.
+  ProgramSource program(const char* file, Literals literals = {}) const;
   int lanes() const { return tile_; }  ///< cells along the edges of a tile
 
   /// Launches a kernel over the tiles of all slices and `channels` channels.

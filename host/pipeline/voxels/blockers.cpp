@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/voxels/blockers.hpp"
 
-#include "codegen/constants.hpp"
 #include "kernels/shared/blockers.h"
 
 namespace clpv {
@@ -12,13 +11,14 @@ VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades,
       .what = "masks of triangles that block",
       .shape = {grid + 1, grid + 1, CLPV_BLOCKER_WORDS, static_cast<std::size_t>(cascades)},
       .max_triangles = 1u << 20,
-      .program = {"voxels/blockers.cl", {}, {}},
+      .program = {"voxels/blockers.cl"},
       .kernel = "voxelize_blockers",
-      .volume_program = {"voxels/blocked_areas.cl", {}, coefficient_text(3)},
+      .volume_program = {"voxels/blocked_areas.cl"},
       .volume_kernel = "blocked_areas"};
   kind.program.literals.integer("CLPV_GRID", grid).flag("CLPV_MASKED", scene.masked);
   kind.volume_program.literals.integer("CLPV_GRID", grid);
   add_format_literals(kind.volume_program.literals, format);
+  add_coefficient_literals(kind.volume_program.literals, 3);
   return kind;
 }
 

@@ -2,7 +2,6 @@
 #include "pipeline/voxels/reflectors.hpp"
 
 #include "basis/bounce.hpp"
-#include "codegen/constants.hpp"
 #include "kernels/shared/reflectors.h"
 
 namespace clpv {
@@ -13,10 +12,10 @@ VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeForma
   VoxelKind kind{.what = "sides of triangles that reflect",
                  .shape = {grid, grid, CLPV_CELL_FACES * CLPV_FACE_WORDS, 1},
                  .max_triangles = 1u << 18,
-                 .program = {"voxels/reflectors.cl", {}, {}},
+                 .program = {"voxels/reflectors.cl"},
                  .kernel = "voxelize_reflectors",
                  .indexed = false,
-                 .volume_program = {"voxels/face_albedo.cl", {}, coefficient_text(kCellFaces)},
+                 .volume_program = {"voxels/face_albedo.cl"},
                  .volume_kernel = "face_albedo"};
   kind.program.literals.integer("CLPV_GRID", grid)
       .flag("CLPV_MASKED", scene.masked)
@@ -24,6 +23,7 @@ VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeForma
       .flag("CLPV_COLOURED", scene.coloured);
   kind.volume_program.literals.integer("CLPV_GRID", grid).real("CLPV_EDGE_LOSS", edge_loss());
   add_format_literals(kind.volume_program.literals, format);
+  add_coefficient_literals(kind.volume_program.literals, kCellFaces);
   return kind;
 }
 

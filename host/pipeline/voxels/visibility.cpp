@@ -15,7 +15,7 @@ VoxelKind visibility_masks(int grid, int cascades) {
   VoxelKind kind{.what = "cells occluded by triangles",
                  .shape = shape,
                  .max_triangles = 1u << 20,
-                 .program = {"voxels/visibility.cl", {}, {}},
+                 .program = {"voxels/visibility.cl"},
                  .kernel = "occlude_cells",
                  .textured = false};
   kind.program.literals.integer("CLPV_GRID", grid);

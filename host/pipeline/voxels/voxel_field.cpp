@@ -57,7 +57,7 @@ std::optional<ClpvBox> within(ClpvBox box, int valid) {
   return box;
 }
 
-const ProgramSource kMasks{"voxels/voxel_masks.cl", {}, {}};
+const ProgramSource kMasks{"voxels/voxel_masks.cl"};
 
 bool meet(const Bounds& a, const Bounds& b) {
   return glm::all(glm::lessThanEqual(a.lower, b.upper)) &&

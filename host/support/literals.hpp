@@ -4,9 +4,15 @@
 
 #include <concepts>
 #include <map>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace clpv {
+
+/// Returns true for a number below 1e-12 of the `largest` of a table: rounding of double sums of
+/// order 1.
+bool is_negligible(double number, double largest);
 
 /// Set of literals. Each name starts with CLPV_ and is defined once. Functions throw
 /// Error(run_time) for another name or a second definition.
@@ -27,10 +33,25 @@ class Literals {
   Literals& word(const std::string& name,
                  const std::string& word);  ///< name defined in the kernels: "CLPV_SOA"
 
+  /// Arrays: "{1.0f, 0.0f}", "{1, 2}", and a row of numbers for each row of a matrix: "{{1.0f,
+  /// 0.0f}, {0.0f, 2.0f}}". Floats that is_negligible() beside the largest are rounding errors of
+  /// zeros and become 0, so that kernels can leave out their products.
+  Literals& reals(const std::string& name, std::span<const double> values);
+  Literals& integers(const std::string& name, std::span<const int> values);
+  template <typename Matrix>
+  Literals& matrix(const std::string& name, const Matrix& matrix) {
+    std::vector<std::span<const double>> rows;
+    for (int r = 0; r < matrix.rows(); ++r) rows.push_back(matrix.row(r));
+    return table(name, rows);
+  }
+
+  Literals& add(const Literals& others);
+
   const std::map<std::string, std::string>& defined() const { return defined_; }
 
  private:
   Literals& define(const std::string& name, std::string text);
+  Literals& table(const std::string& name, const std::vector<std::span<const double>>& rows);
 
   std::map<std::string, std::string> defined_;
 };

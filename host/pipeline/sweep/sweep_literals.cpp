@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "codegen/sweep_source.hpp"
-
-#include <fmt/format.h>
+#include "pipeline/sweep/sweep_literals.hpp"
 
 #include <algorithm>
 #include <bit>
 
 #include "basis/bounce.hpp"
-#include "codegen/transmittance_source.hpp"
+#include "pipeline/steps/transmittance.hpp"
 
 namespace clpv {
 namespace {
 
 constexpr int kMirrored = 8;  // bins about an axis
 constexpr int kFolds = 3;     // log2 kMirrored
-
-Matrix transposed(const Matrix& matrix) {
-  Matrix result(matrix.columns(), matrix.rows());
-  for (int r = 0; r < matrix.rows(); ++r) {
-    for (int c = 0; c < matrix.columns(); ++c) result(c, r) = matrix(r, c);
-  }
-  return result;
-}
 
 /// The matrix by folded bins: `matrix` times bins is the result times fold_bins() of them
 /// (kernels/sweep/mirrored_bins.h).
@@ -48,34 +38,42 @@ Matrix axis_rows(const Matrix& matrix) {
 
 }  // namespace
 
-std::string sweep_links_text(const Basis& basis, const Transport& transport) {
+Literals source_literals(const Basis& basis) {
+  Literals literals;
+  add_coefficient_literals(literals, basis.size());
+  return literals;
+}
+
+Literals sweep_links_literals(const Basis& basis, const Transport& transport) {
   const LinkVolumes volumes = link_volumes();
   std::vector<int> links;
   for (const std::vector<int>& across : volumes.across)
     links.insert(links.end(), across.begin(), across.end());
-  return transmittance_source(basis, transport).text +
-         fmt::format("#define CLPV_AXIS_LINKS {}\n", volumes.across[0].size()) +
-         index_macro("CLPV_VOLUME_LINKS", links);
+  return link_constants(basis, transport)
+      .literals.integer("CLPV_AXIS_LINKS", volumes.across[0].size())
+      .integers("CLPV_VOLUME_LINKS", links);
 }
 
-std::string sweep_collect_text() {
+Literals sweep_collect_literals() {
   const Matrix projection = folded(swept_projection());
-  return coefficient_text(projection.rows()) +
-         matrix_macro("CLPV_PROJECTION", transposed(projection));
+  Literals literals;
+  add_coefficient_literals(literals, projection.rows());
+  return literals.matrix("CLPV_PROJECTION", transposed(projection));
 }
 
 OperationCount sweep_collect_operations() {
   return {.additions = kSweepBins * kFolds, .fused = products(folded(swept_projection()))};
 }
 
-std::string bounce_source_text(const Basis& basis) {
-  return coefficient_text(basis.size()) + matrix_macro("CLPV_INCIDENT", incident_flux()) +
-         matrix_macro("CLPV_LOBES", transposed(reflected_intensity(basis))) +
-         fmt::format("#define CLPV_MAX_RETURNED {}f\n", kMaxReturned);
+Literals bounce_literals(const Basis& basis) {
+  return source_literals(basis)
+      .matrix("CLPV_INCIDENT", incident_flux())
+      .matrix("CLPV_LOBES", transposed(reflected_intensity(basis)))
+      .real("CLPV_MAX_RETURNED", kMaxReturned);
 }
 
-std::string scatter_source_text(double anisotropy) {
-  return matrix_macro("CLPV_SCATTERING", axis_rows(folded(scattering_matrix(anisotropy))));
+Literals scattering_literals(double anisotropy) {
+  return Literals().matrix("CLPV_SCATTERING", axis_rows(folded(scattering_matrix(anisotropy))));
 }
 
 }  // namespace clpv

@@ -5,26 +5,29 @@
 //
 // A^-1 is two triangular systems: a float A^-1 would have 20x the rounding error for srbf14.
 //
-// From the host (host/codegen/inject_source.cpp): CLPV_ROTATED, cosine_integrals(x, y, z) or with
-// CLPV_ROTATED rotated_integrals(x, y, z CLPV_PASS_TABLE), CLPV_FLUX_WEIGHTS, CLPV_GRAM_LOWER (L)
-// and CLPV_GRAM_INVERSE_DIAGONAL.
+// From the host (add_lobe_literals, host/pipeline/inject/lobe_literals.hpp): CLPV_FLUX_WEIGHTS,
+// CLPV_GRAM_LOWER (L) and CLPV_GRAM_INVERSE_DIAGONAL; CLPV_ROTATED 1: lobes are rotated
+// (rotated_lobe.h), and the table of H is the last argument. CLPV_AND_H ends parameter lists,
+// CLPV_PASS_H calls.
 #pragma once
 
-#include "volume/coefficients.h"
+#include "basis/basis.h"
 
 __constant const float flux_weights[CLPV_N] = CLPV_FLUX_WEIGHTS;
 __constant const float gram_lower[CLPV_N][CLPV_N] = CLPV_GRAM_LOWER;
 __constant const float gram_inverse_diagonal[CLPV_N] = CLPV_GRAM_INVERSE_DIAGONAL;
 
-// alpha of the lobe about the unit normal (x, y, z).
-CLPV_INLINE Coefficients lobe_integrals(const float x, const float y,
-                                        const float z CLPV_AND_TABLE) {
+// lobe_integrals(x, y, z): alpha of the lobe about the unit normal (x, y, z).
 #if CLPV_ROTATED
-  return rotated_integrals(x, y, z CLPV_PASS_TABLE);
+#include "basis/rotated_lobe.h"
+#define CLPV_AND_H , CLPV_TABLE singular_table
+#define CLPV_PASS_H , singular_table
+#define lobe_integrals rotated_integrals
 #else
-  return cosine_integrals(x, y, z);
+#define CLPV_AND_H
+#define CLPV_PASS_H
+#define lobe_integrals cosine_integrals
 #endif
-}
 
 // Integral [sr] of the lobe with integrals alpha.
 CLPV_INLINE float lobe_flux(const Coefficients alpha) {
