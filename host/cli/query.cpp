@@ -42,7 +42,7 @@ std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
                    n.y, n.z, light[i].x, light[i].y, light[i].z);
   }
   if (outside > 0)
-    spdlog::warn("{} of {} points lie outside the cascades, where there is no light", outside,
+    log_warning("{} of {} points lie outside the cascades, where there is no light", outside,
                  points.size());
   return text;
 }

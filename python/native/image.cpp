@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "clpv/compare.hpp"
-#include "clpv/error.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "module.hpp"
@@ -30,7 +29,7 @@ Image image_from(const py::object& given, std::optional<std::vector<std::string>
   if (array.ndim() != 3 || array.size() == 0 || array.shape(0) > 16384 || array.shape(1) > 16384) {
     throw Error(ExitCode::usage,
                 "image: found shape {}, allowed: (height, width, channels), up to 16384 x 16384",
-                std::string(py::str(array.attr("shape"))));
+                shape_text(array));
   }
   Image image;
   image.height = static_cast<int>(array.shape(0));
@@ -95,8 +94,7 @@ void add_comparison(py::module_& module) {
                        c.nrmse ? fmt::format("{}", *c.nrmse) : "None",
                        c.identical ? "True" : "False");
   });
-  module.def(
-      "compare",
+  define(module, "compare",
       [](const py::object& image, const py::object& reference, float exposure) {
         const Image a = given_image(image), b = given_image(reference);
         return interruptible([&] { return compare(a, b, exposure); });
@@ -119,7 +117,7 @@ void add_image(py::module_& module) {
       "numpy.asarray(image) and image.array are float32 views of its pixels, row 0 on top, without "
       "a copy; they keep\n"
       "the image alive.");
-  type.def(py::init(&image_from), py::arg("array"), py::arg("channels") = py::none(),
+  define_init(type, &image_from, py::arg("array"), py::arg("channels") = py::none(),
            py::arg("encoding") = "linear");
   type.def_buffer([](Image& image) {
     const auto shape = shape_of(image);
@@ -147,8 +145,7 @@ void add_image(py::module_& module) {
       "encoding",
       [](const Image& image) { return image.encoding == Encoding::srgb ? "srgb" : "linear"; },
       "'linear' in light, or 'srgb'.");
-  type.def(
-      "save",
+  define(type, "save",
       [](const Image& image, const std::filesystem::path& path, float exposure) {
         without_gil([&] { save_image(path, image, exposure); });
       },
@@ -156,8 +153,7 @@ void add_image(py::module_& module) {
       "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with "
       "metadata, .png tone-mapped\n"
       "(ACES) after multiplication by 2^exposure [EV].");
-  type.def(
-      "display",
+  define(type, "display",
       [](const Image& image, float exposure) {
         Image shown = display_image(image, exposure, ToneMap::aces);
         const auto shape = shape_of(shown);
@@ -184,8 +180,7 @@ void add_image(py::module_& module) {
                        fmt::join(image.channels, " "),
                        image.encoding == Encoding::srgb ? "srgb" : "linear");
   });
-  module.def(
-      "read_image",
+  define(module, "read_image",
       [](const std::filesystem::path& path) {
         return interruptible([&] { return read_image(path); });
       },

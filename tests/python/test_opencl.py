@@ -25,7 +25,7 @@ def test_handles_of_another_kind_are_named(scene):
             given.__class__ = type("Buffer", (), {"int_ptr": 4096})
         with pytest.raises(TypeError, match=f"{name}: found .*, allowed: an object of pyopencl's class"):
             clpv.Renderer(scene, **{name: given}, **SMALL)
-    with pytest.raises(ValueError, match="found a device and a context or queue"):
+    with pytest.raises(ValueError, match="device: found one and a context or queue"):
         clpv.Renderer(scene, "0", queue=1, **SMALL)
     with pytest.raises(TypeError, match="__init__ was not called"):
         clpv.DeviceEvent.__new__(clpv.DeviceEvent).wait()
