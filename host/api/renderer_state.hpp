@@ -57,9 +57,9 @@ struct Renderer::State {
         session(where, ProgramCache::of_user(device_of(where))),
         rebuilds(file.contents().rebuilds) {
     frame.emplace(session, posed.scene(), options);
-    description = fmt::format("{} x {}, basis {}, transport {}, on {}", options.width,
-                              options.height, options.basis, name_of(options.transport),
-                              session.device().name);
+    description =
+        fmt::format("{} x {}, basis {}, transport {}, on {}", options.width, options.height,
+                    options.basis, name_of(options.transport), session.device().name);
     scene_stays.unlock();
   }
 

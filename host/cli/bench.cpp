@@ -147,7 +147,7 @@ void run(Options options, const Shared& shared) {
   Session session(device,
                   suite.name == "regression" ? std::nullopt : ProgramCache::of_user(device));
   log_info("{} ({}), driver {}", session.device().name, session.device().platform,
-               session.device().driver);
+           session.device().driver);
   const bench::Results results = bench::run_suite(session, suite, options.bench);
   const auto text = [&](std::string_view format) {
     return as_text(options, format, suite, session, results);

@@ -68,7 +68,7 @@ void print(std::string_view stage, const CheckResults& results) {
   for (const CheckResult& r : results) {
     if (r.passed())
       log_debug("{} {}: {:.2e} of {:.0e}", stage, r.variant, r.deviation.worst,
-                    r.deviation.allowed);
+                r.deviation.allowed);
     else if (r.status == Status::wrong)
       print_data("           {}: {:.3e} > {:.0e} at {}\n", r.variant, r.deviation.worst,
                  r.deviation.allowed, r.deviation.place);
@@ -147,7 +147,7 @@ void run(const Options& options, const Shared& shared) {
     return verify::help(cases, session, Claims(options.claims));
   }
   log_info("checking {} ({}), driver {}: {} comparisons", device.name, device.platform,
-               device.driver, cases.size());
+           device.driver, cases.size());
   const bool json = options.format == "json";
   const CheckResults results = results_of(cases, options, shared, device, !json);
   if (json)

@@ -105,8 +105,8 @@ void run(const Options& options, Shared& shared) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
-    log_warning("noise {:.4f} after the maximum of {} paths per pixel; requested: {}",
-                 traced.noise, traced.samples, options.tracing.values.noise);
+    log_warning("noise {:.4f} after the maximum of {} paths per pixel; requested: {}", traced.noise,
+                traced.samples, options.tracing.values.noise);
   }
   write_outputs(options, scene, camera, traced, seconds);
   const std::string noise =

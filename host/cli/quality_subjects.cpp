@@ -106,7 +106,7 @@ void trace_truths(Subject& subject, int width, int height,
                                                  options, trace_progress(progress), ranks));
     const GroundTruth& truth = subject.truths.back();
     log_debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples,
-                  truth.noise);
+              truth.noise);
   }
 }
 

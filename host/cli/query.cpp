@@ -43,7 +43,7 @@ std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
   }
   if (outside > 0)
     log_warning("{} of {} points lie outside the cascades, where there is no light", outside,
-                 points.size());
+                points.size());
   return text;
 }
 

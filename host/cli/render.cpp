@@ -98,7 +98,7 @@ void run(const Options& options, const Shared& shared) {
   Frame frame(session, scene, resolved);
   stats.end_startup();
   log_debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
-                session.device().driver);
+            session.device().driver);
   log_debug("options: {}", to_json(resolved).dump());
   progress.advance();
   frame.render(camera, [&](const CascadeVolumes& volumes) {

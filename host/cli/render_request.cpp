@@ -80,7 +80,7 @@ void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOp
   const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
   if (options.cascade_size != RenderOptions{}.cascade_size && is_bare_model(scene)) {
     log_info("cascades of {:.4g} to {:.4g} m round camera '{}'", options.cascade_size, coarsest,
-                 camera.name);
+             camera.name);
   }
   if (!cascades_meet(scene, camera.eye, options.cascades, options.cascade_size, options.grid)) {
     log_warning(

@@ -75,7 +75,7 @@ void warn_of_later_frames(const Options& options) {
   while (fs::exists(options.file(last))) ++last;
   if (last > options.frames)
     log_warning("{} also holds frames {} to {} of a longer run", options.folder, options.frames,
-                 last - 1);
+                last - 1);
 }
 
 void run(const Options& options, Shared& shared) {

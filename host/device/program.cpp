@@ -74,7 +74,7 @@ bool lacks_images_in_standard(const cl::Context& context, const Device& device) 
                      compiles(context, device, kImageProbe, "");
   if (lacks)
     log_debug("driver {} has images only without {}: programs that need them are built so",
-                  device.driver, kStandard);
+              device.driver, kStandard);
   return known[driver] = lacks;
 }
 

@@ -47,7 +47,7 @@ std::optional<cl::Program> load_program(const cl::Context& context, const Device
     return program;
   } catch (const cl::Error& error) {
     log_debug("{} rejects a cached program: {}; compiling it again", device.name,
-                  cl_error_name(error.err()));
+              cl_error_name(error.err()));
     return std::nullopt;
   }
 }
@@ -151,7 +151,7 @@ void Session::compile_with_helpers() {
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   log_debug("{} helpers compiled {} kernels in {:.1f} s", helper_count(),
-                helpers->claims().finished_count(), elapsed.count());
+            helpers->claims().finished_count(), elapsed.count());
   if (!helpers->failures().empty())
     log_debug("a helper failed, so this process compiles the rest: {}", helpers->failures());
 }
@@ -195,7 +195,7 @@ void Session::finish_first_launch(Program& program, const std::string& name) {
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;
   log_debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name,
-                elapsed.count());
+            elapsed.count());
   if (compilation_.claims) {
     compilation_.claims->finish(name_of_claim(program.key, name));
   } else if (marks_.available() && !marks_.has(program.key)) {
@@ -232,7 +232,7 @@ void Session::build(Program& program) {
   build_ms_ += elapsed.count();
   if (!program.stored && !marks_.has(program.key)) note_compiling(program, elapsed.count());
   log_debug("kernels/{}: {} in {:.1f} ms", program.source.file,
-                program.stored ? "from the cache" : "compiled", elapsed.count());
+            program.stored ? "from the cache" : "compiled", elapsed.count());
 }
 
 /// Explains a long wait for kernels that no earlier run compiled, once for each build_described().

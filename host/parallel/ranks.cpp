@@ -77,7 +77,7 @@ Device Ranks::device(const std::string& choice) const {
     device =
         share_of(device, static_cast<unsigned>(sharing), static_cast<unsigned>(local_rank / count));
   log_info("{} of {}: {} ({}), compute units: {}", name(), size(), device.name, device.platform,
-               device.compute_units);
+           device.compute_units);
   if (device.type == "cpu" && bound_processors() < static_cast<int>(device.compute_units)) {
     log_warning(
         "{} is bound to fewer processors than its device has: mpirun --bind-to none allows it all "

@@ -108,8 +108,7 @@ void Sequence::render() {
   }
   ranks_.sum(counts);
   if (there > 0) log_info("{} of {} frames existed already", there, options_.frames);
-  if (rendered > 0)
-    log_info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
+  if (rendered > 0) log_info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
   write_summary();
   if (renderer_) renderer_->session.store_programs();
   renderer_.reset();

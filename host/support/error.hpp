@@ -25,8 +25,8 @@ template <typename First, typename... More>
 Error::Error(ExitCode code,
              Format<std::type_identity_t<First>, std::type_identity_t<More>...> format,
              First&& first, More&&... more)
-    : Error(code, fmt::format(format.text, std::forward<First>(first),
-                              std::forward<More>(more)...)) {}
+    : Error(code,
+            fmt::format(format.text, std::forward<First>(first), std::forward<More>(more)...)) {}
 
 /// Throws Error(bad_input) "FILE: PLACE: found FOUND; allowed: ALLOWED". `place` is a JSON pointer,
 /// or empty.

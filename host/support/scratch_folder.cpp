@@ -67,7 +67,7 @@ fs::path folder_of_user(const fs::path& above) {
   if (::mkdir(own.c_str(), 0700) != 0 && errno != EEXIST) reject_above(above);
   if (is_own(own)) return own;
   log_warning("{}: not used, since others can write it; allowed: a folder of this user, mode 700",
-               own.string());
+              own.string());
   return above;
 }
 

@@ -30,8 +30,8 @@ struct TraceOptions {
 /// range), bad_input (a scene without surface or light). Thread-safe.
 Image pathtrace(const Scene& scene, View view, const CameraChoice& camera = {},
                 const TraceOptions& options = {});
-/// Several views of the same paths as layers: channel "indirect.R", as of `clpv pathtrace`. One view
-/// has no layer. Throws Error(usage) also for no view and for one given twice.
+/// Several views of the same paths as layers: channel "indirect.R", as of `clpv pathtrace`. One
+/// view has no layer. Throws Error(usage) also for no view and for one given twice.
 Image pathtrace(const Scene& scene, const std::vector<View>& views, const CameraChoice& camera = {},
                 const TraceOptions& options = {});
 

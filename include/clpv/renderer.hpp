@@ -107,9 +107,10 @@ class Renderer {
   /// Renders one frame at time `seconds` [s] through a camera of the scene, by name, or any other.
   /// Cascades surround its eye; for a model without a scene file their size is that for the scene's
   /// cameras unless option cascade-size is set. Returns a linear image of `size` with channels R,
-  /// G, B, A, all options in its metadata. A frame does not depend on earlier frames; one of another
-  /// size than the last allocates its images again. Throws Error: usage (no such camera, a bad one,
-  /// seconds or size out of range), bad_input (animation leads out of bounds), run_time (memory).
+  /// G, B, A, all options in its metadata. A frame does not depend on earlier frames; one of
+  /// another size than the last allocates its images again. Throws Error: usage (no such camera, a
+  /// bad one, seconds or size out of range), bad_input (animation leads out of bounds), run_time
+  /// (memory).
   Image render(View view = View::full, const CameraChoice& camera = {}, double seconds = 0,
                const ImageSize& size = {});
 
@@ -141,9 +142,9 @@ class Renderer {
 
   /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on a surface at
   /// `position` [m] with `normal` (of any length), visible or not. Uses the volumes of the last
-  /// frame, light() or update(), without option near; 0 outside of its cascades. Computed on the device.
-  /// Throws Error(usage) before the first frame, and for a position that is not finite or a normal
-  /// of length 0.
+  /// frame, light() or update(), without option near; 0 outside of its cascades. Computed on the
+  /// device. Throws Error(usage) before the first frame, and for a position that is not finite or a
+  /// normal of length 0.
   std::array<double, 3> irradiance(const Vec3& position, const Vec3& normal);
 
   /// The same for many points, with a normal for each or one for all. Throws Error(usage) also for
@@ -167,8 +168,8 @@ class Renderer {
 
   /// Like render(), but enqueues the frame and returns its device memory without waiting for all of
   /// it (docs/api.md says for what it waits). Throws Error(usage) also for View::cells.
-  opencl::Frame enqueue(View view = View::full, const CameraChoice& camera = {},
-                        double seconds = 0, const ImageSize& size = {});
+  opencl::Frame enqueue(View view = View::full, const CameraChoice& camera = {}, double seconds = 0,
+                        const ImageSize& size = {});
   /// Like light(), from and to device memory. Throws Error(usage) also for an object that is no
   /// buffer of the renderer's context or is too small.
   opencl::Event enqueue_light(const opencl::GBuffer& surfaces, const CameraChoice& camera,

@@ -20,7 +20,8 @@ std::string found(py::handle given) {
 
 void check_call(const std::string& function, const std::vector<Parameter>& parameters, bool open,
                 const py::args& args, const py::kwargs& kwargs) {
-  const auto positional = static_cast<std::size_t>(std::ranges::count(parameters, false, &Parameter::keyword));
+  const auto positional =
+      static_cast<std::size_t>(std::ranges::count(parameters, false, &Parameter::keyword));
   if (args.size() > positional) {
     throw Error(ExitCode::usage, "{}: found {} arguments by position, allowed: at most {}",
                 function, args.size(), positional);
@@ -54,7 +55,8 @@ void check_call(const std::string& function, const std::vector<Parameter>& param
 void check_arguments(const py::object& scope, const char* name, Self self,
                      const std::pair<std::vector<Parameter>, bool>& parameters) {
   const py::object function = scope.attr(name);
-  const std::string label = self == Self::untyped ? scope.attr("__name__").cast<std::string>() : name;
+  const std::string label =
+      self == Self::untyped ? scope.attr("__name__").cast<std::string>() : name;
   const std::string doc = py::str(function.attr("__doc__"));
   const auto call = [=](const py::args& args, const py::kwargs& kwargs) {
     check_call(label, parameters.first, parameters.second, args, kwargs);
@@ -63,11 +65,14 @@ void check_arguments(const py::object& scope, const char* name, Self self,
   py::options options;
   options.disable_function_signatures();  // `doc` has it
   if (self != Self::none)
-    scope.attr(name) = py::cpp_function(call, py::name(name), py::is_method(scope), py::doc(doc.c_str()));
+    scope.attr(name) =
+        py::cpp_function(call, py::name(name), py::is_method(scope), py::doc(doc.c_str()));
   else if (PyModule_Check(scope.ptr()))
-    scope.attr(name) = py::cpp_function(call, py::name(name), py::scope(scope), py::doc(doc.c_str()));
+    scope.attr(name) =
+        py::cpp_function(call, py::name(name), py::scope(scope), py::doc(doc.c_str()));
   else
-    scope.attr(name) = py::staticmethod(py::cpp_function(call, py::name(name), py::scope(scope), py::doc(doc.c_str())));
+    scope.attr(name) = py::staticmethod(
+        py::cpp_function(call, py::name(name), py::scope(scope), py::doc(doc.c_str())));
 }
 
 }  // namespace clpv::python

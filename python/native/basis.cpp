@@ -25,8 +25,8 @@ glm::dvec3 unit(const double* v) {
 std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth,
                             const py::object& centres) {
   if (centres.is_none())
-    return make_basis(name, argument<std::optional<double>>("bandwidth", bandwidth)
-                                .value_or(kDefaultLambda));
+    return make_basis(
+        name, argument<std::optional<double>>("bandwidth", bandwidth).value_or(kDefaultLambda));
   const DoubleArray given = vectors<DoubleArray>(centres, "centres");
   std::vector<glm::dvec3> all;
   for (py::ssize_t i = 0; i < given.size() / 3; ++i) all.push_back(unit(given.data() + 3 * i));
@@ -40,8 +40,9 @@ std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth
 /// Applies `values_at(w, out)`, which writes `count` numbers, to each direction of an array (...,
 /// 3).
 template <typename Values>
-py::array_t<double> at_each(const py::object& directions, int count, const Values& values_at) {
-  const DoubleArray given = vectors<DoubleArray>(directions, "directions");
+py::array_t<double> at_each(const char* name, const py::object& directions, int count,
+                            const Values& values_at) {
+  const DoubleArray given = vectors<DoubleArray>(directions, name);
   py::array_t<double> made(shape_with_last(given, count));
   for (py::ssize_t i = 0; i < given.size() / 3; ++i)
     values_at(unit(given.data() + 3 * i),
@@ -136,7 +137,7 @@ void add_basis(py::module_& module) {
       "centres: array (N, 3), for\n"
       "radial functions of one's own. Directions may have any length.");
   define_init(type, &make, py::arg("name") = "sh2", py::arg("bandwidth") = py::none(),
-           py::arg("centres") = py::none());
+              py::arg("centres") = py::none());
   type.def_property_readonly("name", &Basis::name);
   type.def("__len__", &Basis::size);
   type.def_property_readonly("condition", &Basis::condition,
@@ -158,16 +159,18 @@ void add_basis(py::module_& module) {
   type.def_property_readonly(
       "bandwidths", [](const Basis& b) { return vector_array(b.lambdas()); },
       "Array (N,); (0,) without centres.");
-  define(type, "evaluate",
+  define(
+      type, "evaluate",
       [](const Basis& basis, const py::object& directions) {
-        return at_each(directions, basis.size(),
+        return at_each("directions", directions, basis.size(),
                        [&](const glm::dvec3& w, std::span<double> out) { basis.evaluate(w, out); });
       },
       py::arg("directions"), "evaluate(directions (..., 3)) -> float64 array (..., N): b_i(w).");
-  define(type, "clamped_cosine",
+  define(
+      type, "clamped_cosine",
       [](const Basis& basis, const py::object& axes, const std::optional<int>& table_size) {
         const Lobes lobes(basis, lobe_options(table_size));
-        return at_each(axes, basis.size(), [&](const glm::dvec3& d, std::span<double> out) {
+        return at_each("axes", axes, basis.size(), [&](const glm::dvec3& d, std::span<double> out) {
           const std::vector<double> c = lobes(d);
           std::copy(c.begin(), c.end(), out.begin());
         });
@@ -181,22 +184,22 @@ void add_basis(py::module_& module) {
       "mean_error", [](const Basis& b) { return mean_relative_l2(b, Lobes(b, {})); },
       "Mean relative L2 error of exactly projected clamped cosines over all axes.");
   define(type, "energy", &energy, py::arg("steps"), py::arg("transport") = "sampled",
-           py::arg("table_size") = py::none(),
-           "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source "
-           "after `steps` steps of\n"
-           "propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for "
-           "clamped_cosine().");
+         py::arg("table_size") = py::none(),
+         "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source "
+         "after `steps` steps of\n"
+         "propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for "
+         "clamped_cosine().");
   define(type, "directions", &directions,
-           "directions() -> float64 array (K, 3): directions at which project() takes values of a "
-           "function.");
+         "directions() -> float64 array (K, 3): directions at which project() takes values of a "
+         "function.");
   define(type, "project", &project, py::arg("values"),
-           "project(values (K,)) -> float64 array (N,): least-squares projection of a function "
-           "that has these\n"
-           "values at directions().");
+         "project(values (K,)) -> float64 array (N,): least-squares projection of a function "
+         "that has these\n"
+         "values at directions().");
   define(type, "lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
-           "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) "
-           "against the clamped\n"
-           "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
+         "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) "
+         "against the clamped\n"
+         "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
 }
 
 }  // namespace clpv::python

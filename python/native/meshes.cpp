@@ -125,7 +125,8 @@ using BaseColour = std::variant<double, Vec3, std::array<double, 4>>;
 std::array<double, 4> base_colour_of(const BaseColour& given) {
   if (const auto* all = std::get_if<std::array<double, 4>>(&given)) return *all;
   const auto* three = std::get_if<Vec3>(&given);
-  const Vec3 colour = colour_of(three != nullptr ? Colour(*three) : Colour(std::get<double>(given)));
+  const Vec3 colour =
+      colour_of(three != nullptr ? Colour(*three) : Colour(std::get<double>(given)));
   return {colour[0], colour[1], colour[2], 1};
 }
 
@@ -175,22 +176,24 @@ int add_mesh(Scene& scene, const py::object& positions, const py::object& triang
 void add_material(py::module_& module) {
   py::class_<Material> type(
       module, "Material",
-      "Diffuse surface of a mesh. Immutable; replace() makes another. Values are checked where it is used.\n\n"
+      "Diffuse surface of a mesh. Immutable; replace() makes another. Values are checked where it "
+      "is used.\n\n"
       "base_colour: linear red, green, blue and optionally alpha, or one number, 0 to 1; emission: "
       "radiance of the front\n"
       "[W/m^2/sr], three numbers or one; texture: array (height, width, 4), uint8 with "
       "sRGB-encoded colour, or floats, linear;\n"
       "alpha_cutoff: alpha below which there are holes; double_sided: visible, and emissive, from "
       "both sides.");
-  define_init(type, [](const BaseColour& base_colour, const Colour& emission,
-                       const py::object& texture, std::optional<double> alpha_cutoff,
-                       bool double_sided) {
-             return Material{base_colour_of(base_colour), colour_of(emission), texture_of(texture),
-                             alpha_cutoff, double_sided};
-           },
-           py::kw_only(), py::arg("base_colour") = 1.0, py::arg("emission") = 0.0,
-           py::arg("texture") = py::none(), py::arg("alpha_cutoff") = py::none(),
-           py::arg("double_sided") = false);
+  define_init(
+      type,
+      [](const BaseColour& base_colour, const Colour& emission, const py::object& texture,
+         std::optional<double> alpha_cutoff, bool double_sided) {
+        return Material{base_colour_of(base_colour), colour_of(emission), texture_of(texture),
+                        alpha_cutoff, double_sided};
+      },
+      py::kw_only(), py::arg("base_colour") = 1.0, py::arg("emission") = 0.0,
+      py::arg("texture") = py::none(), py::arg("alpha_cutoff") = py::none(),
+      py::arg("double_sided") = false);
   type.def_property_readonly("base_colour", [](const Material& m) {
     return py::make_tuple(m.base_colour[0], m.base_colour[1], m.base_colour[2], m.base_colour[3]);
   });
@@ -260,7 +263,8 @@ void add_meshes(py::class_<Scene>& type) {
             },
             "from_arrays(positions, triangles, *, ...) -> Scene of one mesh, number 0, as "
             "add_mesh() describes it.");
-  define_static(type, "from_trimesh",
+  define_static(
+      type, "from_trimesh",
       [](const py::object& given) {
         return py::module_::import("clpv._trimesh").attr("scene_of_trimesh")(given);
       },
@@ -268,7 +272,8 @@ void add_meshes(py::class_<Scene>& type) {
       "from_trimesh(given) -> Scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, "
       "instances, "
       "colours and base-colour\ntextures.");
-  define(type, "add_instance",
+  define(
+      type, "add_instance",
       [](Scene& scene, int mesh, const py::object& transform) {
         const Transform at = transform_of("add_instance", transform);
         return without_gil([&] { return scene.add_instance(mesh, at); });
@@ -276,9 +281,12 @@ void add_meshes(py::class_<Scene>& type) {
       py::arg("mesh"), py::arg("transform"),
       "add_instance(mesh, transform) -> int: the same mesh at another place; its vertices are "
       "shared.");
-  define(type, "remove_mesh", [](Scene& scene, int mesh) { without_gil([&] { scene.remove_mesh(mesh); }); },
+  define(
+      type, "remove_mesh",
+      [](Scene& scene, int mesh) { without_gil([&] { scene.remove_mesh(mesh); }); },
       py::arg("mesh"), "remove_mesh(mesh): removes a mesh from one of its places.");
-  define(type, "set_positions",
+  define(
+      type, "set_positions",
       [](Scene& scene, int mesh, const py::object& positions, const py::object& normals) {
         const auto moved = floats<3>("set_positions", "positions", positions);
         const auto turned = floats<3>("set_positions", "normals", normals);
@@ -290,7 +298,8 @@ void add_meshes(py::class_<Scene>& type) {
       "what animation recomputes; at the\n"
       "first move of a mesh added without `moves`, and after an addition or removal, also its "
       "memory and what it caches.");
-  define(type, "set_transform",
+  define(
+      type, "set_transform",
       [](Scene& scene, int mesh, const py::object& transform) {
         const Transform at = transform_of("set_transform", transform);
         without_gil([&] { scene.set_transform(mesh, at); });

@@ -44,9 +44,9 @@ Array real_array(const py::object& given, const char* what) {
   const py::array any = py::array::ensure(given);
   if (!any) PyErr_Clear();
   if (!any || std::string_view("fiub").find(any.dtype().kind()) == std::string_view::npos) {
-    throw Error(ExitCode::usage, "{}: found {}, allowed: an array of real numbers", what,
-                any && any.ndim() > 0 ? "an array of " + std::string(py::str(any.dtype()))
-                                      : found(given));
+    throw Error(
+        ExitCode::usage, "{}: found {}, allowed: an array of real numbers", what,
+        any && any.ndim() > 0 ? "an array of " + std::string(py::str(any.dtype())) : found(given));
   }
   Array converted = Array::ensure(any);
   if (!converted) throw std::bad_alloc();  // for the copy

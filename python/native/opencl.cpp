@@ -52,7 +52,7 @@ void add_classes(py::module_& module) {
       "The cl_event, for pyopencl.Event.from_int_ptr(int_ptr, retain=True). It lives as long as "
       "this object.");
   define(event, "wait", &wait_for,
-            "wait(): waits for the commands. Raises ResourceError if they failed.");
+         "wait(): waits for the commands. Raises ResourceError if they failed.");
 
   py::class_<PythonFrame> frame(
       module, "DeviceFrame",
@@ -78,13 +78,15 @@ void add_classes(py::module_& module) {
   frame.def_property_readonly(
       "int_ptr", [](const PythonFrame& f) { return number_of(f.frame.done.get()); },
       "The cl_event of the whole frame.");
-  define(frame, "wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
+  define(
+      frame, "wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
       "wait(): waits for the frame. Raises ResourceError if it failed.");
 
   py::class_<opencl::Volumes> volumes(module, "DeviceVolumes",
                                       "Light for a kernel: arguments CLPV_RADIANCE of "
                                       "Renderer.lookup_source(), in the order of arguments().");
-  define(volumes, "arguments",
+  define(
+      volumes, "arguments",
       [](const opencl::Volumes& v) {
         const py::module_ numpy = py::module_::import("numpy");
         py::list all;
@@ -120,7 +122,8 @@ void add_opencl(py::module_& module) {
       },
       py::keep_alive<0, 1>(), py::arg("view") = "full", py::arg("camera") = py::none(),
       py::arg("time") = 0.0, py::arg("size") = py::none(),
-      "enqueue(view='full', camera=None, time=0.0, size=None) -> DeviceFrame: render() without reading the "
+      "enqueue(view='full', camera=None, time=0.0, size=None) -> DeviceFrame: render() without "
+      "reading the "
       "image back.\n\n"
       "Does not wait for all of the frame (docs/api.md); not for view 'cells'.");
   add(
@@ -147,7 +150,8 @@ void add_opencl(py::module_& module) {
       py::arg("time") = 0.0,
       "enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...) -> "
       "DeviceEvent: light() in device memory.\n\n"
-      "Buffers of the renderer's context, as pyopencl's buffers or arrays, or integers: normals and positions float4 "
+      "Buffers of the renderer's context, as pyopencl's buffers or arrays, or integers: normals "
+      "and positions float4 "
       "per pixel (w unused), or depths\nfloat; irradiance receives float4. Raises UsageError for "
       "others, and for buffers that are too small.");
   add(

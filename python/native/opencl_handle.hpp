@@ -22,17 +22,20 @@ inline bool is_of_class(const py::object& given, const char* name) {
 }
 
 /// The buffer of an array of pyopencl; another object as it is. Throws Error(usage) for an array
-/// that is not float32 from the start of its buffer, row by row.
+/// that is not of float32 or float4 from the start of its buffer, row by row.
 inline py::object buffer_of(const py::object& given, const char* what) {
   if (!py::hasattr(given, "base_data") || !is_of_class(given, "Array")) return given;
-  const auto type = py::str(given.attr("dtype")).cast<std::string>();
+  const py::object type = given.attr("dtype");
+  const auto number = type.attr("base").attr("kind").cast<std::string>();
+  const auto bytes = type.attr("itemsize").cast<std::size_t>();
+  const bool floats = (number == "f" && bytes == 4) || (number == "V" && bytes == 16);
   const auto offset = given.attr("offset").cast<std::size_t>();
   const bool rows = given.attr("flags").attr("c_contiguous").cast<bool>();
-  if (type != "float32" || offset != 0 || !rows)
+  if (!floats || offset != 0 || !rows)
     throw Error(ExitCode::usage,
-                "{}: found an array of {} from byte {} on, {}contiguous, allowed: of float32 from "
-                "byte 0 on, contiguous",
-                what, type, offset, rows ? "" : "not ");
+                "{}: found an array of {} from byte {} on, {}contiguous, allowed: of float32 or "
+                "float4 from byte 0 on, contiguous",
+                what, std::string(py::str(type)), offset, rows ? "" : "not ");
   return given.attr("base_data");
 }
 

@@ -212,23 +212,26 @@ void add_renderer(py::module_& module) {
       "Results that do not change are cached from frame to frame. Calls from several threads run "
       "one after the other.\n"
       "Raises UsageError, DeviceError, ResourceError.");
-  define_init(type, [](const Scene& scene, const std::string& device, const py::object& context,
-                       const py::object& queue, const py::kwargs& given) {
-             const Options options = options_of(given);
-             const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
-                                       handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
-             const bool own = context.is_none() && queue.is_none();
-             if (!own && !device.empty())
-               throw Error(ExitCode::usage,
-                           "device: found one and a context or queue, allowed: one of both");
-             note_device_use();
-             return interruptible([&] {
-               return own ? Renderer(scene, options, device) : Renderer(scene, options, where);
-             });
-           },
-           py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
-           py::arg("queue") = py::none());
-  define(type, "render",
+  define_init(
+      type,
+      [](const Scene& scene, const std::string& device, const py::object& context,
+         const py::object& queue, const py::kwargs& given) {
+        const Options options = options_of(given);
+        const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
+                                  handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
+        const bool own = context.is_none() && queue.is_none();
+        if (!own && !device.empty())
+          throw Error(ExitCode::usage,
+                      "device: found one and a context or queue, allowed: one of both");
+        note_device_use();
+        return interruptible([&] {
+          return own ? Renderer(scene, options, device) : Renderer(scene, options, where);
+        });
+      },
+      py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
+      py::arg("queue") = py::none());
+  define(
+      type, "render",
       [](Renderer& renderer, const std::string& view, const std::optional<CameraChoice>& camera,
          double time, const ImageSize& size) {
         const View what = named<View>("view", view);
@@ -260,14 +263,16 @@ void add_renderer(py::module_& module) {
          "again. A `with` block ends with it.");
   type.def("__enter__", [](const py::object& self) { return self; });
   type.def("__exit__", [release](Renderer& renderer, const py::args&) { release(renderer); });
-  define(type, "show",
+  define(
+      type, "show",
       [](Renderer& renderer, const std::string& view) {
         const View what = named<View>("view", view);
         return interruptible([&] { return renderer.show(what); });
       },
       py::arg("view"),
       "show(view) -> Image: another view of the last frame, without rendering it again.");
-  define(type, "light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
+  define(
+      type, "light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
       py::arg("depths") = py::none(), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
       py::arg("time") = 0.0,
       "light(normals, *, positions=None, depths=None, eye=None, camera=None, time=0.0) -> float32 "
@@ -278,7 +283,8 @@ void add_renderer(py::module_& module) {
       "shape, or depths (height, width) [m] of `camera`, a Camera or a\nname (None: the scene's "
       "first). Cascades surround `eye`, or the camera's. Pixels with a normal of 0, a depth that "
       "is not\npositive or a number that is not finite have no surface, and no light.");
-  define(type, "irradiance",
+  define(
+      type, "irradiance",
       [](Renderer& renderer, const py::object& points, const py::object& normals) {
         return at_points(renderer, &Renderer::irradiance, points, normals, "normals");
       },
@@ -289,7 +295,8 @@ void add_renderer(py::module_& module) {
       "the last frame, light()\n"
       "or update(), without option near; "
       "0 outside of the cascades. Computed on the device.");
-  define(type, "radiance",
+  define(
+      type, "radiance",
       [](Renderer& renderer, const py::object& points, const py::object& directions) {
         return at_points(renderer, &Renderer::radiance, points, directions, "directions");
       },
@@ -297,13 +304,14 @@ void add_renderer(py::module_& module) {
       "radiance(points, directions) -> float32 array of the points' shape: indirect light "
       "[W/m^2/sr], red, green, blue.\n\n"
       "points [m] and directions in which the light travels (of any length): arrays (..., 3), or "
-      "one direction. As\nirradiance(), of the same volumes, on the device; negative where nine harmonics "
+      "one direction. As\nirradiance(), of the same volumes, on the device; negative where nine "
+      "harmonics "
       "undershoot. Raises UsageError without transport 'sweep',\nand for layout 'image' with "
       "gather 'all'.");
   type.def("__repr__",
            [](const Renderer& renderer) { return "Renderer(" + renderer.description() + ")"; });
   define(type, "volumes", &volumes,
-           "volumes() -> list of Volume of the last frame, finest cascade first.");
+         "volumes() -> list of Volume of the last frame, finest cascade first.");
   type.def_property_readonly(
       "stats",
       [](const Renderer& renderer) {
@@ -314,15 +322,16 @@ void add_renderer(py::module_& module) {
       "'frame': wall time of render() [ms], 'host': the host's work in it, without waiting [ms], "
       "'build': compilation so far\n[ms]; numbers of 'launches' (kernels, fills and copies) and of "
       "'waits' for the device; 'device_bytes', 'peak_device_bytes'.");
-  define(module, "pathtrace",
+  define(
+      module, "pathtrace",
       [](const Scene& scene, const std::variant<std::string, std::vector<std::string>>& view,
          const std::optional<CameraChoice>& camera, int width, int height,
          const std::variant<int, std::string>& bounces, std::uint32_t samples, double noise,
          std::uint64_t seed, int threads, double time,
          const std::optional<py::function>& progress) {
         const std::vector<View> views = views_of(view);
-        TraceOptions options{width, height, bounces_of(bounces), samples, noise,
-                             seed,  threads, time, {}};
+        TraceOptions options{width, height, bounces_of(bounces), samples, noise, seed, threads,
+                             time,  {}};
         note_device_use();
         std::atomic<double> reached{0};
         double told = 0;
@@ -342,7 +351,8 @@ void add_renderer(py::module_& module) {
       "pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.\n\n"
       "view: as of render(), or a list of several, which become layers of the image: channels "
       "'indirect.R' and so on;\n"
-      "bounces: reflections between light and visible surface, 'all' or 0 for all; samples: paths per "
+      "bounces: reflections between light and visible surface, 'all' or 0 for all; samples: paths "
+      "per "
       "pixel, 0 for as many as\n"
       "`noise` (relative standard error of the indirect light) needs; threads: 0 for one per "
       "processor.\n"

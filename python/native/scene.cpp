@@ -48,13 +48,14 @@ void add_camera(py::module_& module) {
       "used.\n\n"
       "eye, target, up: x, y, z [m]; fov: vertical field of view [degrees];\n"
       "near: nearest visible depth [m]; light: name of its only light, empty for all.");
-  define_init(type, [](const Vec3& eye, const Vec3& target, const Vec3& up, double fov, double near,
-                       std::string name, std::string light) {
-             return Camera{eye, target, up, fov, near, std::move(name), std::move(light)};
-           },
-           py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0),
-           py::arg("fov") = 60.0, py::arg("near") = 0.05, py::arg("name") = "",
-           py::arg("light") = "");
+  define_init(
+      type,
+      [](const Vec3& eye, const Vec3& target, const Vec3& up, double fov, double near,
+         std::string name, std::string light) {
+        return Camera{eye, target, up, fov, near, std::move(name), std::move(light)};
+      },
+      py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0),
+      py::arg("fov") = 60.0, py::arg("near") = 0.05, py::arg("name") = "", py::arg("light") = "");
   type.def_property_readonly("eye", [](const Camera& c) { return tuple_of(c.eye); });
   type.def_property_readonly("target", [](const Camera& c) { return tuple_of(c.target); });
   type.def_property_readonly("up", [](const Camera& c) { return tuple_of(c.up); });
@@ -74,22 +75,23 @@ void add_light(py::module_& module) {
       "intensity: red, green, blue, or one number: illuminance [lx = W/m^2] if directional, else "
       "[cd = W/sr];\n"
       "range [m], 0 for no limit; inner_cone, outer_cone: angles of a spot [degrees].");
-  define_init(type, [](const std::string& kind, const Vec3& position, const Vec3& direction,
-                       const Colour& intensity, double range, double inner, double outer,
-                       std::string name) {
-             return Light{named<LightKind>("kind", kind),
-                          position,
-                          direction,
-                          colour_of(intensity),
-                          range,
-                          inner,
-                          outer,
-                          std::move(name)};
-           },
-           py::arg("kind") = "directional", py::arg("position") = py::make_tuple(0, 0, 0),
-           py::arg("direction") = py::make_tuple(0, -1, 0),
-           py::arg("intensity") = py::make_tuple(1, 1, 1), py::arg("range") = 0.0,
-           py::arg("inner_cone") = 0.0, py::arg("outer_cone") = 45.0, py::arg("name") = "");
+  define_init(
+      type,
+      [](const std::string& kind, const Vec3& position, const Vec3& direction,
+         const Colour& intensity, double range, double inner, double outer, std::string name) {
+        return Light{named<LightKind>("kind", kind),
+                     position,
+                     direction,
+                     colour_of(intensity),
+                     range,
+                     inner,
+                     outer,
+                     std::move(name)};
+      },
+      py::arg("kind") = "directional", py::arg("position") = py::make_tuple(0, 0, 0),
+      py::arg("direction") = py::make_tuple(0, -1, 0),
+      py::arg("intensity") = py::make_tuple(1, 1, 1), py::arg("range") = 0.0,
+      py::arg("inner_cone") = 0.0, py::arg("outer_cone") = 45.0, py::arg("name") = "");
   type.def_property_readonly("kind", [](const Light& l) { return std::string(name_of(l.kind)); });
   type.def_property_readonly("position", [](const Light& l) { return tuple_of(l.position); });
   type.def_property_readonly("direction", [](const Light& l) { return tuple_of(l.direction); });
@@ -110,13 +112,14 @@ void add_medium(py::module_& module) {
                           "anisotropy: -0.9 to 0.9, above 0 forwards;\n"
                           "box: lower and upper corner [m], None for the scene's bounding box.");
   using Box = std::optional<std::array<Vec3, 2>>;
-  define_init(type, [](const Colour& scattering, const Colour& absorption,
-                       double anisotropy, const Box& box) {
-             return Medium{colour_of(scattering), colour_of(absorption), anisotropy, box};
-           },
-           py::arg("scattering") = py::make_tuple(0, 0, 0),
-           py::arg("absorption") = py::make_tuple(0, 0, 0), py::arg("anisotropy") = 0.0,
-           py::arg("box") = py::none());
+  define_init(
+      type,
+      [](const Colour& scattering, const Colour& absorption, double anisotropy, const Box& box) {
+        return Medium{colour_of(scattering), colour_of(absorption), anisotropy, box};
+      },
+      py::arg("scattering") = py::make_tuple(0, 0, 0),
+      py::arg("absorption") = py::make_tuple(0, 0, 0), py::arg("anisotropy") = 0.0,
+      py::arg("box") = py::none());
   type.def_property_readonly("scattering", [](const Medium& m) { return tuple_of(m.scattering); });
   type.def_property_readonly("absorption", [](const Medium& m) { return tuple_of(m.absorption); });
   type.def_readonly("anisotropy", &Medium::anisotropy);
@@ -169,13 +172,15 @@ void add_scene(py::module_& module) {
                          "Renderers keep its data alive. Thread-safe. Raises InputError with file, "
                          "place, value found and value allowed.");
   using Path = std::optional<std::filesystem::path>;
-  define_init(type, [](const Path& path, const Path& model) {
-             if (!path && model)
-               throw Error(ExitCode::usage, "model: found one, allowed: none without a path");
-             if (!path) return Scene();
-             return interruptible([&] { return Scene(*path, model.value_or("")); });
-           },
-           py::arg("path") = py::none(), py::arg("model") = py::none());
+  define_init(
+      type,
+      [](const Path& path, const Path& model) {
+        if (!path && model)
+          throw Error(ExitCode::usage, "model: found one, allowed: none without a path");
+        if (!path) return Scene();
+        return interruptible([&] { return Scene(*path, model.value_or("")); });
+      },
+      py::arg("path") = py::none(), py::arg("model") = py::none());
   add_meshes(type);
   type.def("__repr__", [](const Scene& scene) {
     return without_gil([&] {

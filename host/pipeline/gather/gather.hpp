@@ -54,7 +54,8 @@ class Gatherer {
   /// Takes the light without gathering it: for what follows below. Throws as gather().
   void take(const GatheredLight& light);
 
-  /// Grids and packed volumes (kernels/gather/gather_packed.h) of the last gather() or take() on the device.
+  /// Grids and packed volumes (kernels/gather/gather_packed.h) of the last gather() or take() on
+  /// the device.
   const Buffer& grids() const { return grids_; }
   cl_uint cascades() const { return cascades_; }
 

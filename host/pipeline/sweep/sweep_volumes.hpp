@@ -23,8 +23,8 @@ class SweepVolumes {
   /// Launches a kernel over the tiles of all slices and `channels` channels.
   void launch(Kernel& kernel, int channels) const;
 
-  /// Allocates `count` zeroed volumes. Throws Error(device) "unsupported: ..." for more than kernels
-  /// can address.
+  /// Allocates `count` zeroed volumes. Throws Error(device) "unsupported: ..." for more than
+  /// kernels can address.
   Buffer make(std::size_t count, const char* what) const;
 
  private:
