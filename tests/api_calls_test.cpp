@@ -113,6 +113,18 @@ TEST(Render, AnotherSizeIsThatOfAnotherRenderer) {
   }
 }
 
+// More slices of tiles than the square of a work-item's least share (rasterize.cpp).
+TEST(Render, ALargeImageShowsASmallOnesSurfaces) {
+  Renderer renderer(Scene(kCornell), test::small_options().set("near", "off"));
+  const Image small = renderer.render(View::depth, {}, 0, {{400, 300}}),
+              large = renderer.render(View::depth, {}, 0, {{1200, 900}});
+  std::size_t differing = 0;
+  for (int y = 0; y < 300; ++y)
+    for (int x = 0; x < 400; ++x)
+      differing += !(std::abs(small.at(x, y, 0) - large.at(3 * x + 1, 3 * y + 1, 0)) < 1e-4);
+  EXPECT_LT(differing, 20u) << "edges alone";
+}
+
 TEST(Release, MemoryComesBack) {
   Renderer renderer(Scene(kCornell), test::small_options());
   const Image before = renderer.render();
