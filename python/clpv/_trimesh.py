@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Scenes of trimesh's meshes (Scene.from_trimesh). Imports trimesh only where its objects are
-given."""
+"""Scenes of trimesh's meshes (Scene.from_trimesh). Does not import trimesh."""
+import sys
+
 import numpy
 
 import clpv
@@ -59,10 +60,10 @@ def _arguments(mesh):
 
 def scene_of_trimesh(given):
     """A clpv.Scene of a trimesh.Trimesh or a trimesh.Scene."""
-    import trimesh
-    if isinstance(given, trimesh.Trimesh):
+    trimesh = sys.modules.get("trimesh")  # whoever has an object of it has imported it
+    if trimesh is not None and isinstance(given, trimesh.Trimesh):
         given = trimesh.Scene(given)
-    if not isinstance(given, trimesh.Scene):
+    if trimesh is None or not isinstance(given, trimesh.Scene):
         raise clpv.UsageError(f"from_trimesh: given: found {type(given).__name__}, allowed: "
                               "trimesh.Trimesh or trimesh.Scene")
     scene, numbers = clpv.Scene(), {}

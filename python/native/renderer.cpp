@@ -124,7 +124,7 @@ py::array_t<float> light(Renderer& renderer, const py::object& normals, const py
                 shape_text(n));
   }
   if (positions.is_none() == depths.is_none())
-    throw Error(ExitCode::usage, "light: found {}, allowed: positions or depths",
+    throw Error(ExitCode::usage, "positions and depths: found {}, allowed: one of them",
                 depths.is_none() ? "neither" : "both");
   if (eye && camera)
     throw Error(ExitCode::usage, "light: found eye and camera, allowed: one of both");

@@ -41,7 +41,7 @@ def test_bad_arrays_are_named(renderer, seen):
         renderer.light(normals[0], depths=depths[0], camera=FRONT)
     with pytest.raises(ValueError, match="positions: found shape"):
         renderer.light(normals, positions=normals[:, :9], eye=FRONT.eye)
-    with pytest.raises(ValueError, match="found neither, allowed: positions or depths"):
+    with pytest.raises(ValueError, match="found neither, allowed: one of them"):
         renderer.light(normals, camera=FRONT)
     with pytest.raises(ValueError, match="found eye and camera"):
         renderer.light(normals, positions=normals, camera=FRONT, eye=FRONT.eye)
