@@ -23,8 +23,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kPunctual = "KHR_lights_punctual";
-constexpr const char* kStrength = "KHR_materials_emissive_strength";
+constexpr const char* kLightsExtension = "KHR_lights_punctual";
+constexpr const char* kStrengthExtension = "KHR_materials_emissive_strength";
 
 /// Column-major matrix of a node whose -z is `forward`.
 Json matrix(const glm::dvec3& forward, const glm::dvec3& up, const glm::dvec3& at) {
@@ -124,8 +124,8 @@ class GlbWriter {
     for (const float emissive : material.emissive)
       made["emissiveFactor"].push_back(emissive / strength);
     if (strength > 1) {
-      uses(kStrength);
-      made["extensions"][kStrength] = {{"emissiveStrength", strength}};
+      uses(kStrengthExtension);
+      made["extensions"][kStrengthExtension] = {{"emissiveStrength", strength}};
     }
     if (material.emissive_texture != CLPV_NO_TEXTURE)
       made["emissiveTexture"] = {{"index", material.emissive_texture}};
@@ -184,7 +184,7 @@ class GlbWriter {
     document_["nodes"].push_back(
         {{"name", camera.name},
          {"camera", document_["cameras"].size()},
-         {"matrix", matrix(glm::dvec3(camera.forward), glm::dvec3(camera.up), camera.eye)}});
+         {"matrix", matrix(glm::dvec3(camera.forward), glm::dvec3(camera.up), glm::dvec3(camera.eye))}});
     document_["cameras"].push_back(
         {{"type", "perspective"},
          {"perspective", {{"yfov", camera.vertical_fov}, {"znear", camera.near_depth}}}});
@@ -206,12 +206,12 @@ class GlbWriter {
     const glm::dvec3 along = given.kind == LightKind::point ? glm::dvec3(0, 0, -1)
                                                             : glm::normalize(vector(light.data.direction));
     const glm::dvec3 up = std::abs(along.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-    Json& all = document_["extensions"][kPunctual]["lights"];
+    Json& all = document_["extensions"][kLightsExtension]["lights"];
     document_["nodes"].push_back(
-        {{"extensions", {{kPunctual, {{"light", all.size()}}}}},
+        {{"extensions", {{kLightsExtension, {{"light", all.size()}}}}},
          {"matrix", matrix(along, up, vector(light.data.position))}});
     all.push_back(made);
-    uses(kPunctual);
+    uses(kLightsExtension);
   }
 
   const SceneData& scene_;

@@ -154,6 +154,7 @@ auto interruptible(const Work& work, const Poll& poll) {
     throw *raised;
   }
   py::gil_scoped_acquire acquired;
+  log_messages();
   poll();
   return result.get();
 }
