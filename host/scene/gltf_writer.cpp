@@ -17,6 +17,7 @@
 #include "support/error.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -49,8 +50,8 @@ class GlbWriter {
     for (const SceneLight& light : scene_.lights) add(light);
     Json nodes = Json::array();
     for (std::size_t i = 0; i < document_["nodes"].size(); ++i) nodes.push_back(i);
-    document_["scenes"] = {{{"nodes", nodes}}};
-    if (!binary_.empty()) document_["buffers"] = {{{"byteLength", binary_.size()}}};
+    document_["scenes"].push_back({{"nodes", nodes}});
+    if (!binary_.empty()) document_["buffers"].push_back({{"byteLength", binary_.size()}});
     if (!extensions_.empty()) document_["extensionsUsed"] = extensions_;
     std::string text = document_.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
@@ -164,7 +165,7 @@ class GlbWriter {
                             {"indices", accessor(indices, 1, "SCALAR")},
                             {"material", material}});
     }
-    document_["meshes"] = {{{"primitives", primitives}}};
+    document_["meshes"].push_back({{"primitives", primitives}});
     document_["nodes"].push_back({{"mesh", 0}});
   }
 
@@ -182,7 +183,7 @@ class GlbWriter {
 
   void add(const SceneCamera& camera) {
     document_["nodes"].push_back(
-        {{"name", camera.name},
+        {{"name", printable(camera.name)},
          {"camera", document_["cameras"].size()},
          {"matrix", matrix(glm::dvec3(camera.forward), glm::dvec3(camera.up), glm::dvec3(camera.eye))}});
     document_["cameras"].push_back(
@@ -193,7 +194,7 @@ class GlbWriter {
   void add(const SceneLight& light) {
     const Light given = light_of(light);
     const double most = *std::ranges::max_element(given.intensity);
-    Json made = {{"name", light.name},
+    Json made = {{"name", printable(light.name)},
                  {"type", name_of(given.kind)},
                  {"intensity", most * scene_.light_scale}};
     for (const double channel : given.intensity)
