@@ -52,7 +52,7 @@ def test_random_orders_give_the_same_state(scene):
             # Each change has the same last value; others come before, and frames between.
             steps = [(name, step) for name in CHANGES for step in shuffle.sample(range(1, 9), 3)]
             shuffle.shuffle(steps)
-            last = [(name, 3 * seed + number) for number, name in enumerate(CHANGES)]
+            last = [(name, 4 * seed + number) for number, name in enumerate(CHANGES)]
             shuffle.shuffle(last)
             for name, step in steps + last:
                 CHANGES[name](changed, step)
