@@ -7,6 +7,7 @@
 
 #include "api/scene_contents.hpp"
 #include "scene/bounds.hpp"
+#include "scene/gltf_writer.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -62,6 +63,7 @@ void Scene::set_cameras(const std::vector<Camera>& cameras) {
   std::vector<SceneCamera> made =
       converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
   const std::lock_guard lock(contents_->mutex);
+  ++contents_->changes;
   contents_->cameras = made;
   contents_->moving.set_cameras(std::move(made));
 }
@@ -70,6 +72,7 @@ void Scene::set_lights(const std::vector<Light>& lights) {
   std::vector<SceneLight> made =
       converted<SceneLight>("lights", lights, bounds::kLights, scene_light);
   const std::lock_guard lock(contents_->mutex);
+  ++contents_->changes;
   contents_->lights = made;
   contents_->moving.set_lights(std::move(made));
 }
@@ -85,7 +88,7 @@ void Scene::set_medium(const std::optional<Medium>& medium) {
   if (medium) made = scene_medium(*medium, rejected_in("medium"));
   const std::lock_guard lock(contents_->mutex);
   contents_->moving.set_medium(made);
-  ++contents_->rebuilds;
+  ++contents_->rebuilds, ++contents_->changes;
 }
 
 int Scene::add_mesh(const Mesh& mesh, const Transform& transform) {
@@ -117,6 +120,11 @@ void Scene::set_positions(int mesh, std::span<const std::array<float, 3>> positi
 void Scene::set_transform(int mesh, const Transform& transform) {
   const std::lock_guard lock(contents_->mutex);
   contents_->changed(contents_->moving.set_transform(mesh, transform));
+}
+
+void Scene::save(const std::filesystem::path& path) const {
+  const std::shared_lock lock(contents_->mutex);
+  write_glb(path, contents_->moving.scene());
 }
 
 bool Scene::moves() const {
@@ -167,7 +175,7 @@ SceneCamera PosedScene::camera(const CameraChoice& choice) const {
   const Camera& given = std::get<Camera>(choice);
   SceneCamera made = scene_camera(given, rejected_in("camera"));
   made.name = text_of(given);
-  if (scene().lights_for(made).empty() && !made.light.empty()) {
+  if (!made.light.empty() && !scene().has_light(made.light)) {
     throw Error(ExitCode::usage, "camera: light: found '{}', allowed: a light of the scene",
                 made.light);
   }

@@ -16,7 +16,7 @@ namespace clpv {
 struct Shared {
   std::string device;  ///< --device
   bool quiet = false;
-  int verbosity = 0;
+  bool verbose = false;
   Additions additions;
   /// Returns the ranks of the launcher that started this process; the first call starts MPI.
   Ranks& ranks();

@@ -79,8 +79,8 @@ class Scene {
 
   /// Replace all cameras or all lights; they are then no longer animated. To change or add one,
   /// change the list of cameras() or lights(). Frames recompute only what depends on a changed
-  /// light. A camera whose only light is gone gets all lights. Throw Error(usage): see Camera and
-  /// Light; no camera, more than 1024 cameras or 64 lights, two of one name.
+  /// light. A camera whose only light the scene has not got has all lights. Throw Error(usage): see
+  /// Camera and Light; no camera, more than 1024 cameras or 64 lights, two of one name.
   void set_cameras(const std::vector<Camera>& cameras);
   void set_lights(const std::vector<Light>& lights);
 
@@ -106,6 +106,11 @@ class Scene {
   void set_positions(int mesh, std::span<const std::array<float, 3>> positions,
                      std::span<const std::array<float, 3>> normals = {});
   void set_transform(int mesh, const Transform& transform);
+
+  /// Writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning for what glTF has
+  /// not: sky, medium, a camera's only light. Throws Error: usage (another extension), run_time
+  /// (the file cannot be written).
+  void save(const std::filesystem::path& path) const;
 
   bool moves() const;  ///< returns true if anything in it is animated
   std::vector<std::string> notes()
