@@ -27,6 +27,7 @@ void add_errors(py::module_& module);
 void add_scene(py::module_& module);
 void add_material(py::module_& module);
 void add_meshes(py::class_<Scene>& type);
+void add_points(py::class_<Scene>& type);
 void add_image(py::module_& module);
 void add_renderer(py::module_& module);
 void add_opencl(py::module_& module);  ///< after add_renderer()
