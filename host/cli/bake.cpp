@@ -7,24 +7,19 @@
 #include "bake/bake.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "bake/ktx2.hpp"
 #include "bake/probe_check.hpp"
+#include "cli/bake_parts.hpp"
 #include "cli/commands.hpp"
-#include "cli/options.hpp"
-#include "cli/render_request.hpp"
-#include "clpv/version.hpp"
 #include "scene/bounds.hpp"
-#include "scene/emission.hpp"
 #include "scene/load.hpp"
-#include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
@@ -32,107 +27,11 @@
 #include "support/output_file.hpp"
 #include "support/print.hpp"
 #include "support/progress.hpp"
-#include "support/text.hpp"
 
 namespace clpv {
-
-enum class BakeSource { sweep, pathtrace };
-
-template <>
-inline constexpr auto kNames<BakeSource> = name_list("sweep", "pathtrace");
-
 namespace bake_command {
 
-using namespace bake;
-
-constexpr double kMaxProbes = 1 << 22;
-constexpr double kMaxBytes = 1 << 30;  // of all coefficients, as 32-bit floats
-constexpr int kDefaultProbes = 16;     // along the longest edge
 constexpr std::size_t kMaxChecked = 1 << 16;
-
-struct Options {
-  RenderRequest request;
-  TracingOptions tracing;
-  BakeSource from = BakeSource::sweep;
-  std::string output, bounds, probes, format = "ambient-cube";
-  double spacing = 0, time = 0;
-  bool direct = false, no_dilate = false;
-  std::size_t check = 0;
-  std::vector<CLI::Option*> of_paths = {};  ///< without effect on swept light
-};
-
-std::string suffix_of(const Options& options) {
-  return std::filesystem::path(options.output).extension().string();
-}
-
-/// `count` numbers between commas. Throws Error(usage).
-template <typename Number>
-std::vector<Number> numbers_of(const std::string& option, std::string text, std::size_t count,
-                               const char* allowed) {
-  std::vector<Number> numbers;
-  const std::string given = text;
-  for (std::size_t end = 0; end != std::string::npos; text.erase(0, end + 1)) {
-    end = text.find(',');
-    const auto value = parse_number<Number>(trimmed(std::string_view(text).substr(0, end)));
-    if (value) numbers.push_back(*value);
-    if (!value || numbers.size() > count || end == std::string::npos) break;
-  }
-  const auto commas = static_cast<std::size_t>(std::ranges::count(given, ','));
-  if (numbers.size() != count || commas + 1 != count)
-    throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", option, given, allowed);
-  return numbers;
-}
-
-/// Sets the positions of the outermost probes.
-void set_bounds(const Options& options, const SceneData& scene, ProbeGrid& grid) {
-  grid.lower = glm::dvec3(scene.lower), grid.upper = glm::dvec3(scene.upper);
-  if (options.bounds.empty()) return;
-  const auto n = numbers_of<double>("--bounds", options.bounds, 6,
-                                    "six numbers between commas, the lower and the upper corner");
-  grid.lower = {n[0], n[1], n[2]}, grid.upper = {n[3], n[4], n[5]};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (grid.lower[axis] < grid.upper[axis] &&
-        std::max(std::abs(grid.lower[axis]), std::abs(grid.upper[axis])) <= bounds::kCoordinate)
-      continue;
-    throw Error(ExitCode::usage,
-                "--bounds: found {} to {} along {}, allowed: a lower and a larger number, within "
-                "+-{} m",
-                grid.lower[axis], grid.upper[axis], "xyz"[axis], bounds::kCoordinate);
-  }
-}
-
-/// The grid, within the limits of memory. Throws Error(usage).
-ProbeGrid grid_of(const Options& options, const SceneData& scene, std::size_t numbers) {
-  ProbeGrid grid;
-  set_bounds(options, scene, grid);
-  const glm::dvec3 edges = grid.upper - grid.lower;
-  std::array<double, 3> count{};
-  if (!options.probes.empty()) {
-    const auto n = numbers_of<int>("--probes", options.probes, 3, "three numbers between commas");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (n[axis] < 1)
-        throw Error(ExitCode::usage, "--probes: found {}, allowed: 1 or more along each axis",
-                    n[axis]);
-      count[axis] = n[axis];
-    }
-  } else {
-    const double longest = std::max({edges.x, edges.y, edges.z}),
-                 spacing = options.spacing > 0 ? options.spacing : longest / (kDefaultProbes - 1);
-    for (int axis = 0; axis < 3; ++axis)
-      count[static_cast<std::size_t>(axis)] =
-          spacing > 0 ? std::max(2.0, std::round(edges[axis] / spacing) + 1) : 2.0;
-  }
-  const double all = count[0] * count[1] * count[2],
-               bytes = all * 12 * static_cast<double>(numbers);
-  if (!(all <= kMaxProbes && bytes <= kMaxBytes))
-    throw Error(ExitCode::usage,
-                "probes: found {:.0f} x {:.0f} x {:.0f}, {:.4g} MiB of coefficients; allowed: at "
-                "most {:.0f} probes and {:.0f} MiB",
-                count[0], count[1], count[2], bytes / (1 << 20), kMaxProbes, kMaxBytes / (1 << 20));
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    grid.count[static_cast<int>(axis)] = static_cast<int>(count[axis]);
-  return grid;
-}
 
 /// Options of frames, without the near field, which only pixels of a camera have.
 RenderOptions frame_options(const Options& options, const SceneData& scene) {
@@ -244,107 +143,18 @@ void check(const Options& options, const SceneData& scene, const SceneCamera& ca
       surfaces.points.size(), air.points.size() / 6, noise[0], noise[1]);
 }
 
-nlohmann::json array_of(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
-/// The description beside the file.
-nlohmann::json described(const Options& options, const SceneData& scene, const ProbeFormat& format,
-                         const BakedProbes& baked, const GridLight& light, double intensity) {
-  const ProbeGrid& grid = baked.grid;
-  const glm::dvec3 middle = (grid.lower + grid.upper) / 2.0, edges = grid.upper - grid.lower,
-                   spacing = grid.spacing();
-  const auto invalid = std::ranges::count(baked.valid, 0);
-  nlohmann::json json = {{"schema", 1},
-                         {"command", "bake"},
-                         {"version", version()},
-                         {"scene", printable(options.request.scene)},
-                         {"scene_hash", scene_fingerprint(scene)},
-                         {"time", options.time},
-                         {"format", format.name},
-                         {"numbers", format.size},
-                         {"meaning", format.meaning},
-                         {"from", name_of(options.from)},
-                         {"bounces", options.tracing.bounces},
-                         {"direct", options.direct},
-                         {"probes", {grid.count.x, grid.count.y, grid.count.z}},
-                         {"bounds", {array_of(grid.lower), array_of(grid.upper)}},
-                         {"spacing", array_of(spacing)},
-                         {"invalid", invalid},
-                         {"dilated", baked.filled && invalid > 0},
-                         {"negative", baked.negative},
-                         {"intensity", intensity}};
-  if (options.from == BakeSource::pathtrace) {
-    json["spp"] = light.samples;
-    json["noise"] = std::isnan(light.noise) ? nlohmann::json() : nlohmann::json(light.noise);
-    json["seed"] = options.tracing.values.seed;
-  }
-  if (suffix_of(options) != ".ktx2") return json;
-  if (format.size == 6) {
-    json["bevy"] = {{"translation", array_of(middle)}, {"scale", array_of(edges + spacing)}};
-  } else {
-    json["three"] = {{"position", array_of(middle)},
-                     {"width", edges.x},
-                     {"height", edges.y},
-                     {"depth", edges.z}};
-  }
-  return json;
-}
-
-std::string npz_of(const ProbeFormat& format, const BakedProbes& baked) {
-  const ProbeGrid& grid = baked.grid;
-  const auto x = static_cast<std::size_t>(grid.count.x), y = static_cast<std::size_t>(grid.count.y),
-             z = static_cast<std::size_t>(grid.count.z);
-  std::vector<float> positions, coefficients, valid(baked.valid.begin(), baked.valid.end());
-  const auto add = [](std::vector<float>& to, const glm::vec3& v) {
-    to.insert(to.end(), {v.x, v.y, v.z});
-  };
-  for (const glm::dvec3& p : positions_of(grid)) add(positions, glm::vec3(p));
-  for (const glm::vec3& c : baked.coefficients) add(coefficients, c);
-  std::vector<float> corners, spacing;
-  add(corners, glm::vec3(grid.lower)), add(corners, glm::vec3(grid.upper));
-  add(spacing, glm::vec3(grid.spacing()));
-  using Shape = std::vector<std::size_t>;
-  return npz_bytes({{"position", npy_bytes(positions, Shape{z, y, x, 3})},
-                    {"coefficients", npy_bytes(coefficients, Shape{z, y, x, format.size, 3})},
-                    {"validity", npy_bytes(valid, Shape{z, y, x})},
-                    {"bounds", npy_bytes(corners, Shape{2, 3})},
-                    {"spacing", npy_bytes(spacing, Shape{3})},
-                    {"format", npy_bytes(format.name)},
-                    {"meaning", npy_bytes(format.meaning)}});
-}
-
-std::string description_file(const Options& options) {
-  return options.output.empty() ? "" : options.output + ".json";
-}
-
-/// Writes both files, or none.
-void write(const Options& options, const std::string& bytes, const nlohmann::json& description) {
-  OutputFile data(options.output), text(description_file(options));
-  const std::string json = description.dump(2) + "\n";
-  data.write(std::as_bytes(std::span(bytes)));
-  text.write(std::as_bytes(std::span(json)));
-  data.commit();
-  text.commit();
-}
-
 void bake_file(const Options& options, const SceneData& scene, const SceneCamera& camera,
                const Shared& shared) {
   const std::vector<ProbeFormat> formats{probe_format(options.format)};
   const ProbeFormat& format = formats[0];
-  const bool ktx2 = suffix_of(options) == ".ktx2";
   const ProbeGrid grid = grid_of(options, scene, std::max(format.size, format.moments.count));
-  if (ktx2) texture_size(format, grid);  // throws
+  if (suffix_of(options) == ".ktx2") texture_size(format, grid);  // throws
   Light light = light_from(options, scene, camera, grid, formats, shared);
   BlockCache cache(user_cache_folder(), key_of(options, scene, camera, grid));
   const GridLight all = computed(options, light, grid, formats, cache);
   const BakedProbes baked = encoded(
       format, all, 0, grid, validity(*light.tracer, positions_of(grid)), !options.no_dilate);
-  const double intensity = ktx2 ? intensity_of(baked) : 1;
-  const std::string bytes =
-      ktx2 ? ktx2_bytes(texture_of(format, baked, intensity), "clpv " + version())
-           : npz_of(format, baked);
-  write(options, bytes, described(options, scene, format, baked, all, intensity));
+  write_probes(options, scene, format, baked, all);
   cache.clear(light.source->blocks().size());
   const auto invalid = std::ranges::count(baked.valid, 0);
   spdlog::info("{} x {} x {} probes, {} of them inside walls{}; {:.1f} % of normals negative",
