@@ -229,7 +229,8 @@ TEST(HostileSurroundings, Outputs) {
         "pathtrace " + kCornell + " -o @/out.exr --stats @/none/a.json",
         "quality " + kCornell + " --cache @/out --output @/none/a.json",
         std::string("compare a.exr b.exr -o @/none/a.png"),
-        "query " + kCornell + " --points @/points.csv -o @/none/a.csv"})
+        "query " + kCornell + " --points @/points.csv -o @/none/a.csv",
+        "bake " + kCornell + " -o @/none/a.npz"})
     rejected(command, {"none/a.", "no folder"});
   for (const std::string& command : {"sequence " + kCornell + " --frames 1 --fps 1 -o @/file",
                                      std::string("report @/file/there " + kCornell),

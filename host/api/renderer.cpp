@@ -9,6 +9,7 @@
 #include "api/renderer_state.hpp"
 #include "clpv/pathtrace.hpp"
 #include "pathtracer/path_tracer.hpp"
+#include "pathtracer/point_tracer.hpp"
 #include "pipeline/frame/frame_times.hpp"
 #include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
@@ -308,6 +309,31 @@ Image pathtrace(const Scene& scene, const std::vector<View>& views, const Camera
                     {"spp_traced", fmt::format("{}", traced.samples)},
                     {"noise_reached", fmt::format("{}", traced.noise)}};
   return image;
+}
+
+PointLights pathtrace_points(const Scene& scene, Vectors positions, Vectors normals,
+                             const TraceOptions& options) {
+  const Points checked = checked_points("pathtrace_points", "normal", positions, normals);
+  std::vector<SurfacePoint> points;
+  for (std::size_t i = 0; i < checked.positions.size(); ++i)
+    points.push_back({glm::dvec3(checked.positions[i]), glm::dvec3(checked.vectors[i])});
+  const std::shared_lock scene_stays(scene.contents().mutex);
+  PosedScene posed(scene);
+  posed.pose(options.seconds);
+  pathtracer::PointTracer tracer(
+      posed.scene(), posed.scene().lights_for(SceneCamera()),
+      {options.bounces, options.samples, options.noise, options.seed, options.threads});
+  const pathtracer::TracedPoints traced = tracer.irradiance(points, options.progress);
+  PointLights lights;
+  lights.samples = traced.samples, lights.noise = traced.noise;
+  const auto add = [](std::vector<std::array<float, 3>>& to, const glm::dvec3& v) {
+    to.push_back({static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
+  };
+  for (const pathtracer::PointLight& light : traced.points) {
+    add(lights.indirect, light.indirect), add(lights.direct, light.direct);
+    add(lights.error, light.error);
+  }
+  return lights;
 }
 
 }  // namespace clpv

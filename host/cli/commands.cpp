@@ -142,10 +142,10 @@ Ranks& Shared::ranks() {
 
 std::span<const Command> all_commands() {
   static constexpr Command kCommands[] = {
-      {"devices", add_devices}, {"render", add_render},       {"sequence", add_sequence},
-      {"query", add_query},     {"check", add_check},         {"compare", add_compare},
-      {"quality", add_quality}, {"pathtrace", add_pathtrace}, {"basis", add_basis},
-      {"bench", add_bench},     {"report", add_report},
+      {"devices", add_devices}, {"render", add_render},   {"sequence", add_sequence},
+      {"query", add_query},     {"bake", add_bake},       {"check", add_check},
+      {"compare", add_compare}, {"quality", add_quality}, {"pathtrace", add_pathtrace},
+      {"basis", add_basis},     {"bench", add_bench},     {"report", add_report},
   };
   return kCommands;
 }
@@ -182,7 +182,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
     const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
       return std::ranges::find(names, name) != names.end();
     };
-    if (is_one_of({"render", "sequence", "query", "pathtrace", "compare"}))
+    if (is_one_of({"render", "sequence", "query", "bake", "pathtrace", "compare"}))
       command->group("Look");
     else if (is_one_of({"quality", "bench", "basis", "report"}))
       command->group("Measure");

@@ -49,6 +49,7 @@ void add_devices(CLI::App& app, Shared& shared);
 void add_render(CLI::App& app, Shared& shared);
 void add_sequence(CLI::App& app, Shared& shared);
 void add_query(CLI::App& app, Shared& shared);
+void add_bake(CLI::App& app, Shared& shared);
 void add_check(CLI::App& app, Shared& shared);
 void add_compare(CLI::App& app, Shared& shared);
 void add_pathtrace(CLI::App& app, Shared& shared);

@@ -18,7 +18,6 @@
 #include <numbers>
 
 #include "basis/sampling.hpp"
-#include "reference/lighting.hpp"
 #include "reference/view.hpp"
 #include "scene/light_kind.hpp"
 #include "scene/medium.hpp"
@@ -33,6 +32,7 @@ constexpr std::uint64_t kAirStream = 1ull << 32, kChannelStream = kAirStream + 1
                         kEyeBeamStream = kAirStream + 2;  // of a path, besides its bounces
 constexpr int kCertainBounces = 3;                        // Russian roulette starts at this bounce
 constexpr double kMaxSurvival = 0.95;                     // so that paths end between white walls
+constexpr double kProbeFactor = 0.25;
 
 /// Russian roulette. Returns false to end the path; else divides the throughput by the probability
 /// of survival.
@@ -77,12 +77,13 @@ bool PathSampler::shadowed(const ClpvLight& light, const glm::vec3& origin,
 }
 
 glm::vec3 PathSampler::origin_of(const Vertex& at) const {
-  return at.in_medium ? at.hit.position : rays_.offset_origin(at.hit);
+  return at.kind == Vertex::Kind::surface ? rays_.offset_origin(at.hit) : at.hit.position;
 }
 
-/// The cosine, or pi times the phase function; 0 below the surface.
+/// Vertex::Kind; 0 below the surface.
 double PathSampler::factor(const Vertex& at, const glm::dvec3& direction) const {
-  if (at.in_medium)
+  if (at.kind == Vertex::Kind::probe) return kProbeFactor;
+  if (at.kind == Vertex::Kind::medium)
     return std::numbers::pi * phase(double{medium_->anisotropy}, glm::dot(direction, at.arrived));
   if (glm::dot(glm::dvec3(at.hit.geometric), direction) <= 0) return 0;
   return std::max(0.0, glm::dot(glm::dvec3(at.hit.normal), direction));
@@ -98,7 +99,8 @@ glm::dvec3 PathSampler::direct(const Vertex& at) {
   const glm::vec3 origin = origin_of(at);
   glm::dvec3 sum(0);
   for (const SceneLight& light : lights_) {
-    if (at.in_medium && kind_of(light.data) != LightKind::directional) continue;  // from_beams()
+    if (at.kind == Vertex::Kind::medium && kind_of(light.data) != LightKind::directional)
+      continue;  // from_beams()
     const reference::Incident in = reference::light_at(light.data, glm::dvec3(at.hit.position));
     const double cosine = factor(at, in.towards);
     if (cosine <= 0 || in.irradiance == glm::dvec3(0)) continue;
@@ -106,6 +108,17 @@ glm::dvec3 PathSampler::direct(const Vertex& at) {
     if (!shadowed(light.data, origin, in.towards)) sum += in.irradiance * cosine;
   }
   return sum;
+}
+
+std::vector<reference::Incident> PathSampler::lights_at(const glm::vec3& position) {
+  std::vector<reference::Incident> all;
+  for (const SceneLight& light : lights_) {
+    const reference::Incident in = reference::light_at(light.data, glm::dvec3(position));
+    if (in.irradiance == glm::dvec3(0)) continue;
+    ++ray_count_;
+    if (!shadowed(light.data, position, in.towards)) all.push_back(in);
+  }
+  return all;
 }
 
 /// Radiance towards `origin` of light from spots and points, scattered once in a ray's first
@@ -141,26 +154,26 @@ glm::dvec3 PathSampler::from_beams(const glm::dvec3& origin, const glm::dvec3& d
 
 /// Irradiance at `at` from a sampled emitter: L cos cos' / d^2 / (p_light + p_cosine), with
 /// densities over area.
-glm::dvec3 PathSampler::sample_emitter(const Vertex& at, const glm::dvec2& random) {
+Arrival PathSampler::sample_emitter(const Vertex& at, const glm::dvec2& random) {
   const EmitterSample light = emitters_.sample(random);
   const glm::dvec3 to_light = glm::dvec3(light.position) - glm::dvec3(at.hit.position);
   const double square = glm::dot(to_light, to_light);
-  if (!(square > 0)) return glm::dvec3(0);
+  if (!(square > 0)) return {};
   const glm::dvec3 direction = to_light / std::sqrt(square),
                    front = emitters_.front_normal(light.point.triangle);
   const double cosine = factor(at, direction), light_cosine = glm::dot(front, direction);
-  if (cosine <= 0 || light_cosine == 0) return glm::dvec3(0);
+  if (cosine <= 0 || light_cosine == 0) return {};
   const glm::dvec3 radiance = emitters_.radiance(light.point, -direction);
-  if (radiance == glm::dvec3(0) || rays_.materials().hole(light.point)) return glm::dvec3(0);
+  if (radiance == glm::dvec3(0) || rays_.materials().hole(light.point)) return {};
   Hit end;
   end.position = light.position, end.geometric = glm::vec3(light_cosine < 0 ? front : -front);
   end.point = light.point;
   const glm::vec3 origin = origin_of(at);
   ++ray_count_;
-  if (rays_.occluded(origin, rays_.offset_origin(end) - origin, 1)) return glm::dvec3(0);
+  if (rays_.occluded(origin, rays_.offset_origin(end) - origin, 1)) return {};
   const double share = cosine * std::abs(light_cosine) / square;
-  return transmitted(origin, direction, std::sqrt(square)) * radiance * share /
-         (light.density + share / std::numbers::pi);
+  return {direction, transmitted(origin, direction, std::sqrt(square)) * radiance * share /
+                         (light.density + share / std::numbers::pi)};
 }
 
 /// Irradiance at `at` from the emissive surface `next` that a sampled direction hits: pi L p_cosine
@@ -179,15 +192,16 @@ glm::dvec3 PathSampler::emission_of(const Vertex& at, const glm::dvec3& directio
 
 /// Irradiance at `at` from a sampled direction of the sky: L cos / (p_light + p_cosine), with
 /// densities over solid angle.
-glm::dvec3 PathSampler::sample_sky(const Vertex& at, const glm::dvec2& random) {
+Arrival PathSampler::sample_sky(const Vertex& at, const glm::dvec2& random) {
   const SkySample sample = sky_.sample(random);
   const double cosine = factor(at, sample.direction);
-  if (cosine <= 0) return glm::dvec3(0);
+  if (cosine <= 0) return {};
   ++ray_count_;
   const glm::vec3 origin = origin_of(at);
-  if (rays_.occluded(origin, glm::vec3(sample.direction), kInfinity)) return glm::dvec3(0);
-  return transmitted(origin, sample.direction, double{kInfinity}) * sample.radiance * cosine /
-         (sample.density + cosine / std::numbers::pi);
+  if (rays_.occluded(origin, glm::vec3(sample.direction), kInfinity)) return {};
+  return {sample.direction, transmitted(origin, sample.direction, double{kInfinity}) *
+                                sample.radiance * cosine /
+                                (sample.density + cosine / std::numbers::pi)};
 }
 
 /// Irradiance at `at` from the sky along a sampled direction that hits no surface.
@@ -220,7 +234,9 @@ std::optional<double> PathSampler::fly(const glm::vec3& origin, const glm::dvec3
 /// Direction of density factor() / pi; empty below the surface.
 std::optional<glm::vec3> PathSampler::sample_direction(const Vertex& at,
                                                        const glm::dvec2& random) const {
-  if (at.in_medium)
+  if (at.kind == Vertex::Kind::probe)
+    return glm::vec3(phase_direction(glm::dvec3(0, 0, 1), 0, random));  // uniform
+  if (at.kind == Vertex::Kind::medium)
     return glm::vec3(phase_direction(at.arrived, double{medium_->anisotropy}, random));
   const glm::vec3 direction(cosine_direction(glm::dvec3(at.hit.normal), random));
   // Below the triangle's plane, as the interpolated normal differs from the triangle's.
@@ -228,23 +244,46 @@ std::optional<glm::vec3> PathSampler::sample_direction(const Vertex& at,
   return direction;
 }
 
-glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream) {
-  return indirect(start, path, stream, {channel_of(path, stream), glm::dvec3(1)});
+namespace {
+
+glm::dvec3 sum_of(const std::array<Arrival, 3>& arrivals) {
+  return arrivals[0].light + arrivals[1].light + arrivals[2].light;
 }
 
-glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream,
-                                 Flights flights) {
+}  // namespace
+
+glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream) {
+  return sum_of(arriving(start, path, stream));
+}
+
+std::array<Arrival, 3> PathSampler::arriving(const Vertex& start, std::uint32_t path,
+                                             std::uint64_t stream) {
+  return arriving(start, path, stream, {channel_of(path, stream), glm::dvec3(1)});
+}
+
+std::array<Arrival, 3> PathSampler::arriving(const Vertex& start, std::uint32_t path,
+                                             std::uint64_t stream, Flights flights) {
   const reference::Materials& materials = rays_.materials();
-  glm::dvec3 sum(0), throughput(1);
+  std::array<Arrival, 3> arrivals;
+  auto& [emitter, sky, rest] = arrivals;
+  glm::dvec3& sum = rest.light;
+  glm::dvec3 throughput(1);
   Vertex at = start;
   for (int bounce = 1;; ++bounce) {
     const std::uint64_t dimensions = mix(stream, static_cast<std::uint64_t>(bounce));
+    const auto add = [&](Arrival& first, const Arrival& sampled) {
+      if (bounce == 1) {
+        first = sampled;
+      } else {
+        sum += throughput * sampled.light;
+      }
+    };
     if (!emitters_.empty())
-      sum += throughput * sample_emitter(at, sobol_point(path, mix(dimensions, kEmitterStream)));
-    if (!sky_.empty())
-      sum += throughput * sample_sky(at, sobol_point(path, mix(dimensions, kSkyStream)));
+      add(emitter, sample_emitter(at, sobol_point(path, mix(dimensions, kEmitterStream))));
+    if (!sky_.empty()) add(sky, sample_sky(at, sobol_point(path, mix(dimensions, kSkyStream))));
     const std::optional<glm::vec3> direction = sample_direction(at, sobol_point(path, dimensions));
     if (!direction) break;
+    if (bounce == 1) rest.direction = glm::dvec3(*direction);
     ++ray_count_;
     const glm::vec3 origin = origin_of(at);
     const std::optional<Hit> hit = rays_.intersect(origin, *direction, 0, kInfinity, Faces::all);
@@ -261,7 +300,7 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
     }
     const Vertex next = scattered
                             ? in_medium(glm::dvec3(origin), glm::dvec3(*direction), *scattered)
-                            : Vertex{*hit, false, {}};
+                            : Vertex{*hit};
     if (!scattered && !emitters_.empty())
       sum += throughput * emission_of(at, glm::dvec3(*direction), *hit);
     const glm::dvec3 irradiance = direct(next);
@@ -272,7 +311,7 @@ glm::dvec3 PathSampler::indirect(const Vertex& start, std::uint32_t path, std::u
     if (last || !survives(throughput, bounce, mix(mix(dimensions), path))) break;
     at = next;
   }
-  return sum;
+  return arrivals;
 }
 
 glm::dvec3 PathSampler::scattered_towards(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -299,7 +338,7 @@ glm::dvec3 PathSampler::scattered_towards(const glm::dvec3& origin, const glm::d
   flights.take(density, throughput);
   const Vertex at = in_medium(origin, direction, part.start + t);
   return from_beams(origin, direction, distance, sobol_point(path, mix(stream, kEyeBeamStream)).x) +
-         throughput * (direct(at) + indirect(at, path, own, flights)) / std::numbers::pi;
+         throughput * (direct(at) + sum_of(arriving(at, path, own, flights))) / std::numbers::pi;
 }
 
 int PathSampler::channel_of(std::uint32_t path, std::uint64_t stream) {
@@ -308,7 +347,7 @@ int PathSampler::channel_of(std::uint32_t path, std::uint64_t stream) {
 
 PathSampler::Vertex PathSampler::in_medium(const glm::dvec3& origin, const glm::dvec3& direction,
                                            double distance) {
-  Vertex vertex{{}, true, direction};
+  Vertex vertex{{}, Vertex::Kind::medium, direction};
   vertex.hit.position = glm::vec3(origin + distance * direction);
   return vertex;
 }

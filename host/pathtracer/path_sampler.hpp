@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Sampling of one pixel: primary hit, direct irradiance, and single paths of indirect irradiance
-// and of scattered light.
+// Sampling of one pixel or point: primary hit, direct irradiance, and single paths of indirect
+// irradiance and of scattered light.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -12,16 +13,29 @@
 #include "pathtracer/emitters.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pathtracer/ray_scene.hpp"
+#include "reference/lighting.hpp"
 
 namespace clpv::pathtracer {
+
+/// Light that reaches the start of a path from one direction.
+struct Arrival {
+  glm::dvec3 direction{0};  ///< unit, towards the light
+  glm::dvec3 light{0};      ///< one path's estimate of radiance times PathSampler::Vertex's factor
+};
 
 /// Borrows its arguments. Each thread has its own, for its count of rays.
 class PathSampler {
  public:
-  /// Point of a path.
+  /// Point of a path. Light that arrives there counts times a factor.
   struct Vertex {
-    Hit hit;  ///< of a point in the medium: only its position
-    bool in_medium = false;
+    enum class Kind {
+      surface,  ///< of the scene: factor cosine
+      element,  ///< a small surface that is not the scene's: factor cosine
+      probe,    ///< factor 1/4, so that the sum over directions is pi times the mean radiance
+      medium,   ///< factor pi times the phase function
+    };
+    Hit hit;  ///< element: position, geometric and normal; probe and medium: position
+    Kind kind = Kind::surface;
     glm::dvec3 arrived{0};  ///< in the medium: unit direction in which the path reached it
   };
 
@@ -46,6 +60,12 @@ class PathSampler {
   /// medium and from the sky [W/m^2]. Paths 0, 1, 2... of a stream are a low-discrepancy sequence;
   /// streams are independent of each other.
   glm::dvec3 indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream);
+  /// The same by direction: light of a sampled emitter, of a sampled part of the sky, and of the
+  /// rest of the path.
+  std::array<Arrival, 3> arriving(const Vertex& start, std::uint32_t path, std::uint64_t stream);
+
+  /// Light of the scene's lights at a position [m] that no surface shadows.
+  std::vector<reference::Incident> lights_at(const glm::vec3& position);
 
   /// One path's estimate of the radiance [W/m^2/sr] that the medium scatters towards `origin` along
   /// the first `distance` [m] of a ray. Needs a medium.
@@ -66,8 +86,8 @@ class PathSampler {
   };
 
   static int channel_of(std::uint32_t path, std::uint64_t stream);
-  glm::dvec3 indirect(const Vertex& start, std::uint32_t path, std::uint64_t stream,
-                      Flights flights);
+  std::array<Arrival, 3> arriving(const Vertex& start, std::uint32_t path, std::uint64_t stream,
+                                  Flights flights);
   static Vertex in_medium(const glm::dvec3& origin, const glm::dvec3& direction, double distance);
   glm::vec3 origin_of(const Vertex& at) const;
   double factor(const Vertex& at, const glm::dvec3& direction) const;
@@ -78,8 +98,8 @@ class PathSampler {
                             double random, Flights& flights, glm::dvec3& throughput) const;
   glm::dvec3 from_beams(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
                         double random);
-  glm::dvec3 sample_emitter(const Vertex& at, const glm::dvec2& random);
-  glm::dvec3 sample_sky(const Vertex& at, const glm::dvec2& random);
+  Arrival sample_emitter(const Vertex& at, const glm::dvec2& random);
+  Arrival sample_sky(const Vertex& at, const glm::dvec2& random);
   glm::dvec3 sky_along(const Vertex& at, const glm::dvec3& direction) const;
   glm::dvec3 emission_of(const Vertex& at, const glm::dvec3& direction, const Hit& next) const;
   bool shadowed(const ClpvLight& light, const glm::vec3& origin, const glm::dvec3& towards) const;

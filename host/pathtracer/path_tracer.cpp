@@ -11,9 +11,11 @@
 #include <utility>
 
 #include "basis/sampling.hpp"
+#include "pathtracer/centred_scene.hpp"
 #include "pathtracer/emitters.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/ray_scene.hpp"
+#include "pathtracer/sample_counts.hpp"
 #include "reference/view.hpp"
 #include "scene/emission.hpp"
 #include "scene/medium.hpp"
@@ -24,13 +26,10 @@ namespace clpv::pathtracer {
 namespace {
 
 constexpr std::uint32_t kTile = 16;  // edge of a tile [pixels], the unit of work of a thread
-// Paths per pixel before the first estimate of the noise, which only the progress uses, and before
-// the first that may end the tracing.
+// Paths per pixel before the first estimate of the noise, which only the progress uses.
 constexpr std::uint32_t kFirstEstimate = 16;
-constexpr std::uint32_t kFirstSamples = 64;
 // Progress until the noise is reached: an estimate that is too low must not report completion.
 constexpr double kAlmostDone = 0.99;
-constexpr std::uint32_t kMaxSamples = PathTracerOptions::kMaxSamples;
 
 /// Unit direction of the ray through a pixel's centre.
 glm::dvec3 direction_of(const ClpvView& view, std::uint32_t px, std::uint32_t py) {
@@ -62,31 +61,6 @@ glm::vec3 seen_through(const TracedImage& traced, std::size_t pixel) {
   return glm::vec3(transmittance(
       *traced.medium, medium_part(*traced.medium, ray.origin, ray.direction, ray.length)));
 }
-
-void move(float position[3], const glm::dvec3& by) {
-  for (int axis = 0; axis < 3; ++axis) position[axis] = double{position[axis]} + by[axis];
-}
-
-void move(ClpvMedium& medium, const glm::dvec3& by) {
-  move(medium.lower, by), move(medium.upper, by);
-}
-
-/// The scene relative to the eye, so that floats near it resolve small distances wherever the scene
-/// lies.
-struct CentredScene {
-  SceneData scene;
-  std::vector<SceneLight> lights;
-  ClpvView view;
-
-  CentredScene(const SceneData& at, const std::vector<SceneLight>& lit_by, const ClpvView& from)
-      : scene(at), lights(lit_by), view(from) {
-    const glm::dvec3 by = -vector(view.eye);
-    for (Vertex& v : scene.vertices) move(v.position, by);
-    for (SceneLight& light : lights) move(light.data.position, by), move(light.data.medium, by);
-    if (scene.medium) move(*scene.medium, by);
-    move(view.eye, by);
-  }
-};
 
 /// Traces one image, tile by tile.
 class ImageTracer {
@@ -306,28 +280,9 @@ void require_resolved(const SceneData& scene, const ClpvView& view) {
 void check(const SceneData& scene, const std::vector<SceneLight>& lights, const ClpvView& view,
            const PathTracerOptions& options) {
   require_resolved(scene, view);
-  if (options.bounces < 0)
-    throw Error(ExitCode::usage, "bounces: found {}; allowed: 1 or more, or all", options.bounces);
-  if (options.samples > kMaxSamples)
-    throw Error(ExitCode::usage, "samples: found {}; allowed: 0 to {}", options.samples,
-                kMaxSamples);
-  if (options.samples == 0 && !(options.noise > 0))
-    throw Error(ExitCode::usage, "noise: found {}; allowed: above 0", options.noise);
+  check(options);
   if (lights.empty() && !emits(scene) && !scene.sky)
     throw Error(ExitCode::bad_input, "{}: no light, no emissive surface and no sky", scene.path);
-}
-
-/// The next number of paths, of the sequence 2^k, 3 * 2^(k-1), 2^(k+1), where Sobol points have the
-/// lowest discrepancy.
-std::uint32_t next_count(std::uint32_t samples) {
-  const bool power = (samples & (samples - 1)) == 0;
-  return power ? samples + samples / 2 : samples / 3 * 4;
-}
-
-/// Expected number of paths for the target noise, as the error of scrambled Sobol points falls with
-/// n^(-3/4).
-double expected_count(std::uint32_t samples, double noise, double target) {
-  return samples * std::pow(std::max(1.0, noise / target), 4.0 / 3.0);
 }
 
 }  // namespace
@@ -336,8 +291,11 @@ TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& l
                         const ClpvView& view, const PathTracerOptions& options,
                         const TraceProgress& progress, Ranks& ranks) {
   check(scene, lights, view, options);
-  const CentredScene centred(scene, lights, view);
-  ImageTracer tracer(centred.scene, centred.lights, centred.view, options, progress, ranks);
+  const glm::dvec3 by = -vector(view.eye);
+  const CentredScene centred(scene, lights, by);
+  ClpvView centred_view = view;
+  move(centred_view.eye, by);
+  ImageTracer tracer(centred.scene, centred.lights, centred_view, options, progress, ranks);
   const auto finished = [&] {
     TracedImage image = tracer.finish();
     image.view = view, image.medium = scene.medium;
@@ -351,7 +309,8 @@ TracedImage trace_paths(const SceneData& scene, const std::vector<SceneLight>& l
   }
   tracer.trace(kFirstEstimate);  // nothing is known before it, and nothing reported
   std::uint32_t done = kFirstEstimate;
-  for (std::uint32_t count = kFirstSamples; count <= kMaxSamples; count = next_count(count)) {
+  for (std::uint32_t count = kFirstSamples; count <= PathTracerOptions::kMaxSamples;
+       count = next_count(count)) {
     const double goal =
         std::max<double>(count, expected_count(done, tracer.current_noise(), options.noise));
     tracer.set_progress_range(kAlmostDone * done / goal, kAlmostDone * count / goal);

@@ -2,8 +2,10 @@
 // Ground truth by path tracing on the CPU.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "clpv/image.hpp"
@@ -34,5 +36,23 @@ Image pathtrace(const Scene& scene, View view, const CameraChoice& camera = {},
 /// view has no layer. Throws Error(usage) also for no view and for one given twice.
 Image pathtrace(const Scene& scene, const std::vector<View>& views, const CameraChoice& camera = {},
                 const TraceOptions& options = {});
+
+/// Irradiance [W/m^2] of small surfaces: red, green, blue of each.
+struct PointLights {
+  std::vector<std::array<float, 3>> indirect;  ///< from surfaces, emission included, and the sky
+  std::vector<std::array<float, 3>> direct;    ///< from the scene's lights
+  std::vector<std::array<float, 3>> error;     ///< standard error of `indirect`
+  std::uint32_t samples = 0;                   ///< paths per point
+  double noise = 0;  ///< root mean square of `error` over that of `indirect`
+};
+
+/// Traces the irradiance at positions [m] with a normal (of any length) each, on a surface of the
+/// scene or in the air, lit by all lights; `indirect` is what Renderer::irradiance() estimates.
+/// Uses neither width nor height of `options`. Throws Error: usage (options, different numbers of
+/// positions and normals, vectors that are not finite, a normal of length 0), bad_input (a scene
+/// without surface). Thread-safe.
+PointLights pathtrace_points(const Scene& scene, std::span<const std::array<float, 3>> positions,
+                             std::span<const std::array<float, 3>> normals,
+                             const TraceOptions& options = {});
 
 }  // namespace clpv

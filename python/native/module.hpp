@@ -24,6 +24,9 @@ void add_meshes(py::class_<Scene>& type);
 /// Adds replace(), copies and pickling to a class of immutable values, given its constructor's
 /// arguments, which are also its attributes.
 void add_copies(const py::object& type, const std::vector<const char*>& members);
+void add_points(py::class_<Scene>& type);
+/// Number of bounces, 0 for 'all'. Throws Error(usage) for another text.
+int bounces_of(const std::variant<int, std::string>& given);
 void add_image(py::module_& module);
 void add_renderer(py::module_& module);
 void add_opencl(py::module_& module);  ///< after add_renderer()

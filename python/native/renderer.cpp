@@ -70,13 +70,6 @@ std::vector<View> views_of(const std::variant<std::string, std::vector<std::stri
   return all;
 }
 
-int bounces_of(const std::variant<int, std::string>& given) {
-  if (const int* number = std::get_if<int>(&given)) return *number;
-  if (const std::string& text = std::get<std::string>(given); text != "all")
-    throw Error(ExitCode::usage, "bounces: found '{}', allowed: a number from 0, or 'all'", text);
-  return 0;
-}
-
 using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(
     std::span<const std::array<float, 3>>, std::span<const std::array<float, 3>>);
 

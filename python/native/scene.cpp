@@ -182,6 +182,7 @@ void add_scene(py::module_& module) {
       },
       py::arg("path") = py::none(), py::arg("model") = py::none());
   add_meshes(type);
+  add_points(type);
   type.def("__repr__", [](const Scene& scene) {
     return without_gil([&] {
       const std::shared_lock lock(scene.contents().mutex);

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "bake/bake.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "support/fingerprint.hpp"
+#include "support/interrupt.hpp"
+
+namespace clpv::bake {
+namespace {
+
+constexpr double kBacks = 0.25;  // of all directions
+constexpr std::size_t kHash = 16;
+
+/// Mean of the neighbours that are known, weighted by the inverse square of their distance; false
+/// without one.
+bool fill(const ProbeGrid& grid, std::size_t probe, std::size_t n,
+          const std::vector<std::uint8_t>& known, std::vector<glm::vec3>& coefficients) {
+  const glm::ivec3 at = grid.at(probe);
+  const glm::dvec3 spacing = grid.spacing();
+  std::vector<glm::dvec3> sum(n, glm::dvec3(0));
+  double weights = 0;
+  for (int i = 0; i < 27; ++i) {
+    const glm::ivec3 off(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1), place = at + off;
+    if (off == glm::ivec3(0) || glm::any(glm::lessThan(place, glm::ivec3(0))) ||
+        glm::any(glm::greaterThanEqual(place, grid.count)))
+      continue;
+    const std::size_t other = grid.index(place);
+    if (!known[other]) continue;
+    const glm::dvec3 apart = glm::dvec3(off) * spacing;
+    const double weight = 1 / glm::dot(apart, apart);
+    weights += weight;
+    for (std::size_t k = 0; k < n; ++k) sum[k] += weight * glm::dvec3(coefficients[other * n + k]);
+  }
+  if (weights == 0) return false;
+  for (std::size_t k = 0; k < n; ++k) coefficients[probe * n + k] = glm::vec3(sum[k] / weights);
+  return true;
+}
+
+/// Fills unknown probes from known ones, layer by layer.
+void dilate_into(const ProbeGrid& grid, std::size_t n, std::vector<std::uint8_t> known,
+                 std::vector<glm::vec3>& coefficients) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    std::vector<std::uint8_t> next = known;
+    for (std::size_t probe = 0; probe < grid.size(); ++probe) {
+      if (known[probe] || !fill(grid, probe, n, known, coefficients)) continue;
+      next[probe] = 1, changed = true;
+    }
+    known = std::move(next);
+  }
+}
+
+}  // namespace
+
+BlockCache::BlockCache(const std::optional<std::filesystem::path>& folder, std::string key)
+    : key_(std::move(key)) {
+  if (folder) folder_.emplace(*folder / "bakes");
+}
+
+std::string BlockCache::name_of(std::size_t block) const {
+  return fmt::format("{}-{}.block", key_, block);
+}
+
+std::optional<BlockLight> BlockCache::read(std::size_t block, std::size_t numbers) const {
+  if (!folder_) return std::nullopt;
+  const std::size_t size = numbers * sizeof(glm::vec3);
+  BlockLight light;
+  const std::size_t head = kHash + sizeof light.noise + sizeof light.samples;
+  const auto bytes = folder_->read(name_of(block), head + size);
+  if (!bytes || bytes->size() != head + size) return std::nullopt;
+  if (Fingerprint().add(std::string_view(*bytes).substr(kHash)).hex() != bytes->substr(0, kHash))
+    return std::nullopt;  // damaged
+  light.integrals.resize(numbers);
+  const char* from = bytes->data() + kHash;
+  std::memcpy(&light.noise, from, sizeof light.noise);
+  std::memcpy(&light.samples, from + sizeof light.noise, sizeof light.samples);
+  if (numbers > 0) std::memcpy(light.integrals.data(), bytes->data() + head, size);
+  return light;
+}
+
+bool BlockCache::write(std::size_t block, const BlockLight& light) {
+  if (!folder_) return false;
+  std::string bytes;
+  const auto add = [&](const void* from, std::size_t size) {
+    bytes.append(static_cast<const char*>(from), size);
+  };
+  add(&light.noise, sizeof light.noise), add(&light.samples, sizeof light.samples);
+  add(light.integrals.data(), light.integrals.size() * sizeof(glm::vec3));
+  const std::string problem =
+      folder_->write(name_of(block), Fingerprint().add(bytes).hex() + bytes);
+  if (problem.empty()) return true;
+  spdlog::warn("{}: an interrupted bake will begin again", problem);
+  folder_.reset();
+  return false;
+}
+
+void BlockCache::clear(std::size_t count) {
+  if (!folder_) return;
+  for (std::size_t block = 0; block < count; ++block) {
+    std::error_code ignored;
+    std::filesystem::remove(folder_->path() / name_of(block), ignored);
+  }
+}
+
+GridLight light_of(ProbeSource& source, const ProbeGrid& grid, std::size_t count, BlockCache& cache,
+                   const std::function<void(std::size_t)>& done) {
+  GridLight all;
+  all.count = count;
+  all.integrals.resize(grid.size() * count);
+  double squares = 0;
+  bool kept = true;
+  const auto& blocks = source.blocks();
+  for (std::size_t block = 0; block < blocks.size(); ++block) {
+    stop_if_interrupted(kept ? "the same command goes on where it was" : "nothing was written");
+    std::optional<BlockLight> light = cache.read(block, blocks[block].size() * count);
+    if (!light) {
+      light = source.light(block);
+      kept = cache.write(block, *light);
+    }
+    for (std::size_t i = 0; i < blocks[block].size(); ++i)
+      std::copy_n(light->integrals.begin() + static_cast<std::ptrdiff_t>(i * count), count,
+                  all.integrals.begin() + static_cast<std::ptrdiff_t>(blocks[block][i] * count));
+    all.samples = std::max(all.samples, light->samples);
+    squares += double{light->noise} * double{light->noise} * double(blocks[block].size());
+    done(block + 1);
+  }
+  all.noise = std::sqrt(squares / double(grid.size()));
+  return all;
+}
+
+std::vector<std::uint8_t> validity(pathtracer::PointTracer& tracer,
+                                   std::span<const glm::dvec3> positions) {
+  std::vector<std::uint8_t> valid;
+  for (const auto& [backs, open] : tracer.surroundings(positions))
+    valid.push_back(backs >= kBacks && backs > 1 - open - backs ? 0 : 1);
+  return valid;
+}
+
+std::vector<glm::dvec3> positions_of(const ProbeGrid& grid) {
+  std::vector<glm::dvec3> positions;
+  for (std::size_t i = 0; i < grid.size(); ++i) positions.push_back(grid.position(i));
+  return positions;
+}
+
+BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,
+                    const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate) {
+  BakedProbes baked{grid, {}, std::move(valid), dilate, 0};
+  baked.coefficients.reserve(grid.size() * format.size);
+  for (std::size_t probe = 0; probe < grid.size(); ++probe) {
+    std::vector<glm::dvec3> integrals(format.moments.count);
+    for (std::size_t i = 0; i < integrals.size(); ++i)
+      integrals[i] = glm::dvec3(light.integrals[probe * light.count + first + i]);
+    for (const glm::dvec3& c : format.encoded(integrals)) baked.coefficients.emplace_back(c);
+  }
+  if (dilate) dilate_into(grid, format.size, baked.valid, baked.coefficients);
+  std::vector<glm::dvec3> c(format.size);
+  for (std::size_t probe = 0; probe < grid.size(); ++probe) {
+    for (std::size_t i = 0; i < c.size(); ++i)
+      c[i] = glm::dvec3(baked.coefficients[probe * c.size() + i]);
+    baked.negative += negative_share(format, c) / static_cast<double>(grid.size());
+  }
+  return baked;
+}
+
+}  // namespace clpv::bake

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "bake/ktx2.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "support/error.hpp"
+
+namespace clpv::bake {
+namespace {
+
+constexpr std::uint32_t kFormatRgbaHalf = 97;  // VK_FORMAT_R16G16B16A16_SFLOAT
+constexpr int kShVolumes = 7;
+
+class Bytes {
+ public:
+  template <typename T>
+  Bytes& add(T value) {
+    static_assert(std::endian::native == std::endian::little);
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    return *this;
+  }
+  Bytes& add(const std::string& text) {
+    bytes_ += text;
+    return *this;
+  }
+  Bytes& align(std::size_t alignment) {
+    bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment, '\0');
+    return *this;
+  }
+  std::size_t size() const { return bytes_.size(); }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+/// Data format descriptor of four signed linear halves (Khronos Data Format 1.3, basic block).
+std::string descriptor() {
+  constexpr std::uint8_t kModelRgbsda = 1, kBt709 = 1, kLinear = 1, kFloatSigned = 0xC0;
+  Bytes block;
+  block.add<std::uint32_t>(4 + 24 + 4 * 16).add<std::uint32_t>(0);  // total size; vendor, type
+  block.add<std::uint16_t>(2).add<std::uint16_t>(24 + 4 * 16);      // version, size
+  block.add(kModelRgbsda).add(kBt709).add(kLinear).add<std::uint8_t>(0);
+  block.add<std::uint32_t>(0);                         // texel block of 1 x 1 x 1
+  block.add<std::uint32_t>(8).add<std::uint32_t>(0);   // bytes of plane 0
+  constexpr std::uint8_t kChannels[] = {0, 1, 2, 15};  // red, green, blue, alpha
+  for (std::uint16_t i = 0; i < 4; ++i) {
+    block.add<std::uint16_t>(static_cast<std::uint16_t>(16 * i)).add<std::uint8_t>(15);
+    block.add<std::uint8_t>(kChannels[i] | kFloatSigned).add<std::uint32_t>(0);
+    block.add(-1.0f).add(1.0f);
+  }
+  return block.take();
+}
+
+Texture3d cubes(const ProbeFormat& format, const BakedProbes& baked, float factor) {
+  const ProbeGrid& grid = baked.grid;
+  Texture3d texture{texture_size(format, grid), {}};
+  const glm::uvec3 count(grid.count);
+  texture.texels.resize(6 * grid.size());
+  for (std::size_t probe = 0; probe < grid.size(); ++probe) {
+    const glm::uvec3 at(grid.at(probe));
+    for (unsigned face = 0; face < 6; ++face) {
+      const std::size_t y = at.y + face % 2 * count.y, z = at.z + face / 2 * count.z;
+      texture.texels[(z * texture.size.y + y) * texture.size.x + at.x] =
+          glm::vec4(factor * baked.coefficients[6 * probe + face], baked.valid[probe]);
+    }
+  }
+  return texture;
+}
+
+Texture3d harmonics_atlas(const ProbeFormat& format, const BakedProbes& baked, float factor) {
+  const ProbeGrid& grid = baked.grid;
+  Texture3d texture{texture_size(format, grid), {}};
+  const int depth = grid.count.z + 2;
+  texture.texels.reserve(std::size_t{texture.size.x} * texture.size.y * texture.size.z);
+  for (int z = 0; z < kShVolumes * depth; ++z) {
+    const int slice = std::clamp(z % depth - 1, 0, grid.count.z - 1);
+    for (int y = 0; y < grid.count.y; ++y) {
+      for (int x = 0; x < grid.count.x; ++x) {
+        const std::size_t probe = grid.index({x, y, slice});
+        glm::vec4 texel(baked.filled || baked.valid[probe] ? 1.0f : 0.0f);
+        for (int i = 0; i < 4; ++i) {
+          const int number = 4 * (z / depth) + i;
+          if (number < 27)
+            texel[i] =
+                factor *
+                baked.coefficients[9 * probe + static_cast<std::size_t>(number / 3)][number % 3];
+        }
+        texture.texels.push_back(texel);
+      }
+    }
+  }
+  return texture;
+}
+
+}  // namespace
+
+std::uint16_t half_of(float value) {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  const auto sign = static_cast<std::uint16_t>(bits >> 16 & 0x8000);
+  const float size = std::abs(value);
+  if (std::isnan(value)) return 0x7e00;
+  if (size == 0) return sign;
+  if (size >= 65520) return sign | 0x7c00;
+  int exponent = 0;
+  std::frexp(size, &exponent);         // size = m 2^exponent, m in [1/2, 1)
+  exponent = std::max(exponent, -13);  // below 2^-14: steps of 2^-24
+  const double steps = std::ldexp(double{size}, 11 - exponent);
+  const auto rounded = static_cast<std::uint32_t>(std::nearbyint(steps));  // ties to even
+  return sign |
+         static_cast<std::uint16_t>(rounded + (static_cast<std::uint32_t>(exponent + 13) << 10));
+}
+
+glm::uvec3 texture_size(const ProbeFormat& format, const ProbeGrid& grid) {
+  const glm::uvec3 count(grid.count);
+  glm::uvec3 size;
+  if (format.name == "ambient-cube" || format.name == "ambient-cube-mean") {
+    size = {count.x, 2 * count.y, 3 * count.z};
+  } else if (format.name == "sh3" || format.name == "sh3-windowed") {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (grid.count[axis] < 2)
+        throw Error(ExitCode::usage,
+                    "probes: found {} along {}, allowed for a .ktx2 of {}: 2 or more",
+                    grid.count[axis], "xyz"[axis], format.name);
+    }
+    size = {count.x, count.y, kShVolumes * (count.z + 2)};
+  } else {
+    throw Error(ExitCode::usage,
+                "format: found '{}' for a .ktx2, allowed: ambient-cube, ambient-cube-mean, sh3, "
+                "sh3-windowed, or a .npz",
+                format.name);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (size[axis] > kMaxTextureSide)
+      throw Error(ExitCode::usage,
+                  "probes: found {} along {}, a texture of {} x {} x {}; allowed: sides up to {}",
+                  grid.count[axis], "xyz"[axis], size.x, size.y, size.z, kMaxTextureSide);
+  }
+  return size;
+}
+
+double intensity_of(const BakedProbes& baked) {
+  float most = 0;
+  for (const glm::vec3& c : baked.coefficients)
+    most = std::max({most, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
+  if (most == 0 || (most >= 0x1p-6f && most < 0x1p15f)) return 1;
+  int exponent = 0;
+  std::frexp(most, &exponent);
+  return std::ldexp(1.0, exponent - 15);
+}
+
+Texture3d texture_of(const ProbeFormat& format, const BakedProbes& baked, double intensity) {
+  const auto factor = static_cast<float>(1 / intensity);
+  return format.size == 6 ? cubes(format, baked, factor) : harmonics_atlas(format, baked, factor);
+}
+
+std::string ktx2_bytes(const Texture3d& texture, const std::string& writer) {
+  constexpr std::size_t kHeader = 80, kLevelIndex = 24, kTexel = 8;
+  const std::string description = descriptor();
+  const std::string pair = std::string("KTXwriter") + '\0' + writer + '\0';
+  const std::size_t pair_size = 4 + (pair.size() + 3) / 4 * 4, first = kHeader + kLevelIndex,
+                    pairs_at = first + description.size(),
+                    texels_at = (pairs_at + pair_size + kTexel - 1) / kTexel * kTexel,
+                    size = texture.texels.size() * kTexel;
+  Bytes file;
+  file.add(std::string("\xABKTX 20\xBB\r\n\x1A\n"));
+  const auto add = [&file](std::size_t value) { file.add(static_cast<std::uint32_t>(value)); };
+  add(kFormatRgbaHalf), add(2);  // bytes of a number
+  add(texture.size.x), add(texture.size.y), add(texture.size.z);
+  add(0), add(1), add(1), add(0);  // layers, faces, levels, supercompression
+  add(first), add(description.size()), add(pairs_at), add(pair_size);
+  file.add<std::uint64_t>(0).add<std::uint64_t>(0);
+  file.add<std::uint64_t>(texels_at).add<std::uint64_t>(size).add<std::uint64_t>(size);
+  file.add(description);
+  add(pair.size());
+  file.add(pair).align(kTexel);
+  for (const glm::vec4& texel : texture.texels)
+    for (int channel = 0; channel < 4; ++channel) file.add(half_of(texel[channel]));
+  return file.take();
+}
+
+}  // namespace clpv::bake

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "cli/bake_parts.hpp"
+#include "scene/bounds.hpp"
+#include "support/error.hpp"
+#include "support/text.hpp"
+
+namespace clpv::bake_command {
+namespace {
+
+constexpr double kMaxProbes = 1 << 22;
+constexpr double kMaxBytes = 1 << 30;  // of all coefficients, as 32-bit floats
+constexpr int kDefaultProbes = 16;     // along the longest edge
+
+/// `count` numbers between commas. Throws Error(usage).
+template <typename Number>
+std::vector<Number> numbers_of(const std::string& option, std::string text, std::size_t count,
+                               const char* allowed) {
+  std::vector<Number> numbers;
+  const std::string given = text;
+  for (std::size_t end = 0; end != std::string::npos; text.erase(0, end + 1)) {
+    end = text.find(',');
+    const auto value = parse_number<Number>(trimmed(std::string_view(text).substr(0, end)));
+    if (value) numbers.push_back(*value);
+    if (!value || numbers.size() > count || end == std::string::npos) break;
+  }
+  const auto commas = static_cast<std::size_t>(std::ranges::count(given, ','));
+  if (numbers.size() != count || commas + 1 != count)
+    throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", option, given, allowed);
+  return numbers;
+}
+
+/// Sets the positions of the outermost probes.
+void set_bounds(const Options& options, const SceneData& scene, ProbeGrid& grid) {
+  grid.lower = glm::dvec3(scene.lower), grid.upper = glm::dvec3(scene.upper);
+  if (options.bounds.empty()) return;
+  const auto n = numbers_of<double>("--bounds", options.bounds, 6,
+                                    "six numbers between commas, the lower and the upper corner");
+  grid.lower = {n[0], n[1], n[2]}, grid.upper = {n[3], n[4], n[5]};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (grid.lower[axis] < grid.upper[axis] &&
+        std::max(std::abs(grid.lower[axis]), std::abs(grid.upper[axis])) <= bounds::kCoordinate)
+      continue;
+    throw Error(ExitCode::usage,
+                "--bounds: found {} to {} along {}, allowed: a lower and a larger number, within "
+                "+-{} m",
+                grid.lower[axis], grid.upper[axis], "xyz"[axis], bounds::kCoordinate);
+  }
+}
+
+}  // namespace
+
+ProbeGrid grid_of(const Options& options, const SceneData& scene, std::size_t numbers) {
+  ProbeGrid grid;
+  set_bounds(options, scene, grid);
+  const glm::dvec3 edges = grid.upper - grid.lower;
+  std::array<double, 3> count{};
+  if (!options.probes.empty()) {
+    const auto n = numbers_of<int>("--probes", options.probes, 3, "three numbers between commas");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (n[axis] < 1)
+        throw Error(ExitCode::usage, "--probes: found {}, allowed: 1 or more along each axis",
+                    n[axis]);
+      count[axis] = n[axis];
+    }
+  } else {
+    const double longest = std::max({edges.x, edges.y, edges.z}),
+                 spacing = options.spacing > 0 ? options.spacing : longest / (kDefaultProbes - 1);
+    for (int axis = 0; axis < 3; ++axis)
+      count[static_cast<std::size_t>(axis)] =
+          spacing > 0 ? std::max(2.0, std::round(edges[axis] / spacing) + 1) : 2.0;
+  }
+  const double all = count[0] * count[1] * count[2],
+               bytes = all * 12 * static_cast<double>(numbers);
+  if (!(all <= kMaxProbes && bytes <= kMaxBytes))
+    throw Error(ExitCode::usage,
+                "probes: found {:.0f} x {:.0f} x {:.0f}, {:.4g} MiB of coefficients; allowed: at "
+                "most {:.0f} probes and {:.0f} MiB",
+                count[0], count[1], count[2], bytes / (1 << 20), kMaxProbes, kMaxBytes / (1 << 20));
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    grid.count[static_cast<int>(axis)] = static_cast<int>(count[axis]);
+  return grid;
+}
+
+}  // namespace clpv::bake_command

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Parts of `clpv bake`: its options, its grid and its files.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "bake/bake.hpp"
+#include "cli/options.hpp"
+#include "cli/render_request.hpp"
+#include "support/named_enum.hpp"
+
+namespace clpv {
+
+enum class BakeSource { sweep, pathtrace };
+
+template <>
+inline constexpr auto kNames<BakeSource> = name_list("sweep", "pathtrace");
+
+namespace bake_command {
+
+using namespace bake;
+
+struct Options {
+  RenderRequest request;
+  TracingOptions tracing;
+  BakeSource from = BakeSource::sweep;
+  std::string output, bounds, probes, format = "ambient-cube";
+  double spacing = 0, time = 0;
+  bool direct = false, no_dilate = false;
+  std::size_t check = 0;
+  std::vector<CLI::Option*> of_paths = {};  ///< without effect on swept light
+};
+
+/// Extension of the output: ".ktx2" or ".npz".
+std::string suffix_of(const Options& options);
+/// The file that describes the output; empty without one.
+std::string description_file(const Options& options);
+
+/// The grid, within the limits of memory. `numbers`: coefficients of a probe. Throws Error(usage).
+ProbeGrid grid_of(const Options& options, const SceneData& scene, std::size_t numbers);
+
+/// Writes the output and its description, or neither.
+void write_probes(const Options& options, const SceneData& scene, const ProbeFormat& format,
+                  const BakedProbes& baked, const GridLight& light);
+
+}  // namespace bake_command
+}  // namespace clpv

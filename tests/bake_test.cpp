@@ -1,0 +1,489 @@
+// SPDX-License-Identifier: MIT
+// Baked probes: formats against closed forms, files read back and looked up as engines do, probes
+// inside walls, interrupted bakes, bad input.
+#include "bake/bake.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "bake/ktx2.hpp"
+#include "bake/probe_check.hpp"
+#include "pipeline/frame/frame.hpp"
+#include "pipeline/frame/scene_options.hpp"
+#include "scene/load.hpp"
+#include "support/interrupt.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/ktx2_reader.hpp"
+#include "tests/support/on_device.hpp"
+#include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/sphere_quadrature.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/traced_scenes.hpp"
+
+namespace clpv::bake_test {
+namespace {
+
+using namespace bake;
+using namespace test;
+using std::numbers::pi;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+using Radiance = std::function<double(const glm::dvec3& w)>;
+
+/// Coefficients of a radiance that is smooth in octants about `axis`.
+std::vector<glm::dvec3> projected(const ProbeFormat& format, const Radiance& radiance,
+                                  const glm::dvec3& axis = {0, 0, 1}) {
+  std::vector<double> g(format.moments.count);
+  std::vector<glm::dvec3> integrals(g.size(), glm::dvec3(0));
+  for (const Node& node : sphere(axis)) {
+    format.moments.weights(node.w, g);
+    for (std::size_t i = 0; i < g.size(); ++i)
+      integrals[i] += node.weight * g[i] * radiance(node.w);
+  }
+  return format.encoded(integrals);
+}
+
+/// Coefficients of an irradiance of 1 from one direction.
+std::vector<glm::dvec3> of_direction(const ProbeFormat& format, const glm::dvec3& d) {
+  std::vector<double> g(format.moments.count);
+  format.moments.weights(d, g);
+  std::vector<glm::dvec3> integrals;
+  for (const double value : g) integrals.emplace_back(value);
+  return format.encoded(integrals);
+}
+
+const glm::dvec3 kTilted = glm::normalize(glm::dvec3(2, 3, -1));
+
+TEST(ProbeFormats, HaveTheirNames) {
+  for (const std::string& name : probe_format_names()) EXPECT_EQ(probe_format(name).name, name);
+  EXPECT_THAT(error_of(ExitCode::usage, [] { probe_format("sh9"); }),
+              AllOf(HasSubstr("'sh9'"), HasSubstr("ambient-cube, ")));
+}
+
+// Radiance 1 from everywhere: irradiance pi on every surface.
+TEST(ProbeFormats, Furnace) {
+  for (const std::string& name : probe_format_names()) {
+    const ProbeFormat format = probe_format(name);
+    const auto c = projected(format, [](const glm::dvec3&) { return 1.0; });
+    EXPECT_EQ(c.size(), format.size) << name;
+    const bool srbf = name.starts_with("srbf");  // which have no constant
+    for (const glm::dvec3& n : probe_normals().normals)
+      EXPECT_NEAR(format.irradiance(c, n).x, pi, (srbf ? 0.06 : 4e-3) * pi) << name;
+    EXPECT_EQ(negative_share(format, c), 0) << name;
+  }
+}
+
+// Irradiance on surfaces across one direction and away from it.
+TEST(ProbeFormats, OneDirection) {
+  const double ratio = std::sqrt(3.0), mean = std::sqrt(1 / (4 * pi)),
+               zonal = mean * (0.08 * ratio + 0.6 * ratio * ratio);
+  const double third = pi / 4 * std::sqrt(5 / (4 * pi));  // of a zonal coefficient
+  const std::map<std::string, std::pair<double, double>> wanted{
+      {"sh2", {0.75, -0.25}},
+      {"sh2-geomerics", {1, 0}},
+      {"zh3-hallucinated", {0.75 + third * zonal, -0.25 + third * zonal}},
+      {"zh3", {1.0625, 0.0625}},
+      {"sh3", {1.0625, 0.0625}}};
+  for (const auto& [name, towards] : wanted) {
+    const ProbeFormat format = probe_format(name);
+    const auto c = of_direction(format, kTilted);
+    EXPECT_NEAR(format.irradiance(c, kTilted).x, towards.first, 1e-9) << name;
+    EXPECT_NEAR(format.irradiance(c, -kTilted).x, towards.second, 1e-9) << name;
+  }
+  const ProbeFormat means = probe_format("ambient-cube-mean");
+  const auto cube = of_direction(means, {0, -1, 0});
+  EXPECT_NEAR(means.irradiance(cube, {0, -1, 0}).x, 1, 1e-12);
+  EXPECT_EQ(means.irradiance(cube, {0, 1, 0}).x, 0);
+  // Every format is as bright on average as the light: 1 / 4.
+  for (const std::string& name : probe_format_names()) {
+    const ProbeFormat format = probe_format(name);
+    const auto c = of_direction(format, kTilted);
+    double sum = 0;
+    for (std::size_t k = 0; k < probe_normals().normals.size(); ++k)
+      sum += probe_normals().weights[k] * format.irradiance(c, probe_normals().normals[k]).x;
+    const bool exact = name.starts_with("sh") || name == "zh3" || name == "ambient-cube" ||
+                       name == "dice" || name == "dice-srbf";
+    EXPECT_NEAR(sum / (4 * pi), 0.25, exact ? 3e-3 : 0.06) << name;
+  }
+}
+
+// Radiance 1 above a plane, 0 below: irradiance pi (1 + cos) / 2, which four harmonics have.
+TEST(ProbeFormats, TwoHalfSpheres) {
+  for (const glm::dvec3& up : {glm::dvec3(0, 1, 0), kTilted}) {
+    const auto radiance = [&](const glm::dvec3& w) { return glm::dot(w, up) > 0 ? 1.0 : 0.0; };
+    for (const std::string& name : probe_format_names()) {
+      const ProbeFormat format = probe_format(name);
+      if (name == "bins24" && up == kTilted) continue;  // integrals jump across both
+      const auto c = projected(format, radiance, up);
+      const bool exact = name == "sh2" || name == "sh3" || name == "zh3" || name == "sh3-windowed";
+      for (const glm::dvec3& n : probe_normals().normals) {
+        EXPECT_NEAR(format.irradiance(c, n).x, pi * (1 + glm::dot(n, up)) / 2,
+                    (exact ? 1e-3 : 0.2) * pi)
+            << name;
+      }
+    }
+  }
+}
+
+TEST(ProbeFormats, NegativeLightIsCounted) {
+  const auto share = [](const char* name) {
+    const ProbeFormat format = probe_format(name);
+    return negative_share(format, of_direction(format, kTilted));
+  };
+  EXPECT_NEAR(share("sh2"), 0.25, 0.03) << "cosines below -1/2";
+  EXPECT_GT(share("sh3"), 0);
+  for (const char* name : {"sh2-geomerics", "sh3-windowed", "ambient-cube-mean"})
+    EXPECT_EQ(share(name), 0) << name;
+}
+
+TEST(ProbeFormats, IntegralsOfHarmonics) {
+  const Matrix identity = of_harmonics(probe_format("sh3"));
+  const Matrix means = of_harmonics(probe_format("ambient-cube-mean"));
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j) EXPECT_NEAR(identity(i, j), i == j, 1e-6);
+  for (int face = 0; face < 6; ++face) {
+    EXPECT_NEAR(means(face, 0), std::sqrt(1 / (4 * pi)), 1e-6);
+    EXPECT_NEAR(means(face, 3), (face == 0 ? 1 : face == 1 ? -1 : 0) * 2 / 3.0 * 0.4886025, 1e-6);
+  }
+}
+
+TEST(Half, IsTheNearest) {
+  for (int bits = 0; bits < 0x7c00; ++bits) {
+    const auto half = static_cast<std::uint16_t>(bits);
+    const float value = number_of_half(half), next = number_of_half(half + 1);
+    ASSERT_EQ(half_of(value), half);
+    ASSERT_EQ(half_of(-value), half | 0x8000);
+    if (bits == 0x7bff) break;
+    const float middle = value + (next - value) / 2;
+    ASSERT_EQ(half_of(middle), bits % 2 == 0 ? half : half + 1) << "a tie goes to even";
+    ASSERT_EQ(half_of(std::nextafter(middle, value)), half);
+    ASSERT_EQ(half_of(std::nextafter(middle, next)), half + 1);
+  }
+  EXPECT_EQ(half_of(65519.99f), 0x7bff);
+  EXPECT_EQ(half_of(65520), 0x7c00);
+}
+
+/// Probes with the given light at each position.
+BakedProbes probes_of(const ProbeFormat& format, const ProbeGrid& grid,
+                      const std::function<Radiance(const glm::dvec3& position)>& light) {
+  BakedProbes baked{grid, {}, std::vector<std::uint8_t>(grid.size(), 1), true, 0};
+  for (std::size_t i = 0; i < grid.size(); ++i)
+    for (const glm::dvec3& c : projected(format, light(grid.position(i))))
+      baked.coefficients.emplace_back(c);
+  return baked;
+}
+
+const ProbeGrid kGrid{{3, 4, 2}, {-1, 0, 2}, {1, 3, 4}};
+
+/// Light that differs at each probe and along each axis.
+Radiance varied(const glm::dvec3& p) {
+  return [p](const glm::dvec3& w) {
+    return 3 + p.x + 0.5 * p.y + 0.25 * p.z + w.x + 0.5 * p.y * w.y - 0.25 * w.z + w.x * w.y;
+  };
+}
+
+TEST(Ktx2, BevyShowsTheProbes) {
+  const ProbeFormat format = probe_format("ambient-cube");
+  const BakedProbes baked = probes_of(format, kGrid, varied);
+  const double intensity = intensity_of(baked);
+  EXPECT_EQ(intensity, 1);
+  const ReadTexture read = read_ktx2(ktx2_bytes(texture_of(format, baked, intensity), "test"));
+  EXPECT_EQ(read.size, glm::ivec3(3, 8, 6));
+  const glm::dvec3 middle(0, 1.5, 3), scale = glm::dvec3(2, 3, 2) + kGrid.spacing();
+  for (const glm::dvec3& at :
+       {kGrid.lower, kGrid.upper, glm::dvec3(0.3, 1.1, 2.4), glm::dvec3(-5, 1, 3)}) {
+    for (const glm::dvec3& n : probe_normals().normals) {
+      const double wanted =
+          format.irradiance(interpolated(kGrid, baked.coefficients, 6, at), n).x / pi;
+      EXPECT_NEAR(bevy_light(read, middle, scale, at, n).x, wanted, 3e-3 * wanted);
+    }
+  }
+}
+
+TEST(Ktx2, ThreeShowsTheProbes) {
+  const ProbeFormat format = probe_format("sh3");
+  const BakedProbes baked = probes_of(format, kGrid, varied);
+  const ReadTexture read = read_ktx2(ktx2_bytes(texture_of(format, baked, 1), "test"));
+  EXPECT_EQ(read.size, glm::ivec3(3, 4, 7 * 4));
+  for (const glm::dvec3& at :
+       {kGrid.lower, kGrid.upper, glm::dvec3(0.3, 1.1, 2.4), glm::dvec3(-5, 1, 3)}) {
+    for (const glm::dvec3& n : probe_normals().normals) {
+      const glm::dvec3 lifted = at + 0.5 * kGrid.spacing() * n;
+      const double wanted =
+          format.irradiance(interpolated(kGrid, baked.coefficients, 9, lifted), n).x;
+      EXPECT_NEAR(three_light(read, kGrid.lower, kGrid.upper, at, n).x, wanted, 3e-3 * wanted);
+    }
+  }
+}
+
+TEST(Ktx2, LightBeyondHalvesIsScaled) {
+  const ProbeFormat format = probe_format("ambient-cube-mean");
+  for (const double light : {1.0, 1e6, 3e-5, 0.0}) {
+    const BakedProbes baked = probes_of(
+        format, kGrid, [&](const auto&) { return [&](const glm::dvec3&) { return light; }; });
+    const double intensity = intensity_of(baked);
+    EXPECT_EQ(std::log2(intensity), std::round(std::log2(intensity)));
+    EXPECT_EQ(intensity == 1, light < 1e-6 || light == 1);
+    const ReadTexture read = read_ktx2(ktx2_bytes(texture_of(format, baked, intensity), "test"));
+    for (const glm::vec4& texel : read.texels) {
+      EXPECT_NEAR(double{texel.x} * intensity, light, 1e-3 * light);
+      EXPECT_EQ(texel.w, 1);
+    }
+  }
+}
+
+TEST(Bake, InvalidProbesAreFilledFromTheirNeighbours) {
+  const ProbeFormat format = probe_format("ambient-cube-mean");
+  const ProbeGrid grid{{5, 1, 1}, {0, 0, 0}, {4, 1, 1}};
+  GridLight light;
+  light.count = 6;
+  for (int i = 0; i < 5; ++i) light.integrals.insert(light.integrals.end(), 6, glm::vec3(i));
+  const auto first = [&](bool dilate) {
+    const BakedProbes baked = encoded(format, light, 0, grid, {1, 0, 0, 0, 1}, dilate);
+    std::vector<float> red;
+    for (std::size_t i = 0; i < 5; ++i) red.push_back(baked.coefficients[6 * i].x);
+    return red;
+  };
+  EXPECT_THAT(first(true), ::testing::ElementsAre(0, 0, 2, 4, 4));
+  EXPECT_THAT(first(false), ::testing::ElementsAre(0, 1, 2, 3, 4));
+}
+
+// A block inside a room: probes in it see its faces' backs.
+TEST(Bake, ProbesInsideWallsAreInvalid) {
+  SceneData scene;
+  scene.path = "room";
+  add_grey(scene, 0.5f);
+  add_box(scene, glm::vec3(0), 4, 0);
+  for (int axis = 0; axis < 3; ++axis) {  // a block, its faces outwards
+    glm::vec3 low(1), u(0), v(0), across(0);
+    u[(axis + 1) % 3] = v[(axis + 2) % 3] = across[axis] = 1;
+    add_quad(scene, low, v, u, 0);
+    add_quad(scene, low + across, u, v, 0);
+  }
+  PathTracerOptions options;
+  options.samples = 1;
+  pathtracer::PointTracer tracer(scene, {}, options);
+  const std::vector<glm::dvec3> positions{
+      {1.5, 1.5, 1.5}, {1.1, 1.9, 1.5}, {3, 3, 3}, {0.9, 1.5, 1.5}, {-1, 2, 2}};
+  EXPECT_THAT(validity(tracer, positions), ::testing::ElementsAre(0, 0, 1, 1, 0));
+}
+
+/// A source of numbered probes that is interrupted before block `end`.
+class Counted : public ProbeSource {
+ public:
+  explicit Counted(std::size_t end) : end_(end) { blocks_ = {{0, 2}, {1}, {3}}; }
+  BlockLight light(std::size_t block) override {
+    if (block == end_) throw Interrupted("test");
+    ++calls;
+    BlockLight light;
+    for (const std::size_t probe : blocks_[block])
+      light.integrals.emplace_back(static_cast<float>(probe));
+    light.samples = 7, light.noise = 0.5f;
+    return light;
+  }
+  int calls = 0;
+
+ private:
+  std::size_t end_;
+};
+
+TEST(Bake, AnInterruptedBakeGoesOn) {
+  const TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+  const ProbeGrid grid{{4, 1, 1}, {0, 0, 0}, {3, 1, 1}};
+  const auto bake = [&](Counted& source, const char* key = "key") {
+    BlockCache cache(folder.path(), key);
+    return light_of(source, grid, 1, cache, [](std::size_t) {});
+  };
+  Counted stopped(2), resumed(9), other(9), again(9);
+  EXPECT_THROW(bake(stopped), Interrupted);
+  const GridLight all = bake(resumed);
+  EXPECT_EQ(resumed.calls, 1) << "two blocks were kept";
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(all.integrals[i].x, i);
+  EXPECT_EQ(all.samples, 7u);
+  EXPECT_NEAR(all.noise, 0.5, 1e-6);
+  bake(other, "other");
+  EXPECT_EQ(other.calls, 3);
+  std::ofstream(folder / "bakes/key-1.block", std::ios::app) << "x";
+  bake(again);
+  EXPECT_EQ(again.calls, 1) << "a damaged block is computed again";
+  BlockCache(folder.path(), "key").clear(3);
+  EXPECT_FALSE(std::filesystem::exists(folder / "bakes/key-0.block"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "bakes/other-0.block"));
+}
+
+// Probes of a sweep have the irradiance of the frame's volumes.
+TEST(Bake, SweptProbesHaveTheLightOfTheVolumes) {
+  const SceneData scene = load_scene(kCornell);
+  RenderOptions options = resolve_options({{"grid", "16"},
+                                           {"rsm-size", "64"},
+                                           {"near", "off"},
+                                           {"gather-offset", "0"},
+                                           {"cascades", "1"}},
+                                          scene);
+  options.cascade_size = 1.6;
+  const ProbeGrid grid{{2, 2, 2}, {0.1, 0.1, 0.05}, {0.45, 0.5, 0.2}};
+  const ProbeFormat format = probe_format("sh3");
+  Session& session = test_session();
+  const auto source = swept_light(session, scene, scene.camera(""), options, grid, {format});
+  ASSERT_EQ(source->blocks().size(), 1u);
+  const BlockLight light = source->light(0);
+  ASSERT_EQ(light.integrals.size(), 8 * 9u);
+  Frame frame(session, scene, options);
+  SceneCamera camera = scene.camera("");
+  camera.eye = glm::vec3((grid.lower + grid.upper) / 2.0);
+  frame.render(camera);
+  int lit = 0;
+  for (std::size_t probe = 0; probe < 8; ++probe) {
+    std::vector<glm::dvec3> c;
+    for (std::size_t i = 0; i < 9; ++i) c.emplace_back(light.integrals[9 * probe + i]);
+    for (const glm::dvec3& n : {glm::dvec3(0, 1, 0), {1, 0, 0}, {0, -1, 0}, {0, 0, -1}}) {
+      const auto e = frame.irradiance_at({glm::vec4(grid.position(probe), 0)}, {glm::vec4(n, 0)});
+      const glm::dvec3 found = glm::max(format.irradiance(c, n), 0.0);
+      EXPECT_NEAR(found.x, e[0].x, 2e-3 * (0.1 + double{e[0].x}));
+      lit += e[0].x > 0.05;
+    }
+  }
+  EXPECT_GT(lit, 8);
+  EXPECT_THAT(error_of(ExitCode::usage,
+                       [&] {
+                         RenderOptions tiny = options;
+                         tiny.cascade_size = 0.01;
+                         swept_light(session, scene, scene.camera(""), tiny, grid, {format});
+                       }),
+              AllOf(HasSubstr("frames of cascades of 0.01 m"), HasSubstr("4096")));
+}
+
+struct BakeCommand : ::testing::Test {
+  TemporaryFolder folder;
+  Outcome bake(const std::string& arguments) {
+    return run_here("bake " + kCornell + " " + arguments, folder.path());
+  }
+  nlohmann::json description(const std::string& file) {
+    return nlohmann::json::parse(test::read_file(folder / (file + ".json")));
+  }
+};
+
+// Files of both engines show the truth at points in the air of the Cornell box.
+TEST_F(BakeCommand, FilesShowTheTruth) {
+  const std::string traced =
+      "--from pathtrace --spp 64 --probes 7,7,7 --bounds 0.03,0.03,0.03,0.52,0.52,0.52 ";
+  for (const char* file : {"a.ktx2 --format ambient-cube", "b.ktx2 --format sh3"}) {
+    const Outcome outcome = bake(traced + "-o " + file);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  const nlohmann::json cube = description("a.ktx2"), atlas = description("b.ktx2");
+  EXPECT_EQ(cube["intensity"], 1);
+  EXPECT_GT(cube["invalid"], 10);
+  EXPECT_EQ(cube["invalid"], atlas["invalid"]);
+  EXPECT_EQ(cube["spp"], 64);
+  const ReadTexture bevy = read_ktx2(test::read_file(folder / "a.ktx2")),
+                    three = read_ktx2(test::read_file(folder / "b.ktx2"));
+  const auto vector_of = [](const nlohmann::json& v) {
+    return glm::dvec3(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+  };
+  const ProbeGrid grid{{7, 7, 7}, glm::dvec3(0.03), glm::dvec3(0.52)};
+  const SceneData scene = load_scene(kCornell);
+  PathTracerOptions options;
+  options.samples = 64;
+  pathtracer::PointTracer tracer(scene, scene.lights_for(scene.camera("")), options);
+  double noise = 0, squares[2] = {}, all = 0;
+  const CheckPoints points = air_points(tracer, grid, 100, false, noise);
+  ASSERT_EQ(points.points.size(), 600u);
+  for (std::size_t i = 0; i < points.points.size(); ++i) {
+    const auto& [position, n] = points.points[i];
+    const glm::dvec3 truth = points.truth[i];
+    const glm::dvec3 found[] = {
+        pi * bevy_light(bevy, vector_of(cube["bevy"]["translation"]),
+                        vector_of(cube["bevy"]["scale"]), position, n),
+        three_light(three, vector_of(atlas["bounds"][0]), vector_of(atlas["bounds"][1]),
+                    position - 0.5 * grid.spacing() * n, n)};
+    for (int k = 0; k < 2; ++k) squares[k] += glm::dot(found[k] - truth, found[k] - truth);
+    all += glm::dot(truth, truth);
+  }
+  const Outcome checked = bake(traced + "--check 100");
+  ASSERT_EQ(checked.exit_code, 0) << checked.err;
+  std::map<std::string, double> printed;  // error in the air [%]
+  std::istringstream rows(checked.out);
+  for (std::string row; std::getline(rows, row);) {
+    std::istringstream words(row);
+    std::string name, number;
+    words >> name;
+    for (int column = 0; column < 5; ++column) words >> number;
+    printed[name] = std::atof(number.c_str());
+  }
+  for (const std::string& name : probe_format_names()) EXPECT_GT(printed[name], 5) << name;
+  EXPECT_NEAR(100 * std::sqrt(squares[0] / all), printed["ambient-cube"], 0.1);
+  EXPECT_NEAR(100 * std::sqrt(squares[1] / all), printed["sh3"], 0.1);
+  EXPECT_LT(printed["sh3"], 40);
+}
+
+TEST_F(BakeCommand, OfASweepInAnArchive) {
+  const std::string small =
+      "--grid 16 --rsm-size 64 --cascades 1 --cascade-size 1.6 --gather-offset 0 ";
+  const Outcome outcome = bake(small + "--probes 3,4,5 --format zh3 --no-dilate -o a.npz");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = description("a.npz");
+  EXPECT_EQ(json["probes"], nlohmann::json({3, 4, 5}));
+  EXPECT_EQ(json["format"], "zh3");
+  EXPECT_EQ(json["dilated"], false);
+  const Outcome read = run(
+      "/usr/bin/python3 -c \"import numpy as n; a = n.load('" + (folder / "a.npz").string() +
+      "'); print(*(f'{k}:{a[k].shape}' for k in a), a['format'], (a['coefficients'] > 0).any(), "
+      "n.allclose(a['position'][4, 3, 2], a['bounds'][1]))\"");
+  if (read.exit_code != 0 && read.err.find("No module") != std::string::npos) GTEST_SKIP();
+  EXPECT_EQ(read.out,
+            "position:(5, 4, 3, 3) coefficients:(5, 4, 3, 5, 3) validity:(5, 4, 3) bounds:(2, 3) "
+            "spacing:(3,) format:() meaning:() zh3 True True\n");
+}
+
+TEST_F(BakeCommand, BadInputIsNamedBeforeTheWork) {
+  const std::pair<const char*, const char*> bad[] = {
+      {"-o a.png", ".ktx2"},
+      {"", "neither --output nor --check"},
+      {"-o a.npz --format sh7", "'sh7'"},
+      {"-o a.npz --bounds 0,0,0,1,1", "six numbers"},
+      {"-o a.npz --bounds 0,0,0,1,1,1,1", "six numbers"},
+      {"-o a.npz --bounds 0,0,0,1,-1,1", "found 0 to -1 along y"},
+      {"-o a.npz --bounds 0,0,0,0,1,1", "found 0 to 0 along x"},
+      {"-o a.npz --bounds 0,0,nan,0,1,1", "six numbers"},
+      {"-o a.npz --spacing 0", "--spacing"},
+      {"-o a.npz --spacing nan", "--spacing"},
+      {"-o a.npz --spacing 1e-6", "allowed: at most 4194304 probes"},
+      {"-o a.npz --probes 1000,1000,1000", "1000 x 1000 x 1000"},
+      {"-o a.npz --probes 0,1,1", "1 or more"},
+      {"-o a.npz --probes 4,4", "three numbers"},
+      {"-o a.npz --probes 4,4,4 --spacing 1", "one of them"},
+      {"-o a.ktx2 --probes 2,1025,2", "a texture of 2 x 2050 x 6"},
+      {"-o a.ktx2 --probes 2,2,1 --format sh3", "found 1 along z"},
+      {"-o a.ktx2 --format zh3", "for a .ktx2"},
+      {"-o a.npz --transport sampled", "sweep"},
+      {"-o a.npz --from pathtrace --grid 16", "--grid has no effect"},
+      {"-o a.npz --spp 4", "--spp has no effect with --from sweep"}};
+  for (const auto& [arguments, message] : bad) {
+    const Outcome outcome = bake(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(message)) << arguments;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_F(BakeCommand, SceneWithoutLightIsZeros) {
+  const Outcome outcome =
+      bake("--from pathtrace --spp 1 --probes 2,2,2 --bounds 0,0,50,1,1,51 -o a.ktx2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("no light reaches a probe"));
+}
+
+}  // namespace
+}  // namespace clpv::bake_test

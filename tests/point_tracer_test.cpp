@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// Path-traced light at points: closed forms, and the pixels of an image.
+#include "pathtracer/point_tracer.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "basis/spherical_harmonics.hpp"
+#include "clpv/pathtrace.hpp"
+#include "pipeline/raster/view.hpp"
+#include "reference/view.hpp"
+#include "scene/load.hpp"
+#include "scene/sky.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/traced_scenes.hpp"
+
+namespace clpv::point_tracer_test {
+namespace {
+
+using namespace test;
+using pathtracer::PointLight;
+using pathtracer::PointTracer;
+using pathtracer::TracedPoints;
+using std::numbers::pi;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+PathTracerOptions paths(std::uint32_t samples, int bounces = 1) {
+  PathTracerOptions options;
+  options.samples = samples, options.bounces = bounces;
+  return options;
+}
+
+PointLight light_at(const SceneData& scene, const SurfacePoint& point,
+                    const PathTracerOptions& options) {
+  return PointTracer(scene, scene.lights, options).irradiance(std::span(&point, 1)).points[0];
+}
+
+/// Harmonics of bands 0 to 2.
+pathtracer::Moments nine() {
+  static const SphericalHarmonics kBasis(3);
+  return {9, [](const glm::dvec3& w, std::span<double> g) { kBasis.evaluate(w, g); }};
+}
+
+/// Walls of a unit cube, seen from inside, that emit E and reflect a.
+SceneData furnace(float albedo, float emitted) {
+  SceneData scene;
+  scene.path = "furnace";
+  add_grey(scene, albedo);
+  for (float& e : scene.materials[0].emissive) e = emitted;
+  add_box(scene, glm::vec3(0), 1, 0);
+  return scene;
+}
+
+// Radiance E / (1 - a) from everywhere.
+TEST(PointTracer, FurnaceHasOneRadiance) {
+  const SceneData scene = furnace(0.5f, 2);
+  const double radiance = 4;
+  const PathTracerOptions all = paths(4096, PathTracerOptions::kAllBounces);
+  for (const SurfacePoint& point :
+       {SurfacePoint{{0.3, 0.4, 0.6}, glm::normalize(glm::dvec3(1, 2, -1))},
+        {{0.3, 0, 0.6}, {0, 1, 0}}}) {
+    const PointLight light = light_at(scene, point, all);
+    EXPECT_EQ(light.direct, glm::dvec3(0));
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(light.indirect[c], pi * radiance, 0.01 * pi * radiance);
+      EXPECT_GT(light.error[c], 0);
+      EXPECT_LT(light.error[c], 0.01 * pi * radiance);
+    }
+  }
+  const glm::dvec3 middle(0.5);
+  PointTracer tracer(scene, {}, all);
+  const pathtracer::TracedProbes probe = tracer.probes(std::span(&middle, 1), nine());
+  EXPECT_NEAR(probe.indirect[0].x, std::sqrt(4 * pi) * radiance, 0.01 * 3.5449 * radiance);
+  for (std::size_t i = 1; i < 9; ++i) EXPECT_NEAR(probe.indirect[i].x, 0, 0.02 * 3.5449 * radiance);
+}
+
+// A sun straight down on a large grey floor: a E from all directions below.
+TEST(PointTracer, SunlitPatch) {
+  SceneData scene = floor_scene(0.5f);
+  scene.lights = {sun({0, -1, 0}, 2)};
+  const PointLight down = light_at(scene, {{0, 0.01, 0}, {0, -1, 0}}, paths(64));
+  EXPECT_EQ(down.direct, glm::dvec3(0));
+  EXPECT_NEAR(down.indirect.x, 0.5 * 2, 1e-4);
+  const PointLight up =
+      light_at(scene, {{0, 0, 0}, glm::normalize(glm::dvec3(0, 1, 1))}, paths(64));
+  EXPECT_NEAR(up.direct.x, 2 * std::sqrt(0.5), 1e-5);
+  EXPECT_EQ(up.indirect, glm::dvec3(0)) << "a lone floor sees no light";
+  const glm::dvec3 position(0, 0.01, 0);
+  PointTracer tracer(scene, scene.lights, paths(1024));
+  const auto direct = tracer.direct(std::span(&position, 1), nine());
+  EXPECT_NEAR(direct[0].x, 2 * std::sqrt(1 / (4 * pi)), 1e-6);
+  EXPECT_NEAR(direct[1].x, 2 * std::sqrt(3 / (4 * pi)), 1e-6) << "y";
+  const auto probe = tracer.probes(std::span(&position, 1), nine());
+  const double below = 0.5 * 2 / pi;  // radiance of a half-space
+  EXPECT_NEAR(probe.indirect[0].x, below * std::sqrt(pi), 0.01 * below * std::sqrt(pi));
+  EXPECT_NEAR(probe.indirect[1].x, -below * pi * std::sqrt(3 / (4 * pi)), 0.01 * below * pi);
+}
+
+// Form factor of a rectangle a x b across from a point at distance 1 (Howell, B-4, four times).
+TEST(PointTracer, SkyThroughASlit) {
+  constexpr float kA = 0.1f, kB = 2, kFar = 400;
+  SceneData scene;
+  scene.path = "slit";
+  const unsigned black = add_grey(scene, 0);
+  const auto ceiling = [&](float x0, float x1, float z0, float z1) {
+    add_quad(scene, {x0, 1, z0}, {x1 - x0, 0, 0}, {0, 0, z1 - z0}, black);
+  };
+  ceiling(-kFar, -kA / 2, -kFar, kFar);
+  ceiling(kA / 2, kFar, -kFar, kFar);
+  ceiling(-kA / 2, kA / 2, -kFar, -kB / 2);
+  ceiling(-kA / 2, kA / 2, kB / 2, kFar);
+  scene.sky = std::make_shared<const Sky>(constant_sky(glm::vec3(3)));
+  const double a = kA / 2, b = kB / 2, ra = std::sqrt(1 + a * a), rb = std::sqrt(1 + b * b);
+  const double factor = 4 * (a / ra * std::atan(b / ra) + b / rb * std::atan(a / rb)) / (2 * pi);
+  const PointLight light = light_at(scene, {{0, 0, 0}, {0, 1, 0}}, paths(8192));
+  EXPECT_NEAR(light.indirect.x, 3 * pi * factor, 0.02 * 3 * pi * factor);
+  EXPECT_NEAR(light.indirect.x, 3 * pi * factor, 5 * light.error.x + 1e-3 * 3 * pi * factor);
+}
+
+// Points at the positions and normals of an image's pixels have the image's light.
+TEST(PointTracer, EqualsTheImageAtItsPixels) {
+  const SceneData scene = load_scene(kCornell);
+  const SceneCamera& camera = scene.camera("");
+  const ClpvView view = camera_view(camera, 16, 9);
+  const TracedImage image =
+      pathtracer::trace_paths(scene, scene.lights_for(camera), view, paths(1024));
+  std::vector<SurfacePoint> points;
+  std::vector<std::size_t> pixels;
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    if (image.depth[i] <= 0) continue;
+    pixels.push_back(i);
+    points.push_back({reference::surface_position(view, i, double{image.depth[i]}),
+                      glm::dvec3(image.normal[i])});
+  }
+  ASSERT_GT(points.size(), 60u);
+  PointTracer tracer(scene, scene.lights_for(camera), paths(1024));
+  const TracedPoints traced = tracer.irradiance(points);
+  EXPECT_LT(traced.noise, 0.05);
+  double squares = 0, all = 0;
+  int shadows = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const glm::dvec3 wanted(image.irradiance[pixels[i]]),
+        off = traced.points[i].indirect - wanted,
+        direct = traced.points[i].direct - glm::dvec3(image.direct[pixels[i]]);
+    squares += glm::dot(off, off), all += glm::dot(wanted, wanted);
+    shadows += glm::length(direct) > 1e-4 * (1 + glm::length(traced.points[i].direct));
+  }
+  EXPECT_LT(std::sqrt(squares / all), 0.05);
+  EXPECT_LE(shadows, 1) << "at an edge of a shadow";
+}
+
+TEST(PointTracer, ErrorsAreTheDeviationsOfOtherSeeds) {
+  const SceneData scene = furnace(0.8f, 1);
+  const SurfacePoint point{{0.1, 0.2, 0.3}, {0, 1, 0}};
+  constexpr int kRuns = 40;
+  double sum = 0, squares = 0, told = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    PathTracerOptions options = paths(64, PathTracerOptions::kAllBounces);
+    options.seed = static_cast<std::uint64_t>(run);
+    const PointLight light = light_at(scene, point, options);
+    sum += light.indirect.x, squares += light.indirect.x * light.indirect.x;
+    told += light.error.x * light.error.x / kRuns;
+  }
+  const double variance = (squares - sum * sum / kRuns) / (kRuns - 1);
+  EXPECT_NEAR(std::sqrt(told / variance), 1, 0.35);
+}
+
+// Tiles, threads and the number of points do not change a point's paths.
+TEST(PointTracer, OneProbeIsTheSameAmongOthers) {
+  const SceneData scene = furnace(0.5f, 1);
+  const std::vector<glm::dvec3> positions{{0.2, 0.2, 0.2}, {0.7, 0.5, 0.3}, {0.5, 0.9, 0.5}};
+  PathTracerOptions options = paths(64);
+  options.threads = 2;
+  PointTracer tracer(scene, {}, options);
+  const auto all = tracer.probes(positions, nine());
+  const auto last = tracer.probes(std::span(positions).last(1), nine(), 2);
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(all.indirect[18 + i], last.indirect[i]);
+  const auto walls = tracer.surroundings(positions);
+  EXPECT_EQ(walls[0].backs, 0);
+  EXPECT_EQ(walls[0].open, 0);
+  const glm::dvec3 outside(3, 0.5, 0.5);
+  const auto behind = tracer.surroundings(std::span(&outside, 1))[0];
+  EXPECT_NEAR(behind.backs + behind.open, 1, 1e-9);
+  EXPECT_GT(behind.backs, 0);
+}
+
+TEST(PathtracePoints, OfTheLibraryAreThoseOfTheCommand) {
+  const TemporaryFolder folder;
+  folder.write("p.csv", "0.28,0.27,0.1,0,0,2\n0.28,0.5,0.3,0,-1,0\n");
+  const auto query = [&](const std::string& more) {
+    return run_here("query " + kCornell + " --points p.csv " + more, folder.path());
+  };
+  const Outcome outcome = query("--truth --spp 64 --basis sh3");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr(",error_blue,c0_red,"), HasSubstr(",c8_blue\n0.28,0.27,0.1,0,0,1,")));
+  const std::array<float, 3> positions[] = {{0.28f, 0.27f, 0.1f}, {0.28f, 0.5f, 0.3f}},
+                             normals[] = {{0, 0, 2}, {0, -1, 0}};
+  TraceOptions options;
+  options.samples = 64;
+  const Scene scene(kCornell);
+  const PointLights lights = pathtrace_points(scene, positions, normals, options);
+  ASSERT_EQ(lights.indirect.size(), 2u);
+  const double red = std::atof(outcome.out.c_str() + outcome.out.find("0,-1,0,") + 7);
+  EXPECT_NEAR(lights.indirect[1][0], red, 1e-3 * red);
+  EXPECT_GT(red, 0.01);
+  EXPECT_EQ(lights.samples, 64u);
+  EXPECT_THAT(
+      error_of(ExitCode::usage, [&] { pathtrace_points(scene, positions, std::span(normals, 1)); }),
+      HasSubstr("2 positions and 1 normals"));
+  EXPECT_THAT(query("--noise 0.1").err, HasSubstr("--noise has no effect without --truth"));
+  EXPECT_THAT(query("--truth --grid 16").err, HasSubstr("--grid has no effect with --truth"));
+  EXPECT_EQ(query("--truth --grid 16").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace clpv::point_tracer_test
