@@ -147,7 +147,7 @@ std::map<std::string, Value> by_name(std::vector<Value>& values, const std::stri
   for (Value& value : values) {
     const int number = ++counts[value.name];
     if (number == 2)
-      spdlog::warn("{}: several rows '{}': compared in their order", file, value.name);
+      log_warning("{}: several rows '{}': compared in their order", file, value.name);
     if (number > 1) value.name += fmt::format(" ({})", number);
     map[value.name] = value;
   }

@@ -2,13 +2,13 @@
 #include "bake/bake.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <cstring>
 
 #include "support/fingerprint.hpp"
 #include "support/interrupt.hpp"
+#include "support/log.hpp"
 
 namespace clpv::bake {
 namespace {
@@ -94,7 +94,7 @@ bool BlockCache::write(std::size_t block, const BlockLight& light) {
   const std::string problem =
       folder_->write(name_of(block), Fingerprint().add(bytes).hex() + bytes);
   if (problem.empty()) return true;
-  spdlog::warn("{}: an interrupted bake will begin again", problem);
+  log_warning("{}: an interrupted bake will begin again", problem);
   folder_.reset();
   return false;
 }

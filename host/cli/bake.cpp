@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <memory>
@@ -136,7 +135,7 @@ void check(const Options& options, const SceneData& scene, const SceneCamera& ca
   }
   print_text(text);
   const glm::dvec3 spacing = grid.spacing();
-  spdlog::info(
+  log_info(
       "{} x {} x {} probes, {:.3g} x {:.3g} x {:.3g} m apart; {} points of surfaces and {} in the "
       "air, noise {:.4f} and {:.4f}",
       grid.count.x, grid.count.y, grid.count.z, spacing.x, spacing.y, spacing.z,
@@ -157,11 +156,11 @@ void bake_file(const Options& options, const SceneData& scene, const SceneCamera
   write_probes(options, scene, format, baked, all);
   cache.clear(light.source->blocks().size());
   const auto invalid = std::ranges::count(baked.valid, 0);
-  spdlog::info("{} x {} x {} probes, {} of them inside walls{}; {:.1f} % of normals negative",
-               grid.count.x, grid.count.y, grid.count.z, invalid,
-               invalid > 0 && baked.filled ? ", filled" : "", 100 * baked.negative);
+  log_info("{} x {} x {} probes, {} of them inside walls{}; {:.1f} % of normals negative",
+           grid.count.x, grid.count.y, grid.count.z, invalid,
+           invalid > 0 && baked.filled ? ", filled" : "", 100 * baked.negative);
   if (std::ranges::all_of(baked.coefficients, [](const glm::vec3& c) { return c == glm::vec3(0); }))
-    spdlog::warn("{}: no light reaches a probe; all coefficients are 0", scene.path);
+    log_warning("{}: no light reaches a probe; all coefficients are 0", scene.path);
 }
 
 void reject_without_effect(const Options& options) {
@@ -191,7 +190,7 @@ void run(const Options& options, const Shared& shared) {
   moving.pose(options.time);
   check_outputs(outputs);
   const SceneData& scene = moving.scene();
-  for (const std::string& note : scene.notes) spdlog::info("{}", note);
+  for (const std::string& note : scene.notes) log_info("{}", note);
   const SceneCamera& camera = scene.camera(options.request.camera);
   if (options.check > 0) {
     check(options, scene, camera, shared);

@@ -136,7 +136,7 @@ std::string truth_of(const Options& options, const std::vector<SurfacePoint>& po
     for (int k = 0; basis && k < basis->size(); ++k)
       append(text, projected.indirect[i * static_cast<std::size_t>(basis->size()) + k]);
   }
-  spdlog::info("{} paths per point, noise {:.4f}", traced.samples, traced.noise);
+  log_info("{} paths per point, noise {:.4f}", traced.samples, traced.noise);
   return text + "\n";
 }
 

@@ -132,7 +132,7 @@ std::optional<RenderOptions> options_for(const PageVariant& variant, const Optio
     return resolved;
   } catch (const Error& error) {
     if (error.code() != ExitCode::usage || scene.sky == nullptr) throw;
-    spdlog::warn("{}: not on the page by {}: {}", scene.path, variant.title, error.what());
+    log_warning("{}: not on the page by {}: {}", scene.path, variant.title, error.what());
     return std::nullopt;
   }
 }

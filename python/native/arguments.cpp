@@ -23,7 +23,8 @@ void check_call(const std::string& function, const std::vector<Parameter>& param
   const auto positional =
       static_cast<std::size_t>(std::ranges::count(parameters, false, &Parameter::keyword));
   if (args.size() > positional) {
-    const std::size_t self = !parameters.empty() && parameters[0].name == std::string_view("self") ? 1 : 0;
+    const std::size_t self =
+        !parameters.empty() && parameters[0].name == std::string_view("self") ? 1 : 0;
     throw Error(ExitCode::usage, "{}: found {} arguments by position, allowed: at most {}",
                 function, args.size() - self, positional - self);
   }
