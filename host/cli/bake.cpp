@@ -17,6 +17,7 @@
 #include "bake/probe_check.hpp"
 #include "cli/bake_parts.hpp"
 #include "cli/commands.hpp"
+#include "pipeline/frame/frame_keys.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
@@ -67,16 +68,18 @@ Light light_from(const Options& options, const SceneData& scene, const SceneCame
 
 /// Everything that the light of a bake depends on.
 std::string key_of(const Options& options, const SceneData& scene, const SceneCamera& camera,
-                   const ProbeGrid& grid) {
+                   const ProbeGrid& grid, const Shared& shared) {
   const pathtracer::PathTracerOptions paths = options.tracing.resolved();
   Fingerprint print;
   print.add(program_fingerprint()).add(scene_fingerprint(scene)).add(options.format);
   for (const SceneLight& light : scene.lights_for(camera)) print.add(std::vector{light.data});
   print.add(std::vector{grid.lower, grid.upper}).add(std::vector{grid.count});
   print.add(name_of(options.from)).add(paths.bounces);
-  if (options.from == BakeSource::pathtrace)
+  if (options.from == BakeSource::pathtrace) {
     print.add(paths.seed).add(paths.samples).add(paths.samples > 0 ? 0.0 : paths.noise);
-  for (const auto& [name, value] : options.request.frame) print.add(name).add(value);
+  } else {
+    print.add(pixels_key(choose_device(shared.device), frame_options(options, scene)));
+  }
   return print.hex();
 }
 
@@ -149,7 +152,7 @@ void bake_file(const Options& options, const SceneData& scene, const SceneCamera
   const ProbeGrid grid = grid_of(options, scene, std::max(format.size, format.moments.count));
   if (suffix_of(options) == ".ktx2") texture_size(format, grid);  // throws
   Light light = light_from(options, scene, camera, grid, formats, shared);
-  BlockCache cache(user_cache_folder(), key_of(options, scene, camera, grid));
+  BlockCache cache(user_cache_folder(), key_of(options, scene, camera, grid, shared));
   const GridLight all = computed(options, light, grid, formats, cache);
   const BakedProbes baked = encoded(
       format, all, 0, grid, validity(*light.tracer, positions_of(grid)), !options.no_dilate);

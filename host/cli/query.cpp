@@ -33,7 +33,7 @@ struct Options {
 };
 
 constexpr std::size_t kMaxTraced = std::size_t{1} << 20;       // points; 240 bytes each
-constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 25;  // of all coefficients of --basis
+constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 22;  // of --basis, all points
 
 std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
   std::vector<glm::vec4> positions, normals;
