@@ -89,11 +89,11 @@ double exact_tolerance(const Basis& basis) {
   return 2e-7 * (10 + std::sqrt(basis.condition()));
 }
 
-class EachBasis : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Basis, EachBasis, ::testing::ValuesIn(basis_names()),
+class BasisKernels : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Basis, BasisKernels, ::testing::ValuesIn(basis_names()),
                          [](const auto& info) { return info.param; });
 
-TEST_P(EachBasis, FunctionsIntegralsAndLobesAreThoseInDouble) {
+TEST_P(BasisKernels, FunctionsIntegralsAndLobesAreThoseInDouble) {
   const auto basis = make_basis(GetParam());
   expect_equal(*basis, {}, exact_tolerance(*basis));
 }
