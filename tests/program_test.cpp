@@ -105,7 +105,7 @@ TEST(ProgramErrors, BuildFailureShowsLogOptionsAndTheLine) {
       "#include \"broken.h\"\n__kernel void k(__global int* a) { a[0] = half_done(CLPV_X); }\n");
   Session session(choose_device());
   const std::string message = test::error_of(ExitCode::run_time, [&] {
-    const Kernel kernel(session, {"broken.cl", Literals().integer("CLPV_X", 1), {}}, "k");
+    const Kernel kernel(session, {"broken.cl", Literals().integer("CLPV_X", 1)}, "k");
     session.build_described();
   });
   for (const std::string& words :

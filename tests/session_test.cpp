@@ -90,7 +90,7 @@ TEST(Kernel, MissingArgumentsAreReported) {
 
 TEST(Kernel, ADescribedProgramIsBuiltOnce) {
   Session session(choose_device());
-  { const Kernel gone(session, {"sizes.cl", Literals().flag("CLPV_GONE", true), {}}, "sizes"); }
+  { const Kernel gone(session, {"sizes.cl", Literals().flag("CLPV_GONE", true)}, "sizes"); }
   session.build_described();
   EXPECT_EQ(session.build_ms(), 0) << "nobody holds it";
   const Kernel kernel(session, {"sizes.cl"}, "sizes");

@@ -3,8 +3,8 @@
 //
 //   F = Omega_f I(w_f) = sum_i c_i Omega_f b_i(w_f)
 //
-// From the host (host/pipeline/steps/propagate.cpp): CLPV_FACE_FLUX, half of Omega_f b_i(w_f) for
-// each face and function of the basis.
+// From the host (host/pipeline/steps/propagate.cpp): CLPV_FACE_FLUX, Omega_f b_i(w_f) for each face
+// and function of the basis.
 #pragma once
 
 #include "steps/faces.h"
@@ -15,25 +15,24 @@ typedef struct {
   realW face[CLPV_SEEN_FACES];
 } SeenFaces;
 
-// Half of Omega_f I(w_f) [W] for the five faces that a cell sees of the neighbour along axis k. One
+// Omega_f I(w_f) [W] for the five faces that a cell sees of the neighbour along axis k. One
 // function at a time, so that five sums grow side by side.
-CLPV_INLINE SeenFaces half_fluxes_to(const int k, const Coefficients from) {
-  SeenFaces half_flux;
+CLPV_INLINE SeenFaces fluxes_to(const int k, const Coefficients from) {
+  SeenFaces flux;
 #pragma unroll
-  for (int f = 0; f < CLPV_SEEN_FACES; ++f) half_flux.face[f] = 0.0f;
+  for (int f = 0; f < CLPV_SEEN_FACES; ++f) flux.face[f] = 0.0f;
 #pragma unroll
   for (int i = 0; i < CLPV_N; ++i) {
 #pragma unroll
     for (int f = 0; f < CLPV_SEEN_FACES; ++f) {
       const float share = face_flux[CLPV_SEEN_FACES * k + f][i];
-      if (share != 0.0f) half_flux.face[f] = fma((realW)(share), from.c[i], half_flux.face[f]);
+      if (share != 0.0f) flux.face[f] = fma((realW)(share), from.c[i], flux.face[f]);
     }
   }
-  return half_flux;
+  return flux;
 }
 
-// max(0, 2 h) without a comparison, which would trigger LLVM's SLP vectoriser and prevent that of
-// work-items.
-CLPV_INLINE realW positive_flux(const realW half_flux) {
-  return half_flux + fabs(half_flux);
+// max(0, F)
+CLPV_INLINE realW positive_flux(const realW flux) {
+  return flux > ZERO ? flux : ZERO;
 }

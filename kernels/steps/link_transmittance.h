@@ -11,7 +11,7 @@
 //
 // From the host (host/pipeline/steps/transmittance.cpp): CLPV_LINKS, and for each link
 // CLPV_LINK_SIDES, the side of the cell that it passes (-1, 0 or 1 along each axis), and
-// CLPV_LINK_BLOCKED, half the weights of the blockers' numbers, divided by the number of corners.
+// CLPV_LINK_BLOCKED, the weights of the blockers' numbers, divided by the number of corners.
 #pragma once
 
 #include "volume/geometry.h"
@@ -36,8 +36,7 @@ CLPV_INLINE realW sum_corners(const Coefficients* corners, const int link, const
                    pick_side(link_sides[3 * link + 1], edges[2], edges[3]));
 }
 
-// 1 - clamp(2 h, 0, 1) is 1/2 + |1/2 - h| - |h|: comparisons would trigger LLVM's SLP vectoriser,
-// which prevents vectorisation of work-items on CPUs.
+// T of every link into W cells.
 CLPV_INLINE Links find_transmittance(CLPV_VOLUME_IN blockers, const int x, const int y,
                                      const int z) {
   Coefficients corners[8];
@@ -47,13 +46,13 @@ CLPV_INLINE Links find_transmittance(CLPV_VOLUME_IN blockers, const int x, const
   Links links;
 #pragma unroll
   for (int link = 0; link < CLPV_LINKS; ++link) {
-    realW half_blocked = 0.0f;
+    realW blocked = 0.0f;
 #pragma unroll
     for (int i = 0; i < CLPV_N; ++i)
       if (link_blocked[link][i] != 0.0f)
-        half_blocked =
-            fma((realW)(link_blocked[link][i]), sum_corners(corners, link, i), half_blocked);
-    links.c[link] = 0.5f + (fabs(0.5f - half_blocked) - fabs(half_blocked));
+        blocked = fma((realW)(link_blocked[link][i]), sum_corners(corners, link, i), blocked);
+    const realW share = blocked > ZERO ? blocked : ZERO;
+    links.c[link] = ONE - (share < ONE ? share : ONE);
   }
   return links;
 }

@@ -35,11 +35,11 @@ CLPV_INLINE Coefficients gain_light(CLPV_VOLUME_IN source, const int channel, co
   for (int n = 0; n < CLPV_AXES; ++n) arriving[n] = 0.0f;
 #pragma unroll
   for (int k = 0; k < CLPV_AXES; ++k) {
-    const SeenFaces half_flux = half_fluxes_to(k, load_upstream(source, channel, k, x, y, z));
+    const SeenFaces flux = fluxes_to(k, load_upstream(source, channel, k, x, y, z));
 #pragma unroll
     for (int f = 0; f < CLPV_SEEN_FACES; ++f) {
       const int face = CLPV_SEEN_FACES * k + f;
-      arriving[face_normal[face]] += positive_flux(half_flux.face[f]) * t.c[face];
+      arriving[face_normal[face]] += positive_flux(flux.face[f]) * t.c[face];
     }
   }
   Coefficients gained = zero_coefficients();

@@ -70,11 +70,11 @@ CLPV_INLINE void find_fluxes(CLPV_VOLUME_IN source, const int x, const int y, co
   for (int channel = 0; channel < 3; ++channel) {
 #pragma unroll
     for (int k = 0; k < CLPV_AXES; ++k) {
-      const SeenFaces half_flux = half_fluxes_to(k, load_upstream(source, channel, k, x, y, z));
+      const SeenFaces flux = fluxes_to(k, load_upstream(source, channel, k, x, y, z));
 #pragma unroll
       for (int f = 0; f < CLPV_SEEN_FACES; ++f) {
         const int face = CLPV_SEEN_FACES * k + f;
-        fluxes[channel].face[face] = positive_flux(half_flux.face[f]) * t.c[face];
+        fluxes[channel].face[face] = positive_flux(flux.face[f]) * t.c[face];
       }
     }
   }

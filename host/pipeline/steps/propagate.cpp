@@ -12,12 +12,12 @@
 namespace clpv {
 namespace {
 
-/// 30 x N: half the flux through each face by each function's coefficient.
-Matrix half_fluxes(const FaceTransport& scheme) {
+/// 30 x N: the flux through each face by each function's coefficient.
+Matrix fluxes(const FaceTransport& scheme) {
   Matrix rows(static_cast<int>(scheme.faces.size()),
               static_cast<int>(scheme.faces.front().flux.size()));
   for (int f = 0; f < rows.rows(); ++f) {
-    for (int i = 0; i < rows.columns(); ++i) rows(f, i) = 0.5 * scheme.faces[f].flux[i];
+    for (int i = 0; i < rows.columns(); ++i) rows(f, i) = scheme.faces[f].flux[i];
   }
   return rows;
 }
@@ -27,7 +27,7 @@ Literals face_flux_literals(const Basis& basis, const FaceTransport& scheme) {
   Literals literals;
   add_coefficient_literals(literals, basis.size());
   return literals.integer("CLPV_LINKS", scheme.faces.size())
-      .matrix("CLPV_FACE_FLUX", half_fluxes(scheme));
+      .matrix("CLPV_FACE_FLUX", fluxes(scheme));
 }
 
 /// Lobes of kernels/steps/propagate.cl.
@@ -46,8 +46,8 @@ OperationCount step_operations(const Transport& transport, bool blocking) {
   const auto& scheme = std::get<FaceTransport>(transport.scheme);
   const int faces = static_cast<int>(scheme.faces.size());
   OperationCount count;
-  count.fused = products(half_fluxes(scheme)) + products(scheme.lobes);
-  count.additions = faces;  // 2 max(0, h) = h + |h|
+  count.fused = products(fluxes(scheme)) + products(scheme.lobes);
+  count.additions = faces;  // max(0, F)
   (blocking ? count.fused : count.additions) += faces;
   return count;
 }

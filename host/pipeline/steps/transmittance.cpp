@@ -33,23 +33,23 @@ std::vector<Link> links_of(const Transport& transport) {
 LinkConstants link_constants(const Basis& basis, const Transport& transport) {
   const std::vector<Link> links = links_of(transport);
   const int count = static_cast<int>(links.size());
-  Matrix half_weights(count, blocking_size(transport.blocking, basis));
+  Matrix weights(count, blocking_size(transport.blocking, basis));
   std::vector<int> sides;
   LinkConstants result;
   for (int l = 0; l < count; ++l) {
     for (int axis = 0; axis < 3; ++axis) sides.push_back(links[l].side[axis]);
-    for (int i = 0; i < half_weights.columns(); ++i) {
-      half_weights(l, i) = links[l].blocked_by[i] * (0.5 / links[l].corners());
-      if (half_weights(l, i) != 0) result.operations.additions += links[l].corners() - 1;
+    for (int i = 0; i < weights.columns(); ++i) {
+      weights(l, i) = links[l].blocked_by[i] / links[l].corners();
+      if (weights(l, i) != 0) result.operations.additions += links[l].corners() - 1;
     }
   }
   result.links = count;
-  result.operations.additions += 3 * count;  // 1/2 + (|1/2 - h| - |h|)
-  result.operations.fused = products(half_weights);
-  add_coefficient_literals(result.literals, half_weights.columns());
+  result.operations.additions += 3 * count;  // 1 - clamp(B, 0, 1)
+  result.operations.fused = products(weights);
+  add_coefficient_literals(result.literals, weights.columns());
   result.literals.integer("CLPV_LINKS", count)
       .integers("CLPV_LINK_SIDES", sides)
-      .matrix("CLPV_LINK_BLOCKED", half_weights);
+      .matrix("CLPV_LINK_BLOCKED", weights);
   return result;
 }
 
