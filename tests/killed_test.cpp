@@ -44,6 +44,8 @@ class Child {
     pid_ = ::fork();
     if (pid_ != 0) return;
     ::setpgid(0, 0);
+    // A shell ignores SIGINT for tests that it starts in the background.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
     ::execl("/bin/sh", "sh", "-c", ("exec " + command + " >/dev/null 2>" + said.string()).c_str(),
             nullptr);
     ::_exit(127);
@@ -271,6 +273,7 @@ TEST_F(Killed, AnInterruptWhileCompilingIsAnsweredAtOnce) {
 // clpv's message.
 TEST(Interrupt, ACompilersWordsAfterItAreLost) {
   const auto interrupted_work = [] {
+    ::signal(SIGINT, SIG_DFL);
     catch_interrupts();
     const auto say = [](const std::string& words) { fmt::print(stderr, "{}", words); };
     {

@@ -349,7 +349,8 @@ TEST_P(EachPartition, WhatHarmonicsLackMakesAClampedCosine) {
       energy += solid_angle * light;
       error += solid_angle * std::pow(light - std::max(0.0, z), 2);
     }
-    EXPECT_NEAR(energy, std::numbers::pi, 0.02) << name;
+    // 24 directions integrate less exactly than 96 and 216.
+    EXPECT_NEAR(energy, std::numbers::pi, GetParam() == 1 ? 0.025 : 0.02) << name;
     EXPECT_LT(std::sqrt(error / (2 * std::numbers::pi / 3)), GetParam() == 1 ? 0.06 : 0.02) << name;
   }
   const auto other = make_basis("srbf8v2");

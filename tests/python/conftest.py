@@ -2,6 +2,7 @@
 """The module of the build tree, small frames, and the program. CLPV_BUILD: the build folder."""
 import os
 import pathlib
+import signal
 import subprocess
 
 import pytest
@@ -16,6 +17,8 @@ FRONT = clpv.Camera(eye=(0.278, 0.273, -0.18), target=(0.278, 0.273, 0.28), fov=
 
 
 def pytest_configure(config):
+    # A shell ignores SIGINT for tests that it starts in the background.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     config.addinivalue_line("markers", "long: by `scripts/test --long`")
 
 
