@@ -185,7 +185,8 @@ class GlbWriter {
     document_["nodes"].push_back(
         {{"name", printable(camera.name)},
          {"camera", document_["cameras"].size()},
-         {"matrix", matrix(glm::dvec3(camera.forward), glm::dvec3(camera.up), glm::dvec3(camera.eye))}});
+         {"matrix",
+          matrix(glm::dvec3(camera.forward), glm::dvec3(camera.up), glm::dvec3(camera.eye))}});
     document_["cameras"].push_back(
         {{"type", "perspective"},
          {"perspective", {{"yfov", camera.vertical_fov}, {"znear", camera.near_depth}}}});
@@ -204,13 +205,13 @@ class GlbWriter {
     if (given.kind == LightKind::spot)
       made["spot"] = {{"innerConeAngle", given.inner_cone_degrees * kRadian},
                       {"outerConeAngle", given.outer_cone_degrees * kRadian}};
-    const glm::dvec3 along = given.kind == LightKind::point ? glm::dvec3(0, 0, -1)
-                                                            : glm::normalize(vector(light.data.direction));
+    const glm::dvec3 along = given.kind == LightKind::point
+                                 ? glm::dvec3(0, 0, -1)
+                                 : glm::normalize(vector(light.data.direction));
     const glm::dvec3 up = std::abs(along.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
     Json& all = document_["extensions"][kLightsExtension]["lights"];
-    document_["nodes"].push_back(
-        {{"extensions", {{kLightsExtension, {{"light", all.size()}}}}},
-         {"matrix", matrix(along, up, vector(light.data.position))}});
+    document_["nodes"].push_back({{"extensions", {{kLightsExtension, {{"light", all.size()}}}}},
+                                  {"matrix", matrix(along, up, vector(light.data.position))}});
     all.push_back(made);
     uses(kLightsExtension);
   }
