@@ -164,7 +164,7 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases,
                            const RunnerOptions& options) {
   std::vector<CaseRun> runs(cases.size());
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    spdlog::debug("{}", cases[i].row.name);
+    log_debug("{}", cases[i].row.name);
     stop_if_interrupted(kFinishedRows);
     if (options.log != nullptr) options.log->started(cases[i].row.name);
     prepare(session, cases[i], runs[i]);

@@ -3,7 +3,6 @@
 find_package(OpenCL REQUIRED)
 find_package(glm REQUIRED)
 find_package(fmt REQUIRED)
-find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(OpenImageIO REQUIRED)
 # Debian's package lists include folders of OpenCV, which are not needed and may not exist.
@@ -44,17 +43,17 @@ find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 add_library(clpv_internal INTERFACE)
 target_compile_definitions(clpv_internal INTERFACE
   CL_HPP_TARGET_OPENCL_VERSION=120 CL_HPP_MINIMUM_OPENCL_VERSION=120 CL_HPP_ENABLE_EXCEPTIONS
-  CL_TARGET_OPENCL_VERSION=120 GLM_FORCE_EXPLICIT_CTOR SPDLOG_FMT_EXTERNAL)
+  CL_TARGET_OPENCL_VERSION=120 GLM_FORCE_EXPLICIT_CTOR)
 target_include_directories(clpv_internal INTERFACE
   ${CMAKE_CURRENT_SOURCE_DIR}/include ${CMAKE_CURRENT_SOURCE_DIR}/host ${CMAKE_CURRENT_SOURCE_DIR})
 target_link_libraries(clpv_internal INTERFACE
-  OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json spdlog::spdlog Threads::Threads)
+  OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
 
-# Public headers include CL/cl.h and fmt; what else the library links, its users link but do not compile with.
+# Public headers include CL/cl.h; what else the library links, its users link but do not compile with.
 function(clpv_link_dependencies target)
   target_link_libraries(${target}
-    PUBLIC OpenCL::OpenCL fmt::fmt
-    PRIVATE $<BUILD_INTERFACE:clpv_internal> spdlog::spdlog Threads::Threads OpenImageIO::OpenImageIO
+    PUBLIC OpenCL::OpenCL
+    PRIVATE $<BUILD_INTERFACE:clpv_internal> fmt::fmt Threads::Threads OpenImageIO::OpenImageIO
             $<BUILD_INTERFACE:${TINYGLTF_LIBRARY}> $<INSTALL_INTERFACE:tinygltf> embree)
   target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR})
   target_include_directories(${target} SYSTEM PRIVATE ${EIGEN_INCLUDE_DIR})

@@ -338,7 +338,7 @@ std::string drawn_with(const char* terminal, const char* no_color) {
   int master = -1;
   const pid_t child = ::forkpty(&master, nullptr, nullptr, nullptr);
   if (child == 0) {
-    set_log_level(false, 0);
+    log_to_stderr(LogLevel::info);
     ::setenv("TERM", terminal, 1);
     ::setenv("NO_COLOR", no_color, 1);
     {

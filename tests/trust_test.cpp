@@ -145,7 +145,7 @@ TEST_F(CacheTest, ProgramsAndMarksAreEntries) {
 }
 
 TEST_F(CacheTest, ADamagedCellIsMeasuredAgain) {
-  set_log_level(true, 0);
+  log_to_stderr(LogLevel::error);
   QualityStore store(cache.path());
   QualityCell cell;
   cell.scene = "room", cell.nrmse = 0.25;
@@ -166,7 +166,7 @@ TEST_F(CacheTest, ADamagedCellIsMeasuredAgain) {
 }
 
 TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
-  set_log_level(true, 0);
+  log_to_stderr(LogLevel::error);
   const SceneData scene = load_scene(kTiny);
   const auto traced = [&] {
     return cached_ground_truth(cache.path(), scene, scene.cameras[0], 8, 6, {.samples = 1});
@@ -298,7 +298,7 @@ TEST_F(ScratchFolders, NothingGoesButMarkedFoldersOfKilledRuns) {
 }
 
 TEST_F(ScratchFolders, NothingIsRemovedWhereOthersMayWrite) {
-  set_log_level(false, 0);
+  log_to_stderr(LogLevel::info);
   const fs::path left = killed();
   for (const mode_t mode : {0770u, 0707u, 01777u}) {
     ::chmod(own.c_str(), mode);
@@ -351,7 +351,7 @@ fs::path chosen_cache(const fs::path& home, const std::string& cache, std::strin
   ::unsetenv("POCL_CACHE_DIR");
   home.empty() ? ::unsetenv("HOME") : ::setenv("HOME", home.c_str(), 1);
   cache.empty() ? ::unsetenv("XDG_CACHE_HOME") : ::setenv("XDG_CACHE_HOME", cache.c_str(), 1);
-  set_log_level(false, 0);
+  log_to_stderr(LogLevel::info);
   ::testing::internal::CaptureStderr();
   choose_driver_cache();
   err = ::testing::internal::GetCapturedStderr();

@@ -131,7 +131,7 @@ Renderer::~Renderer() {
   try {
     state_->session.store_programs();
   } catch (const std::exception& error) {  // a cache never makes the program fail
-    spdlog::debug("compiled programs not cached: {}", error.what());
+    log_debug("compiled programs not cached: {}", error.what());
   }
 }
 

@@ -100,7 +100,7 @@ void load_suite_scene(Options& options, const bench::Suite& suite) {
     throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
   if (options.scene.empty() && suite.default_scene.empty()) return;
   if (options.scene.empty() && !std::filesystem::exists(suite.default_scene)) {
-    spdlog::warn("{} does not exist: {} uses the generated hall", suite.default_scene, suite.name);
+    log_warning("{} does not exist: {} uses the generated hall", suite.default_scene, suite.name);
     return;
   }
   const std::string file = options.scene.empty() ? suite.default_scene : options.scene;
@@ -146,8 +146,8 @@ void run(Options options, const Shared& shared) {
   // Cached programs have no build time.
   Session session(device,
                   suite.name == "regression" ? std::nullopt : ProgramCache::of_user(device));
-  spdlog::info("{} ({}), driver {}", session.device().name, session.device().platform,
-               session.device().driver);
+  log_info("{} ({}), driver {}", session.device().name, session.device().platform,
+           session.device().driver);
   const bench::Results results = bench::run_suite(session, suite, options.bench);
   const auto text = [&](std::string_view format) {
     return as_text(options, format, suite, session, results);

@@ -67,8 +67,8 @@ void print(std::string_view stage, const CheckResults& results) {
   print_data("\n");
   for (const CheckResult& r : results) {
     if (r.passed())
-      spdlog::debug("{} {}: {:.2e} of {:.0e}", stage, r.variant, r.deviation.worst,
-                    r.deviation.allowed);
+      log_debug("{} {}: {:.2e} of {:.0e}", stage, r.variant, r.deviation.worst,
+                r.deviation.allowed);
     else if (r.status == Status::wrong)
       print_data("           {}: {:.3e} > {:.0e} at {}\n", r.variant, r.deviation.worst,
                  r.deviation.allowed, r.deviation.place);
@@ -146,8 +146,8 @@ void run(const Options& options, const Shared& shared) {
     Session session(device);
     return verify::help(cases, session, Claims(options.claims));
   }
-  spdlog::info("checking {} ({}), driver {}: {} comparisons", device.name, device.platform,
-               device.driver, cases.size());
+  log_info("checking {} ({}), driver {}: {} comparisons", device.name, device.platform,
+           device.driver, cases.size());
   const bool json = options.format == "json";
   const CheckResults results = results_of(cases, options, shared, device, !json);
   if (json)

@@ -29,11 +29,12 @@ constexpr std::size_t kMaxEdits = 2;
 
 /// Rank 0 logs at the requested level; other ranks log only problems unless --verbose is given.
 void set_log(const Shared& shared) {
-  set_log_level(shared.quiet, shared.verbosity);
   const std::optional<LauncherRank> started = launcher_rank();
+  log_to_stderr(shared.quiet                   ? LogLevel::error
+                : shared.verbose               ? LogLevel::debug
+                : started && started->rank > 0 ? LogLevel::warning
+                                               : LogLevel::info);
   if (!started) return;
-  if (started->rank > 0 && !shared.quiet && shared.verbosity == 0)
-    spdlog::set_level(spdlog::level::warn);
   set_progress_style(started->rank == 0 ? ProgressStyle::lines : ProgressStyle::none);
 }
 
@@ -195,8 +196,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
       ->check(CLI::IsMember({"auto", "1", "8"}))
       ->group(std::string(kMoreOptions) + "device");
   app.add_flag("-q,--quiet", shared.quiet, "no messages but errors");
-  app.add_flag("-v,--verbose", shared.verbosity, "more log messages; -vv: even more")
-      ->disable_flag_override();
+  app.add_flag("-v,--verbose", shared.verbose, "more log messages")->disable_flag_override();
   app.require_subcommand(1);
   app.fallthrough();
   app.parse_complete_callback([&] { set_log(shared); });

@@ -15,7 +15,7 @@ namespace clpv {
 struct Shared {
   std::string device;  ///< --device
   bool quiet = false;
-  int verbosity = 0;
+  bool verbose = false;
   /// Returns the ranks of the launcher that started this process; the first call starts MPI.
   Ranks& ranks();
   std::unique_ptr<Ranks> started;  ///< null before the first call

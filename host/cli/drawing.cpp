@@ -87,7 +87,7 @@ Drawing::Drawing(std::string kind, std::string asked_by)
     const Process::Result ended = run(python, {});
     if (ended.code == 0) {
       python_ = python;
-      spdlog::debug("{}: drawing with {}", asked_by_, python_.string());
+      log_debug("{}: drawing with {}", asked_by_, python_.string());
       return;
     }
     tried += fmt::format("\n  {}: {}", python.string(), first_line(ended.output));

@@ -8,7 +8,7 @@ namespace clpv {
 
 Image read_image_layer(const std::filesystem::path& file, const std::string& layer) {
   Image image = extract_layer(read_image(file), layer, file.string());
-  for (const std::string& note : image.notes) spdlog::warn("{}: {}", file.string(), note);
+  for (const std::string& note : image.notes) log_warning("{}: {}", file.string(), note);
   return image;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // clpv pathtrace: path-traced ground truth for images of `render`.
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -19,6 +18,7 @@
 #include "quality/ground_truth.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
+#include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
 #include "support/text.hpp"
@@ -92,7 +92,7 @@ void run(const Options& options, Shared& shared) {
   check_outputs(outputs);
   MovingScene moving = options.open();
   check_outputs(outputs);
-  for (const std::string& note : moving.scene().notes) spdlog::info("{}", note);
+  for (const std::string& note : moving.scene().notes) log_info("{}", note);
   moving.pose(options.time);
   const SceneData& scene = moving.scene();
   const SceneCamera& camera = scene.camera(options.camera);
@@ -105,13 +105,13 @@ void run(const Options& options, Shared& shared) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (options.tracing.values.samples == 0 && traced.noise > options.tracing.values.noise) {
-    spdlog::warn("noise {:.4f} after the maximum of {} paths per pixel; requested: {}",
-                 traced.noise, traced.samples, options.tracing.values.noise);
+    log_warning("noise {:.4f} after the maximum of {} paths per pixel; requested: {}", traced.noise,
+                traced.samples, options.tracing.values.noise);
   }
   write_outputs(options, scene, camera, traced, seconds);
   const std::string noise =
       std::isnan(traced.noise) ? "" : fmt::format("noise {:.4f}, ", traced.noise);
-  spdlog::info("{} paths per pixel, {}{:.1f} s", traced.samples, noise, seconds);
+  log_info("{} paths per pixel, {}{:.1f} s", traced.samples, noise, seconds);
 }
 
 void add_options(CLI::App& command, Options& options) {

@@ -63,7 +63,7 @@ std::vector<Subject> load_subjects(const QualitySubjects& given) {
     given.changes.apply(moving);
     moving.pose(given.time);
     subject.scene = std::move(moving).take();
-    for (const std::string& note : subject.scene.notes) spdlog::info("{}", note);
+    for (const std::string& note : subject.scene.notes) log_info("{}", note);
     for (const SceneCamera& camera : subject.scene.cameras) {
       const bool chosen =
           given.cameras.empty() || std::ranges::count(given.cameras, camera.name) > 0;
@@ -105,8 +105,8 @@ void trace_truths(Subject& subject, int width, int height,
     subject.truths.push_back(cached_ground_truth(folder, subject.scene, camera, width, height,
                                                  options, trace_progress(progress), ranks));
     const GroundTruth& truth = subject.truths.back();
-    spdlog::debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples,
-                  truth.noise);
+    log_debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples,
+              truth.noise);
   }
 }
 

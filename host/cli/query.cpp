@@ -42,8 +42,8 @@ std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
                    n.y, n.z, light[i].x, light[i].y, light[i].z);
   }
   if (outside > 0)
-    spdlog::warn("{} of {} points lie outside the cascades, where there is no light", outside,
-                 points.size());
+    log_warning("{} of {} points lie outside the cascades, where there is no light", outside,
+                points.size());
   return text;
 }
 

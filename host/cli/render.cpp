@@ -97,9 +97,9 @@ void run(const Options& options, const Shared& shared) {
   Session session(device, ProgramCache::of_user(device), compilation_of(request, shared.device));
   Frame frame(session, scene, resolved);
   stats.end_startup();
-  spdlog::debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
-                session.device().driver);
-  spdlog::debug("options: {}", to_json(resolved).dump());
+  log_debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
+            session.device().driver);
+  log_debug("options: {}", to_json(resolved).dump());
   progress.advance();
   frame.render(camera, [&](const CascadeVolumes& volumes) {
     if (!options.stats.empty()) stats.add_energy(session, frame, volumes);

@@ -66,23 +66,24 @@ Compilation compilation_of(const RenderRequest& request, const std::string& devi
     if (!value.empty()) arguments.push_back(fmt::format("--{}={}", name, value));
   };
   add("model", request.model);
-  if (const auto& sun = request.changes.sun)  // a camera's numbers change no kernel
-    add("sun", fmt::format("{},{},{}", sun->direction[0], sun->direction[1], sun->direction[2]));
-  if (request.changes.medium) add("medium", "1");  // its numbers change no kernel
+  nlohmann::json changes = nlohmann::json::object();
+  request.changes.describe(changes);
+  for (const char* name : {"sun", "medium"})  // a camera's numbers change no kernel
+    if (changes.contains(name)) add(name, changes[name].get<std::string>());
   add("device", device);
   for (const auto& [name, value] : request.frame) add(name, value);
   return {std::move(arguments), std::nullopt};
 }
 
 void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOptions& options) {
-  for (const std::string& note : scene.notes) spdlog::info("{}", note);
+  for (const std::string& note : scene.notes) log_info("{}", note);
   const double coarsest = std::ldexp(options.cascade_size, options.cascades - 1);
   if (options.cascade_size != RenderOptions{}.cascade_size && is_bare_model(scene)) {
-    spdlog::info("cascades of {:.4g} to {:.4g} m round camera '{}'", options.cascade_size, coarsest,
-                 camera.name);
+    log_info("cascades of {:.4g} to {:.4g} m round camera '{}'", options.cascade_size, coarsest,
+             camera.name);
   }
   if (!cascades_meet(scene, camera.eye, options.cascades, options.cascade_size, options.grid)) {
-    spdlog::warn(
+    log_warning(
         "nothing of the scene is in the cascades, which end {:.4g} m from camera '{}': no indirect "
         "light; a larger --cascade-size or more --cascades reach farther",
         coarsest / 2, camera.name);

@@ -74,8 +74,8 @@ void warn_of_later_frames(const Options& options) {
   int last = options.frames;
   while (fs::exists(options.file(last))) ++last;
   if (last > options.frames)
-    spdlog::warn("{} also holds frames {} to {} of a longer run", options.folder, options.frames,
-                 last - 1);
+    log_warning("{} also holds frames {} to {} of a longer run", options.folder, options.frames,
+                last - 1);
 }
 
 void run(const Options& options, Shared& shared) {
@@ -95,7 +95,7 @@ void run(const Options& options, Shared& shared) {
     return scene.camera(request.camera);
   };
   log_scene(moving.scene(), camera(moving.scene()), resolved);
-  if (!moving.moves()) spdlog::warn("{}: nothing moves: all frames are equal", request.scene);
+  if (!moving.moves()) log_warning("{}: nothing moves: all frames are equal", request.scene);
 
   SequenceSubject subject{
       request.camera, request.exposure_of(moving.scene()), request.tonemap, {}, {}};

@@ -32,7 +32,7 @@ double unreached_share(Session& session, const Frame& frame) {
 void warn_of_unreached(Session& session, const Frame& frame, const std::string& camera) {
   const double share = unreached_share(session, frame);
   if (share <= kFewUnreached) return;
-  spdlog::warn(
+  log_warning(
       "camera '{}': {:.1f} % of the visible surface lies outside the cascades and has no indirect "
       "light; a larger --cascade-size or more --cascades reach farther",
       camera, 100 * share);

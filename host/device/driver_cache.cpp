@@ -59,7 +59,7 @@ void choose_driver_cache() {
   if (!why.empty()) {
     static FolderOfProcess scratch;
     folder = scratch.path();
-    spdlog::warn("{}: each run compiles its kernels again", why);
+    log_warning("{}: each run compiles its kernels again", why);
   }
   ::setenv(kVariable, folder.c_str(), 1);
 }
@@ -90,7 +90,7 @@ void CompiledMarks::add(const std::string& key) const {
   if (!folder_) return;
   const std::string why = folder_->write(name_of_mark(key), std::string_view(""));
   if (!why.empty())
-    spdlog::debug("no mark of compiled kernels: {}", why);  // costs later runs their helpers' start
+    log_debug("no mark of compiled kernels: {}", why);  // costs later runs their helpers' start
 }
 
 }  // namespace clpv

@@ -73,8 +73,8 @@ bool lacks_images_in_standard(const cl::Context& context, const Device& device) 
                      !compiles(context, device, kImageProbe, std::string(kStandard)) &&
                      compiles(context, device, kImageProbe, "");
   if (lacks)
-    spdlog::debug("driver {} has images only without {}: programs that need them are built so",
-                  device.driver, kStandard);
+    log_debug("driver {} has images only without {}: programs that need them are built so",
+              device.driver, kStandard);
   return known[driver] = lacks;
 }
 

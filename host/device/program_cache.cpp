@@ -89,7 +89,7 @@ std::optional<ProgramCache> ProgramCache::of_user(const Device& device) {
     throw Error(ExitCode::usage, "CLPV_PROGRAM_CACHE: found '{}', allowed: on, off", value);
   if (value.empty() && driver_keeps_kernels(device)) return std::nullopt;
   if (const auto folder = user_cache_folder()) return ProgramCache(*folder);
-  spdlog::debug(
+  log_debug(
       "neither XDG_CACHE_HOME nor HOME is an absolute path: compiled programs are not cached");
   return std::nullopt;
 }
@@ -111,7 +111,7 @@ std::optional<ProgramCache::Binary> ProgramCache::load(const std::string& key) c
   if (!bytes) return std::nullopt;
   std::optional<Binary> binary = unpack(*bytes, key);
   if (!binary) {
-    spdlog::debug("{}: damaged or of another program; compiling it again", file.string());
+    log_debug("{}: damaged or of another program; compiling it again", file.string());
     return std::nullopt;
   }
   std::error_code ignored;  // the time of last use only orders eviction
@@ -122,7 +122,7 @@ std::optional<ProgramCache::Binary> ProgramCache::load(const std::string& key) c
 bool ProgramCache::store(const std::string& key, const Binary& binary) const {
   const std::string why = folder_.write(file_of(key).filename().string(), pack(key, binary));
   if (!why.empty()) {
-    spdlog::warn("compiled programs are not cached: {}", why);
+    log_warning("compiled programs are not cached: {}", why);
     return false;
   }
   evict_oldest();

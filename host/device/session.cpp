@@ -22,7 +22,7 @@ ProgramSource words_program() {
   return {.file = "buffer_ops.cl", .literals = {}, .generated = {}};
 }
 constexpr std::size_t kWordsGroup = 64;
-constexpr double kNoticeMs = 1000;             // longer waits are explained in the log
+constexpr double kNoticeMs = 2000;             // longer waits are explained in the log
 constexpr std::size_t kCopiedBytes = 1 << 20;  // larger writes wait for the queue rather than copy
 
 cl_uint words_of(std::size_t bytes) {
@@ -46,8 +46,8 @@ std::optional<cl::Program> load_program(const cl::Context& context, const Device
     program.build(device.handle, options.c_str());
     return program;
   } catch (const cl::Error& error) {
-    spdlog::debug("{} rejects a cached program: {}; compiling it again", device.name,
-                  cl_error_name(error.err()));
+    log_debug("{} rejects a cached program: {}; compiling it again", device.name,
+              cl_error_name(error.err()));
     return std::nullopt;
   }
 }
@@ -98,7 +98,7 @@ Session::~Session() {
   try {
     queue_.finish();
   } catch (const cl::Error& error) {
-    spdlog::debug("finishing the queue: {}", cl_error_name(error.err()));
+    log_debug("finishing the queue: {}", cl_error_name(error.err()));
   }
 }
 
@@ -120,6 +120,7 @@ void Session::build_described() {
   std::erase_if(programs_, [](const auto& entry) {
     return entry.second->built() == nullptr && entry.second.use_count() == 1;
   });
+  compiling_ms_ = 0;
   if (compilation_.claims) return;  // a helper builds what it launches
   compile_with_helpers();
   for (auto& [key, program] : programs_) build(*program);
@@ -136,7 +137,7 @@ void Session::compile_with_helpers() {
     kernels += program->kernels.size();
   }
   if (programs < 2) return;
-  spdlog::info("compiling {} kernels for {}: on the first run only", kernels, device_.name);
+  log_info("compiling {} kernels for {}: on the first run only", kernels, device_.name);
   const auto start = std::chrono::steady_clock::now();
   Progress progress("compiling kernels", kernels);
   helped_ = true;
@@ -149,10 +150,10 @@ void Session::compile_with_helpers() {
     progress.reach(std::min(helpers->claims().finished_count(), kernels));
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  spdlog::debug("{} helpers compiled {} kernels in {:.1f} s", helper_count(),
-                helpers->claims().finished_count(), elapsed.count());
+  log_debug("{} helpers compiled {} kernels in {:.1f} s", helper_count(),
+            helpers->claims().finished_count(), elapsed.count());
   if (!helpers->failures().empty())
-    spdlog::debug("a helper failed, so this process compiles the rest: {}", helpers->failures());
+    log_debug("a helper failed, so this process compiles the rest: {}", helpers->failures());
 }
 
 /// Null, with a warning, where no folder can be made for the helpers: a frame needs none.
@@ -160,7 +161,7 @@ std::unique_ptr<Helpers> Session::started_helpers() const {
   try {
     return std::make_unique<Helpers>(compilation_.helpers);
   } catch (const Error& error) {
-    spdlog::warn("{}: this process compiles all kernels itself", error.what());
+    log_warning("{}: this process compiles all kernels itself", error.what());
     return nullptr;
   }
 }
@@ -193,9 +194,14 @@ void Session::finish_first_launch(Program& program, const std::string& name) {
   timeline_.wait([&] { queue_.finish(); });
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;
-  spdlog::debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name,
-                elapsed.count());
-  if (compilation_.claims) compilation_.claims->finish(name_of_claim(program.key, name));
+  log_debug("kernels/{}: first launch of {} in {:.1f} ms", program.source.file, name,
+            elapsed.count());
+  if (compilation_.claims) {
+    compilation_.claims->finish(name_of_claim(program.key, name));
+  } else if (marks_.available() && !marks_.has(program.key)) {
+    note_compiling(program, elapsed.count());
+    if (std::ranges::includes(program.launched, program.kernels)) marks_.add(program.key);
+  }
   stop_if_interrupted("kernels were being compiled");
 }
 
@@ -223,12 +229,18 @@ void Session::build(Program& program) {
     program.built = build_program(context_, device_, program.source, program.text);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;
-  const double before_ms = std::exchange(build_ms_, build_ms_ + elapsed.count());
-  const bool slow = before_ms <= kNoticeMs && build_ms_ > kNoticeMs;
-  if (slow && !program.stored && !helped_ && !marks_.has(program.key))
-    spdlog::info("compiling kernels for {}: slow on the first run only", device_.name);
-  spdlog::debug("kernels/{}: {} in {:.1f} ms", program.source.file,
-                program.stored ? "from the cache" : "compiled", elapsed.count());
+  build_ms_ += elapsed.count();
+  if (!program.stored && !marks_.has(program.key)) note_compiling(program, elapsed.count());
+  log_debug("kernels/{}: {} in {:.1f} ms", program.source.file,
+            program.stored ? "from the cache" : "compiled", elapsed.count());
+}
+
+/// Explains a long wait for kernels that no earlier run compiled, once for each build_described().
+void Session::note_compiling(const Program& program, double ms) {
+  const double before_ms = std::exchange(compiling_ms_, compiling_ms_ + ms);
+  if (helped_ || before_ms > kNoticeMs || compiling_ms_ <= kNoticeMs) return;
+  log_info("compiling kernels for {}: {:.1f} s so far, now {}; once for these options and sizes",
+           device_.name, compiling_ms_ / 1000, program.source.file);
 }
 
 /// Loads a program from the cache; returns false if it is missing or the driver rejects it.
@@ -251,7 +263,7 @@ void Session::store_programs() {
     if (program->stored || program->built() == nullptr) continue;
     // Reading a binary makes some drivers compile again.
     if (!std::exchange(logged, true) && build_ms_ > kNoticeMs)
-      spdlog::info("caching the compiled kernels for later runs");
+      log_info("caching the compiled kernels for later runs");
     const auto binaries = program->built.getInfo<CL_PROGRAM_BINARIES>();
     // A caller's context may have several.
     const auto devices = program->built.getInfo<CL_PROGRAM_DEVICES>();
@@ -259,7 +271,7 @@ void Session::store_programs() {
         std::ranges::find(devices, device_.handle(), [](const auto& d) { return d(); }) -
         devices.begin();
     if (ours >= binaries.size() || binaries[ours].empty()) {
-      spdlog::debug("{} returns no program binaries to cache", device_.name);
+      log_debug("{} returns no program binaries to cache", device_.name);
       return;
     }
     if (!cache_->store(key, binaries[ours]))

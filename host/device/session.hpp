@@ -182,6 +182,7 @@ class Session {
   Timeline timeline_;
   void build(Program& program);
   bool load(Program& program);
+  void note_compiling(const Program& program, double ms);
   void compile_with_helpers();
   std::unique_ptr<Helpers> started_helpers() const;
   void build_one_compiled(const Claims& claims);
@@ -210,6 +211,7 @@ class Session {
   std::map<std::vector<float>, TableImage> table_images_;  ///< see table_image()
   std::shared_ptr<MemoryUse> use_ = std::make_shared<MemoryUse>();
   double build_ms_ = 0;
+  double compiling_ms_ = 0;  ///< since build_described(), without kernels that are marked
 };
 
 /// Times all launches during its lifetime as one stage of the timeline.

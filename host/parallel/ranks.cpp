@@ -47,7 +47,7 @@ Device share_of(const Device& device, unsigned ranks, unsigned index) {
   try {
     return sub_device(device, units, index % count);
   } catch (const Error& error) {
-    spdlog::debug("{}; {} ranks share it", error.what(), ranks);
+    log_debug("{}; {} ranks share it", error.what(), ranks);
     return device;
   }
 }
@@ -76,10 +76,10 @@ Device Ranks::device(const std::string& choice) const {
   if (sharing > 1)
     device =
         share_of(device, static_cast<unsigned>(sharing), static_cast<unsigned>(local_rank / count));
-  spdlog::info("{} of {}: {} ({}), compute units: {}", name(), size(), device.name, device.platform,
-               device.compute_units);
+  log_info("{} of {}: {} ({}), compute units: {}", name(), size(), device.name, device.platform,
+           device.compute_units);
   if (device.type == "cpu" && bound_processors() < static_cast<int>(device.compute_units)) {
-    spdlog::warn(
+    log_warning(
         "{} is bound to fewer processors than its device has: mpirun --bind-to none allows it all "
         "of them",
         name());

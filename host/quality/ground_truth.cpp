@@ -2,7 +2,6 @@
 #include "quality/ground_truth.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <cctype>
 
@@ -14,6 +13,7 @@
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
+#include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/text.hpp"
 
@@ -98,14 +98,14 @@ std::string read_cached(const CacheFolder& cache, const std::string& name, const
     decode(cache.path() / name, *bytes, scene);
     return *bytes;
   } catch (const std::exception& error) {
-    spdlog::warn("{}; traced again", error.what());
+    log_warning("{}; traced again", error.what());
     return {};
   }
 }
 
 /// Warns of a problem of the cache. Returns true if there is none.
 bool can_be_cached(const std::string& problem) {
-  if (!problem.empty()) spdlog::warn("{}: the ground truth is not cached", problem);
+  if (!problem.empty()) log_warning("{}: the ground truth is not cached", problem);
   return problem.empty();
 }
 

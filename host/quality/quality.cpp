@@ -2,7 +2,6 @@
 #include "quality/quality.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "pipeline/frame/frame_times.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
+#include "support/log.hpp"
 #include "support/statistics.hpp"
 
 namespace clpv {
@@ -124,7 +124,7 @@ QualityStore::QualityStore(std::filesystem::path folder) : folder_(std::move(fol
 void QualityStore::warn_of(const std::string& problem) {
   if (problem.empty()) return;
   writable_ = false;
-  spdlog::warn("{}: results are not cached", problem);
+  log_warning("{}: results are not cached", problem);
 }
 
 std::optional<QualityCell> QualityStore::find(const std::string& key) const {
@@ -136,9 +136,9 @@ std::optional<QualityCell> QualityStore::find(const std::string& key) const {
     const std::string found = json.at(kFingerprint);
     json.erase(kFingerprint);
     if (found == fingerprint_of(json)) return cell_from_json(json);
-    spdlog::warn("{}: damaged; measured again", (folder_.path() / name).string());
+    log_warning("{}: damaged; measured again", (folder_.path() / name).string());
   } catch (const nlohmann::json::exception& error) {
-    spdlog::warn("{}: {}; measured again", (folder_.path() / name).string(), error.what());
+    log_warning("{}: {}; measured again", (folder_.path() / name).string(), error.what());
   }
   return std::nullopt;
 }

@@ -49,10 +49,10 @@ bool holds_frame(const fs::path& file, const std::string& key) {
     if (!has(read_metadata(file), kKey, key)) return false;
     const Image image = read_image(file);
     if (has(image.metadata, kPixels, pixels_hash(image))) return true;
-    spdlog::warn("{}: its pixels were changed; it is rendered again", file.string());
+    log_warning("{}: its pixels were changed; it is rendered again", file.string());
     return false;
   } catch (const Error& error) {
-    spdlog::warn("{}; it is rendered again", error.what());
+    log_warning("{}; it is rendered again", error.what());
     return false;
   }
 }
@@ -107,9 +107,8 @@ void Sequence::render() {
     progress.advance();
   }
   ranks_.sum(counts);
-  if (there > 0) spdlog::info("{} of {} frames existed already", there, options_.frames);
-  if (rendered > 0)
-    spdlog::info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
+  if (there > 0) log_info("{} of {} frames existed already", there, options_.frames);
+  if (rendered > 0) log_info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
   write_summary();
   if (renderer_) renderer_->session.store_programs();
   renderer_.reset();
@@ -189,7 +188,7 @@ bool Sequence::render(int number) {
   line.frame_ms = milliseconds_since(started);
   line.stages = session.timeline().times();
   if (line.first) subject_.first_frame(session, frame);
-  spdlog::debug("frame {}: {:.3f} s, {:.1f} ms", number, seconds, line.frame_ms);
+  log_debug("frame {}: {:.3f} s, {:.1f} ms", number, seconds, line.frame_ms);
   write(std::move(line), frame, description);
   return true;
 }

@@ -1,46 +1,52 @@
 // SPDX-License-Identifier: MIT
 #include "support/log.hpp"
 
-#include <spdlog/pattern_formatter.h>
-#include <spdlog/sinks/stdout_sinks.h>
+#include <atomic>
+#include <memory>
+#include <mutex>
 
+#include "support/print.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
 namespace {
 
-/// The message without control characters, since it may quote names of untrusted scenes.
-struct PrintableText : spdlog::custom_flag_formatter {
-  void format(const spdlog::details::log_msg& message, const std::tm&,
-              spdlog::memory_buf_t& line) override {
-    const std::string text = printable({message.payload.data(), message.payload.size()});
-    line.append(text.data(), text.data() + text.size());
-  }
-  std::unique_ptr<custom_flag_formatter> clone() const override {
-    return std::make_unique<PrintableText>();
-  }
+struct Receiver {
+  std::mutex mutex;  // not held while it is called
+  std::shared_ptr<const LogFunction> function;
+  std::atomic<int> least{static_cast<int>(LogLevel::error) + 1};
 };
 
-std::unique_ptr<spdlog::formatter> line_formatter() {
-  auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<PrintableText>('*').set_pattern("clpv: %*");
-  return formatter;
+Receiver& receiver() {
+  static Receiver& one = *new Receiver;  // never destroyed: threads may log while the process ends
+  return one;
 }
 
 }  // namespace
 
-void set_log_level(bool quiet, int verbosity) {
-  static const auto logger = [] {
-    auto made =
-        std::make_shared<spdlog::logger>("clpv", std::make_shared<spdlog::sinks::stderr_sink_mt>());
-    made->set_formatter(line_formatter());
-    spdlog::set_default_logger(made);
-    return made;
-  }();
-  logger->set_level(quiet            ? spdlog::level::err
-                    : verbosity >= 2 ? spdlog::level::trace
-                    : verbosity == 1 ? spdlog::level::debug
-                                     : spdlog::level::info);
+void set_log(LogFunction receive, LogLevel least) {
+  Receiver& to = receiver();
+  const std::lock_guard lock(to.mutex);
+  to.least = receive ? static_cast<int>(least) : static_cast<int>(LogLevel::error) + 1;
+  to.function = receive ? std::make_shared<const LogFunction>(std::move(receive)) : nullptr;
+}
+
+bool is_logged(LogLevel level) {
+  return static_cast<int>(level) >= receiver().least;
+}
+
+void log_message(LogLevel level, const std::string& message) {
+  std::shared_ptr<const LogFunction> function;
+  {
+    const std::lock_guard lock(receiver().mutex);
+    function = receiver().function;
+  }
+  if (function && is_logged(level)) (*function)(level, printable(message));
+}
+
+void log_to_stderr(LogLevel least) {
+  set_log([](LogLevel, const std::string& message) { print_message("clpv: " + message + "\n"); },
+          least);
 }
 
 }  // namespace clpv

@@ -2,7 +2,6 @@
 #include "support/progress.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "support/log.hpp"
 #include "support/print.hpp"
 #include "support/text.hpp"
 
@@ -59,7 +59,7 @@ bool takes_escape_codes() {
 /// The requested style; `none` if the log is quiet, and lines instead of a bar where escape codes
 /// are not taken.
 ProgressStyle effective_style() {
-  if (!spdlog::should_log(spdlog::level::info)) return ProgressStyle::none;
+  if (!is_logged(LogLevel::info)) return ProgressStyle::none;
   return requested_style == ProgressStyle::bar && !takes_escape_codes() ? ProgressStyle::lines
                                                                         : requested_style;
 }
@@ -117,7 +117,7 @@ void Progress::show() {
   if (style_ == ProgressStyle::none || now < next_draw_) return;
   const double elapsed = std::chrono::duration<double>(now - started_).count();
   if (style_ == ProgressStyle::lines) {
-    spdlog::info("{}", progress_words(title_, done_, total_, elapsed));
+    log_info("{}", progress_words(title_, done_, total_, elapsed));
     next_draw_ = now + kNextLine;
     return;
   }

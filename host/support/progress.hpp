@@ -16,7 +16,7 @@ enum class ProgressStyle { bar, lines, none };
 void set_progress_style(ProgressStyle style);
 
 /// Counts work done out of a known total. Draws no bar during the first second. Logs lines instead
-/// where a bar cannot be drawn, and nothing if the log is quiet (set_log_level). The destructor
+/// where a bar cannot be drawn, and nothing if the log is quiet (set_log). The destructor
 /// erases the bar. advance() and reach() are thread safe.
 class Progress {
  public:

@@ -66,8 +66,8 @@ fs::path folder_of_user(const fs::path& above) {
   const fs::path own = above / fmt::format(".clpv-scratch-{}", ::geteuid());
   if (::mkdir(own.c_str(), 0700) != 0 && errno != EEXIST) reject_above(above);
   if (is_own(own)) return own;
-  spdlog::warn("{}: not used, since others can write it; allowed: a folder of this user, mode 700",
-               own.string());
+  log_warning("{}: not used, since others can write it; allowed: a folder of this user, mode 700",
+              own.string());
   return above;
 }
 

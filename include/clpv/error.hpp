@@ -2,11 +2,9 @@
 // Exception thrown by all functions of the library.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <stdexcept>
 #include <string>
-#include <utility>
+#include <type_traits>
 
 namespace clpv {
 
@@ -26,11 +24,17 @@ class Error : public std::runtime_error {
   /// Replaces control characters of the message by '?', except newline and tab.
   Error(ExitCode code, const std::string& message);
 
-  template <typename... Args>
-  Error(ExitCode code, fmt::format_string<Args...> format, Args&&... args)
-      : Error(code, fmt::format(format, std::forward<Args>(args)...)) {}
-
   ExitCode code() const { return code_; }
+
+ private:
+  template <typename... Args>
+  struct Format;
+
+ public:
+  /// Formats the message. Only the library's own code can use it (host/support/error.hpp).
+  template <typename First, typename... More>
+  Error(ExitCode code, Format<std::type_identity_t<First>, std::type_identity_t<More>...> format,
+        First&& first, More&&... more);
 
  private:
   ExitCode code_;

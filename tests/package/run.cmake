@@ -31,7 +31,12 @@ if(NOT said MATCHES "RENDER_OPTION")
 endif()
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/render_cornell ${SOURCE}/scenes/cornell.json ${WORK}/cornell.png)
+# The library itself prints nothing.
+execute_process(COMMAND ${WORK}/build/render_cornell ${SOURCE}/scenes/cornell.json ${WORK}/cornell.png
+                OUTPUT_VARIABLE said ERROR_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
+if(NOT said MATCHES "^mean indirect green radiance: [0-9.e-]+\n$")
+  message(FATAL_ERROR "render_cornell printed more than its line: ${said}")
+endif()
 run(${WORK}/build/walk ${SOURCE}/scenes/cornell.json ${WORK}/walk.png)
 run(${WORK}/build/raycast ${SOURCE}/scenes/cornell.json ${WORK}/raycast.exr)
 run(${WORK}/prefix/bin/clpv devices)

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/frame/frame_emission.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 
 #include "support/fingerprint.hpp"
+#include "support/log.hpp"
 
 namespace clpv {
 namespace {
@@ -40,7 +39,7 @@ void FrameEmission::prepare(const std::vector<ClpvGrid>& grids, float scale, uns
   planned_.update(wanted.add(instant()).value(),
                   [&] { plan_ = plan_emission(scene_, triangles_, grids); });
   if (plan_.coarsened > coarsened_) {
-    spdlog::warn(
+    log_warning(
         "emissive surfaces: points {} times as far apart as usual, so that there are at most {}",
         1 << plan_.coarsened, kMaxEmittedPoints);
     coarsened_ = plan_.coarsened;

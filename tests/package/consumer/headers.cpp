@@ -4,6 +4,7 @@
 #include <clpv/device.hpp>
 #include <clpv/error.hpp>
 #include <clpv/image.hpp>
+#include <clpv/log.hpp>
 #include <clpv/mesh.hpp>
 #include <clpv/opencl.hpp>
 #include <clpv/options.hpp>
@@ -13,6 +14,9 @@
 #include <clpv/version.hpp>
 
 #if defined(CL_HPP_ENABLE_EXCEPTIONS) || defined(CL_HPP_TARGET_OPENCL_VERSION) || \
-    defined(GLM_FORCE_EXPLICIT_CTOR) || defined(SPDLOG_FMT_EXTERNAL)
+    defined(GLM_FORCE_EXPLICIT_CTOR)
 #error "clpv::clpv changes how its users are compiled"
+#endif
+#ifdef FMT_VERSION
+#error "a public header includes fmt"
 #endif
