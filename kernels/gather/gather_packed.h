@@ -60,7 +60,7 @@ CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
                     clamp_to(t.z * 4.0f - 0.5f, 3.0f));
   const intW qx = min(to_intW(q.x), (intW)(2)), qy = min(to_intW(q.y), (intW)(2)),
              qz = min(to_intW(q.z), (intW)(2));
-  store_lanes(number * 64 + (qz * 4 + qy) * 4 + qx, points->visibility_point);
+  store_lanes((qz * 4 + qy) * 4 + qx, points->visibility_point);
   store_lanes(q.x - to_realW(qx), points->visibility_x);
   store_lanes(q.y - to_realW(qy), points->visibility_y);
   store_lanes(q.z - to_realW(qz), points->visibility_z);
@@ -102,8 +102,9 @@ CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoin
                                    const int i, float8* weights) {
   const float8 from =
       corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
-  const float8 visible =
-      *weights * visible_shares(cascade.occluded + points->visibility_point[i], from);
+  __global const uchar* at =
+      cascade.occluded + (size_t)points->number[i] * 64 + points->visibility_point[i];
+  const float8 visible = *weights * visible_shares(at, from);
   const float4 four = visible.lo + visible.hi;
   const float total = four.x + four.y + four.z + four.w;
   if (!(total > min_visible)) return 1.0f;
@@ -114,7 +115,7 @@ CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoin
 
 CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* points, const int i,
                                Sampled* r) {
-  __global const float8* v = cascade.cells + points->number[i] * CLPV_PAIRS;
+  __global const float8* v = cascade.cells + (size_t)points->number[i] * CLPV_PAIRS;
   float8 w = corner_weights(points->x[i], points->y[i], points->z[i]);
   float scale = 1.0f;
 #if CLPV_VISIBLE

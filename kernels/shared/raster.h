@@ -78,5 +78,4 @@ enum { CLPV_SLICES = 8 };
 enum {
   CLPV_ENTRY_WORDS = 4,
   CLPV_ENTRY_GROUP = 1024,  // entries that a work-group sorts
-  CLPV_SLICE_CHUNK = 256,  // slices that a work-item sums
 };

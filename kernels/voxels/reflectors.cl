@@ -90,7 +90,7 @@ CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle*
         const uint cell = find_region_cell(region, axis, i, j, k, CLPV_GRID);
         if (cell == no_cell) continue;
         const uint face = cell * CLPV_CELL_FACES + 2u * axis + direction;
-        add_face(t, surface, &samples, i, j, k, weight, faces + face * CLPV_FACE_WORDS);
+        add_face(t, surface, &samples, i, j, k, weight, faces + (size_t)face * CLPV_FACE_WORDS);
       }
     }
   }

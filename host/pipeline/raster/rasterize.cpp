@@ -2,6 +2,7 @@
 #include "pipeline/raster/rasterize.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kernels/shared/raster.h"
 #include "kernels/shared/region.h"
@@ -26,6 +27,11 @@ unsigned tile_count(const ClpvView& view) {
 }
 unsigned slice_count(const ClpvView& view) {
   return tile_count(view) * CLPV_SLICES;
+}
+/// Slices that a work-item sums; beyond the square of the least, as many as there are chunks.
+unsigned chunk_slices(unsigned slices) {
+  constexpr unsigned kLeast = 256;
+  return std::max(kLeast, static_cast<unsigned>(std::ceil(std::sqrt(double{1} * slices))));
 }
 unsigned padded_pixels(const ClpvView& view) {
   return tile_count(view) * CLPV_TILE * CLPV_TILE;
@@ -99,11 +105,13 @@ Kernel& Rasterizer::resolve(const Resolving& wanted) {
 }
 
 void Rasterizer::find_visible(const Drawing& drawing) {
-  const std::size_t pixels = padded_pixels(drawing.view), slices = slice_count(drawing.view);
+  const std::size_t pixels = padded_pixels(drawing.view);
+  const unsigned slices = slice_count(drawing.view);
   session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
-  session_.reserve(slice_counts_, (slices + 1) * sizeof(cl_uint), "slices of tiles");
-  session_.reserve(totals_, (slices / CLPV_SLICE_CHUNK + 1) * sizeof(cl_uint), "slices by chunks");
+  session_.reserve(slice_counts_, (std::size_t{slices} + 1) * sizeof(cl_uint), "slices of tiles");
+  session_.reserve(totals_, (slices / chunk_slices(slices) + 1) * sizeof(cl_uint),
+                   "slices by chunks");
   const VisibleClusters visible = list_clusters(drawing.view);
   if (list_ahead(drawing, visible)) return draw_tiles(drawing.view, true);
   draw(drawing, 0, visible.count, true);
@@ -142,9 +150,10 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
 /// Sorts the entries of set_up() by tile.
 void Rasterizer::bin(const ClpvView& view) {
   const unsigned slices = slice_count(view);
-  const std::size_t chunks = (slices + CLPV_SLICE_CHUNK - 1) / CLPV_SLICE_CHUNK;
-  sum_slices_.set(slices, slice_counts_, totals_).launch(chunks, kRasterGroup);
-  scan_slices_.set(slices, slice_counts_, totals_).launch(chunks, kRasterGroup);
+  const cl_uint chunk = chunk_slices(slices);
+  const std::size_t chunks = (slices + chunk - 1) / chunk;
+  sum_slices_.set(slices, chunk, slice_counts_, totals_).launch(chunks, kRasterGroup);
+  scan_slices_.set(slices, chunk, slice_counts_, totals_).launch(chunks, kRasterGroup);
   const std::size_t groups = (entry_room() + CLPV_ENTRY_GROUP - 1) / CLPV_ENTRY_GROUP;
   bin_entries_.set(counts_, list_room(), entry_room(), entries_, slice_counts_, binned_)
       .launch(groups * kRasterGroup, kRasterGroup);

@@ -34,11 +34,6 @@ void SweepVolumes::launch(Kernel& kernel, int channels) const {
   kernel.launch({tiles, tiles, slices}, {tile_ == 1 ? std::min(tiles, kRowGroup) : 1, 1, 1});
 }
 
-Buffer SweepVolumes::make_bordered(std::size_t count, const char* what) const {
-  const std::size_t numbers = count * CLPV_SWEEP_BORDERED_VOLUME_OF(std::size_t(grid_));
-  return zeroed_buffer(session_, numbers * number_bytes(format_.storage), what);
-}
-
 Buffer SweepVolumes::make(std::size_t count, const char* what) const {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   const std::size_t numbers = count * CLPV_SWEEP_VOLUME_OF(std::size_t(grid_));

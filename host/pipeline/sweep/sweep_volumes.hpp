@@ -23,10 +23,9 @@ class SweepVolumes {
   /// Launches a kernel over the tiles of all slices and `channels` channels.
   void launch(Kernel& kernel, int channels) const;
 
-  /// Allocates `count` zeroed volumes, without and with a border. Throws Error(device)
-  /// "unsupported: ..." for more than kernels can address.
+  /// Allocates `count` zeroed volumes. Throws Error(device) "unsupported: ..." for more than
+  /// kernels can address.
   Buffer make(std::size_t count, const char* what) const;
-  Buffer make_bordered(std::size_t count, const char* what) const;
 
  private:
   Session& session_;
