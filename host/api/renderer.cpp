@@ -2,6 +2,7 @@
 // Implements clpv/renderer.hpp and clpv/pathtrace.hpp.
 #include "clpv/renderer.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -29,13 +30,14 @@ struct Points {
 /// "irradiance", "normal".
 Points checked_points(const char* function, const char* vector, Vectors positions,
                       Vectors vectors) {
-  if (positions.size() != vectors.size()) {
-    throw Error(ExitCode::usage, "{}: found {} positions and {} {}s, allowed: equal numbers",
-                function, positions.size(), vectors.size(), vector);
+  if (positions.size() != vectors.size() && vectors.size() != 1) {
+    throw Error(ExitCode::usage,
+                "{}: found {} positions and {} {}s, allowed: equal numbers, or one {}", function,
+                positions.size(), vectors.size(), vector, vector);
   }
   Points points;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const auto &p = positions[i], &v = vectors[i];
+    const auto &p = positions[i], &v = vectors[vectors.size() == 1 ? 0 : i];
     const glm::dvec3 along(v[0], v[1], v[2]);
     const double length = glm::length(along);
     if (!(length > 0 && std::isfinite(length) && std::isfinite(p[0] + p[1] + p[2]))) {
@@ -111,9 +113,9 @@ void check_sides(const char* what, int width, int height) {
   throw Error(ExitCode::usage, "{}: found {} x {}, allowed: 1..{}", what, width, height, kMaxSide);
 }
 
-SceneCamera camera_at(const Vec3& eye) {
+SceneCamera camera_at(const char* function, const Vec3& eye) {
   return scene_camera(Camera{.eye = eye, .target = {eye[0], eye[1], eye[2] - 1}},
-                      rejected_in("light"));
+                      rejected_in(function));
 }
 
 std::vector<std::array<float, 3>> Renderer::State::light(const SceneCamera& camera,
@@ -145,13 +147,15 @@ Renderer::State& Renderer::state() const {
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
+Image Renderer::render(View view, const CameraChoice& camera, double seconds,
+                       const ImageSize& size) {
   check_view(view);
+  if (size) check_sides("size", (*size)[0], (*size)[1]);
   State& state = this->state();
   const std::lock_guard lock(state.mutex);
   const std::shared_lock scene_stays(state.file.contents().mutex);
   const Clock::time_point started = Clock::now();
-  state.render(camera, seconds);
+  state.render(camera, seconds, size);
   Image image = state.image(view);
   state.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - started).count();
   return image;
@@ -160,8 +164,9 @@ Image Renderer::render(View view, const CameraChoice& camera, double seconds) {
 Image Renderer::show(View view) {
   check_view(view);
   const std::lock_guard lock(state().mutex);
+  const std::shared_lock scene_stays(state().file.contents().mutex);
   state().require_image("show");
-  if (view == View::cells) state().require_light("show");
+  if (view == View::cells) state().light_shown();
   return state().image(view);
 }
 
@@ -180,11 +185,25 @@ std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const
   if (surfaces.positions.empty())
     throw Error(ExitCode::usage,
                 "light: found depths and an eye, allowed: positions, or depths and a camera");
-  const SceneCamera camera = camera_at(eye);
+  const SceneCamera camera = camera_at("light", eye);
   const std::lock_guard lock(state().mutex);
   const std::shared_lock scene_stays(state().file.contents().mutex);
   state().pose(seconds);
   return state().light(camera, surfaces);
+}
+
+void Renderer::update(const Vec3& eye, double seconds) {
+  const SceneCamera camera = camera_at("update", eye);
+  const std::lock_guard lock(state().mutex);
+  const std::shared_lock scene_stays(state().file.contents().mutex);
+  state().update(camera, seconds);
+}
+
+void Renderer::release() {
+  const std::lock_guard lock(state().mutex);
+  state().frame.reset();
+  state().metadata.clear();
+  state().lit = false;
 }
 
 std::array<double, 3> Renderer::irradiance(const Vec3& position, const Vec3& normal) {
@@ -235,9 +254,7 @@ std::vector<LightVolume> Renderer::volumes() {
 }
 
 std::string Renderer::description() const {
-  const RenderOptions& options = state().options;  // which never change
-  return fmt::format("{} x {}, basis {}, transport {}, on {}", options.width, options.height,
-                     options.basis, name_of(options.transport), state().session.device().name);
+  return state().description;
 }
 
 Stats Renderer::stats() const {
@@ -260,19 +277,32 @@ Stats Renderer::stats() const {
 
 Image pathtrace(const Scene& scene, View view, const CameraChoice& camera,
                 const TraceOptions& options) {
-  check_view(view);
-  require_traceable(view);
+  return pathtrace(scene, std::vector{view}, camera, options);
+}
+
+Image pathtrace(const Scene& scene, const std::vector<View>& views, const CameraChoice& camera,
+                const TraceOptions& options) {
+  if (views.empty()) throw Error(ExitCode::usage, "view: found none, allowed: at least one");
+  for (const View view : views) {
+    check_view(view);
+    require_traceable(view);
+    if (std::ranges::count(views, view) > 1)
+      throw Error(ExitCode::usage, "view: found '{}' twice, allowed: once", name_of(view));
+  }
   check_sides("width and height", options.width, options.height);
   const std::shared_lock scene_stays(scene.contents().mutex);
   PosedScene posed(scene);
   posed.pose(options.seconds);
   const SceneCamera chosen = posed.camera(camera);
-  const std::uint32_t samples = needs_paths(view) ? options.samples : 1;
+  const std::uint32_t samples = std::ranges::any_of(views, needs_paths) ? options.samples : 1;
   const pathtracer::TracedImage traced = pathtracer::trace_paths(
       posed.scene(), posed.scene().lights_for(chosen),
       camera_view(chosen, options.width, options.height),
       {options.bounces, samples, options.noise, options.seed, options.threads}, options.progress);
-  Image image = pathtracer::traced_view(traced, view);
+  Image image;
+  for (const View view : views)
+    append_layer(image, pathtracer::traced_view(traced, view),
+                 views.size() == 1 ? std::string() : std::string(name_of(view)));
   image.metadata = {{"camera", chosen.name},
                     {"time", fmt::format("{}", options.seconds)},
                     {"spp_traced", fmt::format("{}", traced.samples)},

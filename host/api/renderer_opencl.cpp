@@ -45,17 +45,19 @@ GivenLight checked(const Session& session, const opencl::GBuffer& surfaces) {
 Renderer::Renderer(const Scene& scene, const Options& options, const opencl::Queue& queue)
     : state_(std::make_unique<State>(scene, options, given_queue(queue.context, queue.queue))) {}
 
-opencl::Frame Renderer::enqueue(View view, const CameraChoice& camera, double seconds) {
+opencl::Frame Renderer::enqueue(View view, const CameraChoice& camera, double seconds,
+                                const ImageSize& size) {
   check_view(view);
+  if (size) check_sides("size", (*size)[0], (*size)[1]);
   if (view == View::cells)
     throw Error(ExitCode::usage,
                 "enqueue: found view 'cells', which the host paints, allowed: the others");
   State& state = this->state();
   const std::lock_guard lock(state.mutex);
   const std::shared_lock scene_stays(state.file.contents().mutex);
-  state.render(camera, seconds, true);
+  state.render(camera, seconds, size, true);
   opencl::Frame frame;
-  frame.width = state.options.width, frame.height = state.options.height;
+  frame.width = state.frame->options().width, frame.height = state.frame->options().height;
   frame.image = state.frame->image(view).handle()();
   frame.irradiance = state.frame->irradiance().handle()();
   frame.depth = state.frame->seen().depth.handle()();
@@ -86,7 +88,7 @@ opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Vec
   if (surfaces.positions == nullptr)
     throw Error(ExitCode::usage,
                 "light: found no positions for an eye, allowed: positions, or depths and a camera");
-  const SceneCamera camera = camera_at(eye);
+  const SceneCamera camera = camera_at("light", eye);
   const std::lock_guard lock(state().mutex);
   const std::shared_lock scene_stays(state().file.contents().mutex);
   const GivenLight given = checked(state().session, surfaces);

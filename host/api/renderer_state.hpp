@@ -21,32 +21,45 @@ namespace clpv {
 void check_view(View view);
 /// Throws Error(usage) unless both are from 1 to 16384. `what` names them.
 void check_sides(const char* what, int width, int height);
-/// A camera of which only the eye counts. Throws Error(usage).
-SceneCamera camera_at(const Vec3& eye);
+/// A camera of which only the eye counts. Throws Error(usage), which names the function.
+SceneCamera camera_at(const char* function, const Vec3& eye);
 
 struct Renderer::State {
   std::mutex mutex;  ///< held by each call
   Scene file;
   std::shared_lock<std::shared_mutex> scene_stays;  ///< while the frame is made
   PosedScene posed;
-  RenderOptions options;
+  OptionValues given;
+  RenderOptions options;  ///< `given` for the scene
   Session session;
+  std::string description;  ///< never changes
   std::optional<Frame> frame;
   unsigned rebuilds;                            ///< of the frame (Scene::Contents)
   std::map<std::string, std::string> metadata;  ///< of the last frame's images; empty before it
-  bool lit = false;  ///< the cascades have the light of the last render() or light()
+  bool lit = false;  ///< the cascades have the light of the last render(), light() or update()
+  struct Shown {     ///< what the last images are of
+    SceneCamera camera;
+    double seconds;
+    unsigned changes;  ///< Scene::Contents::changes
+  };
+  std::optional<Shown> shown = {};
+  bool lit_for_shown = false;  ///< the cascades have its light
   double frame_ms = 0;
 
   /// `where`: a Device, or a GivenQueue.
   template <typename Where>
-  State(const Scene& scene_file, const Options& given, Where where)
+  State(const Scene& scene_file, const Options& set, Where where)
       : file(scene_file),
         scene_stays(file.contents().mutex),
         posed(file),
-        options(resolve_options(given.given(), posed.scene())),
+        given(set.given()),
+        options(resolve_options(given, posed.scene())),
         session(where, ProgramCache::of_user(device_of(where))),
         rebuilds(file.contents().rebuilds) {
     frame.emplace(session, posed.scene(), options);
+    description =
+        fmt::format("{} x {}, basis {}, transport {}, on {}", options.width, options.height,
+                    options.basis, name_of(options.transport), session.device().name);
     scene_stays.unlock();
   }
 
@@ -60,12 +73,25 @@ struct Renderer::State {
   void require_image(const char* what) const { require(!metadata.empty(), what); }
   void require_light(const char* what) const { require(lit, what); }
 
+  /// Gives the cascades the light of the last images again, after other calls gave them another.
+  void light_shown() {
+    require_image("show");
+    if (lit && lit_for_shown) return;
+    if (shown->changes != file.contents().changes)
+      throw Error(ExitCode::usage,
+                  "show: found view 'cells' of a scene that changed since its render, allowed: the "
+                  "other views, or after a render");
+    update(shown->camera, shown->seconds);
+    lit_for_shown = true;
+  }
+
   /// Brings the scene and the frame to the time `seconds`.
   void pose(double seconds) {
-    lit = false;
+    lit = lit_for_shown = false;
     const bool moved = posed.pose(seconds);
-    if (rebuilds != file.contents().rebuilds) {
+    if (!frame || rebuilds != file.contents().rebuilds) {
       metadata.clear();
+      options = resolve_options(given, posed.scene());  // cascades may fit the scene
       frame.emplace(session, posed.scene(), options);
       rebuilds = file.contents().rebuilds;
     } else if (moved) {
@@ -86,16 +112,27 @@ struct Renderer::State {
   opencl::Event enqueue_light(const SceneCamera& camera, const GivenPixels& pixels,
                               const Buffer& receives);
 
+  /// Lights the cascades alone.
+  void update(const SceneCamera& camera, double seconds) {
+    pose(seconds);
+    frame->draw_ahead(false);
+    frame->update(camera);
+    lit = true;
+  }
+
   /// Renders a frame without an image. Sets the metadata of its images.
   /// `ahead`: does not wait for the device (Rasterizer::draw_ahead).
-  void render(const CameraChoice& camera, double seconds, bool ahead = false) {
+  void render(const CameraChoice& camera, double seconds, const ImageSize& size,
+              bool ahead = false) {
     metadata.clear();
     pose(seconds);
-    frame->draw_ahead(ahead);
     const SceneCamera chosen = posed.camera(camera);
+    frame->resize(size ? (*size)[0] : options.width, size ? (*size)[1] : options.height);
+    frame->draw_ahead(ahead);
     frame->render(chosen);
-    lit = true;
-    for (const OptionDescription& option : list_options(options))
+    lit = lit_for_shown = true;
+    shown = {chosen, seconds, file.contents().changes};
+    for (const OptionDescription& option : list_options(frame->options()))
       metadata[option.name] = option.value;
     metadata["centres"] = std::filesystem::path(options.centres).filename().string();
     metadata["camera"] = chosen.name;

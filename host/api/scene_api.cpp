@@ -62,6 +62,7 @@ void Scene::set_cameras(const std::vector<Camera>& cameras) {
   std::vector<SceneCamera> made =
       converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
   const std::lock_guard lock(contents_->mutex);
+  ++contents_->changes;
   contents_->cameras = made;
   contents_->moving.set_cameras(std::move(made));
 }
@@ -70,6 +71,7 @@ void Scene::set_lights(const std::vector<Light>& lights) {
   std::vector<SceneLight> made =
       converted<SceneLight>("lights", lights, bounds::kLights, scene_light);
   const std::lock_guard lock(contents_->mutex);
+  ++contents_->changes;
   contents_->lights = made;
   contents_->moving.set_lights(std::move(made));
 }
@@ -85,7 +87,7 @@ void Scene::set_medium(const std::optional<Medium>& medium) {
   if (medium) made = scene_medium(*medium, rejected_in("medium"));
   const std::lock_guard lock(contents_->mutex);
   contents_->moving.set_medium(made);
-  ++contents_->rebuilds;
+  ++contents_->rebuilds, ++contents_->changes;
 }
 
 int Scene::add_mesh(const Mesh& mesh, const Transform& transform) {
@@ -167,7 +169,7 @@ SceneCamera PosedScene::camera(const CameraChoice& choice) const {
   const Camera& given = std::get<Camera>(choice);
   SceneCamera made = scene_camera(given, rejected_in("camera"));
   made.name = text_of(given);
-  if (scene().lights_for(made).empty() && !made.light.empty()) {
+  if (!made.light.empty() && !scene().has_light(made.light)) {
     throw Error(ExitCode::usage, "camera: light: found '{}', allowed: a light of the scene",
                 made.light);
   }

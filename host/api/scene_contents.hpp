@@ -20,10 +20,11 @@ struct Scene::Contents {
   std::optional<std::vector<SceneLight>> lights;
   unsigned rebuilds = 0;    ///< changes after which frames allocate their memory again
   unsigned geometries = 0;  ///< changes of meshes
+  unsigned changes = 0;     ///< of anything
 
   /// Counts a change of meshes.
   void changed(bool rebuilds_frames) {
-    ++geometries;
+    ++geometries, ++changes;
     if (rebuilds_frames) ++rebuilds;
   }
 

@@ -83,6 +83,8 @@ LocalPrimitive primitive_of(const Mesh& mesh, const SceneData& scene) {
     if (array.count() > 0) check_length(kAdd, name, array.count(), mesh.positions.size());
     return array.count() > 0 ? &array : nullptr;
   };
+  if (mesh.material.texture && mesh.uvs.empty() && !mesh.positions.empty())
+    reject(kAdd, "uvs", "none beside a texture", "one for each vertex");
   PrimitiveArrays arrays{&positions, given(normals, "normals"), given(uvs, "uvs"),
                          given(colours, "colours"), &corners};
   arrays.smooth = mesh.smooth;
@@ -355,12 +357,12 @@ Material::Texture Material::Texture::of(const Image& image) {
     const float* in = &image.pixels[p * image.channels.size()];
     for (const auto c : {r, g, b, a}) {
       const float value = c ? in[*c] : 1;
-      if (!std::isfinite(value)) {
+      if (!(value >= 0 && value <= 1)) {  // rejects NaN too
         reject("texture", fmt::format("[{}, {}]", p / image.width, p % image.width),
-               fmt::format("{}", value), "finite numbers");
+               fmt::format("{}", value), "0 to 1");
       }
       const bool encode = c != a && image.encoding == Encoding::linear;
-      made.rgba.push_back(byte(encode ? srgb_encode(std::clamp(value, 0.0f, 1.0f)) : value));
+      made.rgba.push_back(byte(encode ? srgb_encode(value) : value));
     }
   }
   return made;

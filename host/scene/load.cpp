@@ -110,7 +110,7 @@ void check_camera_lights(const SceneData& scene) {
   std::vector<std::string> names;
   for (const SceneLight& light : scene.lights) names.push_back("'" + light.name + "'");
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-    if (!scene.cameras[i].light.empty() && scene.lights_for(scene.cameras[i]).empty()) {
+    if (!scene.cameras[i].light.empty() && !scene.has_light(scene.cameras[i].light)) {
       reject(scene.path, fmt::format("/cameras/{}/light", i), "'" + scene.cameras[i].light + "'",
              names.empty() ? "none, since there are no lights"
                            : fmt::format("{}", fmt::join(names, ", ")));
@@ -220,18 +220,11 @@ void MovingScene::set_views(SceneViews views) {
   if (views.lights) scene_.lights = std::move(*views.lights);
 }
 
-void MovingScene::forget_missing_lights() {
-  for (SceneCamera& camera : scene_.cameras) {
-    if (scene_.lights_for(camera).empty()) camera.light.clear();
-  }
-}
-
 void MovingScene::set_cameras(std::vector<SceneCamera> cameras) {
   motion_.cameras.clear();
   description_.cameras.reset();
   scene_.cameras = std::move(cameras);
   std::erase(scene_.notes, kAddedCamera);
-  forget_missing_lights();
   if (scene_.start_reach) {
     scene_.start_reach.reset();
     scene_.start_reach = scene_.reach();
@@ -245,7 +238,6 @@ void MovingScene::set_lights(std::vector<SceneLight> lights) {
   scene_.light_scale = 1;
   std::erase(scene_.notes, kAddedSun);
   std::erase(scene_.notes, kBlenderUnits);
-  forget_missing_lights();
 }
 
 void MovingScene::set_light_scale(double scale) {
@@ -355,7 +347,6 @@ void MovingScene::pose(double seconds) {
   if (!motion_.meshes.empty()) find_bounds(scene_);
   if (!description_.moves()) return;
   set_views(views_at(description_, seconds));
-  forget_missing_lights();
 }
 
 SceneData load_scene(const std::filesystem::path& path, const std::filesystem::path& model) {

@@ -68,7 +68,6 @@ class MovingScene {
                        Notes& notes);
   void set_views(SceneViews views);
   void add_defaults(bool has_lights);
-  void forget_missing_lights();
   /// Updates what depends on the meshes. Returns fit_medium().
   bool meshes_changed();
   /// Fits a medium without a box of its own to the scene. Returns true if its box changed.

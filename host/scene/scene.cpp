@@ -39,10 +39,15 @@ const SceneCamera& SceneData::camera(const std::string& name) const {
               fmt::join(names, ", "));
 }
 
+bool SceneData::has_light(const std::string& name) const {
+  return std::ranges::find(lights, name, &SceneLight::name) != lights.end();
+}
+
 std::vector<SceneLight> SceneData::lights_for(const SceneCamera& camera) const {
+  const bool one = !camera.light.empty() && has_light(camera.light);
   std::vector<SceneLight> shining;
   for (const SceneLight& light : lights) {
-    if (!camera.light.empty() && light.name != camera.light) continue;
+    if (one && light.name != camera.light) continue;
     shining.push_back(light);
     for (float& channel : shining.back().data.intensity) channel *= light_scale;
     if (medium) shining.back().data.medium = *medium;

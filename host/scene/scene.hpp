@@ -90,7 +90,9 @@ struct SceneData {
   /// names.
   const SceneCamera& camera(const std::string& name) const;
 
-  /// Lights for a camera, the one it names or all, scaled and in the scene's medium.
+  bool has_light(const std::string& name) const;
+  /// Lights for a camera, the one it names if there is one, else all, scaled and in the scene's
+  /// medium.
   std::vector<SceneLight> lights_for(const SceneCamera& camera) const;
 };
 

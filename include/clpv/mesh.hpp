@@ -20,8 +20,8 @@ struct Material {
     std::uint32_t width = 0, height = 0;  ///< 1 to 16384
     std::vector<std::uint8_t> rgba;       ///< 4 * width * height
 
-    /// Encodes an image with channels R, G, B and optionally A, clamped to 0..1. Throws
-    /// Error(bad_input) for other channels and for numbers that are not finite.
+    /// Encodes an image with channels R, G, B and optionally A. Throws Error(bad_input) for other
+    /// channels and for numbers outside of 0..1.
     static Texture of(const Image& image);
     bool operator==(const Texture&) const = default;
   };
@@ -29,7 +29,7 @@ struct Material {
   std::array<double, 4> base_colour{
       1, 1, 1, 1};  ///< linear albedo and alpha, 0..1; times texture and vertex colour
   std::array<double, 3> emission{};  ///< radiance of the front [W/m^2/sr], 0..1e9
-  std::optional<Texture> texture{};
+  std::optional<Texture> texture{};  ///< needs Mesh::uvs
   /// 0..1: where alpha is less, there is a hole; none: no holes.
   std::optional<double> alpha_cutoff{};
   bool double_sided = false;  ///< visible, and emissive, from both sides

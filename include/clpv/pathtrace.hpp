@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "clpv/image.hpp"
 #include "clpv/renderer.hpp"
@@ -28,6 +29,10 @@ struct TraceOptions {
 /// `spp_traced`, `noise_reached` and the camera. Throws Error: usage (camera, options out of
 /// range), bad_input (a scene without surface or light). Thread-safe.
 Image pathtrace(const Scene& scene, View view, const CameraChoice& camera = {},
+                const TraceOptions& options = {});
+/// Several views of the same paths as layers: channel "indirect.R", as of `clpv pathtrace`. One
+/// view has no layer. Throws Error(usage) also for no view and for one given twice.
+Image pathtrace(const Scene& scene, const std::vector<View>& views, const CameraChoice& camera = {},
                 const TraceOptions& options = {});
 
 }  // namespace clpv

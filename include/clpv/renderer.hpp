@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,6 +38,9 @@ class Event;
 /// full includes. cells: irradiance, with the cells of the finest cascade as small spheres that
 /// show the irradiance on surfaces of every direction there; pathtrace() has no such view.
 enum class View { full, direct, indirect, irradiance, albedo, normal, depth, medium, cells };
+
+/// Width and height of an image, 1 to 16384; none: options width and height.
+using ImageSize = std::optional<std::array<int, 2>>;
 
 /// Cost of the last frame.
 struct Stats {
@@ -102,14 +106,17 @@ class Renderer {
 
   /// Renders one frame at time `seconds` [s] through a camera of the scene, by name, or any other.
   /// Cascades surround its eye; for a model without a scene file their size is that for the scene's
-  /// cameras unless option cascade-size is set. Returns a linear image of --width x --height pixels
-  /// with channels R, G, B, A, all options in its metadata. A frame does not depend on earlier
-  /// frames. Throws Error: usage (no such camera, a bad one, seconds out of range), bad_input
-  /// (animation leads out of bounds), run_time (memory).
-  Image render(View view = View::full, const CameraChoice& camera = {}, double seconds = 0);
+  /// cameras unless option cascade-size is set. Returns a linear image of `size` with channels R,
+  /// G, B, A, all options in its metadata. A frame does not depend on earlier frames; one of
+  /// another size than the last allocates its images again. Throws Error: usage (no such camera, a
+  /// bad one, seconds or size out of range), bad_input (animation leads out of bounds), run_time
+  /// (memory).
+  Image render(View view = View::full, const CameraChoice& camera = {}, double seconds = 0,
+               const ImageSize& size = {});
 
-  /// Another view of the last frame, without rendering it again. Throws Error(usage) before the
-  /// first frame.
+  /// Another view of the last frame, without rendering it again. View::cells after light() or
+  /// update() lights its cascades again. Throws Error(usage) before the first frame, and for cells
+  /// then if the scene changed.
   Image show(View view);
 
   /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on each pixel of
@@ -125,20 +132,29 @@ class Renderer {
   std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const Vec3& eye,
                                           double seconds = 0);
 
+  /// Lights cascades about `eye` [m] with all lights of the scene at time `seconds` [s], without a
+  /// frame: for irradiance(), radiance(), volumes() and device_volumes(). Throws as light().
+  void update(const Vec3& eye, double seconds = 0);
+
+  /// Frees the device's memory. The next call that lights or renders allocates it again; compiled
+  /// programs stay.
+  void release();
+
   /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on a surface at
   /// `position` [m] with `normal` (of any length), visible or not. Uses the volumes of the last
-  /// frame or light(), without option near; 0 outside of its cascades. Computed on the device.
-  /// Throws Error(usage) before the first frame, and for a position that is not finite or a normal
-  /// of length 0.
+  /// frame, light() or update(), without option near; 0 outside of its cascades. Computed on the
+  /// device. Throws Error(usage) before the first frame, and for a position that is not finite or a
+  /// normal of length 0.
   std::array<double, 3> irradiance(const Vec3& position, const Vec3& normal);
 
-  /// The same for many points. Throws Error(usage) also for different numbers of positions and
-  /// normals, with the first bad index.
+  /// The same for many points, with a normal for each or one for all. Throws Error(usage) also for
+  /// other numbers of normals, with the first bad index.
   std::vector<std::array<float, 3>> irradiance(std::span<const std::array<float, 3>> positions,
                                                std::span<const std::array<float, 3>> normals);
 
   /// Returns the radiance of indirect light [W/m^2/sr], red, green and blue, at each of `positions`
-  /// [m], of light that travels along the direction (of any length) of the same index: what an eye
+  /// [m], of light that travels along the direction (of any length) of the same index, or the only
+  /// one: what an eye
   /// there sees that looks the other way. Interpolates the volumes of the last frame, without
   /// option near; 0 outside of its cascades. Negative where nine harmonics undershoot. Computed on
   /// the device. Throws Error(usage) before the first frame, without transport sweep, for layout
@@ -152,8 +168,8 @@ class Renderer {
 
   /// Like render(), but enqueues the frame and returns its device memory without waiting for all of
   /// it (docs/api.md says for what it waits). Throws Error(usage) also for View::cells.
-  opencl::Frame enqueue(View view = View::full, const CameraChoice& camera = {},
-                        double seconds = 0);
+  opencl::Frame enqueue(View view = View::full, const CameraChoice& camera = {}, double seconds = 0,
+                        const ImageSize& size = {});
   /// Like light(), from and to device memory. Throws Error(usage) also for an object that is no
   /// buffer of the renderer's context or is too small.
   opencl::Event enqueue_light(const opencl::GBuffer& surfaces, const CameraChoice& camera,

@@ -79,8 +79,8 @@ class Scene {
 
   /// Replace all cameras or all lights; they are then no longer animated. To change or add one,
   /// change the list of cameras() or lights(). Frames recompute only what depends on a changed
-  /// light. A camera whose only light is gone gets all lights. Throw Error(usage): see Camera and
-  /// Light; no camera, more than 1024 cameras or 64 lights, two of one name.
+  /// light. A camera whose only light the scene has not got has all lights. Throw Error(usage): see
+  /// Camera and Light; no camera, more than 1024 cameras or 64 lights, two of one name.
   void set_cameras(const std::vector<Camera>& cameras);
   void set_lights(const std::vector<Light>& lights);
 

@@ -70,16 +70,41 @@ Frame::Frame(Session& session, const SceneData& scene, const RenderOptions& opti
       rasterizer_(session, buffers_),
       gatherer_(session, gathered(), options.transport, gather_options(options, buffers_.medium)),
       shader_(session, buffers_.medium),
+      near_step_(near_options(options).step),
+      light_step_(near_step_),
       lights_(session, scene, buffers_, rasterizer_, options_),
       cascades_(session, scene, buffers_, options_, *basis_, swept_.get(), transport_, lights_) {
   if (options.traces_near())
     near_.emplace(session, gathered(), scene, buffers_, near_options(options));
   if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options));
-  const std::size_t pixels = std::size_t(options.width) * options.height;
-  irradiance_ = session.buffer(pixels * 4 * sizeof(float), "irradiance");
-  image_ = session.buffer(pixels * 4 * sizeof(float), "shaded image");
+  make_images();
   session.build_described();
   if (near_) near_->finish();
+}
+
+void Frame::make_images() {
+  const std::size_t bytes = std::size_t(options_.width) * options_.height * sizeof(cl_float4);
+  irradiance_ = {}, image_ = {};  // first: memory may not suffice for both sizes
+  irradiance_ = session_.buffer(bytes, "irradiance");
+  image_ = session_.buffer(bytes, "shaded image");
+}
+
+void Frame::resize(int width, int height) {
+  if (width == options_.width && height == options_.height && image_.exists()) return;
+  options_.width = width, options_.height = height;
+  camera_surface_.reset();
+  near_hits_.invalidate();
+  make_images();
+}
+
+void Frame::prepare_near(int step) {
+  if (!options_.traces_near() || (near_ && near_step_ == step)) return;
+  NearOptions options = near_options(options_);
+  options.step = near_step_ = step;
+  near_hits_.invalidate();
+  near_.emplace(session_, gathered(), scene_, buffers_, options);
+  session_.build_described();
+  near_->finish();
 }
 
 void Frame::scene_moved() {
@@ -153,6 +178,7 @@ CacheKey Frame::seen_by_rays(const std::vector<ClpvGrid>& grids) const {
 
 void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
   session_.timeline().clear();  // otherwise the events of all frames would accumulate
+  prepare_near(near_options(options_).step);
   const std::vector<ClpvGrid> grids = grids_about(camera.eye);
   lights_.prepare(camera, grids);
   timed(Pass::rasterize_camera, [&] { rasterize_camera(camera); });
@@ -170,7 +196,7 @@ void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
   session_.timeline().enqueued();
 }
 
-const Buffer& Frame::light(const SceneCamera& camera, const GivenPixels& pixels) {
+void Frame::enqueue_light(const SceneCamera& camera) {
   if (blocked_by_view(options_)) {
     throw Error(ExitCode::usage,
                 "light: found blockers '{}', which a frame's G-buffer makes, allowed: scene",
@@ -182,6 +208,17 @@ const Buffer& Frame::light(const SceneCamera& camera, const GivenPixels& pixels)
   lights_.rasterize_shadows();
   cascades_.prepare(grids, nullptr);
   for (int cascade = options_.cascades; cascade-- > 0;) cascades_.update(cascade, {});
+}
+
+void Frame::update(const SceneCamera& camera) {
+  enqueue_light(camera);
+  timed(Pass::gather, [&] { gatherer_.take(light()); });
+  session_.timeline().enqueued();
+}
+
+const Buffer& Frame::light(const SceneCamera& camera, const GivenPixels& pixels) {
+  prepare_near(light_step_);
+  enqueue_light(camera);
   if (!given_) given_.emplace(session_);
   const Surface& surface = given_->take(
       camera_view(camera, static_cast<int>(pixels.width), static_cast<int>(pixels.height)), pixels);

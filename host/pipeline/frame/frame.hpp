@@ -46,11 +46,17 @@ class Frame {
   /// It waits for the device, so omit it in timed frames.
   void render(const SceneCamera& camera, const CascadeObserver& observer = {});
 
+  /// Enqueues the light of cascades about the camera's eye, as render() without an image. Throws
+  /// Error(usage) for blockers that the frame's G-buffer makes.
+  void update(const SceneCamera& camera);
+
   /// Enqueues the irradiance of indirect light, with the near field, on surfaces that a caller
   /// gives, from cascades about the camera's eye. As render(), but makes no image. Returns float4
-  /// per pixel [W/m^2], 0 without a surface; valid until the next call. Throws Error(usage) for
-  /// blockers that the frame's G-buffer makes.
+  /// per pixel [W/m^2], 0 without a surface; valid until the next call. Throws as update().
   const Buffer& light(const SceneCamera& camera, const GivenPixels& pixels);
+
+  /// Changes the size of images. The next render() is that of a Frame of this size.
+  void resize(int width, int height);
 
   /// For benchmarks. After invalidate_light() the next frame recomputes all lighting, including
   /// shadow maps and what rays of the near field hit. After invalidate() it recomputes everything,
@@ -58,7 +64,7 @@ class Frame {
   void invalidate_light();
   void invalidate();
 
-  /// Light of the last render() or light(camera, pixels); empty before the first one.
+  /// Light of the last render(), update() or light(camera, pixels); empty before the first one.
   GatheredLight light() const { return cascades_.light(); }
 
   /// G-buffer of the last render's camera. Undefined before the first render.
@@ -115,6 +121,10 @@ class Frame {
   /// depend on.
   void gather(const Surface& surface, CacheKey rays, Buffer& irradiance);
   void rasterize_camera(const SceneCamera& camera);
+  void make_images();
+  /// Gives the near field that many pixels of the camera per traced pixel, along each axis.
+  void prepare_near(int step);
+  void enqueue_light(const SceneCamera& camera);
   void require_light(const char* what) const;
   /// Key of what the near field's rays depend on.
   CacheKey seen_by_rays(const std::vector<ClpvGrid>& grids) const;
@@ -130,6 +140,7 @@ class Frame {
   Gatherer gatherer_;
   Shader shader_;
   std::optional<NearField> near_;      ///< none: off
+  int near_step_, light_step_;         ///< of near_; of light()
   std::optional<MediumLight> medium_;  ///< none: no medium
   FrameLights lights_;
   FrameCascades cascades_;

@@ -79,9 +79,7 @@ Kernel& Gatherer::gather_kernel(std::size_t cascades, bool points) {
   return gather_.try_emplace(key, session_, source, "gather").first->second;
 }
 
-void Gatherer::require_fit(const Surface& camera, const GatheredLight& light) const {
-  if (camera.format != RsmFormat::float32)
-    throw Error(ExitCode::run_time, "gather: the camera's view is not float32");
+void Gatherer::require_fit(const GatheredLight& light) const {
   if (light.accumulated.size() != light.grids.size()) {
     throw Error(ExitCode::run_time, "gather: {} volumes for {} cascades", light.accumulated.size(),
                 light.grids.size());
@@ -113,18 +111,24 @@ void Gatherer::pack(const GatheredLight& light) {
   }
 }
 
-void Gatherer::gather(const Surface& camera, const GatheredLight& light, Buffer& irradiance) {
-  require_fit(camera, light);
+void Gatherer::take(const GatheredLight& light) {
+  require_fit(light);
   reserve(light.grids.size());
   session_.write(grids_, light.grids);
   cascades_ = light.grids.size();
   scale_ = light.scale;
   occluded_ = light.occluded;
+  if (packs()) pack(light);
+}
+
+void Gatherer::gather(const Surface& camera, const GatheredLight& light, Buffer& irradiance) {
+  if (camera.format != RsmFormat::float32)
+    throw Error(ExitCode::run_time, "gather: the camera's view is not float32");
+  take(light);
   Kernel& kernel = gather_kernel(cascades_, camera.points());
   kernel.set(camera.view, camera.places(), camera.normal, grids_, cascades_, 1 / scale_,
              irradiance);
   if (packs()) {
-    pack(light);
     kernel.add(packed_);
     if (sees()) kernel.add(occluded_);
   } else {

@@ -51,7 +51,11 @@ class Gatherer {
   /// Throws Error(run_time) if counts or shapes do not match, or device memory does not suffice.
   void gather(const Surface& camera, const GatheredLight& light, Buffer& irradiance);
 
-  /// Grids and packed volumes (kernels/gather/gather_packed.h) of the last gather() on the device.
+  /// Takes the light without gathering it: for what follows below. Throws as gather().
+  void take(const GatheredLight& light);
+
+  /// Grids and packed volumes (kernels/gather/gather_packed.h) of the last gather() or take() on
+  /// the device.
   const Buffer& grids() const { return grids_; }
   cl_uint cascades() const { return cascades_; }
 
@@ -72,7 +76,7 @@ class Gatherer {
  private:
   bool sees() const { return options_.gather == Gathering::visible; }
   Kernel& gather_kernel(std::size_t cascades, bool points);
-  void require_fit(const Surface& camera, const GatheredLight& light) const;
+  void require_fit(const GatheredLight& light) const;
   void reserve(std::size_t cascades);
   void pack(const GatheredLight& light);
 
