@@ -7,6 +7,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from clpv import draw as draw, score as score, search as search, view as view
+
 _Path = str | os.PathLike[str]
 _Vector = Sequence[float] | NDArray[Any]
 _View = Literal["full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "medium",
@@ -25,8 +27,8 @@ class InputError(Error, ValueError):
 class ResourceError(Error, RuntimeError):
     """Out of memory, or a file that cannot be written."""
 
-class UsageError(Error, ValueError):
-    """Unknown option or value out of range."""
+class UsageError(Error, ValueError, TypeError):
+    """Unknown option, value out of range, or argument of another kind; a ValueError and a TypeError."""
 
 class ValidationError(Error, RuntimeError):
     """A result differs from its reference."""
@@ -272,7 +274,7 @@ class Light:
         """replace(**changes): a copy with other values of some arguments."""
 
 class Material:
-    """Diffuse surface of a mesh. Immutable. Values are checked where it is used.
+    """Diffuse surface of a mesh. Immutable; replace() makes another. Values are checked where it is used.
 
     base_colour: linear red, green, blue and optionally alpha, or one number, 0 to 1; emission: radiance of the front
     [W/m^2/sr], three numbers or one; texture: array (height, width, 4), uint8 with sRGB-encoded colour, or floats, linear;
@@ -289,6 +291,8 @@ class Material:
     @property
     def texture(self) -> NDArray[np.uint8] | None:
         """A copy as uint8 array (height, width, 4), or None."""
+    def replace(self, **changes: Any) -> Material:
+        """replace(**changes): a copy with other values of some arguments."""
     @property
     def alpha_cutoff(self) -> float | None:
         ...
@@ -328,15 +332,22 @@ class Renderer:
     Results that do not change are cached from frame to frame. Calls from several threads run one after the other.
     Raises UsageError, DeviceError, ResourceError.
     """
-    def __init__(self, scene: Scene, device: str = '', *, context: Any | None = None, queue: Any | None = None, preset: Literal["best", "fast", "fine", "paper"] = ..., basis: Literal["sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24", "bins96"] = ..., centres: str = ..., lambda_: float = ..., lobe: Literal["exact", "rotate"] = ..., lobe_time: Literal["host", "kernel"] = ..., evaluate: Literal["exact", "buffer", "image"] = ..., table_size: int = ..., transport: Literal["sampled", "exact", "sweep"] = ..., directions: Literal[24, 96, 216, 384] = ..., coarser_directions: Literal[24, 96, 216, 384] = ..., bounces: Literal[1, 2, "all"] = ..., layout: Literal["image", "aos", "soa", "tiled"] = ..., storage: Literal["float", "half"] = ..., iterations: int = ..., grid: int = ..., cascades: int = ..., cascade_size: float = ..., rsm_size: int = ..., rsm_format: Literal["float", "paper"] = ..., shadow_size: int = ..., blockers: Literal["scene", "seen", "none"] = ..., blocking: Literal["areas", "one-sided"] = ..., blocker_stride: int = ..., gather: Literal["all", "visible"] = ..., gather_offset: float = ..., near: Literal["auto", "off", "traced"] = ..., near_size: Literal["auto", "full", "half", "quarter", "eighth"] = ..., near_rays: Literal[2, 4, 8, 16, 64] = ..., width: int = ..., height: int = ...) -> None:
+    def __init__(self, scene: Scene, device: str = '', *, context: Any | None = None, queue: Any | None = None, preset: Literal["best", "fast", "fine", "paper"] = ..., basis: Literal["sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14", "bins24", "bins96"] = ..., centres: str = ..., lambda_: float = ..., lobe: Literal["exact", "rotate"] = ..., lobe_time: Literal["host", "kernel"] = ..., evaluate: Literal["exact", "buffer", "image"] = ..., table_size: int = ..., transport: Literal["sampled", "exact", "sweep"] = ..., directions: Literal[24, 96, 216, 384] = ..., coarser_directions: Literal[24, 96, 216, 384] = ..., bounces: Literal[1, 2, "all"] = ..., layout: Literal["image", "aos", "soa", "tiled"] = ..., storage: Literal["float", "half"] = ..., iterations: int = ..., grid: int = ..., cascades: int = ..., cascade_size: float = ..., rsm_size: int = ..., rsm_format: Literal["float", "paper"] = ..., shadow_size: int = ..., blockers: Literal["scene", "seen", "none"] = ..., blocking: Literal["areas", "one-sided"] = ..., blocker_stride: int = ..., gather: Literal["all", "visible"] = ..., gather_offset: float = ..., near: Literal["auto", "off", "traced", False] = ..., near_size: Literal["auto", "full", "half", "quarter", "eighth"] = ..., near_rays: Literal[2, 4, 8, 16, 64] = ..., width: int = ..., height: int = ...) -> None:
         ...
-    def render(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0) -> Image:
-        """render(view='full', camera=None, time=0.0) -> Image (height, width, 4), linear R, G, B, A.
+    def render(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0, size: tuple[int, int] | None = None) -> Image:
+        """render(view='full', camera=None, time=0.0, size=None) -> Image (height, width, 4), linear R, G, B, A.
 
         view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or cells: irradiance with
         the finest cascade's cells as spheres;
-        camera: a Camera, or the name of one of the scene (None: its first); time [s] of an animated scene.
+        camera: a Camera, or the name of one of the scene (None: its first); time [s] of an animated scene;
+        size: (width, height), None for options width and height.
         """
+    def update(self, eye: _Vector, time: float = 0.0) -> None:
+        """update(eye, time=0.0): lights cascades about `eye` [m] without a frame, for irradiance(), radiance(), volumes() and
+        device_volumes().
+        """
+    def release(self) -> None:
+        """release(): frees the device's memory; the next call that lights or renders allocates it again. A `with` block ends with it."""
     def show(self, view: _View) -> Image:
         """show(view) -> Image: another view of the last frame, without rendering it again."""
     def light(self, normals: ArrayLike, *, positions: ArrayLike | None = None, depths: ArrayLike | None = None, eye: _Vector | None = None, camera: str | Camera | None = None, time: float = 0.0) -> NDArray[np.float32]:
@@ -348,16 +359,16 @@ class Renderer:
         positive or a number that is not finite have no surface, and no light.
         """
     def irradiance(self, points: ArrayLike, normals: ArrayLike) -> NDArray[np.float32]:
-        """irradiance(points, normals) -> float32 array of their shape: indirect light [W/m^2], red, green, blue.
+        """irradiance(points, normals) -> float32 array of the points' shape: indirect light [W/m^2], red, green, blue.
 
-        points [m] and normals (of any length): arrays (..., 3). Of the last frame's volumes, without option near;
-        0 outside of the cascades. Computed on the device.
+        points [m] and normals (of any length): arrays (..., 3), or one normal. Of the volumes of the last frame, light()
+        or update(), without option near; 0 outside of the cascades. Computed on the device.
         """
     def radiance(self, points: ArrayLike, directions: ArrayLike) -> NDArray[np.float32]:
-        """radiance(points, directions) -> float32 array of their shape: indirect light [W/m^2/sr], red, green, blue.
+        """radiance(points, directions) -> float32 array of the points' shape: indirect light [W/m^2/sr], red, green, blue.
 
-        points [m] and directions in which the light travels (of any length): arrays (..., 3). As irradiance(), of the last
-        frame's volumes, on the device; negative where nine harmonics undershoot. Raises UsageError without transport 'sweep',
+        points [m] and directions in which the light travels (of any length): arrays (..., 3), or one direction. As
+        irradiance(), of the same volumes, on the device; negative where nine harmonics undershoot. Raises UsageError without transport 'sweep',
         and for layout 'image' with gather 'all'.
         """
     def volumes(self) -> list[Volume]:
@@ -368,15 +379,15 @@ class Renderer:
         'frame': wall time of render() [ms], 'host': the host's work in it, without waiting [ms], 'build': compilation so far
         [ms]; numbers of 'launches' (kernels, fills and copies) and of 'waits' for the device; 'device_bytes', 'peak_device_bytes'.
         """
-    def enqueue(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0) -> DeviceFrame:
-        """enqueue(view='full', camera=None, time=0.0) -> DeviceFrame: render() without reading the image back.
+    def enqueue(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0, size: tuple[int, int] | None = None) -> DeviceFrame:
+        """enqueue(view='full', camera=None, time=0.0, size=None) -> DeviceFrame: render() without reading the image back.
 
         Does not wait for all of the frame (docs/api.md); not for view 'cells'.
         """
     def enqueue_light(self, width: int, height: int, *, normals: ArrayLike, positions: ArrayLike | None = None, depths: ArrayLike | None = None, irradiance: Any, eye: _Vector | None = None, camera: str | Camera | None = None, time: float = 0.0) -> DeviceEvent:
         """enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...) -> DeviceEvent: light() in device memory.
 
-        Buffers of the renderer's context, as pyopencl's or integers: normals and positions float4 per pixel (w unused), or depths
+        Buffers of the renderer's context, as pyopencl's buffers or arrays, or integers: normals and positions float4 per pixel (w unused), or depths
         float; irradiance receives float4. Raises UsageError for others, and for buffers that are too small.
         """
     def device_volumes(self) -> DeviceVolumes:
@@ -385,6 +396,8 @@ class Renderer:
         """lookup_source() -> str: OpenCL C for the start of a program, clpv_irradiance() and clpv_radiance() at a point for kernels with
         the parameters CLPV_RADIANCE (docs/api.md).
         """
+    def __enter__(self) -> "Renderer": ...
+    def __exit__(self, *of_the_block: object) -> None: ...
 
 class Scene:
     """Scene(path, model=None): a scene file (.json) or a glTF model (.gltf, .glb); `model` replaces that of the file.
@@ -485,10 +498,11 @@ def devices() -> list[dict[str, Any]]:
 def options() -> list[dict[str, str]]:
     """options() -> list of dict: name, help, allowed values and default of each option of Renderer."""
 
-def pathtrace(scene: Scene, view: _View = 'full', camera: str | Camera | None = None, width: int = 960, height: int = 540, bounces: int = 1, samples: int = 0, noise: float = 0.02, seed: int = 1, threads: int = 0, time: float = 0.0, progress: Callable[[float], object] | None = None) -> Image:
+def pathtrace(scene: Scene, view: _View | Sequence[_View] = 'full', camera: str | Camera | None = None, width: int = 960, height: int = 540, bounces: int | Literal["all"] = 1, samples: int = 0, noise: float = 0.02, seed: int = 1, threads: int = 0, time: float = 0.0, progress: Callable[[float], object] | None = None) -> Image:
     """pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.
 
-    bounces: reflections between light and visible surface, 0 for all; samples: paths per pixel, 0 for as many as
+    view: as of render(), or a list of several, which become layers of the image: channels 'indirect.R' and so on;
+    bounces: reflections between light and visible surface, 'all' or 0 for all; samples: paths per pixel, 0 for as many as
     `noise` (relative standard error of the indirect light) needs; threads: 0 for one per processor.
     progress: a function that gets the estimated progress, 0 to 1, in this thread, up to 50 times a second; what it raises ends
     the work.

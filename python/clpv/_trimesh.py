@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Scenes of trimesh's meshes (Scene.from_trimesh). Imports trimesh only where its objects are
-given."""
+"""Scenes of trimesh's meshes (Scene.from_trimesh). Does not import trimesh."""
+import sys
+
 import numpy
 
 import clpv
@@ -18,30 +19,53 @@ def _colours(values):
     return made
 
 
-def _look(mesh):
-    """Arguments of add_mesh() for a mesh's colours or texture."""
+def _material(given):
+    """Arguments of clpv.Material of a PBRMaterial, whose factors are linear as in glTF, or another
+    material of trimesh."""
+    if not hasattr(given, "baseColorFactor"):
+        if given.image is None:
+            return {"base_colour": _colours(given.main_color)}
+        return {"texture": numpy.asarray(given.image.convert("RGBA"))}
+    look = {"double_sided": bool(given.doubleSided)}
+    if given.baseColorFactor is not None:
+        look["base_colour"] = numpy.asarray(given.baseColorFactor) / 255
+    if given.baseColorTexture is not None:
+        look["texture"] = numpy.asarray(given.baseColorTexture.convert("RGBA"))
+    if given.emissiveFactor is not None and given.emissiveTexture is None:
+        look["emission"] = given.emissiveFactor
+    if given.alphaMode == "MASK":
+        look["alpha_cutoff"] = 0.5 if given.alphaCutoff is None else given.alphaCutoff
+    return look
+
+
+def _arguments(mesh):
+    """Arguments of add_mesh() for a mesh with its colours or texture."""
     visual = mesh.visual
-    if visual.kind == "texture" and visual.uv is not None:
-        material = visual.material.to_simple() if hasattr(visual.material,
-                                                          "to_simple") else visual.material
-        if material.image is not None:
-            texture = numpy.asarray(material.image.convert("RGBA"))
-            return {"uvs": visual.uv * (1, -1) + (0, 1), "material": clpv.Material(texture=texture)}
-        return {"material": clpv.Material(base_colour=_colours(material.main_color))}
+    if visual.kind == "face":  # a vertex for each corner
+        return {"positions": mesh.triangles.reshape(-1, 3),
+                "triangles": numpy.arange(3 * len(mesh.faces)).reshape(-1, 3),
+                "colours": numpy.repeat(_colours(visual.face_colors), 3, axis=0)}  # yapf: disable
+    made = {"positions": mesh.vertices, "triangles": mesh.faces}
     if visual.kind == "vertex":
-        return {"colours": _colours(visual.vertex_colors)}
-    return {"material": clpv.Material(base_colour=_colours(visual.main_color))}
+        return made | {"colours": _colours(visual.vertex_colors)}
+    if visual.kind != "texture":
+        return made | {"material": clpv.Material(base_colour=_colours(visual.main_color))}
+    look = _material(visual.material)
+    if visual.uv is None:
+        look.pop("texture", None)
+    else:
+        made["uvs"] = visual.uv * (1, -1) + (0, 1)
+    return made | {"material": clpv.Material(**look)}
 
 
 def scene_of_trimesh(given):
     """A clpv.Scene of a trimesh.Trimesh or a trimesh.Scene."""
-    import trimesh
-    if isinstance(given, trimesh.Trimesh):
+    trimesh = sys.modules.get("trimesh")  # whoever has an object of it has imported it
+    if trimesh is not None and isinstance(given, trimesh.Trimesh):
         given = trimesh.Scene(given)
-    if not isinstance(given, trimesh.Scene):
-        raise TypeError(
-            f"from_trimesh: found {type(given).__name__}, allowed: trimesh.Trimesh or trimesh.Scene"
-        )
+    if trimesh is None or not isinstance(given, trimesh.Scene):
+        raise clpv.UsageError(f"from_trimesh: given: found {type(given).__name__}, allowed: "
+                              "trimesh.Trimesh or trimesh.Scene")
     scene, numbers = clpv.Scene(), {}
     for node in given.graph.nodes_geometry:
         transform, name = given.graph[node]
@@ -51,6 +75,5 @@ def scene_of_trimesh(given):
         if name in numbers:
             scene.add_instance(numbers[name], transform)
         else:
-            numbers[name] = scene.add_mesh(mesh.vertices, mesh.faces, transform=transform,
-                                           **_look(mesh))
+            numbers[name] = scene.add_mesh(transform=transform, **_arguments(mesh))
     return scene

@@ -25,7 +25,8 @@ glm::dvec3 unit(const double* v) {
 std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth,
                             const py::object& centres) {
   if (centres.is_none())
-    return make_basis(name, bandwidth.is_none() ? kDefaultLambda : bandwidth.cast<double>());
+    return make_basis(
+        name, argument<std::optional<double>>("bandwidth", bandwidth).value_or(kDefaultLambda));
   const DoubleArray given = vectors<DoubleArray>(centres, "centres");
   std::vector<glm::dvec3> all;
   for (py::ssize_t i = 0; i < given.size() / 3; ++i) all.push_back(unit(given.data() + 3 * i));
@@ -39,8 +40,9 @@ std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth
 /// Applies `values_at(w, out)`, which writes `count` numbers, to each direction of an array (...,
 /// 3).
 template <typename Values>
-py::array_t<double> at_each(const py::object& directions, int count, const Values& values_at) {
-  const DoubleArray given = vectors<DoubleArray>(directions, "directions");
+py::array_t<double> at_each(const char* name, const py::object& directions, int count,
+                            const Values& values_at) {
+  const DoubleArray given = vectors<DoubleArray>(directions, name);
   py::array_t<double> made(shape_with_last(given, count));
   for (py::ssize_t i = 0; i < given.size() / 3; ++i)
     values_at(unit(given.data() + 3 * i),
@@ -55,8 +57,8 @@ py::array_t<double> vector_array(const std::vector<double>& values) {
 DoubleArray coefficients(const Basis& basis, const py::object& given) {
   DoubleArray c = real_array<DoubleArray>(given, "coefficients");
   if (c.ndim() != 1 || c.shape(0) != basis.size()) {
-    throw py::value_error("coefficients: found shape " + std::string(py::str(c.attr("shape"))) +
-                          ", allowed: (" + std::to_string(basis.size()) + ",)");
+    throw Error(ExitCode::usage, "coefficients: found shape {}, allowed: ({},)", shape_text(c),
+                basis.size());
   }
   return c;
 }
@@ -78,9 +80,9 @@ py::array_t<double> project(const Basis& basis, const py::object& given) {
   const std::vector<QuadratureNode> nodes = quadrature(basis, octants());
   const DoubleArray values = real_array<DoubleArray>(given, "values");
   if (values.ndim() != 1 || values.shape(0) != static_cast<py::ssize_t>(nodes.size())) {
-    throw py::value_error("values: found shape " + std::string(py::str(values.attr("shape"))) +
-                          ", allowed: (" + std::to_string(nodes.size()) +
-                          ",), one for each of directions()");
+    throw Error(ExitCode::usage,
+                "values: found shape {}, allowed: ({},), one for each of directions()",
+                shape_text(values), nodes.size());
   }
   std::vector<double> moments(static_cast<std::size_t>(basis.size()));
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -110,7 +112,8 @@ double energy(const Basis& basis, int steps, const std::string& transport,
 
 py::dict lobe(const Basis& basis, const py::object& axis, const py::object& given) {
   const DoubleArray direction = vectors<DoubleArray>(axis, "axis");
-  if (direction.ndim() != 1) throw py::value_error("axis: allowed: three numbers");
+  if (direction.ndim() != 1)
+    throw Error(ExitCode::usage, "axis: found shape {}, allowed: (3,)", shape_text(direction));
   const glm::dvec3 d = unit(direction.data());
   std::vector<double> c = basis.clamped_cosine(d);
   if (!given.is_none()) {
@@ -126,15 +129,15 @@ py::dict lobe(const Basis& basis, const py::object& axis, const py::object& give
 }  // namespace
 
 void add_basis(py::module_& module) {
-  module.def("bases", &basis_names, "bases() -> list of the names of all bases.");
+  define(module, "bases", &basis_names, "bases() -> list of the names of all bases.");
   py::class_<Basis> type(
       module, "Basis",
       "Basis(name='sh2', bandwidth=None, centres=None): N functions b_i on the unit sphere.\n\n"
       "bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre; "
       "centres: array (N, 3), for\n"
       "radial functions of one's own. Directions may have any length.");
-  type.def(py::init(&make), py::arg("name") = "sh2", py::arg("bandwidth") = py::none(),
-           py::arg("centres") = py::none());
+  define_init(type, &make, py::arg("name") = "sh2", py::arg("bandwidth") = py::none(),
+              py::arg("centres") = py::none());
   type.def_property_readonly("name", &Basis::name);
   type.def("__len__", &Basis::size);
   type.def_property_readonly("condition", &Basis::condition,
@@ -156,18 +159,18 @@ void add_basis(py::module_& module) {
   type.def_property_readonly(
       "bandwidths", [](const Basis& b) { return vector_array(b.lambdas()); },
       "Array (N,); (0,) without centres.");
-  type.def(
-      "evaluate",
+  define(
+      type, "evaluate",
       [](const Basis& basis, const py::object& directions) {
-        return at_each(directions, basis.size(),
+        return at_each("directions", directions, basis.size(),
                        [&](const glm::dvec3& w, std::span<double> out) { basis.evaluate(w, out); });
       },
       py::arg("directions"), "evaluate(directions (..., 3)) -> float64 array (..., N): b_i(w).");
-  type.def(
-      "clamped_cosine",
+  define(
+      type, "clamped_cosine",
       [](const Basis& basis, const py::object& axes, const std::optional<int>& table_size) {
         const Lobes lobes(basis, lobe_options(table_size));
-        return at_each(axes, basis.size(), [&](const glm::dvec3& d, std::span<double> out) {
+        return at_each("axes", axes, basis.size(), [&](const glm::dvec3& d, std::span<double> out) {
           const std::vector<double> c = lobes(d);
           std::copy(c.begin(), c.end(), out.begin());
         });
@@ -180,23 +183,23 @@ void add_basis(py::module_& module) {
   type.def_property_readonly(
       "mean_error", [](const Basis& b) { return mean_relative_l2(b, Lobes(b, {})); },
       "Mean relative L2 error of exactly projected clamped cosines over all axes.");
-  type.def("energy", &energy, py::arg("steps"), py::arg("transport") = "sampled",
-           py::arg("table_size") = py::none(),
-           "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source "
-           "after `steps` steps of\n"
-           "propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for "
-           "clamped_cosine().");
-  type.def("directions", &directions,
-           "directions() -> float64 array (K, 3): directions at which project() takes values of a "
-           "function.");
-  type.def("project", &project, py::arg("values"),
-           "project(values (K,)) -> float64 array (N,): least-squares projection of a function "
-           "that has these\n"
-           "values at directions().");
-  type.def("lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
-           "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) "
-           "against the clamped\n"
-           "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
+  define(type, "energy", &energy, py::arg("steps"), py::arg("transport") = "sampled",
+         py::arg("table_size") = py::none(),
+         "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source "
+         "after `steps` steps of\n"
+         "propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for "
+         "clamped_cosine().");
+  define(type, "directions", &directions,
+         "directions() -> float64 array (K, 3): directions at which project() takes values of a "
+         "function.");
+  define(type, "project", &project, py::arg("values"),
+         "project(values (K,)) -> float64 array (N,): least-squares projection of a function "
+         "that has these\n"
+         "values at directions().");
+  define(type, "lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
+         "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) "
+         "against the clamped\n"
+         "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
 }
 
 }  // namespace clpv::python

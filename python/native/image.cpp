@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "clpv/compare.hpp"
-#include "clpv/error.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "module.hpp"
@@ -24,13 +23,13 @@ std::vector<std::string> usual_channels(py::ssize_t count) {
   return names;
 }
 
-Image image_from(const py::object& given, std::optional<std::vector<std::string>> channels,
-                 const std::string& encoding) {
-  const FloatArray array = real_array<FloatArray>(given, "image");
+Image image_from(const char* name, const py::object& given,
+                 std::optional<std::vector<std::string>> channels, const std::string& encoding) {
+  const FloatArray array = real_array<FloatArray>(given, name);
   if (array.ndim() != 3 || array.size() == 0 || array.shape(0) > 16384 || array.shape(1) > 16384) {
     throw Error(ExitCode::usage,
-                "image: found shape {}, allowed: (height, width, channels), up to 16384 x 16384",
-                std::string(py::str(array.attr("shape"))));
+                "{}: found shape {}, allowed: (height, width, channels), up to 16384 x 16384", name,
+                shape_text(array));
   }
   Image image;
   image.height = static_cast<int>(array.shape(0));
@@ -60,9 +59,9 @@ std::vector<py::ssize_t> shape_of(const Image& image) {
 }
 
 /// An Image as it is; anything else as an array of a linear image.
-Image given_image(const py::object& given) {
+Image given_image(const char* name, const py::object& given) {
   return py::isinstance<Image>(given) ? given.cast<Image>()
-                                      : image_from(given, std::nullopt, "linear");
+                                      : image_from(name, given, std::nullopt, "linear");
 }
 
 void add_comparison(py::module_& module) {
@@ -95,10 +94,10 @@ void add_comparison(py::module_& module) {
                        c.nrmse ? fmt::format("{}", *c.nrmse) : "None",
                        c.identical ? "True" : "False");
   });
-  module.def(
-      "compare",
+  define(
+      module, "compare",
       [](const py::object& image, const py::object& reference, float exposure) {
-        const Image a = given_image(image), b = given_image(reference);
+        const Image a = given_image("image", image), b = given_image("reference", reference);
         return interruptible([&] { return compare(a, b, exposure); });
       },
       py::arg("image"), py::arg("reference"), py::arg("exposure") = 0.0f,
@@ -119,8 +118,13 @@ void add_image(py::module_& module) {
       "numpy.asarray(image) and image.array are float32 views of its pixels, row 0 on top, without "
       "a copy; they keep\n"
       "the image alive.");
-  type.def(py::init(&image_from), py::arg("array"), py::arg("channels") = py::none(),
-           py::arg("encoding") = "linear");
+  define_init(
+      type,
+      [](const py::object& array, std::optional<std::vector<std::string>> channels,
+         const std::string& encoding) {
+        return image_from("array", array, std::move(channels), encoding);
+      },
+      py::arg("array"), py::arg("channels") = py::none(), py::arg("encoding") = "linear");
   type.def_buffer([](Image& image) {
     const auto shape = shape_of(image);
     const py::ssize_t value = sizeof(float);
@@ -147,8 +151,8 @@ void add_image(py::module_& module) {
       "encoding",
       [](const Image& image) { return image.encoding == Encoding::srgb ? "srgb" : "linear"; },
       "'linear' in light, or 'srgb'.");
-  type.def(
-      "save",
+  define(
+      type, "save",
       [](const Image& image, const std::filesystem::path& path, float exposure) {
         without_gil([&] { save_image(path, image, exposure); });
       },
@@ -156,8 +160,8 @@ void add_image(py::module_& module) {
       "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with "
       "metadata, .png tone-mapped\n"
       "(ACES) after multiplication by 2^exposure [EV].");
-  type.def(
-      "display",
+  define(
+      type, "display",
       [](const Image& image, float exposure) {
         Image shown = display_image(image, exposure, ToneMap::aces);
         const auto shape = shape_of(shown);
@@ -184,8 +188,8 @@ void add_image(py::module_& module) {
                        fmt::join(image.channels, " "),
                        image.encoding == Encoding::srgb ? "srgb" : "linear");
   });
-  module.def(
-      "read_image",
+  define(
+      module, "read_image",
       [](const std::filesystem::path& path) {
         return interruptible([&] { return read_image(path); });
       },

@@ -19,10 +19,11 @@ using Rows = std::vector<std::array<T, n>>;
 py::array checked(const char* function, const char* name, const py::object& given,
                   std::string_view kinds, std::initializer_list<py::ssize_t> columns) {
   const auto array = real_array<py::array>(given, name);
+  if (array.ndim() == 1 && array.size() == 0)  // [] has neither columns nor integers
+    return py::array_t<std::uint32_t>(std::vector<py::ssize_t>{0, *columns.begin()});
   if (kinds.find(array.dtype().kind()) == std::string_view::npos) {
-    throw py::type_error(fmt::format("{}: {}: found an array of {}, allowed: {}", function, name,
-                                     std::string(py::str(array.dtype())),
-                                     kinds == "iu" ? "integers" : "floats"));
+    throw Error(ExitCode::usage, "{}: {}: found an array of {}, allowed: {}", function, name,
+                std::string(py::str(array.dtype())), kinds == "iu" ? "integers" : "floats");
   }
   std::string allowed;
   for (const py::ssize_t column : columns) {
@@ -31,7 +32,7 @@ py::array checked(const char* function, const char* name, const py::object& give
   if (allowed.empty()) {
     for (const py::ssize_t column : columns)
       allowed += fmt::format("{}(n, {})", allowed.empty() ? "" : " or ", column);
-    reject(function, name, "shape " + std::string(py::str(array.attr("shape"))), allowed);
+    reject(function, name, "shape " + shape_text(array), allowed);
   }
   const auto most = static_cast<py::ssize_t>(bounds::kTriangles);
   static_assert(bounds::kTriangles == bounds::kVertices);
@@ -58,14 +59,18 @@ Rows<float, n> floats(const char* function, const char* name, const py::object& 
 }
 
 Rows<std::uint32_t, 3> indices(const char* function, const py::object& given) {
-  const auto array = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(
-      checked(function, "triangles", given, "iu", {3}));
+  const py::array any = checked(function, "triangles", given, "iu", {3});
+  const auto array =
+      py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(any);
   if (!array) throw py::error_already_set();
   Rows<std::uint32_t, 3> rows(static_cast<std::size_t>(array.shape(0)));
   for (std::size_t i = 0; i < 3 * rows.size(); ++i) {
-    const std::int64_t index = array.data()[i];
+    const std::int64_t index = array.data()[i];  // a large unsigned one is negative here
     if (index < 0 || index >= static_cast<std::int64_t>(bounds::kVertices)) {
-      reject(function, fmt::format("triangles[{}]", i / 3), fmt::format("index {}", index),
+      const std::string value = any.dtype().kind() == 'u'
+                                    ? fmt::format("{}", static_cast<std::uint64_t>(index))
+                                    : fmt::format("{}", index);
+      reject(function, fmt::format("triangles[{}]", i / 3), "index " + value,
              "the index of a vertex, from 0");
     }
     rows[i / 3][i % 3] = static_cast<std::uint32_t>(index);
@@ -77,7 +82,7 @@ Transform transform_of(const char* function, const py::object& given) {
   if (given.is_none()) return kIdentity;
   const DoubleArray array = real_array<DoubleArray>(given, "transform");
   if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4)
-    reject(function, "transform", "shape " + std::string(py::str(array.attr("shape"))), "(4, 4)");
+    reject(function, "transform", "shape " + shape_text(array), "(4, 4)");
   Transform made;
   std::memcpy(&made, array.data(), sizeof made);
   return made;
@@ -89,13 +94,13 @@ std::optional<Material::Texture> texture_of(const py::object& given) {
   const auto array = real_array<py::array>(given, "texture");
   const bool bytes = array.dtype().equal(py::dtype::of<std::uint8_t>());
   if (!bytes && array.dtype().kind() != 'f') {
-    throw py::type_error("texture: found an array of " + std::string(py::str(array.dtype())) +
-                         ", allowed: uint8 or floats");
+    throw Error(ExitCode::usage, "texture: found an array of {}, allowed: uint8 or floats",
+                std::string(py::str(array.dtype())));
   }
   const py::ssize_t side = bounds::kImageSide;
   if (array.ndim() != 3 || array.shape(2) != 4 || array.shape(0) < 1 || array.shape(1) < 1 ||
       array.shape(0) > side || array.shape(1) > side) {
-    reject("Material", "texture", "shape " + std::string(py::str(array.attr("shape"))),
+    reject("Material", "texture", "shape " + shape_text(array),
            fmt::format("(height, width, 4), 1 to {} pixels per side", side));
   }
   if (bytes) {
@@ -115,15 +120,14 @@ std::optional<Material::Texture> texture_of(const py::object& given) {
 }
 
 /// One number, or red, green, blue and optionally alpha.
-std::array<double, 4> base_colour_of(const py::object& given) {
-  if (py::isinstance<py::float_>(given) || py::isinstance<py::int_>(given)) {
-    const auto grey = given.cast<double>();
-    return {grey, grey, grey, 1};
-  }
-  const auto values = given.cast<std::vector<double>>();
-  if (values.size() != 3 && values.size() != 4)
-    reject("Material", "base_colour", fmt::format("{} numbers", values.size()), "1, 3 or 4");
-  return {values[0], values[1], values[2], values.size() == 4 ? values[3] : 1};
+using BaseColour = std::variant<double, Vec3, std::array<double, 4>>;
+
+std::array<double, 4> base_colour_of(const BaseColour& given) {
+  if (const auto* all = std::get_if<std::array<double, 4>>(&given)) return *all;
+  const auto* three = std::get_if<Vec3>(&given);
+  const Vec3 colour =
+      colour_of(three != nullptr ? Colour(*three) : Colour(std::get<double>(given)));
+  return {colour[0], colour[1], colour[2], 1};
 }
 
 /// Arrays of a mesh, and the mesh that borrows them.
@@ -172,22 +176,24 @@ int add_mesh(Scene& scene, const py::object& positions, const py::object& triang
 void add_material(py::module_& module) {
   py::class_<Material> type(
       module, "Material",
-      "Diffuse surface of a mesh. Immutable. Values are checked where it is used.\n\n"
+      "Diffuse surface of a mesh. Immutable; replace() makes another. Values are checked where it "
+      "is used.\n\n"
       "base_colour: linear red, green, blue and optionally alpha, or one number, 0 to 1; emission: "
       "radiance of the front\n"
       "[W/m^2/sr], three numbers or one; texture: array (height, width, 4), uint8 with "
       "sRGB-encoded colour, or floats, linear;\n"
       "alpha_cutoff: alpha below which there are holes; double_sided: visible, and emissive, from "
       "both sides.");
-  type.def(py::init([](const py::object& base_colour, const py::object& emission,
-                       const py::object& texture, std::optional<double> alpha_cutoff,
-                       bool double_sided) {
-             return Material{base_colour_of(base_colour), colour_of(emission), texture_of(texture),
-                             alpha_cutoff, double_sided};
-           }),
-           py::kw_only(), py::arg("base_colour") = 1.0, py::arg("emission") = 0.0,
-           py::arg("texture") = py::none(), py::arg("alpha_cutoff") = py::none(),
-           py::arg("double_sided") = false);
+  define_init(
+      type,
+      [](const BaseColour& base_colour, const Colour& emission, const py::object& texture,
+         std::optional<double> alpha_cutoff, bool double_sided) {
+        return Material{base_colour_of(base_colour), colour_of(emission), texture_of(texture),
+                        alpha_cutoff, double_sided};
+      },
+      py::kw_only(), py::arg("base_colour") = 1.0, py::arg("emission") = 0.0,
+      py::arg("texture") = py::none(), py::arg("alpha_cutoff") = py::none(),
+      py::arg("double_sided") = false);
   type.def_property_readonly("base_colour", [](const Material& m) {
     return py::make_tuple(m.base_colour[0], m.base_colour[1], m.base_colour[2], m.base_colour[3]);
   });
@@ -202,6 +208,11 @@ void add_material(py::module_& module) {
         return made;
       },
       "A copy as uint8 array (height, width, 4), or None.");
+  add_copies(type, {"base_colour", "emission", "texture", "alpha_cutoff", "double_sided"});
+  type.def("__hash__", [](const Material& m) {
+    return py::hash(py::make_tuple(m.base_colour, m.emission, m.texture ? m.texture->width : 0,
+                                   m.alpha_cutoff, m.double_sided));
+  });
   type.def_readonly("alpha_cutoff", &Material::alpha_cutoff);
   type.def_readonly("double_sided", &Material::double_sided);
   type.def(
@@ -227,7 +238,7 @@ void add_meshes(py::class_<Scene>& type) {
            py::arg("material") = py::none(), py::arg("transform") = py::none(),
            py::arg("moves") = false, doc);
   };
-  arguments([&](const auto&... all) { type.def("add_mesh", all...); }, &add_mesh,
+  arguments([&](const auto&... all) { define(type, "add_mesh", all...); }, &add_mesh,
             "add_mesh(positions, triangles, *, ...) -> int: a number for the mesh, which is not "
             "used again.\n\n"
             "positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise seen "
@@ -241,7 +252,7 @@ void add_meshes(py::class_<Scene>& type) {
             "y, z, 1). moves: it will move, so its\nfirst move needs no new memory "
             "(set_positions()). The arrays are copied. Raises InputError with array, index, value "
             "found and\nvalue allowed.");
-  arguments([&](const auto&... all) { type.def_static("from_arrays", all...); },
+  arguments([&](const auto&... all) { define_static(type, "from_arrays", all...); },
             [](const py::object& positions, const py::object& triangles, const py::object& normals,
                const py::object& uvs, const py::object& colours, bool smooth,
                const std::optional<Material>& material, const py::object& transform, bool moves) {
@@ -252,8 +263,8 @@ void add_meshes(py::class_<Scene>& type) {
             },
             "from_arrays(positions, triangles, *, ...) -> Scene of one mesh, number 0, as "
             "add_mesh() describes it.");
-  type.def_static(
-      "from_trimesh",
+  define_static(
+      type, "from_trimesh",
       [](const py::object& given) {
         return py::module_::import("clpv._trimesh").attr("scene_of_trimesh")(given);
       },
@@ -261,8 +272,8 @@ void add_meshes(py::class_<Scene>& type) {
       "from_trimesh(given) -> Scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, "
       "instances, "
       "colours and base-colour\ntextures.");
-  type.def(
-      "add_instance",
+  define(
+      type, "add_instance",
       [](Scene& scene, int mesh, const py::object& transform) {
         const Transform at = transform_of("add_instance", transform);
         return without_gil([&] { return scene.add_instance(mesh, at); });
@@ -270,11 +281,12 @@ void add_meshes(py::class_<Scene>& type) {
       py::arg("mesh"), py::arg("transform"),
       "add_instance(mesh, transform) -> int: the same mesh at another place; its vertices are "
       "shared.");
-  type.def(
-      "remove_mesh", [](Scene& scene, int mesh) { without_gil([&] { scene.remove_mesh(mesh); }); },
+  define(
+      type, "remove_mesh",
+      [](Scene& scene, int mesh) { without_gil([&] { scene.remove_mesh(mesh); }); },
       py::arg("mesh"), "remove_mesh(mesh): removes a mesh from one of its places.");
-  type.def(
-      "set_positions",
+  define(
+      type, "set_positions",
       [](Scene& scene, int mesh, const py::object& positions, const py::object& normals) {
         const auto moved = floats<3>("set_positions", "positions", positions);
         const auto turned = floats<3>("set_positions", "normals", normals);
@@ -286,8 +298,8 @@ void add_meshes(py::class_<Scene>& type) {
       "what animation recomputes; at the\n"
       "first move of a mesh added without `moves`, and after an addition or removal, also its "
       "memory and what it caches.");
-  type.def(
-      "set_transform",
+  define(
+      type, "set_transform",
       [](Scene& scene, int mesh, const py::object& transform) {
         const Transform at = transform_of("set_transform", transform);
         without_gil([&] { scene.set_transform(mesh, at); });

@@ -6,13 +6,13 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <mutex>
 #include <thread>
 
 #include "clpv/device.hpp"
-#include "clpv/error.hpp"
+#include "clpv/log.hpp"
 #include "clpv/options.hpp"
 #include "clpv/version.hpp"
-#include "support/log.hpp"
 
 namespace clpv::python {
 
@@ -57,6 +57,30 @@ std::thread::id exiting_thread;
 pid_t device_user = 0;  // process that called note_device_use() first; a fork copies it
 constexpr std::chrono::milliseconds kPoll{5};
 
+using Message = std::pair<LogLevel, std::string>;
+
+/// Messages that log_messages() has not handed over yet.
+struct Waiting {
+  std::mutex mutex;
+  std::vector<Message> messages;
+};
+Waiting& waiting() {
+  static Waiting& one = *new Waiting;  // never destroyed: threads may log while the process ends
+  return one;
+}
+
+void receive_messages() {
+  const py::module_ logging = py::module_::import("logging");
+  // Without it, Python prints warnings that nobody handles.
+  logging.attr("getLogger")("clpv").attr("addHandler")(logging.attr("NullHandler")());
+  set_log(
+      [](LogLevel level, const std::string& text) {
+        const std::lock_guard lock(waiting().mutex);
+        waiting().messages.emplace_back(level, text);
+      },
+      LogLevel::debug);
+}
+
 /// Ends running calls at their next step, and waits for them.
 void end_running_calls() {
   exiting = true;
@@ -72,12 +96,14 @@ void end_running_calls() {
 /// without a value.
 void reject_pickling(py::module_& module) {
   for (const auto& [key, value] : py::dict(module.attr("__dict__"))) {
-    if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
+    if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr()) ||
+        value.attr("__dict__").contains("__reduce_ex__"))
+      continue;
     const auto name = "clpv." + key.cast<std::string>();
     value.attr("__reduce_ex__") = py::cpp_function(
         [name](const py::object&, int) -> py::object {
-          throw py::type_error(name +
-                               " cannot be copied or pickled; pass the arguments that make it");
+          throw Error(ExitCode::usage,
+                      "{} cannot be copied or pickled; pass the arguments that make it", name);
         },
         py::is_method(value));
   }
@@ -101,6 +127,24 @@ RunningCall::RunningCall() {
 
 RunningCall::~RunningCall() {
   --running;
+  try {
+    if (!exiting) log_messages();
+  } catch (py::error_already_set& error) {
+    error.discard_as_unraisable("clpv: logging");
+  }
+}
+
+void log_messages() {
+  std::vector<Message> messages;
+  {
+    const std::lock_guard lock(waiting().mutex);
+    messages.swap(waiting().messages);
+  }
+  if (messages.empty()) return;
+  constexpr int kPythonLevels[] = {10, 20, 30, 40};
+  const py::object log = py::module_::import("logging").attr("getLogger")("clpv").attr("log");
+  for (const auto& [level, text] : messages)
+    log(kPythonLevels[static_cast<int>(level)], "%s", text);
 }
 
 bool exit_stops_calls() {
@@ -124,7 +168,11 @@ void add_errors(py::module_& module) {
   const auto add = [&](const char* name, const char* doc, PyObject* also) {
     return new_error(module, name, doc, py::make_tuple(base, builtin(also)));
   };
-  errors.usage = add("UsageError", "Unknown option or value out of range.", PyExc_ValueError);
+  errors.usage = new_error(
+      module, "UsageError",
+      "Unknown option, value out of range, or argument of another kind; a ValueError and a "
+      "TypeError.",
+      py::make_tuple(base, builtin(PyExc_ValueError), builtin(PyExc_TypeError)));
   errors.bad_input = add("InputError", "Invalid scene, image, or other input.", PyExc_ValueError);
   errors.device = add("DeviceError", "No OpenCL device, or one without a required capability.",
                       PyExc_RuntimeError);
@@ -171,13 +219,13 @@ py::list devices() {
 
 PYBIND11_MODULE(_native, module) {
   using namespace clpv::python;
-  clpv::set_log_level(false, 0);  // to stderr
   // pybind11 looks NumPy up in a static variable that it sets while the GIL may change hands: two
   // threads whose first arrays meet there wait for each other without end. Here is one thread.
   py::dtype::of<float>();
   module.doc() = "Native part of clpv.";
   module.attr("__version__") = clpv::version();
   add_errors(module);
+  receive_messages();
   add_scene(module);
   add_image(module);
   add_renderer(module);

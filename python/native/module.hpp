@@ -2,16 +2,12 @@
 // Parts of the Python module clpv, and conversions that several of them use.
 #pragma once
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
-
 #include <chrono>
 #include <future>
 #include <optional>
 #include <vector>
 
+#include "arguments.hpp"
 #include "basis/basis.hpp"
 #include "clpv/compare.hpp"
 #include "clpv/image.hpp"
@@ -21,12 +17,13 @@
 
 namespace clpv::python {
 
-namespace py = pybind11;
-
 void add_errors(py::module_& module);
 void add_scene(py::module_& module);
 void add_material(py::module_& module);
 void add_meshes(py::class_<Scene>& type);
+/// Adds replace(), copies and pickling to a class of immutable values, given its constructor's
+/// arguments, which are also its attributes.
+void add_copies(const py::object& type, const std::vector<const char*>& members);
 void add_image(py::module_& module);
 void add_renderer(py::module_& module);
 void add_opencl(py::module_& module);  ///< after add_renderer()
@@ -35,30 +32,33 @@ void add_basis(py::module_& module);
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
+/// The shape of an array, as Python writes it.
+inline std::string shape_text(const py::array& array) {
+  return py::str(array.attr("shape"));
+}
+
 /// Converts anything that NumPy accepts as an array of real numbers; copies only if it must. Throws
-/// TypeError otherwise.
+/// Error(usage) otherwise.
 template <typename Array>
 Array real_array(const py::object& given, const char* what) {
   const py::array any = py::array::ensure(given);
   if (!any) PyErr_Clear();
   if (!any || std::string_view("fiub").find(any.dtype().kind()) == std::string_view::npos) {
-    throw py::type_error(std::string(what) + ": found " +
-                         (any ? "an array of " + std::string(py::str(any.dtype()))
-                              : std::string(py::str(py::type::of(given)))) +
-                         ", allowed: an array of real numbers");
+    throw Error(
+        ExitCode::usage, "{}: found {}, allowed: an array of real numbers", what,
+        any && any.ndim() > 0 ? "an array of " + std::string(py::str(any.dtype())) : found(given));
   }
   Array converted = Array::ensure(any);
   if (!converted) throw std::bad_alloc();  // for the copy
   return converted;
 }
 
-/// Like real_array(), for vectors of three: shape (..., 3). Throws ValueError with the shape found.
+/// Like real_array(), for vectors of three: shape (..., 3).
 template <typename Array>
 Array vectors(const py::object& given, const char* what) {
   Array array = real_array<Array>(given, what);
   if (array.ndim() > 0 && array.shape(array.ndim() - 1) == 3) return array;
-  throw py::value_error(std::string(what) + ": found shape " +
-                        std::string(py::str(array.attr("shape"))) + ", allowed: (..., 3)");
+  throw Error(ExitCode::usage, "{}: found shape {}, allowed: (..., 3)", what, shape_text(array));
 }
 
 /// The shape of vectors(), with the last axis replaced.
@@ -79,7 +79,8 @@ inline py::array_t<float> array_of(std::vector<float> values,
 }
 
 /// Red, green, blue; or one number for all of them.
-Vec3 colour_of(const py::object& given);
+using Colour = std::variant<double, Vec3>;
+Vec3 colour_of(const Colour& given);
 
 inline py::tuple tuple_of(const Vec3& v) {
   return py::make_tuple(v[0], v[1], v[2]);
@@ -99,6 +100,10 @@ class RunningCall {
 
 /// Returns true once Python exits: running calls end at their next step.
 bool exit_stops_calls();
+
+/// Hands messages of the library to Python's logging, whose code runs only on Python's threads:
+/// those of calls in progress, now and then and at the end.
+void log_messages();
 
 /// Marks this process as one that uses a device or the path tracer, and thus threads.
 void note_device_use();
@@ -134,6 +139,7 @@ auto interruptible(const Work& work, const Poll& poll) {
       raised.emplace();
     } else {
       try {
+        log_messages();
         poll();
       } catch (const py::error_already_set& error) {
         raised = error;
@@ -148,6 +154,7 @@ auto interruptible(const Work& work, const Poll& poll) {
     throw *raised;
   }
   py::gil_scoped_acquire acquired;
+  log_messages();
   poll();
   return result.get();
 }
@@ -167,8 +174,8 @@ class InitialisedCaster : public py::detail::type_caster_base<T> {
       auto* object = reinterpret_cast<py::detail::instance*>(source.ptr());
       const auto* type = py::detail::get_type_info(typeid(T));
       if (!object->get_value_and_holder(type).holder_constructed()) {
-        throw py::type_error(std::string(py::str(py::type::of(source).attr("__name__"))) +
-                             ": __init__ was not called");
+        throw Error(ExitCode::usage, "{}: __init__ was not called",
+                    std::string(py::str(py::type::of(source).attr("__name__"))));
       }
     }
     return py::detail::type_caster_base<T>::load(source, convert);

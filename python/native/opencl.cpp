@@ -51,8 +51,8 @@ void add_classes(py::module_& module) {
       "int_ptr", [](const opencl::Event& e) { return number_of(e.get()); },
       "The cl_event, for pyopencl.Event.from_int_ptr(int_ptr, retain=True). It lives as long as "
       "this object.");
-  event.def("wait", &wait_for,
-            "wait(): waits for the commands. Raises ResourceError if they failed.");
+  define(event, "wait", &wait_for,
+         "wait(): waits for the commands. Raises ResourceError if they failed.");
 
   py::class_<PythonFrame> frame(
       module, "DeviceFrame",
@@ -78,15 +78,15 @@ void add_classes(py::module_& module) {
   frame.def_property_readonly(
       "int_ptr", [](const PythonFrame& f) { return number_of(f.frame.done.get()); },
       "The cl_event of the whole frame.");
-  frame.def(
-      "wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
+  define(
+      frame, "wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
       "wait(): waits for the frame. Raises ResourceError if it failed.");
 
   py::class_<opencl::Volumes> volumes(module, "DeviceVolumes",
                                       "Light for a kernel: arguments CLPV_RADIANCE of "
                                       "Renderer.lookup_source(), in the order of arguments().");
-  volumes.def(
-      "arguments",
+  define(
+      volumes, "arguments",
       [](const opencl::Volumes& v) {
         const py::module_ numpy = py::module_::import("numpy");
         py::list all;
@@ -108,19 +108,22 @@ void add_opencl(py::module_& module) {
   const py::object type = module.attr("Renderer");
   const auto add = [&](const char* name, const auto& function, const auto&... extra) {
     type.attr(name) = py::cpp_function(function, py::name(name), py::is_method(type), extra...);
+    check_arguments(type, name, Self::typed,
+                    parameters_of<std::decay_t<decltype(function)>>(Self::typed, extra...));
   };
   add(
       "enqueue",
       [](Renderer& renderer, const std::string& view, const std::optional<CameraChoice>& camera,
-         double time) {
+         double time, const ImageSize& size) {
         const View what = named<View>("view", view);
         return interruptible([&] {
-          return PythonFrame{renderer.enqueue(what, camera.value_or(CameraChoice()), time)};
+          return PythonFrame{renderer.enqueue(what, camera.value_or(CameraChoice()), time, size)};
         });
       },
       py::keep_alive<0, 1>(), py::arg("view") = "full", py::arg("camera") = py::none(),
-      py::arg("time") = 0.0,
-      "enqueue(view='full', camera=None, time=0.0) -> DeviceFrame: render() without reading the "
+      py::arg("time") = 0.0, py::arg("size") = py::none(),
+      "enqueue(view='full', camera=None, time=0.0, size=None) -> DeviceFrame: render() without "
+      "reading the "
       "image back.\n\n"
       "Does not wait for all of the frame (docs/api.md); not for view 'cells'.");
   add(
@@ -129,7 +132,7 @@ void add_opencl(py::module_& module) {
          const py::object& positions, const py::object& depths, const py::object& irradiance,
          const std::optional<Vec3>& eye, const std::optional<CameraChoice>& camera, double time) {
         if (eye && camera)
-          throw py::value_error("light: found eye and camera, allowed: one of both");
+          throw Error(ExitCode::usage, "light: found eye and camera, allowed: one of both");
         const opencl::GBuffer surfaces{width,
                                        height,
                                        handle_of<cl_mem>(normals, "normals", kMemoryClass),
@@ -147,7 +150,8 @@ void add_opencl(py::module_& module) {
       py::arg("time") = 0.0,
       "enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...) -> "
       "DeviceEvent: light() in device memory.\n\n"
-      "Buffers of the renderer's context, as pyopencl's or integers: normals and positions float4 "
+      "Buffers of the renderer's context, as pyopencl's buffers or arrays, or integers: normals "
+      "and positions float4 "
       "per pixel (w unused), or depths\nfloat; irradiance receives float4. Raises UsageError for "
       "others, and for buffers that are too small.");
   add(

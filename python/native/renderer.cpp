@@ -62,6 +62,21 @@ py::dict dict_of(const Stats& stats) {
   return all;
 }
 
+std::vector<View> views_of(const std::variant<std::string, std::vector<std::string>>& given) {
+  if (const auto* name = std::get_if<std::string>(&given)) return {named<View>("view", *name)};
+  std::vector<View> all;
+  for (const std::string& name : std::get<std::vector<std::string>>(given))
+    all.push_back(named<View>("view", name));
+  return all;
+}
+
+int bounces_of(const std::variant<int, std::string>& given) {
+  if (const int* number = std::get_if<int>(&given)) return *number;
+  if (const std::string& text = std::get<std::string>(given); text != "all")
+    throw Error(ExitCode::usage, "bounces: found '{}', allowed: a number from 0, or 'all'", text);
+  return 0;
+}
+
 using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(
     std::span<const std::array<float, 3>>, std::span<const std::array<float, 3>>);
 
@@ -84,10 +99,9 @@ py::array_t<float> at_points(Renderer& renderer, OfPoints function, const py::ob
   const FloatArray positions = vectors<FloatArray>(points, "points"),
                    along = vectors<FloatArray>(given, what);
   const auto shape = shape_with_last(positions, 3);
-  if (shape != shape_with_last(along, 3)) {
-    throw py::value_error(
-        std::string(what) + ": found shape " + std::string(py::str(along.attr("shape"))) +
-        ", allowed: that of points, " + std::string(py::str(positions.attr("shape"))));
+  if (along.ndim() > 1 && shape != shape_with_last(along, 3)) {
+    throw Error(ExitCode::usage, "{}: found shape {}, allowed: (3,) or that of points, {}", what,
+                shape_text(along), shape_text(positions));
   }
   const auto found =
       interruptible([&] { return (renderer.*function)(as_span(positions), as_span(along)); });
@@ -102,18 +116,18 @@ py::array_t<float> light(Renderer& renderer, const py::object& normals, const py
   const auto require_image = [&](const py::array& array, py::ssize_t axes, const char* what) {
     if (array.ndim() == axes && array.shape(0) == n.shape(0) && array.shape(1) == n.shape(1))
       return;
-    throw py::value_error(fmt::format("{}: found shape {}, allowed: ({}, {}{})", what,
-                                      std::string(py::str(array.attr("shape"))), n.shape(0),
-                                      n.shape(1), axes == 3 ? ", 3" : ""));
+    throw Error(ExitCode::usage, "{}: found shape {}, allowed: ({}, {}{})", what, shape_text(array),
+                n.shape(0), n.shape(1), axes == 3 ? ", 3" : "");
   };
   if (n.ndim() != 3) {
-    throw py::value_error("normals: found shape " + std::string(py::str(n.attr("shape"))) +
-                          ", allowed: (height, width, 3)");
+    throw Error(ExitCode::usage, "normals: found shape {}, allowed: (height, width, 3)",
+                shape_text(n));
   }
   if (positions.is_none() == depths.is_none())
-    throw py::value_error(std::string("light: found ") + (depths.is_none() ? "neither" : "both") +
-                          ", allowed: positions or depths");
-  if (eye && camera) throw py::value_error("light: found eye and camera, allowed: one of both");
+    throw Error(ExitCode::usage, "positions and depths: found {}, allowed: one of them",
+                depths.is_none() ? "neither" : "both");
+  if (eye && camera)
+    throw Error(ExitCode::usage, "light: found eye and camera, allowed: one of both");
   const int limit = std::numeric_limits<int>::max();
   GBuffer surfaces{.width = static_cast<int>(std::min<py::ssize_t>(n.shape(1), limit)),
                    .height = static_cast<int>(std::min<py::ssize_t>(n.shape(0), limit)),
@@ -198,46 +212,67 @@ void add_renderer(py::module_& module) {
       "Results that do not change are cached from frame to frame. Calls from several threads run "
       "one after the other.\n"
       "Raises UsageError, DeviceError, ResourceError.");
-  type.def(py::init([](const Scene& scene, const std::string& device, const py::object& context,
-                       const py::object& queue, const py::kwargs& given) {
-             const Options options = options_of(given);
-             const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
-                                       handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
-             const bool own = context.is_none() && queue.is_none();
-             if (!own && !device.empty())
-               throw py::value_error("found a device and a context or queue, allowed: one of both");
-             note_device_use();
-             return interruptible([&] {
-               return own ? Renderer(scene, options, device) : Renderer(scene, options, where);
-             });
-           }),
-           py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
-           py::arg("queue") = py::none());
-  type.def(
-      "render",
+  define_init(
+      type,
+      [](const Scene& scene, const std::string& device, const py::object& context,
+         const py::object& queue, const py::kwargs& given) {
+        const Options options = options_of(given);
+        const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
+                                  handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
+        const bool own = context.is_none() && queue.is_none();
+        if (!own && !device.empty())
+          throw Error(ExitCode::usage,
+                      "device: found one and a context or queue, allowed: one of both");
+        note_device_use();
+        return interruptible([&] {
+          return own ? Renderer(scene, options, device) : Renderer(scene, options, where);
+        });
+      },
+      py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
+      py::arg("queue") = py::none());
+  define(
+      type, "render",
       [](Renderer& renderer, const std::string& view, const std::optional<CameraChoice>& camera,
-         double time) {
+         double time, const ImageSize& size) {
         const View what = named<View>("view", view);
-        return interruptible([&] { return renderer.render(what, camera_choice(camera), time); });
+        return interruptible(
+            [&] { return renderer.render(what, camera_choice(camera), time, size); });
       },
       py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("time") = 0.0,
-      "render(view='full', camera=None, time=0.0) -> Image (height, width, 4), linear R, G, B, "
-      "A.\n\n"
+      py::arg("size") = py::none(),
+      "render(view='full', camera=None, time=0.0, size=None) -> Image (height, width, 4), linear "
+      "R, G, B, A.\n\n"
       "view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or "
       "cells: irradiance with\n"
       "the finest cascade's cells as spheres;\n"
       "camera: a Camera, or the name of one of the scene (None: its first); time [s] of an "
-      "animated scene.");
-  type.def(
-      "show",
+      "animated scene;\n"
+      "size: (width, height), None for options width and height.");
+  define(
+      type, "update",
+      [](Renderer& renderer, const Vec3& eye, double time) {
+        interruptible([&] { renderer.update(eye, time); });
+      },
+      py::arg("eye"), py::arg("time") = 0.0,
+      "update(eye, time=0.0): lights cascades about `eye` [m] without a frame, for irradiance(), "
+      "radiance(), volumes() and\n"
+      "device_volumes().");
+  const auto release = [](Renderer& renderer) { interruptible([&] { renderer.release(); }); };
+  define(type, "release", release,
+         "release(): frees the device's memory; the next call that lights or renders allocates it "
+         "again. A `with` block ends with it.");
+  type.def("__enter__", [](const py::object& self) { return self; });
+  type.def("__exit__", [release](Renderer& renderer, const py::args&) { release(renderer); });
+  define(
+      type, "show",
       [](Renderer& renderer, const std::string& view) {
         const View what = named<View>("view", view);
         return interruptible([&] { return renderer.show(what); });
       },
       py::arg("view"),
       "show(view) -> Image: another view of the last frame, without rendering it again.");
-  type.def(
-      "light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
+  define(
+      type, "light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
       py::arg("depths") = py::none(), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
       py::arg("time") = 0.0,
       "light(normals, *, positions=None, depths=None, eye=None, camera=None, time=0.0) -> float32 "
@@ -248,34 +283,35 @@ void add_renderer(py::module_& module) {
       "shape, or depths (height, width) [m] of `camera`, a Camera or a\nname (None: the scene's "
       "first). Cascades surround `eye`, or the camera's. Pixels with a normal of 0, a depth that "
       "is not\npositive or a number that is not finite have no surface, and no light.");
-  type.def(
-      "irradiance",
+  define(
+      type, "irradiance",
       [](Renderer& renderer, const py::object& points, const py::object& normals) {
         return at_points(renderer, &Renderer::irradiance, points, normals, "normals");
       },
       py::arg("points"), py::arg("normals"),
-      "irradiance(points, normals) -> float32 array of their shape: indirect light [W/m^2], red, "
-      "green, "
-      "blue.\n\n"
-      "points [m] and normals (of any length): arrays (..., 3). Of the last frame's volumes, "
-      "without option near;\n"
+      "irradiance(points, normals) -> float32 array of the points' shape: indirect light [W/m^2], "
+      "red, green, blue.\n\n"
+      "points [m] and normals (of any length): arrays (..., 3), or one normal. Of the volumes of "
+      "the last frame, light()\n"
+      "or update(), without option near; "
       "0 outside of the cascades. Computed on the device.");
-  type.def(
-      "radiance",
+  define(
+      type, "radiance",
       [](Renderer& renderer, const py::object& points, const py::object& directions) {
         return at_points(renderer, &Renderer::radiance, points, directions, "directions");
       },
       py::arg("points"), py::arg("directions"),
-      "radiance(points, directions) -> float32 array of their shape: indirect light [W/m^2/sr], "
-      "red, green, blue.\n\n"
-      "points [m] and directions in which the light travels (of any length): arrays (..., 3). As "
-      "irradiance(), of the last\nframe's volumes, on the device; negative where nine harmonics "
+      "radiance(points, directions) -> float32 array of the points' shape: indirect light "
+      "[W/m^2/sr], red, green, blue.\n\n"
+      "points [m] and directions in which the light travels (of any length): arrays (..., 3), or "
+      "one direction. As\nirradiance(), of the same volumes, on the device; negative where nine "
+      "harmonics "
       "undershoot. Raises UsageError without transport 'sweep',\nand for layout 'image' with "
       "gather 'all'.");
   type.def("__repr__",
            [](const Renderer& renderer) { return "Renderer(" + renderer.description() + ")"; });
-  type.def("volumes", &volumes,
-           "volumes() -> list of Volume of the last frame, finest cascade first.");
+  define(type, "volumes", &volumes,
+         "volumes() -> list of Volume of the last frame, finest cascade first.");
   type.def_property_readonly(
       "stats",
       [](const Renderer& renderer) {
@@ -286,31 +322,37 @@ void add_renderer(py::module_& module) {
       "'frame': wall time of render() [ms], 'host': the host's work in it, without waiting [ms], "
       "'build': compilation so far\n[ms]; numbers of 'launches' (kernels, fills and copies) and of "
       "'waits' for the device; 'device_bytes', 'peak_device_bytes'.");
-  module.def(
-      "pathtrace",
-      [](const Scene& scene, const std::string& view, const std::optional<CameraChoice>& camera,
-         int width, int height, int bounces, std::uint32_t samples, double noise,
-         std::uint64_t seed, int threads, double time, const py::object& progress) {
-        const View what = named<View>("view", view);
+  define(
+      module, "pathtrace",
+      [](const Scene& scene, const std::variant<std::string, std::vector<std::string>>& view,
+         const std::optional<CameraChoice>& camera, int width, int height,
+         const std::variant<int, std::string>& bounces, std::uint32_t samples, double noise,
+         std::uint64_t seed, int threads, double time,
+         const std::optional<py::function>& progress) {
+        const std::vector<View> views = views_of(view);
+        TraceOptions options{width, height, bounces_of(bounces), samples, noise, seed, threads,
+                             time,  {}};
         note_device_use();
         std::atomic<double> reached{0};
         double told = 0;
-        TraceOptions options{width, height, bounces, samples, noise, seed, threads, time, {}};
         options.progress = [&](double now) { reached = now; };
         const auto tell = [&] {
-          if (progress.is_none() || reached == told) return;
+          if (!progress || reached == told) return;
           told = reached;
-          progress(told);
+          (*progress)(told);
         };
-        return interruptible([&] { return pathtrace(scene, what, camera_choice(camera), options); },
-                             tell);
+        return interruptible(
+            [&] { return pathtrace(scene, views, camera_choice(camera), options); }, tell);
       },
       py::arg("scene"), py::arg("view") = "full", py::arg("camera") = py::none(),
       py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = 1,
       py::arg("samples") = 0, py::arg("noise") = 0.02, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("time") = 0.0, py::arg("progress") = py::none(),
       "pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.\n\n"
-      "bounces: reflections between light and visible surface, 0 for all; samples: paths per "
+      "view: as of render(), or a list of several, which become layers of the image: channels "
+      "'indirect.R' and so on;\n"
+      "bounces: reflections between light and visible surface, 'all' or 0 for all; samples: paths "
+      "per "
       "pixel, 0 for as many as\n"
       "`noise` (relative standard error of the indirect light) needs; threads: 0 for one per "
       "processor.\n"

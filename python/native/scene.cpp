@@ -18,9 +18,19 @@ std::string repr(const py::object& object, const std::vector<const char*>& membe
   return text + ")";
 }
 
-/// Adds repr, equality and replace(), given the names of the constructor's arguments.
+py::dict values_of(const py::object& object, const std::vector<const char*>& members) {
+  py::dict all;
+  for (const char* member : members) all[member] = object.attr(member);
+  return all;
+}
+
+/// Adds repr, equality, hash and copies, given the names of the constructor's arguments.
 template <typename T>
 void add_value_methods(py::class_<T>& type, const std::vector<const char*>& members) {
+  add_copies(type, members);
+  type.def("__hash__", [members](const py::object& self) {
+    return py::hash(py::tuple(values_of(self, members).attr("values")()));
+  });
   type.def("__repr__", [members](const py::object& self) { return repr(self, members); });
   type.def("__eq__", [members](const py::object& self, const py::object& other) {
     if (!py::isinstance<T>(other)) return false;
@@ -29,15 +39,6 @@ void add_value_methods(py::class_<T>& type, const std::vector<const char*>& memb
     }
     return true;
   });
-  type.def(
-      "replace",
-      [members](const py::object& self, const py::kwargs& changes) {
-        py::dict all;
-        for (const char* member : members) all[member] = self.attr(member);
-        all.attr("update")(changes);
-        return py::type::of(self)(**all);
-      },
-      "replace(**changes): a copy with other values of some arguments.");
 }
 
 void add_camera(py::module_& module) {
@@ -47,13 +48,14 @@ void add_camera(py::module_& module) {
       "used.\n\n"
       "eye, target, up: x, y, z [m]; fov: vertical field of view [degrees];\n"
       "near: nearest visible depth [m]; light: name of its only light, empty for all.");
-  type.def(py::init([](const Vec3& eye, const Vec3& target, const Vec3& up, double fov, double near,
-                       std::string name, std::string light) {
-             return Camera{eye, target, up, fov, near, std::move(name), std::move(light)};
-           }),
-           py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0),
-           py::arg("fov") = 60.0, py::arg("near") = 0.05, py::arg("name") = "",
-           py::arg("light") = "");
+  define_init(
+      type,
+      [](const Vec3& eye, const Vec3& target, const Vec3& up, double fov, double near,
+         std::string name, std::string light) {
+        return Camera{eye, target, up, fov, near, std::move(name), std::move(light)};
+      },
+      py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0, 1, 0),
+      py::arg("fov") = 60.0, py::arg("near") = 0.05, py::arg("name") = "", py::arg("light") = "");
   type.def_property_readonly("eye", [](const Camera& c) { return tuple_of(c.eye); });
   type.def_property_readonly("target", [](const Camera& c) { return tuple_of(c.target); });
   type.def_property_readonly("up", [](const Camera& c) { return tuple_of(c.up); });
@@ -73,22 +75,23 @@ void add_light(py::module_& module) {
       "intensity: red, green, blue, or one number: illuminance [lx = W/m^2] if directional, else "
       "[cd = W/sr];\n"
       "range [m], 0 for no limit; inner_cone, outer_cone: angles of a spot [degrees].");
-  type.def(py::init([](const std::string& kind, const Vec3& position, const Vec3& direction,
-                       const py::object& intensity, double range, double inner, double outer,
-                       std::string name) {
-             return Light{named<LightKind>("kind", kind),
-                          position,
-                          direction,
-                          colour_of(intensity),
-                          range,
-                          inner,
-                          outer,
-                          std::move(name)};
-           }),
-           py::arg("kind") = "directional", py::arg("position") = py::make_tuple(0, 0, 0),
-           py::arg("direction") = py::make_tuple(0, -1, 0),
-           py::arg("intensity") = py::make_tuple(1, 1, 1), py::arg("range") = 0.0,
-           py::arg("inner_cone") = 0.0, py::arg("outer_cone") = 45.0, py::arg("name") = "");
+  define_init(
+      type,
+      [](const std::string& kind, const Vec3& position, const Vec3& direction,
+         const Colour& intensity, double range, double inner, double outer, std::string name) {
+        return Light{named<LightKind>("kind", kind),
+                     position,
+                     direction,
+                     colour_of(intensity),
+                     range,
+                     inner,
+                     outer,
+                     std::move(name)};
+      },
+      py::arg("kind") = "directional", py::arg("position") = py::make_tuple(0, 0, 0),
+      py::arg("direction") = py::make_tuple(0, -1, 0),
+      py::arg("intensity") = py::make_tuple(1, 1, 1), py::arg("range") = 0.0,
+      py::arg("inner_cone") = 0.0, py::arg("outer_cone") = 45.0, py::arg("name") = "");
   type.def_property_readonly("kind", [](const Light& l) { return std::string(name_of(l.kind)); });
   type.def_property_readonly("position", [](const Light& l) { return tuple_of(l.position); });
   type.def_property_readonly("direction", [](const Light& l) { return tuple_of(l.direction); });
@@ -109,13 +112,14 @@ void add_medium(py::module_& module) {
                           "anisotropy: -0.9 to 0.9, above 0 forwards;\n"
                           "box: lower and upper corner [m], None for the scene's bounding box.");
   using Box = std::optional<std::array<Vec3, 2>>;
-  type.def(py::init([](const py::object& scattering, const py::object& absorption,
-                       double anisotropy, const Box& box) {
-             return Medium{colour_of(scattering), colour_of(absorption), anisotropy, box};
-           }),
-           py::arg("scattering") = py::make_tuple(0, 0, 0),
-           py::arg("absorption") = py::make_tuple(0, 0, 0), py::arg("anisotropy") = 0.0,
-           py::arg("box") = py::none());
+  define_init(
+      type,
+      [](const Colour& scattering, const Colour& absorption, double anisotropy, const Box& box) {
+        return Medium{colour_of(scattering), colour_of(absorption), anisotropy, box};
+      },
+      py::arg("scattering") = py::make_tuple(0, 0, 0),
+      py::arg("absorption") = py::make_tuple(0, 0, 0), py::arg("anisotropy") = 0.0,
+      py::arg("box") = py::none());
   type.def_property_readonly("scattering", [](const Medium& m) { return tuple_of(m.scattering); });
   type.def_property_readonly("absorption", [](const Medium& m) { return tuple_of(m.absorption); });
   type.def_readonly("anisotropy", &Medium::anisotropy);
@@ -128,11 +132,32 @@ void add_medium(py::module_& module) {
 
 }  // namespace
 
-Vec3 colour_of(const py::object& given) {
-  if (!py::isinstance<py::float_>(given) && !py::isinstance<py::int_>(given))
-    return given.cast<Vec3>();
+void add_copies(const py::object& type, const std::vector<const char*>& members) {
+  const auto add = [&](const char* name, const auto& function, const char* doc) {
+    type.attr(name) = py::cpp_function(function, py::name(name), py::is_method(type), py::doc(doc));
+  };
+  add(
+      "replace",
+      [members](const py::object& self, const py::kwargs& changes) {
+        py::dict all = values_of(self, members);
+        all.attr("update")(changes);
+        return py::type::of(self)(**all);
+      },
+      "replace(**changes): a copy with other values of some arguments.");
+  check_arguments(type, "replace", Self::typed, {{{"self", true, false, nullptr, nullptr}}, true});
+  add(
+      "__reduce_ex__",
+      [members](const py::object& self, int) {
+        const py::object make = py::module_::import("functools").attr("partial");
+        return py::make_tuple(make(py::type::of(self), **values_of(self, members)), py::tuple());
+      },
+      "For copy and pickle.");
+}
+
+Vec3 colour_of(const Colour& given) {
+  if (const auto* colour = std::get_if<Vec3>(&given)) return *colour;
   Vec3 grey{};
-  grey.fill(given.cast<double>());
+  grey.fill(std::get<double>(given));
   return grey;
 }
 
@@ -147,13 +172,15 @@ void add_scene(py::module_& module) {
                          "Renderers keep its data alive. Thread-safe. Raises InputError with file, "
                          "place, value found and value allowed.");
   using Path = std::optional<std::filesystem::path>;
-  type.def(py::init([](const Path& path, const Path& model) {
-             if (!path && model)
-               throw Error(ExitCode::usage, "model: found one, allowed: none without a path");
-             if (!path) return Scene();
-             return interruptible([&] { return Scene(*path, model.value_or("")); });
-           }),
-           py::arg("path") = py::none(), py::arg("model") = py::none());
+  define_init(
+      type,
+      [](const Path& path, const Path& model) {
+        if (!path && model)
+          throw Error(ExitCode::usage, "model: found one, allowed: none without a path");
+        if (!path) return Scene();
+        return interruptible([&] { return Scene(*path, model.value_or("")); });
+      },
+      py::arg("path") = py::none(), py::arg("model") = py::none());
   add_meshes(type);
   type.def("__repr__", [](const Scene& scene) {
     return without_gil([&] {
@@ -165,13 +192,15 @@ void add_scene(py::module_& module) {
   });
   type.def_property(
       "cameras", [](const Scene& scene) { return py::tuple(py::cast(scene.cameras())); },
-      [](Scene& scene, const std::vector<Camera>& cameras) {
+      [](Scene& scene, const py::object& given) {
+        const auto cameras = argument<std::vector<Camera>>("cameras", given);
         without_gil([&] { scene.set_cameras(cameras); });
       },
       "Tuple of all Cameras, at 0 s if animated. Assign a sequence to replace them.");
   type.def_property(
       "lights", [](const Scene& scene) { return py::tuple(py::cast(scene.lights())); },
-      [](Scene& scene, const std::vector<Light>& lights) {
+      [](Scene& scene, const py::object& given) {
+        const auto lights = argument<std::vector<Light>>("lights", given);
         without_gil([&] { scene.set_lights(lights); });
       },
       "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame "
@@ -179,7 +208,8 @@ void add_scene(py::module_& module) {
       "of this scene recomputes what depends on them.");
   type.def_property(
       "medium", &Scene::medium,
-      [](Scene& scene, const std::optional<Medium>& medium) {
+      [](Scene& scene, const py::object& given) {
+        const auto medium = argument<std::optional<Medium>>("medium", given);
         without_gil([&] { scene.set_medium(medium); });
       },
       "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene "

@@ -41,7 +41,7 @@ def test_bad_arrays_are_named(renderer, seen):
         renderer.light(normals[0], depths=depths[0], camera=FRONT)
     with pytest.raises(ValueError, match="positions: found shape"):
         renderer.light(normals, positions=normals[:, :9], eye=FRONT.eye)
-    with pytest.raises(ValueError, match="found neither, allowed: positions or depths"):
+    with pytest.raises(ValueError, match="found neither, allowed: one of them"):
         renderer.light(normals, camera=FRONT)
     with pytest.raises(ValueError, match="found eye and camera"):
         renderer.light(normals, positions=normals, camera=FRONT, eye=FRONT.eye)
@@ -49,3 +49,27 @@ def test_bad_arrays_are_named(renderer, seen):
         renderer.light(normals, depths=np.full(depths.shape, "x"))
     with pytest.raises(clpv.UsageError, match="found depths and an eye"):
         renderer.light(normals, depths=depths, eye=FRONT.eye)
+
+
+def test_light_without_a_frame(scene):
+    renderer, framed = clpv.Renderer(scene, **SMALL), clpv.Renderer(scene, **SMALL)
+    framed.render(camera=clpv.Camera((0.3, 0.25, 0.2), (0.3, 0.25, 0)))
+    renderer.update((0.3, 0.25, 0.2))
+    points = np.random.default_rng(1).uniform(0.1, 0.4, (5, 3))
+    light = renderer.irradiance(points, (0, -1, 0))  # one normal for all
+    assert light.max() > 0
+    assert np.array_equal(light, framed.irradiance(points, np.broadcast_to((0, -1, 0), (5, 3))))
+    with pytest.raises(clpv.UsageError, match="no frame was rendered"):
+        renderer.show("full")
+
+
+def test_sizes_layers_and_release(scene):
+    with clpv.Renderer(scene, **SMALL) as renderer:
+        assert renderer.render(size=(30, 20)).array.shape == (20, 30, 4)
+        assert renderer.show("depth").width == 30
+    assert renderer.stats["device_bytes"] < 1e6
+    both = clpv.pathtrace(scene, ["indirect", "albedo"], width=4, height=3, samples=1,
+                          bounces="all")
+    assert both.channels[:2] == ("indirect.R", "indirect.G") and both.array.shape == (3, 4, 8)
+    one = clpv.pathtrace(scene, "albedo", width=4, height=3, samples=1, bounces=0)
+    assert np.array_equal(one.array, both.array[..., 4:])

@@ -13,6 +13,7 @@ import numpy
 import pytest
 
 import clpv
+import clpv._trimesh
 from conftest import ROOT, SMALL
 
 TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -196,8 +197,26 @@ def test_scene_of_trimesh():
     assert scene.bounds == ((-0.5, -0.5, -0.5), (3.5, 0.5, 0.5))
     assert "24 triangles" in repr(scene)
     assert "12 triangles" in repr(clpv.Scene.from_trimesh(box))
-    with pytest.raises(TypeError, match="from_trimesh: found int"):
+    with pytest.raises(TypeError, match="from_trimesh: given: found int"):
         clpv.Scene.from_trimesh(3)
+
+
+def test_colours_of_trimesh():
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
+    look = clpv._trimesh._arguments  # pylint: disable=protected-access
+    box = trimesh.creation.box((1, 1, 1))
+    box.visual.face_colors = [[10 * face, 255, 0, 255] for face in range(12)]
+    given = look(box)
+    assert given["positions"].shape == (36, 3) and given["colours"].shape == (36, 4)
+    assert numpy.ptp(given["colours"][:3], axis=0).max() == 0 and given["colours"][33, 1] == 1
+    assert given["colours"][33, 0] == pytest.approx(0.1559, abs=1e-3)  # of 110, sRGB-encoded
+    assert "12 triangles" in repr(clpv.Scene.from_trimesh(box))
+    pbr = trimesh.visual.material.PBRMaterial(baseColorFactor=[0.5, 1, 0, 1], alphaMode="MASK",
+                                              emissiveFactor=[0, 2, 0], doubleSided=True)
+    box.visual = trimesh.visual.TextureVisuals(uv=numpy.zeros((8, 2)), material=pbr)
+    material = look(box)["material"]
+    assert material.base_colour == pytest.approx((0.5, 1, 0, 1), abs=0.003)
+    assert material.emission == (0, 2, 0) and material.alpha_cutoff == 0.5 and material.double_sided
 
 
 def test_the_example_of_arrays_runs(tmp_path):

@@ -14,7 +14,7 @@ from conftest import CORNELL, FRONT, ROOT, SMALL
 def test_handles_of_another_kind_are_named(scene):
     with pytest.raises(
             TypeError,
-            match="queue: found .*str.*, allowed: an object of pyopencl's class CommandQueue, or its int_ptr"):
+            match="queue: found 'queue', allowed: an object of pyopencl's class CommandQueue, or its int_ptr"):
         clpv.Renderer(scene, queue="queue", **SMALL)
 
     class Context:  # as pyopencl's, whose handle a driver would take for a queue and crash
@@ -25,7 +25,7 @@ def test_handles_of_another_kind_are_named(scene):
             given.__class__ = type("Buffer", (), {"int_ptr": 4096})
         with pytest.raises(TypeError, match=f"{name}: found .*, allowed: an object of pyopencl's class"):
             clpv.Renderer(scene, **{name: given}, **SMALL)
-    with pytest.raises(ValueError, match="found a device and a context or queue"):
+    with pytest.raises(ValueError, match="device: found one and a context or queue"):
         clpv.Renderer(scene, "0", queue=1, **SMALL)
     with pytest.raises(TypeError, match="__init__ was not called"):
         clpv.DeviceEvent.__new__(clpv.DeviceEvent).wait()
@@ -51,6 +51,14 @@ def test_frames_and_light_in_pyopencls_queue(scene, renderer):
     made.enqueue_light(48, 27, normals=frame.normals, depths=frame.depth, irradiance=light,
                        camera=FRONT).wait()
     assert np.array_equal(read(light.int_ptr), expected)
+    arrays = pytest.importorskip("pyopencl.array")
+    into = arrays.zeros(queue, (27, 48, 4), np.float32)
+    made.enqueue_light(48, 27, normals=frame.normals, depths=frame.depth, irradiance=into,
+                       camera=FRONT).wait()
+    assert np.array_equal(into.get()[..., :3], expected)
+    with pytest.raises(clpv.UsageError, match="irradiance: found an array of float64 .*, allowed:"):
+        made.enqueue_light(48, 27, normals=frame.normals, depths=frame.depth,
+                           irradiance=into.astype(np.float64), camera=FRONT)
     with pytest.raises(clpv.UsageError,
                        match="light: normals: found 20736 bytes, allowed: at least"):
         made.enqueue_light(480, 27, normals=frame.normals, depths=frame.depth, irradiance=light,

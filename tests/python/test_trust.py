@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import clpv
-from conftest import CORNELL, ROOT, SMALL
+from conftest import CORNELL, FRONT, ROOT, SMALL
 
 START = f"""
 import os, sys, threading, time, clpv
@@ -124,8 +124,8 @@ def test_objects_without_init_are_rejected(name):
 
 def test_objects_are_not_copied_or_pickled(scene, renderer):
     image = renderer.render()
-    for each in (scene, renderer, image, clpv.Camera((0, 0, 0), (0, 0, 1)), clpv.Light(),
-                 clpv.Basis("sh2"), renderer.volumes()[0], clpv.compare(image, image)):
+    for each in (scene, renderer, image, clpv.Basis("sh2"), renderer.volumes()[0],
+                 clpv.compare(image, image)):
         name = f"clpv.{type(each).__name__} cannot be copied or pickled"
         for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
             with pytest.raises(TypeError, match=name):
@@ -134,6 +134,18 @@ def test_objects_are_not_copied_or_pickled(scene, renderer):
             with pytest.raises(TypeError, match=name):
                 function(each)
     assert isinstance(pickle.loads(pickle.dumps(clpv.UsageError("text"))), clpv.UsageError)
+
+
+def test_values_are_copied_pickled_and_hashed():
+    texture = np.arange(8, dtype=np.uint8).reshape(1, 2, 4)
+    values = [FRONT, FRONT.replace(name="other"), clpv.Light("spot", name="s"),
+              clpv.Medium(0.5, box=((0, 0, 0), (1, 1, 1))), clpv.Material(base_colour=0.5),
+              clpv.Material(texture=texture, alpha_cutoff=0.5)]
+    for each in values:
+        copies = [copy.copy(each), copy.deepcopy(each), each.replace()]
+        copies += [pickle.loads(pickle.dumps(each, p)) for p in range(pickle.HIGHEST_PROTOCOL + 1)]
+        assert all(made == each and hash(made) == hash(each) for made in copies)
+    assert len(set(values + [copy.copy(each) for each in values])) == len(values)
 
 
 def test_an_exception_ends_its_own_call_only():  # all calls of the process once ended with it

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "arguments.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace clpv::python {
+
+std::string found(py::handle given) {
+  constexpr std::size_t kLongest = 60;
+  std::string text;
+  try {
+    text = py::repr(given).cast<std::string>();
+  } catch (const py::error_already_set&) {  // of the object's __repr__
+  }
+  if (!text.empty() && text.size() <= kLongest && text.find('\n') == std::string::npos) return text;
+  return "an object of " + std::string(py::str(py::type::of(given)));
+}
+
+void check_call(const std::string& function, const std::vector<Parameter>& parameters, bool open,
+                const py::args& args, const py::kwargs& kwargs) {
+  const auto positional =
+      static_cast<std::size_t>(std::ranges::count(parameters, false, &Parameter::keyword));
+  if (args.size() > positional) {
+    const std::size_t self =
+        !parameters.empty() && parameters[0].name == std::string_view("self") ? 1 : 0;
+    throw Error(ExitCode::usage, "{}: found {} arguments by position, allowed: at most {}",
+                function, args.size() - self, positional - self);
+  }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& parameter = parameters[i];
+    const bool placed = i < args.size(), by_name = kwargs.contains(parameter.name);
+    if (placed && by_name)
+      throw Error(ExitCode::usage, "{}: {}: found two values, allowed: one", function,
+                  parameter.name);
+    if (parameter.takes == nullptr) continue;
+    if (i > 0 || parameter.name != std::string_view("self")) names.emplace_back(parameter.name);
+    if (!placed && !by_name && parameter.required)
+      throw Error(ExitCode::usage, "{}: {}: found none, allowed: {}", function, parameter.name,
+                  parameter.allowed());
+    if (!placed && !by_name) continue;
+    const py::object given = placed ? py::object(args[i]) : py::object(kwargs[parameter.name]);
+    if (!parameter.takes(given))
+      throw Error(ExitCode::usage, "{}: {}: found {}, allowed: {}", function, parameter.name,
+                  found(given), parameter.allowed());
+  }
+  if (open) return;
+  for (const auto& [key, value] : kwargs) {
+    if (std::ranges::count(names, key.cast<std::string>()) == 0)
+      throw Error(ExitCode::usage, "{}: found argument '{}', allowed: {}", function,
+                  key.cast<std::string>(), fmt::join(names, ", "));
+  }
+}
+
+void check_arguments(const py::object& scope, const char* name, Self self,
+                     const std::pair<std::vector<Parameter>, bool>& parameters) {
+  const py::object function = scope.attr(name);
+  const std::string label =
+      self == Self::untyped ? scope.attr("__name__").cast<std::string>() : name;
+  const std::string doc = py::str(function.attr("__doc__"));
+  const auto call = [=](const py::args& args, const py::kwargs& kwargs) {
+    check_call(label, parameters.first, parameters.second, args, kwargs);
+    return py::object(function(*args, **kwargs));
+  };
+  py::options options;
+  options.disable_function_signatures();  // `doc` has it
+  if (self != Self::none)
+    scope.attr(name) =
+        py::cpp_function(call, py::name(name), py::is_method(scope), py::doc(doc.c_str()));
+  else if (PyModule_Check(scope.ptr()))
+    scope.attr(name) =
+        py::cpp_function(call, py::name(name), py::scope(scope), py::doc(doc.c_str()));
+  else
+    scope.attr(name) = py::staticmethod(
+        py::cpp_function(call, py::name(name), py::scope(scope), py::doc(doc.c_str())));
+}
+
+}  // namespace clpv::python
