@@ -7,6 +7,7 @@
 
 #include "api/scene_contents.hpp"
 #include "scene/bounds.hpp"
+#include "scene/gltf_writer.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -119,6 +120,11 @@ void Scene::set_positions(int mesh, std::span<const std::array<float, 3>> positi
 void Scene::set_transform(int mesh, const Transform& transform) {
   const std::lock_guard lock(contents_->mutex);
   contents_->changed(contents_->moving.set_transform(mesh, transform));
+}
+
+void Scene::save(const std::filesystem::path& path) const {
+  const std::shared_lock lock(contents_->mutex);
+  write_glb(path, contents_->moving.scene());
 }
 
 bool Scene::moves() const {

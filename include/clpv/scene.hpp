@@ -107,6 +107,11 @@ class Scene {
                      std::span<const std::array<float, 3>> normals = {});
   void set_transform(int mesh, const Transform& transform);
 
+  /// Writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning for what glTF
+  /// has not: sky, medium, a camera's only light. Throws Error: usage (another extension), run_time
+  /// (the file cannot be written).
+  void save(const std::filesystem::path& path) const;
+
   bool moves() const;  ///< returns true if anything in it is animated
   std::vector<std::string> notes()
       const;  ///< one sentence for each thing skipped or added by the loader and not replaced

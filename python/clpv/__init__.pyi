@@ -452,6 +452,10 @@ class Scene:
         """Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene allocates its memory again."""
     @medium.setter
     def medium(self, value: Medium | None) -> None: ...
+    def save(self, path: _Path) -> None:
+        """save(path): writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning for a sky, a medium and
+        a camera's only light, which glTF has not.
+        """
     @property
     def moves(self) -> bool:
         """True if anything is animated."""

@@ -214,6 +214,15 @@ void add_scene(py::module_& module) {
       },
       "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene "
       "allocates its memory again.");
+  define(
+      type, "save",
+      [](const Scene& scene, const std::filesystem::path& path) {
+        interruptible([&] { scene.save(path); });
+      },
+      py::arg("path"),
+      "save(path): writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning "
+      "for a sky, a medium and\n"
+      "a camera's only light, which glTF has not.");
   type.def_property_readonly("moves", &Scene::moves, "True if anything is animated.");
   type.def_property_readonly(
       "notes", [](const Scene& scene) { return py::tuple(py::cast(scene.notes())); },

@@ -59,6 +59,7 @@ CALLS = {
     "Scene.from_trimesh": ({"given": "object"}, {}),
     "Scene.add_instance": ({"mesh": "integer", "transform": "array"},
                            {"mesh": 0, "transform": numpy.eye(4)}),
+    "Scene.save": ({"path": "path"}, {"path": "x.glb"}),
     "Scene.remove_mesh": ({"mesh": "integer"}, {}),
     "Scene.set_positions": ({"mesh": "integer", "positions": "array", "normals": "array"},
                             {"mesh": 0, "positions": numpy.eye(3)}),

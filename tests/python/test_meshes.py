@@ -186,6 +186,23 @@ def test_meshes_change_while_frames_render():
                                      clpv.Renderer(anew, cascade_size=4, **SMALL).render().array)
 
 
+@pytest.mark.parametrize("name", ["cornell", "atrium"])
+def test_a_saved_scene_is_the_same(name, tmp_path):
+    scene = clpv.Scene(ROOT / f"scenes/{name}.json")
+    scene.save(tmp_path / "saved.glb")
+    saved = clpv.Scene(tmp_path / "saved.glb")
+    assert [camera.name for camera in saved.cameras] == [camera.name for camera in scene.cameras]
+    assert [light.name for light in saved.lights] == [light.name for light in scene.lights]
+    numpy.testing.assert_array_equal(saved.bounds, scene.bounds)
+    options = {"width": 16, "height": 9, "samples": 4}
+    for view in "albedo", "direct", "indirect":
+        found = [clpv.pathtrace(each, view, each.cameras[0].replace(light=""), **options).array
+                 for each in (scene, saved)]
+        numpy.testing.assert_allclose(found[1], found[0], rtol=1e-3, atol=1e-4 * found[0].max())
+    with pytest.raises(clpv.UsageError, match="found extension '.obj', allowed: .glb"):
+        scene.save(tmp_path / "saved.obj")
+
+
 def test_scene_of_trimesh():
     trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
     box = trimesh.creation.box((1, 1, 1))
