@@ -210,8 +210,9 @@ void add_material(py::module_& module) {
       "A copy as uint8 array (height, width, 4), or None.");
   add_copies(type, {"base_colour", "emission", "texture", "alpha_cutoff", "double_sided"});
   type.def("__hash__", [](const Material& m) {
-    return py::hash(py::make_tuple(m.base_colour, m.emission, m.texture ? m.texture->width : 0,
-                                   m.alpha_cutoff, m.double_sided));
+    return py::hash(py::make_tuple(py::tuple(py::cast(m.base_colour)), tuple_of(m.emission),
+                                   m.texture ? m.texture->width : 0, m.alpha_cutoff,
+                                   m.double_sided));
   });
   type.def_readonly("alpha_cutoff", &Material::alpha_cutoff);
   type.def_readonly("double_sided", &Material::double_sided);

@@ -41,7 +41,7 @@ def state(scene):
 
 def test_random_orders_give_the_same_state(scene):
     options = SMALL | {"cascade_size": 1}
-    for seed in range(3):
+    for seed in range(2):
         found = set()
         for order in range(2):
             shuffle = random.Random(10 * seed + order)
@@ -50,7 +50,7 @@ def test_random_orders_give_the_same_state(scene):
                 changed.add_mesh(WALL, TRIANGLE, moves=order == 0)
             renderer = clpv.Renderer(changed, **options)
             # Each change has the same last value; others come before, and frames between.
-            steps = [(name, step) for name in CHANGES for step in shuffle.sample(range(1, 9), 3)]
+            steps = [(name, step) for name in CHANGES for step in shuffle.sample(range(1, 9), 2)]
             shuffle.shuffle(steps)
             last = [(name, 4 * seed + number) for number, name in enumerate(CHANGES)]
             shuffle.shuffle(last)
