@@ -206,8 +206,7 @@ TEST_F(BadSceneFileTest, Cameras) {
     camera.update(json::parse("{" + members + "}"));
     expect_camera_rejected(json::array({camera}), words);
   }
-  expect_camera_rejected(json::array({sound, sound}),
-                         {"/cameras/1/name", "duplicate name 'a'"});
+  expect_camera_rejected(json::array({sound, sound}), {"/cameras/1/name", "duplicate name 'a'"});
 }
 
 TEST_F(BadSceneFileTest, Lights) {

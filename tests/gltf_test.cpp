@@ -373,15 +373,13 @@ TEST_F(GltfTest, SharedNamesOfCamerasAndLightsGetANote) {
 TEST_F(GltfTest, NamesOfTheFileAreNotMadeUpForOthers) {
   model.triangle();
   for (const char* name : {"wide", "wide 2", "camera 2"}) {
-    model.document["cameras"].push_back({{"name", name},
-                                         {"type", "perspective"},
-                                         {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+    model.document["cameras"].push_back(
+        {{"name", name}, {"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
   }
   model.document["cameras"].push_back(
       {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
   for (const int camera : {0, 0, 3, 3, 1, 2})
-    model.add("nodes", {{"camera", camera},
-                        {"translation", {static_cast<double>(camera), 0, 0}}});
+    model.add("nodes", {{"camera", camera}, {"translation", {static_cast<double>(camera), 0, 0}}});
   const SceneData scene = load();
   EXPECT_EQ(scene.camera("wide 2").eye.x, 1);
   EXPECT_EQ(scene.camera("wide 3").eye.x, 0);

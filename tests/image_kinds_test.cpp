@@ -196,8 +196,8 @@ TEST(ExrParts, AreSelectedByNameInCompareAndRejectedAsASky) {
 }
 
 TEST(ExrParts, OfTheNameOfALayerAreNoted) {
-  const Image image = exr({named("main", {"sun.B", "sun.G", "sun.R"}, 1),
-                           named("sun", {"B", "G", "R"}, 2)});
+  const Image image =
+      exr({named("main", {"sun.B", "sun.G", "sun.R"}, 1), named("sun", {"B", "G", "R"}, 2)});
   const Image sun = extract_layer(image, "sun", "a");
   EXPECT_EQ(sun.at(7, 5, 0), 2 * pattern("", 7, 5));
   EXPECT_THAT(sun.notes, ElementsAre("layer 'sun' is read, not 'main.sun'"));

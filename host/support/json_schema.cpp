@@ -261,7 +261,8 @@ class UniqueKeys {
     if (event == json::parse_event_t::object_end) objects_.pop_back();
     if (event == json::parse_event_t::key &&
         !objects_.back().insert(parsed.get<std::string>()).second)
-      reject(file_, {}, fmt::format("duplicate key {}", quoted(parsed)), "unique keys of an object");
+      reject(file_, {}, fmt::format("duplicate key {}", quoted(parsed)),
+             "unique keys of an object");
     return true;
   }
 
