@@ -5,7 +5,7 @@
 
 namespace clpv {
 
-/// What the lab adds to the program.
+/// The lab's additions to the program.
 Additions lab_additions();
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What another program adds to the commands: the lab (lab/README.md) adds methods to `quality` and
+// Additions of another program to the commands: the lab (lab/README.md) adds methods to `quality` and
 // suites to `bench`.
 #pragma once
 

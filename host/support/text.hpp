@@ -36,7 +36,7 @@ std::string float_literal(double value);
 /// Returns `text` without blanks at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// Returns the name that a misspelt one stands for: the one of the fewest inserted, deleted and
+/// Returns the name that is nearest to a misspelt one: the one of the fewest inserted, deleted and
 /// replaced letters, at most two; "" if none is that near.
 std::string nearest(std::string_view misspelt, const std::vector<std::string>& names);
 
