@@ -129,6 +129,4 @@ class Scene {
   std::shared_ptr<Contents> contents_;
 };
 
-using SceneFile = Scene;  ///< its name until version 0.3
-
 }  // namespace clpv

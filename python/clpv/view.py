@@ -11,6 +11,7 @@ viser: python3 -m pip install viser==1.1.1 (in a virtual environment with --syst
 import argparse
 import functools
 import io
+import logging
 import math
 import os
 import socket
@@ -258,6 +259,8 @@ def main(arguments=None):
     parser.add_argument("--port", type=port_number, default=8080, metavar="1..65535",
                         help="(default: %(default)s)")
     given = parser.parse_args(arguments)
+    logging.basicConfig(format="%(name)s: %(message)s")
+    logging.getLogger("clpv").setLevel(logging.INFO)
     try:
         show(given.scene, model=given.model, host=given.host, port=given.port, device=given.device)
     except ImportError:
