@@ -23,6 +23,7 @@ using Positions = std::vector<std::array<float, 3>>;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 const Triangles kSquare{{0, 1, 2}, {0, 2, 3}};
+const std::vector<std::array<float, 2>> kCorners{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 
 /// Floor of 4 m x 4 m at a height, or a wall across z at a distance.
 Positions floor_at(float y) {
@@ -129,7 +130,10 @@ TEST(AddedMeshes, EqualMaterialsAndFreedTexturesShareTheirSlots) {
   const Positions ground = floor_at(0);
   const auto add = [&](std::uint8_t value) {
     texture.rgba[0] = value;
-    return meshes.add({.positions = ground, .triangles = kSquare, .material = {.texture = texture}},
+    return meshes.add({.positions = ground,
+                       .triangles = kSquare,
+                       .uvs = kCorners,
+                       .material = {.texture = texture}},
                       kIdentity, scene);
   };
   const int first = add(1);
@@ -193,10 +197,12 @@ TEST(AddedMeshes, BadArraysAreRejectedByNameAndIndex) {
   rejected({.positions = good, .triangles = kSquare}, "transform[1][2]: found nan", shear);
   rejected({.positions = good, .triangles = kSquare, .material = {.base_colour = {1, 2, 1, 1}}},
            "base_colour[1]: found 2");
-  rejected({.positions = good,
-            .triangles = kSquare,
-            .material = {.texture = Material::Texture{2, 2, {1}}}},
-           "texture: found 1 bytes");
+  const Material::Texture texture{2, 2, {1}};
+  rejected(
+      {.positions = good, .triangles = kSquare, .uvs = kCorners, .material = {.texture = texture}},
+      "texture: found 1 bytes");
+  rejected({.positions = good, .triangles = kSquare, .material = {.texture = texture}},
+           "uvs: found none beside a texture; allowed: one for each vertex");
   const Triangles many(bounds::kTriangles + 1);
   rejected({.positions = good, .triangles = many}, "more triangles");
   EXPECT_THAT(

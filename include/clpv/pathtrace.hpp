@@ -46,8 +46,8 @@ struct PointLights {
   double noise = 0;  ///< root mean square of `error` over that of `indirect`
 };
 
-/// Traces the irradiance at positions [m] with a normal (of any length) each, on a surface of the
-/// scene or in the air, lit by all lights; `indirect` is what Renderer::irradiance() estimates.
+/// Traces the irradiance at positions [m] with a normal (of any length) each, or one for all, on a
+/// surface of the scene or in the air, lit by all lights; `indirect` is what Renderer::irradiance() estimates.
 /// Uses neither width nor height of `options`. Throws Error: usage (options, different numbers of
 /// positions and normals, vectors that are not finite, a normal of length 0), bad_input (a scene
 /// without surface). Thread-safe.

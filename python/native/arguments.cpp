@@ -61,6 +61,7 @@ void check_arguments(const py::object& scope, const char* name, Self self,
       self == Self::untyped ? scope.attr("__name__").cast<std::string>() : name;
   const std::string doc = py::str(function.attr("__doc__"));
   const auto call = [=](const py::args& args, const py::kwargs& kwargs) {
+    const CallInProgress in_progress;
     check_call(label, parameters.first, parameters.second, args, kwargs);
     return py::object(function(*args, **kwargs));
   };

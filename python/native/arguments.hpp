@@ -22,6 +22,18 @@ namespace clpv::python {
 
 namespace py = pybind11;
 
+/// A call of the module. Exists while the GIL is held, before and after. Python's exit waits for
+/// all of them: a thread that asked for the GIL later, as NumPy does for a copy, would be ended
+/// inside C++, whose destructors would touch objects without the GIL. Once Python exits, the
+/// constructor ends other threads.
+class CallInProgress {
+ public:
+  CallInProgress();
+  ~CallInProgress();
+  CallInProgress(const CallInProgress&) = delete;
+  CallInProgress& operator=(const CallInProgress&) = delete;
+};
+
 struct Parameter {
   const char* name;
   bool required, keyword;           ///< keyword: by name only

@@ -51,7 +51,8 @@ struct Errors {
 Errors errors;  // filled once, by add_errors
 
 // State of this process, guarded by the GIL.
-int running = 0;                   // RunningCalls
+int running = 0;                   // CallsInProgress of process `counted`
+pid_t counted = ::getpid();        // a fork copies the count, and not the threads
 std::atomic<bool> exiting{false};  // Python's exit has begun
 std::thread::id exiting_thread;
 pid_t device_user = 0;  // process that called note_device_use() first; a fork copies it
@@ -85,8 +86,7 @@ void receive_messages() {
 void end_running_calls() {
   exiting = true;
   exiting_thread = std::this_thread::get_id();
-  if (forked_from_device_use()) return;  // calls of the parent's threads
-  while (running > 0) {
+  while (counted == ::getpid() && running > 0) {
     py::gil_scoped_release released;
     std::this_thread::sleep_for(kPoll);
   }
@@ -111,22 +111,29 @@ void reject_pickling(py::module_& module) {
 
 }  // namespace
 
-RunningCall::RunningCall() {
+CallInProgress::CallInProgress() {
   if (exiting && std::this_thread::get_id() != exiting_thread) {
     PyErr_SetNone(PyExc_SystemExit);  // ends the thread without a message
     throw py::error_already_set();
   }
+  if (counted != ::getpid()) running = 0, counted = ::getpid();
+  ++running;
+}
+
+CallInProgress::~CallInProgress() {
+  --running;
+}
+
+RunningCall::RunningCall() {
   if (exiting) throw Error(ExitCode::run_time, "clpv: Python is exiting");
   if (forked_from_device_use()) {
     throw Error(ExitCode::run_time,
                 "clpv: this process was forked from one that used clpv; allowed: multiprocessing's "
                 "start method 'spawn' or 'forkserver'");
   }
-  ++running;
 }
 
 RunningCall::~RunningCall() {
-  --running;
   try {
     if (!exiting) log_messages();
   } catch (py::error_already_set& error) {

@@ -89,16 +89,18 @@ inline py::tuple tuple_of(const Vec3& v) {
   return py::make_tuple(v[0], v[1], v[2]);
 }
 
-/// A call that releases the GIL. Exists while the GIL is held, before and after. Python's exit
-/// waits for all of them: a thread that asked for the GIL later would be ended inside C++, which
-/// aborts the process. The constructor throws Error(run_time) once Python exits, and in a process
-/// forked from one that has used a device, whose threads a fork does not copy.
+/// A call that may release the GIL and works with a device or threads. The constructor throws
+/// Error(run_time) once Python exits, and in a process forked from one that has used a device,
+/// whose threads a fork does not copy. The destructor hands messages to Python's logging.
 class RunningCall {
  public:
   RunningCall();
   ~RunningCall();
   RunningCall(const RunningCall&) = delete;
   RunningCall& operator=(const RunningCall&) = delete;
+
+ private:
+  CallInProgress in_progress_;
 };
 
 /// Returns true once Python exits: running calls end at their next step.

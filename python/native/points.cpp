@@ -56,7 +56,8 @@ void add_points(py::class_<Scene>& type) {
          py::arg("seed") = 1, py::arg("threads") = 0, py::arg("time") = 0.0,
          "pathtrace_points(positions, normals, *, ...) -> dict: path-traced irradiance [W/m^2], "
          "red, green, blue, the truth of\nRenderer.irradiance().\n\n"
-         "positions [m] and normals (of any length): arrays (..., 3), on a surface of the scene "
+         "positions [m] and normals (of any length; or one for all): arrays (..., 3), on a surface "
+         "of the scene "
          "or in the air. 'indirect', 'direct' (of the\nscene's lights) and 'error', the standard "
          "error of 'indirect': float32 arrays of their shape; 'samples': paths per point;\n"
          "'noise': root mean square of 'error' over that of 'indirect', at which tracing stops. "

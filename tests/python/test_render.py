@@ -42,8 +42,10 @@ def test_pathtrace_points_of_arrays(scene):
     assert light["indirect"].shape == points.shape and light["indirect"].min() > 0
     assert light["direct"].max() == 0 and light["error"].max() < light["indirect"].min()
     assert light["samples"] == 64 and 0 < light["noise"] < 0.5
-    with pytest.raises(clpv.UsageError, match="6 positions and 1 normals"):
-        scene.pathtrace_points(points, [0, 1, 0])
+    one = scene.pathtrace_points(points, normals[0, 0], samples=64)
+    assert np.array_equal(one["indirect"], light["indirect"]), "one normal for all"
+    with pytest.raises(clpv.UsageError, match="6 positions and 2 normals"):
+        scene.pathtrace_points(points, normals[:1, :2])
     with pytest.raises(clpv.UsageError, match="noise: found -1"):
         scene.pathtrace_points(points, normals, noise=-1)
     assert scene.pathtrace_points(np.zeros((0, 3)), np.zeros((0, 3)))["error"].shape == (0, 3)

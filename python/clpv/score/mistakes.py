@@ -61,14 +61,14 @@ def corrected(image, truth, valid, layers):
 
 def suspicions(image, truth, valid, layers, noise):
     """Sentences about an image that is not what it should be. An error of the size of the truth's
-    noise is none."""
+    noise is none; None: unknown."""
     image, truth = image.astype(float), truth.astype(float)
     if not (image[valid] != 0).any():
         return ["is black"] if (truth[valid] != 0).any() else []
     if not (truth[valid] != 0).any():
         return ["is lit where the truth is black"]
     as_it_is = difference(image[valid], truth[valid])
-    if as_it_is <= 2 * noise:
+    if noise is None or as_it_is <= 2 * noise:
         return []
     tried = [(1, [])]  # share of the error that remains, for each correction over EXPLAINED
     for words, a, b, where in [("", image, truth, valid), *corrected(image, truth, valid, layers)]:
