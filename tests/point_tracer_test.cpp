@@ -212,9 +212,8 @@ TEST(PathtracePoints, OfTheLibraryAreThoseOfTheCommand) {
   EXPECT_NEAR(lights.indirect[1][0], red, 1e-3 * red);
   EXPECT_GT(red, 0.01);
   EXPECT_EQ(lights.samples, 64u);
-  EXPECT_THAT(
-      error_of(ExitCode::usage, [&] { pathtrace_points(scene, positions, std::span(normals, 1)); }),
-      HasSubstr("2 positions and 1 normals"));
+  EXPECT_THAT(error_of(ExitCode::usage, [&] { pathtrace_points(scene, positions, {}); }),
+              HasSubstr("2 positions and 0 normals"));
   EXPECT_THAT(query("--noise 0.1").err, HasSubstr("--noise has no effect without --truth"));
   EXPECT_THAT(query("--truth --grid 16").err, HasSubstr("--grid has no effect with --truth"));
   EXPECT_EQ(query("--truth --grid 16").exit_code, 2);
