@@ -14,7 +14,7 @@
 #include "basis/table.h"
 
 __constant const float up_lobe[CLPV_N] = CLPV_UP_LOBE;
-__constant const int singular_parts[CLPV_N][CLPV_N] = CLPV_SINGULAR_PARTS;
+__constant const int singular_parts[CLPV_N * CLPV_N] = CLPV_SINGULAR_PARTS;
 
 // Smallest rotation of +z to a unit vector n; for -z a half turn about x. Rows
 //   xx  xy  n.x
@@ -61,7 +61,7 @@ CLPV_INLINE Coefficients rotated_integrals(const float x, const float y, const f
 #pragma unroll
     for (int j = 0; j < CLPV_N; ++j) {
       const float t = rounded_dot(centres[i], cx.c[j], cy.c[j], cz.c[j]);
-      sum = fma(up_lobe[j], read_table(singular_table, singular_parts[i][j], t), sum);
+      sum = fma(up_lobe[j], read_table(singular_table, singular_parts[i * CLPV_N + j], t), sum);
     }
     r.c[i] = sum;
   }

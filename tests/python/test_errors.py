@@ -62,7 +62,7 @@ CALLS = {
     "Scene.pathtrace_points": ({"positions": "array", "normals": "array", "bounces": "bounces",
                                 "samples": "integer", "noise": "number", "seed": "integer",
                                 "threads": "integer", "time": "number"},
-                               {"positions": NUMBERS, "normals": NUMBERS}),
+                               {"positions": NUMBERS, "normals": (0, 1, 0)}),
     "Scene.save": ({"path": "path"}, {"path": "x.glb"}),
     "Scene.remove_mesh": ({"mesh": "integer"}, {}),
     "Scene.set_positions": ({"mesh": "integer", "positions": "array", "normals": "array"},
