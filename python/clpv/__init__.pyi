@@ -435,11 +435,11 @@ class Scene:
         """
     def set_transform(self, mesh: int, transform: ArrayLike) -> None:
         """set_transform(mesh, transform): moves one place of a mesh. As set_positions()."""
-    def pathtrace_points(self, positions: ArrayLike, normals: ArrayLike, *, bounces: int = 1, samples: int = 0, noise: float = 0.02, seed: int = 1, threads: int = 0, time: float = 0.0) -> dict[str, Any]:
+    def pathtrace_points(self, positions: ArrayLike, normals: ArrayLike, *, bounces: int | Literal["all"] = 1, samples: int = 0, noise: float = 0.02, seed: int = 1, threads: int = 0, time: float = 0.0) -> dict[str, Any]:
         """pathtrace_points(positions, normals, *, ...) -> dict: path-traced irradiance [W/m^2], red, green, blue, the truth of
         Renderer.irradiance().
 
-        positions [m] and normals (of any length): arrays (..., 3), on a surface of the scene or in the air. 'indirect', 'direct' (of the
+        positions [m] and normals (of any length; or one for all): arrays (..., 3), on a surface of the scene or in the air. 'indirect', 'direct' (of the
         scene's lights) and 'error', the standard error of 'indirect': float32 arrays of their shape; 'samples': paths per point;
         'noise': root mean square of 'error' over that of 'indirect', at which tracing stops. Arguments as for clpv.pathtrace().
         """
