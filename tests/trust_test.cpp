@@ -331,8 +331,9 @@ TEST_F(ScratchFolders, NothingIsRemovedWhereOthersMayWrite) {
 }
 
 TEST_F(ScratchFolders, AMissingTmpdirIsNamed) {
+  const std::string absent = (folder / "absent").string();
   const test::Outcome drawing = test::run(
-      "TMPDIR=/nonexistent " CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string());
+      "TMPDIR=" + absent + " " CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string());
   // The usual kernels, of which nothing knows that they are compiled.
   fs::create_directory(folder / "pocl");
   std::error_code none;
@@ -340,15 +341,15 @@ TEST_F(ScratchFolders, AMissingTmpdirIsNamed) {
     if (entry.path().filename() != "clpv")
       fs::create_symlink(entry.path(), folder / "pocl" / entry.path().filename());
   const test::Outcome cold =
-      test::run("TMPDIR=/nonexistent POCL_CACHE_DIR=" + (folder / "pocl").string() +
+      test::run("TMPDIR=" + absent + " POCL_CACHE_DIR=" + (folder / "pocl").string() +
                 " XDG_CACHE_HOME=" + folder.path().string() + " " CLPV_PROGRAM " render " + kTiny +
                 kSmallSteps + "-o " + (folder / "a.exr").string());
   EXPECT_EQ(drawing.exit_code, 1);
-  EXPECT_THAT(drawing.err, HasSubstr("TMPDIR: found '/nonexistent'"));
+  EXPECT_THAT(drawing.err, HasSubstr("TMPDIR: found '" + absent + "'"));
   EXPECT_EQ(cold.exit_code, 0) << "a frame that is compiled needs no such folder either\n"
                                << cold.err;
   const bool helped = std::thread::hardware_concurrency() > 1;
-  EXPECT_THAT(cold.err, HasSubstr(helped ? "TMPDIR: found '/nonexistent'" : ""));
+  EXPECT_THAT(cold.err, HasSubstr(helped ? "TMPDIR: found '" + absent + "'" : ""));
 }
 
 /// What choose_driver_cache() sets with these variables; its message in `err`.
