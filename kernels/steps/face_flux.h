@@ -32,7 +32,8 @@ CLPV_INLINE SeenFaces fluxes_to(const int k, const Coefficients from) {
   return flux;
 }
 
-// max(0, F)
+// max(0, F) without a comparison, which would trigger LLVM's SLP vectoriser and prevent that of
+// work-items: with one lane PoCL 3.1 took 12 times as long.
 CLPV_INLINE realW positive_flux(const realW flux) {
-  return flux > ZERO ? flux : ZERO;
+  return 0.5f * (flux + fabs(flux));
 }
