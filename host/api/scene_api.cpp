@@ -32,6 +32,24 @@ std::vector<To> converted(const char* list, const std::vector<From>& given, std:
   return made;
 }
 
+void check_time(double seconds) {
+  if (std::abs(seconds) <= bounds::kSeconds) return;  // rejects NaN too
+  throw Error(ExitCode::usage, "time: found {}, allowed: {}..{}", seconds, -bounds::kSeconds,
+              bounds::kSeconds);
+}
+
+SceneCamera camera_in(const SceneData& scene, const CameraChoice& choice) {
+  if (const auto* name = std::get_if<std::string>(&choice)) return scene.camera(*name);
+  const Camera& given = std::get<Camera>(choice);
+  SceneCamera made = scene_camera(given, rejected_in("camera"));
+  made.name = text_of(given);
+  if (!made.light.empty() && !scene.has_light(made.light)) {
+    throw Error(ExitCode::usage, "camera: light: found '{}', allowed: a light of the scene",
+                made.light);
+  }
+  return made;
+}
+
 }  // namespace
 
 Scene::Scene() : contents_(std::make_shared<Contents>()) {}
@@ -155,10 +173,7 @@ PosedScene::PosedScene(const Scene& file)
       geometries_(file.contents().geometries) {}
 
 bool PosedScene::pose(double seconds) {
-  if (!(std::abs(seconds) <= bounds::kSeconds)) {  // rejects NaN too
-    throw Error(ExitCode::usage, "seconds: found {}, allowed: {}..{}", seconds, -bounds::kSeconds,
-                bounds::kSeconds);
-  }
+  check_time(seconds);
   const Scene::Contents& shared = file_.contents();
   const bool changed = std::exchange(geometries_, shared.geometries) != shared.geometries;
   if (!posed_) return changed;
@@ -171,15 +186,12 @@ bool PosedScene::pose(double seconds) {
 }
 
 SceneCamera PosedScene::camera(const CameraChoice& choice) const {
-  if (const auto* name = std::get_if<std::string>(&choice)) return scene().camera(*name);
-  const Camera& given = std::get<Camera>(choice);
-  SceneCamera made = scene_camera(given, rejected_in("camera"));
-  made.name = text_of(given);
-  if (!made.light.empty() && !scene().has_light(made.light)) {
-    throw Error(ExitCode::usage, "camera: light: found '{}', allowed: a light of the scene",
-                made.light);
-  }
-  return made;
+  return camera_in(scene(), choice);
+}
+
+void PosedScene::check(const CameraChoice& choice, double seconds) const {
+  check_time(seconds);
+  camera_in(file_.contents().moving.scene(), choice);
 }
 
 }  // namespace clpv

@@ -43,6 +43,9 @@ class PosedScene {
     return posed_ ? posed_->scene() : file_.contents().moving.scene();
   }
 
+  /// Throws Error(usage) for a camera or a time that camera() or pose() rejects; changes nothing.
+  void check(const CameraChoice& choice, double seconds) const;
+
   /// Poses the scene and applies changes of the shared one. Returns true if the scene may have
   /// moved. Throws Error(usage) for a time out of range.
   bool pose(double seconds);
