@@ -21,7 +21,7 @@ struct Material {
     std::vector<std::uint8_t> rgba;       ///< 4 * width * height
 
     /// Encodes an image with channels R, G, B and optionally A. Throws Error(bad_input) for other
-    /// channels and for numbers outside of 0..1.
+    /// channels, fields that disagree, and numbers outside of 0..1.
     static Texture of(const Image& image);
     bool operator==(const Texture&) const = default;
   };
