@@ -59,6 +59,7 @@ Scene::Scene(const std::filesystem::path& path, const std::filesystem::path& mod
 
 std::vector<Camera> Scene::cameras() const {
   const std::shared_lock lock(contents_->mutex);
+  if (contents_->given.cameras) return *contents_->given.cameras;
   std::vector<Camera> all;
   for (const SceneCamera& camera : contents_->moving.scene().cameras)
     all.push_back(camera_of(camera));
@@ -67,6 +68,7 @@ std::vector<Camera> Scene::cameras() const {
 
 std::vector<Light> Scene::lights() const {
   const std::shared_lock lock(contents_->mutex);
+  if (contents_->given.lights) return *contents_->given.lights;
   std::vector<Light> all;
   const SceneData& scene = contents_->moving.scene();
   for (const SceneLight& light : scene.lights) {
@@ -82,7 +84,7 @@ void Scene::set_cameras(const std::vector<Camera>& cameras) {
       converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
   const std::lock_guard lock(contents_->mutex);
   ++contents_->changes;
-  contents_->cameras = made;
+  contents_->cameras = made, contents_->given.cameras = cameras;
   contents_->moving.set_cameras(std::move(made));
 }
 
@@ -91,14 +93,18 @@ void Scene::set_lights(const std::vector<Light>& lights) {
       converted<SceneLight>("lights", lights, bounds::kLights, scene_light);
   const std::lock_guard lock(contents_->mutex);
   ++contents_->changes;
-  contents_->lights = made;
+  contents_->lights = made, contents_->given.lights = lights;
   contents_->moving.set_lights(std::move(made));
 }
 
 std::optional<Medium> Scene::medium() const {
   const std::shared_lock lock(contents_->mutex);
+  if (contents_->given.medium) return *contents_->given.medium;
   const std::optional<ClpvMedium>& medium = contents_->moving.scene().medium;
-  return medium ? std::optional(medium_of(*medium)) : std::nullopt;
+  if (!medium) return std::nullopt;
+  Medium made = medium_of(*medium);
+  if (contents_->moving.medium_fills_scene()) made.box.reset();
+  return made;
 }
 
 void Scene::set_medium(const std::optional<Medium>& medium) {
@@ -106,6 +112,7 @@ void Scene::set_medium(const std::optional<Medium>& medium) {
   if (medium) made = scene_medium(*medium, rejected_in("medium"));
   const std::lock_guard lock(contents_->mutex);
   contents_->moving.set_medium(made);
+  contents_->given.medium = medium;
   ++contents_->rebuilds, ++contents_->changes;
 }
 
