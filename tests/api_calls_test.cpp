@@ -3,12 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 
 #include "cli/render_request.hpp"
 #include "clpv/log.hpp"
+#include "clpv/opencl.hpp"
 #include "clpv/pathtrace.hpp"
 #include "clpv/renderer.hpp"
 #include "tests/support/error_of.hpp"
@@ -99,6 +103,47 @@ TEST(ApiCalls, CellsAreThoseOfTheLastImage) {
   scene.set_lights(scene.lights());
   EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.show(View::cells); }),
               HasSubstr("scene that changed"));
+}
+
+TEST(ApiCalls, ARefusedCallKeepsTheLastFrame) {
+  const Scene scene(kCornell);
+  Renderer renderer(scene, test::small_options());
+  const Image image = renderer.render();
+  const std::array<double, 3> light = renderer.irradiance(kEye, {0, -1, 0});
+  const std::vector<std::array<float, 3>> vectors(4, {0, 1, 0});
+  const GBuffer surfaces{.width = 2, .height = 2, .normals = vectors, .positions = vectors};
+  const Camera blind{.eye = kEye, .target = kEye};
+  const std::function<void()> refused[] = {
+      [&] { renderer.render(View::full, "nothing"); },
+      [&] { renderer.render(View::full, blind); },
+      [&] { renderer.render(View::full, {}, NAN); },
+      [&] { renderer.enqueue(View::full, "nothing"); },
+      [&] { renderer.light(surfaces, "nothing"); },
+      [&] { renderer.light(surfaces, kEye, NAN); },
+      [&] { renderer.update(kEye, NAN); }};
+  for (const auto& call : refused) {
+    test::error_of(ExitCode::usage, call);
+    EXPECT_EQ(renderer.show(View::full).pixels, image.pixels);
+    EXPECT_EQ(renderer.irradiance(kEye, {0, -1, 0}), light);
+  }
+}
+
+TEST(ApiCalls, AnExceptionOfTheProgressReachesTheCaller) {
+  TraceOptions options;
+  options.width = options.height = 40, options.samples = 2, options.threads = 3;
+  options.progress = [](double) { throw std::out_of_range("enough"); };
+  EXPECT_THROW(pathtrace(Scene(kCornell), View::full, {}, options), std::out_of_range);
+}
+
+TEST(ApiCalls, TracingHasBounds) {
+  const auto error = [](const TraceOptions& options) {
+    return test::error_of(ExitCode::usage,
+                          [&] { pathtrace(Scene(kCornell), View::full, {}, options); });
+  };
+  EXPECT_THAT(error({.threads = 100000000}), HasSubstr("threads: found 100000000"));
+  EXPECT_THAT(error({.threads = -1}), HasSubstr("threads: found -1"));
+  EXPECT_THAT(error({.samples = 2, .noise = NAN}), HasSubstr("noise: found nan"));
+  EXPECT_THAT(error({.bounces = -1}), HasSubstr("0 for all"));
 }
 
 TEST(ApiCalls, AnotherSizeIsThatOfAnotherRenderer) {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Images in and out: files read back as written, byte-identical each time; bad files are rejected
 // with the reason. Tone curves and the sRGB encoding against published values.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "clpv/compare.hpp"
+#include "clpv/mesh.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "support/output_file.hpp"
@@ -17,6 +20,7 @@ namespace clpv::image_test {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::HasSubstr;
 
 class ImageFiles : public testing::Test {
  protected:
@@ -278,6 +282,37 @@ TEST(ToneCurve, RisesAndStaysInRange) {
     const float infinity = std::numeric_limits<float>::infinity();
     EXPECT_GT(tone_curve(curve, glm::vec3(infinity)).g, 0.99f);
   }
+}
+
+TEST(PublicImage, FieldsMustAgree) {
+  const auto rejected = [](const Image& image) {
+    const std::string path = ::testing::TempDir() + "clpv_fields.exr";
+    return test::error_of(ExitCode::bad_input, [&] { save_image(path, image); });
+  };
+  Image image = make_image(2, 2, {"R", "G", "B"});
+  image.pixels.pop_back();
+  EXPECT_THAT(rejected(image), HasSubstr("found 11 numbers for 2 x 2 pixels of 3 channels, "
+                                         "allowed: 12"));
+  test::error_of(ExitCode::bad_input, [&] { compare(image, image); });
+  test::error_of(ExitCode::bad_input, [&] { Material::Texture::of(image); });
+  image.width = -1;
+  EXPECT_THAT(rejected(image), HasSubstr("found -1 x 2 pixels, allowed: 1 to 16384"));
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"R", "R", "B"}, {"R", "G", ""}, {"R", "G", std::string("a\0b", 3)}})
+    EXPECT_THAT(rejected(make_image(1, 1, names)), HasSubstr("allowed: unique names"));
+  Image encoded = make_image(1, 1, {"R", "G", "B"});
+  encoded.encoding = Encoding::srgb;
+  EXPECT_THAT(rejected(encoded), HasSubstr("found sRGB-encoded values, allowed: linear"));
+}
+
+TEST(DisplayImage, ShowsLinearColoursAlone) {
+  const auto error = [](ExitCode code, const Image& image, float exposure) {
+    return test::error_of(code, [&] { display_image(image, exposure, ToneMap::aces); });
+  };
+  EXPECT_THAT(error(ExitCode::bad_input, make_image(1, 1, {"Y"}), 0),
+              HasSubstr("found channels Y, allowed: R, G, B"));
+  EXPECT_THAT(error(ExitCode::usage, make_image(1, 1, {"R", "G", "B"}), NAN),
+              HasSubstr("exposure: found nan"));
 }
 
 TEST(DisplayImage, ExposureDoublesAndBackgroundIsBlackOrClear) {

@@ -9,6 +9,7 @@
 #include "image/tone_map.hpp"
 #include "options/render_options.hpp"
 #include "support/error.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 
@@ -21,11 +22,16 @@ std::vector<DeviceDescription> all_devices() {
 }
 
 void save_image(const std::filesystem::path& path, const Image& image, float exposure) {
-  const std::string extension = path.extension().string();
-  if (extension == ".exr") return write_exr(path, image);
+  check_image("image", image);
+  check_exposure(exposure);
+  const std::string extension = lower_extension(path);
+  if (extension == ".exr") {
+    require_linear("image", image);
+    return write_exr(path, image);
+  }
   if (extension == ".png") return write_png(path, display_image(image, exposure, ToneMap::aces));
   throw Error(ExitCode::usage, "{}: found extension '{}', allowed: .exr, .png", path.string(),
-              extension);
+              path.extension().string());
 }
 
 Options& Options::set(std::string_view name, std::string_view value) {
@@ -40,6 +46,9 @@ std::vector<OptionDescription> Options::all() {
 }
 
 Comparison compare(const Image& a, const Image& b, float exposure) {
+  check_image("the image", a);
+  check_image("its reference", b);
+  check_exposure(exposure);
   return compare(a, "the image", b, "its reference", exposure);
 }
 

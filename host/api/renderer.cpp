@@ -176,8 +176,9 @@ std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces,
   check(surfaces);
   const std::lock_guard lock(state().mutex);
   const std::shared_lock scene_stays(state().file.contents().mutex);
-  state().pose(seconds);
-  return state().light(state().posed.camera(camera), surfaces);
+  state().require_light_alone();
+  const SceneCamera chosen = state().pose(camera, seconds);
+  return state().light(chosen, surfaces);
 }
 
 std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const Vec3& eye,
@@ -189,6 +190,7 @@ std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces, const
   const SceneCamera camera = camera_at("light", eye);
   const std::lock_guard lock(state().mutex);
   const std::shared_lock scene_stays(state().file.contents().mutex);
+  state().require_light_alone();
   state().pose(seconds);
   return state().light(camera, surfaces);
 }

@@ -79,8 +79,9 @@ opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Cam
   const std::lock_guard lock(state().mutex);
   const std::shared_lock scene_stays(state().file.contents().mutex);
   const GivenLight given = checked(state().session, surfaces);
-  state().pose(seconds);
-  return state().enqueue_light(state().posed.camera(camera), given.pixels, given.irradiance);
+  state().require_light_alone();
+  const SceneCamera chosen = state().pose(camera, seconds);
+  return state().enqueue_light(chosen, given.pixels, given.irradiance);
 }
 
 opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Vec3& eye,
@@ -92,6 +93,7 @@ opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Vec
   const std::lock_guard lock(state().mutex);
   const std::shared_lock scene_stays(state().file.contents().mutex);
   const GivenLight given = checked(state().session, surfaces);
+  state().require_light_alone();
   state().pose(seconds);
   return state().enqueue_light(camera, given.pixels, given.irradiance);
 }

@@ -13,6 +13,7 @@
 #include "api/scene_contents.hpp"
 #include "clpv/renderer.hpp"
 #include "pipeline/frame/frame.hpp"
+#include "pipeline/frame/frame_volumes.hpp"
 #include "pipeline/frame/scene_options.hpp"
 #include "support/error.hpp"
 
@@ -85,10 +86,16 @@ struct Renderer::State {
     lit_for_shown = true;
   }
 
-  /// Brings the scene and the frame to the time `seconds`.
+  /// Brings the scene and the frame to the time `seconds`, and returns the camera. Refuses both
+  /// before anything changes: the last frame stays.
+  SceneCamera pose(const CameraChoice& camera, double seconds) {
+    posed.check(camera, seconds);
+    pose(seconds);
+    return posed.camera(camera);
+  }
   void pose(double seconds) {
-    lit = lit_for_shown = false;
     const bool moved = posed.pose(seconds);
+    lit = lit_for_shown = false;
     if (!frame || rebuilds != file.contents().rebuilds) {
       metadata.clear();
       options = resolve_options(given, posed.scene());  // cascades may fit the scene
@@ -98,6 +105,9 @@ struct Renderer::State {
       frame->scene_moved();
     }
   }
+
+  /// Throws Error(usage) unless cascades can have light without a frame.
+  void require_light_alone() const { require_own_blockers(options); }
 
   /// Lights pixels of the host.
   std::vector<std::array<float, 3>> light(const SceneCamera& camera, const GBuffer& surfaces);
@@ -114,6 +124,7 @@ struct Renderer::State {
 
   /// Lights the cascades alone.
   void update(const SceneCamera& camera, double seconds) {
+    require_light_alone();
     pose(seconds);
     frame->draw_ahead(false);
     frame->update(camera);
@@ -124,9 +135,8 @@ struct Renderer::State {
   /// `ahead`: does not wait for the device (Rasterizer::draw_ahead).
   void render(const CameraChoice& camera, double seconds, const ImageSize& size,
               bool ahead = false) {
+    const SceneCamera chosen = pose(camera, seconds);
     metadata.clear();
-    pose(seconds);
-    const SceneCamera chosen = posed.camera(camera);
     frame->resize(size ? (*size)[0] : options.width, size ? (*size)[1] : options.height);
     frame->draw_ahead(ahead);
     frame->render(chosen);

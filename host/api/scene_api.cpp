@@ -32,6 +32,24 @@ std::vector<To> converted(const char* list, const std::vector<From>& given, std:
   return made;
 }
 
+void check_time(double seconds) {
+  if (std::abs(seconds) <= bounds::kSeconds) return;  // rejects NaN too
+  throw Error(ExitCode::usage, "time: found {}, allowed: {}..{}", seconds, -bounds::kSeconds,
+              bounds::kSeconds);
+}
+
+SceneCamera camera_in(const SceneData& scene, const CameraChoice& choice) {
+  if (const auto* name = std::get_if<std::string>(&choice)) return scene.camera(*name);
+  const Camera& given = std::get<Camera>(choice);
+  SceneCamera made = scene_camera(given, rejected_in("camera"));
+  made.name = text_of(given);
+  if (!made.light.empty() && !scene.has_light(made.light)) {
+    throw Error(ExitCode::usage, "camera: light: found '{}', allowed: a light of the scene",
+                made.light);
+  }
+  return made;
+}
+
 }  // namespace
 
 Scene::Scene() : contents_(std::make_shared<Contents>()) {}
@@ -41,6 +59,7 @@ Scene::Scene(const std::filesystem::path& path, const std::filesystem::path& mod
 
 std::vector<Camera> Scene::cameras() const {
   const std::shared_lock lock(contents_->mutex);
+  if (contents_->given.cameras) return *contents_->given.cameras;
   std::vector<Camera> all;
   for (const SceneCamera& camera : contents_->moving.scene().cameras)
     all.push_back(camera_of(camera));
@@ -49,6 +68,7 @@ std::vector<Camera> Scene::cameras() const {
 
 std::vector<Light> Scene::lights() const {
   const std::shared_lock lock(contents_->mutex);
+  if (contents_->given.lights) return *contents_->given.lights;
   std::vector<Light> all;
   const SceneData& scene = contents_->moving.scene();
   for (const SceneLight& light : scene.lights) {
@@ -64,7 +84,7 @@ void Scene::set_cameras(const std::vector<Camera>& cameras) {
       converted<SceneCamera>("cameras", cameras, bounds::kCameras, scene_camera);
   const std::lock_guard lock(contents_->mutex);
   ++contents_->changes;
-  contents_->cameras = made;
+  contents_->cameras = made, contents_->given.cameras = cameras;
   contents_->moving.set_cameras(std::move(made));
 }
 
@@ -73,14 +93,18 @@ void Scene::set_lights(const std::vector<Light>& lights) {
       converted<SceneLight>("lights", lights, bounds::kLights, scene_light);
   const std::lock_guard lock(contents_->mutex);
   ++contents_->changes;
-  contents_->lights = made;
+  contents_->lights = made, contents_->given.lights = lights;
   contents_->moving.set_lights(std::move(made));
 }
 
 std::optional<Medium> Scene::medium() const {
   const std::shared_lock lock(contents_->mutex);
+  if (contents_->given.medium) return *contents_->given.medium;
   const std::optional<ClpvMedium>& medium = contents_->moving.scene().medium;
-  return medium ? std::optional(medium_of(*medium)) : std::nullopt;
+  if (!medium) return std::nullopt;
+  Medium made = medium_of(*medium);
+  if (contents_->moving.medium_fills_scene()) made.box.reset();
+  return made;
 }
 
 void Scene::set_medium(const std::optional<Medium>& medium) {
@@ -88,6 +112,7 @@ void Scene::set_medium(const std::optional<Medium>& medium) {
   if (medium) made = scene_medium(*medium, rejected_in("medium"));
   const std::lock_guard lock(contents_->mutex);
   contents_->moving.set_medium(made);
+  contents_->given.medium = medium;
   ++contents_->rebuilds, ++contents_->changes;
 }
 
@@ -155,10 +180,7 @@ PosedScene::PosedScene(const Scene& file)
       geometries_(file.contents().geometries) {}
 
 bool PosedScene::pose(double seconds) {
-  if (!(std::abs(seconds) <= bounds::kSeconds)) {  // rejects NaN too
-    throw Error(ExitCode::usage, "seconds: found {}, allowed: {}..{}", seconds, -bounds::kSeconds,
-                bounds::kSeconds);
-  }
+  check_time(seconds);
   const Scene::Contents& shared = file_.contents();
   const bool changed = std::exchange(geometries_, shared.geometries) != shared.geometries;
   if (!posed_) return changed;
@@ -171,15 +193,12 @@ bool PosedScene::pose(double seconds) {
 }
 
 SceneCamera PosedScene::camera(const CameraChoice& choice) const {
-  if (const auto* name = std::get_if<std::string>(&choice)) return scene().camera(*name);
-  const Camera& given = std::get<Camera>(choice);
-  SceneCamera made = scene_camera(given, rejected_in("camera"));
-  made.name = text_of(given);
-  if (!made.light.empty() && !scene().has_light(made.light)) {
-    throw Error(ExitCode::usage, "camera: light: found '{}', allowed: a light of the scene",
-                made.light);
-  }
-  return made;
+  return camera_in(scene(), choice);
+}
+
+void PosedScene::check(const CameraChoice& choice, double seconds) const {
+  check_time(seconds);
+  camera_in(file_.contents().moving.scene(), choice);
 }
 
 }  // namespace clpv

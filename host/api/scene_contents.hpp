@@ -18,6 +18,12 @@ struct Scene::Contents {
   /// Arguments of the last set_cameras() and set_lights().
   std::optional<std::vector<SceneCamera>> cameras;
   std::optional<std::vector<SceneLight>> lights;
+  /// The same as they were given, in double.
+  struct {
+    std::optional<std::vector<Camera>> cameras;
+    std::optional<std::vector<Light>> lights;
+    std::optional<std::optional<Medium>> medium;
+  } given;
   unsigned rebuilds = 0;    ///< changes after which frames allocate their memory again
   unsigned geometries = 0;  ///< changes of meshes
   unsigned changes = 0;     ///< of anything
@@ -42,6 +48,9 @@ class PosedScene {
   const SceneData& scene() const {
     return posed_ ? posed_->scene() : file_.contents().moving.scene();
   }
+
+  /// Throws Error(usage) for a camera or a time that camera() or pose() rejects; changes nothing.
+  void check(const CameraChoice& choice, double seconds) const;
 
   /// Poses the scene and applies changes of the shared one. Returns true if the scene may have
   /// moved. Throws Error(usage) for a time out of range.

@@ -2,9 +2,12 @@
 // Channels and layers of an image.
 #include "image/image.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
@@ -53,6 +56,28 @@ std::optional<std::size_t> Image::channel(std::string_view name) const {
   const auto channel = std::find(channels.begin(), channels.end(), name);
   if (channel == channels.end()) return std::nullopt;
   return static_cast<std::size_t>(channel - channels.begin());
+}
+
+void check_image(const std::string& name, const Image& image) {
+  constexpr int kMaxSide = 16384;
+  if (image.width < 1 || image.height < 1 || image.width > kMaxSide || image.height > kMaxSide)
+    throw Error(ExitCode::bad_input, "{}: found {} x {} pixels, allowed: 1 to {} per side", name,
+                image.width, image.height, kMaxSide);
+  const std::size_t needed = image.pixel_count() * image.channels.size();
+  if (needed == 0 || image.pixels.size() != needed)
+    throw Error(ExitCode::bad_input,
+                "{}: found {} numbers for {} x {} pixels of {} channels, allowed: {}", name,
+                image.pixels.size(), image.width, image.height, image.channels.size(),
+                needed == 0 ? "at least one channel" : std::to_string(needed));
+  std::set<std::string_view> names;
+  for (const std::string& channel : image.channels) {
+    const bool printable =
+        std::ranges::none_of(channel, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+    if (channel.empty() || !printable || !names.insert(channel).second)
+      throw Error(ExitCode::bad_input,
+                  "{}: found channels {}, allowed: unique names without control characters", name,
+                  fmt::join(image.channels, ", "));
+  }
 }
 
 Image make_image(int width, int height, std::vector<std::string> channels) {

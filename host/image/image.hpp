@@ -15,6 +15,10 @@ class Fingerprint;
 /// An image whose pixels are 0.
 Image make_image(int width, int height, std::vector<std::string> channels);
 
+/// Throws Error(bad_input), which begins with `name`, unless the fields of an image agree: sides of
+/// 1 to 16384 pixels, a number for each pixel and channel, and channels of different names.
+void check_image(const std::string& name, const Image& image);
+
 /// Layer in the name of a channel: "indirect" of "indirect.R".
 std::string_view layer_of(std::string_view channel);
 

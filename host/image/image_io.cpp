@@ -3,7 +3,6 @@
 #include "image/image_io.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +10,7 @@
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 #include "support/output_file.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -33,9 +33,7 @@ std::string format_of_content(const std::vector<unsigned char>& bytes) {
 
 /// Format by the extension: "openexr", "png", "hdr" or empty.
 std::string format_of_name(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_extension(path);
   if (extension == ".exr") return "openexr";
   if (extension == ".png") return "png";
   if (extension == ".hdr") return "hdr";

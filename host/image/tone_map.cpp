@@ -2,10 +2,13 @@
 // Tone curves and sRGB encoding.
 #include "image/tone_map.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <stdexcept>
+
+#include "support/error.hpp"
 
 namespace clpv {
 
@@ -38,12 +41,24 @@ float srgb_decode(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
+void require_linear(const char* name, const Image& image) {
+  if (image.encoding != Encoding::linear)
+    throw Error(ExitCode::bad_input, "{}: found sRGB-encoded values, allowed: linear ones", name);
+}
+
+void check_exposure(float exposure) {
+  if (!std::isfinite(exposure))
+    throw Error(ExitCode::usage, "exposure: found {}, allowed: a finite number", exposure);
+}
+
 Image display_image(const Image& image, float exposure, ToneMap curve, Background background) {
   const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
              a = image.channel("A");
-  if (!r || !g || !b || image.encoding != Encoding::linear) {
-    throw std::logic_error("display_image: needs linear R, G and B");
-  }
+  check_exposure(exposure);
+  require_linear("image", image);
+  if (!r || !g || !b)
+    throw Error(ExitCode::bad_input, "image: found channels {}, allowed: R, G, B and optionally A",
+                fmt::join(image.channels, ", "));
   const bool clear = a && background == Background::transparent;
   Image display = make_image(image.width, image.height, {"R", "G", "B"});
   if (clear) display = make_image(image.width, image.height, {"R", "G", "B", "A"});

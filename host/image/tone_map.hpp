@@ -29,8 +29,14 @@ float luminance(const glm::vec3& linear);
 /// Background of a display image: black, without channel A, or transparent where there is an A.
 enum class Background { black, transparent };
 
+/// Throws Error(bad_input), which begins with `name`, for sRGB-encoded values.
+void require_linear(const char* name, const Image& image);
+/// Throws Error(usage) for an exposure [EV] that is not finite.
+void check_exposure(float exposure);
+
 /// Display image of a linear image with R, G, B and optionally A: tone_curve(2^exposure * colour),
 /// sRGB-encoded. Alpha is clamped to [0, 1]; colour is 0 where alpha is 0.
+/// Throws Error: bad_input (other channels, sRGB-encoded values), usage (check_exposure).
 Image display_image(const Image& image, float exposure, ToneMap curve,
                     Background background = Background::black);
 

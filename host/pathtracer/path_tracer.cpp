@@ -7,7 +7,6 @@
 #include <mutex>
 #include <numbers>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "basis/sampling.hpp"
@@ -16,6 +15,7 @@
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/ray_scene.hpp"
 #include "pathtracer/sample_counts.hpp"
+#include "pathtracer/threads.hpp"
 #include "reference/view.hpp"
 #include "scene/emission.hpp"
 #include "scene/medium.hpp"
@@ -209,20 +209,16 @@ class ImageTracer {
   template <typename Action>
   void parallel_for(const Items& items, const Action& action) {
     std::atomic<std::size_t> next{items.first};
-    const auto run = [&, stop = current_stop()] {
+    on_threads(threads_, [&, stop = current_stop()](const std::atomic<bool>& failed) {
       const StopScope scope(stop);
       PathSampler sampler(rays_, lights_, emitters_, sky_,
                           image_.medium ? &*image_.medium : nullptr, options_);
-      for (std::size_t item; !interrupted() && (item = next.fetch_add(items.step)) < items.end;)
+      for (std::size_t item; !failed && !interrupted() &&
+                             (item = next.fetch_add(items.step)) < items.end;)
         action(sampler, item);
       const std::lock_guard lock(mutex_);
       image_.rays += sampler.ray_count();
-    };
-    {
-      std::vector<std::jthread> others;
-      for (int t = 1; t < threads_; ++t) others.emplace_back(run);
-      run();
-    }
+    });
     stop_if_interrupted();
   }
 

@@ -35,7 +35,8 @@ struct PathTracerOptions {
   std::uint32_t samples = 0;  ///< paths per pixel; 0: as many as `noise` needs
   double noise = 0.02;        ///< with samples 0: stops at this TracedImage::noise
   std::uint64_t seed = 1;
-  int threads = 0;  ///< per rank; 0: one per available processor
+  static constexpr int kMaxThreads = 1024;
+  int threads = 0;  ///< per rank, up to kMaxThreads; 0: one per available processor
 };
 
 /// A traced image: one value per pixel, row 0 first, 0 where there is no surface.
@@ -62,7 +63,7 @@ struct TracedImage {
 
 /// Receives the estimated share of all paths that are traced, rising to 1 at the end. It is first
 /// called when the number of paths for the noise can be estimated. Called on rank 0, by one thread
-/// at a time.
+/// at a time. What it throws ends the work and reaches the caller of trace_paths().
 using TraceProgress = std::function<void(double)>;
 
 /// Traces `scene` lit by `lights`, which replace SceneData::lights. All `ranks` call it; they share

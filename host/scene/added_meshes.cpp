@@ -345,6 +345,7 @@ std::uint32_t AddedMeshes::material_slot(const Material& given, SceneData& scene
 }
 
 Material::Texture Material::Texture::of(const Image& image) {
+  check_image("texture", image);
   const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
              a = image.channel("A");
   if (!r || !g || !b) reject("texture", "channels", "others", "R, G, B and optionally A");

@@ -225,7 +225,7 @@ class GlbWriter {
 }  // namespace
 
 void write_glb(const std::filesystem::path& path, const SceneData& scene) {
-  if (path.extension() != ".glb")
+  if (lower_extension(path) != ".glb")
     throw Error(ExitCode::usage, "{}: found extension '{}', allowed: .glb", path.string(),
                 path.extension().string());
   const auto lost = [&](bool found, const char* what) {
@@ -235,6 +235,11 @@ void write_glb(const std::filesystem::path& path, const SceneData& scene) {
   lost(scene.medium.has_value(), "the medium");
   lost(std::ranges::any_of(scene.cameras, [](const auto& c) { return !c.light.empty(); }),
        "the only light of a camera");
+  lost(scene.cascades || scene.cascade_size, "number and size of the cascades");
+  lost(scene.exposure != 0, "the exposure");
+  if (scene.lights.empty() && !scene.sky)
+    log_warning("{}: no lights: clpv adds a sun where it reads a model without lights",
+                path.string());
   write_file(path, GlbWriter(scene).file());
 }
 

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <future>
 #include <glm/gtc/matrix_transform.hpp>
@@ -74,13 +73,6 @@ SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, M
     scene.materials.pop_back();
   }
   return scene;
-}
-
-std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
 }
 
 void find_bounds(SceneData& scene) {
@@ -275,7 +267,7 @@ MovingScene::MovingScene() {
 MovingScene::MovingScene(const std::filesystem::path& path,
                          const std::filesystem::path& replacement) {
   Notes notes;
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   if (extension == ".json") {
     load_scene_file(path, replacement, notes);
     scene_.path = path.string();
@@ -354,7 +346,7 @@ SceneData load_scene(const std::filesystem::path& path, const std::filesystem::p
 }
 
 bool is_bare_model(const SceneData& scene) {
-  const std::string extension = extension_of(scene.path);
+  const std::string extension = lower_extension(scene.path);
   return extension == ".gltf" || extension == ".glb" || scene.path == kInMemory;
 }
 

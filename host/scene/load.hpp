@@ -50,6 +50,7 @@ class MovingScene {
   /// Replaces the medium or removes it. One without a box, `lower` equal to `upper`, fills the
   /// scene's bounding box, which follows added, removed and moved meshes.
   void set_medium(std::optional<ClpvMedium> medium);
+  bool medium_fills_scene() const { return medium_fills_scene_; }
 
   /// Change meshes in memory, as clpv::Scene does. set_positions() and set_transform() return true
   /// if frames allocate their memory again: the mesh moves for the first time, so that

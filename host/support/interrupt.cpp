@@ -56,7 +56,8 @@ void end_by(int signal) {
   std::raise(signal);
 }
 
-extern "C" void on_signal(int signal) {
+extern "C" {
+static void on_signal(int signal) {
   if (pending_signal.exchange(signal) == signal) return end_by(signal);  // once more
   if (const char* what = uninterruptible) {
     say("\nclpv: stopping after ");
@@ -64,6 +65,7 @@ extern "C" void on_signal(int signal) {
     say("; once more to stop now\n");
     mute_stderr();
   }
+}
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "support/text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -119,6 +120,13 @@ std::string in_file_name(std::string_view name) {
   }
   if (part == name) return part;
   return fmt::format("{}-{:08x}", part, Fingerprint().add(name).value() & 0xffffffff);
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 std::string view_file_name(std::string_view scene, std::string_view camera) {

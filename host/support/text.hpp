@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,9 @@ std::string xml_escaped(const std::string& text);
 /// digits, '-' and '_'. A name of 1 to 64 of them is its own part; of others, each other byte is
 /// '_', bytes after the 64th go, and '-' with 8 hexadecimal digits of a hash tells them apart.
 std::string in_file_name(std::string_view name);
+
+/// Returns the extension of a file in lower case: ".exr" of "A.EXR".
+std::string lower_extension(const std::filesystem::path& path);
 
 /// Returns the stem "SCENE-CAMERA" of the files of a view.
 std::string view_file_name(std::string_view scene, std::string_view camera);

@@ -21,7 +21,7 @@ struct Material {
     std::vector<std::uint8_t> rgba;       ///< 4 * width * height
 
     /// Encodes an image with channels R, G, B and optionally A. Throws Error(bad_input) for other
-    /// channels and for numbers outside of 0..1.
+    /// channels, fields that disagree, and numbers outside of 0..1.
     static Texture of(const Image& image);
     bool operator==(const Texture&) const = default;
   };
@@ -43,9 +43,9 @@ inline constexpr Transform kIdentity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, 
 
 /// Triangles in memory, which add_mesh() copies.
 struct Mesh {
-  std::span<const std::array<float, 3>> positions;  ///< of vertices [m], y up
+  std::span<const std::array<float, 3>> positions{};  ///< of vertices [m], y up
   /// Vertices, counter-clockwise seen from the front.
-  std::span<const std::array<std::uint32_t, 3>> triangles;
+  std::span<const std::array<std::uint32_t, 3>> triangles{};
   std::span<const std::array<float, 3>> normals{};  ///< of vertices, of any length
   std::span<const std::array<float, 2>> uvs{};      ///< texture coordinates of vertices
   std::span<const std::array<float, 4>> colours{};  ///< linear, of vertices; times the material's

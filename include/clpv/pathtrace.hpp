@@ -20,10 +20,11 @@ struct TraceOptions {
   std::uint32_t samples = 0;  ///< paths per pixel, up to 2^24; 0: as many as `noise` needs
   double noise = 0.02;     ///< relative standard error of the indirect light at which tracing stops
   std::uint64_t seed = 1;  ///< the same seed gives the same image
-  int threads = 0;         ///< 0: one per processor
+  int threads = 0;         ///< up to 1024; 0: one per processor
   double seconds = 0;      ///< time in the scene's animation [s]
-  /// Receives the estimated progress in [0, 1], from one thread at a time.
-  std::function<void(double)> progress;
+  /// Receives the estimated progress in [0, 1], from one thread at a time. What it throws ends the
+  /// work and reaches the caller.
+  std::function<void(double)> progress{};
 };
 
 /// Traces the image that Renderer::render() of the same view and camera estimates: diffuse

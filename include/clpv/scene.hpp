@@ -73,7 +73,8 @@ class Scene {
   /// read. Throws Error(bad_input) with file, place, value found and value allowed.
   explicit Scene(const std::filesystem::path& path, const std::filesystem::path& model = {});
 
-  /// Cameras (at least one) and lights, at 0 s if they are animated.
+  /// Cameras (at least one) and lights as they were set, or those of the file, at 0 s if they are
+  /// animated.
   std::vector<Camera> cameras() const;
   std::vector<Light> lights() const;
 
@@ -84,7 +85,7 @@ class Scene {
   void set_cameras(const std::vector<Camera>& cameras);
   void set_lights(const std::vector<Light>& lights);
 
-  /// The medium with its box, or none. After a change, the next frame of each renderer allocates
+  /// The medium as it was set, or as the file has it, or none. After a change, the next frame of each renderer allocates
   /// its memory again. Throws Error(usage): see Medium.
   std::optional<Medium> medium() const;
   void set_medium(const std::optional<Medium>& medium);
@@ -108,7 +109,8 @@ class Scene {
   void set_transform(int mesh, const Transform& transform);
 
   /// Writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning for what glTF
-  /// has not: sky, medium, a camera's only light. Throws Error: usage (another extension), run_time
+  /// has not: sky, medium, a camera's only light, number and size of cascades, exposure, and that a
+  /// scene is dark. Lights and cameras without a name get one when it is read. Throws Error: usage (another extension), run_time
   /// (the file cannot be written).
   void save(const std::filesystem::path& path) const;
 

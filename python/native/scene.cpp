@@ -222,8 +222,9 @@ void add_scene(py::module_& module) {
       },
       py::arg("path"),
       "save(path): writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning "
-      "for a sky, a medium and\n"
-      "a camera's only light, which glTF has not.");
+      "for a sky, a medium, a\n"
+      "camera's only light, number and size of cascades, and an exposure, which glTF has not, and "
+      "for a scene without lights.");
   type.def_property_readonly("moves", &Scene::moves, "True if anything is animated.");
   type.def_property_readonly(
       "notes", [](const Scene& scene) { return py::tuple(py::cast(scene.notes())); },

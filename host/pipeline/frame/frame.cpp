@@ -196,11 +196,7 @@ void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
 }
 
 void Frame::enqueue_light(const SceneCamera& camera) {
-  if (blocked_by_view(options_)) {
-    throw Error(ExitCode::usage,
-                "light: found blockers '{}', which a frame's G-buffer makes, allowed: scene",
-                name_of(options_.blockers));
-  }
+  require_own_blockers(options_);
   session_.timeline().clear();
   const std::vector<ClpvGrid> grids = grids_about(camera.eye);
   lights_.prepare(camera, grids);

@@ -2,6 +2,7 @@
 #include "pipeline/frame/frame_volumes.hpp"
 
 #include "basis/sweep.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
 VolumeShape light_shape(const RenderOptions& options, const Basis& basis) {
@@ -18,6 +19,13 @@ std::unique_ptr<Basis> swept_basis(const RenderOptions& options) {
 
 bool blocked_by_view(const RenderOptions& options) {
   return options.blockers == Blockers::seen;
+}
+
+void require_own_blockers(const RenderOptions& options) {
+  if (!blocked_by_view(options)) return;
+  throw Error(ExitCode::usage,
+              "light: found blockers '{}', which a frame's G-buffer makes, allowed: scene",
+              name_of(options.blockers));
 }
 
 int injected_volumes(const RenderOptions& options) {

@@ -19,6 +19,8 @@ std::unique_ptr<Basis> swept_basis(const RenderOptions& options);
 /// Returns true if surfaces in the camera's G-buffer block light. A new view then recomputes the
 /// RSMs and injected light of every cascade.
 bool blocked_by_view(const RenderOptions& options);
+/// Throws Error(usage) for such options: light without a frame has no G-buffer.
+void require_own_blockers(const RenderOptions& options);
 
 /// Number of stored volumes of injected light, and of stored RSMs that follow cascades. It is one
 /// per cascade if any frame may need all of them, else one that is recomputed for the current

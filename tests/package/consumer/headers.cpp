@@ -17,6 +17,19 @@
     defined(GLM_FORCE_EXPLICIT_CTOR)
 #error "clpv::clpv changes how its users are compiled"
 #endif
+// Members may be left out.
+clpv::TraceOptions traced() {
+  return {.width = 3};
+}
+clpv::Camera seen() {
+  return {.eye = {0, 1, 3}};
+}
+clpv::GBuffer surfaces() {
+  return {.width = 1, .height = 1};
+}
+clpv::Mesh mesh() {
+  return {.smooth = true};
+}
 #ifdef FMT_VERSION
 #error "a public header includes fmt"
 #endif
