@@ -42,7 +42,8 @@ class BlockCache {
   std::string key_;
 };
 
-/// Light of all blocks; `done` receives the number of blocks that are finished.
+/// Light of all blocks. Throws Error(run_time) for light that is not finite. `done` receives the
+/// number of blocks that are finished.
 GridLight light_of(ProbeSource& source, const ProbeGrid& grid, std::size_t count, BlockCache& cache,
                    const std::function<void(std::size_t)>& done);
 
@@ -63,8 +64,8 @@ std::vector<std::uint8_t> validity(pathtracer::PointTracer& tracer,
 /// Positions of all probes.
 std::vector<glm::dvec3> positions_of(const ProbeGrid& grid);
 
-/// Encodes `format`'s integrals, which begin at `first` of each probe. `dilate`: fills probes that
-/// are not valid.
+/// Encodes `format`'s integrals, which begin at `first` of each probe. Throws as light_of().
+/// `dilate`: fills probes that are not valid.
 BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,
                     const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate);
 

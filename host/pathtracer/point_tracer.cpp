@@ -189,6 +189,12 @@ struct PointTracer::Impl {
       const glm::dvec3 e = error(s, vertex, i), m = mean(s, vertex, i);
       errors += glm::dot(e, e), values += glm::dot(m, m);
     }
+    if (!std::isfinite(values))
+      throw Error(
+          ExitCode::run_time,
+          "path-traced light: found {} among {} numbers, allowed: finite ones, whose squares "
+          "are too",
+          values, numbers);
     const auto count = static_cast<double>(std::max<std::size_t>(3 * numbers, 1));
     s.level = level > 0 ? level : std::sqrt(values / count);
     s.noise = s.level > 0 ? std::sqrt(errors / count) / s.level : 0;
