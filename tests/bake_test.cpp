@@ -276,6 +276,14 @@ TEST(Bake, ProbesInsideWallsAreInvalid) {
   const std::vector<glm::dvec3> positions{
       {1.5, 1.5, 1.5}, {1.1, 1.9, 1.5}, {3, 3, 3}, {0.9, 1.5, 1.5}, {-1, 2, 2}};
   EXPECT_THAT(validity(tracer, positions), ::testing::ElementsAre(0, 0, 1, 1, 0));
+  const std::vector<glm::dvec3> on_walls{{0, 2, 2}, {4, 4, 4}, {1.5, 2, 1.5}};
+  EXPECT_THAT(validity(tracer, on_walls), ::testing::Each(1));
+  for (std::size_t i = scene.triangles.size() - 12; i < scene.triangles.size(); ++i)
+    scene.triangles[i].material = 1;  // the block is of cloth
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].flags |= CLPV_MATERIAL_DOUBLE_SIDED;
+  pathtracer::PointTracer other(scene, {}, options);
+  EXPECT_THAT(validity(other, positions), ::testing::ElementsAre(1, 1, 1, 1, 0));
 }
 
 /// A source of numbered probes that is interrupted before block `end`.

@@ -57,7 +57,7 @@ struct BakedProbes {
 };
 
 /// Marks probes that see more backs than fronts of surfaces, and backs in a quarter of all
-/// directions: those are inside walls.
+/// directions: those are inside walls. Double-sided surfaces have no back.
 std::vector<std::uint8_t> validity(pathtracer::PointTracer& tracer,
                                    std::span<const glm::dvec3> positions);
 

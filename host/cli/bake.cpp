@@ -209,7 +209,8 @@ void add_options(CLI::App& command, Options& options) {
   add(command, "--format", "NAME", options.format,
       fmt::format("format of a probe: {}", fmt::join(probe_format_names(), ", ")));
   add(command, "--bounds", "X,Y,Z,X,Y,Z", options.bounds,
-      "positions of the outermost probes [m]: lower and upper corner (default: the scene's box)");
+      "positions of the outermost probes [m]: lower and upper corner (default: just inside the "
+      "scene's box)");
   add_number(command, "--spacing", "M", options.spacing,
              "distance of neighbouring probes [m], rounded so that they fill the bounds (default: "
              "16 probes along the longest edge)",

@@ -16,6 +16,7 @@ namespace {
 constexpr double kMaxProbes = 1 << 22;
 constexpr double kMaxBytes = 1 << 30;  // of all coefficients, as 32-bit floats
 constexpr int kDefaultProbes = 16;     // along the longest edge
+constexpr double kInset = 0.125;       // of the default bounds, in spacings: off walls
 
 /// `count` numbers between commas. Throws Error(usage).
 template <typename Number>
@@ -84,6 +85,11 @@ ProbeGrid grid_of(const Options& options, const SceneData& scene, std::size_t nu
                 count[0], count[1], count[2], bytes / (1 << 20), kMaxProbes, kMaxBytes / (1 << 20));
   for (std::size_t axis = 0; axis < 3; ++axis)
     grid.count[static_cast<int>(axis)] = static_cast<int>(count[axis]);
+  if (options.bounds.empty()) {
+    const glm::dvec3 several(glm::greaterThan(grid.count, glm::ivec3(1))),
+        inset = kInset * several * grid.spacing();
+    grid.lower += inset, grid.upper -= inset;
+  }
   return grid;
 }
 
