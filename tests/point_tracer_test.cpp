@@ -248,6 +248,20 @@ TEST(PathtracePoints, OfTheLibraryAreThoseOfTheCommand) {
   EXPECT_EQ(lights.samples, 64u);
   EXPECT_THAT(error_of(ExitCode::usage, [&] { pathtrace_points(scene, positions, {}); }),
               HasSubstr("2 positions and 0 normals"));
+  const auto rejected = [&](const std::array<float, 3>& position, int threads) {
+    TraceOptions other = options;
+    other.threads = threads;
+    return error_of(ExitCode::usage, [&] {
+      pathtrace_points(scene, std::span(&position, 1), std::span(normals, 1), other);
+    });
+  };
+  EXPECT_THAT(rejected({0, 1e19f, 0}, 0), HasSubstr("point 0: found position (0, 1e+19, 0)"));
+  EXPECT_THAT(rejected({0, 0, 0}, -1), HasSubstr("threads: found -1; allowed: 1 to 1024"));
+  EXPECT_THAT(rejected({0, 0, 0}, 1025), HasSubstr("threads: found 1025"));
+  const std::vector<std::array<float, 3>> many((1 << 20) + 1);
+  EXPECT_THAT(error_of(ExitCode::usage,
+                       [&] { pathtrace_points(scene, many, std::span(normals, 1), options); }),
+              HasSubstr("found 1048577 points, allowed: at most 1048576"));
   EXPECT_THAT(query("--noise 0.1").err, HasSubstr("--noise has no effect without --truth"));
   EXPECT_THAT(query("--truth --grid 16").err, HasSubstr("--grid has no effect with --truth"));
   EXPECT_EQ(query("--truth --grid 16").exit_code, 2);

@@ -12,6 +12,7 @@
 #include "pathtracer/point_tracer.hpp"
 #include "pipeline/frame/frame_times.hpp"
 #include "pipeline/raster/view.hpp"
+#include "scene/bounds.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 
@@ -313,10 +314,19 @@ Image pathtrace(const Scene& scene, const std::vector<View>& views, const Camera
 
 PointLights pathtrace_points(const Scene& scene, Vectors positions, Vectors normals,
                              const TraceOptions& options) {
+  if (positions.size() > pathtracer::kMaxTracedPoints)
+    throw Error(ExitCode::usage, "pathtrace_points: found {} points, allowed: at most {}",
+                positions.size(), pathtracer::kMaxTracedPoints);
   const Points checked = checked_points("pathtrace_points", "normal", positions, normals);
   std::vector<SurfacePoint> points;
-  for (std::size_t i = 0; i < checked.positions.size(); ++i)
-    points.push_back({glm::dvec3(checked.positions[i]), glm::dvec3(checked.vectors[i])});
+  for (std::size_t i = 0; i < checked.positions.size(); ++i) {
+    const glm::vec4& p = checked.positions[i];
+    if (!glm::all(glm::lessThanEqual(glm::abs(glm::dvec3(p)), glm::dvec3(bounds::kCoordinate))))
+      throw Error(ExitCode::usage,
+                  "pathtrace_points: point {}: found position ({}, {}, {}), allowed: within +-{} m",
+                  i, p.x, p.y, p.z, bounds::kCoordinate);
+    points.push_back({glm::dvec3(p), glm::dvec3(checked.vectors[i])});
+  }
   const std::shared_lock scene_stays(scene.contents().mutex);
   PosedScene posed(scene);
   posed.pose(options.seconds);

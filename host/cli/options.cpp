@@ -276,7 +276,8 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
              {0, static_cast<double>(kMaxSeed), fmt::format("0..{}", kMaxSeed)})
       ->group(kGroup);
   add_number(command, "--threads", "N", options.values.threads,
-             "number of tracing threads (default: one per processor)", {1, 1024})
+             "number of tracing threads (default: one per processor)",
+             {1, pathtracer::PathTracerOptions::kMaxThreads})
       ->group(kGroup);
 }
 

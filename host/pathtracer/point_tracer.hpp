@@ -15,6 +15,8 @@
 
 namespace clpv::pathtracer {
 
+inline constexpr std::size_t kMaxTracedPoints = std::size_t{1} << 20;  ///< 240 bytes each
+
 /// Irradiance of a small surface [W/m^2].
 struct PointLight {
   glm::dvec3 direct{0};    ///< from the scene's lights, exact

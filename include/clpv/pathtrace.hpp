@@ -20,7 +20,7 @@ struct TraceOptions {
   std::uint32_t samples = 0;  ///< paths per pixel, up to 2^24; 0: as many as `noise` needs
   double noise = 0.02;     ///< relative standard error of the indirect light at which tracing stops
   std::uint64_t seed = 1;  ///< the same seed gives the same image
-  int threads = 0;         ///< 0: one per processor
+  int threads = 0;         ///< up to 1024; 0: one per processor
   double seconds = 0;      ///< time in the scene's animation [s]
   /// Receives the estimated progress in [0, 1], from one thread at a time.
   std::function<void(double)> progress;
@@ -47,10 +47,10 @@ struct PointLights {
 };
 
 /// Traces the irradiance at positions [m] with a normal (of any length) each, or one for all, on a
-/// surface of the scene or in the air, lit by all lights; `indirect` is what Renderer::irradiance() estimates.
-/// Uses neither width nor height of `options`. Throws Error: usage (options, different numbers of
-/// positions and normals, vectors that are not finite, a normal of length 0), bad_input (a scene
-/// without surface). Thread-safe.
+/// surface of the scene or in the air, lit by all lights; `indirect` is what Renderer::irradiance()
+/// estimates. Uses neither width nor height of `options`. Throws Error: usage (options, different
+/// numbers of positions and normals, more than 2^20 points, vectors that are not finite, positions
+/// beyond +-1e7 m, a normal of length 0), bad_input (a scene without surface). Thread-safe.
 PointLights pathtrace_points(const Scene& scene, std::span<const std::array<float, 3>> positions,
                              std::span<const std::array<float, 3>> normals,
                              const TraceOptions& options = {});
