@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <regex>
 
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
@@ -72,7 +73,11 @@ void dilate_into(const ProbeGrid& grid, std::size_t n, std::vector<std::uint8_t>
 
 BlockCache::BlockCache(const std::optional<std::filesystem::path>& folder, std::string key)
     : key_(std::move(key)) {
-  if (folder) folder_.emplace(*folder / "bakes");
+  if (!folder) return;
+  folder_.emplace(*folder / "bakes");
+  // Names of name_of(), and of the OutputFiles of killed processes.
+  static const std::regex kOwn(R"([0-9a-z]+-\d+\.block|\.[0-9a-z]+-\d+\.block\.\d+-\d+\.part)");
+  folder_->evict(kOwn, kMaxOldBlocks, kMaxAge);
 }
 
 std::string BlockCache::name_of(std::size_t block) const {

@@ -24,7 +24,8 @@ struct GridLight {
   double noise = 0;           ///< root mean square over all blocks
 };
 
-/// Blocks of an interrupted bake, in a cache. The key has all inputs.
+/// Blocks of an interrupted bake, in a cache. The key, of letters and digits, has all inputs.
+/// Blocks of other bakes stay for 30 days, at most 1 GiB of them.
 class BlockCache {
  public:
   /// No folder: nothing is kept.
