@@ -492,6 +492,24 @@ TEST_F(BakeCommand, SceneWithoutLightIsZeros) {
       bake("--from pathtrace --spp 1 --probes 2,2,2 --bounds 0,0,50,1,1,51 -o a.ktx2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("no light reaches a probe"));
+  const Outcome checked =
+      bake("--from pathtrace --spp 1 --probes 2,2,2 --bounds 0,0,50,1,1,51 --check 3");
+  ASSERT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_THAT(checked.out, ::testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(checked.err,
+              AllOf(HasSubstr("no points on surfaces"), HasSubstr("in the air is dark")));
+}
+
+TEST_F(BakeCommand, OneProbeAlongAnAxisAndAllInsideWalls) {
+  const Outcome outcome = bake(
+      "--from pathtrace --spp 1 --probes 2,1,2 --bounds 0.35,0.1,0.34,0.38,0.2,0.37 -o a.ktx2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("all probes are inside walls"));
+  const nlohmann::json json = description("a.ktx2");
+  EXPECT_NEAR(json["bounds"][0][1], 0.15, 1e-9);
+  EXPECT_EQ(json["bounds"][0][1], json["bounds"][1][1]);
+  EXPECT_NEAR(json["bevy"]["scale"][1], 0.1, 1e-9) << "one texel";
+  EXPECT_NEAR(json["bevy"]["scale"][0], 0.06, 1e-9);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -100,13 +102,29 @@ GridLight computed(const Options& options, Light& light, const ProbeGrid& grid,
   return all;
 }
 
+/// '-' for what is unknown.
+std::string decimal(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+}
+
 std::string row_of(const ProbeFormat& format, const BakedProbes& baked, const CheckPoints& surfaces,
                    const CheckPoints& air) {
   const ProbeError on = error_of(format, baked, surfaces, kSurfaceLift),
                    off = error_of(format, baked, air, 0);
-  return fmt::format("{:<18}{:>8}{:>7}{:>10.1f}{:>9.3f}{:>9.1f}{:>9.3f}{:>11.1f}\n", format.name,
-                     format.size, 6 * format.size, 100 * on.nrmse, on.energy, 100 * off.nrmse,
-                     off.energy, 100 * off.negative);
+  return fmt::format("{:<18}{:>8}{:>7}{:>10}{:>9}{:>9}{:>9}{:>11.1f}\n", format.name, format.size,
+                     6 * format.size, decimal(100 * on.nrmse, 1), decimal(on.energy, 3),
+                     decimal(100 * off.nrmse, 1), decimal(off.energy, 3), 100 * off.negative);
+}
+
+/// Says why errors are unknown.
+void say_unknown(const char* where, const CheckPoints& points) {
+  if (points.points.empty()) {
+    log_warning("no points {} within the bounds that are not inside walls: errors there are '-'",
+                where);
+  } else if (std::ranges::all_of(points.truth,
+                                 [](const glm::dvec3& e) { return e == glm::dvec3(0); })) {
+    log_warning("the truth {} is dark: relative errors there are '-'", where);
+  }
 }
 
 /// Prints the errors of all formats.
@@ -140,9 +158,11 @@ void check(const Options& options, const SceneData& scene, const SceneCamera& ca
   const glm::dvec3 spacing = grid.spacing();
   log_info(
       "{} x {} x {} probes, {:.3g} x {:.3g} x {:.3g} m apart; {} points of surfaces and {} in the "
-      "air, noise {:.4f} and {:.4f}",
+      "air, noise {} and {}",
       grid.count.x, grid.count.y, grid.count.z, spacing.x, spacing.y, spacing.z,
-      surfaces.points.size(), air.points.size() / 6, noise[0], noise[1]);
+      surfaces.points.size(), air.points.size() / 6, decimal(noise[0], 4), decimal(noise[1], 4));
+  say_unknown("on surfaces", surfaces);
+  say_unknown("in the air", air);
 }
 
 void bake_file(const Options& options, const SceneData& scene, const SceneCamera& camera,
@@ -162,8 +182,15 @@ void bake_file(const Options& options, const SceneData& scene, const SceneCamera
   log_info("{} x {} x {} probes, {} of them inside walls{}; {:.1f} % of normals negative",
            grid.count.x, grid.count.y, grid.count.z, invalid,
            invalid > 0 && baked.filled ? ", filled" : "", 100 * baked.negative);
-  if (std::ranges::all_of(baked.coefficients, [](const glm::vec3& c) { return c == glm::vec3(0); }))
+  if (invalid == std::ranges::ssize(baked.valid)) {
+    log_warning(
+        "{}: all probes are inside walls, as they see backs of surfaces: --bounds and the "
+        "model's winding decide",
+        scene.path);
+  } else if (std::ranges::all_of(baked.coefficients,
+                                 [](const glm::vec3& c) { return c == glm::vec3(0); })) {
     log_warning("{}: no light reaches a probe; all coefficients are 0", scene.path);
+  }
 }
 
 void reject_without_effect(const Options& options) {
