@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -16,6 +17,7 @@
 
 #include "bake/ktx2.hpp"
 #include "bake/probe_check.hpp"
+#include "cli/bake_parts.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/frame/scene_options.hpp"
 #include "scene/load.hpp"
@@ -328,6 +330,67 @@ TEST(Bake, AnInterruptedBakeGoesOn) {
   BlockCache(folder.path(), "key").clear(3);
   EXPECT_FALSE(std::filesystem::exists(folder / "bakes/key-0.block"));
   EXPECT_TRUE(std::filesystem::exists(folder / "bakes/other-0.block"));
+}
+
+TEST(Bake, LightThatIsNotFiniteIsAnError) {
+  struct Broken : ProbeSource {
+    Broken() { blocks_ = {{0}}; }
+    BlockLight light(std::size_t) override {
+      return {{glm::vec3(0, std::numeric_limits<float>::quiet_NaN(), 0)}, 0, 1};
+    }
+  } source;
+  const TemporaryFolder folder;
+  const ProbeGrid grid{{1, 1, 1}, {0, 0, 0}, {1, 1, 1}};
+  BlockCache cache(folder.path(), "key");
+  EXPECT_THAT(
+      error_of(ExitCode::run_time, [&] { light_of(source, grid, 1, cache, [](std::size_t) {}); }),
+      HasSubstr("probe at (0.5, 0.5, 0.5): found light of 0, nan, 0"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "bakes/key-0.block"));
+}
+
+TEST(Bake, BlocksOfAbandonedBakesAreRemoved) {
+  const TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+  std::filesystem::create_directory(folder / "bakes");
+  const auto now = std::filesystem::file_time_type::clock::now();
+  const std::pair<const char*, bool> files[] = {{"old-12.block", false},
+                                                {".old-3.block.7-0.part", false},
+                                                {"my.old-1.block", true},
+                                                {"notes", true}};
+  for (const auto& [name, stays] : files) {
+    std::ofstream(folder / "bakes" / name) << "x";
+    std::filesystem::last_write_time(folder / "bakes" / name, now - std::chrono::hours(24 * 31));
+  }
+  std::ofstream(folder / "bakes/new-0.block") << "x";
+  BlockCache(folder.path(), "key");
+  for (const auto& [name, stays] : files)
+    EXPECT_EQ(std::filesystem::exists(folder / "bakes" / name), stays) << name;
+  EXPECT_TRUE(std::filesystem::exists(folder / "bakes/new-0.block"));
+}
+
+// Cells of the finest cascade are not larger than the spacing, and the coarsest reaches as far.
+TEST(Bake, CascadesFitTheSpacing) {
+  SceneData scene;
+  scene.path = "scene.json";
+  bake_command::Options options;
+  const auto frame = [&](double spacing) {
+    const ProbeGrid grid{{2, 2, 1}, {0, 0, 0}, {spacing, 2, 0.01}};
+    return bake_command::frame_options(options, scene, grid);
+  };
+  EXPECT_EQ(frame(1).cascade_size, 12.5);
+  EXPECT_EQ(frame(0.1).cascade_size, 12.5 / 4);
+  EXPECT_EQ(frame(0.1).cascades, 5);
+  EXPECT_EQ(frame(1e-4).cascades, kMaxCascades);
+  options.request.frame["cascade-size"] = "25";
+  EXPECT_EQ(frame(0.1).cascade_size, 25);
+  scene.lower = glm::vec3(-1), scene.upper = glm::vec3(1);
+  options.probes = "2,3,1";
+  const ProbeGrid grid = bake_command::grid_of(options, scene, 9);
+  EXPECT_EQ(grid.lower, glm::dvec3(-0.75, -0.875, -1)) << "an eighth inside";
+  EXPECT_EQ(grid.upper, glm::dvec3(0.75, 0.875, 1));
+  scene.lower = glm::vec3(-1, 0, -1), scene.upper = glm::vec3(1, 0, 1);
+  EXPECT_THAT(error_of(ExitCode::usage, [&] { bake_command::grid_of(options, scene, 9); }),
+              HasSubstr("the scene's box: found 0 to 0 along y"));
 }
 
 // Probes of a sweep have the irradiance of the frame's volumes.

@@ -35,12 +35,30 @@ namespace bake_command {
 
 constexpr std::size_t kMaxChecked = 1 << 16;
 
-/// Options of frames, without the near field, which only pixels of a camera have.
-RenderOptions frame_options(const Options& options, const SceneData& scene) {
+/// Edge of a cell of the finest cascade [m].
+double cell_of(const RenderOptions& frame) {
+  return frame.cascade_size / frame.grid;
+}
+
+/// Along axes of several probes; infinite without one.
+double least_spacing(const ProbeGrid& grid) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+    if (grid.count[axis] > 1) least = std::min(least, grid.spacing()[axis]);
+  return least;
+}
+
+RenderOptions frame_options(const Options& options, const SceneData& scene, const ProbeGrid& grid) {
   RenderRequest request = options.request;
   request.frame.emplace("near", "off");
   request.frame["bounces"] = options.tracing.bounces;
-  return resolve_request(request, scene);
+  RenderOptions frame = resolve_request(request, scene);
+  if (scene.cascade_size || scene.cascades || request.frame.contains("cascade-size") ||
+      request.frame.contains("cascades"))
+    return frame;
+  while (cell_of(frame) > least_spacing(grid) && frame.cascades < kMaxCascades)
+    frame.cascade_size /= 2, ++frame.cascades;
+  return frame;
 }
 
 /// Where the light comes from, and what it holds while it works.
@@ -63,8 +81,13 @@ Light light_from(const Options& options, const SceneData& scene, const SceneCame
   const Device device = choose_device(shared.device);
   light.session = std::make_unique<Session>(device, ProgramCache::of_user(device),
                                             compilation_of(options.request, shared.device));
-  light.source =
-      swept_light(*light.session, scene, camera, frame_options(options, scene), grid, formats);
+  const RenderOptions frame = frame_options(options, scene, grid);
+  if (cell_of(frame) > least_spacing(grid))
+    log_warning(
+        "cells of {:.3g} m are larger than the spacing of probes, {:.3g} m, and inexact in small "
+        "rooms; a smaller --cascade-size or --from pathtrace is better",
+        cell_of(frame), least_spacing(grid));
+  light.source = swept_light(*light.session, scene, camera, frame, grid, formats);
   return light;
 }
 
@@ -80,7 +103,7 @@ std::string key_of(const Options& options, const SceneData& scene, const SceneCa
   if (options.from == BakeSource::pathtrace) {
     print.add(paths.seed).add(paths.samples).add(paths.samples > 0 ? 0.0 : paths.noise);
   } else {
-    print.add(pixels_key(choose_device(shared.device), frame_options(options, scene)));
+    print.add(pixels_key(choose_device(shared.device), frame_options(options, scene, grid)));
   }
   return print.hex();
 }
