@@ -569,6 +569,7 @@ TEST_F(BakeCommand, OneProbeAlongAnAxisAndAllInsideWalls) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("all probes are inside walls"));
   const nlohmann::json json = description("a.ktx2");
+  EXPECT_EQ(json["dilated"], false);
   EXPECT_NEAR(json["bounds"][0][1], 0.15, 1e-9);
   EXPECT_EQ(json["bounds"][0][1], json["bounds"][1][1]);
   EXPECT_NEAR(json["bevy"]["scale"][1], 0.1, 1e-9) << "one texel";

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -169,7 +170,8 @@ std::vector<glm::dvec3> positions_of(const ProbeGrid& grid) {
 
 BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,
                     const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate) {
-  BakedProbes baked{grid, {}, std::move(valid), dilate, 0};
+  BakedProbes baked{.grid = grid, .coefficients = {}, .valid = std::move(valid)};
+  baked.filled = dilate && std::ranges::count(baked.valid, 1) > 0;
   baked.coefficients.reserve(grid.size() * format.size);
   for (std::size_t probe = 0; probe < grid.size(); ++probe) {
     std::vector<glm::dvec3> integrals(format.moments.count);

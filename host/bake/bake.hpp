@@ -53,7 +53,7 @@ struct BakedProbes {
   ProbeGrid grid;
   std::vector<glm::vec3> coefficients;  ///< [probe][number], red, green, blue
   std::vector<std::uint8_t> valid;      ///< 1, or 0 inside walls
-  bool filled = false;                  ///< invalid probes have the light of valid ones
+  bool filled = false;                  ///< invalid probes have the light of valid ones, if any
   double negative = 0;                  ///< mean negative_share() of all probes
 };
 

@@ -34,6 +34,7 @@ namespace clpv {
 namespace bake_command {
 
 constexpr std::size_t kMaxChecked = 1 << 16;
+constexpr double kCoarse = 2;  // cells of so many spacings get a warning
 
 /// Edge of a cell of the finest cascade [m].
 double cell_of(const RenderOptions& frame) {
@@ -82,10 +83,10 @@ Light light_from(const Options& options, const SceneData& scene, const SceneCame
   light.session = std::make_unique<Session>(device, ProgramCache::of_user(device),
                                             compilation_of(options.request, shared.device));
   const RenderOptions frame = frame_options(options, scene, grid);
-  if (cell_of(frame) > least_spacing(grid))
+  if (cell_of(frame) > kCoarse * least_spacing(grid))
     log_warning(
-        "cells of {:.3g} m are larger than the spacing of probes, {:.3g} m, and inexact in small "
-        "rooms; a smaller --cascade-size or --from pathtrace is better",
+        "cells of {:.3g} m are far larger than the spacing of probes, {:.3g} m, and inexact in "
+        "small rooms; a smaller --cascade-size or --from pathtrace is better",
         cell_of(frame), least_spacing(grid));
   light.source = swept_light(*light.session, scene, camera, frame, grid, formats);
   return light;
