@@ -10,6 +10,7 @@
 #include "clpv/pathtrace.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pathtracer/point_tracer.hpp"
+#include "pathtracer/sample_counts.hpp"
 #include "pipeline/frame/frame_times.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/bounds.hpp"
@@ -314,6 +315,9 @@ Image pathtrace(const Scene& scene, const std::vector<View>& views, const Camera
 
 PointLights pathtrace_points(const Scene& scene, Vectors positions, Vectors normals,
                              const TraceOptions& options) {
+  const pathtracer::PathTracerOptions paths{options.bounces, options.samples, options.noise,
+                                            options.seed, options.threads};
+  pathtracer::check(paths);
   if (positions.size() > pathtracer::kMaxTracedPoints)
     throw Error(ExitCode::usage, "pathtrace_points: found {} points, allowed: at most {}",
                 positions.size(), pathtracer::kMaxTracedPoints);
@@ -330,9 +334,7 @@ PointLights pathtrace_points(const Scene& scene, Vectors positions, Vectors norm
   const std::shared_lock scene_stays(scene.contents().mutex);
   PosedScene posed(scene);
   posed.pose(options.seconds);
-  pathtracer::PointTracer tracer(
-      posed.scene(), posed.scene().lights_for(SceneCamera()),
-      {options.bounces, options.samples, options.noise, options.seed, options.threads});
+  pathtracer::PointTracer tracer(posed.scene(), posed.scene().lights_for(SceneCamera()), paths);
   const pathtracer::TracedPoints traced = tracer.irradiance(points, options.progress);
   PointLights lights;
   lights.samples = traced.samples, lights.noise = traced.noise;
