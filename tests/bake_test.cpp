@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -16,6 +17,7 @@
 
 #include "bake/ktx2.hpp"
 #include "bake/probe_check.hpp"
+#include "cli/bake_parts.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/frame/scene_options.hpp"
 #include "scene/load.hpp"
@@ -276,6 +278,14 @@ TEST(Bake, ProbesInsideWallsAreInvalid) {
   const std::vector<glm::dvec3> positions{
       {1.5, 1.5, 1.5}, {1.1, 1.9, 1.5}, {3, 3, 3}, {0.9, 1.5, 1.5}, {-1, 2, 2}};
   EXPECT_THAT(validity(tracer, positions), ::testing::ElementsAre(0, 0, 1, 1, 0));
+  const std::vector<glm::dvec3> on_walls{{0, 2, 2}, {4, 4, 4}, {1.5, 2, 1.5}};
+  EXPECT_THAT(validity(tracer, on_walls), ::testing::Each(1));
+  for (std::size_t i = scene.triangles.size() - 12; i < scene.triangles.size(); ++i)
+    scene.triangles[i].material = 1;  // the block is of cloth
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].flags |= CLPV_MATERIAL_DOUBLE_SIDED;
+  pathtracer::PointTracer other(scene, {}, options);
+  EXPECT_THAT(validity(other, positions), ::testing::ElementsAre(1, 1, 1, 1, 0));
 }
 
 /// A source of numbered probes that is interrupted before block `end`.
@@ -320,6 +330,67 @@ TEST(Bake, AnInterruptedBakeGoesOn) {
   BlockCache(folder.path(), "key").clear(3);
   EXPECT_FALSE(std::filesystem::exists(folder / "bakes/key-0.block"));
   EXPECT_TRUE(std::filesystem::exists(folder / "bakes/other-0.block"));
+}
+
+TEST(Bake, LightThatIsNotFiniteIsAnError) {
+  struct Broken : ProbeSource {
+    Broken() { blocks_ = {{0}}; }
+    BlockLight light(std::size_t) override {
+      return {{glm::vec3(0, std::numeric_limits<float>::quiet_NaN(), 0)}, 0, 1};
+    }
+  } source;
+  const TemporaryFolder folder;
+  const ProbeGrid grid{{1, 1, 1}, {0, 0, 0}, {1, 1, 1}};
+  BlockCache cache(folder.path(), "key");
+  EXPECT_THAT(
+      error_of(ExitCode::run_time, [&] { light_of(source, grid, 1, cache, [](std::size_t) {}); }),
+      HasSubstr("probe at (0.5, 0.5, 0.5): found light of 0, nan, 0"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "bakes/key-0.block"));
+}
+
+TEST(Bake, BlocksOfAbandonedBakesAreRemoved) {
+  const TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+  std::filesystem::create_directory(folder / "bakes");
+  const auto now = std::filesystem::file_time_type::clock::now();
+  const std::pair<const char*, bool> files[] = {{"old-12.block", false},
+                                                {".old-3.block.7-0.part", false},
+                                                {"my.old-1.block", true},
+                                                {"notes", true}};
+  for (const auto& [name, stays] : files) {
+    std::ofstream(folder / "bakes" / name) << "x";
+    std::filesystem::last_write_time(folder / "bakes" / name, now - std::chrono::hours(24 * 31));
+  }
+  std::ofstream(folder / "bakes/new-0.block") << "x";
+  BlockCache(folder.path(), "key");
+  for (const auto& [name, stays] : files)
+    EXPECT_EQ(std::filesystem::exists(folder / "bakes" / name), stays) << name;
+  EXPECT_TRUE(std::filesystem::exists(folder / "bakes/new-0.block"));
+}
+
+// Cells of the finest cascade are not larger than the spacing, and the coarsest reaches as far.
+TEST(Bake, CascadesFitTheSpacing) {
+  SceneData scene;
+  scene.path = "scene.json";
+  bake_command::Options options;
+  const auto frame = [&](double spacing) {
+    const ProbeGrid grid{{2, 2, 1}, {0, 0, 0}, {spacing, 2, 0.01}};
+    return bake_command::frame_options(options, scene, grid);
+  };
+  EXPECT_EQ(frame(1).cascade_size, 12.5);
+  EXPECT_EQ(frame(0.1).cascade_size, 12.5 / 4);
+  EXPECT_EQ(frame(0.1).cascades, 5);
+  EXPECT_EQ(frame(1e-4).cascades, kMaxCascades);
+  options.request.frame["cascade-size"] = "25";
+  EXPECT_EQ(frame(0.1).cascade_size, 25);
+  scene.lower = glm::vec3(-1), scene.upper = glm::vec3(1);
+  options.probes = "2,3,1";
+  const ProbeGrid grid = bake_command::grid_of(options, scene, 9);
+  EXPECT_EQ(grid.lower, glm::dvec3(-0.75, -0.875, -1)) << "an eighth inside";
+  EXPECT_EQ(grid.upper, glm::dvec3(0.75, 0.875, 1));
+  scene.lower = glm::vec3(-1, 0, -1), scene.upper = glm::vec3(1, 0, 1);
+  EXPECT_THAT(error_of(ExitCode::usage, [&] { bake_command::grid_of(options, scene, 9); }),
+              HasSubstr("the scene's box: found 0 to 0 along y"));
 }
 
 // Probes of a sweep have the irradiance of the frame's volumes.
@@ -484,6 +555,25 @@ TEST_F(BakeCommand, SceneWithoutLightIsZeros) {
       bake("--from pathtrace --spp 1 --probes 2,2,2 --bounds 0,0,50,1,1,51 -o a.ktx2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("no light reaches a probe"));
+  const Outcome checked =
+      bake("--from pathtrace --spp 1 --probes 2,2,2 --bounds 0,0,50,1,1,51 --check 3");
+  ASSERT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_THAT(checked.out, ::testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(checked.err,
+              AllOf(HasSubstr("no points on surfaces"), HasSubstr("in the air is dark")));
+}
+
+TEST_F(BakeCommand, OneProbeAlongAnAxisAndAllInsideWalls) {
+  const Outcome outcome = bake(
+      "--from pathtrace --spp 1 --probes 2,1,2 --bounds 0.35,0.1,0.34,0.38,0.2,0.37 -o a.ktx2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("all probes are inside walls"));
+  const nlohmann::json json = description("a.ktx2");
+  EXPECT_EQ(json["dilated"], false);
+  EXPECT_NEAR(json["bounds"][0][1], 0.15, 1e-9);
+  EXPECT_EQ(json["bounds"][0][1], json["bounds"][1][1]);
+  EXPECT_NEAR(json["bevy"]["scale"][1], 0.1, 1e-9) << "one texel";
+  EXPECT_NEAR(json["bevy"]["scale"][0], 0.06, 1e-9);
 }
 
 }  // namespace

@@ -81,6 +81,40 @@ TEST(PointTracer, FurnaceHasOneRadiance) {
   for (std::size_t i = 1; i < 9; ++i) EXPECT_NEAR(probe.indirect[i].x, 0, 0.02 * 3.5449 * radiance);
 }
 
+// On walls, edges and corners too: a probe there lies on the walls' fronts.
+TEST(PointTracer, ProbesOnEmissiveWalls) {
+  const SceneData scene = furnace(0.5f, 2);
+  const std::vector<glm::dvec3> positions{{0.3, 0, 0.6}, {1, 0.5, 0.5}, {0, 0, 0.4}, {1, 1, 0}};
+  PointTracer tracer(scene, {}, paths(8192, PathTracerOptions::kAllBounces));
+  const pathtracer::TracedProbes probes = tracer.probes(positions, nine());
+  const double wanted = std::sqrt(4 * pi) * 4;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    EXPECT_NEAR(probes.indirect[9 * i].x, wanted, 0.03 * wanted) << i;
+    EXPECT_NEAR(tracer.surroundings(positions)[i].backs, 0, 1e-9) << i;
+  }
+  EXPECT_GT(probes.noise, 0);
+  for (const glm::dvec3& normal : {glm::dvec3(0, 1, 0), {1, 0, 0}, {0, 0, 1}}) {
+    const PointLight light =
+        light_at(scene, {{0, 0, 0.4}, normal}, paths(8192, PathTracerOptions::kAllBounces));
+    EXPECT_NEAR(light.indirect.x, 4 * pi, 0.03 * 4 * pi);
+  }
+}
+
+// A normal along a floor sees half of the sky; one into it sees none.
+TEST(PointTracer, NormalsAlongSurfacesSeeTheirFront) {
+  SceneData scene = floor_scene(0);
+  scene.sky = std::make_shared<const Sky>(constant_sky(glm::vec3(1)));
+  scene.lights = {sun({-1, -1, 0}, 2)};
+  const PointLight along = light_at(scene, {{0.1, 0, 0.2}, {1, 0, 0}}, paths(1024));
+  EXPECT_NEAR(along.indirect.x, pi / 2, 0.03);
+  EXPECT_NEAR(along.direct.x, 2 * std::sqrt(0.5), 1e-4);
+  const glm::dvec3 position(0.1, 0, 0.2);
+  PointTracer tracer(scene, scene.lights, paths(1024));
+  const double half = 2 * pi * std::sqrt(1 / (4 * pi));
+  EXPECT_NEAR(tracer.probes(std::span(&position, 1), nine()).indirect[0].x, half, 0.03 * half);
+  EXPECT_GT(tracer.direct(std::span(&position, 1), nine())[0].x, 0);
+}
+
 // A sun straight down on a large grey floor: a E from all directions below.
 TEST(PointTracer, SunlitPatch) {
   SceneData scene = floor_scene(0.5f);
@@ -214,6 +248,20 @@ TEST(PathtracePoints, OfTheLibraryAreThoseOfTheCommand) {
   EXPECT_EQ(lights.samples, 64u);
   EXPECT_THAT(error_of(ExitCode::usage, [&] { pathtrace_points(scene, positions, {}); }),
               HasSubstr("2 positions and 0 normals"));
+  const auto rejected = [&](const std::array<float, 3>& position, int threads) {
+    TraceOptions other = options;
+    other.threads = threads;
+    return error_of(ExitCode::usage, [&] {
+      pathtrace_points(scene, std::span(&position, 1), std::span(normals, 1), other);
+    });
+  };
+  EXPECT_THAT(rejected({0, 1e19f, 0}, 0), HasSubstr("point 0: found position (0, 1e+19, 0)"));
+  EXPECT_THAT(rejected({0, 0, 0}, -1), HasSubstr("threads: found -1; allowed: 1 to 1024"));
+  EXPECT_THAT(rejected({0, 0, 0}, 1025), HasSubstr("threads: found 1025"));
+  const std::vector<std::array<float, 3>> many((1 << 20) + 1);
+  EXPECT_THAT(error_of(ExitCode::usage,
+                       [&] { pathtrace_points(scene, many, std::span(normals, 1), options); }),
+              HasSubstr("found 1048577 points, allowed: at most 1048576"));
   EXPECT_THAT(query("--noise 0.1").err, HasSubstr("--noise has no effect without --truth"));
   EXPECT_THAT(query("--truth --grid 16").err, HasSubstr("--grid has no effect with --truth"));
   EXPECT_EQ(query("--truth --grid 16").exit_code, 2);

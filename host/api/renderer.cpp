@@ -10,8 +10,10 @@
 #include "clpv/pathtrace.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pathtracer/point_tracer.hpp"
+#include "pathtracer/sample_counts.hpp"
 #include "pipeline/frame/frame_times.hpp"
 #include "pipeline/raster/view.hpp"
+#include "scene/bounds.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 
@@ -315,16 +317,26 @@ Image pathtrace(const Scene& scene, const std::vector<View>& views, const Camera
 
 PointLights pathtrace_points(const Scene& scene, Vectors positions, Vectors normals,
                              const TraceOptions& options) {
+  const pathtracer::PathTracerOptions paths{options.bounces, options.samples, options.noise,
+                                            options.seed, options.threads};
+  pathtracer::check(paths);
+  if (positions.size() > pathtracer::kMaxTracedPoints)
+    throw Error(ExitCode::usage, "pathtrace_points: found {} points, allowed: at most {}",
+                positions.size(), pathtracer::kMaxTracedPoints);
   const Points checked = checked_points("pathtrace_points", "normal", positions, normals);
   std::vector<SurfacePoint> points;
-  for (std::size_t i = 0; i < checked.positions.size(); ++i)
-    points.push_back({glm::dvec3(checked.positions[i]), glm::dvec3(checked.vectors[i])});
+  for (std::size_t i = 0; i < checked.positions.size(); ++i) {
+    const glm::vec4& p = checked.positions[i];
+    if (!glm::all(glm::lessThanEqual(glm::abs(glm::dvec3(p)), glm::dvec3(bounds::kCoordinate))))
+      throw Error(ExitCode::usage,
+                  "pathtrace_points: point {}: found position ({}, {}, {}), allowed: within +-{} m",
+                  i, p.x, p.y, p.z, bounds::kCoordinate);
+    points.push_back({glm::dvec3(p), glm::dvec3(checked.vectors[i])});
+  }
   const std::shared_lock scene_stays(scene.contents().mutex);
   PosedScene posed(scene);
   posed.pose(options.seconds);
-  pathtracer::PointTracer tracer(
-      posed.scene(), posed.scene().lights_for(SceneCamera()),
-      {options.bounces, options.samples, options.noise, options.seed, options.threads});
+  pathtracer::PointTracer tracer(posed.scene(), posed.scene().lights_for(SceneCamera()), paths);
   const pathtracer::TracedPoints traced = tracer.irradiance(points, options.progress);
   PointLights lights;
   lights.samples = traced.samples, lights.noise = traced.noise;

@@ -3,9 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <regex>
 
+#include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/interrupt.hpp"
 #include "support/log.hpp"
@@ -15,6 +19,17 @@ namespace {
 
 constexpr double kBacks = 0.25;  // of all directions
 constexpr std::size_t kHash = 16;
+constexpr std::uint64_t kMaxOldBlocks = 1u << 30;  // bytes
+constexpr std::chrono::hours kMaxAge(24 * 30);
+
+void require_finite(const glm::vec3& light, const ProbeGrid& grid, std::size_t probe) {
+  if (std::isfinite(light.x) && std::isfinite(light.y) && std::isfinite(light.z)) return;
+  const glm::dvec3 at = grid.position(probe);
+  throw Error(
+      ExitCode::run_time,
+      "probe at ({:.4g}, {:.4g}, {:.4g}): found light of {}, {}, {}, allowed: finite floats", at.x,
+      at.y, at.z, light.x, light.y, light.z);
+}
 
 /// Mean of the neighbours that are known, weighted by the inverse square of their distance; false
 /// without one.
@@ -59,7 +74,11 @@ void dilate_into(const ProbeGrid& grid, std::size_t n, std::vector<std::uint8_t>
 
 BlockCache::BlockCache(const std::optional<std::filesystem::path>& folder, std::string key)
     : key_(std::move(key)) {
-  if (folder) folder_.emplace(*folder / "bakes");
+  if (!folder) return;
+  folder_.emplace(*folder / "bakes");
+  // Names of name_of(), and of the OutputFiles of killed processes.
+  static const std::regex kOwn(R"([0-9a-z]+-\d+\.block|\.[0-9a-z]+-\d+\.block\.\d+-\d+\.part)");
+  folder_->evict(kOwn, kMaxOldBlocks, kMaxAge);
 }
 
 std::string BlockCache::name_of(std::size_t block) const {
@@ -120,6 +139,8 @@ GridLight light_of(ProbeSource& source, const ProbeGrid& grid, std::size_t count
     std::optional<BlockLight> light = cache.read(block, blocks[block].size() * count);
     if (!light) {
       light = source.light(block);
+      for (std::size_t i = 0; i < light->integrals.size(); ++i)
+        require_finite(light->integrals[i], grid, blocks[block][i / count]);
       kept = cache.write(block, *light);
     }
     for (std::size_t i = 0; i < blocks[block].size(); ++i)
@@ -149,13 +170,17 @@ std::vector<glm::dvec3> positions_of(const ProbeGrid& grid) {
 
 BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,
                     const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate) {
-  BakedProbes baked{grid, {}, std::move(valid), dilate, 0};
+  BakedProbes baked{.grid = grid, .coefficients = {}, .valid = std::move(valid)};
+  baked.filled = dilate && std::ranges::count(baked.valid, 1) > 0;
   baked.coefficients.reserve(grid.size() * format.size);
   for (std::size_t probe = 0; probe < grid.size(); ++probe) {
     std::vector<glm::dvec3> integrals(format.moments.count);
     for (std::size_t i = 0; i < integrals.size(); ++i)
       integrals[i] = glm::dvec3(light.integrals[probe * light.count + first + i]);
-    for (const glm::dvec3& c : format.encoded(integrals)) baked.coefficients.emplace_back(c);
+    for (const glm::dvec3& c : format.encoded(integrals)) {
+      baked.coefficients.emplace_back(c);
+      require_finite(baked.coefficients.back(), grid, probe);
+    }
   }
   if (dilate) dilate_into(grid, format.size, baked.valid, baked.coefficients);
   std::vector<glm::dvec3> c(format.size);

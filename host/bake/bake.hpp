@@ -24,7 +24,8 @@ struct GridLight {
   double noise = 0;           ///< root mean square over all blocks
 };
 
-/// Blocks of an interrupted bake, in a cache. The key has all inputs.
+/// Blocks of an interrupted bake, in a cache. The key, of letters and digits, has all inputs.
+/// Blocks of other bakes stay for 30 days, at most 1 GiB of them.
 class BlockCache {
  public:
   /// No folder: nothing is kept.
@@ -42,7 +43,8 @@ class BlockCache {
   std::string key_;
 };
 
-/// Light of all blocks; `done` receives the number of blocks that are finished.
+/// Light of all blocks. Throws Error(run_time) for light that is not finite. `done` receives the
+/// number of blocks that are finished.
 GridLight light_of(ProbeSource& source, const ProbeGrid& grid, std::size_t count, BlockCache& cache,
                    const std::function<void(std::size_t)>& done);
 
@@ -51,20 +53,20 @@ struct BakedProbes {
   ProbeGrid grid;
   std::vector<glm::vec3> coefficients;  ///< [probe][number], red, green, blue
   std::vector<std::uint8_t> valid;      ///< 1, or 0 inside walls
-  bool filled = false;                  ///< invalid probes have the light of valid ones
+  bool filled = false;                  ///< invalid probes have the light of valid ones, if any
   double negative = 0;                  ///< mean negative_share() of all probes
 };
 
 /// Marks probes that see more backs than fronts of surfaces, and backs in a quarter of all
-/// directions: those are inside walls.
+/// directions: those are inside walls. Double-sided surfaces have no back.
 std::vector<std::uint8_t> validity(pathtracer::PointTracer& tracer,
                                    std::span<const glm::dvec3> positions);
 
 /// Positions of all probes.
 std::vector<glm::dvec3> positions_of(const ProbeGrid& grid);
 
-/// Encodes `format`'s integrals, which begin at `first` of each probe. `dilate`: fills probes that
-/// are not valid.
+/// Encodes `format`'s integrals, which begin at `first` of each probe. Throws as light_of().
+/// `dilate`: fills probes that are not valid.
 BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,
                     const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate);
 

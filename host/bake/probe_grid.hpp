@@ -42,6 +42,8 @@ struct ProbeGrid {
                                  : lower[axis] + place[axis] * spacing()[axis];
     return p;
   }
+  glm::dvec3 first() const { return position(0); }
+  glm::dvec3 last() const { return position(size() - 1); }
 };
 
 /// Trilinear interpolation of `n` numbers per probe at a position [m], which is clamped to the

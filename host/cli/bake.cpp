@@ -10,6 +10,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -32,13 +34,32 @@ namespace clpv {
 namespace bake_command {
 
 constexpr std::size_t kMaxChecked = 1 << 16;
+constexpr double kCoarse = 2;  // cells of so many spacings get a warning
 
-/// Options of frames, without the near field, which only pixels of a camera have.
-RenderOptions frame_options(const Options& options, const SceneData& scene) {
+/// Edge of a cell of the finest cascade [m].
+double cell_of(const RenderOptions& frame) {
+  return frame.cascade_size / frame.grid;
+}
+
+/// Along axes of several probes; infinite without one.
+double least_spacing(const ProbeGrid& grid) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+    if (grid.count[axis] > 1) least = std::min(least, grid.spacing()[axis]);
+  return least;
+}
+
+RenderOptions frame_options(const Options& options, const SceneData& scene, const ProbeGrid& grid) {
   RenderRequest request = options.request;
   request.frame.emplace("near", "off");
   request.frame["bounces"] = options.tracing.bounces;
-  return resolve_request(request, scene);
+  RenderOptions frame = resolve_request(request, scene);
+  if (scene.cascade_size || scene.cascades || request.frame.contains("cascade-size") ||
+      request.frame.contains("cascades"))
+    return frame;
+  while (cell_of(frame) > least_spacing(grid) && frame.cascades < kMaxCascades)
+    frame.cascade_size /= 2, ++frame.cascades;
+  return frame;
 }
 
 /// Where the light comes from, and what it holds while it works.
@@ -61,8 +82,13 @@ Light light_from(const Options& options, const SceneData& scene, const SceneCame
   const Device device = choose_device(shared.device);
   light.session = std::make_unique<Session>(device, ProgramCache::of_user(device),
                                             compilation_of(options.request, shared.device));
-  light.source =
-      swept_light(*light.session, scene, camera, frame_options(options, scene), grid, formats);
+  const RenderOptions frame = frame_options(options, scene, grid);
+  if (cell_of(frame) > kCoarse * least_spacing(grid))
+    log_warning(
+        "cells of {:.3g} m are far larger than the spacing of probes, {:.3g} m, and inexact in "
+        "small rooms; a smaller --cascade-size or --from pathtrace is better",
+        cell_of(frame), least_spacing(grid));
+  light.source = swept_light(*light.session, scene, camera, frame, grid, formats);
   return light;
 }
 
@@ -78,7 +104,7 @@ std::string key_of(const Options& options, const SceneData& scene, const SceneCa
   if (options.from == BakeSource::pathtrace) {
     print.add(paths.seed).add(paths.samples).add(paths.samples > 0 ? 0.0 : paths.noise);
   } else {
-    print.add(pixels_key(choose_device(shared.device), frame_options(options, scene)));
+    print.add(pixels_key(choose_device(shared.device), frame_options(options, scene, grid)));
   }
   return print.hex();
 }
@@ -100,13 +126,29 @@ GridLight computed(const Options& options, Light& light, const ProbeGrid& grid,
   return all;
 }
 
+/// '-' for what is unknown.
+std::string decimal(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+}
+
 std::string row_of(const ProbeFormat& format, const BakedProbes& baked, const CheckPoints& surfaces,
                    const CheckPoints& air) {
   const ProbeError on = error_of(format, baked, surfaces, kSurfaceLift),
                    off = error_of(format, baked, air, 0);
-  return fmt::format("{:<18}{:>8}{:>7}{:>10.1f}{:>9.3f}{:>9.1f}{:>9.3f}{:>11.1f}\n", format.name,
-                     format.size, 6 * format.size, 100 * on.nrmse, on.energy, 100 * off.nrmse,
-                     off.energy, 100 * off.negative);
+  return fmt::format("{:<18}{:>8}{:>7}{:>10}{:>9}{:>9}{:>9}{:>11.1f}\n", format.name, format.size,
+                     6 * format.size, decimal(100 * on.nrmse, 1), decimal(on.energy, 3),
+                     decimal(100 * off.nrmse, 1), decimal(off.energy, 3), 100 * off.negative);
+}
+
+/// Says why errors are unknown.
+void say_unknown(const char* where, const CheckPoints& points) {
+  if (points.points.empty()) {
+    log_warning("no points {} within the bounds that are not inside walls: errors there are '-'",
+                where);
+  } else if (std::ranges::all_of(points.truth,
+                                 [](const glm::dvec3& e) { return e == glm::dvec3(0); })) {
+    log_warning("the truth {} is dark: relative errors there are '-'", where);
+  }
 }
 
 /// Prints the errors of all formats.
@@ -140,9 +182,11 @@ void check(const Options& options, const SceneData& scene, const SceneCamera& ca
   const glm::dvec3 spacing = grid.spacing();
   log_info(
       "{} x {} x {} probes, {:.3g} x {:.3g} x {:.3g} m apart; {} points of surfaces and {} in the "
-      "air, noise {:.4f} and {:.4f}",
+      "air, noise {} and {}",
       grid.count.x, grid.count.y, grid.count.z, spacing.x, spacing.y, spacing.z,
-      surfaces.points.size(), air.points.size() / 6, noise[0], noise[1]);
+      surfaces.points.size(), air.points.size() / 6, decimal(noise[0], 4), decimal(noise[1], 4));
+  say_unknown("on surfaces", surfaces);
+  say_unknown("in the air", air);
 }
 
 void bake_file(const Options& options, const SceneData& scene, const SceneCamera& camera,
@@ -162,8 +206,15 @@ void bake_file(const Options& options, const SceneData& scene, const SceneCamera
   log_info("{} x {} x {} probes, {} of them inside walls{}; {:.1f} % of normals negative",
            grid.count.x, grid.count.y, grid.count.z, invalid,
            invalid > 0 && baked.filled ? ", filled" : "", 100 * baked.negative);
-  if (std::ranges::all_of(baked.coefficients, [](const glm::vec3& c) { return c == glm::vec3(0); }))
+  if (invalid == std::ranges::ssize(baked.valid)) {
+    log_warning(
+        "{}: all probes are inside walls, as they see backs of surfaces: --bounds and the "
+        "model's winding decide",
+        scene.path);
+  } else if (std::ranges::all_of(baked.coefficients,
+                                 [](const glm::vec3& c) { return c == glm::vec3(0); })) {
     log_warning("{}: no light reaches a probe; all coefficients are 0", scene.path);
+  }
 }
 
 void reject_without_effect(const Options& options) {
@@ -209,7 +260,8 @@ void add_options(CLI::App& command, Options& options) {
   add(command, "--format", "NAME", options.format,
       fmt::format("format of a probe: {}", fmt::join(probe_format_names(), ", ")));
   add(command, "--bounds", "X,Y,Z,X,Y,Z", options.bounds,
-      "positions of the outermost probes [m]: lower and upper corner (default: the scene's box)");
+      "positions of the outermost probes [m]: lower and upper corner (default: just inside the "
+      "scene's box)");
   add_number(command, "--spacing", "M", options.spacing,
              "distance of neighbouring probes [m], rounded so that they fill the bounds (default: "
              "16 probes along the longest edge)",

@@ -36,7 +36,7 @@ nlohmann::json described(const Options& options, const SceneData& scene, const P
                          {"bounces", options.tracing.bounces},
                          {"direct", options.direct},
                          {"probes", {grid.count.x, grid.count.y, grid.count.z}},
-                         {"bounds", {array_of(grid.lower), array_of(grid.upper)}},
+                         {"bounds", {array_of(grid.first()), array_of(grid.last())}},
                          {"spacing", array_of(spacing)},
                          {"invalid", invalid},
                          {"dilated", baked.filled && invalid > 0},
@@ -49,7 +49,8 @@ nlohmann::json described(const Options& options, const SceneData& scene, const P
   }
   if (suffix_of(options) != ".ktx2") return json;
   if (format.size == 6) {
-    json["bevy"] = {{"translation", array_of(middle)}, {"scale", array_of(edges + spacing)}};
+    json["bevy"] = {{"translation", array_of(middle)},
+                    {"scale", array_of(glm::dvec3(grid.count) * spacing)}};
   } else {
     json["three"] = {{"position", array_of(middle)},
                      {"width", edges.x},
@@ -70,7 +71,7 @@ std::string npz_of(const ProbeFormat& format, const BakedProbes& baked) {
   for (const glm::dvec3& p : positions_of(grid)) add(positions, glm::vec3(p));
   for (const glm::vec3& c : baked.coefficients) add(coefficients, c);
   std::vector<float> corners, spacing;
-  add(corners, glm::vec3(grid.lower)), add(corners, glm::vec3(grid.upper));
+  add(corners, glm::vec3(grid.first())), add(corners, glm::vec3(grid.last()));
   add(spacing, glm::vec3(grid.spacing()));
   using Shape = std::vector<std::size_t>;
   return npz_bytes({{"position", npy_bytes(positions, Shape{z, y, x, 3})},

@@ -16,6 +16,7 @@ namespace {
 constexpr double kMaxProbes = 1 << 22;
 constexpr double kMaxBytes = 1 << 30;  // of all coefficients, as 32-bit floats
 constexpr int kDefaultProbes = 16;     // along the longest edge
+constexpr double kInset = 0.125;       // of the default bounds, in spacings: off walls
 
 /// `count` numbers between commas. Throws Error(usage).
 template <typename Number>
@@ -38,17 +39,18 @@ std::vector<Number> numbers_of(const std::string& option, std::string text, std:
 /// Sets the positions of the outermost probes.
 void set_bounds(const Options& options, const SceneData& scene, ProbeGrid& grid) {
   grid.lower = glm::dvec3(scene.lower), grid.upper = glm::dvec3(scene.upper);
-  if (options.bounds.empty()) return;
-  const auto n = numbers_of<double>("--bounds", options.bounds, 6,
-                                    "six numbers between commas, the lower and the upper corner");
-  grid.lower = {n[0], n[1], n[2]}, grid.upper = {n[3], n[4], n[5]};
+  if (!options.bounds.empty()) {
+    const auto n = numbers_of<double>("--bounds", options.bounds, 6,
+                                      "six numbers between commas, the lower and the upper corner");
+    grid.lower = {n[0], n[1], n[2]}, grid.upper = {n[3], n[4], n[5]};
+  }
   for (int axis = 0; axis < 3; ++axis) {
     if (grid.lower[axis] < grid.upper[axis] &&
         std::max(std::abs(grid.lower[axis]), std::abs(grid.upper[axis])) <= bounds::kCoordinate)
       continue;
     throw Error(ExitCode::usage,
-                "--bounds: found {} to {} along {}, allowed: a lower and a larger number, within "
-                "+-{} m",
+                "{}: found {} to {} along {}, allowed: a lower and a larger number, within +-{} m",
+                options.bounds.empty() ? "--bounds, by default the scene's box" : "--bounds",
                 grid.lower[axis], grid.upper[axis], "xyz"[axis], bounds::kCoordinate);
   }
 }
@@ -84,6 +86,11 @@ ProbeGrid grid_of(const Options& options, const SceneData& scene, std::size_t nu
                 count[0], count[1], count[2], bytes / (1 << 20), kMaxProbes, kMaxBytes / (1 << 20));
   for (std::size_t axis = 0; axis < 3; ++axis)
     grid.count[static_cast<int>(axis)] = static_cast<int>(count[axis]);
+  if (options.bounds.empty()) {
+    const glm::dvec3 several(glm::greaterThan(grid.count, glm::ivec3(1))),
+        inset = kInset * several * grid.spacing();
+    grid.lower += inset, grid.upper -= inset;
+  }
   return grid;
 }
 

@@ -41,6 +41,10 @@ std::string description_file(const Options& options);
 /// The grid, within the limits of memory. `numbers`: coefficients of a probe. Throws Error(usage).
 ProbeGrid grid_of(const Options& options, const SceneData& scene, std::size_t numbers);
 
+/// Options of a sweep's frames, without the near field, which only pixels of a camera have. More
+/// and finer cascades, unless they are given, until a cell is not larger than the spacing.
+RenderOptions frame_options(const Options& options, const SceneData& scene, const ProbeGrid& grid);
+
 /// Writes the output and its description, or neither.
 void write_probes(const Options& options, const SceneData& scene, const ProbeFormat& format,
                   const BakedProbes& baked, const GridLight& light);

@@ -32,7 +32,6 @@ struct Options {
   std::vector<CLI::Option*> of_truth = {};  ///< without effect on volumes
 };
 
-constexpr std::size_t kMaxTraced = std::size_t{1} << 20;       // points; 240 bytes each
 constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 22;  // of --basis, all points
 
 std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
@@ -112,9 +111,9 @@ pathtracer::TracedProbes projections(const std::vector<SurfacePoint>& points, co
 
 std::string truth_of(const Options& options, const std::vector<SurfacePoint>& points,
                      const SceneData& scene, const SceneCamera& camera) {
-  if (points.size() > kMaxTraced)
+  if (points.size() > pathtracer::kMaxTracedPoints)
     throw Error(ExitCode::bad_input, "{}: found {} points, allowed with --truth: at most {}",
-                options.points, points.size(), kMaxTraced);
+                options.points, points.size(), pathtracer::kMaxTracedPoints);
   const auto lights = scene.lights_for(camera);
   pathtracer::PointTracer tracer(scene, lights, options.tracing.resolved());
   Progress progress("tracing irradiance", kTraceSteps);

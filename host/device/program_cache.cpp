@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "device/program_cache.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <regex>
@@ -70,12 +69,6 @@ std::optional<ProgramCache::Binary> unpack(std::string_view bytes, const std::st
   return ProgramCache::Binary(binary.begin(), binary.end());
 }
 
-/// Returns true for the names that file_of() and the OutputFiles of killed processes have.
-bool is_own(const std::string& name) {
-  static const std::regex kOwn(R"([0-9a-f]{16}\.program|\.[0-9a-f]{16}\.program\.\d+-\d+\.part)");
-  return std::regex_match(name, kOwn);
-}
-
 }  // namespace
 
 ProgramCache::ProgramCache(fs::path folder, std::uint64_t max_bytes)
@@ -125,7 +118,9 @@ bool ProgramCache::store(const std::string& key, const Binary& binary) const {
     log_warning("compiled programs are not cached: {}", why);
     return false;
   }
-  evict_oldest();
+  // Names of file_of(), and of the OutputFiles of killed processes.
+  static const std::regex kOwn(R"([0-9a-f]{16}\.program|\.[0-9a-f]{16}\.program\.\d+-\d+\.part)");
+  folder_.evict(kOwn, max_bytes_);
   return true;
 }
 
@@ -133,31 +128,6 @@ void ProgramCache::remove(const std::string& key) const {
   // Missing or not removable: the next store() replaces it or reports why not.
   std::error_code ignored;
   fs::remove(file_of(key), ignored);
-}
-
-void ProgramCache::evict_oldest() const {
-  struct File {
-    fs::file_time_type used;
-    std::uint64_t bytes;
-    fs::path path;
-  };
-  std::vector<File> files;
-  std::uint64_t total = 0;
-  // Other processes may evict files meanwhile: missing files are not counted.
-  std::error_code error;
-  for (fs::directory_iterator it(folder(), error), end; !error && it != end; it.increment(error)) {
-    std::error_code gone;
-    File file{it->last_write_time(gone), 0, it->path()};
-    if (!gone) file.bytes = it->file_size(gone);
-    if (gone || !is_own(file.path.filename().string())) continue;
-    total += file.bytes;
-    files.push_back(std::move(file));
-  }
-  std::sort(files.begin(), files.end(),
-            [](const File& a, const File& b) { return a.used < b.used; });
-  for (auto file = files.begin(); file != files.end() && total > max_bytes_; ++file) {
-    if (fs::remove(file->path, error)) total -= file->bytes;
-  }
 }
 
 }  // namespace clpv

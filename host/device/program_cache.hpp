@@ -50,8 +50,6 @@ class ProgramCache {
   static constexpr std::uint64_t kDefaultMaxBytes = 256u << 20;  // a few hundred programs of PoCL
 
  private:
-  void evict_oldest() const;
-
   CacheFolder folder_;
   std::uint64_t max_bytes_;
 };

@@ -21,7 +21,6 @@ constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxTexels = 8192;
 // float's limits; the largest holds every scene (bounds::kCoordinate).
 constexpr double kMinMetres = 1e-6, kMaxMetres = 1e7;
 constexpr int kMinRsm = 2, kMinShadow = 4;  // texels: fewer have no interior, and no filter
-constexpr int kMaxCascades = 8;
 constexpr int kMaxStride = 16;
 
 struct Range {

@@ -22,6 +22,8 @@ namespace clpv {
 inline constexpr int kMaxPixels = 16384;     ///< along a side of an image
 inline constexpr int kMaxTableSize = 65536;  ///< minimum of CL_DEVICE_IMAGE_MAX_BUFFER_SIZE
 
+inline constexpr int kMaxCascades = 8;
+
 /// Options of a frame. The defaults are the preset `best`: closest to path tracing at about the
 /// cost of the published scheme (docs/method.md).
 struct RenderOptions {

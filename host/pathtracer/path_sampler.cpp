@@ -171,9 +171,10 @@ Arrival PathSampler::sample_emitter(const Vertex& at, const glm::dvec2& random) 
   const glm::vec3 origin = origin_of(at);
   ++ray_count_;
   if (rays_.occluded(origin, rays_.offset_origin(end) - origin, 1)) return {};
-  const double share = cosine * std::abs(light_cosine) / square;
-  return {direction, transmitted(origin, direction, std::sqrt(square)) * radiance * share /
-                         (light.density + share / std::numbers::pi)};
+  // Both terms times d^2: finite at any distance.
+  const double cosines = cosine * std::abs(light_cosine);
+  return {direction, transmitted(origin, direction, std::sqrt(square)) * radiance * cosines /
+                         (light.density * square + cosines / std::numbers::pi)};
 }
 
 /// Irradiance at `at` from the emissive surface `next` that a sampled direction hits: pi L p_cosine
@@ -184,10 +185,11 @@ glm::dvec3 PathSampler::emission_of(const Vertex& at, const glm::dvec3& directio
   if (radiance == glm::dvec3(0)) return radiance;
   const double distance = double{next.distance},
                light_cosine = std::abs(glm::dot(glm::dvec3(next.geometric), direction));
-  const double cosine_density =
-      factor(at, direction) * light_cosine / (distance * distance) / std::numbers::pi;
+  // p_cosine times d^2: finite at any distance.
+  const double cosine_density = factor(at, direction) * light_cosine / std::numbers::pi;
+  if (cosine_density == 0) return glm::dvec3(0);
   return radiance * std::numbers::pi * cosine_density /
-         (emitters_.density(next.point.triangle) + cosine_density);
+         (emitters_.density(next.point.triangle) * distance * distance + cosine_density);
 }
 
 /// Irradiance at `at` from a sampled direction of the sky: L cos / (p_light + p_cosine), with

@@ -28,6 +28,7 @@ namespace clpv::pathtracer {
 
 struct PathTracerOptions {
   static constexpr int kAllBounces = 0;
+  static constexpr int kMaxThreads = 1024;
   static constexpr std::uint32_t kMaxSamples = 1u << 24;
 
   int bounces = 1;  ///< maximum number of surfaces before the visible one, emissive ones included,

@@ -13,6 +13,7 @@
 #include "pathtracer/centred_scene.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/sample_counts.hpp"
+#include "scene/emission.hpp"
 #include "support/interrupt.hpp"
 
 namespace clpv::pathtracer {
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::uint32_t kStreams = 8;
 constexpr double kSurfaceDistance = 1e-5;  // of the scene's largest edge
+constexpr double kTangential = 1e-3;       // cosine of a surface's normal and the given one
 constexpr double kProbeWeight = 4;         // 1 / (Vertex::Kind::probe's factor)
 constexpr int kSurroundingRays = 128;
 constexpr std::size_t kBatch = 16;  // points that a thread takes at a time
@@ -74,6 +76,19 @@ struct PointTracer::Impl {
 
   glm::vec3 place(const glm::dvec3& position) const { return glm::vec3(position + by); }
 
+  /// The place of a probe: not on a surface, but at its front.
+  glm::vec3 probe_place(const glm::dvec3& position) const {
+    const glm::dvec3 at = position + by;
+    return glm::vec3(at + rays.way_off_surfaces(at, glm::dvec3(0), near_surface));
+  }
+
+  /// Whether a ray hits the back of a wall: double-sided surfaces are no walls.
+  bool back(std::uint32_t triangle, const glm::vec3& direction) const {
+    const SceneData& scene = centred.scene;
+    return !double_sided(scene.materials[scene.triangles[triangle].material]) &&
+           glm::dot(emitters.front_normal(triangle), glm::dvec3(direction)) > 0;
+  }
+
   /// Calls action(sampler, i) for i below `count`, on all threads.
   template <typename Action>
   void parallel_for(std::size_t count, const Action& action) {
@@ -97,17 +112,23 @@ struct PointTracer::Impl {
 
   PathSampler::Vertex vertex_of(const SurfacePoint& point) const {
     PathSampler::Vertex vertex;
-    const glm::vec3 at = place(point.position), normal(point.normal);
+    const glm::dvec3 place = point.position + by,
+                     way = rays.way_off_surfaces(place, point.normal, near_surface);
+    const glm::vec3 at(place), normal(point.normal);
     const auto lift = static_cast<float>(near_surface);
     if (const auto hit = rays.intersect(at + lift * normal, -normal, 0, 2 * lift, Faces::all)) {
-      vertex.hit = *hit;
-      if (glm::dot(hit->geometric, normal) > 0) {
+      const glm::dvec3 geometric(hit->geometric);
+      if (glm::dot(geometric, point.normal) > kTangential) {
+        vertex.hit = *hit;
         vertex.hit.normal = normal;
+        // Off other surfaces that meet here.
+        vertex.hit.position =
+            glm::vec3(glm::dvec3(hit->position) + way - glm::dot(way, geometric) * geometric);
         return vertex;
       }
     }
     vertex.kind = PathSampler::Vertex::Kind::element;
-    vertex.hit.position = at, vertex.hit.geometric = vertex.hit.normal = normal;
+    vertex.hit.position = glm::vec3(place + way), vertex.hit.geometric = vertex.hit.normal = normal;
     return vertex;
   }
 
@@ -133,7 +154,7 @@ struct PointTracer::Impl {
     for (const glm::dvec3& position : positions) {
       PathSampler::Vertex& vertex = s.vertices.emplace_back();
       vertex.kind = PathSampler::Vertex::Kind::probe;
-      vertex.hit.position = place(position);
+      vertex.hit.position = probe_place(position);
     }
     return s;
   }
@@ -189,6 +210,12 @@ struct PointTracer::Impl {
       const glm::dvec3 e = error(s, vertex, i), m = mean(s, vertex, i);
       errors += glm::dot(e, e), values += glm::dot(m, m);
     }
+    if (!std::isfinite(values))
+      throw Error(
+          ExitCode::run_time,
+          "path-traced light: found {} among {} numbers, allowed: finite ones, whose squares "
+          "are too",
+          values, numbers);
     const auto count = static_cast<double>(std::max<std::size_t>(3 * numbers, 1));
     s.level = level > 0 ? level : std::sqrt(values / count);
     s.noise = s.level > 0 ? std::sqrt(errors / count) / s.level : 0;
@@ -276,7 +303,7 @@ std::vector<glm::dvec3> PointTracer::direct(std::span<const glm::dvec3> position
   std::vector<glm::dvec3> all(positions.size() * n, glm::dvec3(0));
   impl_->parallel_for(positions.size(), [&](PathSampler& sampler, std::size_t i) {
     std::vector<double> g(n);
-    for (const reference::Incident& in : sampler.lights_at(impl_->place(positions[i]))) {
+    for (const reference::Incident& in : sampler.lights_at(impl_->probe_place(positions[i]))) {
       moments.weights(in.towards, g);
       for (std::size_t m = 0; m < n; ++m) all[i * n + m] += g[m] * in.irradiance;
     }
@@ -288,16 +315,16 @@ std::vector<PointTracer::Surroundings> PointTracer::surroundings(
     std::span<const glm::dvec3> positions) {
   std::vector<Surroundings> all(positions.size());
   impl_->parallel_for(positions.size(), [&](PathSampler&, std::size_t i) {
+    const glm::vec3 place = impl_->probe_place(positions[i]);
     for (int ray = 0; ray < kSurroundingRays; ++ray) {
       const glm::vec3 direction(phase_direction(
           glm::dvec3(0, 0, 1), 0, sobol_point(static_cast<std::uint32_t>(ray), kPointSeed)));
-      const auto hit = impl_->rays.intersect(impl_->place(positions[i]), direction, 0,
+      const auto hit = impl_->rays.intersect(place, direction, 0,
                                              std::numeric_limits<float>::infinity(), Faces::all);
       const double share = 1.0 / kSurroundingRays;
       if (!hit) {
         all[i].open += share;
-      } else if (glm::dot(impl_->emitters.front_normal(hit->point.triangle),
-                          glm::dvec3(direction)) > 0) {
+      } else if (impl_->back(hit->point.triangle, direction)) {
         all[i].backs += share;
       }
     }

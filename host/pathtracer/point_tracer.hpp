@@ -15,6 +15,8 @@
 
 namespace clpv::pathtracer {
 
+inline constexpr std::size_t kMaxTracedPoints = std::size_t{1} << 20;  ///< 240 bytes each
+
 /// Irradiance of a small surface [W/m^2].
 struct PointLight {
   glm::dvec3 direct{0};    ///< from the scene's lights, exact
@@ -53,11 +55,12 @@ class PointTracer {
               const PathTracerOptions& options);
   ~PointTracer();
 
-  /// Points within surface_distance() of a surface lie on it, as pixels do; others in the air.
+  /// Points within surface_distance() of a surface lie on it, as pixels do, on the side to which
+  /// their normal points, or on its front if the normal points along it; others in the air.
   TracedPoints irradiance(std::span<const SurfacePoint> points, const TraceProgress& progress = {});
 
-  /// `first`: number of the first position among all of them. `level`: see TracedProbes; 0: these
-  /// positions' own.
+  /// Positions on a surface lie on its front, here and below. `first`: number of the first position
+  /// among all of them. `level`: see TracedProbes; 0: these positions' own.
   TracedProbes probes(std::span<const glm::dvec3> positions, const Moments& moments,
                       std::uint64_t first = 0, double level = 0,
                       const TraceProgress& progress = {});

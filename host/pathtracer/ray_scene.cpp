@@ -233,6 +233,67 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction, flo
   return ray.tfar < 0;
 }
 
+namespace {
+
+/// Triangles whose boxes a sphere meets.
+struct NearTriangles {
+  const RayScene::Impl* impl;
+  std::vector<std::uint32_t> found;
+};
+
+bool add_near(RTCPointQueryFunctionArguments* args) {
+  auto& near = *static_cast<NearTriangles*>(args->userPtr);
+  near.found.push_back(near.impl->triangles[args->geomID][args->primID]);
+  return false;  // the radius stays
+}
+
+/// Unit normal of a triangle's front, if the point lies less than `reach` from its plane and not
+/// farther than that outside an edge; `height` receives the distance, negative behind.
+std::optional<glm::dvec3> front_below(const std::array<glm::dvec3, 3>& corners,
+                                      const glm::dvec3& point, double reach, double& height) {
+  const glm::dvec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double area = glm::length(across);
+  if (!(area > 0)) return std::nullopt;
+  const glm::dvec3 front = across / area;
+  height = glm::dot(point - corners[0], front);
+  if (!(std::abs(height) < reach)) return std::nullopt;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 edge = corners[(i + 1) % 3] - corners[i];
+    if (glm::dot(glm::cross(edge, point - corners[i]), front) < -reach * glm::length(edge))
+      return std::nullopt;
+  }
+  return front;
+}
+
+}  // namespace
+
+glm::dvec3 RayScene::way_off_surfaces(const glm::dvec3& point, const glm::dvec3& normal,
+                                      double distance) const {
+  constexpr double kTangential = -1e-3;
+  constexpr int kPasses = 4;  // where walls meet at sharp angles
+  NearTriangles near{impl_.get(), {}};
+  RTCPointQuery query{};
+  query.x = static_cast<float>(point.x), query.y = static_cast<float>(point.y);
+  query.z = static_cast<float>(point.z), query.radius = static_cast<float>(distance);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(impl_->rtc.get(), &query, &context, add_near, &near);
+  std::ranges::sort(near.found);
+  glm::dvec3 way(0);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    for (const std::uint32_t triangle : near.found) {
+      double height = 0;
+      const auto front = front_below(corners_of(*impl_->scene, impl_->scene->triangles[triangle]),
+                                     point, distance / 2, height);
+      if (!front) continue;
+      const double side = glm::dot(*front, normal) < kTangential ? -1 : 1;
+      const double missing = distance - side * (height + glm::dot(way, *front));
+      if (missing > 0) way += missing * side * *front;
+    }
+  }
+  return way;
+}
+
 /// Interpolation, and a later ray's test of the same triangle, err by a few roundings of the
 /// position and of the corners as seen from it. The offset along the normal n is |n| . (bound of
 /// each axis), as in pbrt-v4, 6.8.6 (Pharr, Jakob, Humphreys 2023). That is 0 on a plane such as y

@@ -57,6 +57,11 @@ class RayScene {
   /// and point.
   glm::vec3 offset_origin(const Hit& hit) const;
 
+  /// Translation of a point on surfaces, those nearer than half of `distance`, to `distance` from
+  /// them: to their fronts, or to the side to which `normal` points. 0 for other points.
+  glm::dvec3 way_off_surfaces(const glm::dvec3& point, const glm::dvec3& normal,
+                              double distance) const;
+
   struct Impl;  ///< Embree's objects; public for the filter functions in the .cpp
 
  private:

@@ -32,12 +32,12 @@ inline void check(const PathTracerOptions& options) {
   if (options.bounces < 0)
     throw Error(ExitCode::usage, "bounces: found {}; allowed: 1 or more, or 0 for all",
                 options.bounces);
-  if (options.threads < 0 || options.threads > PathTracerOptions::kMaxThreads)
-    throw Error(ExitCode::usage, "threads: found {}; allowed: 0 to {}", options.threads,
-                PathTracerOptions::kMaxThreads);
   if (options.samples > PathTracerOptions::kMaxSamples)
     throw Error(ExitCode::usage, "samples: found {}; allowed: 0 to {}", options.samples,
                 PathTracerOptions::kMaxSamples);
+  if (options.threads < 0 || options.threads > PathTracerOptions::kMaxThreads)
+    throw Error(ExitCode::usage, "threads: found {}; allowed: 1 to {}, or 0 for one per processor",
+                options.threads, PathTracerOptions::kMaxThreads);
   if (!(options.noise > 0))
     throw Error(ExitCode::usage, "noise: found {}; allowed: above 0", options.noise);
 }

@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
+#include <vector>
 
 #include "support/error.hpp"
 #include "support/output_file.hpp"
@@ -88,6 +90,33 @@ std::string CacheFolder::write(const std::string& name, std::span<const std::byt
     file.write(bytes);
     file.commit();
   });
+}
+
+void CacheFolder::evict(const std::regex& own, std::uint64_t bytes,
+                        fs::file_time_type::duration age) const {
+  struct File {
+    fs::file_time_type used;
+    std::uint64_t bytes;
+    fs::path path;
+  };
+  std::vector<File> files;
+  std::uint64_t total = 0;
+  // Other processes may evict files meanwhile: missing files are not counted.
+  std::error_code error;
+  for (fs::directory_iterator it(path_, error), end; !error && it != end; it.increment(error)) {
+    std::error_code gone;
+    File file{it->last_write_time(gone), 0, it->path()};
+    if (!gone) file.bytes = it->file_size(gone);
+    if (gone || !std::regex_match(file.path.filename().string(), own)) continue;
+    total += file.bytes;
+    files.push_back(std::move(file));
+  }
+  std::ranges::sort(files, {}, &File::used);
+  const auto now = fs::file_time_type::clock::now();
+  for (const File& file : files) {
+    if (total <= bytes && now - file.used <= age) break;
+    if (fs::remove(file.path, error)) total -= file.bytes;
+  }
 }
 
 std::string CacheFolder::problem() const {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <regex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +37,12 @@ class CacheFolder {
   std::string write(const std::string& name, std::string_view text) const {
     return write(name, std::as_bytes(std::span(text)));
   }
+
+  /// Removes entries that were not written or used for longer than `age`, and the oldest of the
+  /// others beyond `bytes` in total. Only files whose whole names match `own`.
+  void evict(const std::regex& own, std::uint64_t bytes,
+             std::filesystem::file_time_type::duration age =
+                 std::filesystem::file_time_type::duration::max()) const;
 
   /// Returns the reason why write() would fail, else "". Changes nothing.
   std::string problem() const;

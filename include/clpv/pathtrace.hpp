@@ -48,10 +48,10 @@ struct PointLights {
 };
 
 /// Traces the irradiance at positions [m] with a normal (of any length) each, or one for all, on a
-/// surface of the scene or in the air, lit by all lights; `indirect` is what Renderer::irradiance() estimates.
-/// Uses neither width nor height of `options`. Throws Error: usage (options, different numbers of
-/// positions and normals, vectors that are not finite, a normal of length 0), bad_input (a scene
-/// without surface). Thread-safe.
+/// surface of the scene or in the air, lit by all lights; `indirect` is what Renderer::irradiance()
+/// estimates. Uses neither width nor height of `options`. Throws Error: usage (options, different
+/// numbers of positions and normals, more than 2^20 points, vectors that are not finite, positions
+/// beyond +-1e7 m, a normal of length 0), bad_input (a scene without surface). Thread-safe.
 PointLights pathtrace_points(const Scene& scene, std::span<const std::array<float, 3>> positions,
                              std::span<const std::array<float, 3>> normals,
                              const TraceOptions& options = {});
