@@ -36,7 +36,6 @@ struct PathTracerOptions {
   std::uint32_t samples = 0;  ///< paths per pixel; 0: as many as `noise` needs
   double noise = 0.02;        ///< with samples 0: stops at this TracedImage::noise
   std::uint64_t seed = 1;
-  static constexpr int kMaxThreads = 1024;
   int threads = 0;  ///< per rank, up to kMaxThreads; 0: one per available processor
 };
 
