@@ -99,6 +99,9 @@ TEST(ApiCalls, CellsAreThoseOfTheLastImage) {
   const GBuffer surfaces{.width = 2, .height = 2, .normals = vectors, .positions = vectors};
   renderer.light(surfaces, kElsewhere);
   EXPECT_EQ(renderer.show(View::cells).pixels, cells.pixels);
+  const std::array<double, 3> light = renderer.irradiance(kEye, {0, -1, 0});
+  renderer.show(View::cells);
+  EXPECT_EQ(renderer.irradiance(kEye, {0, -1, 0}), light) << "still of the last light()";
   renderer.update(kElsewhere);
   scene.set_lights(scene.lights());
   EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.show(View::cells); }),

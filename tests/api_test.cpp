@@ -171,11 +171,11 @@ TEST(Api, LightsKeepTheirNumbers) {
   ASSERT_EQ(lights.size(), 2u);
   EXPECT_EQ(lights[0].kind, LightKind::spot);
   EXPECT_EQ(lights[0].position, spot.position);
-  EXPECT_EQ(lights[0].direction, (Vec3{0, 0, -1})) << "unit";
+  EXPECT_EQ(lights[0].direction, spot.direction) << "as it was set";
   EXPECT_EQ(lights[0].intensity, spot.intensity);
   EXPECT_EQ(lights[0].range, 5);
-  EXPECT_NEAR(lights[0].inner_cone_degrees, 20, 0.01);
-  EXPECT_NEAR(lights[0].outer_cone_degrees, 60, 0.01);
+  EXPECT_EQ(lights[0].inner_cone_degrees, 20);
+  EXPECT_EQ(lights[0].outer_cone_degrees, 60);
   EXPECT_EQ(lights[1].name, "b");
   const auto rejected = [&](const std::string& member, Light light) {
     EXPECT_THAT(test::error_of(ExitCode::usage,

@@ -169,8 +169,7 @@ Image Renderer::show(View view) {
   const std::lock_guard lock(state().mutex);
   const std::shared_lock scene_stays(state().file.contents().mutex);
   state().require_image("show");
-  if (view == View::cells) state().light_shown();
-  return state().image(view);
+  return view == View::cells ? state().cells() : state().image(view);
 }
 
 std::vector<std::array<float, 3>> Renderer::light(const GBuffer& surfaces,

@@ -44,7 +44,9 @@ struct Renderer::State {
     unsigned changes;  ///< Scene::Contents::changes
   };
   std::optional<Shown> shown = {};
-  bool lit_for_shown = false;  ///< the cascades have its light
+  std::optional<Shown> lit_of = {};  ///< what the last light is of
+  bool lit_for_shown = false;        ///< the cascades have its light
+  double posed_at = 0;  ///< time of the last pose()
   double frame_ms = 0;
 
   /// `where`: a Device, or a GivenQueue.
@@ -74,16 +76,23 @@ struct Renderer::State {
   void require_image(const char* what) const { require(!metadata.empty(), what); }
   void require_light(const char* what) const { require(lit, what); }
 
-  /// Gives the cascades the light of the last images again, after other calls gave them another.
-  void light_shown() {
-    require_image("show");
-    if (lit && lit_for_shown) return;
+  /// Cells of the last images, whose light the cascades get for it where other calls gave them
+  /// another.
+  Image cells() {
+    if (lit && lit_for_shown) return image(View::cells);
     if (shown->changes != file.contents().changes)
       throw Error(ExitCode::usage,
                   "show: found view 'cells' of a scene that changed since its render, allowed: the "
                   "other views, or after a render");
+    const std::optional<Shown> before = lit ? lit_of : std::nullopt;
     update(shown->camera, shown->seconds);
-    lit_for_shown = true;
+    Image made = image(View::cells);
+    if (before) {
+      update(before->camera, before->seconds);
+    } else {
+      lit_for_shown = true;
+    }
+    return made;
   }
 
   /// Brings the scene and the frame to the time `seconds`, and returns the camera. Refuses both
@@ -95,6 +104,7 @@ struct Renderer::State {
   }
   void pose(double seconds) {
     const bool moved = posed.pose(seconds);
+    posed_at = seconds;
     lit = lit_for_shown = false;
     if (!frame || rebuilds != file.contents().rebuilds) {
       metadata.clear();
@@ -114,7 +124,7 @@ struct Renderer::State {
   /// Lights pixels, as Frame::light().
   const Buffer& light(const SceneCamera& camera, const GivenPixels& pixels) {
     const Buffer& irradiance = frame->light(camera, pixels);
-    lit = true;
+    lit = true, lit_of = {camera, posed_at, file.contents().changes};
     return irradiance;
   }
 
@@ -128,7 +138,7 @@ struct Renderer::State {
     pose(seconds);
     frame->draw_ahead(false);
     frame->update(camera);
-    lit = true;
+    lit = true, lit_of = {camera, seconds, file.contents().changes};
   }
 
   /// Renders a frame without an image. Sets the metadata of its images.

@@ -115,7 +115,7 @@ class Renderer {
                const ImageSize& size = {});
 
   /// Another view of the last frame, without rendering it again. View::cells after light() or
-  /// update() lights its cascades again. Throws Error(usage) before the first frame, and for cells
+  /// update() lights its cascades again, and then those of that call. Throws Error(usage) before the first frame, and for cells
   /// then if the scene changed.
   Image show(View view);
 

@@ -461,8 +461,8 @@ class Scene:
     @medium.setter
     def medium(self, value: Medium | None) -> None: ...
     def save(self, path: _Path) -> None:
-        """save(path): writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning for a sky, a medium and
-        a camera's only light, which glTF has not.
+        """save(path): writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning for a sky, a medium, a
+        camera's only light, number and size of cascades, and an exposure, which glTF has not, and for a scene without lights.
         """
     @property
     def moves(self) -> bool:

@@ -18,6 +18,15 @@ std::string found(py::handle given) {
   return "an object of " + std::string(py::str(py::type::of(given)));
 }
 
+bool is_real(py::handle given) {
+  if (PyComplex_Check(given.ptr()) || py::hasattr(given, "mask")) return false;
+  const py::object type = py::getattr(given, "dtype", py::none());
+  if (py::isinstance<py::dtype>(type) && type.cast<py::dtype>().kind() == 'c') return false;
+  PyFloat_AsDouble(given.ptr());
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return true;
+}
+
 void check_call(const std::string& function, const std::vector<Parameter>& parameters, bool open,
                 const py::args& args, const py::kwargs& kwargs) {
   const auto positional =
@@ -63,7 +72,13 @@ void check_arguments(const py::object& scope, const char* name, Self self,
   const auto call = [=](const py::args& args, const py::kwargs& kwargs) {
     const CallInProgress in_progress;
     check_call(label, parameters.first, parameters.second, args, kwargs);
-    return py::object(function(*args, **kwargs));
+    try {
+      return py::object(function(*args, **kwargs));
+    } catch (const py::error_already_set& error) {
+      const std::string message = usage_message(error);
+      if (message.empty() || message.starts_with(label + ":")) throw;
+      throw Error(ExitCode::usage, "{}: {}", label, message);
+    }
   };
   py::options options;
   options.disable_function_signatures();  // `doc` has it

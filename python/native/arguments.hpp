@@ -34,6 +34,9 @@ class CallInProgress {
   CallInProgress& operator=(const CallInProgress&) = delete;
 };
 
+/// The message of a UsageError; empty for other exceptions.
+std::string usage_message(const py::error_already_set& error);
+
 struct Parameter {
   const char* name;
   bool required, keyword;           ///< keyword: by name only
@@ -47,6 +50,13 @@ void check_call(const std::string& function, const std::vector<Parameter>& param
 
 /// A value for a message: short ones as Python writes them, others by their type.
 std::string found(py::handle given);
+
+/// False for complex numbers and NumPy's masked ones, which become floats with a warning. Raises
+/// what the object's __float__ raises.
+bool is_real(py::handle given);
+
+template <typename T>
+bool takes(py::handle given);
 
 /// What a parameter of a type allows, in words.
 template <typename T>
@@ -87,16 +97,57 @@ struct Kind<std::variant<T, More...>> {
   static std::string text() { return (Kind<T>::text() + ... + (" or " + Kind<More>::text())); }
 };
 
+/// False for what pybind11 would convert and the kind's words exclude: bool as an integer, any
+/// object as bool, bytes as text, complex and masked numbers.
+template <typename T>
+struct Strictly {
+  static bool is(py::handle given) {
+    if constexpr (std::is_same_v<T, bool>)
+      return py::detail::make_caster<bool>().load(given, false);
+    else if constexpr (std::is_integral_v<T>)
+      return !py::isinstance<py::bool_>(given);
+    else if constexpr (std::is_floating_point_v<T>)
+      return is_real(given);
+    else if constexpr (std::is_same_v<T, std::string>)
+      return py::isinstance<py::str>(given);
+    else
+      return true;
+  }
+};
+template <typename T>
+struct Strictly<std::optional<T>> {
+  static bool is(py::handle given) { return given.is_none() || takes<T>(given); }
+};
+template <typename... T>
+struct Strictly<std::variant<T...>> {
+  static bool is(py::handle given) { return (takes<T>(given) || ...); }
+};
+template <typename T>
+struct StrictItems {
+  static bool is(py::handle given) {
+    if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given)) return false;
+    for (const py::handle item : py::reinterpret_borrow<py::sequence>(given))
+      if (!takes<T>(item)) return false;
+    return true;
+  }
+};
+template <typename T>
+struct Strictly<std::vector<T>> : StrictItems<T> {};
+template <typename T, std::size_t n>
+struct Strictly<std::array<T, n>> : StrictItems<T> {};
+
 template <typename T>
 bool takes(py::handle given) {
   try {
+    if (!Strictly<std::remove_cvref_t<T>>::is(given)) return false;
     py::detail::make_caster<T> caster;
     if (!caster.load(given, true)) return false;
     static_cast<void>(py::detail::cast_op<T>(caster));  // rejects None for a reference
     return true;
   } catch (const py::reference_cast_error&) {
     return false;
-  } catch (const py::error_already_set&) {  // of the object's own methods
+  } catch (const py::error_already_set& error) {  // of the object's own methods
+    if (!error.matches(PyExc_Exception)) throw;   // such as KeyboardInterrupt
     return false;
   }
 }

@@ -7,6 +7,7 @@
 #include "basis/rotated_lobe.hpp"
 #include "basis/transport.hpp"
 #include "module.hpp"
+#include "options/render_options.hpp"
 #include "support/error.hpp"
 
 namespace clpv::python {
@@ -84,6 +85,11 @@ py::array_t<double> project(const Basis& basis, const py::object& given) {
                 "values: found shape {}, allowed: ({},), one for each of directions()",
                 shape_text(values), nodes.size());
   }
+  const auto wrong = std::find_if_not(values.data(), values.data() + values.size(),
+                                      [](double value) { return std::isfinite(value); });
+  if (wrong != values.data() + values.size())
+    throw Error(ExitCode::usage, "values: found {} at {}, allowed: finite numbers", *wrong,
+                wrong - values.data());
   std::vector<double> moments(static_cast<std::size_t>(basis.size()));
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const std::vector<double> b = basis.evaluate(nodes[k].w);
@@ -95,6 +101,9 @@ py::array_t<double> project(const Basis& basis, const py::object& given) {
 
 /// None: exact lobes; else those of the paper, by a table of that size.
 LobeOptions lobe_options(const std::optional<int>& table_size) {
+  if (table_size && (*table_size < 0 || *table_size > kMaxTableSize))
+    throw Error(ExitCode::usage, "table_size: found {}, allowed: 0..{}", *table_size,
+                kMaxTableSize);
   return table_size ? LobeOptions{.kind = LobeKind::rotate, .table_size = *table_size}
                     : LobeOptions{};
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "clpv/compare.hpp"
+#include "image/image.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "module.hpp"
@@ -44,6 +45,7 @@ Image image_from(const char* name, const py::object& given,
     throw Error(ExitCode::usage, "encoding: found '{}', allowed: linear|srgb", encoding);
   image.encoding = encoding == "srgb" ? Encoding::srgb : Encoding::linear;
   image.pixels.assign(array.data(), array.data() + array.size());
+  check_image(name, image);
   return image;
 }
 

@@ -47,8 +47,7 @@ Rows<float, n> floats(const char* function, const char* name, const py::object& 
                       std::initializer_list<py::ssize_t> columns = {n},
                       std::string_view kinds = "fiu") {
   if (given.is_none()) return {};
-  const FloatArray array = FloatArray::ensure(checked(function, name, given, kinds, columns));
-  if (!array) throw py::error_already_set();
+  const auto array = converted<FloatArray>(checked(function, name, given, kinds, columns));
   Rows<float, n> rows(static_cast<std::size_t>(array.shape(0)));
   const auto width = static_cast<std::size_t>(array.shape(1));
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -61,8 +60,7 @@ Rows<float, n> floats(const char* function, const char* name, const py::object& 
 Rows<std::uint32_t, 3> indices(const char* function, const py::object& given) {
   const py::array any = checked(function, "triangles", given, "iu", {3});
   const auto array =
-      py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(any);
-  if (!array) throw py::error_already_set();
+      converted<py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>>(any);
   Rows<std::uint32_t, 3> rows(static_cast<std::size_t>(array.shape(0)));
   for (std::size_t i = 0; i < 3 * rows.size(); ++i) {
     const std::int64_t index = array.data()[i];  // a large unsigned one is negative here
@@ -79,7 +77,6 @@ Rows<std::uint32_t, 3> indices(const char* function, const py::object& given) {
 }
 
 Transform transform_of(const char* function, const py::object& given) {
-  if (given.is_none()) return kIdentity;
   const DoubleArray array = real_array<DoubleArray>(given, "transform");
   if (array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4)
     reject(function, "transform", "shape " + shape_text(array), "(4, 4)");
@@ -105,12 +102,12 @@ std::optional<Material::Texture> texture_of(const py::object& given) {
   }
   if (bytes) {
     const auto values =
-        py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
+        converted<py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>>(array);
     return Material::Texture{static_cast<std::uint32_t>(array.shape(1)),
                              static_cast<std::uint32_t>(array.shape(0)),
                              {values.data(), values.data() + values.size()}};
   }
-  const FloatArray values = FloatArray::ensure(array);
+  const auto values = converted<FloatArray>(array);
   Image image;
   image.width = static_cast<int>(array.shape(1));
   image.height = static_cast<int>(array.shape(0));
@@ -167,7 +164,7 @@ int add_mesh(Scene& scene, const py::object& positions, const py::object& triang
              bool moves) {
   const auto given =
       given_mesh(positions, triangles, normals, uvs, colours, smooth, material, moves);
-  const Transform at = transform_of("add_mesh", transform);
+  const Transform at = transform.is_none() ? kIdentity : transform_of("add_mesh", transform);
   return without_gil([&] { return scene.add_mesh(given->mesh, at); });
 }
 

@@ -70,6 +70,18 @@ Waiting& waiting() {
   return one;
 }
 
+/// A message with the names that Python has for members of the C++ interface.
+std::string in_python(std::string message) {
+  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+      {"vertical_fov_degrees", "fov"},
+      {"inner_cone_degrees", "inner_cone"},
+      {"outer_cone_degrees", "outer_cone"}};
+  for (const auto& [there, here] : kNames)
+    for (std::size_t at = 0; (at = message.find(there, at)) != std::string::npos;)
+      message.replace(at, there.size(), here);
+  return message;
+}
+
 void receive_messages() {
   const py::module_ logging = py::module_::import("logging");
   // Without it, Python prints warnings that nobody handles.
@@ -92,14 +104,20 @@ void end_running_calls() {
   }
 }
 
-/// Makes copy and pickle name the class; Python's own pickling of some protocols makes objects
-/// without a value.
-void reject_pickling(py::module_& module) {
+/// Makes copy, pickle and calls of classes without a constructor name the class; Python's own
+/// pickling of some protocols makes objects without a value.
+void reject_making(py::module_& module) {
   for (const auto& [key, value] : py::dict(module.attr("__dict__"))) {
-    if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr()) ||
-        value.attr("__dict__").contains("__reduce_ex__"))
-      continue;
+    if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
     const auto name = "clpv." + key.cast<std::string>();
+    if (Py_TYPE(value.attr("__init__").ptr()) == &PyWrapperDescr_Type)  // pybind11's own
+      value.attr("__init__") = py::cpp_function(
+          [name](const py::object&, const py::args&, const py::kwargs&) {
+            throw Error(ExitCode::usage, "{}: found a call, allowed: objects that clpv returns",
+                        name);
+          },
+          py::name("__init__"), py::is_method(value));
+    if (value.attr("__dict__").contains("__reduce_ex__")) continue;
     value.attr("__reduce_ex__") = py::cpp_function(
         [name](const py::object&, int) -> py::object {
           throw Error(ExitCode::usage,
@@ -110,6 +128,10 @@ void reject_pickling(py::module_& module) {
 }
 
 }  // namespace
+
+std::string usage_message(const py::error_already_set& error) {
+  return error.matches(errors.usage) ? std::string(py::str(error.value())) : std::string();
+}
 
 CallInProgress::CallInProgress() {
   if (exiting && std::this_thread::get_id() != exiting_thread) {
@@ -193,7 +215,7 @@ void add_errors(py::module_& module) {
     } catch (const Interrupted& interrupted) {
       PyErr_SetString(exiting ? PyExc_SystemExit : PyExc_KeyboardInterrupt, interrupted.what());
     } catch (const Error& error) {
-      PyErr_SetString(errors.of(error.code()), error.what());
+      PyErr_SetString(errors.of(error.code()), in_python(error.what()).c_str());
     }
   });
 }
@@ -238,12 +260,12 @@ PYBIND11_MODULE(_native, module) {
   add_renderer(module);
   add_opencl(module);
   add_basis(module);
-  reject_pickling(module);
+  reject_making(module);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_running_calls));
-  module.def("options", &all_options,
-             "options() -> list of dict: name, help, allowed values and default of each option of "
-             "Renderer.");
-  module.def("devices", &devices,
-             "devices() -> list of dict: all OpenCL devices; clpv can use those whose list "
-             "`missing` is empty.");
+  define(module, "options", &all_options,
+         "options() -> list of dict: name, help, allowed values and default of each option of "
+         "Renderer.");
+  define(module, "devices", &devices,
+         "devices() -> list of dict: all OpenCL devices; clpv can use those whose list "
+         "`missing` is empty.");
 }

@@ -40,20 +40,27 @@ inline std::string shape_text(const py::array& array) {
   return py::str(array.attr("shape"));
 }
 
+/// An array of another type of numbers. Raises what NumPy raises: a warning that is an error, or
+/// MemoryError.
+template <typename Array>
+Array converted(const py::array& array) {
+  return Array(static_cast<const py::object&>(array));
+}
+
 /// Converts anything that NumPy accepts as an array of real numbers; copies only if it must. Throws
 /// Error(usage) otherwise.
 template <typename Array>
 Array real_array(const py::object& given, const char* what) {
-  const py::array any = py::array::ensure(given);
-  if (!any) PyErr_Clear();
-  if (!any || std::string_view("fiub").find(any.dtype().kind()) == std::string_view::npos) {
+  const bool masked = py::hasattr(given, "mask");  // whose hidden numbers would count
+  const py::array any = masked ? py::array() : py::array::ensure(given);
+  if (masked || !any || std::string_view("fiub").find(any.dtype().kind()) == std::string_view::npos) {
     throw Error(
         ExitCode::usage, "{}: found {}, allowed: an array of real numbers", what,
-        any && any.ndim() > 0 ? "an array of " + std::string(py::str(any.dtype())) : found(given));
+        masked                  ? "a masked array"
+        : any && any.ndim() > 0 ? "an array of " + std::string(py::str(any.dtype()))
+                                : found(given));
   }
-  Array converted = Array::ensure(any);
-  if (!converted) throw std::bad_alloc();  // for the copy
-  return converted;
+  return converted<Array>(any);
 }
 
 /// Like real_array(), for vectors of three: shape (..., 3).

@@ -28,9 +28,14 @@ struct ReleaseUnlessForked {
   }
 };
 
-std::string option_text(const py::handle& value) {
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "on" : "off";
-  return py::str(value);
+std::string option_text(const std::string& name, const py::handle& value) {
+  if (takes<bool>(value)) return value.cast<bool>() ? "on" : "off";
+  const bool path = py::hasattr(value, "__fspath__");
+  if (path || py::isinstance<py::str>(value) || py::isinstance<py::int_>(value) ||
+      takes<double>(value))
+    return py::str(value);
+  throw Error(ExitCode::usage, "Renderer: {}: found {}, allowed: a text, a number, True or False",
+              name, found(value));
 }
 
 /// Options from keyword arguments: cascade_size=12.5 is option cascade-size.
@@ -40,7 +45,7 @@ Options options_of(const py::kwargs& given) {
     std::string name = key.cast<std::string>();
     if (name.ends_with('_')) name.pop_back();  // lambda_, since lambda is a keyword
     std::replace(name.begin(), name.end(), '_', '-');
-    options.set(name, option_text(value));
+    options.set(name, option_text(key.cast<std::string>(), value));
   }
   return options;
 }
@@ -210,12 +215,12 @@ void add_renderer(py::module_& module) {
       [](const Scene& scene, const std::string& device, const py::object& context,
          const py::object& queue, const py::kwargs& given) {
         const Options options = options_of(given);
-        const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
-                                  handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
         const bool own = context.is_none() && queue.is_none();
         if (!own && !device.empty())
           throw Error(ExitCode::usage,
                       "device: found one and a context or queue, allowed: one of both");
+        const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
+                                  handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
         note_device_use();
         return interruptible([&] {
           return own ? Renderer(scene, options, device) : Renderer(scene, options, where);

@@ -2,29 +2,34 @@
 """One kind of error: a call with an argument of the wrong kind raises clpv.Error, which names function,
 argument, value found and value allowed."""
 import inspect
+import math
+import os
+import subprocess
+import sys
 
 import numpy
 import pytest
 
 import clpv
-from conftest import CORNELL, FRONT
+from conftest import CORNELL, FRONT, SMALL
 
 NUMBERS = numpy.zeros((1, 1, 3))
+MASKED = numpy.ma.masked_array(NUMBERS, NUMBERS == 0)
 THING = object()
 # Values of the wrong kind for each kind of argument.
 WRONG = {
     "number": ["x", None, (1, 2), THING],
-    "integer": ["x", None, 1.5, 2**70, THING],
-    "text": [3, None, THING],
-    "bool": ["x", (1, ), THING],
-    "vector": ["x", None, 3, (1, 2), (1, 2, "x"), THING],
+    "integer": ["x", None, 1.5, 2**70, True, THING],
+    "text": [3, None, b"full", THING],
+    "bool": ["x", (1, ), math.nan, 1j, THING],
+    "vector": ["x", None, 3, (1, 2), (1, 2, "x"), numpy.zeros(3, complex), MASKED[0, 0], THING],
     "colour": ["x", None, (1, 2), THING],
-    "array": ["x", [["x"]], THING, [[1j]]],
+    "array": ["x", [["x"]], THING, [[1j]], MASKED],
     "camera": [3, (0, 0, 0), THING],
     "path": [3, THING],
     "image": ["x", THING, [3]],
     "object": [None, 3, "x", THING],
-    "buffer": ["x", 1.5, THING],
+    "buffer": ["x", 1.5, True, 3, -8, 2**40 + 1, 2**70, THING],
     "size": [3, (1, ), (1.5, 2), "ab", (0, 5)],
     "names": [3, ["x", 4], THING],
     "function": [3, "x"],
@@ -206,3 +211,84 @@ def test_meshes_report_what_was_found():
         clpv.Material(texture=[[[0.0, 1, 0, 1], [0, 1.5, 0, 1]]])
     with pytest.raises(clpv.InputError, match="triangles"):  # not 'an array of float64'
         clpv.Scene.from_arrays(square, [])
+
+
+def test_messages_name_function_and_argument(renderer, scene):
+    for match, call in [
+        ("^irradiance: points: found shape", lambda: renderer.irradiance([[1, 2]], (0, 1, 0))),
+        ("^light: normals: found shape", lambda: renderer.light([[0, 1, 0]], positions=[[0, 0, 0]])),
+        ("^evaluate: directions: found shape", lambda: clpv.Basis("sh2").evaluate([1, 2])),
+        ("^render: time: found nan", lambda: renderer.render(time=math.nan)),
+        ("^render: camera: fov: found 0", lambda: renderer.render(camera=FRONT.replace(fov=0))),
+        ("^Renderer: centres: found .* allowed: a text",
+         lambda: clpv.Renderer(scene, centres=numpy.eye(3))),
+        ("^pathtrace: threads: found -1", lambda: clpv.pathtrace(scene, threads=-1)),
+        ("^pathtrace: noise: found nan", lambda: clpv.pathtrace(scene, samples=2, noise=math.nan)),
+        ("^project: values: found nan at 0",
+         lambda: clpv.Basis("sh2").project(numpy.full(len(clpv.Basis("sh2").directions()), math.nan))),
+        ("^clamped_cosine: table_size: found -1",
+         lambda: clpv.Basis("sh2").clamped_cosine((0, 0, 1), -1)),
+        ("^compare: exposure: found nan", lambda: clpv.compare(NUMBERS, NUMBERS, math.nan)),
+        ("^options: found 1 arguments by position", lambda: clpv.options(1)),
+        ("^devices: found 1 arguments by position", lambda: clpv.devices(1)),
+        ("^clpv.Volume: found a call", lambda: clpv.Volume()),
+    ]:  # yapf: disable
+        with pytest.raises(clpv.UsageError, match=match):
+            call()
+    with pytest.raises(clpv.InputError, match="allowed: none without vertices"):
+        scene.add_mesh([], [[0, 1, 2]])
+
+
+def test_images_say_what_they_cannot_show(tmp_path):
+    for image in clpv.Image(numpy.zeros((1, 1, 2))), clpv.Image(NUMBERS, encoding="srgb"):
+        with pytest.raises(clpv.InputError, match="image: found .*, allowed: "):
+            image.display()
+        with pytest.raises(clpv.InputError, match="image: found .*, allowed: "):
+            image.save(tmp_path / "x.png")
+    with pytest.raises(clpv.InputError, match="sRGB-encoded"):
+        clpv.Image(NUMBERS, encoding="srgb").save(tmp_path / "x.exr")
+    clpv.Image(NUMBERS).save(tmp_path / "X.EXR")
+    for names in ["R", "R", "R"], ["R", "a\0b", "B"], ["R", "G", ""]:
+        with pytest.raises(clpv.InputError, match="allowed: unique names"):
+            clpv.Image(NUMBERS, names)
+
+
+def test_numpys_warnings_as_errors_are_raised():
+    code = """
+import clpv, numpy as np
+large = np.full((2, 2, 4), 1e300)
+for call in (lambda: clpv.Material(texture=large), lambda: clpv.Image(large),
+             lambda: clpv.Scene.from_arrays(np.full((3, 3), 1e300), [[0, 1, 2]])):
+    try:
+        call()
+        raise SystemExit("no error")
+    except RuntimeWarning:
+        pass
+"""
+    subprocess.run([sys.executable, "-W", "error::RuntimeWarning", "-c", code], check=True,
+                   env=os.environ)
+
+
+def test_a_refused_call_keeps_the_last_frame(scene):
+    renderer = clpv.Renderer(scene, **SMALL)
+    image = renderer.render().array.copy()
+    for wrong in {"camera": "nope"}, {"time": math.nan}, {"camera": FRONT.replace(eye=FRONT.target)}:
+        with pytest.raises(clpv.UsageError):
+            renderer.render(**wrong)
+    assert numpy.array_equal(renderer.show("full").array, image) and renderer.volumes()
+
+
+def test_interrupts_of_arguments_are_not_swallowed():
+    class Interrupts:
+        def __float__(self):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        clpv.Camera((Interrupts(), 0, 0), (0, 0, 1))
+
+
+def test_lost_settings_are_named_when_a_scene_is_saved(tmp_path, caplog):
+    scene = clpv.Scene(CORNELL)
+    scene.lights = []
+    scene.save(tmp_path / "dark.GLB")
+    assert "cascades: not written" in caplog.text and "no lights" in caplog.text

@@ -211,8 +211,8 @@ def test_threads_ask_one_renderer_for_light(renderer):
 
 @pytest.mark.parametrize("change, text", [
     ({"target": FRONT.eye}, "the eye itself"),
-    ({"fov": 0}, "vertical_fov_degrees"),
-    ({"fov": 180}, "vertical_fov_degrees"),
+    ({"fov": 0}, "camera: fov: found"),
+    ({"fov": 180}, "camera: fov: found"),
     ({"eye": (0, math.nan, 0)}, "eye"),
     ({"up": (0, 0, 0)}, "up"),
     ({"near": -1}, "near"),
