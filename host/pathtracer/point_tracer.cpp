@@ -7,12 +7,12 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
-#include <thread>
 
 #include "basis/sampling.hpp"
 #include "pathtracer/centred_scene.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/sample_counts.hpp"
+#include "pathtracer/threads.hpp"
 #include "scene/emission.hpp"
 #include "support/interrupt.hpp"
 
@@ -93,20 +93,16 @@ struct PointTracer::Impl {
   template <typename Action>
   void parallel_for(std::size_t count, const Action& action) {
     std::atomic<std::size_t> next{0};
-    const auto run = [&, stop = current_stop()] {
+    on_threads(threads, [&, stop = current_stop()](const std::atomic<bool>& failed) {
       const StopScope scope(stop);
       PathSampler sampler(rays, centred.lights, emitters, sky,
                           centred.scene.medium ? &*centred.scene.medium : nullptr, options);
-      for (std::size_t first; !interrupted() && (first = next.fetch_add(kBatch)) < count;)
+      for (std::size_t first;
+           !failed && !interrupted() && (first = next.fetch_add(kBatch)) < count;)
         for (std::size_t i = first; i < std::min(first + kBatch, count); ++i) action(sampler, i);
       const std::lock_guard lock(mutex);
       ray_count += sampler.ray_count();
-    };
-    {
-      std::vector<std::jthread> others;
-      for (int t = 1; t < threads; ++t) others.emplace_back(run);
-      run();
-    }
+    });
     stop_if_interrupted();
   }
 
