@@ -116,14 +116,13 @@ TEST(ApiCalls, ARefusedCallKeepsTheLastFrame) {
   const std::vector<std::array<float, 3>> vectors(4, {0, 1, 0});
   const GBuffer surfaces{.width = 2, .height = 2, .normals = vectors, .positions = vectors};
   const Camera blind{.eye = kEye, .target = kEye};
-  const std::function<void()> refused[] = {
-      [&] { renderer.render(View::full, "nothing"); },
-      [&] { renderer.render(View::full, blind); },
-      [&] { renderer.render(View::full, {}, NAN); },
-      [&] { renderer.enqueue(View::full, "nothing"); },
-      [&] { renderer.light(surfaces, "nothing"); },
-      [&] { renderer.light(surfaces, kEye, NAN); },
-      [&] { renderer.update(kEye, NAN); }};
+  const std::function<void()> refused[] = {[&] { renderer.render(View::full, "nothing"); },
+                                           [&] { renderer.render(View::full, blind); },
+                                           [&] { renderer.render(View::full, {}, NAN); },
+                                           [&] { renderer.enqueue(View::full, "nothing"); },
+                                           [&] { renderer.light(surfaces, "nothing"); },
+                                           [&] { renderer.light(surfaces, kEye, NAN); },
+                                           [&] { renderer.update(kEye, NAN); }};
   for (const auto& call : refused) {
     test::error_of(ExitCode::usage, call);
     EXPECT_EQ(renderer.show(View::full).pixels, image.pixels);

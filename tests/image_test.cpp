@@ -297,8 +297,9 @@ TEST(PublicImage, FieldsMustAgree) {
   test::error_of(ExitCode::bad_input, [&] { Material::Texture::of(image); });
   image.width = -1;
   EXPECT_THAT(rejected(image), HasSubstr("found -1 x 2 pixels, allowed: 1 to 16384"));
-  for (const std::vector<std::string>& names :
-       {std::vector<std::string>{"R", "R", "B"}, {"R", "G", ""}, {"R", "G", std::string("a\0b", 3)}})
+  for (const std::vector<std::string>& names : {std::vector<std::string>{"R", "R", "B"},
+                                                {"R", "G", ""},
+                                                {"R", "G", std::string("a\0b", 3)}})
     EXPECT_THAT(rejected(make_image(1, 1, names)), HasSubstr("allowed: unique names"));
   Image encoded = make_image(1, 1, {"R", "G", "B"});
   encoded.encoding = Encoding::srgb;

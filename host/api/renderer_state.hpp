@@ -46,7 +46,7 @@ struct Renderer::State {
   std::optional<Shown> shown = {};
   std::optional<Shown> lit_of = {};  ///< what the last light is of
   bool lit_for_shown = false;        ///< the cascades have its light
-  double posed_at = 0;  ///< time of the last pose()
+  double posed_at = 0;               ///< time of the last pose()
   double frame_ms = 0;
 
   /// `where`: a Device, or a GivenQueue.

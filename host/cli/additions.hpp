@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Additions of another program to the commands: the lab (lab/README.md) adds methods to `quality` and
-// suites to `bench`.
+// Additions of another program to the commands: the lab (lab/README.md) adds methods to `quality`
+// and suites to `bench`.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -213,8 +213,8 @@ class ImageTracer {
       const StopScope scope(stop);
       PathSampler sampler(rays_, lights_, emitters_, sky_,
                           image_.medium ? &*image_.medium : nullptr, options_);
-      for (std::size_t item; !failed && !interrupted() &&
-                             (item = next.fetch_add(items.step)) < items.end;)
+      for (std::size_t item;
+           !failed && !interrupted() && (item = next.fetch_add(items.step)) < items.end;)
         action(sampler, item);
       const std::lock_guard lock(mutex_);
       image_.rays += sampler.ray_count();

@@ -80,8 +80,9 @@ void read_triangles(const PrimitiveArrays& from, std::uint64_t count,
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t source = from.indices ? from.indices->index(corner[k]) : corner[k];
       if (source >= stored)
-        from.indices->reject_element(corner[k], fmt::format("index {}", source),
-                                     stored == 0 ? "none without vertices" : fmt::format("0 to {}", stored - 1));
+        from.indices->reject_element(
+            corner[k], fmt::format("index {}", source),
+            stored == 0 ? "none without vertices" : fmt::format("0 to {}", stored - 1));
       if (slots[source] == kNoSlot) {
         slots[source] = static_cast<std::uint32_t>(to.vertices.size());
         to.vertices.push_back(vertex(from, source));

@@ -36,8 +36,8 @@ struct Comparison {
 
 /// Compares A with the reference B, over the pixels that their files have. Throws Error(bad_input)
 /// for different sizes, pixels that only one has, different numbers of colour channels or
-/// encodings, for fields of an image that disagree, and for values that are not finite. Linear images are tone-mapped at `exposure` [EV]
-/// for FLIP. Thread-safe.
+/// encodings, for fields of an image that disagree, and for values that are not finite. Linear
+/// images are tone-mapped at `exposure` [EV] for FLIP. Thread-safe.
 Comparison compare(const Image& a, const Image& b, float exposure = 0);
 
 }  // namespace clpv

@@ -57,8 +57,8 @@ struct Image {
 /// Writes a linear image with channels R, G, B and optionally A. .exr: 32-bit floats, with
 /// metadata. .png: values times 2^exposure [EV], through the ACES tone curve, sRGB-encoded, on a
 /// black background. The file is complete or absent. Throws Error: usage (another extension, an
-/// exposure that is not finite), bad_input (other values or channels, fields that disagree), run_time
-/// (the file cannot be written).
+/// exposure that is not finite), bad_input (other values or channels, fields that disagree),
+/// run_time (the file cannot be written).
 void save_image(const std::filesystem::path& path, const Image& image, float exposure = 0);
 
 }  // namespace clpv

@@ -76,7 +76,7 @@ struct LightVolume {
 /// positions, from any kind of camera, or depths of a Camera. A pixel has no surface, and no light,
 /// if its normal is 0, its depth is not positive, or a number of it is not finite.
 struct GBuffer {
-  int width = 0, height = 0;                      ///< 1 to 16384
+  int width = 0, height = 0;                        ///< 1 to 16384
   std::span<const std::array<float, 3>> normals{};  ///< of any length, on the side that is seen
   std::span<const std::array<float, 3>> positions = {};  ///< [m]
   std::span<const float> depths =
@@ -115,8 +115,8 @@ class Renderer {
                const ImageSize& size = {});
 
   /// Another view of the last frame, without rendering it again. View::cells after light() or
-  /// update() lights its cascades again, and then those of that call. Throws Error(usage) before the first frame, and for cells
-  /// then if the scene changed.
+  /// update() lights its cascades again, and then those of that call. Throws Error(usage) before
+  /// the first frame, and for cells then if the scene changed.
   Image show(View view);
 
   /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on each pixel of

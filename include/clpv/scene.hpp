@@ -85,8 +85,8 @@ class Scene {
   void set_cameras(const std::vector<Camera>& cameras);
   void set_lights(const std::vector<Light>& lights);
 
-  /// The medium as it was set, or as the file has it, or none. After a change, the next frame of each renderer allocates
-  /// its memory again. Throws Error(usage): see Medium.
+  /// The medium as it was set, or as the file has it, or none. After a change, the next frame of
+  /// each renderer allocates its memory again. Throws Error(usage): see Medium.
   std::optional<Medium> medium() const;
   void set_medium(const std::optional<Medium>& medium);
 
@@ -110,8 +110,8 @@ class Scene {
 
   /// Writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning for what glTF
   /// has not: sky, medium, a camera's only light, number and size of cascades, exposure, and that a
-  /// scene is dark. Lights and cameras without a name get one when it is read. Throws Error: usage (another extension), run_time
-  /// (the file cannot be written).
+  /// scene is dark. Lights and cameras without a name get one when it is read. Throws Error: usage
+  /// (another extension), run_time (the file cannot be written).
   void save(const std::filesystem::path& path) const;
 
   bool moves() const;  ///< returns true if anything in it is animated

@@ -53,12 +53,12 @@ template <typename Array>
 Array real_array(const py::object& given, const char* what) {
   const bool masked = py::hasattr(given, "mask");  // whose hidden numbers would count
   const py::array any = masked ? py::array() : py::array::ensure(given);
-  if (masked || !any || std::string_view("fiub").find(any.dtype().kind()) == std::string_view::npos) {
-    throw Error(
-        ExitCode::usage, "{}: found {}, allowed: an array of real numbers", what,
-        masked                  ? "a masked array"
-        : any && any.ndim() > 0 ? "an array of " + std::string(py::str(any.dtype()))
-                                : found(given));
+  if (masked || !any ||
+      std::string_view("fiub").find(any.dtype().kind()) == std::string_view::npos) {
+    throw Error(ExitCode::usage, "{}: found {}, allowed: an array of real numbers", what,
+                masked                  ? "a masked array"
+                : any && any.ndim() > 0 ? "an array of " + std::string(py::str(any.dtype()))
+                                        : found(given));
   }
   return converted<Array>(any);
 }
