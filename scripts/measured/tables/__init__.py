@@ -15,7 +15,7 @@ import re
 import sys
 
 from .. import ROOT, RESULTS, expected, json_lines, output, verdicts
-from . import benchmarks, quality, paper, standing, tutorial  # they fill TABLES
+from . import bake, benchmarks, quality, paper, standing, tutorial  # they fill TABLES
 from .cells import LOADED, MEASURED, TABLES, read, result
 from .stages import print_stages
 
