@@ -5,6 +5,7 @@
 
 #include <CL/opencl.hpp>
 #include <algorithm>
+#include <csignal>
 #include <optional>
 #include <sstream>
 
@@ -13,11 +14,13 @@
 #include "device/cl_error.hpp"
 #include "device/kernel_files.hpp"
 #include "support/error.hpp"
+#include "support/helpers.hpp"
 #include "support/input_record.hpp"
 #include "support/interrupt.hpp"
 #include "support/limits.hpp"
 #include "support/log.hpp"
 #include "support/print.hpp"
+#include "support/process.hpp"
 #include "support/progress.hpp"
 #include "support/text.hpp"
 
@@ -262,6 +265,15 @@ int run_program(int argc, const char* const* argv, const Additions& additions) {
   } catch (const std::exception& error) {
     return report_failure(shared, ExitCode::run_time, error.what());
   }
+}
+
+int program_main(int argc, char** argv, const Additions& additions) {
+  reset_inherited_state();
+  keep_absolute_path_entries();
+  catch_interrupts();
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` then fails with a reason
+  set_helper_program("/proc/self/exe");
+  return run_program(argc, argv, additions);
 }
 
 }  // namespace clpv

@@ -43,6 +43,9 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv);
 /// the exit code. A failing rank aborts all ranks.
 int run_program(int argc, const char* const* argv, const Additions& additions = {});
 
+/// main() of a program: sets up signals and helper processes, then run_program().
+int program_main(int argc, char** argv, const Additions& additions = {});
+
 // Each command is in cli/NAME.cpp. The callbacks throw clpv::Error; run_program turns it into an
 // exit code.
 void add_devices(CLI::App& app, Shared& shared);

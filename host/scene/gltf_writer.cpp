@@ -135,7 +135,7 @@ class GlbWriter {
     document_["materials"].push_back(made);
   }
 
-  /// One mesh, with a primitive of its own vertices for each material.
+  /// One mesh, with a primitive for each material, which has its vertices.
   void add_triangles() {
     std::map<std::uint32_t, std::vector<std::uint32_t>> corners;
     for (const Triangle& triangle : scene_.triangles)

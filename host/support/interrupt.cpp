@@ -31,7 +31,7 @@ void say(const char* text) {
 // A duplicate of stderr while it is muted, else -1.
 std::atomic<int> muted_stderr{-1};
 
-/// Sends stderr nowhere: a compiler whose linker got the same signal reports an error of its own.
+/// Sends stderr nowhere: a compiler whose linker got the same signal reports an error too.
 /// Async-signal-safe.
 void mute_stderr() {
   if (muted_stderr >= 0) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fluxes through the faces of a cell's neighbours, and what links let through: shared by
+// Fluxes through the faces of a cell's neighbours, and transmittances of links: shared by
 // propagate.cl and propagate_lobes.cl.
 //
 // Face 5 k + f belongs to the neighbour that light reaches along axis k, axes in the order +x, -x,

@@ -8,13 +8,13 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "pathtracer/emitters.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pathtracer/ray_scene.hpp"
+#include "pathtracer/threads.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::baselines {
@@ -101,15 +101,12 @@ class View {
   template <typename Action>
   void parallel_for(std::size_t count, std::size_t grain, const Action& action) const {
     std::atomic<std::size_t> next{0};
-    const auto run = [&] {
+    pathtracer::on_threads(threads(), [&](const std::atomic<bool>& failed) {
       const Shared& s = *shared_;
       pathtracer::PathSampler sampler(s.rays, s.lights, s.emitters, s.sky, nullptr, s.options);
-      for (std::size_t first; (first = next.fetch_add(grain)) < count;)
+      for (std::size_t first; !failed && (first = next.fetch_add(grain)) < count;)
         action(sampler, first, std::min(count, first + grain));
-    };
-    std::vector<std::jthread> others;
-    for (int t = 1; t < threads(); ++t) others.emplace_back(run);
-    run();
+    });
   }
 
   /// Calls action(sampler, pixel) for the pixels with a surface.

@@ -58,7 +58,7 @@ bool is_real(py::handle given);
 template <typename T>
 bool takes(py::handle given);
 
-/// What a parameter of a type allows, in words.
+/// The values that a parameter of a type allows, in words.
 template <typename T>
 struct Kind {
   static std::string text() {

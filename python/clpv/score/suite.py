@@ -19,13 +19,15 @@ MEASURES = "nrmse", "nrmse_best_gain", "energy_ratio", "flip", "bias", "noise", 
 LIGHT = "indirect"  # layer that a score is of
 LAYERS = LIGHT, "depth", "normal", "albedo", "direct", "irradiance"  # of a truth
 DIGITS = 5  # of printed errors
-FIELDS = {"name": str, "truth": str, "noise": (int, float), "exposure": (int, float)}  # of a view
+NUMBER = int, float
+UNKNOWN = type(None)
+FIELDS = {"name": str, "truth": str, "noise": (*NUMBER, UNKNOWN), "exposure": NUMBER}  # of a view
 
 
 def is_valid(value, kind):
     if kind is str:
         return isinstance(value, str) and value.isprintable() and value != ""
-    return type(value) in kind and abs(value) <= MAX_NUMBER  # not NaN
+    return type(value) in kind and (value is None or abs(value) <= MAX_NUMBER)  # not NaN
 
 
 def unique(pairs):
@@ -55,7 +57,7 @@ def read_suite(folder):
     for i, view in enumerate(views):
         for name, kind in FIELDS.items():
             value = view.get(name) if isinstance(view, dict) else None
-            if not is_valid(value, kind) and not (name == "noise" and value is None):  # unknown
+            if not is_valid(value, kind):
                 allowed = "printable text" if kind is str else f"a finite number, -{MAX_NUMBER}..{MAX_NUMBER}"
                 raise BadImage(
                     f"{file}: /views/{i}/{name}: found {json.dumps(value)}; allowed: {allowed}")
