@@ -142,6 +142,7 @@ Cost cost_of(const RasterTask& task) {
 
 Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene,
                   const std::string& camera, Pass pass, const RenderOptions& options) {
+  pathtracer::require_rays(ExitCode::device);  // else rows that are not checked
   const auto r =
       std::make_shared<Rasterization>(session, make_task(std::move(scene), camera, pass, options));
   const auto bytes = [r](std::size_t v) {

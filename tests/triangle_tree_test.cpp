@@ -82,9 +82,11 @@ bool is_held(const TreeWalk& walk, unsigned triangle, const glm::vec3& p) {
 
 TEST(TriangleTree, HoldsEachPointOfEachTriangle) {
   constexpr int kSteps = 20;
-  const TreeLimits usual, areas{.parts = 0}, morton{.parts = 0, .areas = 0};
-  for (const auto& [moving, limits] : {std::pair(false, usual), std::pair(true, usual),
-                                       std::pair(false, areas), std::pair(true, morton)}) {
+  const TreeLimits usual, areas{.parts = 0}, morton{.parts = 0, .areas = 0},
+      medians{.parts = 0, .medians = true};
+  for (const auto& [moving, limits] :
+       {std::pair(false, usual), std::pair(true, usual), std::pair(false, areas),
+        std::pair(true, morton), std::pair(true, medians)}) {
     const SceneData scene = many_triangles(moving);
     const TriangleTree tree(scene, limits);
     TreeWalk walk{tree, {}};

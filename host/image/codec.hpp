@@ -55,6 +55,9 @@ class ImageCodec {
 /// The codecs, linked or loaded. Throws Error(run_time) if they cannot be loaded.
 const ImageCodec& image_codec();
 
+/// Codecs that write without compression and decode nothing, for a build without OpenImageIO.
+const ImageCodec& plain_codec();
+
 /// Name and type of the function that makes the codecs, in the library and in the module.
 inline constexpr const char* kGetImageCodec = "clpv_image_codec";
 using GetImageCodec = const ImageCodec*();

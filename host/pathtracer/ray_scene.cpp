@@ -170,6 +170,8 @@ reference::Footprint footprint(const ClpvView& view, unsigned px, unsigned py, c
   return {step(px + 1.0, py), step(px, py + 1.0)};
 }
 
+void require_rays(ExitCode) {}
+
 RayScene::RayScene(const SceneData& scene) : impl_(std::make_unique<Impl>()) {
   if (scene.triangles.empty()) {
     throw Error(ExitCode::bad_input, "{}: no surface", scene.path);

@@ -9,6 +9,7 @@
 #include "kernels/shared/view.h"
 #include "reference/materials.hpp"
 #include "scene/scene.hpp"
+#include "support/error.hpp"
 
 namespace clpv::pathtracer {
 
@@ -32,11 +33,14 @@ enum class Faces {
   all,     ///< front and back faces, as rasterised for a light
 };
 
+/// Throws Error(code) in a build without Embree (CLPV_PATHTRACER=OFF), which has no RayScene.
+void require_rays(ExitCode code);
+
 /// Acceleration structure of a scene. Borrows the scene. Queries are thread-safe.
 class RayScene {
  public:
   /// Throws Error(bad_input) for a scene without triangles, Error(run_time) if Embree fails (out of
-  /// memory).
+  /// memory) or is missing.
   explicit RayScene(const SceneData& scene);
   ~RayScene();
   RayScene(RayScene&&) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tree of bounding boxes over the triangles of a scene, for rays on the device
-// (kernels/gather/triangle_tree.h). Built by Embree's builder on the host, without OpenCL.
+// (kernels/gather/triangle_tree.h). Built on the host, without OpenCL (tree_builders.hpp).
 #pragma once
 
 #include <array>
@@ -21,6 +21,7 @@ using TreeRow = std::array<float, CLPV_TREE_WIDTH>;
 /// curve.
 struct TreeLimits {
   std::size_t parts = 500'000, areas = 1'000'000;
+  bool medians = false;  ///< halve triangles at medians instead, as a build without Embree does
 };
 
 /// Moving triangles have a tree of their own below the root, so that motion rebuilds only that.

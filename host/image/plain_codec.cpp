@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// Writes EXR and PNG without compression, for a build without OpenImageIO (CLPV_IMAGES=OFF), which
+// reads no images but Radiance HDR.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+#include <string_view>
+
+#include "image/codec.hpp"
+
+namespace clpv {
+namespace {
+
+using EncodedBytes = std::vector<unsigned char>;
+
+void append_text(EncodedBytes& to, std::string_view text) {
+  to.insert(to.end(), text.begin(), text.end());
+}
+
+/// Text and the 0 that ends it.
+void append_name(EncodedBytes& to, std::string_view text) {
+  append_text(to, text);
+  to.push_back(0);
+}
+
+void append_little(EncodedBytes& to, std::uint64_t value, int bytes) {
+  for (int i = 0; i < bytes; ++i) to.push_back(static_cast<unsigned char>(value >> 8 * i));
+}
+
+void append_big(EncodedBytes& to, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8)
+    to.push_back(static_cast<unsigned char>(value >> shift));
+}
+
+void append_float(EncodedBytes& to, float value) {
+  append_little(to, std::bit_cast<std::uint32_t>(value), 4);
+}
+
+// EXR (OpenEXR's documentation, "File Layout"): rows of pixels, each with its channels one after
+// the other, in the order of their names.
+
+constexpr std::size_t kShortName = 31;  // longer names need a flag
+constexpr unsigned kLongNames = 0x400, kVersion = 2;
+
+void append_attribute(EncodedBytes& to, std::string_view name, std::string_view type,
+                      const EncodedBytes& value) {
+  append_name(to, name);
+  append_name(to, type);
+  append_little(to, value.size(), 4);
+  to.insert(to.end(), value.begin(), value.end());
+}
+
+/// Numbers of an image's channels in the order of their names.
+std::vector<std::size_t> order_of(const std::vector<std::string>& channels) {
+  std::vector<std::size_t> order(channels.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t c) { return channels[c]; });
+  return order;
+}
+
+EncodedBytes channel_list(const CodedImage& image) {
+  constexpr int kFloat = 2;
+  EncodedBytes list;
+  for (const std::size_t c : order_of(image.channels)) {
+    append_name(list, image.channels[c]);
+    for (const int field : {kFloat, 0, 1, 1}) append_little(list, static_cast<unsigned>(field), 4);
+  }
+  list.push_back(0);
+  return list;
+}
+
+EncodedBytes exr_header(const CodedImage& image) {
+  const auto is_long = [](const std::string& name) { return name.size() > kShortName; };
+  bool long_names = std::ranges::any_of(image.channels, is_long);
+  EncodedBytes box, header{0x76, 0x2f, 0x31, 0x01};
+  for (const int side : {0, 0, image.width - 1, image.height - 1})
+    append_little(box, static_cast<std::uint32_t>(side), 4);
+  EncodedBytes attributes;
+  append_attribute(attributes, "channels", "chlist", channel_list(image));
+  append_attribute(attributes, "compression", "compression", {0});
+  append_attribute(attributes, "dataWindow", "box2i", box);
+  append_attribute(attributes, "displayWindow", "box2i", box);
+  append_attribute(attributes, "lineOrder", "lineOrder", {0});
+  EncodedBytes one, centre(8, 0);
+  append_float(one, 1);
+  append_attribute(attributes, "pixelAspectRatio", "float", one);
+  append_attribute(attributes, "screenWindowCenter", "v2f", centre);
+  append_attribute(attributes, "screenWindowWidth", "float", one);
+  for (const auto& [name, value] : image.metadata) {
+    const std::string attribute = "clpv:" + name;
+    long_names = long_names || is_long(attribute);
+    append_attribute(attributes, attribute, "string", {value.begin(), value.end()});
+  }
+  append_little(header, kVersion | (long_names ? kLongNames : 0), 4);
+  header.insert(header.end(), attributes.begin(), attributes.end());
+  header.push_back(0);
+  return header;
+}
+
+EncodedBytes plain_exr(const CodedImage& image, const float* pixels) {
+  EncodedBytes bytes = exr_header(image);
+  const std::vector<std::size_t> order = order_of(image.channels);
+  const auto width = static_cast<std::size_t>(image.width),
+             height = static_cast<std::size_t>(image.height), channels = order.size(),
+             row = width * channels * sizeof(float), first = bytes.size() + 8 * height;
+  for (std::size_t y = 0; y < height; ++y) append_little(bytes, first + y * (8 + row), 8);
+  for (std::size_t y = 0; y < height; ++y) {
+    append_little(bytes, y, 4);
+    append_little(bytes, row, 4);
+    for (const std::size_t c : order) {
+      for (std::size_t x = 0; x < width; ++x)
+        append_float(bytes, pixels[(y * width + x) * channels + c]);
+    }
+  }
+  return bytes;
+}
+
+// PNG (W3C, "Portable Network Graphics", third edition), with stored blocks of zlib (RFC 1950,
+// RFC 1951).
+
+std::uint32_t crc_of(const unsigned char* from, const unsigned char* end) {
+  std::uint32_t crc = ~0u;
+  for (; from != end; ++from) {
+    crc ^= *from;
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+  }
+  return ~crc;
+}
+
+std::uint32_t adler_of(const EncodedBytes& bytes) {
+  std::uint32_t a = 1, b = 0;
+  for (const unsigned char byte : bytes) a = (a + byte) % 65521, b = (b + a) % 65521;
+  return b << 16 | a;
+}
+
+void append_chunk(EncodedBytes& to, std::string_view type, const EncodedBytes& data) {
+  append_big(to, static_cast<std::uint32_t>(data.size()));
+  const std::size_t start = to.size();
+  append_text(to, type);
+  to.insert(to.end(), data.begin(), data.end());
+  append_big(to, crc_of(to.data() + start, to.data() + to.size()));
+}
+
+EncodedBytes stored(const EncodedBytes& rows) {
+  constexpr std::size_t kBlock = 65535;
+  EncodedBytes data{0x78, 0x01};
+  for (std::size_t at = 0; at < rows.size(); at += kBlock) {
+    const std::size_t size = std::min(kBlock, rows.size() - at);
+    data.push_back(at + size == rows.size() ? 1 : 0);
+    append_little(data, size, 2);
+    append_little(data, ~size, 2);
+    const auto from = rows.begin() + static_cast<std::ptrdiff_t>(at);
+    data.insert(data.end(), from, from + static_cast<std::ptrdiff_t>(size));
+  }
+  append_big(data, adler_of(rows));
+  return data;
+}
+
+EncodedBytes plain_png(const CodedImage& image, const std::uint8_t* pixels) {
+  constexpr unsigned char kBits = 8, kColours = 2, kColoursAndAlpha = 6;
+  EncodedBytes bytes{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, header, rows;
+  append_big(header, static_cast<std::uint32_t>(image.width));
+  append_big(header, static_cast<std::uint32_t>(image.height));
+  const std::size_t row = static_cast<std::size_t>(image.width) * image.channels.size();
+  header.push_back(kBits);
+  header.push_back(image.channels.size() == 4 ? kColoursAndAlpha : kColours);
+  header.insert(header.end(), 3, 0);  // deflate, filters of each row, no interlacing
+  append_chunk(bytes, "IHDR", header);
+  append_chunk(bytes, "sRGB", {0});
+  for (const auto& [name, value] : image.metadata) {
+    EncodedBytes text;
+    append_name(text, "clpv:" + name);
+    append_text(text, value);
+    append_chunk(bytes, "tEXt", text);
+  }
+  for (int y = 0; y < image.height; ++y) {
+    rows.push_back(0);  // no filter
+    rows.insert(rows.end(), pixels + static_cast<std::size_t>(y) * row,
+                pixels + static_cast<std::size_t>(y + 1) * row);
+  }
+  append_chunk(bytes, "IDAT", stored(rows));
+  append_chunk(bytes, "IEND", {});
+  return bytes;
+}
+
+class PlainCodec : public ImageCodec {
+ public:
+  std::unique_ptr<ImageDecoder> open(const std::string& format, const std::string&,
+                                     std::span<const std::uint8_t>,
+                                     std::string& error) const override {
+    error = "this clpv was built without OpenImageIO (CLPV_IMAGES=OFF); it decodes no " + format;
+    return nullptr;
+  }
+
+  std::string encode_exr(const CodedImage& image, const float* pixels,
+                         EncodedBytes& bytes) const override {
+    bytes = plain_exr(image, pixels);
+    return {};
+  }
+
+  std::string encode_png(const CodedImage& image, const std::uint8_t* pixels,
+                         EncodedBytes& bytes) const override {
+    bytes = plain_png(image, pixels);
+    return {};
+  }
+};
+
+}  // namespace
+
+const ImageCodec& plain_codec() {
+  static const PlainCodec codec;
+  return codec;
+}
+
+}  // namespace clpv
