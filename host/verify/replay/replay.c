@@ -4,7 +4,7 @@
  *   replay [FOLDER [DEVICE [OPTIONS]]]
  *
  * FOLDER: the capsule, by default the current folder. DEVICE: a part of "PLATFORM: DEVICE"; by default the first device.
- * OPTIONS: added to the build options. REPLAY_OUTPUTS=1 writes each compared memory to FILE.output.
+ * OPTIONS: added to the build options. REPLAY_OUTPUTS=1 writes each compared memory to FILE.output; REPLAY_SECONDS: in place of 60.
  * Prints "ok", "wrong" with the first wrong place, "failed" or "unsupported". Exit code: 0 ok, 1 wrong or failed, 77 unsupported.
  * The comment at the top of capsule.txt explains its commands. */
 #define _POSIX_C_SOURCE 200112L
@@ -18,7 +18,6 @@
 #include <string.h>
 #include <unistd.h>
 enum { SECONDS = 60, MOST = 4096, UNSUPPORTED = 77 };
-
 static struct { cl_mem handle; size_t bytes, extent[3]; } memories[MOST]; /* extent: of an image */
 static cl_program programs[MOST];
 static cl_device_id device;
@@ -38,7 +37,7 @@ static void end(int code, const char *format, ...) {
 }
 
 static void on_signal(int number) {
-  char text[] = "failed: ended by signal 00 (14: did not end within 60 s)\n";
+  char text[] = "failed: ended by signal 00 (14: did not end within a minute)\n";
   text[24] = (char)('0' + number / 10), text[25] = (char)('0' + number % 10);
   _exit(write(1, text, sizeof text - 1) != 0);
 }
@@ -227,7 +226,7 @@ int main(int count, char **words) {
   int wrong = 0;
   if (count > 1 && chdir(words[1]) != 0) end(1, "%s: no such folder", words[1]);
   for (int i = 0; i < 6; ++i) signal(signals[i], on_signal);
-  alarm(SECONDS);
+  alarm(getenv("REPLAY_SECONDS") ? (unsigned)atoi(getenv("REPLAY_SECONDS")) : SECONDS);
   size_t size;
   char *rest = contents("capsule.txt", (size_t)1 << 22, &size);
   choose_device(count > 2 ? words[2] : "");
