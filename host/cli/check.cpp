@@ -17,6 +17,7 @@
 #include "support/output_file.hpp"
 #include "support/print.hpp"
 #include "support/progress.hpp"
+#include "verify/capsules.hpp"
 #include "verify/junit.hpp"
 #include "verify/schedule.hpp"
 
@@ -29,13 +30,19 @@ constexpr double kUsualLimit = 600;  // [s]; the longest takes 20 s where all ke
 
 struct Options {
   verify::CheckChoice choice;
-  std::string junit, claims, format;
+  std::string junit, claims, format, capsules, record;
+  std::vector<std::string> capsule;  ///< names of comparisons
   double limit = kUsualLimit;
   bool list = false;
 };
 
 std::size_t count(const CheckResults& results, Status status) {
   return static_cast<std::size_t>(std::ranges::count(results, status, &CheckResult::status));
+}
+
+/// "propagate sh2/sampled/areas"
+std::string title_of(const verify::Case& c) {
+  return fmt::format("{} {}", name_of(c.stage), c.name);
 }
 
 /// "118 ok, 1 wrong, 0 failed, 4 unsupported"
@@ -86,6 +93,7 @@ class Results {
 
   void add(const CheckResults& results) {
     all_.insert(all_.end(), results.begin(), results.end());
+    by_case_.push_back(results);
     const Stage stage = cases_[done_++].stage;
     progress_.advance();
     if (done_ < cases_.size() && cases_[done_].stage == stage) return;
@@ -94,6 +102,7 @@ class Results {
     printed_ = all_.size();
   }
   const CheckResults& all() const { return all_; }
+  const std::vector<CheckResults>& by_case() const { return by_case_; }
 
  private:
   const verify::Cases& cases_;
@@ -101,24 +110,91 @@ class Results {
   Progress progress_;
   std::size_t done_ = 0, printed_ = 0;
   CheckResults all_;
+  std::vector<CheckResults> by_case_;
 };
 
-/// Runs the cases in helpers. A single one runs in this process, which a debugger or an interpreter
-/// watches, and so do all where there is no program to start, as in tests.
-CheckResults results_of(const verify::Cases& cases, const Options& options, const Shared& shared,
-                        const Device& device, bool prints) {
-  Results results(cases, prints);
-  const auto add = [&](const CheckResults& found) { results.add(found); };
-  if (cases.size() < 2 || !has_helper_program()) {
-    Session session(device);
-    verify::run_here(cases, session, add);
-    return results.all();
-  }
-  std::vector<std::string> arguments = options.choice.arguments();
+std::vector<std::string> helper_arguments(const verify::CheckChoice& choice, const Shared& shared) {
+  std::vector<std::string> arguments = choice.arguments();
   if (!shared.device.empty()) arguments.push_back("--device=" + shared.device);
   arguments.push_back("--quiet");
-  verify::run_in_helpers(cases, arguments, options.limit, add);
-  return results.all();
+  return arguments;
+}
+
+/// Runs the cases in helpers. A single one runs in this process, which a debugger or an interpreter
+/// watches, and so do all where there is no program to start, as in tests. With capsules, even a
+/// single one may crash.
+void run_cases(const verify::Cases& cases, const Options& options, const Shared& shared,
+               const Device& device, Results& results) {
+  const auto add = [&](const CheckResults& found) { results.add(found); };
+  if ((cases.size() < 2 && options.capsules.empty()) || !has_helper_program()) {
+    Session session(device);
+    verify::run_here(cases, session, add);
+  } else {
+    verify::run_in_helpers(cases, helper_arguments(options.choice, shared), options.limit, add);
+  }
+}
+
+CheckResults run_recorded(const verify::Case& compared, const Device& device,
+                          const std::filesystem::path& folder) {
+  Session session(device);
+  session.record(verify::Capsules::recording_of(folder, compared));
+  return verify::run_case(compared, session);
+}
+
+/// Numbers of the cases that the user named, and of all that are wrong or failed.
+std::vector<std::size_t> recorded_cases(const verify::Cases& cases, const Options& options,
+                                        const std::vector<CheckResults>& results) {
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const bool faulty =
+        count(results[i], Status::wrong) + count(results[i], Status::failed) > 0;
+    if (faulty || std::ranges::count(options.capsule, title_of(cases[i])) > 0) numbers.push_back(i);
+  }
+  return numbers;
+}
+
+/// Runs the cases again, recorded, each in a session of its own, and writes their capsules.
+void write_capsules(verify::Capsules& capsules, const verify::Cases& cases, const Options& options,
+                    const Shared& shared, const Device& device, const Results& results) {
+  verify::CheckChoice choice = options.choice;
+  choice.only = recorded_cases(cases, options, results.by_case());
+  if (choice.only.empty()) return;
+  const verify::Cases recorded = choice.cases();
+  for (const verify::Case& c : recorded) capsules.begin(c);
+  std::size_t done = 0;
+  const auto finish = [&](const CheckResults& found) {
+    const verify::Case& c = recorded[done];
+    const std::filesystem::path folder =
+        capsules.finish(c, device, results.by_case()[choice.only[done++]], found);
+    log_info("capsule of {}: {}", title_of(c), folder.string());
+  };
+  if (!has_helper_program()) {
+    for (const verify::Case& c : recorded) finish(run_recorded(c, device, options.capsules));
+    return;
+  }
+  std::vector<std::string> arguments = helper_arguments(choice, shared);
+  arguments.push_back("--record=" + options.capsules);
+  verify::run_in_helpers(recorded, arguments, options.limit, finish);
+}
+
+/// Work of a helper process.
+void help(const verify::Cases& cases, const Options& options, const Device& device) {
+  become_helper();
+  Session session(device);
+  const auto run = [&](const verify::Case& compared) {
+    return options.record.empty() ? verify::run_case(compared, session)
+                                  : run_recorded(compared, device, options.record);
+  };
+  verify::help(cases, run, Claims(options.claims));
+}
+
+void require_known(const std::vector<std::string>& names, const verify::Cases& cases) {
+  for (const std::string& name : names)
+    if (std::ranges::count(cases, name, title_of) == 0)
+      throw Error(ExitCode::usage,
+                  "--capsule {}: no comparison has that name; allowed: STAGE NAME of clpv check "
+                  "--list, such as '{}'",
+                  name, title_of(cases.front()));
 }
 
 nlohmann::json report_of(const CheckResults& results, const Device& device) {
@@ -140,22 +216,24 @@ void run(const Options& options, const Shared& shared) {
     for (const verify::Case& c : cases) print_data("{:<10} {}\n", name_of(c.stage), c.name);
     return;
   }
+  require_known(options.capsule, cases);
   const Device device = choose_device(shared.device);
-  if (!options.claims.empty()) {
-    become_helper();
-    Session session(device);
-    return verify::help(cases, session, Claims(options.claims));
-  }
+  if (!options.claims.empty()) return help(cases, options, device);
+  std::optional<verify::Capsules> capsules;
+  if (!options.capsules.empty()) capsules.emplace(options.capsules);
   log_info("checking {} ({}), driver {}: {} comparisons", device.name, device.platform,
            device.driver, cases.size());
   const bool json = options.format == "json";
-  const CheckResults results = results_of(cases, options, shared, device, !json);
+  Results found(cases, !json);
+  run_cases(cases, options, shared, device, found);
+  const CheckResults& results = found.all();
   if (json)
     print_json(report_of(results, device).dump(2) + "\n");
   else
     print_data("{} comparisons, {} results: {}\n", cases.size(), results.size(),
                counts_of(results));
   if (!options.junit.empty()) write_file(options.junit, verify::junit(results, device.name));
+  if (capsules) write_capsules(*capsules, cases, options, shared, device, found);
   if (verify::passed(results)) return;
   throw Error(ExitCode::validation,
               "results on {}: {}; allowed: none wrong or failed, at least one ok", device.name,
@@ -194,6 +272,15 @@ void add_check(CLI::App& app, Shared& shared) {
              {1e-3, 1e6, "0.001..1e6 s"});
   command->add_flag("--list", options->list, "print the names of the comparisons and end");
   add(*command, "--claims", "DIR", options->claims, "folder shared with other helpers")->group("");
+  CLI::Option* capsules =
+      add(*command, "--capsules", "DIR", options->capsules,
+          "new folder for a capsule of each comparison that is wrong or failed: a folder that "
+          "replays it without clpv");
+  add(*command, "--capsule", "NAME", options->capsule,
+      "also a capsule of this comparison, 'STAGE NAME' of --list; repeatable")
+      ->needs(capsules);
+  add(*command, "--record", "DIR", options->record, "folder of the capsules")->group("");
+  command->add_option("--only", options->choice.only, "numbers of comparisons")->group("");
   add_format(*command, options->format);
   add(*command, "--junit", "FILE.xml", options->junit,
       "output file in JUnit format, one test case per result");

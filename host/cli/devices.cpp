@@ -2,13 +2,17 @@
 // clpv devices: lists all OpenCL devices and their capabilities.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "device/device.hpp"
+#include "device/driver_files.hpp"
 #include "support/error.hpp"
 #include "support/print.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace clpv {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Device, index, platform_index, device_index, platform, name,
@@ -17,7 +21,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Device, index, platform_index, device_index, 
 
 namespace {
 
-nlohmann::json to_json(const DeviceList& list) {
+nlohmann::json to_json(const DeviceList& list, const std::vector<FaultyDriver>& faulty) {
+  nlohmann::json drivers = nlohmann::json::array();
+  for (const FaultyDriver& driver : faulty)
+    drivers.push_back({{"file", driver.file}, {"reason", driver.reason}});
   nlohmann::json devices = nlohmann::json::array();
   for (const Device& d : list.devices) {
     devices.push_back(nlohmann::json(d));
@@ -25,7 +32,8 @@ nlohmann::json to_json(const DeviceList& list) {
   }
   return {{"schema", 1},
           {"devices", devices},
-          {"platforms_without_devices", list.platforms_without_devices}};
+          {"platforms_without_devices", list.platforms_without_devices},
+          {"faulty_drivers", drivers}};
 }
 
 const char* yes_no(bool value) {
@@ -53,16 +61,24 @@ void add_devices(CLI::App& app, Shared& shared) {
       "devices", "List all OpenCL devices and their capabilities; with --device, the selected one");
   auto format = std::make_shared<std::string>();
   add_format(*command, *format);
-  command->callback([format, &shared] {
+  auto driver = std::make_shared<std::string>();
+  add(*command, "--load-driver", "FILE.icd", *driver, "load this driver and end")->group("");
+  command->callback([format, driver, &shared] {
+    if (!driver->empty()) return load_driver(*driver);
+    const std::vector<FaultyDriver> faulty = faulty_drivers();
+    std::optional<ScratchFolder> others;  // where a driver would end this process
+    if (std::ranges::count(faulty, true, &FaultyDriver::ends_process) > 0)
+      leave_out(faulty, others.emplace().path());
     DeviceList list = list_devices();
     if (!shared.device.empty()) {
       list = {{choose_device(list.devices, shared.device)}, {}};
     }
     if (*format == "json") {
-      print_json(to_json(list).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+      print_json(to_json(list, faulty).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
                  "\n");
     } else {
       print(list);
+      for (const FaultyDriver& each : faulty) print_data("-  {}: {}\n", each.file, each.reason);
     }
     if (list.devices.empty())
       throw Error(ExitCode::device,

@@ -23,6 +23,16 @@ cl::Kernel& Kernel::built() {
   return kernel_;
 }
 
+void Kernel::record(const cl::Memory& memory) {
+  if (Recorder* recorder = session_->recorder())
+    recorder->set_argument(kernel_, argument_count_, memory);
+}
+
+void Kernel::record(std::span<const std::byte> value) {
+  if (Recorder* recorder = session_->recorder())
+    recorder->set_argument(kernel_, argument_count_, value);
+}
+
 void Kernel::launch(const cl::NDRange& global, const cl::NDRange& local) {
   if (!claimed()) return;
   if (argument_count_ != parameter_count_) {

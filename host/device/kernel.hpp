@@ -5,6 +5,7 @@
 #include <CL/opencl.hpp>
 #include <concepts>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 
@@ -47,7 +48,7 @@ class Kernel {
   template <KernelArgument... Arguments>
   Kernel& add(const Arguments&... arguments) {
     if (!claimed()) return *this;
-    (built().setArg(argument_count_++, as_cl(arguments)), ...);
+    (set_next(as_cl(arguments)), ...);
     return *this;
   }
 
@@ -64,6 +65,18 @@ class Kernel {
   static const Handle& as_cl(const DeviceMemory<Handle>& memory) {
     return memory.handle();
   }
+  template <typename T>
+  void set_next(const T& argument) {
+    built().setArg(argument_count_, argument);
+    if constexpr (std::derived_from<T, cl::Memory>)
+      record(argument);
+    else
+      record(std::as_bytes(std::span(&argument, 1)));
+    ++argument_count_;
+  }
+  /// Adds the argument to the session's recording.
+  void record(const cl::Memory& memory);
+  void record(std::span<const std::byte> value);
   cl::Kernel& built();
   bool claimed() const;  ///< Session::claims
 

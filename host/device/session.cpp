@@ -102,6 +102,10 @@ Session::~Session() {
   }
 }
 
+void Session::record(const std::filesystem::path& folder) {
+  recorder_ = std::make_unique<Recorder>(folder, queue_);
+}
+
 std::shared_ptr<Program> Session::describe(const ProgramSource& source) {
   ProgramSource specialised = source;
   if (!source.literals.defined().contains("CLPV_W"))
@@ -224,9 +228,11 @@ void Session::build(Program& program) {
   dump(program.source, program.text);
   const Uninterruptible compiling("this kernel");
   const auto start = std::chrono::steady_clock::now();
+  if (recorder_) recorder_->add_program(program.source.file, program.source.options, program.text);
   program.stored = load(program);
   if (!program.stored)
     program.built = build_program(context_, device_, program.source, program.text);
+  if (recorder_) recorder_->built(program.built);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;
   build_ms_ += elapsed.count();
@@ -307,7 +313,8 @@ Buffer Session::buffer(std::size_t bytes, const std::string& what) {
   try {
     const Buffer made(cl::Buffer(context_, CL_MEM_READ_WRITE, bytes),
                       std::make_shared<MemoryShare>(use_, bytes));
-    if (compilation_.claims) queue_.enqueueFillBuffer(made.handle(), cl_uchar{0}, 0, bytes);
+    if (compilation_.claims || recorder_)
+      queue_.enqueueFillBuffer(made.handle(), cl_uchar{0}, 0, bytes);
     // Oclgrind 21.10's memory checker confuses a new buffer at a freed address with the old one and
     // its size.
     if (oclgrind()) retained_.push_back(made);
@@ -395,6 +402,7 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global,
   if (global.dimensions() == 3) {
     rounded = cl::NDRange(round_up(g[0], l[0]), round_up(g[1], l[1]), round_up(g[2], l[2]));
   }
+  if (recorder_) recorder_->begin_launch(kernel, rounded, local);
   cl::Event event;
   try {
     queue_.enqueueNDRangeKernel(kernel, cl::NullRange, rounded, local, nullptr, &event);
@@ -402,6 +410,7 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global,
     throw cl_error(error, fmt::format("kernel '{}' on {}",
                                       kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(), device_.name));
   }
+  if (recorder_) recorder_->end_launch();
   timeline_.add(event);
 }
 

@@ -5,6 +5,7 @@
 #include <CL/opencl.hpp>
 #include <array>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "device/memory.hpp"
 #include "device/program.hpp"
 #include "device/program_cache.hpp"
+#include "device/recorder.hpp"
 #include "device/timeline.hpp"
 #include "support/error.hpp"
 #include "support/helpers.hpp"
@@ -67,6 +69,12 @@ class Session {
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
+
+  /// Records all that follows in `folder`. Buffers then start with zeros. Requires that nothing is
+  /// built yet.
+  void record(const std::filesystem::path& folder);
+  /// Null unless the session records.
+  Recorder* recorder() { return recorder_.get(); }
 
   const Device& device() const { return device_; }
   cl::Context& context() { return context_; }
@@ -194,6 +202,7 @@ class Session {
 
   std::optional<ProgramCache> cache_;
   Compilation compilation_;
+  std::unique_ptr<Recorder> recorder_;
   CompiledMarks marks_;
   bool helped_ = false;                                       ///< helpers compiled
   std::map<std::string, std::shared_ptr<Program>> programs_;  ///< by ProgramCache::key

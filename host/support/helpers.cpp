@@ -16,6 +16,7 @@
 #include "support/input_file.hpp"
 #include "support/output_file.hpp"
 #include "support/text.hpp"
+#include "support/this_program.hpp"
 
 namespace clpv {
 namespace {
@@ -32,6 +33,10 @@ std::string& helper_program() {
 }
 
 }  // namespace
+
+const std::string& this_program() {
+  return helper_program();
+}
 
 void set_helper_program(std::string file) {
   helper_program() = std::move(file);

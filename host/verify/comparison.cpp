@@ -21,6 +21,16 @@ Deviation compare_volumes(std::span<const float> found, std::span<const double> 
                   at / side / side % side, at / side / side / side, found[at], expected[at])};
 }
 
+std::vector<glm::dvec3> compared_directions() {
+  std::vector<glm::dvec3> directions;
+  for (int neighbour = 0; neighbour < 27; ++neighbour) {
+    if (neighbour == 13) continue;  // the cell itself
+    directions.push_back(
+        glm::normalize(glm::dvec3(neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1)));
+  }
+  return directions;
+}
+
 Deviation compare_functions(std::span<const float> found, std::span<const double> expected,
                             std::span<const double> other, int n, int numbers,
                             const std::function<std::vector<double>(const glm::dvec3&)>& weights,
@@ -29,10 +39,7 @@ Deviation compare_functions(std::span<const float> found, std::span<const double
   double largest = 0;
   WorstError worst;
   Deviation result{0, allowed};
-  for (int neighbour = 0; neighbour < 27; ++neighbour) {
-    if (neighbour == 13) continue;  // the cell itself
-    const glm::dvec3 w =
-        glm::normalize(glm::dvec3(neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1));
+  for (const glm::dvec3& w : compared_directions()) {
     const std::vector<double> b = weights(w);
     for (std::size_t at = 0; at < found.size() / size; ++at) {
       double value = 0, wanted = 0, or_wanted = 0;

@@ -43,6 +43,9 @@ WorstError worst_difference(std::size_t count, const Found& found, const Wanted&
 Deviation compare_volumes(std::span<const float> found, std::span<const double> expected, int n,
                           double allowed = 0);
 
+/// Returns the 26 directions of compare_functions().
+std::vector<glm::dvec3> compared_directions();
+
 /// Compares the functions that volumes represent, in 26 directions. With an ill-conditioned Gram
 /// matrix, coefficients differ while the functions agree. `numbers`: values per sample and channel.
 /// `weights`: their weights in a direction. `other`: a second reference result, as accurate as

@@ -34,6 +34,26 @@ SceneData emissive_soup() {
   return scene;
 }
 
+/// Sums of squares are at most what compare_scene() allows where each number is.
+void expect_points(Session& session, const Surface& points,
+                   const std::vector<reference::EmittedPoint>& expected, double largest) {
+  const double allowed = tolerance("emit");
+  Ranges places, normals, fluxes;
+  const auto append = [](Ranges& ranges, const glm::dvec3& value, double error) {
+    for (int k = 0; k < 3; ++k) ranges.push_back({value[k] - error, value[k] + error});
+    ranges.push_back({});
+  };
+  for (const reference::EmittedPoint& point : expected) {
+    append(places, point.position, 10 * allowed);
+    append(normals, point.normal, allowed);
+    append(fluxes, double{kScale} * point.flux,
+           double{kScale} * (2 * point.tolerance + allowed * largest));
+  }
+  session.recorder()->expect(points.position.handle(), "float", places);
+  session.recorder()->expect(points.normal.handle(), "float", normals);
+  session.recorder()->expect(points.colour.handle(), "float", fluxes);
+}
+
 Deviation compare_scene(Session& session, const SceneData& scene) {
   const std::vector<ClpvGrid> grids = {{{-1, 2, 2.5f}, 0.5f, kEmitGrid, {}},
                                        {{-2, 1, 1.5f}, 1, kEmitGrid, {}}};
@@ -47,6 +67,7 @@ Deviation compare_scene(Session& session, const SceneData& scene) {
   for (const reference::EmittedPoint& point : expected)
     largest = std::max({largest, point.flux.x, point.flux.y, point.flux.z});
   Deviation result{0, tolerance("emit")};
+  if (session.recorder() != nullptr) expect_points(session, emitter.points(), expected, largest);
   for (std::size_t i = 0; i < found.normal.size(); ++i) {
     const reference::EmittedPoint wanted =
         i < expected.size() ? expected[i] : reference::EmittedPoint{};

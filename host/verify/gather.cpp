@@ -14,6 +14,7 @@
 #include "reference/gather.hpp"
 #include "reference/view.hpp"
 #include "verify/check.hpp"
+#include "verify/expected.hpp"
 #include "verify/tolerances.hpp"
 
 namespace clpv::verify {
@@ -100,9 +101,10 @@ Job gather_job(Session& session, const GatherProblem& problem, const Share& shar
   job.compare = [p, &session, share] {
     const GatherProblem& q = p->problem;
     const Values expected = share([&] { return expected_pixels(*p); });
+    const double allowed = tolerance(compared_as(q.options), q.options.format.storage);
+    expect_pixels(session, p->irradiance, *expected, allowed, q.every);
     return compare_pixels(session.read<cl_float4>(p->irradiance, p->pixels()), *expected,
-                          q.image->view.width,
-                          tolerance(compared_as(q.options), q.options.format.storage), q.every);
+                          q.image->view.width, allowed, q.every);
   };
   return job;
 }

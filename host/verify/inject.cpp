@@ -17,6 +17,7 @@
 #include "reference/view.hpp"
 #include "verify/check.hpp"
 #include "verify/comparison.hpp"
+#include "verify/expected.hpp"
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
@@ -162,8 +163,10 @@ Deviation compare(Session& session, const InjectWork& p, const std::vector<doubl
       return light ? basis.evaluate(w) : blocking_weights(o.blocking, basis, o.lobes, w);
     };
     const VolumeShape& shape = volume.shape();
-    const Deviation found = compare_functions(values, merged, light ? merged : all.last(size),
-                                              shape.n, shape.coefficients, weights);
+    const auto other = light ? merged : all.last(size);
+    expect_functions(session, volume, merged, other, weights, result.allowed);
+    const Deviation found =
+        compare_functions(values, merged, other, shape.n, shape.coefficients, weights);
     result.take(found.worst,
                 [&] { return fmt::format("{}, {}", light ? "light" : "geometry", found.place); });
   };

@@ -11,6 +11,7 @@
 #include "pipeline/gather/gather.hpp"
 #include "reference/medium.hpp"
 #include "verify/check.hpp"
+#include "verify/expected.hpp"
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
@@ -47,6 +48,7 @@ Deviation compare_medium(Session& session, const ClpvMedium& medium) {
   for (const glm::dvec3& wanted :
        reference::scattered_light(*basis, options, {medium, lights, light.cascades}, image))
     append_pixel(expected, wanted, 1);
+  expect_pixels(session, pixels, expected, tolerance("medium"));
   return compare_pixels(session.read<cl_float4>(pixels, image.depth.size()), expected,
                         image.view.width, tolerance("medium"));
 }

@@ -15,6 +15,7 @@
 #include "reference/gather.hpp"
 #include "reference/near.hpp"
 #include "verify/check.hpp"
+#include "verify/expected.hpp"
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
@@ -104,19 +105,21 @@ Deviation compare_near(Session& session, const NearCase& variant) {
       *basis, options, {scene, materials, lights, light.cascades}, image,
       reference::gather(*basis, TransportKind::sweep, options.gather, light.cascades, image));
   const std::vector<cl_float4> found = session.read<cl_float4>(irradiance, image.depth.size());
-  std::vector<double> expected;
+  std::vector<double> expected, recorded;
   std::size_t certain = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool unsure = wanted.uncertain[i];
     const glm::dvec3 there(found[i].s[0], found[i].s[1], found[i].s[2]);
     certain += unsure ? 0 : 1;
     append_pixel(expected, unsure ? there : wanted.irradiance[i], found[i].s[3]);
+    append_pixel(recorded, unsure ? glm::dvec3(NAN) : wanted.irradiance[i], NAN);
   }
   const double share = static_cast<double>(certain) / static_cast<double>(found.size()),
                allowed = tolerance("near", variant.format.storage);
   if (share < kLeastCertain)
     return {1, allowed,
             fmt::format("rounding may decide all but {:.0f} % of the pixels", 100 * share)};
+  expect_pixels(session, irradiance, recorded, allowed);
   return compare_pixels(found, expected, image.view.width, allowed);
 }
 

@@ -14,6 +14,7 @@
 #include "reference/rasterize.hpp"
 #include "scene/light_kind.hpp"
 #include "verify/check.hpp"
+#include "verify/expected.hpp"
 #include "verify/tolerances.hpp"
 
 namespace clpv::verify {
@@ -182,9 +183,10 @@ CheckResults compare_camera(Session& session, const SceneData& scene, const std:
   Rasterizer rasterizer(session, upload_scene(session, scene));
   Surface surface = make_surface(session, view, RsmFormat::float32, true);
   rasterizer.rasterize_camera(surface);
+  const reference::RasterizedImage expected = reference::rasterize_camera(scene, view);
+  expect_surface(session, surface, expected.image, expected.uncertain, tolerance("rasterize"));
   CheckResults results;
-  append(results, read_surface(session, surface), reference::rasterize_camera(scene, view),
-         "camera/" + name);
+  append(results, read_surface(session, surface), expected, "camera/" + name);
   return results;
 }
 
@@ -195,10 +197,12 @@ CheckResults compare_light(Session& session, const SceneData& scene, const ClpvL
   rasterizer.rasterize_rsm(light, surface);
   const SurfaceImage device = read_surface(session, surface);
   const reference::RasterizedImage expected = reference::rasterize_rsm(scene, light, view);
+  expect_surface(session, surface, expected.image, expected.uncertain, tolerance("rasterize"));
   CheckResults results;
   append(results, device, expected, "rsm/" + name);
   Buffer depth = session.buffer(device.depth.size() * sizeof(float), "check: shadow map");
   rasterizer.rasterize_shadow(view, depth);
+  expect_depths(session, depth, expected.image.depth, expected.uncertain, tolerance("rasterize"));
   SurfaceImage shadow = expected.image;
   shadow.depth = session.read<float>(depth, device.depth.size());
   append(results, shadow, expected, "shadow/" + name);

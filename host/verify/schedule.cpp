@@ -152,7 +152,14 @@ Cases CheckChoice::cases() const {
     throw Error(ExitCode::usage,
                 "--match {}: no comparison has it; clpv check --list shows their names",
                 fmt::join(match, " "));
-  return all;
+  if (only.empty()) return all;
+  Cases chosen;
+  for (const std::size_t number : only) {
+    if (number >= all.size())
+      throw Error(ExitCode::usage, "--only {}: allowed: less than {}", number, all.size());
+    chosen.push_back(all[number]);
+  }
+  return chosen;
 }
 
 std::vector<std::string> CheckChoice::arguments() const {
@@ -164,6 +171,7 @@ std::vector<std::string> CheckChoice::arguments() const {
   }
   if (thorough) arguments.push_back("--thorough");
   if (preset) arguments.push_back(fmt::format("--preset={}", name_of(*preset)));
+  for (const std::size_t number : only) arguments.push_back(fmt::format("--only={}", number));
   return arguments;
 }
 
@@ -180,12 +188,13 @@ void run_in_helpers(const Cases& cases, const std::vector<std::string>& argument
   Dispatch(cases, arguments, limit).run(finished);
 }
 
-void help(const Cases& cases, Session& session, const Claims& claims) {
+void help(const Cases& cases, const std::function<CheckResults(const Case&)>& run,
+          const Claims& claims) {
   const auto run_stage = [&](Stage stage) {
     for (std::size_t number = 0; number < cases.size(); ++number) {
       if (cases[number].stage != stage || !claims.take(claim_of(number))) continue;
       nlohmann::json results = nlohmann::json::array();
-      for (const CheckResult& result : run_case(cases[number], session))
+      for (const CheckResult& result : run(cases[number]))
         results.push_back(to_json(result));
       claims.finish(claim_of(number), results.dump());
     }

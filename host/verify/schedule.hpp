@@ -19,6 +19,7 @@ struct CheckChoice {
   std::vector<std::string> match;    ///< texts that names must contain
   bool thorough = false;             ///< thorough_scope()
   std::optional<PresetName> preset;  ///< only its combination of options
+  std::vector<std::size_t> only;     ///< numbers among those that all others choose; empty: all
 
   /// Returns the chosen cases in order. Throws Error(usage) if there is none.
   Cases cases() const;
@@ -40,7 +41,8 @@ void run_in_helpers(const Cases& cases, const std::vector<std::string>& argument
 
 /// The work of a helper: takes whole stages, since their cases share kernels, and then single cases
 /// of stages that others took, until none is left.
-void help(const Cases& cases, Session& session, const Claims& claims);
+void help(const Cases& cases, const std::function<CheckResults(const Case&)>& run,
+          const Claims& claims);
 
 /// Keys: stage, variant, status, passed, worst, allowed, place, reason, seconds. NaN becomes null.
 nlohmann::json to_json(const CheckResult& result);

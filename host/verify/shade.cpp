@@ -11,6 +11,7 @@
 #include "reference/shade.hpp"
 #include "support/named_enum.hpp"
 #include "verify/check.hpp"
+#include "verify/expected.hpp"
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
@@ -94,6 +95,7 @@ Deviation compare_view(Session& session, Show show, std::optional<std::size_t> c
   for (const glm::dvec4& pixel :
        reference::shade(show, image, reference::direct_irradiance(inputs.lights, image), indirect))
     append_pixel(expected, glm::dvec3(pixel), pixel.w);
+  expect_pixels(session, shown, expected, tolerance("shade"));
   return compare_pixels(session.read<cl_float4>(shown, pixels), expected, image.view.width,
                         tolerance("shade"));
 }

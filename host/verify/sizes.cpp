@@ -41,6 +41,9 @@ Deviation compare_sizes(Session& session) {
   Kernel(session, {"sizes.cl"}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));
   const auto device = session.read<std::uint32_t>(bytes, count);
 
+  Ranges ranges;
+  for (const Place& place : kHost) ranges.push_back({double(place.bytes), double(place.bytes)});
+  if (session.recorder() != nullptr) session.recorder()->expect(bytes.handle(), "uint", ranges);
   Deviation result{0, tolerance("sizes")};
   for (std::size_t i = 0; i < count; ++i) {
     const double error =

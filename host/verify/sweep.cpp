@@ -25,6 +25,7 @@
 #include "reference/sweep.hpp"
 #include "verify/check.hpp"
 #include "verify/comparison.hpp"
+#include "verify/expected.hpp"
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
@@ -271,8 +272,9 @@ Job sweep_job(Session& session, const SweepProblem& problem, const Share& share)
     Deviation result{0, tolerance(p->bounces() ? "bounce" : "sweep", o.format.storage)};
     for (std::size_t i = 0; i < p->swept.size(); ++i) {
       const std::vector<float> found = p->swept[i].read(session);
-      const Deviation apart = compare_volumes(
-          found, std::span(*expected).subspan(i * found.size(), found.size()), o.grid);
+      const auto wanted = std::span(*expected).subspan(i * found.size(), found.size());
+      expect(session, p->swept[i], ranges_about(wanted, result.allowed));
+      const Deviation apart = compare_volumes(found, wanted, o.grid);
       result.take(apart.worst, [&] { return fmt::format("cascade {} {}", i, apart.place); });
     }
     return result;

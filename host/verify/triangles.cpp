@@ -15,6 +15,7 @@
 #include "reference/reflectors.hpp"
 #include "reference/visibility.hpp"
 #include "verify/check.hpp"
+#include "verify/expected.hpp"
 #include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
@@ -50,6 +51,10 @@ Deviation compare_blockers(Session& session, const VolumeFormat& format) {
       .update(0, kTrianglesCells, geometry);
   const std::vector<float> found = geometry.read(session);
   const reference::BlockerBounds expected = reference::voxelize_blockers(scene, kTrianglesCells);
+  Ranges ranges;
+  for (std::size_t at = 0; at < found.size(); ++at)
+    ranges.push_back({expected.lower.values[at], expected.upper.values[at]});
+  expect(session, geometry, ranges);
   Deviation result{0, tolerance("blockers", format.storage)};
   for (std::size_t at = 0; at < found.size(); ++at) {
     const double share = found[at], lower = expected.lower.values[at],
@@ -73,6 +78,13 @@ Deviation compare_reflectors(Session& session, const VolumeFormat& format) {
   const reference::ReflectingAreas expected =
       reference::voxelize_reflectors(scene, kTrianglesCells);
   Deviation result{0, tolerance("reflectors", format.storage)};
+  Ranges ranges;
+  for (std::size_t at = 0; at < found.size(); ++at) {
+    const double wanted = expected.areas.values[at],
+                 tolerated = expected.tolerance.values[at] + result.allowed;
+    ranges.push_back({wanted - tolerated, wanted + tolerated});
+  }
+  expect(session, reflectors, ranges);
   for (std::size_t at = 0; at < found.size(); ++at) {
     const double wanted = expected.areas.values[at], tolerated = expected.tolerance.values[at];
     result.take(std::abs(found[at] - wanted) - tolerated, [&] {
@@ -95,6 +107,11 @@ Deviation compare_visibility(Session& session) {
   visibility.update(kCascade, kTrianglesCells);
   const std::size_t bytes = visibility_bytes(kTrianglesGrid);
   const auto found = session.read<std::uint8_t>(visibility.masks(), bytes * (kCascade + 1));
+  Ranges ranges(kCascade * bytes);
+  for (std::size_t point = 0; point < bytes; ++point)
+    ranges.push_back({double(expected.lower[point]), double(expected.upper[point])});
+  if (session.recorder() != nullptr)
+    session.recorder()->expect(visibility.masks().handle(), "bits", ranges);
   Deviation result{0, tolerance("visibility")};
   for (std::size_t point = 0; point < bytes; ++point) {
     const std::uint8_t bits = found[kCascade * bytes + point], lower = expected.lower[point],

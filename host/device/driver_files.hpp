@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// The .icd files that name OpenCL drivers, and those among them that cannot be loaded.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace clpv {
+
+/// A driver that the loader leaves out silently, or that ends the process.
+struct FaultyDriver {
+  std::string file, reason;
+  bool ends_process = false;
+};
+
+/// Returns the .icd files of OCL_ICD_VENDORS (a file or a folder), by default of
+/// /etc/OpenCL/vendors, in the order of their names.
+std::vector<std::filesystem::path> driver_files();
+
+/// Loads each driver in a child process first. Without set_helper_program() none is loaded, and
+/// only files that are missing or of another machine are found.
+std::vector<FaultyDriver> faulty_drivers();
+
+/// The work of that child process. Throws Error(device) with the linker's words.
+void load_driver(const std::filesystem::path& icd_file);
+
+/// Lets the loader find only the other drivers, from now on. `folder`: one without .icd files.
+void leave_out(const std::vector<FaultyDriver>& faulty, const std::filesystem::path& folder);
+
+}  // namespace clpv
