@@ -151,14 +151,19 @@ RenderOptions small_frame(Bounces bounces, int cascades) {
   return options;
 }
 
-double irradiance(const RenderOptions& options, const char* file = "scenes/cornell.json") {
-  const SceneData scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / file);
+/// Sum of the irradiance of all pixels.
+double irradiance(const RenderOptions& options, const SceneData& scene, const SceneCamera& camera) {
   Frame frame(test_session(), scene, options);
-  frame.render(scene.camera(""));
+  frame.render(camera);
   const std::vector<float> pixels = frame.read(Show::irradiance);
   double sum = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) sum += i % 4 == 3 ? 0.0 : double{pixels[i]};
   return sum;
+}
+
+double irradiance(const RenderOptions& options, const char* file = "scenes/cornell.json") {
+  const SceneData scene = load_scene(std::filesystem::path(CLPV_SOURCE_DIR) / file);
+  return irradiance(options, scene, scene.camera(""));
 }
 
 // A lamp close under a ceiling: path tracing finds 1.29 times the light of two bounces. It was 1.65
@@ -168,6 +173,33 @@ TEST(BouncedFrame, LaterBouncesLeaveALamp) {
   RenderOptions two = small_frame(Bounces::two, 2), all = small_frame(Bounces::all, 2);
   two.grid = all.grid = 32, two.cascade_size = all.cascade_size = 2;
   EXPECT_NEAR(irradiance(all, lamp) / irradiance(two, lamp), 1.29, 0.15);
+}
+
+/// Mean of irradiance() by all bounces over that by one, in a closed box that emits on all of its
+/// faces: eight cells of the coarsest of three cascades along each edge, seen by an eye that has one
+/// face within the finest cascade.
+double furnace_series(float albedo) {
+  SceneData scene;
+  const unsigned material = add_material(scene, glm::vec3(albedo));
+  for (float& emitted : scene.materials[material].emissive) emitted = 1;
+  add_box(scene, glm::vec3(-4.1f, -3.9f, -4.05f), 8, material);
+  const auto light = [&](Bounces bounces) {
+    RenderOptions options = small_frame(bounces, 3);
+    options.cascade_size = 4;
+    return irradiance(options, scene, camera_at({-2.5f, 0.4f, 0.7f}, {0.2f, -0.1f, 1}));
+  };
+  return light(Bounces::all) / light(Bounces::one);
+}
+
+// The series 1 + a + a^2 + ... over three cascades. Errors grow with 1 / (1 - a): a white furnace may
+// be too dark, never too bright.
+TEST(BouncedFrame, FurnacesOfThreeCascadesMatchTheirClosedForm) {
+  EXPECT_NEAR(furnace_series(0.2f) * 0.8, 1, 0.02);
+  EXPECT_NEAR(furnace_series(0.5f) * 0.5, 1, 0.02);
+  EXPECT_NEAR(furnace_series(0.8f) * 0.2, 1, 0.05);
+  const double white = furnace_series(0.95f) * 0.05;
+  EXPECT_LE(white, 1);
+  EXPECT_GE(white, 0.8);
 }
 
 // A finer cascade takes the coarser one's bounced light through its border once, and adds only its
