@@ -162,12 +162,6 @@ std::vector<std::uint8_t> validity(pathtracer::PointTracer& tracer,
   return valid;
 }
 
-std::vector<glm::dvec3> positions_of(const ProbeGrid& grid) {
-  std::vector<glm::dvec3> positions;
-  for (std::size_t i = 0; i < grid.size(); ++i) positions.push_back(grid.position(i));
-  return positions;
-}
-
 BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,
                     const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate) {
   BakedProbes baked{.grid = grid, .coefficients = {}, .valid = std::move(valid)};

@@ -62,9 +62,6 @@ struct BakedProbes {
 std::vector<std::uint8_t> validity(pathtracer::PointTracer& tracer,
                                    std::span<const glm::dvec3> positions);
 
-/// Positions of all probes.
-std::vector<glm::dvec3> positions_of(const ProbeGrid& grid);
-
 /// Encodes `format`'s integrals, which begin at `first` of each probe. Throws as light_of().
 /// `dilate`: fills probes that are not valid.
 BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,

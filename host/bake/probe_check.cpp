@@ -42,8 +42,10 @@ std::vector<std::pair<glm::dvec3, Random>> places(pathtracer::PointTracer& trace
   return found;
 }
 
-CheckPoints traced(pathtracer::PointTracer& tracer, std::vector<SurfacePoint> points, bool direct,
-                   double& noise) {
+}  // namespace
+
+CheckPoints given_points(pathtracer::PointTracer& tracer, std::vector<SurfacePoint> points,
+                         bool direct, double& noise) {
   CheckPoints check{std::move(points), {}};
   const pathtracer::TracedPoints truth = tracer.irradiance(check.points);
   for (const pathtracer::PointLight& light : truth.points)
@@ -51,8 +53,6 @@ CheckPoints traced(pathtracer::PointTracer& tracer, std::vector<SurfacePoint> po
   noise = truth.noise;
   return check;
 }
-
-}  // namespace
 
 CheckPoints surface_points(pathtracer::PointTracer& tracer, const ProbeGrid& grid,
                            std::size_t count, bool direct, double& noise) {
@@ -66,7 +66,7 @@ CheckPoints surface_points(pathtracer::PointTracer& tracer, const ProbeGrid& gri
         points.push_back(found);
     }
   }
-  return traced(tracer, std::move(points), direct, noise);
+  return given_points(tracer, std::move(points), direct, noise);
 }
 
 CheckPoints air_points(pathtracer::PointTracer& tracer, const ProbeGrid& grid, std::size_t count,
@@ -81,7 +81,7 @@ CheckPoints air_points(pathtracer::PointTracer& tracer, const ProbeGrid& grid, s
     for (const glm::dvec3& normal : {axis, -axis, across, -across, other, -other})
       points.push_back({position, normal});
   }
-  return traced(tracer, std::move(points), direct, noise);
+  return given_points(tracer, std::move(points), direct, noise);
 }
 
 ProbeError error_of(const ProbeFormat& format, const BakedProbes& baked, const CheckPoints& points,
@@ -98,9 +98,9 @@ ProbeError error_of(const ProbeFormat& format, const BakedProbes& baked, const C
     squares += glm::dot(off, off), all += glm::dot(points.truth[i], points.truth[i]);
     for (int c = 0; c < 3; ++c) sum += shown[c], wanted += points.truth[i][c];
   }
-  return {std::sqrt(squares / all), sum / wanted,
-          static_cast<double>(negative) /
-              static_cast<double>(std::max<std::size_t>(points.points.size(), 1))};
+  const auto count = static_cast<double>(std::max<std::size_t>(points.points.size(), 1));
+  return {std::sqrt(squares / all), sum / wanted, static_cast<double>(negative) / count,
+          sum / (3 * count)};
 }
 
 }  // namespace clpv::bake

@@ -24,11 +24,16 @@ CheckPoints surface_points(pathtracer::PointTracer& tracer, const ProbeGrid& gri
 CheckPoints air_points(pathtracer::PointTracer& tracer, const ProbeGrid& grid, std::size_t count,
                        bool direct, double& noise);
 
+/// The points of a file.
+CheckPoints given_points(pathtracer::PointTracer& tracer, std::vector<SurfacePoint> points,
+                         bool direct, double& noise);
+
 /// Errors over all points and channels.
 struct ProbeError {
   double nrmse = 0;     ///< root mean square error over that of the truth; NaN in the dark
   double energy = 0;    ///< sum over that of the truth; NaN in the dark
   double negative = 0;  ///< share of points with a negative channel, which count as 0
+  double mean = 0;      ///< irradiance [W/m^2], over all points and channels
 };
 
 /// `lift`: look-ups lie so many spacings along the normal.

@@ -46,6 +46,13 @@ struct ProbeGrid {
   glm::dvec3 last() const { return position(size() - 1); }
 };
 
+/// Positions of all probes.
+inline std::vector<glm::dvec3> positions_of(const ProbeGrid& grid) {
+  std::vector<glm::dvec3> positions;
+  for (std::size_t i = 0; i < grid.size(); ++i) positions.push_back(grid.position(i));
+  return positions;
+}
+
 /// Trilinear interpolation of `n` numbers per probe at a position [m], which is clamped to the
 /// grid.
 inline std::vector<glm::dvec3> interpolated(const ProbeGrid& grid,

@@ -16,6 +16,7 @@
 namespace clpv::bake {
 namespace {
 
+constexpr double kOffSurfaces = 0.5;       // cells
 constexpr std::size_t kTracedBlock = 512;  // probes
 constexpr std::size_t kLevelProbes = 256;  // for the grid's mean light
 constexpr std::size_t kPointsAtOnce = 1 << 16;
@@ -37,11 +38,13 @@ class Swept : public ProbeSource {
  public:
   Swept(Session& session, const SceneData& scene, const SceneCamera& camera,
         const RenderOptions& options, const ProbeGrid& grid,
-        const std::vector<ProbeFormat>& formats)
+        const std::vector<ProbeFormat>& formats, pathtracer::PointTracer& tracer)
       : session_(session),
         camera_(camera),
         grid_(grid),
         frame_(session, scene, options),
+        places_(tracer.off_surfaces(positions_of(grid),
+                                    kOffSurfaces * options.cascade_size / options.grid)),
         directions_(twelve_directions()) {
     if (options.transport != TransportKind::sweep)
       throw Error(ExitCode::usage, "transport: found '{}', allowed with --from sweep: sweep",
@@ -138,7 +141,7 @@ class Swept : public ProbeSource {
     std::vector<glm::vec4> positions, travels;
     for (const std::size_t probe : probes) {
       for (const glm::dvec3& direction : directions_) {
-        positions.emplace_back(glm::vec3(grid_.position(probe)), 0);
+        positions.emplace_back(glm::vec3(places_[probe]), 0);
         travels.emplace_back(glm::vec3(-direction), 0);
       }
     }
@@ -158,6 +161,7 @@ class Swept : public ProbeSource {
   SceneCamera camera_;
   ProbeGrid grid_;
   Frame frame_;
+  std::vector<glm::dvec3> places_;  // of probes, off surfaces
   std::array<glm::dvec3, 12> directions_;
   Matrix projection_;
   std::vector<glm::dvec3> eyes_;  // of blocks
@@ -216,8 +220,9 @@ class Traced : public ProbeSource {
 std::unique_ptr<ProbeSource> swept_light(Session& session, const SceneData& scene,
                                          const SceneCamera& camera, const RenderOptions& options,
                                          const ProbeGrid& grid,
-                                         const std::vector<ProbeFormat>& formats) {
-  return std::make_unique<Swept>(session, scene, camera, options, grid, formats);
+                                         const std::vector<ProbeFormat>& formats,
+                                         pathtracer::PointTracer& tracer) {
+  return std::make_unique<Swept>(session, scene, camera, options, grid, formats, tracer);
 }
 
 std::unique_ptr<ProbeSource> traced_light(pathtracer::PointTracer& tracer, const ProbeGrid& grid,

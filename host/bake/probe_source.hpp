@@ -35,11 +35,13 @@ class ProbeSource {
 
 /// Light of the volumes of frames whose finest cascades cover the grid. `formats`: whose integrals
 /// follow each other. `options`: of the frames; near field off. Arguments must outlive the source.
+/// Probes have the light half a cell off surfaces: cells that walls cut have too little.
 /// Throws Error(usage) without a sweep, and for a grid that takes more than kMaxBakeFrames.
 std::unique_ptr<ProbeSource> swept_light(Session& session, const SceneData& scene,
                                          const SceneCamera& camera, const RenderOptions& options,
                                          const ProbeGrid& grid,
-                                         const std::vector<ProbeFormat>& formats);
+                                         const std::vector<ProbeFormat>& formats,
+                                         pathtracer::PointTracer& tracer);
 inline constexpr std::size_t kMaxBakeFrames = 4096;
 
 /// Path-traced light. All blocks have the noise relative to the light of the whole grid.

@@ -16,12 +16,12 @@
 #include <optional>
 
 #include "bake/ktx2.hpp"
-#include "bake/probe_check.hpp"
 #include "cli/bake_parts.hpp"
 #include "cli/commands.hpp"
 #include "pipeline/frame/frame_keys.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
+#include "scene/points_file.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
@@ -88,7 +88,7 @@ Light light_from(const Options& options, const SceneData& scene, const SceneCame
         "cells of {:.3g} m are far larger than the spacing of probes, {:.3g} m, and inexact in "
         "small rooms; a smaller --cascade-size or --from pathtrace is better",
         cell_of(frame), least_spacing(grid));
-  light.source = swept_light(*light.session, scene, camera, frame, grid, formats);
+  light.source = swept_light(*light.session, scene, camera, frame, grid, formats, *light.tracer);
   return light;
 }
 
@@ -126,31 +126,6 @@ GridLight computed(const Options& options, Light& light, const ProbeGrid& grid,
   return all;
 }
 
-/// '-' for what is unknown.
-std::string decimal(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
-}
-
-std::string row_of(const ProbeFormat& format, const BakedProbes& baked, const CheckPoints& surfaces,
-                   const CheckPoints& air) {
-  const ProbeError on = error_of(format, baked, surfaces, kSurfaceLift),
-                   off = error_of(format, baked, air, 0);
-  return fmt::format("{:<18}{:>8}{:>7}{:>10}{:>9}{:>9}{:>9}{:>11.1f}\n", format.name, format.size,
-                     6 * format.size, decimal(100 * on.nrmse, 1), decimal(on.energy, 3),
-                     decimal(100 * off.nrmse, 1), decimal(off.energy, 3), 100 * off.negative);
-}
-
-/// Says why errors are unknown.
-void say_unknown(const char* where, const CheckPoints& points) {
-  if (points.points.empty()) {
-    log_warning("no points {} within the bounds that are not inside walls: errors there are '-'",
-                where);
-  } else if (std::ranges::all_of(points.truth,
-                                 [](const glm::dvec3& e) { return e == glm::dvec3(0); })) {
-    log_warning("the truth {} is dark: relative errors there are '-'", where);
-  }
-}
-
 /// Prints the errors of all formats.
 void check(const Options& options, const SceneData& scene, const SceneCamera& camera,
            const Shared& shared) {
@@ -160,33 +135,27 @@ void check(const Options& options, const SceneData& scene, const SceneCamera& ca
     formats.push_back(probe_format(name));
     numbers += formats.back().moments.count;
   }
+  std::vector<SurfacePoint> given;
+  if (!options.points.empty()) {
+    given = read_points(options.points);
+    if (given.empty() || given.size() > pathtracer::kMaxTracedPoints)
+      throw Error(ExitCode::bad_input, "{}: found {} points, allowed: 1 to {}", options.points,
+                  given.size(), pathtracer::kMaxTracedPoints);
+  }
   const ProbeGrid grid = grid_of(options, scene, numbers);
   Light light = light_from(options, scene, camera, grid, formats, shared);
   BlockCache none(std::nullopt, "");
   const GridLight all = computed(options, light, grid, formats, none);
   const std::vector<std::uint8_t> valid = validity(*light.tracer, positions_of(grid));
-  double noise[2] = {};
-  const CheckPoints surfaces = surface_points(*light.tracer, grid, options.check, options.direct,
-                                              noise[0]),
-                    air = air_points(*light.tracer, grid, options.check, options.direct, noise[1]);
-  std::string text =
-      fmt::format("{:<18}{:>8}{:>7}{:>10}{:>9}{:>9}{:>9}{:>11}\n", "format", "numbers", "bytes",
-                  "surface %", "energy", "air %", "energy", "negative %");
+  const Check check(options, *light.tracer, grid, std::move(given));
+  std::string text = check.header();
   std::size_t first = 0;
   for (const ProbeFormat& format : formats) {
-    text +=
-        row_of(format, encoded(format, all, first, grid, valid, !options.no_dilate), surfaces, air);
+    text += check.row(format, encoded(format, all, first, grid, valid, !options.no_dilate));
     first += format.moments.count;
   }
   print_text(text);
-  const glm::dvec3 spacing = grid.spacing();
-  log_info(
-      "{} x {} x {} probes, {:.3g} x {:.3g} x {:.3g} m apart; {} points of surfaces and {} in the "
-      "air, noise {} and {}",
-      grid.count.x, grid.count.y, grid.count.z, spacing.x, spacing.y, spacing.z,
-      surfaces.points.size(), air.points.size() / 6, decimal(noise[0], 4), decimal(noise[1], 4));
-  say_unknown("on surfaces", surfaces);
-  say_unknown("in the air", air);
+  check.report(grid);
 }
 
 void bake_file(const Options& options, const SceneData& scene, const SceneCamera& camera,
@@ -200,8 +169,14 @@ void bake_file(const Options& options, const SceneData& scene, const SceneCamera
   const GridLight all = computed(options, light, grid, formats, cache);
   const BakedProbes baked = encoded(
       format, all, 0, grid, validity(*light.tracer, positions_of(grid)), !options.no_dilate);
-  write_probes(options, scene, format, baked, all);
+  std::optional<Check> check;
+  if (options.check > 0) check.emplace(options, *light.tracer, grid);
+  write_probes(options, scene, format, baked, all, check ? check->error(format, baked) : nullptr);
   cache.clear(light.source->blocks().size());
+  if (check) {
+    print_text(check->header() + check->row(format, baked));
+    check->report(grid);
+  }
   const auto invalid = std::ranges::count(baked.valid, 0);
   log_info("{} x {} x {} probes, {} of them inside walls{}; {:.1f} % of normals negative",
            grid.count.x, grid.count.y, grid.count.z, invalid,
@@ -218,10 +193,13 @@ void bake_file(const Options& options, const SceneData& scene, const SceneCamera
 }
 
 void reject_without_effect(const Options& options) {
-  if (options.output.empty() && options.check == 0)
-    throw Error(ExitCode::usage, "bake: found neither --output nor --check, allowed: one of them");
-  if (!options.output.empty() && options.check > 0)
-    throw Error(ExitCode::usage, "bake: found --output and --check, allowed: one of them");
+  const bool points = !options.points.empty();
+  if (options.output.empty() && options.check == 0 && !points)
+    throw Error(ExitCode::usage,
+                "bake: found none of --output, --check and --points, allowed: one of them");
+  if (points && (!options.output.empty() || options.check > 0))
+    throw Error(ExitCode::usage, "bake: found --points and --{}, allowed: one of them",
+                options.check > 0 ? "check" : "output");
   if (!options.output.empty()) require_extension("--output", options.output, {".ktx2", ".npz"});
   if (options.spacing > 0 && !options.probes.empty())
     throw Error(ExitCode::usage, "bake: found --spacing and --probes, allowed: one of them");
@@ -229,7 +207,7 @@ void reject_without_effect(const Options& options) {
     throw Error(ExitCode::usage, "--{} has no effect with --from pathtrace",
                 options.request.frame.begin()->first);
   for (const CLI::Option* option : options.of_paths) {
-    if (option->count() > 0 && options.from == BakeSource::sweep && options.check == 0)
+    if (option->count() > 0 && options.from == BakeSource::sweep && options.check == 0 && !points)
       throw Error(ExitCode::usage, "{} has no effect with --from sweep", option->get_name());
   }
 }
@@ -246,7 +224,7 @@ void run(const Options& options, const Shared& shared) {
   const SceneData& scene = moving.scene();
   for (const std::string& note : scene.notes) log_info("{}", note);
   const SceneCamera& camera = scene.camera(options.request.camera);
-  if (options.check > 0) {
+  if (options.output.empty()) {
     check(options, scene, camera, shared);
   } else {
     bake_file(options, scene, camera, shared);
@@ -275,9 +253,11 @@ void add_options(CLI::App& command, Options& options) {
   command.add_flag("--no-dilate", options.no_dilate,
                    "keeps the light of probes inside walls, in place of that of their neighbours");
   add_number(command, "--check", "N", options.check,
-             "prints errors of all formats at N points of surfaces and N in the air, in place of "
-             "a file",
+             "errors at N points of surfaces and N in the air: prints those of all formats, or, "
+             "with --output, those of the file, and adds them to FILE.json",
              {1, static_cast<double>(kMaxChecked)});
+  add(command, "--points", "FILE.csv", options.points,
+      "prints the mean irradiance of all formats at points, lines of x,y,z,nx,ny,nz");
   add_seconds(command, "--time", options.time, "time in the scene's animation [s]");
   add_tracing_options(command, options.tracing);
   for (const char* name : {"--spp", "--noise", "--seed"})

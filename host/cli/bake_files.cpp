@@ -18,7 +18,8 @@ nlohmann::json array_of(const glm::dvec3& v) {
 
 /// The description beside the file.
 nlohmann::json described(const Options& options, const SceneData& scene, const ProbeFormat& format,
-                         const BakedProbes& baked, const GridLight& light, double intensity) {
+                         const BakedProbes& baked, const GridLight& light, double intensity,
+                         const nlohmann::json& error) {
   const ProbeGrid& grid = baked.grid;
   const glm::dvec3 middle = (grid.lower + grid.upper) / 2.0, edges = grid.upper - grid.lower,
                    spacing = grid.spacing();
@@ -42,6 +43,7 @@ nlohmann::json described(const Options& options, const SceneData& scene, const P
                          {"dilated", baked.filled && invalid > 0},
                          {"negative", baked.negative},
                          {"intensity", intensity}};
+  if (!error.is_null()) json["error"] = error;
   if (options.from == BakeSource::pathtrace) {
     json["spp"] = light.samples;
     json["noise"] = std::isnan(light.noise) ? nlohmann::json() : nlohmann::json(light.noise);
@@ -94,14 +96,14 @@ std::string description_file(const Options& options) {
 }
 
 void write_probes(const Options& options, const SceneData& scene, const ProbeFormat& format,
-                  const BakedProbes& baked, const GridLight& light) {
+                  const BakedProbes& baked, const GridLight& light, const nlohmann::json& error) {
   const bool ktx2 = suffix_of(options) == ".ktx2";
   const double intensity = ktx2 ? intensity_of(baked) : 1;
   const std::string bytes =
       ktx2 ? ktx2_bytes(texture_of(format, baked, intensity), "clpv " + version())
            : npz_of(format, baked);
   const std::string json =
-      described(options, scene, format, baked, light, intensity).dump(2) + "\n";
+      described(options, scene, format, baked, light, intensity, error).dump(2) + "\n";
   OutputFile data(options.output), text(description_file(options));
   data.write(std::as_bytes(std::span(bytes)));
   text.write(std::as_bytes(std::span(json)));

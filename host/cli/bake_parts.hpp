@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Parts of `clpv bake`: its options, its grid and its files.
+// Parts of `clpv bake`: its options, its grid, its files and its errors.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "bake/bake.hpp"
+#include "bake/probe_check.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
 #include "support/named_enum.hpp"
@@ -26,7 +28,7 @@ struct Options {
   RenderRequest request;
   TracingOptions tracing;
   BakeSource from = BakeSource::sweep;
-  std::string output, bounds, probes, format = "ambient-cube";
+  std::string output, points, bounds, probes, format = "ambient-cube";
   double spacing = 0, time = 0;
   bool direct = false, no_dilate = false;
   std::size_t check = 0;
@@ -45,9 +47,28 @@ ProbeGrid grid_of(const Options& options, const SceneData& scene, std::size_t nu
 /// and finer cascades, unless they are given, until a cell is not larger than the spacing.
 RenderOptions frame_options(const Options& options, const SceneData& scene, const ProbeGrid& grid);
 
-/// Writes the output and its description, or neither.
+/// Points with their truth, for errors: random ones in a grid, or those given.
+class Check {
+ public:
+  Check(const Options& options, pathtracer::PointTracer& tracer, const ProbeGrid& grid,
+        std::vector<SurfacePoint> given = {});
+  /// Lines for people; the truth's too where points are given.
+  std::string header() const;
+  std::string row(const ProbeFormat& format, const BakedProbes& baked) const;
+  /// The numbers of a row of random points; null for what is unknown.
+  nlohmann::json error(const ProbeFormat& format, const BakedProbes& baked) const;
+  /// Logs numbers of points, and why errors are unknown.
+  void report(const ProbeGrid& grid) const;
+
+ private:
+  bool given_;
+  double noise_[2] = {};
+  CheckPoints surfaces_, air_;  // the given ones are surfaces
+};
+
+/// Writes the output and its description, or neither. `error`: null without --check.
 void write_probes(const Options& options, const SceneData& scene, const ProbeFormat& format,
-                  const BakedProbes& baked, const GridLight& light);
+                  const BakedProbes& baked, const GridLight& light, const nlohmann::json& error);
 
 }  // namespace bake_command
 }  // namespace clpv

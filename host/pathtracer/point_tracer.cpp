@@ -24,8 +24,16 @@ constexpr double kSurfaceDistance = 1e-5;  // of the scene's largest edge
 constexpr double kTangential = 1e-3;       // cosine of a surface's normal and the given one
 constexpr double kProbeWeight = 4;         // 1 / (Vertex::Kind::probe's factor)
 constexpr int kSurroundingRays = 128;
+constexpr int kNearRays = 32;       // one within 30 degrees of each direction
+constexpr double kNearReach = 2;    // their length, in distances from a surface
 constexpr std::size_t kBatch = 16;  // points that a thread takes at a time
 constexpr std::uint64_t kPointSeed = 0x706f696e74;
+
+/// Directions that cover the sphere evenly, the first ones too.
+glm::vec3 surrounding(int ray) {
+  return glm::vec3(phase_direction(glm::dvec3(0, 0, 1), 0,
+                                   sobol_point(static_cast<std::uint32_t>(ray), kPointSeed)));
+}
 
 /// Corners of the box about all vertices.
 std::pair<glm::dvec3, glm::dvec3> box_of(const SceneData& scene) {
@@ -313,8 +321,7 @@ std::vector<PointTracer::Surroundings> PointTracer::surroundings(
   impl_->parallel_for(positions.size(), [&](PathSampler&, std::size_t i) {
     const glm::vec3 place = impl_->probe_place(positions[i]);
     for (int ray = 0; ray < kSurroundingRays; ++ray) {
-      const glm::vec3 direction(phase_direction(
-          glm::dvec3(0, 0, 1), 0, sobol_point(static_cast<std::uint32_t>(ray), kPointSeed)));
+      const glm::vec3 direction = surrounding(ray);
       const auto hit = impl_->rays.intersect(place, direction, 0,
                                              std::numeric_limits<float>::infinity(), Faces::all);
       const double share = 1.0 / kSurroundingRays;
@@ -324,6 +331,28 @@ std::vector<PointTracer::Surroundings> PointTracer::surroundings(
         all[i].backs += share;
       }
     }
+  });
+  return all;
+}
+
+std::vector<glm::dvec3> PointTracer::off_surfaces(std::span<const glm::dvec3> positions,
+                                                  double distance) {
+  std::vector<glm::dvec3> all(positions.begin(), positions.end());
+  const auto reach = static_cast<float>(kNearReach * distance);
+  impl_->parallel_for(positions.size(), [&](PathSampler&, std::size_t i) {
+    const glm::vec3 place = impl_->probe_place(positions[i]);
+    glm::dvec3 way(0);
+    for (int ray = 0; ray < kNearRays; ++ray) {
+      const auto hit = impl_->rays.intersect(place, surrounding(ray), 0, reach, Faces::all);
+      if (!hit) continue;
+      const glm::dvec3 normal(hit->geometric),
+          from_surface = glm::dvec3(place) + way - glm::dvec3(hit->position);
+      way += std::max(0.0, distance - glm::dot(from_surface, normal)) * normal;
+    }
+    if (way == glm::dvec3(0)) return;
+    const auto opposite = impl_->rays.intersect(place, glm::vec3(way), 0, 2, Faces::all);
+    const double share = opposite ? std::min(1.0, double{opposite->distance} / 2) : 1;
+    all[i] = glm::dvec3(place) + share * way - impl_->by;
   });
   return all;
 }

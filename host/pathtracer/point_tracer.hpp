@@ -77,6 +77,10 @@ class PointTracer {
   };
   std::vector<Surroundings> surroundings(std::span<const glm::dvec3> positions);
 
+  /// Moves positions that are nearer than `distance` [m] to surfaces to that distance, on their own
+  /// side, but at most half-way to what lies there.
+  std::vector<glm::dvec3> off_surfaces(std::span<const glm::dvec3> positions, double distance);
+
   /// The nearest point of a surface along a ray, with the normal on its side; false without one.
   bool hit(const glm::dvec3& origin, const glm::dvec3& direction, SurfacePoint& found);
 
