@@ -102,6 +102,19 @@ TEST(Kernel, ADescribedProgramIsBuiltOnce) {
   EXPECT_EQ(session.build_ms(), built);
 }
 
+TEST(Session, ProgramsOfAnEarlierSessionAreNotBuiltAgain) {
+  const ProgramSource source("sizes.cl", Literals().flag("CLPV_SHARED", true));
+  cl::Program built[2];
+  for (cl::Program& each : built) {
+    Session session(choose_device());
+    const std::shared_ptr<Program> program = session.describe(source);
+    session.build_described();
+    each = program->built;
+  }
+  EXPECT_NE(built[0](), nullptr);
+  EXPECT_EQ(built[0](), built[1]());
+}
+
 TEST(Session, ImpossibleLaunchNamesKernelAndCode) {
   Session session(choose_device());
   const Buffer bytes = session.buffer(1024, "sizes");

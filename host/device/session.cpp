@@ -9,6 +9,7 @@
 
 #include "device/cl_error.hpp"
 #include "device/kernel.hpp"
+#include "device/shared_programs.hpp"
 #include "support/fingerprint.hpp"
 #include "support/interrupt.hpp"
 #include "support/log.hpp"
@@ -77,7 +78,7 @@ void dump(const ProgramSource& source, const std::string& text) {
 
 Session::Session(Device device, std::optional<ProgramCache> cache, Compilation compilation)
     : device_(std::move(device)),
-      context_(device_.handle),
+      context_(shared_context(device_.handle)),
       queue_(context_, device_.handle, device_.profiling_valid ? CL_QUEUE_PROFILING_ENABLE : 0),
       timeline_(device_.profiling_valid),
       cache_(std::move(cache)),
@@ -230,15 +231,23 @@ void Session::build(Program& program) {
   const auto start = std::chrono::steady_clock::now();
   if (recorder_) recorder_->add_program(program.source.file, program.source.options, program.text);
   program.stored = load(program);
-  if (!program.stored)
+  const bool alone = cache_ || compilation_.claims;  // what they store and claim is built by them
+  if (!program.stored && !alone) program.built = shared_program(context_, program.key);
+  const bool built_before = program.built() != nullptr;
+  if (!built_before) {
     program.built = build_program(context_, device_, program.source, program.text);
+    if (!alone) share_program(context_, program.key, program.built);
+  }
   if (recorder_) recorder_->built(program.built);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;
   build_ms_ += elapsed.count();
-  if (!program.stored && !marks_.has(program.key)) note_compiling(program, elapsed.count());
+  if (!built_before && !marks_.has(program.key)) note_compiling(program, elapsed.count());
   log_debug("kernels/{}: {} in {:.1f} ms", program.source.file,
-            program.stored ? "from the cache" : "compiled", elapsed.count());
+            program.stored ? "from the cache"
+            : built_before ? "of an earlier session"
+                           : "compiled",
+            elapsed.count());
 }
 
 /// Explains a long wait for kernels that no earlier run compiled, once for each build_described().

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -251,19 +250,38 @@ void check_extent(std::string_view text, const std::string& file) {
   }
 }
 
-/// Rejects a key that an object has twice: parsers would keep one of its values.
-class UniqueKeys {
+/// Rejects a key that an object has twice: parsers would keep one of its values. Reads events: with
+/// a callback, the parser of nlohmann 3.11 looks through all elements of a list at the end of each.
+class UniqueKeys : public nlohmann::json_sax<json> {
  public:
   explicit UniqueKeys(const std::string& file) : file_(file) {}
 
-  bool operator()(int, json::parse_event_t event, const json& parsed) {
-    if (event == json::parse_event_t::object_start) objects_.emplace_back();
-    if (event == json::parse_event_t::object_end) objects_.pop_back();
-    if (event == json::parse_event_t::key &&
-        !objects_.back().insert(parsed.get<std::string>()).second)
-      reject(file_, {}, fmt::format("duplicate key {}", quoted(parsed)),
+  bool start_object(std::size_t) override {
+    objects_.emplace_back();
+    return true;
+  }
+  bool end_object() override {
+    objects_.pop_back();
+    return true;
+  }
+  bool key(std::string& name) override {
+    if (!objects_.back().insert(name).second)
+      reject(file_, {}, fmt::format("duplicate key {}", quoted(json(name))),
              "unique keys of an object");
     return true;
+  }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(std::int64_t) override { return true; }
+  bool number_unsigned(std::uint64_t) override { return true; }
+  bool number_float(double, const std::string&) override { return true; }
+  bool string(std::string&) override { return true; }
+  bool binary(json::binary_t&) override { return true; }
+  /// The parser that follows says what is wrong.
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override {
+    return false;
   }
 
  private:
@@ -290,7 +308,8 @@ json parse_json(std::string_view text, const std::string& file) {
   check_extent(text, file);
   UniqueKeys unique(file);
   try {
-    return json::parse(text, std::ref(unique));
+    json::sax_parse(text, &unique);
+    return json::parse(text);
   } catch (const json::exception& error) {  // its text has line, column and what was expected
     // "[json.exception.parse_error.101] parse error at line 1, column 2: ...".
     std::string what = error.what();
