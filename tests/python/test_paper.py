@@ -38,9 +38,11 @@ def test_a_verdict_is_made_from_its_points(outcomes, sentence):
 def test_outcomes_of_fresh_measurements_count(monkeypatch):
     numpy = pytest.importorskip(
         "numpy", reason="NumPy is not installed (Debian: apt install python3-numpy)")
-    points = [(0.1, numpy.float64(1) > 0, "a"), (0.4, numpy.float64(0) > 0, "b")]
-    rows = [("light", "statement", "rule", "lambda", "command", lambda read: points)]
-    monkeypatch.setattr(verdicts.judge, "CLAIMS", rows)
+    points = [{"lambda": 0.1, "value": numpy.float64(1)}, {"lambda": 0.4, "value": numpy.float64(0)}]
+    claim = verdicts.judge.Claim("light", "statement", "rule", "lambda", "command",
+                                 lambda read: points, "lambda", lambda each: each["value"] > 0,
+                                 "{value:g}")
+    monkeypatch.setattr(verdicts.judge, "CLAIMS", [claim])
     assert verdicts.judged(None)[0]["verdict"] == "holds for lambda <= 0.1"
 
 

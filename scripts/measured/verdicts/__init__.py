@@ -1,19 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The paper's claims judged by rule (judge.py), a file for each section of
-docs/paper/figures.md."""
-from . import theory, lobes, light, shadows, cost, conclusions  # in the order of the page
+"""The paper's claims judged by rule (judge.py), in the order of docs/paper/figures.md."""
+from . import lobes, light, cost
 from .judge import judged, sentence
 from .light import interval, signed
 
-__all__ = [
-    "judged",
-    "sentence",
-    "interval",
-    "signed",
-    "theory",
-    "lobes",
-    "light",
-    "shadows",
-    "cost",
-    "conclusions",
-]
+__all__ = ["cost", "interval", "judged", "light", "lobes", "sentence", "signed"]
