@@ -19,6 +19,8 @@ struct Job : verify::Job {
   bool own_stages = false;
   /// Called after each run, warm-up included; may be null.
   std::function<void(const std::vector<StageTime>&)> after_run = {};
+  /// Adds numbers that only a run gives; called once, after all runs; may be null.
+  std::function<void(Cost&)> count = {};
   /// Returns further rows, after the job's own; may be null.
   std::function<std::vector<Row>(const Row&)> more_rows = {};
 };

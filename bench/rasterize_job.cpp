@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pathtracer/ray_scene.hpp"
@@ -153,13 +154,23 @@ Job rasterize_job(Session& session, std::shared_ptr<const SceneData> scene,
     for (std::size_t v = 0; v < r->depths.size(); ++v) session.fill_zero(r->depths[v], bytes(v));
   };
   job.run = [r] { r->draw(); };
-  job.compare = [r, &session, bytes] {
+  const auto read_depths = [r, &session, bytes] {
     std::vector<std::vector<float>> depths;
     for (std::size_t v = 0; v < r->depths.size(); ++v)
       depths.push_back(session.read<float>(r->depths[v], bytes(v) / sizeof(float)));
-    return compare_with_rays(r->task, depths);
+    return depths;
   };
+  job.compare = [r, read_depths] { return compare_with_rays(r->task, read_depths()); };
   job.cost = cost_of(r->task);
+  job.count = [r, read_depths](Cost& cost) {
+    RasterCounts counts;
+    r->rasterizer.count(&counts);
+    r->draw();
+    r->rasterizer.count(nullptr);
+    cost.set_up = counts.set_up, cost.listed = counts.listed, cost.entries = counts.entries;
+    for (const std::vector<float>& depths : read_depths())
+      cost.covered += depths.size() - std::ranges::count(depths, 0.0f);
+  };
   return job;
 }
 

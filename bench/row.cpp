@@ -13,7 +13,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Statistics, min, median, p95, max, mad)
 
 namespace verify {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
-                                   triangles, pixels)
+                                   triangles, pixels, covered, set_up, listed, entries)
 }
 
 namespace bench {

@@ -104,6 +104,7 @@ void complete_row(CaseRun& run, const RunnerOptions& options) {
   row.wall_ms = statistics_of(run.wall_ms).median;
   row.cpu_ms /= static_cast<double>(row.samples_ms.size());
   row.cost = run.job.cost;
+  if (run.job.count) run.job.count(row.cost);
   row.host_bytes = peak_host_bytes();
   if (options.ceilings != nullptr) set_ceiling(*options.ceilings, row);
   verify(run);

@@ -6,11 +6,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <climits>
 #include <cmath>
 #include <functional>
 #include <random>
 
 #include "kernels/shared/loops.h"
+#include "kernels/shared/region.h"
 #include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
 #include "tests/support/on_device.hpp"
@@ -318,6 +320,42 @@ TEST(Rasterize, SeveralLaunchesDrawTheSame) {
     const SurfaceImage parts = read_surface(session, surface);
     EXPECT_EQ(whole.depth, parts.depth);
     EXPECT_EQ(whole.normal, parts.normal);
+  }
+}
+
+/// Heaps of 64 triangles, one cluster each, at different depths, some of them behind a wall over
+/// the left half of the view.
+SceneData heaps() {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  SceneData scene;
+  const unsigned material = add_material(scene);
+  for (int heap = 0; heap < 60; ++heap) {
+    const glm::vec3 middle(4 * uniform(random), 4 * uniform(random), -10 + 8 * uniform(random));
+    for (int quad = 0; quad < CLPV_CLUSTER / 2; ++quad) {
+      const glm::vec3 by(uniform(random), uniform(random), 0.2f * uniform(random));
+      add_quad(scene, middle + 0.6f * by, {0.3f, 0, 0.1f}, {0, 0.3f, -0.2f}, material);
+    }
+  }
+  add_quad(scene, {-4, -4, -6}, {4, 0, 0.5f}, {0, 8, -0.5f}, material);
+  return scene;
+}
+
+TEST(Rasterize, HiddenClustersChangeNothing) {
+  const SceneData scene = heaps();
+  Session& session = test_session();
+  for (const int size : {64, 61}) {
+    const ClpvView view = orthographic_square(4, size);
+    const std::size_t count = std::size_t{view.width} * view.height;
+    std::vector<std::vector<float>> depths;
+    for (const unsigned least_hidden : {UINT_MAX, 1u}) {
+      Rasterizer rasterizer(session, upload_scene(session, scene), Rasterizer::kMaxListed,
+                            least_hidden);
+      Buffer depth = session.buffer(count * sizeof(float), "depth");
+      rasterizer.rasterize_shadow(view, depth);
+      depths.push_back(session.read<float>(depth, count));
+    }
+    EXPECT_EQ(depths[0], depths[1]) << size;
   }
 }
 

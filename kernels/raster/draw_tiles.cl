@@ -19,6 +19,7 @@
 // In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers
 //                        per row of a tile, CLPV_TILE rows per tile, tiles row by row; INFINITY and
 //                        UINT_MAX for empty pixels
+// Out:     farthest      largest key of the pixels of each work-item
 // A work-item draws W columns of a tile: all of it with W 8; with W 1 a work-group has eight tiles.
 #include "lanes.h"
 #include "prefetch.h"
@@ -156,7 +157,8 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh,
                          const uint most_entered, __global const ClpvVertex* vertices,
                          __global const ClpvTriangle* triangles,
                          __global const ClpvMaterial* materials, __global const float4* textures,
-                         __global const uint* texels, __global realW* keys, __global uintW* seen) {
+                         __global const uint* texels, __global realW* keys, __global uintW* seen,
+                         __global float* farthest) {
 #if W == 1
   __local float near_keys[CLPV_TILE * CLPV_GROUP];
   __local uint nearest[CLPV_TILE * CLPV_GROUP];
@@ -189,6 +191,31 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh,
     keys[tile_row(at, row, vector)] = tile.keys[row * CLPV_PITCH];
     seen[tile_row(at, row, vector)] = tile.seen[row * CLPV_PITCH];
   }
+  farthest[at * CLPV_TILE_VECTORS + vector] = farthest_of(tile.keys);
+}
+
+// Returns true if some work-item of the tiles of a cluster has pixels behind its nearest key.
+static inline bool may_be_seen(const ClpvView view, const ClpvViewCluster cluster,
+                               __global const float* farthest) {
+  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE;
+  const uint left = cluster.first & 0xffffu, right = cluster.last & 0xffffu;
+  for (uint y = cluster.first >> 16; y <= cluster.last >> 16; ++y) {
+    const uint end = (y * tiles_x + right + 1) * CLPV_TILE_VECTORS;
+    for (uint at = (y * tiles_x + left) * CLPV_TILE_VECTORS; at < end; ++at) {
+      if (!(farthest[at] < cluster.nearest)) return true;
+    }
+  }
+  return false;
+}
+
+// Marks those of `count` clusters from `first` on whose triangles lie behind all that draw_tiles
+// has drawn.
+__kernel void hide_clusters(const ClpvView view, const uint first, const uint count,
+                            __global const float* farthest, __global ClpvViewCluster* clusters) {
+  const uint i = get_global_id(0);
+  if (i >= count) return;
+  const ClpvViewCluster cluster = clusters[first + i];
+  if (!may_be_seen(view, cluster, farthest)) clusters[first + i].number = CLPV_HIDDEN;
 }
 
 // Only depths: a shadow map. One work-item a row of a tile.

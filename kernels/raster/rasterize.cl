@@ -10,8 +10,8 @@
 //
 // In:      vertices, triangles, materials   the scene, in rows of float4: three per vertex, one per
 //                                           triangle
-//          clusters  numbers of the clusters in view, `count` from `first` on; last: number of
-//                    triangles of the scene
+//          clusters  the clusters in view, `count` from `first` on
+//          last      number of triangles of the scene
 //          cull      1: drop back faces of one-sided materials
 // Out:     list      ClpvRasterTriangle of those that may cover the centre of a pixel, in no
 //                    particular order
@@ -57,8 +57,8 @@ static inline void defer(const intW lanes, const uintW triangle, volatile __glob
   }
 }
 
-__kernel void set_up(const ClpvView view, __global const uint* clusters, const uint first,
-                     const uint count, const uint last, const uint cull,
+__kernel void set_up(const ClpvView view, __global const ClpvViewCluster* clusters,
+                     const uint first, const uint count, const uint last, const uint cull,
                      __global const float4* vertices, __global const float4* triangles,
                      __global const ClpvMaterial* materials, volatile __global uint* counts,
                      const uint most_listed, __global ClpvRasterTriangle* list,
@@ -66,9 +66,10 @@ __kernel void set_up(const ClpvView view, __global const uint* clusters, const u
                      volatile __global uint* slice_counts, __global uint* to_clip) {
   const uint item = get_global_id(0), cluster = item / (CLPV_CLUSTER / W);
   if (cluster >= count) return;
+  const uint in_scene = clusters[first + cluster].number;
+  if (in_scene == CLPV_HIDDEN) return;
   const uintW lane = as_uintW(lane_numbers());
-  const uintW number =
-      clusters[first + cluster] * CLPV_CLUSTER + item % (CLPV_CLUSTER / W) * W + lane;
+  const uintW number = in_scene * CLPV_CLUSTER + item % (CLPV_CLUSTER / W) * W + lane;
   const uintW triangle = min(number, (uintW)(last - 1));
   Rows rows;
   gather_rows(triangles, triangle, &rows);

@@ -50,6 +50,15 @@ typedef struct {
   unsigned int triangle;     // index and flags as above
 } ClpvRasterTriangle;
 
+// A triangle cluster in view. Its triangles lie within tiles `first` to `last`, x + 65536 y, and
+// have no key below `nearest`; of parallel views only.
+typedef struct {
+  unsigned int number;  // CLPV_HIDDEN: nothing of it is visible
+  unsigned int first, last;
+  float nearest;
+} ClpvViewCluster;
+#define CLPV_HIDDEN 0xffffffffu
+
 // Words of a ClpvRasterTriangle.
 enum {
   CLPV_NEAREST_WORD = 11,

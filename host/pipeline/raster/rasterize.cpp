@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "kernels/shared/raster.h"
 #include "kernels/shared/region.h"
@@ -17,7 +18,8 @@ constexpr std::size_t kRasterGroup = 64;
 constexpr std::size_t kClippers = 1024;
 constexpr std::size_t kMostAhead = std::size_t{1} << 22;  // triangles (256 MiB); longer lists wait
 constexpr std::size_t kClippedParts = CLPV_CLIP_CORNERS - 2;  // triangles that one can become
-constexpr std::size_t kSpare = 4;  // lists grow by an extra 1/4, since cameras move
+constexpr std::size_t kSpare = 4;      // lists grow by an extra 1/4, since cameras move
+constexpr unsigned kNearestShare = 6;  // 1/6 of the clusters hide others
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
 const ProgramSource kSetUp{"raster/rasterize.cl"}, kBin{"raster/bin_tiles.cl"},
     kDraw{"raster/draw_tiles.cl"};
@@ -46,22 +48,37 @@ float largest_flux(const ClpvLight& light, const ClpvView& view) {
   return flux > 0 ? static_cast<float>(flux) : 1.0f;
 }
 
+/// Moves the nearest clusters to the front, which keep their order, as do the others. Returns their
+/// number.
+unsigned move_nearest_first(std::vector<ClpvViewCluster>& clusters) {
+  std::vector<float> depths;
+  for (const ClpvViewCluster& cluster : clusters) depths.push_back(cluster.nearest);
+  const auto last = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / kNearestShare);
+  std::nth_element(depths.begin(), last, depths.end());
+  return std::stable_partition(clusters.begin(), clusters.end(),
+                               [&](const auto& cluster) { return cluster.nearest <= *last; }) -
+         clusters.begin();
+}
+
 }  // namespace
 
-Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed)
+Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed,
+                       unsigned least_hidden)
     : session_(session),
       scene_(scene),
       max_listed_(max_listed),
+      least_hidden_(least_hidden),
       set_up_(session, kSetUp, "set_up"),
       set_up_clipped_(session, kSetUp, "set_up_clipped"),
       sum_slices_(session, kBin, "sum_slices"),
       scan_slices_(session, kBin, "scan_slices"),
       bin_entries_(session, kBin, "bin_entries"),
       draw_tiles_(session, kDraw, "draw_tiles"),
+      hide_clusters_(session, kDraw, "hide_clusters"),
       resolve_depth_(session, kDraw, "resolve_depth") {
   session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
   session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
-  session_.reserve(clusters_, scene.clusters->bounds().size() * sizeof(cl_uint),
+  session_.reserve(clusters_, scene.clusters->bounds().size() * sizeof(ClpvViewCluster),
                    "clusters of triangles in sight");
   reserve_list(scene.triangle_count / 2 + kRasterGroup);
   reserve_entries(scene.triangle_count + kRasterGroup);
@@ -108,24 +125,56 @@ void Rasterizer::find_visible(const Drawing& drawing) {
   const unsigned slices = slice_count(drawing.view);
   session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
+  session_.reserve(farthest_, pixels / CLPV_TILE / session_.device().lanes * sizeof(cl_float),
+                   "farthest keys of tiles");
   session_.reserve(slice_counts_, (std::size_t{slices} + 1) * sizeof(cl_uint), "slices of tiles");
   session_.reserve(totals_, (slices / chunk_slices(slices) + 1) * sizeof(cl_uint),
                    "slices by chunks");
-  const VisibleClusters visible = list_clusters(drawing.view);
-  if (list_ahead(drawing, visible)) return draw_tiles(drawing.view, true);
-  draw(drawing, 0, visible.count, true);
+  const std::vector<Range> ranges = list_clusters(drawing.view);
+  draw_range(drawing, ranges[0], true);
+  if (ranges.size() > 1) {
+    hide_clusters(drawing.view, ranges[1]);
+    draw_range(drawing, ranges[1], false);
+  }
   drawn_.insert(drawing.kind);
 }
 
-/// Lists the triangle clusters that may be visible.
-Rasterizer::VisibleClusters Rasterizer::list_clusters(const ClpvView& view) {
-  const std::vector<cl_uint> visible =
-      scene_.clusters->which([&](const Bounds& cluster) { return may_be_visible(view, cluster); });
+/// Lists the triangle clusters that may be visible: all of them, or the nearest and the others.
+std::vector<Rasterizer::Range> Rasterizer::list_clusters(const ClpvView& view) {
+  const std::vector<Bounds>& bounds = scene_.clusters->bounds();
+  std::vector<ClpvViewCluster> visible;
+  for (unsigned i = 0; i < bounds.size(); ++i) {
+    if (may_be_visible(view, bounds[i])) visible.push_back(place_cluster(view, bounds[i], i));
+  }
+  const unsigned count = visible.size();
+  const bool hides = view.orthographic != 0 && count >= least_hidden_;
+  const unsigned nearest = hides ? move_nearest_first(visible) : count;
   session_.write(clusters_, visible);
-  VisibleClusters counted{static_cast<unsigned>(visible.size()), 0};
-  for (const cl_uint cluster : visible)
-    counted.clipped += may_be_clipped(view, scene_.clusters->bounds()[cluster]) ? 1 : 0;
-  return counted;
+  std::vector<Range> ranges{{0, nearest}};
+  if (nearest < count) ranges.push_back({nearest, count - nearest});
+  for (Range& range : ranges) {
+    for (unsigned i = 0; i < range.count; ++i)
+      range.clipped += may_be_clipped(view, bounds[visible[range.first + i].number]) ? 1 : 0;
+  }
+  return ranges;
+}
+
+void Rasterizer::draw_range(const Drawing& drawing, const Range& range, bool fresh) {
+  if (counted_ != nullptr) count_set_up(range);
+  if (list_ahead(drawing, range)) return draw_tiles(drawing.view, fresh);
+  draw(drawing, range.first, range.count, fresh);
+}
+
+void Rasterizer::count_set_up(const Range& range) {
+  const auto clusters = session_.read<ClpvViewCluster>(clusters_, range.first + range.count);
+  for (const ClpvViewCluster& cluster : std::span(clusters).subspan(range.first))
+    counted_->set_up += cluster.number == CLPV_HIDDEN ? 0 : CLPV_CLUSTER;
+}
+
+/// Leaves out the clusters of a range that lie behind all that has been drawn.
+void Rasterizer::hide_clusters(const ClpvView& view, const Range& range) {
+  hide_clusters_.set(view, range.first, range.count, farthest_, clusters_)
+      .launch(range.count, kRasterGroup);
 }
 
 /// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of
@@ -176,14 +225,14 @@ bool Rasterizer::list(const Drawing& drawing, unsigned first, unsigned count) {
 
 /// Lists the triangles of the visible clusters without waiting. The list has room for all of them,
 /// but tiles' entries may not fit. Returns false if the host has to wait.
-bool Rasterizer::list_ahead(const Drawing& drawing, const VisibleClusters& visible) {
+bool Rasterizer::list_ahead(const Drawing& drawing, const Range& range) {
   take_counts();
-  const std::size_t most = CLPV_CLUSTER * (visible.count + (kClippedParts - 1) * visible.clipped);
+  const std::size_t most = CLPV_CLUSTER * (range.count + (kClippedParts - 1) * range.clipped);
   if (!ahead_ || !drawn_.contains(drawing.kind) || most > kMostAhead || entered_ > max_listed_)
     return false;
   reserve_list(most);
   reserve_entries(entered_);
-  set_up(drawing, 0, visible.count);
+  set_up(drawing, range.first, range.count);
   bin(drawing.view);
   counting_.push_back(session_.read_later(counts_, CLPV_RASTER_COUNTERS));
   return true;
@@ -210,10 +259,14 @@ void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
   draw_tiles_
       .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, counts_, entry_room(),
            scene_.vertices, scene_.triangles, scene_.materials, scene_.textures, scene_.texels,
-           keys_, seen_)
+           keys_, seen_, farthest_)
       .launch(cl::NDRange(tiles_along(view.width) * (CLPV_TILE / session_.device().lanes),
                           tiles_along(view.height)),
               pixel_group(session_));
+  if (counted_ == nullptr) return;
+  const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
+  counted_->listed += counts[CLPV_LISTED];
+  counted_->entries += counts[CLPV_ENTERED];
 }
 
 void Rasterizer::clear(Surface& surface) {

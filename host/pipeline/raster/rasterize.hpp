@@ -19,6 +19,12 @@
 
 namespace clpv {
 
+/// Triangles whose corners are projected, triangles listed to draw, and their entries: one for each
+/// tile of a triangle's box.
+struct RasterCounts {
+  double set_up = 0, listed = 0, entries = 0;
+};
+
 class Rasterizer {
  public:
   /// Capacity of the triangle lists of all tiles, in entries of 4 bytes. Larger scenes (hundreds of
@@ -26,8 +32,13 @@ class Rasterizer {
   /// result is the same.
   static constexpr std::size_t kMaxListed = std::size_t{1} << 25;
 
+  /// Clusters in an orthographic view from which on it is drawn in two parts: the nearest, then
+  /// those that they do not hide. Below, a second launch takes more time than it saves.
+  static constexpr unsigned kLeastHidden = 512;
+
   /// `scene` must not change while the rasteriser exists. Its handles are copied, not its contents.
-  Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed = kMaxListed);
+  Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed = kMaxListed,
+             unsigned least_hidden = kLeastHidden);
 
   /// Renders the camera's G-buffer from `surface.view`: depth, normal, albedo and, if the surface
   /// has it, emission. Culls back faces unless their material is double-sided. Filters textures
@@ -51,6 +62,9 @@ class Rasterizer {
   /// always wait.
   void draw_ahead(bool ahead) { ahead_ = ahead; }
 
+  /// Adds what later views need to `counts`, and waits for the device to do so; null: does neither.
+  void count(RasterCounts* counts) { counted_ = counts; }
+
  private:
   enum class Kind { camera, rsm, shadow };
   struct Drawing {
@@ -72,13 +86,18 @@ class Rasterizer {
   cl_uint entry_room() const;  ///< capacity in entries
   void clear(Surface& surface);
   void find_visible(const Drawing& drawing);
-  struct VisibleClusters {
-    unsigned count = 0, clipped = 0;  ///< clusters, and those whose triangles may need clipping
+  /// A range of the clusters in view.
+  struct Range {
+    unsigned first = 0, count = 0;
+    unsigned clipped = 0;  ///< those whose triangles may need clipping
   };
-  VisibleClusters list_clusters(const ClpvView& view);
+  std::vector<Range> list_clusters(const ClpvView& view);
+  void draw_range(const Drawing& drawing, const Range& range, bool fresh);
+  void hide_clusters(const ClpvView& view, const Range& range);
+  void count_set_up(const Range& range);
   void draw(const Drawing& drawing, unsigned first, unsigned count, bool fresh);
   bool list(const Drawing& drawing, unsigned first, unsigned count);
-  bool list_ahead(const Drawing& drawing, const VisibleClusters& visible);
+  bool list_ahead(const Drawing& drawing, const Range& range);
   void take_counts();
   void set_up(const Drawing& drawing, unsigned first, unsigned count);
   void bin(const ClpvView& view);
@@ -87,16 +106,18 @@ class Rasterizer {
   Session& session_;
   SceneBuffers scene_;
   std::size_t max_listed_;
+  unsigned least_hidden_;
   Kernel set_up_, set_up_clipped_;
   std::map<Resolving, Kernel> resolve_;
-  Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, resolve_depth_;
+  Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, hide_clusters_, resolve_depth_;
   bool ahead_ = false;
+  RasterCounts* counted_ = nullptr;
   std::set<Kind> drawn_;     ///< kinds of views drawn so far
   std::size_t entered_ = 0;  ///< largest number of entries so far
   /// Counters of views drawn ahead.
   std::deque<std::shared_ptr<const Session::Arriving>> counting_;
   Buffer clusters_, listed_, to_clip_, counts_, entries_, slice_counts_, totals_, binned_, keys_,
-      seen_;
+      seen_, farthest_;
 };
 
 }  // namespace clpv

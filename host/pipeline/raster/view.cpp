@@ -219,6 +219,29 @@ bool may_be_clipped(const ClpvView& view, const Bounds& bounds) {
          (!parallel && reaches(-forward, view.near_depth));
 }
 
+ClpvViewCluster place_cluster(const ClpvView& view, const Bounds& bounds, unsigned number) {
+  const glm::dvec3 eye = vector(view.eye);
+  const glm::dvec3 half = 0.5 * (glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower)),
+                   centre = 0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper)) - eye;
+  const double margin = kRounding * (glm::length(centre) + glm::length(half));
+  const auto least = [&](const glm::dvec3& axis) {
+    return glm::dot(axis, centre) - glm::dot(glm::abs(axis), half) - margin;
+  };
+  /// Tile of the pixel beside a distance from the left or top border.
+  const auto tile = [](double across, double half_extent, int pixels, int beside) {
+    const double pixel = (across / half_extent + 1) * 0.5 * pixels + beside;
+    return static_cast<unsigned>(std::clamp(pixel, 0.0, pixels - 1.0)) / CLPV_TILE;
+  };
+  const glm::dvec3 right = vector(view.right), down = -vector(view.up);
+  const int width = view.width, height = view.height;
+  return {number,
+          tile(least(right), view.half_width, width, -1) +
+              (tile(least(down), view.half_height, height, -1) << 16),
+          tile(-least(-right), view.half_width, width, 1) +
+              (tile(-least(-down), view.half_height, height, 1) << 16),
+          static_cast<float>(least(vector(view.forward)))};
+}
+
 LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
                          const ClpvGrid& coarsest) {
   const double half = 0.5 * static_cast<double>(coarsest.n) * coarsest.cell;

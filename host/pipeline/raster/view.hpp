@@ -7,6 +7,7 @@
 
 #include "kernels/shared/grid.h"
 #include "kernels/shared/light.h"
+#include "kernels/shared/raster.h"
 #include "kernels/shared/view.h"
 #include "scene/scene.hpp"
 
@@ -25,6 +26,9 @@ bool may_be_visible(const ClpvView& view, const Bounds& bounds);
 /// Returns false only if all of `bounds` lies beyond the near plane and inside the rasteriser's
 /// guard band, by a margin for rounding.
 bool may_be_clipped(const ClpvView& view, const Bounds& bounds);
+
+/// Returns a triangle cluster of `bounds` in an orthographic view, with margins for rounding.
+ClpvViewCluster place_cluster(const ClpvView& view, const Bounds& bounds, unsigned number);
 
 /// Returns a directional light's orthographic view of a cascade, with `size` texels along each
 /// side. It covers the cascade's cube plus half a cell, since virtual point lights move by as much,
