@@ -109,8 +109,9 @@ LIGHTS = {
 }
 
 
-def write(folder, offset=(0, 0, 0), names=None):
-    """Writes the shapes named, all by default, moved by `offset` [m]."""
+def write(folder, offset=(0, 0, 0), names=None, double_sided=True):
+    """Writes the shapes named, all by default, moved by `offset` [m]. `double_sided`: surfaces have
+    no back."""
     file = output.Folder(folder, "scenes/generate_leaks.py").file
     ground = [(-15, -1.5, 15), (15, -1.5, 15), (15, -1.5, -15), (-15, -1.5, -15)]
     for name, faces in shapes():
@@ -120,7 +121,7 @@ def write(folder, offset=(0, 0, 0), names=None):
         for corners in faces + [ground]:
             mesh.quad("grey", corners)
         document = Document("clpv scenes/generate_leaks.py")
-        document.material("grey", GREY, double_sided=True)
+        document.material("grey", GREY, double_sided=double_sided)
         document.node(name, document.mesh(name, mesh), translation=offset)
         document.write(file(name + ".glb"))
         for light, values in LIGHTS.items():

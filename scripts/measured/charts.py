@@ -11,6 +11,8 @@
     scripts/charts times DIR -o FILE.png                        times.jsonl of `clpv sequence`:
                                                                 median, 95th percentile and maximum
                                                                 of each stage; time of every frame
+    scripts/charts probes FILE.json -o FILE.png                 results/docs/bake.json: error of light
+                                                                probes over bytes
     scripts/charts stability [LABEL=]DIR ... -o FILE.png        stability.json of `clpv sequence
                                                                 --stability`
 
@@ -23,7 +25,7 @@ import sys
 
 import numpy
 
-from . import native, output
+from . import bake, native, output
 
 clpv = native()
 from clpv.draw import documents, style  # noqa: E402
@@ -174,6 +176,25 @@ def draw_times(folder, target):
     save(figure, target, 100)
 
 
+def draw_probes(file, target):
+    """Errors of light probes by format, from coarse to fine spacing, over bytes of the volume."""
+    rows = json.loads(pathlib.Path(file).read_text(encoding="utf-8"))["rows"]
+    figure, panels = style.panels(4, 2, (5.2, 3.6))
+    names = list(dict.fromkeys(row["format"] for row in rows))
+    places = [(source, place) for source in bake.SOURCES for place in ("surface", "air")]
+    for panel, (source, place) in zip(panels, places):
+        for i, name in enumerate(names):
+            line = bake.over_bytes(rows, name, source, place)
+            panel.plot(*zip(*line), lw=1, ls=("-", "--")[i % 2], marker="osv^D"[i % 5], ms=4,
+                       color=style.colour(i // 2), label=name)
+        where = {"surface": "on surfaces", "air": "in the air"}[place]
+        panel.set(title=f"{'path-traced' if source == 'pathtrace' else 'swept'} probes, {where}",
+                  xlabel="bytes in a cube of the coarse spacing", ylabel="mean NRMSE [%]")
+        style.logarithmic(panel.xaxis)
+    panels[-1].legend(fontsize=6, ncol=2)
+    save(figure, target, 90)
+
+
 def draw_stability(folders, target):
     figure, (axis,) = style.panels(1, 1, (8.6, 3.4))
     documents_of = {label: read(folder, "stability.json") for label, folder in folders}
@@ -200,12 +221,13 @@ def labelled(given):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("chart", choices=("errors", "lambda", "times", "stability"))
+    parser.add_argument("chart", choices=("errors", "lambda", "times", "probes", "stability"))
     parser.add_argument("files", nargs="*", metavar="[LABEL=]FILE")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="FILE.png")
     arguments = parser.parse_args()
     files = [labelled(given) for given in arguments.files]
-    allowed = {"lambda": range(1), "times": range(1, 2)}.get(arguments.chart, range(1, 1000))
+    one = range(1, 2)
+    allowed = {"lambda": range(1), "times": one, "probes": one}.get(arguments.chart, range(1, 1000))
     if len(files) not in allowed:
         parser.error(
             f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
@@ -216,6 +238,8 @@ def main():
             draw_errors(files, arguments.output)
         elif arguments.chart == "lambda":
             draw_lambda(arguments.output)
+        elif arguments.chart == "probes":
+            draw_probes(files[0][1], arguments.output)
         elif arguments.chart == "times":
             draw_times(files[0][1], arguments.output)
         else:

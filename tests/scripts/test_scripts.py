@@ -288,7 +288,8 @@ class OwnFolders(InTree):
         self.assertEqual(after[str(stale)][:3], before[str(stale)][:3])
 
     def test_charts_spare_their_inputs(self):
-        for chart, given, file in (("errors", "q.json", "q.json"), ("times", "s", "s/times.json"),
+        for chart, given, file in (("errors", "q.json", "q.json"), ("probes", "p.json", "p.json"),
+                                   ("times", "s", "s/times.json"),
                                    ("stability", "a=s", "s/stability.json")):
             (self.folder / file).parent.mkdir(exist_ok=True)
             (self.folder / file).write_text("{}")
