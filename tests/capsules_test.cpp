@@ -112,7 +112,9 @@ bool fails_with_another_constant(const fs::path& capsule,
     for (const std::smatch& match : found) {
       const std::string other = match[1].matched ? match[1].str() + "7." + match[2].str() + "f"
                                                  : "float origin[4]";
-      std::ofstream(entry.path()) << match.prefix().str() + other + match.suffix().str();
+      std::string changed = text;
+      changed.replace(match.position(), match.length(), other);
+      std::ofstream(entry.path()) << changed;
       const test::Outcome outcome = replay();
       std::ofstream(entry.path()) << text;
       if (outcome.exit_code == 1 && outcome.out.find("\nwrong: ") != std::string::npos) return true;

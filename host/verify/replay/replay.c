@@ -184,13 +184,13 @@ static void launch(void) {
 }
 
 static double value_of(const unsigned char *bytes, char kind, size_t i) {
-  if (kind == 'i') return bytes[i];
-  if (kind == 'a') {
+  if (kind == 'b') return bytes[i];
+  if (kind == 'h') {
     const unsigned h = bytes[2 * i] | (unsigned)bytes[2 * i + 1] << 8, exponent = h >> 10 & 31, low = h & 1023;
     const double size = ldexp(exponent ? low + 1024 : low, (exponent ? (int)exponent : 1) - 25);
     return exponent == 31 ? NAN : h >> 15 ? -size : size;
   }
-  return kind == 'n' ? (double)((const cl_uint *)(const void *)bytes)[i] : (double)((const cl_float *)(const void *)bytes)[i];
+  return kind == 'u' ? (double)((const cl_uint *)(const void *)bytes)[i] : (double)((const cl_float *)(const void *)bytes)[i];
 }
 
 static int expect(void) {
@@ -209,13 +209,13 @@ static int expect(void) {
     if (!file || fwrite(bytes, 1, memories[at].bytes, file) != memories[at].bytes || fclose(file)) end(1, "%s: not written", path);
   }
   for (size_t i = 0; i < size / 8; ++i) {
-    const double value = value_of(bytes, kind[1], i), low = ranges[2 * i], high = ranges[2 * i + 1];
+    const double value = value_of(bytes, kind[0], i), low = ranges[2 * i], high = ranges[2 * i + 1];
     const int fits = bits == 8 ? !(((int)low & ~(int)value) | ((int)value & ~(int)high)) : value >= low && value <= high;
     if (!(isinf(low) && isinf(high)) && !fits && wrong++ == 0) first = i;
   }
   if (wrong > 0)
     printf("wrong: memory %zu, element %zu: %.9g, expected %.9g, tolerance %.3g; %zu of %zu elements are wrong\n", at, first,
-           value_of(bytes, kind[1], first), (ranges[2 * first] + ranges[2 * first + 1]) / 2.0,
+           value_of(bytes, kind[0], first), (ranges[2 * first] + ranges[2 * first + 1]) / 2.0,
            (ranges[2 * first + 1] - ranges[2 * first]) / 2.0, wrong, size / 8);
   compared += (int)(size / 8);
   return wrong > 0;
