@@ -150,7 +150,7 @@ const std::multimap<std::string, Invocation>& runs() {
       {"quality", {"quality" + tiny + "--spp 1 --frames 1"}},
       {"basis", {"basis sh2 --figures figures", {"figures/"}}},
       {"bench",
-       {"bench ceilings --repetitions 1 --plot plots --log b.jsonl -o b.json",
+       {"bench ceilings --repetitions 1 --filter launch --plot plots --log b.jsonl -o b.json",
         {"b.jsonl", "b.json"},
         {"plots/"}}},
       {"report",

@@ -112,7 +112,7 @@ class WideModel : public ::testing::Test {
   }
   test::Outcome render(const std::string& more) const {
     return test::run_here(
-        "render " + path_ + " --width 12 --height 9 --grid 8 --rsm-size 64 --shadow-size 16 " +
+        "render " + path_ + " --width 12 --height 9 --grid 16 --rsm-size 64 --shadow-size 16 " +
         "-o " + (folder_ / "a.exr").string() + " --frames 1 --stats " + stats() + " " + more);
   }
   std::string stats() const { return (folder_ / "stats.json").string(); }

@@ -91,7 +91,7 @@ TEST(CellSpheres, AreShadedByTheirIrradiance) {
 TEST(CellSpheres, AreAViewOfRenderAndNotOfPathtrace) {
   const TemporaryFolder folder;
   EXPECT_EQ(run_here("render " + kCornell +
-                         " --width 32 --height 18 --grid 8 --rsm-size 32 --view cells -o a.exr",
+                         " --width 32 --height 18 --grid 16 --rsm-size 32 --view cells -o a.exr",
                      folder.path())
                 .exit_code,
             0);

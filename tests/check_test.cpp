@@ -10,8 +10,8 @@ namespace clpv::check_test {
 namespace {
 
 /// Compares all kernels of a stage.
-void expect_agreement(Stage stage, Session& session) {
-  const verify::CheckResults results = verify::check(stage, session);
+void expect_agreement(Stage stage, Session& session, const verify::CheckScope& scope = {}) {
+  const verify::CheckResults results = verify::check(stage, session, scope);
   EXPECT_FALSE(results.empty());
   for (const verify::CheckResult& result : results) {
     const verify::Deviation& found = result.deviation;
@@ -28,7 +28,22 @@ class Kernels : public ::testing::TestWithParam<Stage> {};
 INSTANTIATE_TEST_SUITE_P(Check, Kernels, ::testing::ValuesIn(values_of<Stage>()),
                          [](const auto& info) { return std::string(name_of(info.param)); });
 
+// Of the volume formats beside the default only that of the published scheme: building kernels is
+// nearly all of the time. tests/volume_test.cpp stores and loads all formats.
 TEST_P(Kernels, AgreeWithTheReference) {
+  expect_agreement(GetParam(), test::test_session(),
+                   {.formats = {{Layout::image, Storage::float16}}});
+}
+
+class LongKernels : public Kernels {};
+
+INSTANTIATE_TEST_SUITE_P(LongCheck, LongKernels,
+                         ::testing::Values(Stage::inject, Stage::blockers, Stage::reflectors,
+                                           Stage::propagate, Stage::sweep, Stage::bounce,
+                                           Stage::gather),
+                         [](const auto& info) { return std::string(name_of(info.param)); });
+
+TEST_P(LongKernels, AgreeInEveryVolumeFormat) {
   expect_agreement(GetParam(), test::test_session());
 }
 

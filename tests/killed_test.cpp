@@ -136,8 +136,8 @@ TEST_F(Killed, WhileItRenders) {
 TEST_F(Killed, WhileQualityMeasures) {
   const fs::path json = folder_ / "q.json";
   kill_at_moments("quality " + kTiny + kSmall +
-                      "--basis sh2 --gather all --blockers seen --vary transport=sampled,exact "
-                      "--width 24 --height 18 --spp 4 --frames 1 --cache " +
+                      "--basis sh2 --gather all --blockers seen --transport sampled --vary "
+                      "iterations=1,2 --width 24 --height 18 --spp 4 --frames 1 --cache " +
                       (folder_ / "kept").string() + " --output " + json.string(),
                   [&] {
                     expect_whole_json(folder_ / "kept");

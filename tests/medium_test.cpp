@@ -151,7 +151,7 @@ TEST(Medium, WhiteFurnaceIsUniform) {
   SceneData scene = room(1);
   for (const float anisotropy : {0.0f, 0.6f, -0.5f}) {
     scene.medium = medium_of({0.3, 1, 3}, {}, anisotropy, {-0.8, -1, -1}, {1, 0.7, 1});
-    const TracedImage image = traced(scene, kInRoom, PathTracerOptions::kAllBounces, 16384);
+    const TracedImage image = traced(scene, kInRoom, PathTracerOptions::kAllBounces, 4096);
     const Image seen = pathtracer::traced_view(image, Show::full);
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(mean(seen.pixels, c), 1, 0.01) << "anisotropy " << anisotropy;

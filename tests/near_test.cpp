@@ -225,7 +225,7 @@ TEST(Near, FramesAreEqualToTheBit) {
   const SceneData scene = lit_corner();
   RenderOptions options;
   options.width = 50, options.height = 38;  // no multiples of eight or four
-  options.cascade_size = 4, options.grid = 12, options.cascades = 2;
+  options.cascade_size = 4, options.grid = 16, options.cascades = 2;
   options.near = Near::off;
   const std::vector<float> off = irradiance_of(scene, options);
   options.near = Near::traced;

@@ -208,7 +208,7 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
   // Options override the preset wherever it stands; the scene's cascades override its sizes.
   const test::Outcome outcome =
       test::run_here("render " CLPV_SOURCE_DIR "/scenes/cornell.json -o " + image + " --stats " +
-                     stats + " --basis sh2 --width 16 --height 9 --grid 8 --preset paper");
+                     stats + " --basis sh2 --width 16 --height 9 --grid 16 --preset paper");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json report = nlohmann::json::parse(test::read_file(stats));
   const nlohmann::json& options = report.at("options");
@@ -232,7 +232,7 @@ TEST(Presets, QualityTakesAPresetsTransport) {
   const test::Outcome outcome =
       test::run_here("quality " CLPV_SOURCE_DIR
                      "/scenes/cornell.json --camera red --vary preset=paper,best --basis sh2 "
-                     "--width 16 --height 9 --grid 8 --spp 1 --frames 1 --format json --cache " +
+                     "--width 16 --height 9 --grid 16 --spp 1 --frames 1 --format json --cache " +
                      folder.path().string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json cells = nlohmann::json::parse(outcome.out).at("cells");

@@ -241,7 +241,7 @@ TEST(PathTracer, ReportsTheShareOfThePathsThatTheNoiseNeeds) {
   options.noise = trace_paths(scene, view,
                               [&] {
                                 PathTracerOptions few = options;
-                                few.samples = 1024;
+                                few.samples = 512;
                                 return few;
                               }())
                       .noise *
@@ -249,7 +249,7 @@ TEST(PathTracer, ReportsTheShareOfThePathsThatTheNoiseNeeds) {
   std::vector<double> shares;
   const TracedImage image = pathtracer::trace_paths(scene, scene.lights, view, options,
                                                     [&](double share) { shares.push_back(share); });
-  ASSERT_GE(image.samples, 768u);
+  ASSERT_GE(image.samples, 384u);
   ASSERT_FALSE(shares.empty());
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_LE(shares.front(), 2 * 64.0 / image.samples);

@@ -54,8 +54,8 @@ TEST(Programs, NothingOfTheCurrentFolderRuns) {
   const Traps traps;
   for (const std::string& command :
        {std::string("basis sh2 --figures figures"),
-        std::string("bench ceilings --repetitions 1 --plot plots"),
-        "report page " + test::kTinyRoom + " --width 12 --height 9 --spp 1 --cache cache",
+        "quality " + kTiny + kSmallSteps + "--spp 1 --frames 1 --cache cache -o q.json",
+        std::string("report page --quality q.json"),
         "sequence " + kTiny + kSmallSteps + "--frames 1 --fps 1 -o film --video -v.mp4"}) {
     const test::Outcome outcome = traps.run(command);
     const bool no_ffmpeg = outcome.err.find("--video needs ffmpeg") != std::string::npos;
@@ -69,7 +69,7 @@ TEST(Programs, NothingOfTheCurrentFolderRuns) {
 TEST(Programs, HelpersAndCompilersOfTheCurrentFolderDoNotRun) {
   const Traps traps;
   fs::create_directory(traps.folder() / "pocl");
-  const test::Outcome outcome = traps.run("render " + kTiny + kSmallSteps + "-o a.exr",
+  const test::Outcome outcome = traps.run("check --stage sizes,emit",
                                           "XDG_CACHE_HOME=cache POCL_CACHE_DIR=$PWD/pocl TMPDIR=.");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(traps.sprung(), "");

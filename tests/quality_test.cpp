@@ -189,7 +189,7 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
 
 TEST_F(QualityCommand, AnImageIsComparedWithTheTruthOfItsScene) {
   const std::string render = "render " + file("room.json") +
-                             " --view indirect --width 32 --height 18 --grid 8 --blockers none "
+                             " --view indirect --width 32 --height 18 --grid 16 --blockers none "
                              "--rsm-size 16 --camera left -o " +
                              file("ours/room-left.exr"),
                     compare =

@@ -114,9 +114,9 @@ TEST_F(SequenceTest, NoTimesAreLostOrMixed) {
   const json whole = summary();
   ASSERT_EQ(sequence("--frames 2 --fps 10").exit_code, 0);
   EXPECT_EQ(summary()["frames"], 2);
-  ASSERT_EQ(sequence("--frames 1 --fps 10 --gather-offset 0.3").exit_code, 0);
+  ASSERT_EQ(sequence("--frames 1 --fps 10 --iterations 3").exit_code, 0);
   EXPECT_EQ(summary()["frames"], 1);
-  EXPECT_EQ(summary()["options"]["gather-offset"], 0.3);
+  EXPECT_EQ(summary()["options"]["iterations"], 3);
   ASSERT_EQ(sequence("--frames 4 --fps 10").exit_code, 0);
   EXPECT_EQ(summary()["frames"], 4);
   EXPECT_EQ(summary()["steady"], 3);
@@ -206,7 +206,7 @@ TEST_F(SequenceTest, FramesAreKnownByTheirPixels) {
 
 TEST_F(SequenceTest, FramesOfOtherInputsAreRenderedAgain) {
   ASSERT_EQ(sequence("--frames 2 --fps 10 --format png").exit_code, 0);
-  for (const std::string other : {"--fps 5", "--fps 10 --from 3", "--fps 10 --gather-offset 0.3",
+  for (const std::string other : {"--fps 5", "--fps 10 --from 3", "--fps 10 --iterations 3",
                                   "--fps 10 --exposure 1", "--fps 10 --view albedo"}) {
     const std::string before = read_file(frame(1, "png"));
     const Outcome outcome = sequence("--frames 2 --format png " + other);

@@ -133,7 +133,7 @@ TEST_F(SpotCone, BothRenderersShowAConeOfADegree) {
       "lights": [{{"kind": "spot", "position": [0, 2, 0], "direction": [0, -1, 0],
                    "intensity_candela": {}, {}}}]}})",
                                             kIntensity, angles));
-    for (const std::string command : {"render --grid 8 --cascades 1 --rsm-size 32", "pathtrace"}) {
+    for (const std::string command : {"render --grid 16 --cascades 1 --rsm-size 32", "pathtrace"}) {
       const Outcome outcome =
           run_here(command + " narrow.json --view direct --width 33 --height 33 -o image.exr",
                    folder.path());

@@ -222,7 +222,7 @@ TEST_F(CacheTest, AFullDiskDoesNotEndQuality) {
   for (const char* size : {"4k", "16k"}) {
     const test::Outcome outcome = test::run(
         "unshare -rm sh -c 'mount -t tmpfs -o size=" + std::string(size) + " none " + disk +
-        " && " CLPV_PROGRAM + quality(folder.path()) + " --vary gather-offset=0,1,2,3,4'");
+        " && " CLPV_PROGRAM + quality(folder.path()) + " --vary iterations=1,2,3,4,5'");
     EXPECT_EQ(outcome.exit_code, 0) << size << outcome.err;
     EXPECT_EQ(nlohmann::json::parse(outcome.out).at("cells").size(), 5u) << size << outcome.out;
     EXPECT_THAT(outcome.err, HasSubstr("not cached")) << size;
@@ -231,13 +231,13 @@ TEST_F(CacheTest, AFullDiskDoesNotEndQuality) {
 
 TEST_F(CacheTest, TwoProcessesShareOneQualityCacheAndOutput) {
   const std::string command = CLPV_PROGRAM + quality(folder / "kept") +
-                              " --vary gather-offset=0,1 -o " + (folder / "a.json").string();
+                              " --vary iterations=1,2 -o " + (folder / "a.json").string();
   const test::Outcome both =
       test::run("( " + command + " ) & " + command + "; code=$?; wait $! && exit $code");
   EXPECT_EQ(both.exit_code, 0) << both.err;
   EXPECT_THAT(both.err, Not(HasSubstr("again")));
   EXPECT_EQ(nlohmann::json::parse(read_file(folder / "a.json")).at("cells").size(), 2u);
-  const test::Outcome third = run_here(quality(folder / "kept") + " --vary gather-offset=0,1");
+  const test::Outcome third = run_here(quality(folder / "kept") + " --vary iterations=1,2");
   EXPECT_THAT(third.err, Not(HasSubstr("again")));
 }
 

@@ -18,7 +18,8 @@ int main(int, char** arguments) {
                                                                       {"coarser-directions", "24"}})
     options.set(name, value);
   clpv::Renderer renderer(clpv::Scene(arguments[1]), options);
-  renderer.render();
+  const clpv::Vec3 eye{0, 0.8, 2};  // the camera's: all calls have the same light
+  renderer.update(eye);
   std::vector<std::array<float, 3>> points, directions;
   for (int i = 0; i < 11; ++i) {
     points.push_back({0.3f * i - 1, 0.2f, 0.1f * i});
@@ -31,7 +32,6 @@ int main(int, char** arguments) {
   directions[3] = {0, 0, 0}, points[4][0] = NAN;
   std::vector<float> depths(12 * 5, 1.5f);
   depths[5] = -INFINITY;
-  renderer.light({.width = 12, .height = 5, .normals = directions, .positions = points},
-                 clpv::Vec3{0, 1, 1});
+  renderer.light({.width = 12, .height = 5, .normals = directions, .positions = points}, eye);
   renderer.light({.width = 12, .height = 5, .normals = directions, .depths = depths}, "");
 }

@@ -38,11 +38,11 @@ foreach(wanted bin/clpv include/clpv/renderer.hpp lib/python3/dist-packages/clpv
     message(FATAL_ERROR "the package lacks ${wanted}")
   endif()
 endforeach()
-set(small --width 32 --height 18 --grid 8 --rsm-size 32 --cascades 1)
+set(small --width 32 --height 18 --grid 16 --rsm-size 32 --cascades 1)
 run(${WORK}/root/usr/bin/clpv render ${SOURCE}/scenes/cornell.json ${small} -o ${WORK}/program.exr)
 if(MODULE)
   file(WRITE ${WORK}/render.py "import clpv, sys
-options = dict(width=32, height=18, grid=8, rsm_size=32, cascades=1)
+options = dict(width=32, height=18, grid=16, rsm_size=32, cascades=1)
 image = clpv.Renderer(clpv.Scene(sys.argv[1]), **options).render()
 assert clpv.compare(image, clpv.read_image(sys.argv[2])).identical
 assert clpv.__file__.startswith(sys.argv[3]), clpv.__file__

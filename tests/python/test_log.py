@@ -5,13 +5,12 @@ import pathlib
 import subprocess
 import sys
 
-from conftest import ROOT
+from conftest import ROOT, STEPS
 
-RENDER = """
+RENDER = f"""
 import clpv
 scene = clpv.Scene("scenes/cornell.json")
-clpv.Renderer(scene, basis="sh2", transport="sampled", blockers="none", gather="all", width=16,
-              height=9, grid=4, cascades=1, rsm_size=8, shadow_size=8).render()
+clpv.Renderer(scene, **{STEPS!r}).render()
 clpv.pathtrace(scene, width=8, height=8, samples=1)
 """
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clpv
-from conftest import CORNELL, FRONT, SMALL, program
+from conftest import CORNELL, FRONT, SMALL, STEPS, program
 
 
 def flags():
@@ -185,7 +185,7 @@ def test_radiance(scene, renderer):
     x, y, z = cell.astype(int)
     c0 = volume.coefficients[:, 0, z, y, x]
     assert np.allclose(mean, c0 / math.sqrt(4 * math.pi) / volume.cell ** 2, rtol=0.03)
-    steps = clpv.Renderer(scene, **SMALL, transport="sampled")
+    steps = clpv.Renderer(scene, **STEPS)
     with pytest.raises(clpv.UsageError, match="no frame was rendered"):
         steps.radiance([0, 0, 0], [0, 1, 0])
     steps.render()
@@ -279,10 +279,7 @@ def test_threads_share_a_renderer(renderer):
 
 def expect_no_leak(scene, count):
     """Renders `count` frames by as many renderers; the first quarter fills caches."""
-    tiny = {
-        "basis": "sh2", "transport": "sampled", "blockers": "none", "gather": "all", "width": 16,
-        "height": 9, "grid": 4, "cascades": 1, "rsm_size": 8, "shadow_size": 8
-    }
+    tiny = STEPS | {"width": 16, "height": 9, "rsm_size": 8, "shadow_size": 8}
 
     def resident():
         with open("/proc/self/statm", encoding="ascii") as statm:

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 
 import clpv
-from conftest import CORNELL, FRONT, ROOT, SMALL
+from conftest import CORNELL, FRONT, ROOT, STEPS
 
 START = f"""
 import os, sys, threading, time, clpv
 scene = clpv.Scene({str(CORNELL)!r})
-renderer = clpv.Renderer(scene, **{SMALL!r})
+renderer = clpv.Renderer(scene, **{STEPS!r})
 renderer.render()
 """
 
@@ -85,7 +85,7 @@ def test_a_forked_child_is_refused_by_name():  # a render there once hung
 
 def test_a_fork_before_any_render_works():
     code = FORK.format(
-        f"print(clpv.Renderer(scene, **{SMALL!r}).render().width, flush=True)\n  os._exit(0)"
+        f"print(clpv.Renderer(scene, **{STEPS!r}).render().width, flush=True)\n  os._exit(0)"
     )  # as multiprocessing ends
     ended = subprocess.run(
         [sys.executable, "-c", START.split("renderer =")[0] + code], capture_output=True, text=True,
