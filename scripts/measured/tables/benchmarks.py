@@ -4,6 +4,8 @@ render --stats`."""
 import math
 import textwrap
 
+from clpv import ms_of
+
 from .. import rows as known
 from .cells import found, load, number, ratio, result, summed, table, time
 
@@ -115,7 +117,7 @@ def readme_layouts():
 def bases():
     lines = [["basis", "N", "without blockers", "with blockers"]]
     rows = [row for row in bench("bases") if row["stage"] == "propagate" and row["lobe"] == "exact"]
-    for basis, size in dict.fromkeys((row["basis"], row["n"]) for row in rows):
+    for basis, size in dict.fromkeys((row["basis"], row["coefficients"]) for row in rows):
         lines.append([basis, str(size)] + [time(found(rows, basis=basis, occlusion=occlusion))
                                            for occlusion in (False, True)])
     return lines
@@ -174,16 +176,11 @@ STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light
           "inject-geometry", "propagate", "gather", "near-trace", "near", "medium", "shade")
 
 
-def stage_ms(frame, stage):
-    times = [entry["ms"] for entry in frame["stages"] if entry["stage"] == stage] if frame else []
-    return sum(times) if times else None
-
-
 @table
 def frames():
     return [["[ms]", "frame", *STAGES]] + [[
         name,
-        number(frame and frame["frame_ms"]), *(number(stage_ms(frame, stage)) for stage in STAGES)
+        *(number(frame and ms_of(frame["times"], stage) or None) for stage in ("frame", *STAGES))
     ] for name, frame in ((name, found(load("frames")["frames"], given=given))
                           for name, given in known.FRAMES.items())]
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Tables of docs/quality.md and README.md: NRMSE of indirect light in %, and energy over the ground
 truth's."""
+from clpv import ms_of
+
 from .. import rows as known
 from ..rows import PAPER
 from .cells import found, load, number, percent, table
@@ -178,7 +180,7 @@ def quality_cascades():
         found_cells = [
             found(cells, options=options, scene=scene, camera=camera) for scene, camera in views
         ]
-        times = sorted(cell["stage_ms"].get("baseline", 0) for cell in found_cells)
+        times = sorted(ms_of(cell["times"], "baseline") for cell in found_cells)
         memory = max(cell["settings"].get("megabytes", 0) for cell in found_cells)
         lines.append([
             f"`{method}`" if method else "clpv, the defaults", *(percent(cell["nrmse"])

@@ -2,6 +2,8 @@
 """Tables of docs/results.md: the standing benchmark."""
 import json
 
+from clpv import ms_of
+
 from .. import RESULTS, rows as known
 from ..rows import SHARED
 from .cells import found, number, percent, table
@@ -80,7 +82,7 @@ def standing_lines(group):
 
 def light_ms(cell):
     """Time that baselines get: the frame without G-buffer, shadow maps and shading."""
-    return cell["frame_ms"] - sum(cell["stage_ms"].get(stage, 0) for stage in SHARED)
+    return ms_of(cell["times"], "frame") - sum(ms_of(cell["times"], stage) for stage in SHARED)
 
 
 @table
