@@ -6,7 +6,7 @@ from clpv import ms_of
 
 from .. import RESULTS, rows as known
 from ..rows import SHARED
-from .cells import found, number, percent, table
+from .cells import found, number, percent, shown, table
 
 
 METHODS = {
@@ -102,9 +102,8 @@ def standing_large():
 
 @table
 def standing_runs():
-    return [["run", "clpv", "device", "driver", "threads", "date", "time of 960x540 [ms]"]] + [[
-        run, document["measured"]["commit"], document["measured"]["device"],
-        document["measured"]["driver"],
-        str(document["small"][0]["compute_units"]), document["measured"]["date"],
-        number(document["time_of_large_ms"])
-    ] for run, document in standing()]
+    return shown({
+        "run": "{run}", "clpv": "{measured[commit]}", "device": "{measured[device]}",
+        "driver": "{measured[driver]}", "threads": "{small[0][compute_units]}",
+        "date": "{measured[date]}", "time of 960x540 [ms]": "{time_of_large_ms:#}"
+    }, [{**document, "run": run} for run, document in standing()])
