@@ -12,8 +12,10 @@
 #include <optional>
 
 #include "support/error.hpp"
+#include "support/json_optional.hpp"
 #include "support/json_schema.hpp"
 #include "support/log.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv::bench {
 namespace {
@@ -32,112 +34,94 @@ struct Value {
   std::string undefined = {};  ///< reason if there is no value
 };
 
-std::vector<Value> values_of_bench(const nlohmann::json& report, const std::string& file) {
-  const std::vector<Rule> rules = {rule::object(""),
-                                   rule::object("/context").must(),
-                                   rule::integer("/context/schema", 1, 1).must(),
-                                   rule::list("/benchmarks", 0, kMaxRows).must(),
-                                   rule::object("/benchmarks/*"),
-                                   rule::text("/benchmarks/*/name").must(),
-                                   rule::text("/benchmarks/*/status").must(),
-                                   rule::integer("/benchmarks/*/repetitions", 0, kMax),
-                                   rule::number("/benchmarks/*/median", 0, kMax).must(),
-                                   rule::number("/benchmarks/*/mad", 0, kMax).must()};
-  check_rules(report, rules, file);
+Value value_of(std::string name, const TimeRecord& time) {
+  return {std::move(name), time.median, time.mad, time.n > 1};
+}
+
+std::vector<Value> values_of_bench(const nlohmann::json& rows) {
   std::vector<Value> values;
-  for (const nlohmann::json& row : report.at("benchmarks")) {
+  for (const nlohmann::json& row : rows) {
     if (row.at("status") == "ok")
-      values.push_back({row.at("name"), row.at("median").get<double>(), row.at("mad"),
-                        row.value("repetitions", 2) > 1});
+      values.push_back(value_of(row.at("name"), row));
     else
       values.push_back({row.at("name"), {}, 0, false, row.at("status")});
   }
   return values;
 }
 
-/// A number from 0, or null if it is undefined. Throws Error(bad_input) for anything else.
-std::optional<double> number_or_null(const nlohmann::json& object, const char* key,
-                                     const std::string& file, const std::string& place) {
-  const auto found = object.find(key);
-  const bool missing = found == object.end();
-  if (!missing && found->is_null()) return std::nullopt;
-  if (missing || !found->is_number() || !(found->get<double>() >= 0)) {
-    reject(file, pointer_to(place, key), missing ? "nothing" : quoted(*found),
-           "a number from 0, or null");
-  }
-  return found->get<double>();
-}
-
 /// Errors and times of the cells; rejected cells have none.
-std::vector<Value> values_of_quality(const nlohmann::json& report, const std::string& file) {
-  const std::vector<Rule> rules = {rule::object(""),
-                                   rule::list("/cells", 0, kMaxRows).must(),
-                                   rule::object("/cells/*"),
-                                   rule::text("/cells/*/scene").must(),
-                                   rule::text("/cells/*/camera").must(),
-                                   rule::text("/cells/*/rejected").must(),
-                                   rule::object("/cells/*/options").must(),
-                                   rule::text("/cells/*/options/*"),
-                                   rule::number("/cells/*/frame_ms", 0, kMax).must()};
-  check_rules(report, rules, file);
+std::vector<Value> values_of_quality(const nlohmann::json& cells) {
   std::vector<Value> values;
-  for (std::size_t i = 0; i < report.at("cells").size(); ++i) {
-    const nlohmann::json& cell = report.at("cells")[i];
+  for (const nlohmann::json& cell : cells) {
     std::string name = fmt::format("{}:{}", cell.at("scene").get<std::string>(),
                                    cell.at("camera").get<std::string>());
     for (const auto& [option, value] : cell.at("options").items())
       name += fmt::format(" {}={}", option, value.get<std::string>());
-    const auto nrmse = number_or_null(cell, "nrmse", file, fmt::format("/cells/{}", i));
-    if (cell.at("rejected") == "") {
-      values.push_back({name + " nrmse", nrmse, 0, true, "undefined"});  // it repeats exactly
-      values.push_back({name + " frame", cell.at("frame_ms").get<double>()});
-    } else {
+    const bool rejected = cell.at("rejected") != "";
+    if (rejected) {
       for (const char* of : {" nrmse", " frame"})
         values.push_back({name + of, {}, 0, false, "rejected"});
+      continue;
     }
+    const auto nrmse = cell.at("nrmse").get<std::optional<double>>();
+    values.push_back({name + " nrmse", nrmse, 0, true, "undefined"});  // it repeats exactly
+    for (const TimeRecord time : cell.at("times"))
+      if (time.stage == "frame") values.push_back(value_of(name + " frame", time));
   }
   return values;
 }
 
-/// Times of the frame and of its stages.
-std::vector<Value> values_of_stats(const nlohmann::json& report, const std::string& file) {
-  const std::vector<Rule> rules = {rule::object(""),
-                                   rule::number("/frame_ms", 0, kMax).must(),
-                                   rule::list("/stages", 0, kMaxRows).must(),
-                                   rule::object("/stages/*"),
-                                   rule::text("/stages/*/stage").must(),
-                                   rule::number("/stages/*/ms", 0, kMax).must()};
-  check_rules(report, rules, file);
-  std::vector<Value> values = {{"frame", report.at("frame_ms").get<double>()}};
-  for (const nlohmann::json& stage : report.at("stages")) {
-    std::string name = stage.at("stage");
-    for (const char* part : {"cascade", "light"}) {  // null in stages of all
-      if (const auto number = stage.find(part);
-          number != stage.end() && number->is_number_integer())
-        name += fmt::format("/{}:{}", part, number->get<int>());
-    }
-    values.push_back({name, stage.at("ms").get<double>()});
-  }
+std::vector<Value> values_of_stats(const nlohmann::json& times) {
+  std::vector<Value> values;
+  for (const TimeRecord time : times) values.push_back(value_of(name_of(time), time));
   return values;
 }
 
-/// A kind of report: its command, a key that only it has, and its values.
+/// A kind of report: its command, the list of its rows, which only it has, the place of its
+/// records, and the values of the rows.
 struct Kind {
-  const char *command, *key;
-  std::vector<Value> (*values)(const nlohmann::json&, const std::string&);
+  const char *command, *key, *records;
+  std::vector<Value> (*values)(const nlohmann::json& rows);
+  std::vector<Rule> rules;
 };
 
-constexpr Kind kKinds[] = {{"clpv bench", "benchmarks", values_of_bench},
-                           {"clpv quality", "cells", values_of_quality},
-                           {"clpv render --stats", "stages", values_of_stats}};
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> all = {
+      {"clpv bench",
+       "benchmarks",
+       "/benchmarks/*",
+       values_of_bench,
+       {rule::object("/context").must(), rule::integer("/context/schema", 2, 2).must(),
+        rule::text("/benchmarks/*/name").must(), rule::text("/benchmarks/*/status").must()}},
+      {"clpv quality",
+       "cells",
+       "/cells/*/times/*",
+       values_of_quality,
+       {rule::object("/cells/*"), rule::text("/cells/*/scene").must(),
+        rule::text("/cells/*/camera").must(), rule::text("/cells/*/rejected").must(),
+        rule::object("/cells/*/options").must(), rule::text("/cells/*/options/*"),
+        rule::number("/cells/*/nrmse", 0, kMax).must().or_null(),
+        rule::list("/cells/*/times", 0, kMaxRows).must()}},
+      {"clpv render --stats", "times", "/times/*", values_of_stats, {}}};
+  return all;
+}
 
 const Kind& kind_of(const nlohmann::json& report, const std::string& file) {
-  for (const Kind& kind : kKinds) {
+  for (const Kind& kind : kinds()) {
     if (report.is_object() && report.contains(kind.key)) return kind;
   }
   throw Error(ExitCode::bad_input,
               "{}: no report; allowed: JSON of clpv bench, clpv quality or clpv render --stats",
               file);
+}
+
+std::vector<Value> values_of(const Kind& kind, const nlohmann::json& report,
+                             const std::string& file) {
+  std::vector<Rule> rules = kind.rules;
+  rules.push_back(rule::list(fmt::format("/{}", kind.key), 0, kMaxRows));
+  std::ranges::move(time_rules(kind.records), std::back_inserter(rules));
+  check_rules(report, rules, file);
+  return kind.values(report.at(kind.key));
 }
 
 /// Values by name. Further ones of a name get its number: "gather (2)". Warns of them.
@@ -180,8 +164,8 @@ ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& a
   if (before.contains("view") && after.contains("view") && before["view"] != after["view"])
     throw Error(ExitCode::bad_input, "{} is of view {}, {} of {}; allowed: reports of one view",
                 file, before["view"].dump(), after_file, after["view"].dump());
-  std::vector<Value> old_values = kind.values(before, file),
-                     new_values = kind.values(after, after_file);
+  std::vector<Value> old_values = values_of(kind, before, file),
+                     new_values = values_of(kind, after, after_file);
   const std::map<std::string, Value> old_named = by_name(old_values, file),
                                      new_named = by_name(new_values, after_file);
   ReportChanges result;

@@ -64,7 +64,7 @@ nlohmann::json context_json(const Session& session) {
   ::gethostname(host.data(), host.size() - 1);
   std::array<double, 3> load{};
   ::getloadavg(load.data(), static_cast<int>(load.size()));
-  return {{"schema", 1},
+  return {{"schema", 2},
           {"date", now()},
           {"host_name", host.data()},
           {"executable", "clpv"},

@@ -7,10 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "support/json_optional.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv {
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Statistics, min, median, p95, max, mad)
-
 namespace verify {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
                                    triangles, pixels, covered, set_up, listed, entries)
@@ -30,16 +29,10 @@ nlohmann::json number_or_null(const std::optional<double>& value) {
 
 nlohmann::json problem_json(const Problem& problem) {
   const RenderOptions& o = problem.options;
-  return {{"basis", o.basis},
-          {"layout", name_of(o.layout)},
-          {"storage", name_of(o.storage)},
-          {"lobe", lobes_of(o)},
-          {"transport", name_of(o.transport)},
-          {"occlusion", o.blocked()},
-          {"grid", o.grid},
-          {"iterations", o.iterations},
-          {"cascade", problem.cascade},
-          {"filtered", problem.filtered}};
+  return {
+      {"basis", o.basis},    {"layout", name_of(o.layout)},       {"storage", name_of(o.storage)},
+      {"lobe", lobes_of(o)}, {"transport", name_of(o.transport)}, {"occlusion", o.blocked()},
+      {"grid", o.grid},      {"iterations", o.iterations},        {"filtered", problem.filtered}};
 }
 
 /// The keys of problem_json with null values, for a row without volumes.
@@ -89,8 +82,8 @@ nlohmann::json to_json(const Row& row, int index) {
                          {"cpu_time", row.cpu_ms},
                          {"time_unit", "ms"}};
   json.update({{"suite", row.suite},
-               {"stage", row.stage},
-               {"n", row.n > 0 ? nlohmann::json(row.n) : nlohmann::json(nullptr)},
+               {"coefficients",
+                row.coefficients > 0 ? nlohmann::json(row.coefficients) : nlohmann::json(nullptr)},
                {"axis", text_or_null(row.axis)},
                {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
                {"preset", text_or_null(row.preset)},
@@ -107,7 +100,10 @@ nlohmann::json to_json(const Row& row, int index) {
                {"build_ms", row.build_ms},
                {"device_bytes", row.device_bytes},
                {"host_bytes", row.host_bytes}});
-  json.update(nlohmann::json(row.times));
+  TimeRecord record = time_record(row.stage, row.samples_ms);
+  if (row.problem) record.cascade = row.problem->cascade;
+  json.update(nlohmann::json(record));
+  json["p95"] = row.times.p95;
   json.update(nlohmann::json(row.cost));
   json.update({{"gflops", row.gflops()},
                {"gbps", row.gbps()},

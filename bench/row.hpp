@@ -38,7 +38,7 @@ std::string lobes_of(const RenderOptions& options);
 
 struct Row {
   std::string suite, stage, name;
-  int n = 0;                       ///< coefficients of the basis
+  int coefficients = 0;            ///< of the basis
   std::optional<Problem> problem;  ///< empty for rows without volumes: rasterising and ceilings
   Status status = Status::ok;
   std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`

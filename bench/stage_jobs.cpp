@@ -19,7 +19,7 @@ Row make_row(const std::string& suite, std::string_view stage, const Problem& pr
   row.suite = suite;
   row.stage = stage;
   row.problem = problem;
-  row.n = make_basis(o)->size();
+  row.coefficients = make_basis(o)->size();
   row.name = fmt::format("{}/{}/{}", stage, o.basis, format_name(o.format()));
   if (lobes_of(o) != lobes_of(usual)) row.name += fmt::format("/{}", lobes_of(o));
   if (o.transport != usual.transport && stage != name_of(Stage::sweep))

@@ -7,4 +7,5 @@ eye = clpv.Camera(eye=(0.278, 0.273, -0.18), target=(0.278, 0.273, 0.28), fov=75
 truth = clpv.pathtrace(scene, "indirect", camera=eye, width=240, height=135, noise=0.02)
 for basis in clpv.bases():
     r = clpv.Renderer(scene, basis=basis, width=240, height=135)
-    print(basis, clpv.compare(r.render("indirect", camera=eye), truth).nrmse, r.stats["propagate"])
+    print(basis, clpv.compare(r.render("indirect", camera=eye), truth).nrmse,
+          clpv.ms_of(r.stats["times"], "propagate"))

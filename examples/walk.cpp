@@ -15,8 +15,8 @@ int main(int argc, char** argv) try {
     renderer.render(clpv::View::full,
                     clpv::Camera{.eye = {x, 0.27, 0.05}, .target = {x, 0.27, 0.3}});
     const clpv::Stats stats = renderer.stats();
-    std::cout << "step " << step << ": " << stats.frame_ms << " ms, propagation "
-              << stats.stages.at("propagate") << " ms\n";
+    std::cout << "step " << step << ": " << clpv::ms_of(stats.times, "frame") << " ms, propagation "
+              << clpv::ms_of(stats.times, "propagate") << " ms\n";
   }
 
   // A lamp in place of the scene's lights recomputes the light.

@@ -15,6 +15,7 @@
 #include "support/error.hpp"
 #include "tests/support/bench_rows.hpp"
 #include "tests/support/run_here.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv::bench::bench_test {
 namespace {
@@ -50,9 +51,12 @@ TEST(BenchCeilings, TheLongestMinimumTimeIsTheCeiling) {
 
 nlohmann::json report(const std::vector<std::tuple<std::string, double, double>>& rows) {
   nlohmann::json list = nlohmann::json::array();
-  for (const auto& [name, median, mad] : rows)
-    list.push_back({{"name", name}, {"status", "ok"}, {"median", median}, {"mad", mad}});
-  return {{"context", {{"schema", 1}}}, {"benchmarks", list}};
+  for (const auto& [name, median, mad] : rows) {
+    nlohmann::json row = TimeRecord{"gather", {}, {}, 5, median, median, mad, median};
+    row.update({{"name", name}, {"status", "ok"}});
+    list.push_back(row);
+  }
+  return {{"context", {{"schema", 2}}}, {"benchmarks", list}};
 }
 
 TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
@@ -77,7 +81,7 @@ TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
 
 TEST(BenchCompare, OneRepetitionHasNoSpread) {
   nlohmann::json once = report({{"row", 10, 0}});
-  once["benchmarks"][0]["repetitions"] = 1;
+  once["benchmarks"][0]["n"] = 1;
   const ReportChanges found = compare_runs(once, report({{"row", 12, 0}}), "old.json");
   EXPECT_FALSE(found.changes.at(0).significant);
   EXPECT_THAT(changes_table(found), HasSubstr("spread unknown"));
@@ -120,12 +124,11 @@ TEST(BenchCompare, ReportsOfQualityAndStats) {
                              {"rejected", ""},
                              {"options", {{"basis", "sh2"}}},
                              {"nrmse", nrmse},
-                             {"frame_ms", ms}}}}};
+                             {"times", {time_record("frame", {ms})}}}}}};
   };
   const auto stats = [](double ms) {
     return nlohmann::json{
-        {"frame_ms", 2 * ms},
-        {"stages", {{{"stage", "gather"}, {"cascade", 1}, {"light", nullptr}, {"ms", ms}}}}};
+        {"times", {time_record("frame", {2 * ms}), time_record({Pass::gather, 1}, {ms})}}};
   };
   EXPECT_EQ(compare_files(quality(0.2, 10), quality(0.21, 11)).exit_code, 0);
   const test::Outcome worse = compare_files(quality(0.2, 10), quality(0.3, 10));
@@ -147,7 +150,7 @@ nlohmann::json two_cells() {
   const auto cell = [](const char* camera, const nlohmann::json& nrmse) {
     return nlohmann::json{{"scene", "s"},   {"camera", camera},
                           {"rejected", ""}, {"options", nlohmann::json::object()},
-                          {"nrmse", nrmse}, {"frame_ms", 10}};
+                          {"nrmse", nrmse}, {"times", {time_record("frame", {10})}}};
   };
   return {{"cells", {cell("lit", 0.2), cell("dark", nullptr)}}};
 }
@@ -233,7 +236,8 @@ const std::vector<std::string> kContext = test::words_of(
     "clpv_version executable library_build_type");
 const std::vector<std::string> kRow = test::words_of(
     "name run_name suite stage basis layout storage lobe transport run_type status time_unit "
-    "ceiling occlusion filtered samples_ms n grid iterations repetitions threads family_index min "
+    "ceiling occlusion filtered samples_ms coefficients n grid iterations repetitions threads "
+    "family_index min "
     "median p95 max mad real_time cpu_time wall_ms first_launch_ms build_ms device_bytes "
     "host_bytes flops bytes reads_per_cell writes_per_cell gflops gbps max_rel_error tolerance "
     "ceiling_share");

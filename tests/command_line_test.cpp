@@ -9,6 +9,7 @@
 
 #include "tests/support/run_here.hpp"
 #include "tests/support/scenes.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv::command_line_test {
 namespace {
@@ -114,18 +115,22 @@ bool obeyed(const std::string& text) {
 TEST(CommandLine, NamesOfOthersDoNotReachTheTerminal) {
   const test::TemporaryFolder folder;
   const nlohmann::json name = "red\x1b[31m\a\x7f\u009b5m";
-  const nlohmann::json cell{{"scene", name}, {"camera", name}, {"rejected", ""},
-                            {"frame_ms", 1}, {"nrmse", 0.1},   {"options", {{name, name}}}},
-      row{{"name", name}, {"status", "ok"}, {"median", 1}, {"mad", 0}},
-      lost{{"name", "lost"}, {"status", name}, {"median", 1}, {"mad", 0}};
+  const nlohmann::json cell{{"scene", name},  {"camera", name},
+                            {"rejected", ""}, {"times", nlohmann::json::array()},
+                            {"nrmse", 0.1},   {"options", {{name, name}}}};
+  const auto row_of = [](const nlohmann::json& named, const nlohmann::json& status) {
+    nlohmann::json row = time_record("gather", {1});
+    row.update({{"name", named}, {"status", status}});
+    return row;
+  };
+  const nlohmann::json row = row_of(name, "ok"), lost = row_of("lost", name);
   const auto bench = [](const nlohmann::json& rows) {
-    return nlohmann::json{{"context", {{"schema", 1}}}, {"benchmarks", rows}}.dump();
+    return nlohmann::json{{"context", {{"schema", 2}}}, {"benchmarks", rows}}.dump();
   };
   folder.write("quality.json", nlohmann::json{{"cells", {cell}}}.dump());
   folder.write("stats.json",
-               nlohmann::json{{"frame_ms", 1}, {"stages", {{{"stage", name}, {"ms", 1}}}}}.dump());
-  folder.write("old.json",
-               bench({row, {{"name", "lost"}, {"status", "ok"}, {"median", 1}, {"mad", 0}}}));
+               nlohmann::json{{"times", {time_record(name.get<std::string>(), {1})}}}.dump());
+  folder.write("old.json", bench({row, row_of("lost", "ok")}));
   folder.write("new.json", bench({row, lost}));
   folder.write(
       "centres.json",

@@ -14,6 +14,7 @@
 #include "tests/support/error_of.hpp"
 #include "tests/support/quality_room.hpp"
 #include "tests/support/run_here.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv::quality_test {
 namespace {
@@ -58,8 +59,8 @@ QualityCell cell(const std::string& basis, const std::string& camera, double nrm
   c.nrmse_best_gain = nrmse / 2;
   c.energy_ratio = 1.5;
   c.flip = 0.25;
-  c.frame_ms = ms;
-  c.stage_ms = {{"propagate", ms / 2}, {"rasterize-rsm", ms / 4}, {"rasterize-camera", ms / 4}};
+  c.times = {time_record("frame", {ms}), time_record("propagate", {ms / 2}),
+             time_record("rasterize-rsm", {ms / 4}), time_record("rasterize-camera", {ms / 4})};
   return c;
 }
 
@@ -67,7 +68,7 @@ QualityCell rejected(const std::string& basis, const std::string& camera) {
   QualityCell c = cell(basis, camera, 0, 0);
   c.nrmse.reset(), c.best_gain.reset(), c.nrmse_best_gain.reset(), c.energy_ratio.reset(),
       c.flip.reset();
-  c.stage_ms.clear();
+  c.times.clear();
   c.rejected = "a \"quoted\" reason, with a comma";
   return c;
 }
@@ -155,7 +156,7 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   const test::Outcome first = quality(matrix);
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const nlohmann::json json = nlohmann::json::parse(first.out);
-  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["schema"], 2);
   ASSERT_EQ(json["cells"].size(), 4u);
   ASSERT_EQ(json["variants"].size(), 2u);
   ASSERT_EQ(json["ground_truths"].size(), 2u);
@@ -165,8 +166,9 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
     EXPECT_LT(one["nrmse"], 5);
     EXPECT_LE(one["nrmse_best_gain"].get<double>(), one["nrmse"]);
     EXPECT_GT(one["energy_ratio"], 0.05);
-    EXPECT_GT(one["stage_ms"]["propagate"], 0);
-    EXPECT_GT(one["frame_ms"], one["stage_ms"]["propagate"]);
+    const std::vector<TimeRecord> times = one["times"];
+    EXPECT_GT(ms_of(times, "propagate"), 0);
+    EXPECT_GT(ms_of(times, "frame"), ms_of(times, "propagate"));
   }
   EXPECT_NE(json["cells"][0]["nrmse"], json["cells"][2]["nrmse"]) << "bases differ";
   EXPECT_EQ(kept(), 4u);
@@ -180,7 +182,7 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   int same_times = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(again["cells"][i]["nrmse"], json["cells"][i]["nrmse"]);
-    same_times += again["cells"][i]["frame_ms"] == json["cells"][i]["frame_ms"];
+    same_times += again["cells"][i]["times"] == json["cells"][i]["times"];
   }
   EXPECT_EQ(same_times, 3);
   EXPECT_EQ(kept(), 4u);

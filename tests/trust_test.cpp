@@ -33,6 +33,7 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/scenes.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv::trust_test {
 namespace {
@@ -154,7 +155,7 @@ TEST_F(CacheTest, ADamagedCellIsMeasuredAgain) {
   QualityStore store(cache.path());
   QualityCell cell;
   cell.scene = "room", cell.nrmse = 0.25;
-  cell.stage_ms["gather"] = 1.5;
+  cell.times = {time_record("gather", {1.5})};
   store.keep("k", cell);
   ASSERT_TRUE(store.find("k"));
   const std::string whole = read_file(cache.path() / "k.json");

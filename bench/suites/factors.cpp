@@ -10,7 +10,7 @@
 
 #include "bench/suites.hpp"
 #include "clpv/compare.hpp"
-#include "pipeline/frame/frame_times.hpp"
+#include "times/frame_times.hpp"
 #include "volume/volume_format.hpp"
 
 namespace clpv::bench {

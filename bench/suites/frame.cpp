@@ -8,8 +8,8 @@
 
 #include "bench/suites.hpp"
 #include "options/render_options.hpp"
-#include "pipeline/frame/frame_times.hpp"
 #include "support/named_enum.hpp"
+#include "times/frame_times.hpp"
 #include "verify/comparison.hpp"
 
 namespace clpv {

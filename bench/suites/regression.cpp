@@ -17,7 +17,7 @@ std::vector<Row> build_row(const Row& timed) {
   row.suite = timed.suite;
   row.stage = "build";
   row.name = "build/" + timed.name;
-  row.n = timed.n;
+  row.coefficients = timed.coefficients;
   row.problem = timed.problem;
   row.from_events = false;
   row.samples_ms = {timed.build_ms + timed.first_launch_ms};

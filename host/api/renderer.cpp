@@ -11,11 +11,11 @@
 #include "pathtracer/path_tracer.hpp"
 #include "pathtracer/point_tracer.hpp"
 #include "pathtracer/sample_counts.hpp"
-#include "pipeline/frame/frame_times.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/bounds.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv {
 namespace {
@@ -264,15 +264,11 @@ std::string Renderer::description() const {
 Stats Renderer::stats() const {
   const std::lock_guard lock(state().mutex);
   Stats stats;
-  for (const Pass pass : values_of<Pass>()) {
-    if (pass != Pass::whole) stats.stages[std::string(name_of(pass))] = 0;
-  }
-  FrameTimes times;
-  times.add(state().session.timeline().times());
-  for (const auto& [pass, ms] : times.passes()) stats.stages[pass] = ms[0];
   const HostWork& host = state().session.timeline().host();
-  stats.frame_ms = state().frame_ms;
-  stats.host_ms = host.host_ms, stats.launches = host.launches, stats.waits = host.waits;
+  stats.times = {time_record("frame", {state().frame_ms}), time_record("host", {host.host_ms})};
+  for (const StageTime& stage : state().session.timeline().times())
+    stats.times.push_back(time_record(stage.mark, {stage.ms}));
+  stats.launches = host.launches, stats.waits = host.waits;
   stats.build_ms = state().session.build_ms();
   stats.device_bytes = state().session.device_bytes();
   stats.peak_device_bytes = state().session.peak_device_bytes();

@@ -78,7 +78,7 @@ nlohmann::json earlier_run(const Options& options) {
                 options.format);
   nlohmann::json report = read_json(options.compare);
   bench::compare_runs(
-      report, nlohmann::json{{"context", {{"schema", 1}}}, {"benchmarks", nlohmann::json::array()}},
+      report, nlohmann::json{{"context", {{"schema", 2}}}, {"benchmarks", nlohmann::json::array()}},
       options.compare);
   return report;
 }

@@ -176,7 +176,7 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session,
 
 nlohmann::json document(const std::vector<QualityCell>& cells, const std::vector<Subject>& subjects,
                         const Session& session, const Options& options) {
-  nlohmann::json json = {{"schema", 1},
+  nlohmann::json json = {{"schema", 2},
                          {"time", options.subjects.time},
                          {"version", version()},
                          {"view", name_of(options.view)},

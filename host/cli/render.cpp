@@ -13,7 +13,6 @@
 #include "cli/unreached.hpp"
 #include "image/image_io.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "pipeline/frame/frame_stats.hpp"
 #include "quality/ground_truth.hpp"
 #include "quality/normal_weights.hpp"
 #include "scene/load.hpp"
@@ -24,6 +23,7 @@
 #include "support/output_file.hpp"
 #include "support/print.hpp"
 #include "support/progress.hpp"
+#include "times/frame_stats.hpp"
 
 namespace clpv {
 namespace render_command {

@@ -10,14 +10,15 @@
 
 #include "image/compare.hpp"
 #include "pipeline/frame/frame_keys.hpp"
-#include "pipeline/frame/frame_times.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/log.hpp"
-#include "support/statistics.hpp"
+#include "times/frame_times.hpp"
 
 namespace clpv {
 namespace {
+
+constexpr int kCellSchema = 2;  // of cached cells
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
@@ -94,8 +95,8 @@ QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
   QualityCell cell;
   cell.compute_units = session.device().compute_units;
   cell.from_events = times.from_events();
-  cell.stage_ms = times.pass_medians();
-  cell.frame_ms = median(times.sums());
+  cell.times = times.pass_records();
+  cell.times.insert(cell.times.begin(), time_record("frame", times.sums()));
   fill_errors(cell, image, truth, show);
   return cell;
 }
@@ -103,7 +104,8 @@ QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
 std::string quality_key(const GroundTruth& truth, const Device& device,
                         const RenderOptions& options, Show show, int frames, int processors) {
   Fingerprint print;
-  print.add(times_key(device, options, processors)).add(truth.file.filename().string());
+  print.add(kCellSchema).add(times_key(device, options, processors));
+  print.add(truth.file.filename().string());
   return print.add(name_of(show)).add(frames).add(truth.exposure).hex();
 }
 
@@ -178,8 +180,8 @@ QualitySummary summary_of(const Variant& variant, const std::vector<QualityCell>
   for (const QualityCell* cell : rendered) {
     sum.undefined += !cell->nrmse;
     sum.worst_nrmse = std::max(sum.worst_nrmse, cell->nrmse);  // an empty one is the least
-    for (const auto& [stage, ms] : cell->stage_ms)
-      sum.stage_ms[stage] += ms / static_cast<double>(rendered.size());
+    for (const TimeRecord& time : cell->times)
+      sum.stage_ms[time.stage] += time.median / static_cast<double>(rendered.size());
   }
   const auto mean = [&](auto member) {
     return mean_of(rendered, [member](const QualityCell& cell) { return cell.*member; });
@@ -188,7 +190,7 @@ QualitySummary summary_of(const Variant& variant, const std::vector<QualityCell>
   sum.nrmse_best_gain = mean(&QualityCell::nrmse_best_gain);
   sum.energy_ratio = mean(&QualityCell::energy_ratio);
   sum.flip = mean(&QualityCell::flip);
-  sum.frame_ms = mean(&QualityCell::frame_ms);
+  if (const auto frame = sum.stage_ms.extract("frame")) sum.frame_ms = frame.mapped();
   return sum;
 }
 

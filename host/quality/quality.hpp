@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "clpv/time_record.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "quality/ground_truth.hpp"
 #include "support/cache_folder.hpp"
@@ -46,9 +47,8 @@ struct QualityCell {
   std::optional<double> best_gain, nrmse_best_gain;
   std::optional<double> energy_ratio;  ///< sum of the frame / sum of the ground truth
   std::optional<double> flip;          ///< mean FLIP of the valid pixels, at the scene's exposure
-  double frame_ms = 0;                 ///< all stages
-  /// Median over the timed frames; sum over cascades and lights.
-  std::map<std::string, double> stage_ms;
+  /// Of "frame", the sum of all stages, and of each pass over all cascades and lights.
+  std::vector<TimeRecord> times;
   bool from_events = true;     ///< times from device events; false: wall time
   unsigned compute_units = 0;  ///< of the device or sub-device that was timed
   /// Settings of a baseline: samples, threads and times (quality/baseline.hpp).
@@ -94,8 +94,9 @@ struct QualitySummary {
   Variant variant;
   int views = 0, rejected = 0;
   int undefined = 0;  ///< rendered views without `nrmse`: its ground truth is black, the frame not
-  std::optional<double> nrmse, worst_nrmse, nrmse_best_gain, energy_ratio, flip, frame_ms;
-  std::map<std::string, double> stage_ms;
+  std::optional<double> nrmse, worst_nrmse, nrmse_best_gain, energy_ratio, flip;
+  std::optional<double> frame_ms;          ///< mean of the medians
+  std::map<std::string, double> stage_ms;  ///< likewise, of each pass
 };
 
 /// One summary per variant, by increasing mean error. Variants with fewer errors in their mean

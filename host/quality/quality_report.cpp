@@ -9,6 +9,7 @@
 #include "quality/quality.hpp"
 #include "support/json_optional.hpp"
 #include "support/named_enum.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv {
 namespace {
@@ -73,8 +74,8 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 }  // namespace
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain,
-                                   nrmse_best_gain, energy_ratio, flip, frame_ms, stage_ms,
-                                   compute_units, settings, setup_s, measured_s)
+                                   nrmse_best_gain, energy_ratio, flip, times, compute_units,
+                                   settings, setup_s, measured_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, undefined, nrmse, worst_nrmse,
                                    nrmse_best_gain, energy_ratio, flip, frame_ms, stage_ms)
 

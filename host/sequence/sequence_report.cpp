@@ -13,17 +13,6 @@ using nlohmann::json;
 
 constexpr int kSchema = 1;
 
-/// Statistics of `frames` samples [ms]; those that are not given are 0.
-json statistics_json(std::vector<double> samples, std::size_t frames) {
-  samples.resize(frames, 0.0);
-  const Statistics figures = statistics_of(std::move(samples));
-  return {{"n", frames},
-          {"min", figures.min},
-          {"median", figures.median},
-          {"mad", figures.mad},
-          {"max", figures.max}};
-}
-
 }  // namespace
 
 void TimesSummary::add(const FrameLine& line) {
@@ -32,27 +21,16 @@ void TimesSummary::add(const FrameLine& line) {
   pose_.push_back(line.pose_ms);
   frame_.push_back(line.frame_ms);
   write_.push_back(line.write_ms);
-  for (const StageTime& time : line.stages) {
-    auto found = std::ranges::find(stages_, time.mark, &Series::mark);
-    if (found == stages_.end()) found = stages_.insert(found, {time.mark, {}});
-    found->ms.push_back(time.ms);
-  }
+  stages_.add(line.stages);
 }
 
 json TimesSummary::to_json() const {
-  const std::size_t steady = frame_.size();
-  json all = {{"frames", frames_}, {"steady", steady}, {"stages", json::array()}};
-  if (steady == 0) return all;
-  for (const auto& [name, samples] :
-       {std::pair("pose", &pose_), std::pair("frame", &frame_), std::pair("write", &write_)})
-    all[name] = statistics_json(*samples, steady);
-  for (const Series& series : stages_) {
-    json stage = statistics_json(series.ms, steady);
-    stage.update({{"stage", name_of(series.mark.pass)},
-                  {"cascade", series.mark.cascade},
-                  {"light", series.mark.light}});
-    all["stages"].push_back(std::move(stage));
-  }
+  json all = {{"frames", frames_}, {"steady", frame_.size()}, {"times", json::array()}};
+  if (frame_.empty()) return all;
+  std::vector<TimeRecord> times = {time_record("pose", pose_), time_record("frame", frame_),
+                                   time_record("write", write_)};
+  std::ranges::move(stages_.stage_records(), std::back_inserter(times));
+  all["times"] = times;
   return all;
 }
 

@@ -9,6 +9,7 @@
 
 #include "sequence/stability.hpp"
 #include "sequence/times_file.hpp"
+#include "times/frame_times.hpp"
 
 namespace clpv {
 
@@ -17,20 +18,14 @@ class TimesSummary {
  public:
   void add(const FrameLine& line);
 
-  /// Number of frames, and of those without first frames (`steady`). For each of pose, frame, write
-  /// and each stage, cascade and light over steady frames: n, min, median, mad and max [ms]. A
-  /// frame without a stage took 0 ms for it.
+  /// Number of frames, and of those without first frames (`steady`); `times`: records of pose,
+  /// frame, write and the stages over steady frames.
   nlohmann::json to_json() const;
 
  private:
-  struct Series {
-    StageMark mark;
-    std::vector<double> ms;  ///< of steady frames that ran it
-  };
-
   std::size_t frames_ = 0;
   std::vector<double> pose_, frame_, write_;  ///< [ms] of steady frames
-  std::vector<Series> stages_;                ///< in order of first occurrence
+  FrameTimes stages_;                         ///< of steady frames
 };
 
 /// Schema 1: the fields of `about`, the steps, and a summary of the steps with static lights and

@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "pipeline/frame/frame_times.hpp"
 #include "scene/bounds.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
@@ -103,10 +102,14 @@ void for_each_line(const fs::path& path,
 }  // namespace
 
 json to_json(const FrameLine& line) {
-  json stages = to_json(line.stages);
-  for (json& stage : stages)
-    for (const char* part : {"cascade", "light"})
-      if (stage[part].is_null()) stage.erase(part);
+  json stages = json::array();
+  for (const StageTime& time : line.stages) {
+    json& stage = stages.emplace_back(json{{"stage", name_of(time.mark.pass)},
+                                           {"ms", time.ms},
+                                           {"timer", time.from_events ? "event" : "wall"}});
+    if (time.mark.cascade) stage["cascade"] = *time.mark.cascade;
+    if (time.mark.light) stage["light"] = *time.mark.light;
+  }
   return {{"frame", line.frame},       {"key", line.key},           {"settings", line.settings},
           {"time", line.seconds},      {"first", line.first},       {"pose_ms", line.pose_ms},
           {"frame_ms", line.frame_ms}, {"write_ms", line.write_ms}, {"stages", std::move(stages)}};

@@ -60,6 +60,11 @@ std::size_t list_size(const json& document, const std::string& place) {
 }
 
 std::string allowed_values(const Rule& rule, std::size_t into_size) {
+  if (rule.nullable) {
+    Rule without = rule;
+    without.nullable = false;
+    return allowed_values(without, into_size) + ", or null";
+  }
   switch (rule.shape) {
     case Shape::object:
       return "an object";
@@ -95,6 +100,7 @@ bool matches(const Rule& rule, const json& value, std::size_t into_size) {
   const auto one_of = [](const auto& values, const auto& wanted) {
     return values.empty() || std::find(values.begin(), values.end(), wanted) != values.end();
   };
+  if (rule.nullable && value.is_null()) return true;
   switch (rule.shape) {
     case Shape::object:
       return value.is_object();

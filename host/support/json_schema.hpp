@@ -36,9 +36,14 @@ struct Rule {
   std::vector<std::string> words = {};     ///< allowed strings, if not empty
   std::string into = {};                   ///< place of the list that an index points into
   bool required = false;                   ///< if the parent exists
+  bool nullable = false;                   ///< null is allowed too
 
   Rule must() && {
     required = true;
+    return std::move(*this);
+  }
+  Rule or_null() && {
+    nullable = true;
     return std::move(*this);
   }
 };

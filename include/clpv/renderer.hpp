@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +20,7 @@
 #include "clpv/image.hpp"
 #include "clpv/options.hpp"
 #include "clpv/scene.hpp"
+#include "clpv/time_record.hpp"
 
 namespace clpv {
 
@@ -44,12 +44,10 @@ using ImageSize = std::optional<std::array<int, 2>>;
 
 /// Cost of the last frame.
 struct Stats {
-  /// Device time by stage ("rasterize-camera", "propagate", ...), summed over cascades and lights
-  /// [ms]. All stages are there; 0: not run, since its result was cached or the options do not need
-  /// it.
-  std::map<std::string, double> stages;
-  double frame_ms = 0;    ///< wall time of render(), the read-back of the image included
-  double host_ms = 0;     ///< of it the host's work to enqueue the frame, without waits
+  /// "frame": wall time of render(), the read-back of the image included; "host": of it the host's
+  /// work to enqueue the frame, without waits. Then the stages that ran, on the device, by cascade
+  /// and light; a stage whose result was cached, or which the options do not need, is missing.
+  std::vector<TimeRecord> times;
   unsigned launches = 0;  ///< kernels, fills and copies of the device
   unsigned waits = 0;     ///< times that the host waited for the device, the read-back included
   double build_ms = 0;    ///< time so far for compiling programs or loading them

@@ -8,11 +8,11 @@
 #include "baselines/methods.hpp"
 #include "baselines/radiance_cascades.hpp"
 #include "pathtracer/path_tracer.hpp"
-#include "pipeline/frame/frame_times.hpp"
 #include "scene/emission.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 #include "support/statistics.hpp"
+#include "times/frame_times.hpp"
 
 namespace clpv {
 namespace {
@@ -138,8 +138,9 @@ BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera
   budget.rsm_ms = median(times.sums([&](const StageMark& mark) {
     return mark.pass == Pass::rasterize_rsm && mark.cascade == coarsest;
   }));
-  for (const auto& [pass, ms] : times.pass_medians())
-    if (shared({named<Pass>("pass", pass)})) budget.shared_ms[pass] = ms;
+  budget.shared = times.pass_records();
+  std::erase_if(budget.shared,
+                [&](const TimeRecord& time) { return !shared({named<Pass>("pass", time.stage)}); });
   budget.rsms = frame.read_rsms(coarsest);
   budget.grids = frame.light().grids;
   return budget;
@@ -228,13 +229,13 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
   const bool any_time = baseline == Baseline::radiance_cascades_fine;
   Plan plan = any_time ? Plan{1, 1} : plan_for(run, budget.budget_ms);
   Timed last;
-  double taken = 0;
+  TimeRecord taken;
   for (int correction = 0;; ++correction) {
     std::vector<double> times;
     for (int i = 0; i < runs; ++i) times.push_back((last = run(plan.samples, plan.stride)).ms);
-    taken = median(times);
+    taken = time_record("baseline", times);
     if (any_time) break;
-    const double ratio = budget.budget_ms / taken;
+    const double ratio = budget.budget_ms / taken.median;
     const auto better =
         static_cast<unsigned>(std::clamp(plan.samples * ratio, 1.0, double{kMaxSamples}));
     if (std::abs(ratio - 1) <= kTolerance || better == plan.samples || correction == kCorrections)
@@ -243,7 +244,7 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
   }
   if (baseline == Baseline::ddgi_converged) {
     last = run(plan.samples, plan.stride, kConvergedFrames);
-    taken = last.ms;
+    taken = time_record("baseline", {last.ms});
   }
   measured.image = traced_view(view.with(last.image), show);
   fill_errors(cell, measured.image, truth, show);
@@ -255,9 +256,11 @@ MeasuredBaseline measure_baseline(Baseline baseline, const baselines::View& view
     cell.settings["filter_passes"] = baseline == Baseline::paths_filtered ? kPasses : 1;
   cell.from_events = false;
   cell.compute_units = static_cast<unsigned>(view.threads());
-  cell.stage_ms = budget.shared_ms;
-  cell.stage_ms["baseline"] = taken;
-  for (const auto& [stage, ms] : cell.stage_ms) cell.frame_ms += ms;
+  cell.times = budget.shared;
+  cell.times.push_back(taken);
+  double frame_ms = 0;
+  for (const TimeRecord& time : cell.times) frame_ms += time.median;
+  cell.times.insert(cell.times.begin(), time_record("frame", {frame_ms}));
   return measured;
 }
 

@@ -39,10 +39,10 @@ inline constexpr unsigned kConvergedFrames = 128;
 
 /// Time budget of baselines, and the inputs that they take from the measured frame.
 struct BaselineBudget {
-  double budget_ms = 0;  ///< the frame without `shared_ms`
+  double budget_ms = 0;  ///< the frame without `shared`
   double rsm_ms = 0;     ///< RSMs of the coarsest cascade
   /// Stages that every method needs: G-buffer, shadow maps, shading.
-  std::map<std::string, double> shared_ms;
+  std::vector<TimeRecord> shared;
   std::vector<SurfaceImage> rsms;  ///< of the coarsest cascade, flux in W
   std::vector<ClpvGrid> grids;     ///< of the cascades, finest first
 };

@@ -17,6 +17,7 @@ as W/sr.
                                          volumes, stats
     DeviceFrame, DeviceVolumes           results as OpenCL memory, for pyopencl; DeviceEvent: when
                                          they are complete
+    ms_of                                time of a stage in Renderer.stats["times"]
     Image, read_image, compare           images as arrays, files, errors
     pathtrace                            ground truth on the CPU
     Basis, bases()                       functions on the sphere
@@ -35,8 +36,15 @@ __all__ = [
     "Basis", "Camera", "Comparison", "DeviceError", "DeviceEvent", "DeviceFrame", "DeviceVolumes",
     "Error", "Image", "InputError", "Light", "Material", "Medium", "Renderer", "ResourceError",
     "Scene", "UsageError", "ValidationError", "Volume", "bases", "compare", "devices", "options",
-    "pathtrace", "read_image"
+    "ms_of", "pathtrace", "read_image"
 ]
+
+
+def ms_of(times, stage):
+    """ms_of(times, stage) -> sum of the medians of a stage over its cascades and lights [ms].
+
+    times: those of Renderer.stats or of JSON by clpv. 0 if the stage did not run."""
+    return sum(time["median"] for time in times if time["stage"] == stage)
 
 
 def __getattr__(name):

@@ -374,10 +374,11 @@ class Renderer:
     def volumes(self) -> list[Volume]:
         """volumes() -> list of Volume of the last frame, finest cascade first."""
     @property
-    def stats(self) -> dict[str, float]:
-        """Dict of the last frame: device time of each stage [ms] ('propagate', 'gather', ...; 0 if cached or not needed),
-        'frame': wall time of render() [ms], 'host': the host's work in it, without waiting [ms], 'build': compilation so far
-        [ms]; numbers of 'launches' (kernels, fills and copies) and of 'waits' for the device; 'device_bytes', 'peak_device_bytes'.
+    def stats(self) -> dict[str, Any]:
+        """Dict of the last frame: 'times', a list of records {stage, cascade, light, n, min, median, mad, max} [ms], which
+        ms_of() sums by stage: 'frame' (wall time of render()), 'host' (the host's work in it, without waiting), and each stage on the
+        device that ran ('propagate', 'gather', ...); 'build': compilation so far [ms]; numbers of 'launches' (kernels, fills and
+        copies) and of 'waits' for the device; 'device_bytes', 'peak_device_bytes'.
         """
     def enqueue(self, view: _View = 'full', camera: str | Camera | None = None, time: float = 0.0, size: tuple[int, int] | None = None) -> DeviceFrame:
         """enqueue(view='full', camera=None, time=0.0, size=None) -> DeviceFrame: render() without reading the image back.
@@ -509,6 +510,9 @@ def devices() -> list[dict[str, Any]]:
 
 def options() -> list[dict[str, str]]:
     """options() -> list of dict: name, help, allowed values and default of each option of Renderer."""
+
+def ms_of(times: Sequence[dict[str, Any]], stage: str) -> float:
+    """times: those of Renderer.stats or of JSON by clpv. 0 if the stage did not run."""
 
 def pathtrace(scene: Scene, view: _View | Sequence[_View] = 'full', camera: str | Camera | None = None, width: int = 960, height: int = 540, bounces: int | Literal["all"] = 1, samples: int = 0, noise: float = 0.02, seed: int = 1, threads: int = 0, time: float = 0.0, progress: Callable[[float], object] | None = None) -> Image:
     """pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.

@@ -131,9 +131,9 @@ class Controls:
                           intensity=self.lux.value, name="sun")
 
     def show(self, stats, size, rate, why):
-        rows = "\n".join(f"| {stage} | {stats[stage]:.1f} |" for stage in STAGES
-                         if stats[stage] > 0)
+        ms = {stage: clpv.ms_of(stats["times"], stage) for stage in (*STAGES, "frame")}
+        rows = "\n".join(f"| {stage} | {ms[stage]:.1f} |" for stage in STAGES if ms[stage] > 0)
         self.status.content = why or (
-            f"{size[0]} x {size[1]}, {rate} frames/s, {stats['frame']:.0f} ms")
-        self.times.content = (f"| stage | ms |\n|---|---|\n{rows}\n| frame | {stats['frame']:.1f} |"
+            f"{size[0]} x {size[1]}, {rate} frames/s, {ms['frame']:.0f} ms")
+        self.times.content = (f"| stage | ms |\n|---|---|\n{rows}\n| frame | {ms['frame']:.1f} |"
                               f"\n\n{stats['device_bytes'] / 2**20:.0f} MiB on the device")

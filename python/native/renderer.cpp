@@ -56,9 +56,14 @@ CameraChoice camera_choice(const std::optional<CameraChoice>& given) {
 
 py::dict dict_of(const Stats& stats) {
   py::dict all;
-  for (const auto& [stage, ms] : stats.stages) all[py::str(stage)] = ms;
-  all["frame"] = stats.frame_ms;
-  all["host"] = stats.host_ms;
+  py::list times;
+  for (const TimeRecord& time : stats.times) {
+    times.append(py::dict(py::arg("stage") = time.stage, py::arg("cascade") = time.cascade,
+                          py::arg("light") = time.light, py::arg("n") = time.n,
+                          py::arg("min") = time.min, py::arg("median") = time.median,
+                          py::arg("mad") = time.mad, py::arg("max") = time.max));
+  }
+  all["times"] = times;
   all["launches"] = stats.launches;
   all["waits"] = stats.waits;
   all["build"] = stats.build_ms;
@@ -315,11 +320,12 @@ void add_renderer(py::module_& module) {
       [](const Renderer& renderer) {
         return dict_of(interruptible([&] { return renderer.stats(); }));
       },
-      "Dict of the last frame: device time of each stage [ms] ('propagate', 'gather', ...; 0 if "
-      "cached or not needed),\n"
-      "'frame': wall time of render() [ms], 'host': the host's work in it, without waiting [ms], "
-      "'build': compilation so far\n[ms]; numbers of 'launches' (kernels, fills and copies) and of "
-      "'waits' for the device; 'device_bytes', 'peak_device_bytes'.");
+      "Dict of the last frame: 'times', a list of records {stage, cascade, light, n, min, median, "
+      "mad, max} [ms], which\nms_of() sums by stage: 'frame' (wall time of render()), 'host' (the "
+      "host's work in it, without waiting), and each stage on the\ndevice that ran ('propagate', "
+      "'gather', ...); 'build': compilation so far [ms]; numbers of 'launches' (kernels, fills "
+      "and\n"
+      "copies) and of 'waits' for the device; 'device_bytes', 'peak_device_bytes'.");
   define(
       module, "pathtrace",
       [](const Scene& scene, const std::variant<std::string, std::vector<std::string>>& view,

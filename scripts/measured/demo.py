@@ -16,6 +16,7 @@ import numpy
 
 from . import CLPV, ROOT, output
 from .tables.stages import print_stages
+from clpv import ms_of
 from clpv.draw import style
 from clpv.score import exr
 
@@ -108,7 +109,7 @@ def main():
     tiles, error = demo.make()
     folder.write("demo.png", picture(tiles))
     print_stages([demo.stats])
-    milliseconds = json.loads(demo.stats.read_text())["frame_ms"]
+    milliseconds = ms_of(json.loads(demo.stats.read_text())["times"], "frame")
     print(f"All bounces: {milliseconds:.0f} ms per frame of {arguments.width}x{arguments.height}; "
           f"error of indirect light {100 * error:.0f} % (NRMSE against path tracing at "
           f"{demo.small[0]}x{demo.small[1]})")

@@ -4,55 +4,49 @@
 Only the standard library.
 """
 
-# Parts of results/docs, and tolerances by the end of a number's name: absolute, relative. Lobes are
-# computed in double on the host. Tables are read in float, where fused multiply-adds decide single
-# entries. Light: devices round differently, and the ground truth has a noise of 0.02 (views: 0.05).
+import typing
+
+
+class Part(typing.NamedTuple):
+    """A part of scripts/reproduce. `file`: of results/docs. `tolerances`: by the end of a number's
+    name: absolute, relative; None: no number has an expected value. `model`: needs Sponza.
+    `quick`: belongs to a quick run too."""
+    file: str
+    tolerances: dict | None
+    model: bool = True
+    quick: bool = True
+
+
+# Lobes are computed in double on the host. Tables are read in float, where fused multiply-adds
+# decide single entries. Light: devices round differently, and the ground truth has a noise of 0.02
+# (views: 0.05).
 PARTS = {
-    "claims/lobes": {"peak": (0.5, 0), "": (1e-3, 1e-2)},
-    "claims/tables": {"degrees": (0.5, 0), "": (1e-2, 1e-2)},
-    "claims/lambdas": {"error": (0.03, 0), "difference": (0.01, 0), "": (1e-3, 1e-2)},
-    "claims/light": {"difference": (0.01, 0), "": (0.03, 0.03)},
-    "claims/views": {
-        "better": (1, 0),
-        "mean": (0.01, 0),
-        "standard_error": (0.01, 0),
-        "": (0.05, 0.05),
-    },
-    "claims/texels": {"": (5e-3, 0.02)},
-    "claims/shadows": {"": (0.03, 0)},
-    "claims/arcade": {"": (0.02, 0)},
-    "claims/lit": {"": (5e-3, 0)},
-    "figures/rows": {"": (5e-3, 0.03)},
-    "factors/difference": {"": (5e-3, 0.05)},
+    "lobes": Part("claims", {"peak": (0.5, 0), "": (1e-3, 1e-2)}, model=False),
+    "tables": Part("claims", {"degrees": (0.5, 0), "": (1e-2, 1e-2)}, model=False),
+    "lambdas": Part("claims", {"error": (0.03, 0), "difference": (0.01, 0), "": (1e-3, 1e-2)}),
+    "light": Part("claims", {"difference": (0.01, 0), "": (0.03, 0.03)}),
+    "views": Part("claims", {"better": (1, 0), "mean": (0.01, 0), "standard_error": (0.01, 0),
+                             "": (0.05, 0.05)}, quick=False),
+    "texels": Part("claims", {"": (5e-3, 0.02)}),
+    "shadows": Part("claims", {"": (0.03, 0)}),
+    "arcade": Part("claims", {"": (0.02, 0)}),
+    "lit": Part("claims", {"": (5e-3, 0)}),
+    "figures": Part("figures", {"": (5e-3, 0.03)}, model=False),
+    "factors": Part("factors", {"": (5e-3, 0.05)}),
+    "table1": Part("table1", None),
 }
+CLAIMS = [name for name, part in PARTS.items() if part.file == "claims"]
 # Fields that name a row, and fields that are no results.
-IDENTITY = (
-    "basis",
-    "lobe",
-    "transport",
-    "n",
-    "over",
-    "lambdas",
-    "lambda",
-    "entries",
-    "cascade_size",
-    "rsm_size",
-    "iterations",
-    "cascade-size",
-    "image",
-    "options",
-    "camera",
-    "size",
-    "changed",
-)
+IDENTITY = ("basis", "lobe", "transport", "n", "over", "lambdas", "lambda", "entries",
+            "cascade_size", "rsm_size", "iterations", "cascade-size", "image", "options", "camera",
+            "size", "changed")
 SKIPPED = ("floor_pixels", "views", "apart")
 
 
 def label(row):
     """Name of a row: what identifies it. A search names its lambda as a result."""
-    return ",".join(
-        str(row[key]) for key in IDENTITY if key in row and not (key == "lambda" and "over" in row)
-    )
+    return ",".join(str(row[key]) for key in IDENTITY
+                    if key in row and not (key == "lambda" and "over" in row))
 
 
 def numbers(value, path):
@@ -63,62 +57,54 @@ def numbers(value, path):
                 yield from numbers(each, f"{path}/{key}")
     elif isinstance(value, list):
         for each in value:
-            yield from numbers(
-                {key: one for key, one in each.items() if key not in IDENTITY},
-                f"{path}/{label(each)}",
-            )
+            yield from numbers({key: one for key, one in each.items() if key not in IDENTITY},
+                               f"{path}/{label(each)}")
     elif value is None or isinstance(value, (int, float)) and not isinstance(value, bool):
         yield path, value
 
 
-def differences(document):
-    """{row: NRMSE} of a file of `clpv bench factors`."""
-    return {
-        f"{row['basis']},{row['changed']}": row["difference"]
-        for row in document["benchmarks"]
-        if row["stage"] == "sum"
-    }
+def place(name):
+    """Start of the names of a part's numbers."""
+    return {"figures": "figures/rows", "factors": "factors/difference"}.get(name, f"claims/{name}")
 
 
-def parts_of(read):
-    """{part: its document} of the measured parts."""
-    return {
-        **{
-            name: read(f"docs/{name.split('/')[0]}").get(name.split("/")[1])
-            for name in PARTS
-            if not name.startswith("factors")
-        },
-        "factors/difference": differences(read("docs/factors")),
-    }
+def compared(name, result):
+    """{place: what is compared of a part's result}."""
+    if name == "figures":
+        result = result["rows"] or None
+    elif name == "factors":
+        result = {f"{row['basis']},{row['changed']}": row["difference"]
+                  for row in result["benchmarks"] if row["stage"] == "sum"}
+    return {place(name): result} if PARTS[name].tolerances else {}
 
 
-def found(parts):
-    """{name: number, None if undefined} of {part: document}; parts that are None are left out."""
-    return dict(
-        pair
-        for part, document in parts.items()
-        if document is not None
-        for pair in numbers(document, part)
-    )
+def recorded(read):
+    """{part: its result} of the record."""
+    return {name: read(f"docs/{part.file}").get(name) if part.file == "claims"
+            else read(f"docs/{part.file}") for name, part in PARTS.items()}
+
+
+def found(results):
+    """{name: number, None if undefined} of {part: result}; parts that are None are left out."""
+    return dict(pair for name, result in results.items() if result is not None
+                for path, document in compared(name, result).items() if document is not None
+                for pair in numbers(document, path))
 
 
 def tolerance(name, value):
-    part = next(part for part in PARTS if name.startswith(part))
-    absolute, relative = next(
-        allowed for end, allowed in PARTS[part].items() if name.endswith(end)
-    )
+    part = next(part for key, part in PARTS.items() if name.startswith(place(key) + "/"))
+    absolute, relative = next(allowed for end, allowed in part.tolerances.items()
+                              if name.endswith(end))
     return float(f"{max(absolute, relative * abs(value)):.2g}")
 
 
 def expected(read):
     """expected.json: {number: [value, tolerance]}, and the file of each part."""
     return {
-        "files": {part: f"results/docs/{part.split('/')[0]}.json" for part in PARTS},
-        "numbers": {
-            name: [float(f"{value:.6g}"), tolerance(name, value)]
-            for name, value in found(parts_of(read)).items()
-            if value is not None
-        },
+        "files": {place(name): f"results/docs/{part.file}.json"
+                  for name, part in PARTS.items() if part.tolerances},
+        "numbers": {name: [float(f"{value:.6g}"), tolerance(name, value)]
+                    for name, value in found(recorded(read)).items() if value is not None},
     }
 
 
@@ -136,8 +122,7 @@ def left(document, measured, whole=()):
             continue
         if name not in document["numbers"]:
             lines.append(
-                f"{name}: found {value:.6g}; allowed: a number of results/paper/expected.json"
-            )
+                f"{name}: found {value:.6g}; allowed: a number of results/paper/expected.json")
             continue
         wanted, allowed = document["numbers"][name]
         if not abs(value - wanted) <= allowed:

@@ -25,70 +25,47 @@ import tempfile
 import time
 
 from . import BUILD, CLPV, RESULTS, ROOT, described, expected, hash_of, output, tables, verdicts
+from .expected import CLAIMS, PARTS
 from .measure import measured_with, write
 from .suite import model_files
 
 LEFT = 5  # exit code
-CLAIMS = ("lobes", "tables", "lit", "texels", "lambdas", "light", "arcade", "shadows", "views")
-WITHOUT_MODEL = ("lobes", "tables", "figures")
-WHOLE_ONLY = ("views",)
-
-
-def of_claims(name, arguments):
-    from . import claims
-
-    return claims.CLAIMS[name](arguments)
+FACTORS_OF_QUICK = "--filter=/paper/(layout=soa.*|evaluate=[a-z]*)?$"
 
 
 def of_bench(suite, options, arguments):
-    given = ["--scene=scenes/sponza.json", f"--model={arguments.model}", "--camera=curtains"]
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "rows.json"
-        subprocess.run(
-            [str(CLPV), "bench", suite, *given, *options, f"--output={file}"],
-            stdout=subprocess.DEVNULL,
-            check=True,
-            cwd=ROOT,
-        )
+        subprocess.run([str(CLPV), "bench", suite, "--scene=scenes/sponza.json",
+                        f"--model={arguments.model}", "--camera=curtains", *options,
+                        f"--output={file}"], stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
         document = json.loads(file.read_text(encoding="utf-8"))
     document["context"].pop("host_name", None)
     return document
 
 
-def of_figures(arguments):
-    from . import figures
+def result_of(name, arguments):
+    """Measures a part."""
+    from . import claims, figures
 
-    return figures.paper(arguments)
+    quick = arguments.quick
+    if name == "table1":
+        return of_bench(name, [f"--repetitions={2 if quick else 7}"], arguments)
+    if name == "factors":
+        return of_bench(name, [FACTORS_OF_QUICK, "--repetitions=2"] if quick
+                        else ["--repetitions=5"], arguments)
+    return figures.paper(arguments) if name == "figures" else claims.CLAIMS[name](arguments)
 
 
 def parts_of(arguments):
-    """{name: function} of the parts to measure."""
-    repetitions = "2" if arguments.quick else "7"
-    parts = {name: lambda name=name: of_claims(name, arguments) for name in CLAIMS}
-    parts["figures"] = lambda: of_figures(arguments)
-    parts["table1"] = lambda: of_bench("table1", ["--repetitions", repetitions], arguments)
-    parts["factors"] = lambda: of_bench(
-        "factors",
-        ["--filter=/paper/(layout=soa.*|evaluate=[a-z]*)?$", "--repetitions=2"]
-        if arguments.quick
-        else ["--repetitions=5"],
-        arguments,
-    )
-    left_out = (
-        *(() if arguments.model else set(parts) - set(WITHOUT_MODEL)),
-        *(WHOLE_ONLY if arguments.quick else ()),
-    )
-    return {
-        name: part
-        for name, part in parts.items()
-        if name not in left_out and (not arguments.part or name in arguments.part)
-    }
+    """Names of the parts that can be measured."""
+    return [name for name, part in PARTS.items()
+            if (arguments.model or not part.model) and (part.quick or not arguments.quick)]
 
 
 def devices():
-    return subprocess.run(
-        [str(CLPV), "devices", "--format=json"], stdout=subprocess.PIPE, text=True, check=True
-    ).stdout
+    return subprocess.run([str(CLPV), "devices", "--format=json"], stdout=subprocess.PIPE,
+                          text=True, check=True).stdout
 
 
 def key_of(arguments):
@@ -97,11 +74,8 @@ def key_of(arguments):
     module = sorted((BUILD / "python/clpv").glob("_native*.so"))
     sources = [CLPV, *module, ROOT / "python/clpv", ROOT / "scripts/measured", ROOT / "scenes"]
     kernels = os.environ.get("CLPV_KERNEL_DIR")
-    environment = {
-        name: value
-        for name, value in sorted(os.environ.items())
-        if name.startswith(("CLPV_", "POCL_", "OCL_"))
-    }
+    environment = {name: value for name, value in sorted(os.environ.items())
+                   if name.startswith(("CLPV_", "POCL_", "OCL_"))}
     return {
         "sources": hash_of(sources),
         "model": hash_of(model_files(pathlib.Path(arguments.model))) if arguments.model else None,
@@ -123,24 +97,21 @@ def earlier(out, name, key):
         if found["key"] == key and whole:
             return {**found, "result": found["result"], "minutes": float(found["minutes"])}
     except (OSError, ValueError, KeyError, TypeError) as error:
-        print(
-            f"scripts/reproduce: {out.path / name}: damaged ({type(error).__name__}: {error}): "
-            "measured again",
-            file=sys.stderr,
-        )
+        print(f"scripts/reproduce: {out.path / name}: damaged ({type(error).__name__}: {error}): "
+              "measured again", file=sys.stderr)
     return None
 
 
 def measured(arguments):
     """{part: {"minutes", "result"}} of this key, from files of an earlier run or new."""
     key, done = key_of(arguments), {}
-    for name, part in parts_of(arguments).items():
+    for name in arguments.part or parts_of(arguments):
         file = f"parts/{name}.json"
         found = earlier(arguments.out, file, key)
         if found is None:
             print(f"scripts/reproduce: {name}", file=sys.stderr, flush=True)
             start, before = time.monotonic(), len(arguments.out.written)
-            result = part()
+            result = result_of(name, arguments)
             minutes, files = (time.monotonic() - start) / 60, arguments.out.written[before:]
             found = {"key": key, "minutes": minutes, "files": files, "result": result}
             arguments.out.write(file, json.dumps(found))
@@ -151,13 +122,8 @@ def measured(arguments):
 def merged(record, fresh):
     """The record with the numbers of this run; labels tell which rows belong together."""
     if isinstance(record, dict) and isinstance(fresh, dict):
-        return {
-            **record,
-            **{
-                key: merged(record[key], value) if key in record else value
-                for key, value in fresh.items()
-            },
-        }
+        return {**record, **{key: merged(record[key], value) if key in record else value
+                             for key, value in fresh.items()}}
     if isinstance(record, list) and isinstance(fresh, list):
         rows = {expected.label(row): row for row in record}
         for row in fresh:
@@ -166,32 +132,23 @@ def merged(record, fresh):
     return fresh
 
 
+def results_of(done, names):
+    return {name: done[name]["result"] for name in names if name in done}
+
+
 def overlay(done):
     """Puts the numbers of this run in place of the record's, for the tables and the claims."""
-    claims = {name: done[name]["result"] for name in CLAIMS if name in done}
-    tables.MEASURED["claims"] = merged(tables.read("claims"), claims)
-    for name in ("table1", "factors"):
-        if name in done:
-            tables.MEASURED[name] = {"measured": {}, **done[name]["result"]}
+    tables.MEASURED["claims"] = merged(tables.read("claims"), results_of(done, CLAIMS))
+    for name, result in results_of(done, ("table1", "factors")).items():
+        tables.MEASURED[name] = {"measured": {}, **result}
     tables.read.cache_clear()
-
-
-def numbers_of(done):
-    """{number: value} that this run measured, of those with an expected value."""
-    parts = {f"claims/{name}": done[name]["result"] for name in CLAIMS if name in done}
-    if "figures" in done and done["figures"]["result"]["rows"]:
-        parts["figures/rows"] = done["figures"]["result"]["rows"]
-    if "factors" in done:
-        parts["factors/difference"] = expected.differences(done["factors"]["result"])
-    return expected.found(parts)
 
 
 def record(done, out):
     """Writes results/docs from the parts of this run, and docs/images from its figures."""
     now = measured_with(json.loads(devices())["devices"][0])
     folder = RESULTS / "docs"
-    claims = {name: done[name]["result"] for name in CLAIMS if name in done}
-    if claims:
+    if claims := results_of(done, CLAIMS):
         recorded = tables.read("claims")
         whole = len(claims) == len(CLAIMS)
         later = f"{', '.join(claims)}: clpv {now['commit']}, {now['date']}"
@@ -200,9 +157,8 @@ def record(done, out):
         measured = now if whole else {**recorded["measured"], "except": excepted}
         parts = {name: claims.get(name, recorded.get(name)) for name in CLAIMS}
         write(folder, "claims", {"measured": measured, **parts})
-    for name in ("table1", "factors"):
-        if name in done:
-            write(folder, name, {"measured": now, **done[name]["result"]})
+    for name, result in results_of(done, ("table1", "factors")).items():
+        write(folder, name, {"measured": now, **result})
     if "figures" in done:
         figures = done["figures"]["result"]
         write(folder, "figures", {"measured": now, "rows": figures["rows"]})
@@ -222,36 +178,17 @@ def turned():
     from . import native
 
     clpv = native()
-    theta, phi = numpy.meshgrid(
-        numpy.linspace(0, numpy.pi, 25), numpy.arange(48) * 2 * numpy.pi / 48, indexing="ij"
-    )
-    directions = numpy.stack(
-        (numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)),
-        axis=-1,
-    )
+    theta, phi = numpy.meshgrid(numpy.linspace(0, numpy.pi, 25),
+                                numpy.arange(48) * 2 * numpy.pi / 48, indexing="ij")
+    directions = numpy.stack((numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi),
+                              numpy.cos(theta)), axis=-1)
     lobes = []
-    for name in (
-        "sh2",
-        "sh3",
-        "srbf4",
-        "srbf6",
-        "srbf8v1",
-        "srbf8v2",
-        "srbf8v3",
-        "srbf14",
-        "bins24",
-        "bins96",
-    ):
+    for name in ("sh2", "sh3", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14",
+                 "bins24", "bins96"):
         basis = clpv.Basis(name)
         values = basis.evaluate(directions.reshape(-1, 3)) @ basis.clamped_cosine((-2, 1, -3), 256)
-        lobes.append(
-            {
-                "name": name,
-                "rows": 25,
-                "columns": 48,
-                "values": [round(float(value), 3) for value in values],
-            }
-        )
+        lobes.append({"name": name, "rows": 25, "columns": 48,
+                      "values": [round(float(value), 3) for value in values]})
     return lobes
 
 
@@ -259,107 +196,58 @@ def page(arguments, done, left, checked, unmeasured):
     import jinja2
     from clpv.draw import report
 
-    folders = [ROOT / "python/clpv/draw", ROOT / "scripts/measured"]
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(folders),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
+        loader=jinja2.FileSystemLoader([ROOT / "python/clpv/draw", ROOT / "scripts/measured"]),
+        autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     claims = verdicts.judged(tables.result)
-    sections = [
-        (name, [each for each in claims if each["section"] == name])
-        for name in dict.fromkeys(each["section"] for each in claims)
-    ]
+    sections = [(name, [each for each in claims if each["section"] == name])
+                for name in dict.fromkeys(each["section"] for each in claims)]
     figures = done["figures"]["result"] if "figures" in done else {"sheets": [], "lobes": []}
     out = arguments.out.path
-    sheets = [
-        {
-            "name": sheet["name"],
-            "uri": uri(out / sheet["file"]),
-            "pairs": [
-                {
-                    "caption": pair["caption"],
-                    "left": uri(out / pair["left"]),
-                    "right": uri(out / pair["right"]),
-                }
-                for pair in sheet["pairs"]
-            ],
-        }
-        for sheet in figures["sheets"]
-    ]
-    device = subprocess.run(
-        [str(CLPV), "devices"], stdout=subprocess.PIPE, text=True, check=False, cwd=ROOT
-    ).stdout.splitlines()[:1]
-    minutes = [
-        ["part", "minutes"],
-        *([name, f"{part['minutes']:.1f}"] for name, part in done.items()),
-    ]
-    here = "this run" if "table1" in done else "the record"
+    sheets = [{"name": sheet["name"], "uri": uri(out / sheet["file"]),
+               "pairs": [{**pair, "left": uri(out / pair["left"]), "right": uri(out / pair["right"])}
+                         for pair in sheet["pairs"]]} for sheet in figures["sheets"]]
+    device = subprocess.run([str(CLPV), "devices"], stdout=subprocess.PIPE, text=True, check=False,
+                            cwd=ROOT).stdout.splitlines()[:1]
+    minutes = [["part", "minutes"],
+               *([name, f"{part['minutes']:.1f}"] for name, part in done.items())]
+    here = {name: "this run" if name in done else "the record" for name in ("table1", "factors")}
     html = environment.get_template("paper.html").render(
-        subtitle=", ".join(
-            [
-                f"clpv {described()}",
-                "quick run" if arguments.quick else "whole run",
-                *device,
-                time.strftime("%Y-%m-%d"),
-            ]
-        ),
-        left=left,
-        checked=checked,
-        unmeasured=unmeasured,
-        parts=minutes,
-        sections=sections,
-        sheets=sheets,
-        turned=turned(),
+        subtitle=", ".join([f"clpv {described()}", "quick run" if arguments.quick else "whole run",
+                            *device, time.strftime("%Y-%m-%d")]),
+        left=left, checked=checked, unmeasured=unmeasured, parts=minutes, sections=sections,
+        sheets=sheets, turned=turned(),
         lobes=[{"name": name, "uri": uri(out / name)} for name in figures["lobes"]],
-        width=arguments.width,
-        colours=report.page_colours(),
-        tables=[
-            (f"With indirect shadows ({here})", tables.TABLES["table1-shadows"]()),
-            (f"Without indirect shadows ({here})", tables.TABLES["table1-no-shadows"]()),
-            (
-                f"One option at a time ({'this run' if 'factors' in done else 'the record'})",
-                tables.TABLES["factors"](),
-            ),
-        ],
-    )
+        width=arguments.width, colours=report.page_colours(),
+        tables=[(f"With indirect shadows ({here['table1']})", tables.TABLES["table1-shadows"]()),
+                (f"Without indirect shadows ({here['table1']})",
+                 tables.TABLES["table1-no-shadows"]()),
+                (f"One option at a time ({here['factors']})", tables.TABLES["factors"]())])
     arguments.out.write("index.html", html)
 
 
 def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--model", help="Sponza's glTF, of the Khronos sample models")
     parser.add_argument("--quick", action="store_true", help="fewer rows and samples")
-    parser.add_argument(
-        "--part", action="append", metavar="NAME", help="only this part, repeatable"
-    )
-    parser.add_argument(
-        "--out",
-        type=pathlib.Path,
-        default=ROOT / "out/paper",
-        help="output folder (default: out/paper)",
-    )
-    parser.add_argument(
-        "--record", action="store_true", help="write results/docs and docs/images; whole runs only"
-    )
+    parser.add_argument("--part", action="append", metavar="NAME",
+                        help="only this part, repeatable")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/paper",
+                        help="output folder (default: out/paper)")
+    parser.add_argument("--record", action="store_true",
+                        help="write results/docs and docs/images; whole runs only")
     parser.add_argument("--no-build", action="store_true", help="use the build as it is")
     arguments = parser.parse_args()
     arguments.model = str(pathlib.Path(arguments.model).resolve()) if arguments.model else None
     if arguments.model and not pathlib.Path(arguments.model).is_file():
         parser.error(f"--model {arguments.model}: found no file; allowed: Sponza's glTF")
     arguments.width, arguments.height = (480, 270) if arguments.quick else (960, 540)
+    allowed = parts_of(arguments)
     for name in arguments.part or []:
-        if name not in (
-            allowed := parts_of(argparse.Namespace(**{**vars(arguments), "part": None}))
-        ):
-            parser.error(
-                f"--part {name}: allowed: {', '.join(allowed)}; the others need --model, "
-                "or no --quick"
-            )
+        if name not in allowed:
+            parser.error(f"--part {name}: allowed: {', '.join(allowed)}; the others need --model, "
+                         "or no --quick")
     if arguments.record and (arguments.quick or not arguments.model):
         parser.error("--record: needs --model, excludes --quick")
     arguments.out = output.Folder(arguments.out.resolve(), "scripts/reproduce")
@@ -369,8 +257,8 @@ def main():
         parser.error(f"--no-build: found no {CLPV}; allowed: a build")
     done = measured(arguments)
     document = json.loads((RESULTS / "paper/expected.json").read_text(encoding="utf-8"))
-    numbers = numbers_of(done)
-    whole = [] if arguments.quick else [f"claims/{name}" for name in CLAIMS if name in done]
+    numbers = expected.found(results_of(done, PARTS))
+    whole = [] if arguments.quick else [expected.place(name) for name in CLAIMS if name in done]
     left = expected.left(document, numbers, whole)
     if arguments.record:
         record(done, arguments.out)

@@ -17,6 +17,10 @@ def flags():
     ]
 
 
+def ms(renderer, stage):
+    return clpv.ms_of(renderer.stats["times"], stage)
+
+
 def test_images_are_the_programs_byte_for_byte(tmp_path, renderer):
     program("render", CORNELL, "--camera", "front", *flags(), "-o", tmp_path / "program.exr")
     image = renderer.render("full", camera="front")
@@ -92,7 +96,7 @@ def test_lights_and_cameras_are_replaced():
         light.replace(intensity=[3 * x for x in light.intensity]) for light in scene.lights
     ]
     assert renderer.render("indirect").array[..., :3].mean() == pytest.approx(3 * dim, rel=0.01)
-    assert renderer.stats["propagate"] > 0 and renderer.stats["blockers"] == 0
+    assert ms(renderer, "propagate") > 0 and ms(renderer, "blockers") == 0
     scene.lights = [clpv.Light("point", position=(0.278, 0.5, 0.28), intensity=2)]
     assert scene.lights[0].kind == "point" and scene.lights[0].intensity == (2, 2, 2)
     scene.cameras = [*scene.cameras, FRONT.replace(name="mine")]
@@ -122,14 +126,18 @@ def test_medium_is_set_and_removed():
 
 def test_stats(scene):
     renderer = clpv.Renderer(scene, **SMALL)
-    assert renderer.stats["propagate"] == 0
+    assert ms(renderer, "propagate") == 0
     renderer.render()
     stats = renderer.stats
-    assert stats["propagate"] > 0 and stats["frame"] > stats["propagate"] and stats[
-        "device_bytes"] > 0
-    assert 0 < stats["host"] < stats["frame"] and stats["launches"] > 20 and stats["waits"] > 1
+    assert ms(renderer, "frame") > ms(renderer, "propagate") > 0 and stats["device_bytes"] > 0
+    assert 0 < ms(renderer, "host") < ms(renderer, "frame")
+    assert stats["launches"] > 20 and stats["waits"] > 1
+    light = [time for time in stats["times"] if time["stage"] == "inject-light"]
+    assert [(time["cascade"], time["light"], time["n"]) for time in light] == [(1, None, 1),
+                                                                               (0, None, 1)]
+    assert all(time["min"] == time["median"] == time["max"] > time["mad"] == 0 for time in light)
     renderer.render()
-    assert renderer.stats["propagate"] == 0, "cached"
+    assert ms(renderer, "propagate") == 0, "cached"
     assert renderer.stats["launches"] < stats["launches"]
 
 

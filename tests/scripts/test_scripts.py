@@ -44,7 +44,7 @@ while [[ $# -gt 0 ]]; do
   case $1 in
     compare) echo '{{"nrmse_valid": 0.123}}' ;;
     -o) cp {} "$2" ;;
-    --stats) echo '{{"stages": [], "frame_ms": 40.4, "first_launch_ms": 1, "build_ms": 1, "startup_ms": 1,
+    --stats) echo '{{"times": [{{"stage": "frame", "median": 40.4}}], "first_launch_ms": 1, "build_ms": 1, "startup_ms": 1,
                "options": {{"basis": "sh2"}},
                "device": {{"name": "a", "platform": "b", "driver": "c"}}}}' >"$2" ;;
   esac

@@ -137,7 +137,7 @@ def bases(rows):
     rows = [
         r for r in of_suite(rows, "bases") if r["stage"] == "propagate" and r["lobe"] == "exact"
     ]
-    sizes = {r["basis"]: r["n"] for r in sorted(rows, key=lambda r: r["n"])}
+    sizes = {r["basis"]: r["coefficients"] for r in sorted(rows, key=lambda r: r["coefficients"])}
     if not sizes:
         return None
     kinds = [False, True]

@@ -4,8 +4,10 @@ render --stats`."""
 import math
 import textwrap
 
+from clpv import ms_of
+
 from .. import rows as known
-from .cells import found, load, number, ratio, result, summed, table, time
+from .cells import found, load, number, ratio, result, shown, summed, table, time
 
 
 def bench(suite):
@@ -115,7 +117,7 @@ def readme_layouts():
 def bases():
     lines = [["basis", "N", "without blockers", "with blockers"]]
     rows = [row for row in bench("bases") if row["stage"] == "propagate" and row["lobe"] == "exact"]
-    for basis, size in dict.fromkeys((row["basis"], row["n"]) for row in rows):
+    for basis, size in dict.fromkeys((row["basis"], row["coefficients"]) for row in rows):
         lines.append([basis, str(size)] + [time(found(rows, basis=basis, occlusion=occlusion))
                                            for occlusion in (False, True)])
     return lines
@@ -174,16 +176,11 @@ STAGES = ("rasterize-camera", "rasterize-shadow", "rasterize-rsm", "inject-light
           "inject-geometry", "propagate", "gather", "near-trace", "near", "medium", "shade")
 
 
-def stage_ms(frame, stage):
-    times = [entry["ms"] for entry in frame["stages"] if entry["stage"] == stage] if frame else []
-    return sum(times) if times else None
-
-
 @table
 def frames():
     return [["[ms]", "frame", *STAGES]] + [[
         name,
-        number(frame and frame["frame_ms"]), *(number(stage_ms(frame, stage)) for stage in STAGES)
+        *(number(frame and ms_of(frame["times"], stage) or None) for stage in ("frame", *STAGES))
     ] for name, frame in ((name, found(load("frames")["frames"], given=given))
                           for name, given in known.FRAMES.items())]
 
@@ -207,21 +204,17 @@ def frames_recomputed():
 def rasterize():
     names = {"rasterize-camera": "camera, 960x540", "rasterize-shadow": "shadow map, 1024^2",
              "rasterize-rsm": "three RSMs, 256^2"}
-    lines = [[
-        "", "clpv [ms]", "per triangle [ns]", "per pixel [ns]", "OpenGL [ms]", "OpenGL / clpv"
-    ]]
+    rows = []
     for stage, name in names.items():
-        ours, theirs = (found(bench("rasterize-opengl"), name=stage + peer) for peer in ("", "/opengl"))
+        ours, theirs = (found(bench("rasterize-opengl"), name=stage + peer)
+                        for peer in ("", "/opengl"))
         wall = ours["wall_ms"]
-        lines.append([
-            name,
-            number(wall),
-            number(1e6 * wall / ours["triangles"]),
-            number(1e6 * wall / ours["pixels"]),
-            number(theirs["wall_ms"]),
-            ratio(theirs["wall_ms"], wall)
-        ])
-    return lines
+        rows.append({"name": name, "wall": wall, "triangle": 1e6 * wall / ours["triangles"],
+                     "pixel": 1e6 * wall / ours["pixels"], "theirs": theirs["wall_ms"],
+                     "ratio": theirs["wall_ms"] / wall})
+    return shown({"": "{name}", "clpv [ms]": "{wall:#}", "per triangle [ns]": "{triangle:#}",
+                  "per pixel [ns]": "{pixel:#}", "OpenGL [ms]": "{theirs:#}",
+                  "OpenGL / clpv": "{ratio:#}x"}, rows)
 
 
 @table
@@ -248,32 +241,25 @@ def baseline():
 @table
 def factors():
     """A line for each row: times of both bases, their ratio and difference from the preset."""
-    lines = [[
-        "changed from `--preset paper`", "sh2 [ms]", "srbf8v2 [ms]", "srbf8v2 / sh2",
-        "propagation: srbf8v2 / sh2", "srbf8v2 over the preset's",
-        "a light volume of srbf8v2 [MiB]", "difference: sh2", "srbf8v2"
-    ]]
-    rows = [row for row in bench("factors") if row["stage"] == "sum"]
-    preset = found(rows, basis="srbf8v2", changed="")
-
-    def shown(row):
-        return f"{number(row['median'])} +- {number(row['mad'])}"
-
-    for changed in dict.fromkeys(row["changed"] for row in rows):
-        sh, srbf = (found(rows, basis=basis, changed=changed) for basis in ("sh2", "srbf8v2"))
-        steps = [
-            found(bench("factors"), stage="propagate", basis=basis, changed=changed)["median"]
-            for basis in ("srbf8v2", "sh2")
-        ]
+    every = bench("factors")
+    sums = [row for row in every if row["stage"] == "sum"]
+    preset, rows = found(sums, basis="srbf8v2", changed=""), []
+    for changed in dict.fromkeys(row["changed"] for row in sums):
+        sh, srbf = (found(sums, basis=basis, changed=changed) for basis in ("sh2", "srbf8v2"))
+        steps = [found(every, stage="propagate", basis=basis, changed=changed)["median"]
+                 for basis in ("srbf8v2", "sh2")]
         *before, last = changed.split(" ")
-        title = f"and {last}" if before else f"only {last}" if last else "nothing: as published"
-        lines.append([
-            title,
-            shown(sh),
-            shown(srbf),
-            ratio(srbf["median"], sh["median"]),
-            ratio(*steps), f"{preset['median'] / srbf['median']:.3g}x faster" if changed else "-",
-            number(srbf["volume_bytes"] / 2**20), f"{sh['difference']:.4f}",
-            f"{srbf['difference']:.4f}"
-        ])
-    return lines
+        rows.append({
+            "title": f"and {last}" if before else f"only {last}" if last else
+                     "nothing: as published",
+            "sh": sh, "srbf": srbf, "ratio": srbf["median"] / sh["median"],
+            "steps": steps[0] / steps[1], "memory": srbf["volume_bytes"] / 2**20,
+            "faster": f"{preset['median'] / srbf['median']:.3g}x faster" if changed else None
+        })
+    return shown({
+        "changed from `--preset paper`": "{title}", "sh2 [ms]": "{sh[median]:#} +- {sh[mad]:#}",
+        "srbf8v2 [ms]": "{srbf[median]:#} +- {srbf[mad]:#}", "srbf8v2 / sh2": "{ratio:#}x",
+        "propagation: srbf8v2 / sh2": "{steps:#}x", "srbf8v2 over the preset's": "{faster}",
+        "a light volume of srbf8v2 [MiB]": "{memory:#}", "difference: sh2": "{sh[difference]:.4f}",
+        "srbf8v2": "{srbf[difference]:.4f}"
+    }, rows)

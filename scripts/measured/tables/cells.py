@@ -2,6 +2,7 @@
 """Rows of results/ and cells of tables."""
 import functools
 import json
+import string
 import sys
 
 from .. import RESULTS
@@ -70,3 +71,25 @@ def percent(value, digits=0):
 
 def summed(values):
     return None if None in values else round(sum(values), 3)
+
+
+class Form(string.Formatter):
+    """str.format with None as "-", and formats: {x:#} is number(x), {x:%2} is percent(x, 2), {x:?}
+    is yes or no."""
+
+    def format_field(self, value, format_spec):
+        if value is None:
+            return "-"
+        if format_spec == "#":
+            return number(value)
+        if format_spec == "?":
+            return "yes" if value else "no"
+        if format_spec.startswith("%"):
+            return percent(value, int(format_spec[1:]))
+        return super().format_field(value, format_spec)
+
+
+def shown(columns, rows):
+    """Lines of a table. `columns`: {title: form of a row}."""
+    return [[*columns]] + [[Form().format(form, **row) for form in columns.values()]
+                           for row in rows]

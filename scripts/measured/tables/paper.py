@@ -5,26 +5,28 @@ import functools
 
 from .. import rows as known, verdicts
 from .quality import mean
-from .cells import TABLES, found, load, number, result, table
+from .cells import TABLES, found, load, result, shown, table
 
 
 # Bases: errors of clamped cosines, by scripts/reproduce.
 
 
+OF_SETS = {"+z": "{up:.3f}", "(-2,1,-3)": "{oblique:.3f}"}
+
+
+def sets(named):
+    """Errors of the named sets, or of other guesses."""
+    return [row for row in load("claims")["lobes"]["sets"] if (":" not in row["basis"]) == named]
+
+
 @table
 def basis_lobes():
-    lines = [[
-        "basis", "N", "condition of A", "+z", "(-2,1,-3)", "(-2,1,-3), rotated", "mean",
-        "minimum, +z", "energy after 8 / 24 steps"
-    ]]
-    for row in load("claims")["lobes"]["sets"]:
-        if ":" not in row["basis"]:
-            lines.append(
-                [row["basis"], str(row["n"]), number(row["condition"])] + [
-                    f"{row[key]:.3f}"
-                    for key in ("up", "oblique", "oblique_rotated", "mean", "minimum")
-                ] + [f"{row['energy_sampled_8']:.3f} / {row['energy_sampled_24']:.3f}"])
-    return lines
+    return shown({
+        "basis": "{basis}", "N": "{n}", "condition of A": "{condition:#}", **OF_SETS,
+        "(-2,1,-3), rotated": "{oblique_rotated:.3f}", "mean": "{mean:.3f}",
+        "minimum, +z": "{minimum:.3f}",
+        "energy after 8 / 24 steps": "{energy_sampled_8:.3f} / {energy_sampled_24:.3f}"
+    }, sets(True))
 
 
 @table
@@ -45,23 +47,18 @@ def basis_tables():
 @table
 def basis_guesses():
     """Other sets that fit the paper's description."""
-    return [["set", "+z", "(-2,1,-3)", "mean"]] + [
-        [row["basis"], *(f"{row[key]:.3f}" for key in ("up", "oblique", "mean"))]
-        for row in load("claims")["lobes"]["sets"] if ":" in row["basis"]]
+    return shown({"set": "{basis}", **OF_SETS, "mean": "{mean:.3f}"}, sets(False))
 
 
 @table
 def basis_lambdas():
     """Lobes along +z and light at `curtains`, by lambda."""
     names = ("sh2", "srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
-    return [[
-        "lambda", *names, "4, 8v1, 8v3 worse than SH", "8v2 very similar to SH",
-        "light: 8v2 and SH differ by", "*E* of 8v2"
-    ]] + [[
-        f"{row['lambda']}", *(f"{row[name]:.3f}" if row[name] else "-" for name in names),
-        *("yes" if row[rule] else "no"
-          for rule in ("worse", "similar")), *(f"{row[key]:.3f}" for key in ("difference", "error"))
-    ] for row in load("claims")["lambdas"]]
+    return shown({
+        "lambda": "{lambda}", **{name: f"{{{name}:.3f}}" for name in names},
+        "4, 8v1, 8v3 worse than SH": "{worse:?}", "8v2 very similar to SH": "{similar:?}",
+        "light: 8v2 and SH differ by": "{difference:.3f}", "*E* of 8v2": "{error:.3f}"
+    }, load("claims")["lambdas"])
 
 
 @table
@@ -97,19 +94,18 @@ def basis_images():
 
 @table
 def claims_light():
-    lines = [[
-        "smallest cascade, steps", "sh2", "srbf8v2", "difference of both", "the same, RSM 1024^2"
-    ]]
     rows = load("claims")["light"]
-    for row in (row for row in rows if row["rsm_size"] == 256):
-        size, steps = row["cascade_size"], row["iterations"]
-        large = found(rows, cascade_size=size, iterations=steps, rsm_size=1024)
-        lines.append([
-            f"{size:g} m, {steps} steps",
-            *(f"{row[key]:.3f}" for key in ("sh2", "srbf8v2", "difference")),
-            f"{large['difference']:.3f}" if large else "-"
-        ])
-    return lines
+
+    def large(row):
+        return found(rows, cascade_size=row["cascade_size"], iterations=row["iterations"],
+                     rsm_size=1024)
+
+    return shown({
+        "smallest cascade, steps": "{cascade_size:g} m, {iterations} steps", "sh2": "{sh2:.3f}",
+        "srbf8v2": "{srbf8v2:.3f}", "difference of both": "{difference:.3f}",
+        "the same, RSM 1024^2": "{large[difference]:.3f}"
+    }, [{**row, "large": large(row) or {"difference": None}}
+        for row in rows if row["rsm_size"] == 256])
 
 
 @table
@@ -144,10 +140,10 @@ def claims_shadows():
     names = {"path traced": "path traced", "paper sh2": "published scheme, sh2",
              "paper srbf8v2": "published scheme, srbf8v2", "best": "the defaults",
              "paper sh2 64 16": "published scheme, sh2, 64^3 cells, 16 steps"}
-    return [["contrast on the floor", "with indirect shadows", "without"]] + [[
-        names[row["image"]], *("-" if row[key] is None else f"{row[key]:.2f}"
-                               for key in ("on", "off"))
-    ] for row in load("claims")["shadows"]["rows"]]
+    return shown({
+        "contrast on the floor": "{title}", "with indirect shadows": "{on:.2f}",
+        "without": "{off:.2f}"
+    }, [{**row, "title": names[row["image"]]} for row in load("claims")["shadows"]["rows"]])
 
 
 SHOWN = 6  # points of a claim whose numbers its line shows

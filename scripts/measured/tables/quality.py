@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Tables of docs/quality.md and README.md: NRMSE of indirect light in %, and energy over the ground
 truth's."""
+from clpv import ms_of
+
 from .. import rows as known
 from ..rows import PAPER
-from .cells import found, load, number, percent, table
+from .cells import found, load, number, percent, shown, table
 
 
 VIEWS = {
@@ -53,19 +55,12 @@ def quality_parts():
 
 @table
 def quality_grid():
-    lines = [[
-        "cells along each axis", "mean", "worst", "energy", "frame [ms]", "propagate [ms]",
-        "gather [ms]"
-    ]]
-    for grid in known.GRIDS:
-        row = found(load("quality-grid")["variants"], options={**known.FAST, "grid": str(grid)})
-        lines.append([
-            str(grid),
-            percent(row["nrmse"], 1),
-            percent(row["worst_nrmse"], 1), f"{row['energy_ratio']:.2f}",
-            *map(number, (row["frame_ms"], row["stage_ms"]["propagate"], row["stage_ms"]["gather"]))
-        ])
-    return lines
+    return shown({
+        "cells along each axis": "{options[grid]}", "mean": "{nrmse:%1}",
+        "worst": "{worst_nrmse:%1}", "energy": "{energy_ratio:.2f}", "frame [ms]": "{frame_ms:#}",
+        "propagate [ms]": "{stage_ms[propagate]:#}", "gather [ms]": "{stage_ms[gather]:#}"
+    }, [found(load("quality-grid")["variants"], options={**known.FAST, "grid": str(grid)})
+        for grid in known.GRIDS])
 
 
 @table
@@ -154,15 +149,12 @@ def quality_steps():
 @table
 def readme():
     """Frame times beside errors, of the same frames."""
-    lines = [["", "propagation", "frame", "error"]]
-    for name, options in {"the defaults": known.BEST, "`--preset fast`": known.FAST,
-                          "published scheme, sh2": PAPER}.items():
-        row = found(load("quality")["variants"], options=options)
-        lines.append([
-            name, f"{number(row['stage_ms']['propagate'])} ms", f"{number(row['frame_ms'])} ms",
-            f"{percent(row['nrmse'])} %"
-        ])
-    return lines
+    return shown({
+        "": "{name}", "propagation": "{stage_ms[propagate]:#} ms", "frame": "{frame_ms:#} ms",
+        "error": "{nrmse:%0} %"
+    }, [{**found(load("quality")["variants"], options=options), "name": name}
+        for name, options in (("the defaults", known.BEST), ("`--preset fast`", known.FAST),
+                              ("published scheme, sh2", PAPER))])
 
 
 @table
@@ -178,7 +170,7 @@ def quality_cascades():
         found_cells = [
             found(cells, options=options, scene=scene, camera=camera) for scene, camera in views
         ]
-        times = sorted(cell["stage_ms"].get("baseline", 0) for cell in found_cells)
+        times = sorted(ms_of(cell["times"], "baseline") for cell in found_cells)
         memory = max(cell["settings"].get("megabytes", 0) for cell in found_cells)
         lines.append([
             f"`{method}`" if method else "clpv, the defaults", *(percent(cell["nrmse"])

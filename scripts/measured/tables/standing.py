@@ -2,9 +2,11 @@
 """Tables of docs/results.md: the standing benchmark."""
 import json
 
+from clpv import ms_of
+
 from .. import RESULTS, rows as known
 from ..rows import SHARED
-from .cells import found, number, percent, table
+from .cells import found, number, percent, shown, table
 
 
 METHODS = {
@@ -80,7 +82,7 @@ def standing_lines(group):
 
 def light_ms(cell):
     """Time that baselines get: the frame without G-buffer, shadow maps and shading."""
-    return cell["frame_ms"] - sum(cell["stage_ms"].get(stage, 0) for stage in SHARED)
+    return ms_of(cell["times"], "frame") - sum(ms_of(cell["times"], stage) for stage in SHARED)
 
 
 @table
@@ -100,9 +102,8 @@ def standing_large():
 
 @table
 def standing_runs():
-    return [["run", "clpv", "device", "driver", "threads", "date", "time of 960x540 [ms]"]] + [[
-        run, document["measured"]["commit"], document["measured"]["device"],
-        document["measured"]["driver"],
-        str(document["small"][0]["compute_units"]), document["measured"]["date"],
-        number(document["time_of_large_ms"])
-    ] for run, document in standing()]
+    return shown({
+        "run": "{run}", "clpv": "{measured[commit]}", "device": "{measured[device]}",
+        "driver": "{measured[driver]}", "threads": "{small[0][compute_units]}",
+        "date": "{measured[date]}", "time of 960x540 [ms]": "{time_of_large_ms:#}"
+    }, [{**document, "run": run} for run, document in standing()])

@@ -3,7 +3,7 @@
 measures."""
 import textwrap
 
-from .cells import load, number, percent, table
+from .cells import load, shown, table
 
 LINE = 130  # of the docs
 MEANINGS = {
@@ -14,11 +14,9 @@ MEANINGS = {
 
 
 def variants(part):
-    rows = load("tutorial")[part]
-    return [["", "NRMSE", "energy", "frame"]] + [[
-        f"`{name}`", f"{percent(row['nrmse'])} %", f"{row['energy']:.2f}",
-        f"{number(row['frame_ms'])} ms"
-    ] for name, row in sorted(rows.items(), key=lambda row: row[1]["nrmse"])]
+    rows = [{**row, "name": name} for name, row in load("tutorial")[part].items()]
+    return shown({"": "`{name}`", "NRMSE": "{nrmse:%0} %", "energy": "{energy:.2f}",
+                  "frame": "{frame_ms:#} ms"}, sorted(rows, key=lambda row: row["nrmse"]))
 
 
 @table
@@ -40,10 +38,8 @@ def tutorial_transport():
 
 @table
 def tutorial_bench():
-    rows = load("tutorial")["bench"]
-    return [["row", "median ms", "mad"]] + [[
-        f"`{name}`", number(row["median"]), number(row["mad"])
-    ] for name, row in rows.items()]
+    return shown({"row": "`{name}`", "median ms": "{median:#}", "mad": "{mad:#}"},
+                 [{**row, "name": name} for name, row in load("tutorial")["bench"].items()])
 
 
 @table

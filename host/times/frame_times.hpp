@@ -4,12 +4,12 @@
 
 #include <functional>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "device/timeline.hpp"
 #include "pipeline/frame/frame.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv {
 
@@ -22,31 +22,29 @@ struct FrameCost {
 /// Times [ms] of frames: of their stages on the device, and of whole frames on the host's clock.
 class FrameTimes {
  public:
-  void add(std::vector<StageTime> stages, const FrameCost& cost = {});
-  std::size_t count() const { return frames_.size(); }
+  void add(const std::vector<StageTime>& stages, const FrameCost& cost = {});
+  std::size_t count() const { return costs_.size(); }
 
   const std::vector<FrameCost>& costs() const { return costs_; }
   /// Sums over the stages for which `counts` returns true, one per frame; null: all stages.
   std::vector<double> sums(const std::function<bool(const StageMark&)>& counts = {}) const;
-
-  /// Times of a stage of one cascade and light, one per frame; 0 in frames that did not run it.
-  struct Series {
-    StageMark mark;
-    bool from_events;
-    std::vector<double> ms = {};
-  };
-  /// One series per stage, cascade and light, in order of first occurrence.
-  std::vector<Series> stages() const;
-  /// Series by pass: sums over cascades and lights.
+  /// Samples by pass, one per frame: sums over cascades and lights.
   std::map<std::string, std::vector<double>> passes() const;
-  /// Medians of passes().
-  std::map<std::string, double> pass_medians() const;
+  /// One record per stage, cascade and light, in order of first occurrence.
+  std::vector<TimeRecord> stage_records() const;
+  /// One record per pass, by name.
+  std::vector<TimeRecord> pass_records() const;
   /// True if the times of all stages are from device events.
-  bool from_events() const;
+  bool from_events() const { return from_events_; }
 
  private:
-  std::vector<std::vector<StageTime>> frames_;
+  struct Series {
+    StageMark mark;
+    std::vector<double> ms;  ///< one per frame; 0 in frames that did not run it
+  };
+  std::vector<Series> series_;
   std::vector<FrameCost> costs_;
+  bool from_events_ = true;
 };
 
 /// Renders `frames` frames that recompute all lighting, after `warm_up` others, and waits for each.
@@ -54,10 +52,5 @@ class FrameTimes {
 /// count.
 FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& camera, int frames,
                           int warm_up, const std::function<void()>& after = {});
-
-/// A list of {stage, cascade, light, ms, timer}.
-nlohmann::json to_json(const std::vector<StageTime>& times);
-/// Throws nlohmann::json::exception or Error(usage) if the JSON is no such list.
-std::vector<StageTime> stage_times_from_json(const nlohmann::json& json);
 
 }  // namespace clpv

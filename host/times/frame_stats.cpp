@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/frame/frame_stats.hpp"
+#include "times/frame_stats.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -49,24 +49,23 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
     energy.push_back(
         {{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
   }
-  const auto median_of = [&](const auto& part) {
+  const auto samples = [&](const auto& part) {
     std::vector<double> values;
     for (const FrameCost& cost : times_.costs()) values.push_back(part(cost));
-    return median(values);
+    return values;
   };
-  const double frame_ms = median_of([](const FrameCost& cost) { return cost.wall_ms; });
-  std::vector<StageTime> stages;
-  for (const FrameTimes::Series& series : times_.stages())
-    stages.push_back({series.mark, median(series.ms), series.from_events});
-  return {{"schema", 1},
+  std::vector<TimeRecord> times = {
+      time_record("frame", samples([](const FrameCost& cost) { return cost.wall_ms; })),
+      time_record("host", samples([](const FrameCost& cost) { return cost.host.host_ms; }))};
+  const double frame_ms = times[0].median;
+  std::ranges::move(times_.stage_records(), std::back_inserter(times));
+  return {{"schema", 2},
           {"device", clpv::to_json(session.device())},
           {"options", options},
-          {"frames", times_.count()},
-          {"stages", clpv::to_json(stages)},
-          {"frame_ms", frame_ms},
-          {"host_ms", median_of([](const FrameCost& cost) { return cost.host.host_ms; })},
-          {"launches", median_of([](const FrameCost& cost) { return cost.host.launches; })},
-          {"waits", median_of([](const FrameCost& cost) { return cost.host.waits; })},
+          {"times", times},
+          {"timer", times_.from_events() ? "event" : "wall"},
+          {"launches", median(samples([](const FrameCost& cost) { return cost.host.launches; }))},
+          {"waits", median(samples([](const FrameCost& cost) { return cost.host.waits; }))},
           {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
           {"build_ms", session.build_ms()},
           {"startup_ms", startup_ms_},

@@ -7,7 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "pipeline/frame/frame_times.hpp"
+#include "times/frame_times.hpp"
 
 namespace clpv {
 
@@ -23,9 +23,9 @@ class FrameStats {
   void set_times(FrameTimes times) { times_ = std::move(times); }
   void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes);
 
-  /// Returns JSON of schema 1: device, options, frames (number of timed ones), stages, frame_ms,
-  /// host_ms (the host's work, without waits), launches and waits of a frame, first_launch_ms,
-  /// build_ms, startup_ms, device_bytes, energy.
+  /// Returns JSON of schema 2: device, options, times (`frame` on the host's clock, `host`: its
+  /// work without waits, and the stages), timer of the stages, launches and waits of a frame,
+  /// first_launch_ms, build_ms, startup_ms, device_bytes, energy.
   nlohmann::json to_json(const Session& session, const nlohmann::json& options) const;
 
  private:

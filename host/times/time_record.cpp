@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "times/time_record.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "support/json_optional.hpp"
+#include "support/statistics.hpp"
+
+namespace clpv {
+
+double ms_of(const std::vector<TimeRecord>& times, std::string_view stage) {
+  double ms = 0;
+  for (const TimeRecord& time : times) ms += time.stage == stage ? time.median : 0;
+  return ms;
+}
+
+TimeRecord time_record(std::string stage, std::vector<double> samples_ms) {
+  const std::size_t n = samples_ms.size();
+  const Statistics found = statistics_of(std::move(samples_ms));
+  return {std::move(stage), {}, {}, n, found.min, found.median, found.mad, found.max};
+}
+
+TimeRecord time_record(const StageMark& mark, std::vector<double> samples_ms) {
+  TimeRecord record = time_record(std::string(name_of(mark.pass)), std::move(samples_ms));
+  record.cascade = mark.cascade, record.light = mark.light;
+  return record;
+}
+
+void to_json(nlohmann::json& json, const TimeRecord& record) {
+  json = {{"stage", record.stage}, {"cascade", record.cascade}, {"light", record.light},
+          {"n", record.n},         {"min", record.min},         {"median", record.median},
+          {"mad", record.mad},     {"max", record.max}};
+}
+
+void from_json(const nlohmann::json& json, TimeRecord& record) {
+  record = {json.at("stage"),
+            json.at("cascade").get<std::optional<int>>(),
+            json.at("light").get<std::optional<int>>(),
+            json.at("n"),
+            json.at("min"),
+            json.at("median"),
+            json.at("mad"),
+            json.at("max")};
+}
+
+std::vector<Rule> time_rules(const std::string& place) {
+  constexpr double kMax = std::numeric_limits<double>::max(), kMaxIndex = 1 << 20;
+  std::vector<Rule> rules = {rule::object(place), rule::text(place + "/stage").must(),
+                             rule::integer(place + "/n", 0, kMax).must()};
+  for (const char* index : {"/cascade", "/light"})
+    rules.push_back(rule::integer(place + index, 0, kMaxIndex).must().or_null());
+  for (const char* figure : {"/min", "/median", "/mad", "/max"})
+    rules.push_back(rule::number(place + figure, 0, kMax).must());
+  return rules;
+}
+
+std::string name_of(const TimeRecord& record) {
+  std::string name = record.stage;
+  if (record.cascade) name += fmt::format("/cascade:{}", *record.cascade);
+  if (record.light) name += fmt::format("/light:{}", *record.light);
+  return name;
+}
+
+}  // namespace clpv
