@@ -31,12 +31,12 @@ import subprocess
 import sys
 import tempfile
 
-from . import LAB, RESULTS, ROOT, charts, described, json_lines, output, rows
+from . import LAB, RESULTS, ROOT, charts, described, json_lines, leaks, output, rows
 
 FRAME_COUNT = 9
 STANDING_COUNT = 5
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # of a folder in results/
-PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media"]
+PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "leaks"]
 
 
 def run(*arguments, charts_of=()):
@@ -186,6 +186,8 @@ def measure_docs(folder, model, parts):
         measure_quality(folder, name, model, measured)
     if "quality-media" in parts:
         measure_media(folder, model, measured)
+    if "leaks" in parts:
+        write(folder, "leaks", {"measured": measured, "leaks": leaks.measure(**rows.LEAKS)})
     if "quality-grid" in parts or "quality-grid-published" in parts:
         charts.draw_errors(
             [("clpv, the defaults", folder / "quality-grid.json"),
