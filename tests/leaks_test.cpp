@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
 #include <vector>
 
 #include "pipeline/frame/frame.hpp"
@@ -64,6 +65,25 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
       EXPECT_LT(leak(scene, eye, Bounces::one), 0.01) << degrees << ' ' << shift;
       EXPECT_LT(leak(scene, eye, Bounces::all), 0.02) << degrees << ' ' << shift;
     }
+  }
+}
+
+// A shadow map has texels between two sheets; where one of the inner sheets meets another, 0.002 of
+// the sun's light came in.
+TEST(Leaks, DirectLightStaysOutsideOfTwoSheets) {
+  for (const float gap : {0.02f, 0.05f, 0.1f, 0.3f}) {
+    SceneData scene = sealed_room(0, glm::vec3(0));
+    add_box(scene, glm::vec3(-kEdge / 2, 0, -kEdge / 2) - gap, kEdge + 2 * gap, 0);
+    RenderOptions options;
+    options.near = Near::off, options.grid = 8, options.cascades = 1;
+    options.width = 120, options.height = 68, options.rsm_size = 64, options.shadow_size = 512;
+    Frame frame(test_session(), scene, options);
+    frame.render(camera_at({-1, 1.6f, -1.2f}, {1, -0.2f, 1.2f}));
+    const std::vector<float> pixels = frame.read(Show::direct);
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels.size(); i += 4) sum += double{pixels[i]};
+    const double light = 0.8 / std::numbers::pi * static_cast<double>(pixels.size()) / 4;
+    EXPECT_LT(sum / light * glm::length(kSun), 1e-4) << gap;
   }
 }
 

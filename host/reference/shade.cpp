@@ -134,7 +134,7 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
   if (occluded || !flat || !below_surface(filter, rounding)) return lifted.visible();
   return weigh_taps(filter,
                     [&](double height, double) {
-                      if (height <= -double{CLPV_SHADOW_BEYOND} * lift) return Tap::beyond;
+                      if (height <= -rounding) return Tap::beyond;
                       return height > rounding ? Tap::blocks : Tap::passes;
                     })
       .visible();

@@ -144,9 +144,8 @@ CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, co
   const float sum = dot(blocked.lo + blocked.hi, one);
   *whole = dot(wx, one) * dot(wy, one);
   if (sum >= CLPV_SHADOW_WHOLE * *whole || !below_surface(r, upper, lower)) return sum;
-  const float least = -CLPV_SHADOW_BEYOND * r.lift;
-  const float8 counted = select(none, upper_w, upper > least) +
-                         select(none, lower_w, lower > least);
+  const float8 counted = select(none, upper_w, upper > -r.rounding) +
+                         select(none, lower_w, lower > -r.rounding);
   const float8 above = select(none, upper_w, upper > r.rounding) +
                        select(none, lower_w, lower > r.rounding);
   *whole = dot(counted.lo + counted.hi, one);

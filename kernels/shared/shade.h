@@ -29,7 +29,5 @@ enum {
 #define CLPV_SHADOW_ROUNDING_DEPTH 2e-6f
 // The same relative to its coordinates, whose roundings grow with the distance from the origin.
 #define CLPV_SHADOW_ROUNDING_PLACE 5e-7f
-// [lifts] Texels farther below its plane than this are beyond the edge of its surface.
-#define CLPV_SHADOW_BEYOND 2.0f
 // Share of the filter's weight from which all texels occlude.
 #define CLPV_SHADOW_WHOLE 0.999f

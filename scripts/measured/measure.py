@@ -31,12 +31,12 @@ import subprocess
 import sys
 import tempfile
 
-from . import LAB, RESULTS, ROOT, bake, charts, described, json_lines, output, rows
+from . import LAB, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, rows
 
 FRAME_COUNT = 9
 STANDING_COUNT = 5
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # of a folder in results/
-PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "bake", "bake-leaks"]
+PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "bake", "bake-leaks", "leaks"]
 
 
 def run(*arguments, charts_of=()):
@@ -191,6 +191,8 @@ def measure_docs(folder, model, parts):
         charts.draw_probes(folder / "bake.json", ROOT / "docs/images/probes.png")
     if "bake-leaks" in parts:
         write(folder, "bake-leaks", {"measured": measured, "rows": bake.measure_leaks()})
+    if "leaks" in parts:
+        write(folder, "leaks", {"measured": measured, "leaks": leaks.measure(**rows.LEAKS)})
     if "quality-grid" in parts or "quality-grid-published" in parts:
         charts.draw_errors(
             [("clpv, the defaults", folder / "quality-grid.json"),

@@ -129,6 +129,23 @@ MEDIA = [
     ("0.5, 0", ["cornell_fog"], ["1", "all"], ["medium", "indirect"]),
 ]
 
+# scripts/leaks. Sealed rooms: what their walls are, and how far apart the sheets [cells].
+SEALED = {
+    "sheet": ("one sheet", "0"), "wall0.1": ("two sheets", "0.1"),
+    "wall1": ("two sheets", "1"),
+    "turned": ("one sheet, turned by 20 degrees", "0")
+}
+OPEN_ROOMS = {
+    "slit": "a slit of half a cell in a wall", "door": "a door to a room without a roof",
+    "corner": "two walls and a floor", "legs": "a floor on four thin legs"
+}
+LEAKS = {
+    "shapes": [*SEALED, *OPEN_ROOMS],
+    "columns": [("sun", 1), ("sun", 2), ("sun", "all"), ("sky", 1), ("sky", "all"), ("lamp", 1),
+                ("lamp", "all"), ("sun", "direct"), ("lamp", "direct")],
+    "count": 8, "options": FAST
+}
+
 # Suites of `clpv bench` and their options. "sponza" is replaced by the scene, its model and the
 # camera `curtains`.
 DEVICE_SUITES = {

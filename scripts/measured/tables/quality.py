@@ -146,6 +146,33 @@ def quality_steps():
     return lines
 
 
+BOUNCES = {1: "one", 2: "two"}
+
+
+def leak(**fields):
+    row = found(load("leaks")["leaks"], **fields)
+    return "-" if row is None else "0" if row["leak"] < 0.0005 else f"{row['leak']:.2g}"
+
+
+@table
+def leaks():
+    columns = known.LEAKS["columns"]
+    return [["walls", "thickness over cell", *(f"{a}, {BOUNCES.get(b, b)}" for a, b in columns)]] + [
+        [*titles, *(leak(shape=shape, light=light, bounces=b) for light, b in columns)]
+        for shape, titles in known.SEALED.items()]
+
+
+@table
+def leaks_open():
+    columns = [column for column in known.LEAKS["columns"] if column[1] != "direct"]
+    lines = [["room", *(f"{a}, {BOUNCES.get(b, b)}" for a, b in columns)]]
+    for shape, title in known.OPEN_ROOMS.items():
+        rows = [found(load("leaks")["leaks"], shape=shape, light=light, bounces=b)
+                for light, b in columns]
+        lines.append([title, *(f"{row['leak']:.2g} ({row['truth']:.2g})" for row in rows)])
+    return lines
+
+
 @table
 def readme():
     """Frame times beside errors, of the same frames."""

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: MIT
+"""Measures how much light leaks into the rooms of scenes/generate_leaks.py.
+
+    scripts/leaks [--shapes sheet,wall1] [--lights sun,sky,lamp] [--bounces 1,all] [--offsets 8]
+                  [-o FILE.json] [--OPTION=VALUE...]
+
+Prints a Markdown table. Leak: mean indirect irradiance of the room's walls, floor and ceiling, in %
+of the irradiance of the open ground; the worst of positions of the room between the cells. Open
+rooms have the mean over the positions, and path tracing's beside it. Bounces `direct`: mean
+irradiance of direct light on 240x135 pixels of sealed rooms. FILE.json has a row for each number. Other options
+are those of `clpv render`. Needs a build.
+"""
+import argparse
+import itertools
+import math
+import pathlib
+import sys
+import tempfile
+
+import numpy
+
+from . import ROOT, json_lines, native, output, rows as known
+
+sys.path.insert(0, str(ROOT / "scenes"))
+import generate_leaks as scenes  # noqa: E402  pylint: disable=wrong-import-position
+
+clpv = native()
+POINTS = 5  # along each edge of a face
+SIZE = 240, 135  # of the images of direct light
+NOISE = 0.05  # of path tracing
+# Irradiance of open ground: by the sun, by the even sky, and 3.5 m below the lamp.
+GROUND = {
+    "sun": 1e4 / math.hypot(*scenes.SUN), "sky": math.pi * 1e3, "lamp": 1e4 / 3.5**2
+}
+
+
+def surfaces(shape):
+    """Points on the faces inside, and their normals: (n, 3) each. Legs have a floor only."""
+    points, normals = [], []
+    for axis, side, k in itertools.product(range(3), (0, 1), range(POINTS**2)):
+        if shape == "legs" and (axis, side) != (1, 0) or shape == "corner" and side == 1:
+            continue
+        p, n = [0.0] * 3, [0] * 3
+        p[axis], n[axis] = (scenes.LOWER, scenes.UPPER)[side][axis], 1 - 2 * side
+        for along, i in (((axis + 1) % 3, k % POINTS), ((axis + 2) % 3, k // POINTS)):
+            low, high = scenes.LOWER[along], scenes.UPPER[along]
+            p[along] = low + (high - low) * (i + 0.5) / POINTS
+        points.append(p), normals.append(n)
+    degrees = scenes.TURN if shape == "turned" else 0
+    return (numpy.array(scenes.turned(points, degrees)), numpy.array(scenes.turned(normals, degrees)))
+
+
+def offsets(count):
+    """Positions between the cells of the finest cascade [m]; the first is 0."""
+    return [[scenes.CELL * 0.37 * (i >> axis & 1) for axis in range(3)] for i in range(count)]
+
+
+def share(light, irradiance):
+    return 100 * float(irradiance[..., 1].mean()) / GROUND[light]
+
+
+class Room:
+    """A shape under a light at one of the positions."""
+
+    def __init__(self, folder, shape, light, offset):
+        self.shape, self.light = shape, light
+        self.scene = clpv.Scene(f"{folder}/{shape}-{light}.json")
+        points, self.normals = surfaces(shape)
+        self.points = points + numpy.array(offset)
+
+    def leak(self, bounces, options):
+        """Indirect light inside [%]."""
+        with clpv.Renderer(self.scene, bounces=bounces, **options) as renderer:
+            renderer.update(self.scene.cameras[0].eye)
+            return share(self.light, renderer.irradiance(self.points, self.normals))
+
+    def direct(self, options):
+        """Direct light inside [%]."""
+        with clpv.Renderer(self.scene, **options) as renderer:
+            image = renderer.render("direct", size=SIZE).array
+            return share(self.light, math.pi / scenes.GREY[1] * image)
+
+    def traced(self, bounces):
+        """Indirect light inside by path tracing [%]."""
+        light = self.scene.pathtrace_points(self.points, self.normals, bounces=bounces,
+                                            noise=NOISE)
+        return share(self.light, light["indirect"])
+
+
+def measure(shapes, columns, count, options):
+    """Rows: shape, light, bounces ("direct": direct light), leak and, in open rooms, truth.
+    `columns`: pairs of light and bounces."""
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        found = {}
+        for offset in offsets(count):
+            scenes.write(folder, offset, shapes)
+            for shape, (light, n) in itertools.product(shapes, columns):
+                room = Room(folder, shape, light, offset)
+                if n != "direct":
+                    found.setdefault((shape, light, n), []).append(room.leak(n, options))
+                elif shape not in known.OPEN_ROOMS:
+                    found.setdefault((shape, light, n), []).append(room.direct(options))
+        for (shape, light, n), leaks in found.items():
+            row = {"shape": shape, "light": light, "bounces": n, "leak": max(leaks)}
+            if shape in known.OPEN_ROOMS:
+                row["leak"] = sum(leaks) / len(leaks)
+                row["truth"] = Room(folder, shape, light, offset).traced(n)
+            rows.append(row)
+    return rows
+
+
+def lines(rows):
+    """Cells of a table: a line for each shape."""
+    columns = list(dict.fromkeys((row["light"], row["bounces"]) for row in rows))
+    yield ["room", *(f"{light}, {bounces}" for light, bounces in columns)]
+    for shape in dict.fromkeys(row["shape"] for row in rows):
+        cells = {(row["light"], row["bounces"]): row for row in rows if row["shape"] == shape}
+        yield [shape] + [
+            "-" if row is None else f"{row['leak']:.2g}" +
+            (f" ({row['truth']:.2g})" if "truth" in row else "")
+            for row in map(cells.get, columns)
+        ]
+
+
+def number_of(bounces):
+    return bounces if bounces in ("all", "direct") else int(bounces)
+
+
+def value_of(text):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--shapes", default=",".join(name for name, _ in scenes.shapes()))
+    parser.add_argument("--lights", default="sun")
+    parser.add_argument("--bounces", default="1,all")
+    parser.add_argument("--offsets", type=int, default=8)
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE.json")
+    arguments, others = parser.parse_known_args()
+    names = [name for name, _ in scenes.shapes()]
+    shapes = arguments.shapes.split(",")
+    if unknown := set(shapes) - set(names):
+        parser.error(f"--shapes {','.join(unknown)}: allowed: {', '.join(names)}")
+    options = {}
+    for other in others:
+        name, equals, value = other.removeprefix("--").partition("=")
+        if not equals:
+            parser.error(f"{other}: allowed: --OPTION=VALUE of clpv render")
+        options[name.replace("-", "_")] = value_of(value)
+    columns = [(light, number_of(n)) for light in arguments.lights.split(",")
+               for n in arguments.bounces.split(",")]
+    rows = measure(shapes, columns, arguments.offsets, options)
+    if arguments.output:
+        output.write(arguments.output, json_lines({"leaks": rows}))
+    head, *body = lines(rows)
+    for line in (head, ["---"] * len(head), *body):
+        print("|", " | ".join(line), "|")
