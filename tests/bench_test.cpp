@@ -235,8 +235,9 @@ const std::vector<std::string> kRow = test::words_of(
     "name run_name suite stage basis layout storage lobe transport run_type status time_unit "
     "ceiling occlusion filtered samples_ms n grid iterations repetitions threads family_index min "
     "median p95 max mad real_time cpu_time wall_ms first_launch_ms build_ms device_bytes "
-    "host_bytes flops bytes reads_per_cell writes_per_cell gflops gbps max_rel_error tolerance "
-    "ceiling_share");
+    "host_bytes flops bytes reads_per_cell writes_per_cell covered set_up listed entries gflops "
+    "gbps "
+    "max_rel_error tolerance ceiling_share");
 
 TEST(BenchSuites, RegressionHasTheSweepAndWhatItsProgramsTookToBuild) {
   SuiteOptions options = small();
