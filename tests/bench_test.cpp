@@ -239,8 +239,9 @@ const std::vector<std::string> kRow = test::words_of(
     "ceiling occlusion filtered samples_ms coefficients n grid iterations repetitions threads "
     "family_index min "
     "median p95 max mad real_time cpu_time wall_ms first_launch_ms build_ms device_bytes "
-    "host_bytes flops bytes reads_per_cell writes_per_cell gflops gbps max_rel_error tolerance "
-    "ceiling_share");
+    "host_bytes flops bytes reads_per_cell writes_per_cell covered set_up listed entries gflops "
+    "gbps "
+    "max_rel_error tolerance ceiling_share");
 
 TEST(BenchSuites, RegressionHasTheSweepAndWhatItsProgramsTookToBuild) {
   SuiteOptions options = small();
