@@ -149,9 +149,13 @@ def quality_steps():
 BOUNCES = {1: "one", 2: "two"}
 
 
+def short(value):
+    return "0" if value < 0.0005 else f"{value:.2g}" if value < 10 else f"{value:.0f}"
+
+
 def leak(**fields):
     row = found(load("leaks")["leaks"], **fields)
-    return "-" if row is None else "0" if row["leak"] < 0.0005 else f"{row['leak']:.2g}"
+    return "-" if row is None else short(row["leak"])
 
 
 @table
@@ -169,7 +173,7 @@ def leaks_open():
     for shape, title in known.OPEN_ROOMS.items():
         rows = [found(load("leaks")["leaks"], shape=shape, light=light, bounces=b)
                 for light, b in columns]
-        lines.append([title, *(f"{row['leak']:.2g} ({row['truth']:.2g})" for row in rows)])
+        lines.append([title, *(f"{short(row['leak'])} ({short(row['truth'])})" for row in rows)])
     return lines
 
 
