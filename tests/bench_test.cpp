@@ -338,7 +338,7 @@ TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {
       << "three repetitions on a busy machine may have any spread";
   const nlohmann::json document = nlohmann::json::parse(test::read_file(now));
   const nlohmann::json& row = document["benchmarks"][0];
-  EXPECT_EQ(document["context"]["schema"], 1);
+  EXPECT_EQ(document["context"]["schema"], 2);
   EXPECT_GT(document["context"]["ceilings"]["gflops"], 0);
   for (const std::string& key : kContext) EXPECT_TRUE(document["context"].contains(key)) << key;
   for (const std::string& key : kRow) EXPECT_TRUE(row.contains(key) && !row[key].is_null()) << key;

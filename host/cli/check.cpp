@@ -280,7 +280,12 @@ void add_check(CLI::App& app, Shared& shared) {
       "also a capsule of this comparison, 'STAGE NAME' of --list; repeatable")
       ->needs(capsules);
   add(*command, "--record", "DIR", options->record, "folder of the capsules")->group("");
-  command->add_option("--only", options->choice.only, "numbers of comparisons")->group("");
+  const auto only = [options](const std::vector<std::string>& numbers) {
+    for (const std::string& number : numbers)
+      options->choice.only.push_back(option_number<std::size_t>("--only", number, {0, 1e6}));
+  };
+  command->add_option_function<std::vector<std::string>>("--only", only, "numbers of comparisons")
+      ->group("");
   add_format(*command, options->format);
   add(*command, "--junit", "FILE.xml", options->junit,
       "output file in JUnit format, one test case per result");

@@ -43,8 +43,15 @@ __all__ = [
 def ms_of(times, stage):
     """ms_of(times, stage) -> sum of the medians of a stage over its cascades and lights [ms].
 
-    times: those of Renderer.stats or of JSON by clpv. 0 if the stage did not run."""
-    return sum(time["median"] for time in times if time["stage"] == stage)
+    times: those of Renderer.stats or of JSON by clpv. 0 if the stage did not run. Other values raise UsageError."""
+    try:
+        if isinstance(stage, str):
+            return sum(float(time["median"]) for time in times if time["stage"] == stage)
+    except (TypeError, KeyError, ValueError):
+        pass
+    found = f"stage: found {stage!r}; allowed: a name" if not isinstance(
+        stage, str) else f"times: found {type(times).__name__}; allowed: records as of Renderer.stats"
+    raise importlib.import_module("clpv._native").UsageError(f"ms_of: {found}")
 
 
 def __getattr__(name):

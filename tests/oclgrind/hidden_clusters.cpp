@@ -9,8 +9,18 @@ int main(int, char** arguments) {
   constexpr int kSize = 16;
   SceneData scene = load_scene(arguments[1]);
   const std::vector<Triangle> once = scene.triangles;
-  while (scene.triangles.size() < 200)  // several clusters
-    scene.triangles.insert(scene.triangles.end(), once.begin(), once.end());
+  const std::vector<Vertex> vertices = scene.vertices;
+  while (scene.triangles.size() < 400) {  // several clusters, one below the other
+    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+    for (Vertex vertex : vertices) {
+      vertex.position[1] -= 0.5f * static_cast<float>(scene.triangles.size() / once.size());
+      scene.vertices.push_back(vertex);
+    }
+    for (Triangle triangle : once) {
+      for (std::uint32_t& corner : triangle.vertex) corner += first;
+      scene.triangles.push_back(triangle);
+    }
+  }
   Session session(choose_device());
   const SceneBuffers buffers = upload_scene(session, scene);
   Rasterizer rasterizer(session, buffers, Rasterizer::kMaxListed, 1);

@@ -108,7 +108,7 @@ CALLS = {
                    "progress": "function"}, {"scene": None, "width": 1, "height": 1, "samples": 1}),
     "read_image": ({"path": "path"}, {}),
 }  # yapf: disable
-WITHOUT = {"Basis.directions", "Renderer.volumes", "Renderer.device_volumes", "Renderer.release",
+WITHOUT = {"ms_of", "Basis.directions", "Renderer.volumes", "Renderer.device_volumes", "Renderer.release",
            "Renderer.lookup_source", "DeviceFrame.wait", "DeviceEvent.wait",
            "DeviceVolumes.arguments", "bases", "devices", "options", "Camera.replace",
            "Light.replace", "Medium.replace", "Material.replace"}
@@ -184,6 +184,14 @@ def test_wrong_calls_are_named(name, objects):
             continue
         with pytest.raises(clpv.UsageError, match=f"{title}: {key}: found none, allowed: "):
             function(**{other: value for other, value in given.items() if other != key})
+
+
+def test_wrong_times_are_named():
+    for times in 3, None, "x", [3], [{}], [{"stage": "frame", "median": "x"}]:
+        with pytest.raises(clpv.UsageError, match="ms_of: times: found .*; allowed: "):
+            clpv.ms_of(times, "frame")
+    with pytest.raises(clpv.UsageError, match="ms_of: stage: found 3; allowed: "):
+        clpv.ms_of([], 3)
 
 
 def test_assigned_values_are_named(scene):
