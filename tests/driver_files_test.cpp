@@ -2,6 +2,7 @@
 // `clpv devices` names drivers that cannot be loaded, and lists the others.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/run_program.hpp"
 
@@ -19,8 +20,8 @@ class DriverFiles : public ::testing::Test {
     folder_.write("vendors/" + icd, library + "\n");
   }
   test::Outcome devices(const std::string& more = {}) const {
-    return test::run("OCL_ICD_VENDORS=" + (folder_ / "vendors").string() + " " CLPV_PROGRAM
-                     " devices " + more);
+    return test::run("OCL_ICD_VENDORS=" + (folder_ / "vendors").string() +
+                     " timeout 60 " CLPV_PROGRAM " devices " + more);
   }
   /// A library with this code.
   std::string library(const std::string& name, const std::string& code) {
@@ -41,6 +42,10 @@ TEST_F(DriverFiles, ThatAreMissingOrForeignAreNamed) {
   add("3-text.icd", folder_.write("text.so", "no library").string());
   add("4-empty.icd", "");
   add("5-unknown.icd", "libclpv-none.so.7");
+  const std::string pipe = (folder_ / "pipe").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  add("6-pipe.icd", pipe);
+  add("7-folder.icd", folder_.path().string());
   const test::Outcome outcome = devices();
   EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
   EXPECT_THAT(outcome.out,
@@ -48,6 +53,8 @@ TEST_F(DriverFiles, ThatAreMissingOrForeignAreNamed) {
                     HasSubstr("2-foreign.icd: " + (folder_ / "foreign.so").string() +
                               ": of another machine; allowed: that of clpv\n"),
                     HasSubstr("text.so: no ELF file\n"), HasSubstr("4-empty.icd: names no library\n"),
+                    HasSubstr("6-pipe.icd: " + pipe + ": no regular file\n"),
+                    HasSubstr("7-folder.icd: " + folder_.path().string() + ": no regular file\n"),
                     HasSubstr("libclpv-none.so.7: cannot open shared object file")));
 }
 

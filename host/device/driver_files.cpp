@@ -46,6 +46,8 @@ std::string fault_of_file(const std::string& library) {
   if (library.find('/') == std::string::npos) return {};  // the linker searches for it
   std::error_code ignored;
   if (!fs::exists(library, ignored)) return fmt::format("{}: no such file", library);
+  if (!fs::is_regular_file(library, ignored))  // reading a pipe would wait for its writer
+    return fmt::format("{}: no regular file", library);
   const std::string machine = machine_of(library);
   if (machine.empty()) return fmt::format("{}: no ELF file", library);
   if (machine != machine_of("/proc/self/exe"))

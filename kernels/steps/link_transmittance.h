@@ -42,7 +42,8 @@ CLPV_INLINE Links find_transmittance(CLPV_VOLUME_IN blockers, const int x, const
   Coefficients corners[8];
 #pragma unroll
   for (int c = 0; c < 8; ++c)
-    corners[c] = geometry_load(blockers, 0, x + (c & 1), y + (c >> 1 & 1), z + (c >> 2));
+    CLPV_SET_COEFFICIENTS(
+        corners[c], geometry_load(blockers, 0, x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)));
   Links links;
 #pragma unroll
   for (int link = 0; link < CLPV_LINKS; ++link) {

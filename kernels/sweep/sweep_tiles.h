@@ -47,7 +47,8 @@ CLPV_INLINE void load_x_bins(CLPV_BUFFER_IN volumes, const int x, const int y, c
       if (x + r < CLPV_GRID)
         columns.row[r] = read_numbers(volumes + b * CLPV_SWEEP_VOLUME, sweep_index(x + r, z, y));
     }
-    tiles[b] = transpose_tile(columns);
+    const SweepTile transposed = transpose_tile(columns);  // as in CLPV_SET_COEFFICIENTS
+    for (int r = 0; r < W; ++r) tiles[b].row[r] = transposed.row[r];
   }
 }
 

@@ -14,6 +14,19 @@ typedef struct {
   Coefficient c[CLPV_N];
 } Coefficients;
 
+CLPV_INLINE void copy_coefficients(const Coefficients* from, Coefficients* to) {
+#pragma unroll
+  for (int i = 0; i < CLPV_N; ++i) to->c[i] = from->c[i];
+}
+
+// Stores what a function returns in an element of an array. rusticl loses members of a struct where
+// an assignment, or a parameter passed by value, does that.
+#define CLPV_SET_COEFFICIENTS(to, call)   \
+  do {                                    \
+    const Coefficients returned = (call); \
+    copy_coefficients(&returned, &(to));  \
+  } while (false)
+
 CLPV_INLINE Coefficients zero_coefficients(void) {
   Coefficients r;
 #pragma unroll
