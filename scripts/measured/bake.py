@@ -20,7 +20,11 @@ BOXES = {
     "sponza": "-16,0.3,-9,15,12,8"
 }
 SPACINGS = {"cornell": (0.1, 0.05), "atrium": (2, 1), "sponza": (2, 1)}  # [m] coarse and fine
-SCENES = "cornell", "cornell_lamp", "atrium", "atrium_overcast", "sponza", "sponza_overcast"
+# Scenes, with the camera whose sun lights them.
+SCENES = ("cornell", "cornell_lamp", "atrium", "atrium_overcast", "sponza:curtains",
+          "sponza:atrium", "sponza:columns", "sponza_overcast")
+# Part of a scene, with probes as dense as limits and time allow.
+PART, PART_BOX, PART_SPACINGS = "atrium", "-4,0.3,-4,4,4.3,4", (2, 1, 0.5)
 SOURCES = "pathtrace", "sweep"
 COLUMNS = "surface", "surface_energy", "air", "air_energy", "negative"
 
@@ -45,28 +49,37 @@ def values(words, names):
     return {name: None if word == "-" else float(word) for name, word in zip(names, words)}
 
 
-def measure_scene(scene, spacing, source, model):
+def kind_of(scene):
+    return scene.split(":")[0].split("_")[0]
+
+
+def measure_scene(scene, box, spacing, source, model):
     """Rows of one scene, by format."""
-    kind = scene.split("_")[0]
-    options = [f"--bounds={BOXES[kind]}", f"--spacing={spacing}", f"--from={source}",
-               f"--check={POINTS}", PATHS]
-    options += [f"--model={model}"] if kind == "sponza" else []
+    file, _, camera = scene.partition(":")
+    options = [f"--bounds={box}", f"--spacing={spacing}", f"--from={source}", f"--check={POINTS}",
+               PATHS, *([f"--camera={camera}"] if camera else []),
+               *([f"--model={model}"] if kind_of(scene) == "sponza" else [])]
     return [{
         "scene": scene, "spacing": spacing, "source": source, "format": name,
         "numbers": int(numbers), "bytes": int(size), **values(words, COLUMNS)
-    } for name, numbers, size, *words in printed(f"scenes/{scene}.json", *options)]
+    } for name, numbers, size, *words in printed(f"scenes/{file}.json", *options)]
 
 
 def measure(model):
-    return [row for scene in SCENES for spacing in SPACINGS[scene.split("_")[0]]
-            for source in SOURCES for row in measure_scene(scene, spacing, source, model)]
+    return [row for scene in SCENES for spacing in SPACINGS[kind_of(scene)] for source in SOURCES
+            for row in measure_scene(scene, BOXES[kind_of(scene)], spacing, source, model)]
+
+
+def measure_part():
+    return [row for spacing in PART_SPACINGS for source in SOURCES
+            for row in measure_scene(PART, PART_BOX, spacing, source, None)]
 
 
 def mean(rows, name, source, place, fine):
     """Mean of a column over all scenes, at the fine or the coarse spacing."""
     found = [
         row[place] for row in rows if row["format"] == name and row["source"] == source
-        and row["spacing"] == SPACINGS[row["scene"].split("_")[0]][fine]
+        and row["spacing"] == SPACINGS[kind_of(row["scene"])][fine]
     ]
     return sum(found) / len(found)
 

@@ -187,7 +187,8 @@ def measure_docs(folder, model, parts):
     if "quality-media" in parts:
         measure_media(folder, model, measured)
     if "bake" in parts:
-        write(folder, "bake", {"measured": measured, "rows": bake.measure(model)})
+        write(folder, "bake", {"measured": measured, "rows": bake.measure(model),
+                               "part": bake.measure_part()})
         charts.draw_probes(folder / "bake.json", ROOT / "docs/images/probes.png")
     if "bake-leaks" in parts:
         write(folder, "bake-leaks", {"measured": measured, "rows": bake.measure_leaks()})

@@ -2,7 +2,7 @@
 """Tables of docs/bake.md: errors of formats of light probes, verdicts, and leaks."""
 from .. import bake as probes
 from ..verdicts.judge import sentence
-from .cells import load, number, table
+from .cells import found, load, number, table
 
 RESOLVED = 0.5  # [points of %] smaller differences are none
 PLACES = [(source, place) for source in probes.SOURCES for place in ("surface", "air")]
@@ -27,6 +27,19 @@ def bake():
                       for place in ("surface", "air"))
             for source in probes.SOURCES for fine in (0, 1)
         ] + [f"{probes.mean(rows, name, 'pathtrace', 'negative', 1):.1f}"])
+    return lines
+
+
+@table
+def bake_part():
+    """Errors in a part of a scene, from coarse to dense probes."""
+    rows = load("bake")["part"]
+    columns = [(spacing, source) for source in probes.SOURCES for spacing in probes.PART_SPACINGS]
+    lines = [["format", *(f"{NAMES[source]}, {spacing:g} m" for spacing, source in columns)]]
+    for name in dict.fromkeys(row["format"] for row in rows):
+        cells = [found(rows, format=name, spacing=spacing, source=source)
+                 for spacing, source in columns]
+        lines.append([f"`{name}`", *(f"{row['surface']:.1f}, {row['air']:.1f}" for row in cells)])
     return lines
 
 
