@@ -105,5 +105,7 @@ def standing_runs():
     return shown({
         "run": "{run}", "clpv": "{measured[commit]}", "device": "{measured[device]}",
         "driver": "{measured[driver]}", "threads": "{small[0][compute_units]}",
-        "date": "{measured[date]}", "time of 960x540 [ms]": "{time_of_large_ms:#}"
-    }, [{**document, "run": run} for run, document in standing()])
+        "date": "{measured[date]}", "time of 960x540 [ms]": "{time_of_large_ms:#}",
+        "except": "{except}"
+    }, [{**document, "run": run, "except": document["measured"].get("except", "-")}
+        for run, document in standing()])
