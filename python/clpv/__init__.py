@@ -47,7 +47,7 @@ def ms_of(times, stage):
     try:
         if isinstance(stage, str):
             return sum(float(time["median"]) for time in times if time["stage"] == stage)
-    except (TypeError, KeyError, ValueError):
+    except (TypeError, LookupError, ValueError, OverflowError):
         pass
     found = f"stage: found {stage!r}; allowed: a name" if not isinstance(
         stage, str) else f"times: found {type(times).__name__}; allowed: records as of Renderer.stats"

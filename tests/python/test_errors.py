@@ -187,7 +187,8 @@ def test_wrong_calls_are_named(name, objects):
 
 
 def test_wrong_times_are_named():
-    for times in 3, None, "x", [3], [{}], [{"stage": "frame", "median": "x"}]:
+    for times in (3, None, "x", [3], [{}], numpy.zeros(3), [{"stage": "frame", "median": "x"}],
+                  [{"stage": "frame", "median": 10**400}]):
         with pytest.raises(clpv.UsageError, match="ms_of: times: found .*; allowed: "):
             clpv.ms_of(times, "frame")
     with pytest.raises(clpv.UsageError, match="ms_of: stage: found 3; allowed: "):

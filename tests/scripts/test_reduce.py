@@ -54,8 +54,8 @@ class Reduce(unittest.TestCase):
             (self.capsule / name).write_text(text)
         (self.capsule / "expected.bin").write_bytes(array.array("f", [1, 1, 2, 2]).tobytes())
 
-    def reduce(self, wrong="env WRONG=1"):
-        return subprocess.run([ROOT / "scripts/reduce", self.capsule, self.folder / "small", "--wrong", wrong, "--right", ""],
+    def reduce(self, wrong="env WRONG=1", right="", output="small"):
+        return subprocess.run([ROOT / "scripts/reduce", self.capsule, self.folder / output, "--wrong", wrong, "--right", right],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
 
     def test_keeps_what_the_fault_needs(self):
@@ -82,6 +82,16 @@ class Reduce(unittest.TestCase):
         done = self.reduce()
         self.assertEqual(done.returncode, 2)
         self.assertIn("which exists; allowed: a new folder", done.stdout)
+
+    def test_names_what_cannot_be_used_before_the_work(self):
+        for given, words in (({"output": "none/small"}, "OUTPUT: found .*/none; allowed: a folder that can be written"),
+                             ({"wrong": "/none/device"}, "--wrong: found /none/device; allowed: a program that can be run"),
+                             ({"right": "/none/device"}, "--right: found /none/device; allowed: a program that can be run"),
+                             ({"right": "env 'A"}, "--right: found env 'A: No closing quotation")):
+            done = self.reduce(**given)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertRegex(done.stdout, words)
+            self.assertNotIn("at first", done.stdout)
 
 
 if __name__ == "__main__":

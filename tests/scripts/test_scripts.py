@@ -315,5 +315,13 @@ class Arguments(InTree):
             self.assertEqual(found.returncode, USAGE, (name, found.stderr))
 
 
+class Leaks(unittest.TestCase):
+    def test_finds_an_output_that_cannot_be_written_before_the_work(self):
+        done = subprocess.run([ROOT / "scripts/leaks", "-o", "/none/leaks.json"], timeout=10,
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, output.RUN_TIME, done.stderr)
+        self.assertIn("/none: No such file", done.stderr)
+
+
 if __name__ == "__main__":
     unittest.main()
