@@ -47,6 +47,7 @@ Suite scaling_suite();
 Suite ceilings_suite();
 Suite frame_suite();
 Suite factors_suite();
+Suite probes_suite();
 /// Suite `rasterize`. With the job of a peer, which draws the same: `rasterize-PEER` with both.
 struct RasterPeer {
   std::string name;

@@ -322,6 +322,13 @@ TEST(BenchSuites, EveryPassOfRasterizingIsRight) {
   EXPECT_THAT(rasterize_suite().table(rows), HasSubstr("ns/triangle"));
 }
 
+TEST(BenchSuites, LookUpsOfAllProbeFormatsAreRight) {
+  const std::vector<Row> rows = rows_of(probes_suite(), "");
+  expect_right(rows);
+  EXPECT_EQ(rows.size(), 14u);
+  EXPECT_EQ(rows[0].cost.pixels, 96 * 54);
+}
+
 const std::string kOneRow = "bases --basis sh2 --filter 'propagate/sh2/soa/float$' --repetitions 3";
 
 TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {

@@ -157,6 +157,7 @@ DEVICE_SUITES = {
 DOCS_SUITES = {
     "layouts": [],
     "bases": [],
+    "probes": [],
     "scaling": [],
     "native": ["--repetitions=41"],
     "frame": ["sponza", "--repetitions=9", "--basis=sh2", "--filter=best"],

@@ -15,10 +15,10 @@ PAIRS = (("dice", "srbf8v2"), ("dice-srbf", "srbf8v2"), ("zh3", "srbf8v2"), ("zh
 
 @table
 def bake():
-    rows = load("bake")["rows"]
+    rows, times = load("bake")["rows"], load("probes")["benchmarks"]
     lines = [[
         "format", "numbers", "bytes", "traced, coarse", "traced, fine", "swept, coarse",
-        "swept, fine", "negative [%]"
+        "swept, fine", "negative [%]", "look-up [ns]"
     ]]
     for name in dict.fromkeys(row["format"] for row in rows):
         one = next(row for row in rows if row["format"] == name)
@@ -26,8 +26,14 @@ def bake():
             ", ".join(f"{probes.mean(rows, name, source, place, fine):.1f}"
                       for place in ("surface", "air"))
             for source in probes.SOURCES for fine in (0, 1)
-        ] + [f"{probes.mean(rows, name, 'pathtrace', 'negative', 1):.1f}"])
+        ] + [f"{probes.mean(rows, name, 'pathtrace', 'negative', 1):.1f}",
+             number(look_up_ns(found(times, name=f"probe/{name}")))])
     return lines
+
+
+def look_up_ns(row):
+    """Of one point."""
+    return row["median"] * 1e6 / row["pixels"] if row and row["status"] == "ok" else None
 
 
 @table
