@@ -2,6 +2,7 @@
 // `clpv devices` names drivers that cannot be loaded, and lists the others.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/run_program.hpp"
 
@@ -41,6 +42,7 @@ TEST_F(DriverFiles, ThatAreMissingOrForeignAreNamed) {
   add("3-text.icd", folder_.write("text.so", "no library").string());
   add("4-empty.icd", "");
   add("5-unknown.icd", "libclpv-none.so.7");
+  add("6-other.icd", "libc.so.6");
   const test::Outcome outcome = devices();
   EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
   EXPECT_THAT(outcome.out,
@@ -48,7 +50,8 @@ TEST_F(DriverFiles, ThatAreMissingOrForeignAreNamed) {
                     HasSubstr("2-foreign.icd: " + (folder_ / "foreign.so").string() +
                               ": of another machine; allowed: that of clpv\n"),
                     HasSubstr("text.so: no ELF file\n"), HasSubstr("4-empty.icd: names no library\n"),
-                    HasSubstr("libclpv-none.so.7: cannot open shared object file")));
+                    HasSubstr("libclpv-none.so.7: cannot open shared object file"),
+                    HasSubstr("libc.so.6: offers no OpenCL platform\n")));
 }
 
 TEST_F(DriverFiles, ThatEndTheProcessAreNamedAndTheOthersListed) {
@@ -59,10 +62,17 @@ TEST_F(DriverFiles, ThatEndTheProcessAreNamedAndTheOthersListed) {
   add("aborts.icd", library("aborts.so",
                             "#include <stdlib.h>\n"
                             "__attribute__((constructor)) static void start(void) { abort(); }\n"));
+  add("exits.icd", library("exits.so",
+                           "#include <unistd.h>\n"
+                           "__attribute__((constructor)) static void start(void) { _exit(0); }\n"));
+  // The loader would wait for a writer.
+  ASSERT_EQ(::mkfifo((folder_ / "vendors/pipe.icd").c_str(), 0600), 0);
   const test::Outcome outcome = devices();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("Portable Computing Language"),
                                  HasSubstr("aborts.icd: "), HasSubstr("signal 6"),
+                                 HasSubstr("exits.icd: "), HasSubstr("with exit code 0 when loaded"),
+                                 HasSubstr("pipe.icd: names no library"),
                                  Not(HasSubstr("pocl.icd"))));
   EXPECT_THAT(devices("--format json").out,
               AllOf(HasSubstr("\"faulty_drivers\": [\n"), HasSubstr("aborts.icd")));
