@@ -46,6 +46,7 @@ TEST_F(DriverFiles, ThatAreMissingOrForeignAreNamed) {
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   add("6-pipe.icd", pipe);
   add("7-folder.icd", folder_.path().string());
+  add("8-other.icd", "libc.so.6");
   const test::Outcome outcome = devices();
   EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
   EXPECT_THAT(outcome.out,
@@ -55,7 +56,8 @@ TEST_F(DriverFiles, ThatAreMissingOrForeignAreNamed) {
                     HasSubstr("text.so: no ELF file\n"), HasSubstr("4-empty.icd: names no library\n"),
                     HasSubstr("6-pipe.icd: " + pipe + ": no regular file\n"),
                     HasSubstr("7-folder.icd: " + folder_.path().string() + ": no regular file\n"),
-                    HasSubstr("libclpv-none.so.7: cannot open shared object file")));
+                    HasSubstr("libclpv-none.so.7: cannot open shared object file"),
+                    HasSubstr("libc.so.6: offers no OpenCL platform\n")));
 }
 
 TEST_F(DriverFiles, ThatEndTheProcessAreNamedAndTheOthersListed) {
@@ -66,10 +68,17 @@ TEST_F(DriverFiles, ThatEndTheProcessAreNamedAndTheOthersListed) {
   add("aborts.icd", library("aborts.so",
                             "#include <stdlib.h>\n"
                             "__attribute__((constructor)) static void start(void) { abort(); }\n"));
+  add("exits.icd", library("exits.so",
+                           "#include <unistd.h>\n"
+                           "__attribute__((constructor)) static void start(void) { _exit(0); }\n"));
+  // The loader would wait for a writer.
+  ASSERT_EQ(::mkfifo((folder_ / "vendors/pipe.icd").c_str(), 0600), 0);
   const test::Outcome outcome = devices();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("Portable Computing Language"),
                                  HasSubstr("aborts.icd: "), HasSubstr("signal 6"),
+                                 HasSubstr("exits.icd: "), HasSubstr("with exit code 0 when loaded"),
+                                 HasSubstr("pipe.icd: names no library"),
                                  Not(HasSubstr("pocl.icd"))));
   EXPECT_THAT(devices("--format json").out,
               AllOf(HasSubstr("\"faulty_drivers\": [\n"), HasSubstr("aborts.icd")));

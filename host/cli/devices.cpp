@@ -2,7 +2,6 @@
 // clpv devices: lists all OpenCL devices and their capabilities.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -66,9 +65,8 @@ void add_devices(CLI::App& app, Shared& shared) {
   command->callback([format, driver, &shared] {
     if (!driver->empty()) return load_driver(*driver);
     const std::vector<FaultyDriver> faulty = faulty_drivers();
-    std::optional<ScratchFolder> others;  // where a driver would end this process
-    if (std::ranges::count(faulty, true, &FaultyDriver::ends_process) > 0)
-      leave_out(faulty, others.emplace().path());
+    std::optional<ScratchFolder> others;
+    if (!faulty.empty()) leave_out(faulty, others.emplace().path());
     DeviceList list = list_devices();
     if (!shared.device.empty()) {
       list = {{choose_device(list.devices, shared.device)}, {}};

@@ -13,6 +13,7 @@
 #include "device/device.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
+#include "support/print.hpp"
 #include "support/process.hpp"
 #include "support/this_program.hpp"
 
@@ -25,6 +26,7 @@ constexpr const char* kVendors = "/etc/OpenCL/vendors";
 constexpr std::uintmax_t kMostBytes = 4096;   // of an .icd file: one path
 constexpr std::chrono::seconds kLoading{20};  // longer than any driver takes
 constexpr int kSignalled = 128;               // exit code after a signal, less the signal
+constexpr const char* kLoaded = "driver loaded\n";  // since a driver may end the child with code 0
 
 std::string library_of(const fs::path& icd_file) {
   const std::string text = file_bytes(icd_file, kMostBytes).value_or("");
@@ -55,7 +57,8 @@ std::string fault_of_file(const std::string& library) {
   return {};
 }
 
-FaultyDriver loaded_in_child(const fs::path& icd_file) {
+/// Returns why the driver cannot be loaded by a child process; empty if it can.
+std::string fault_when_loaded(const fs::path& icd_file) {
   Process child(this_program(), {"devices", "--load-driver", icd_file.string(), "--quiet"});
   const auto end = std::chrono::steady_clock::now() + kLoading;
   while (child.running() && std::chrono::steady_clock::now() < end)
@@ -63,17 +66,16 @@ FaultyDriver loaded_in_child(const fs::path& icd_file) {
   const bool late = child.running();
   if (late) child.kill();
   Process::Result result = child.end();
+  if (late) return fmt::format("does not load within {} s", kLoading.count());
+  if (result.code == 0 && result.output.find(kLoaded) != std::string::npos) return {};
   while (result.output.ends_with('\n')) result.output.pop_back();
-  if (late)
-    return {icd_file.string(), fmt::format("does not load within {} s", kLoading.count()), true};
-  if (result.code > kSignalled)
-    return {icd_file.string(),
-            fmt::format("{}: ends the process by signal {} ({}) when loaded{}{}",
-                        library_of(icd_file), result.code - kSignalled,
-                        ::strsignal(result.code - kSignalled),
-                        result.output.empty() ? "" : ": ", result.output),
-            true};
-  return {icd_file.string(), result.code == 0 ? "" : result.output};
+  const bool explained = result.code < 0 || result.code == static_cast<int>(ExitCode::device);
+  if (explained && !result.output.empty()) return result.output;
+  const int signal = result.code - kSignalled;
+  const std::string by = signal > 0 ? fmt::format("by signal {} ({})", signal, ::strsignal(signal))
+                                    : fmt::format("with exit code {}", result.code);
+  return fmt::format("{}: ends the process {} when loaded{}{}", library_of(icd_file), by,
+                     result.output.empty() ? "" : ": ", result.output);
 }
 
 }  // namespace
@@ -93,18 +95,22 @@ std::vector<fs::path> driver_files() {
 std::vector<FaultyDriver> faulty_drivers() {
   std::vector<FaultyDriver> faulty;
   for (const fs::path& file : driver_files()) {
-    FaultyDriver driver{file.string(), fault_of_file(library_of(file))};
-    if (driver.reason.empty() && !this_program().empty()) driver = loaded_in_child(file);
-    if (!driver.reason.empty()) faulty.push_back(std::move(driver));
+    std::string reason = fault_of_file(library_of(file));
+    if (reason.empty() && !this_program().empty()) reason = fault_when_loaded(file);
+    if (!reason.empty()) faulty.push_back({file.string(), reason});
   }
   return faulty;
 }
 
 void load_driver(const fs::path& icd_file) {
-  if (::dlopen(library_of(icd_file).c_str(), RTLD_NOW | RTLD_LOCAL) == nullptr)
+  // As the loader does: of symbols that nobody calls, none need exist.
+  if (::dlopen(library_of(icd_file).c_str(), RTLD_LAZY | RTLD_LOCAL) == nullptr)
     throw Error(ExitCode::device, "{}", ::dlerror());
   ::setenv("OCL_ICD_VENDORS", icd_file.c_str(), 1);
-  list_devices();
+  const DeviceList list = list_devices();
+  if (list.devices.empty() && list.platforms_without_devices.empty())
+    throw Error(ExitCode::device, "{}: offers no OpenCL platform", library_of(icd_file));
+  print_data("{}", kLoaded);
 }
 
 void leave_out(const std::vector<FaultyDriver>& faulty, const fs::path& folder) {

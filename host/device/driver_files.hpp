@@ -8,10 +8,9 @@
 
 namespace clpv {
 
-/// A driver that the loader leaves out silently, or that ends the process.
+/// A driver that the loader leaves out silently, or that ends or stops the process.
 struct FaultyDriver {
   std::string file, reason;
-  bool ends_process = false;
 };
 
 /// Returns the .icd files of OCL_ICD_VENDORS (a file or a folder), by default of
