@@ -512,7 +512,7 @@ def options() -> list[dict[str, str]]:
     """options() -> list of dict: name, help, allowed values and default of each option of Renderer."""
 
 def ms_of(times: Sequence[dict[str, Any]], stage: str) -> float:
-    """times: those of Renderer.stats or of JSON by clpv. 0 if the stage did not run."""
+    """times: those of Renderer.stats or of JSON by clpv. 0 if the stage did not run. Other values raise UsageError."""
 
 def pathtrace(scene: Scene, view: _View | Sequence[_View] = 'full', camera: str | Camera | None = None, width: int = 960, height: int = 540, bounces: int | Literal["all"] = 1, samples: int = 0, noise: float = 0.02, seed: int = 1, threads: int = 0, time: float = 0.0, progress: Callable[[float], object] | None = None) -> Image:
     """pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.
