@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Renders the still views of the suite (docs/score.md) with the path tracer Mitsuba 3, to score
+"""Renders the still views of the suite (lab/docs/score.md) with the path tracer Mitsuba 3, to score
 them.
 
     pip install mitsuba OpenEXR

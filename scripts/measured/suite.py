@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Writes the suite of views that python3 -m clpv.score scores: truths, cameras and lights for any
-renderer (docs/score.md).
+renderer (lab/docs/score.md).
 
     scripts/suite --output DIR --model PATH/Sponza.gltf    DIR/suite.json and the files that it
                                                            names, and DIR.tar with them alone
@@ -230,7 +230,7 @@ def write_suite(folder, tar, sponza, cache, names):
     scorer = ROOT / "python/clpv"
     for file in [scorer / "output.py", *scorer.glob("score/*.py"), *scorer.glob("score/*.html")]:
         folder.write(f"clpv/{file.relative_to(scorer)}", file.read_bytes())
-    for file in ROOT / "docs/score.md", ROOT / "LICENSE":
+    for file in ROOT / "lab/docs/score.md", ROOT / "LICENSE":
         folder.write(file.name, file.read_bytes())
     packed = output.tar_of(folder.path.name, folder.contents(sorted(folder.written)))
     if len(packed) > LARGEST:

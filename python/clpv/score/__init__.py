@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Scores images of indirect light, by any renderer, against path-traced truths. Needs NumPy alone;
-docs/score.md.
+lab/docs/score.md.
 
     python3 -m clpv.score DIR [--suite FOLDER]     a folder of images, one for each view of the
                                                    suite
