@@ -26,8 +26,7 @@ function(clpv_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# Compiles the files of a folder as one unit, which is 3x faster. Names within a folder must differ, including those in anonymous
-# namespaces.
+# Unity builds, 3x faster: the rule is in CONTRIBUTING.md.
 option(CLPV_UNITY "Compile files of a folder together" ON)
 
 # clpv_group(target folder...): compiles each folder as one unit.
