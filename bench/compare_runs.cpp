@@ -191,12 +191,14 @@ ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& a
 
 void require_ratios(const ReportChanges& found, double limit) {
   std::vector<std::string> slower, lost, problems;
-  for (const Change& change : found.changes) {
-    if (change.ratio() > limit && (change.significant || !change.spread_known))
-      slower.push_back(fmt::format("{} ({:.3f})", change.name, change.ratio()));
+  if (limit > 0) {
+    for (const Change& change : found.changes) {
+      if (change.ratio() > limit && (change.significant || !change.spread_known))
+        slower.push_back(fmt::format("{} ({:.3f})", change.name, change.ratio()));
+    }
+    for (const LostRow& row : found.lost)
+      lost.push_back(fmt::format("{} ({})", row.name, row.reason));
   }
-  for (const LostRow& row : found.lost)
-    lost.push_back(fmt::format("{} ({})", row.name, row.reason));
   if (!slower.empty())
     problems.push_back(fmt::format("{} of {} rows have more than {} times their earlier value: {}",
                                    slower.size(), found.changes.size(), limit,

@@ -343,8 +343,21 @@ TEST_F(BakeCommand, MeanLightAtGivenPoints) {
   EXPECT_NEAR(mean["truth"], 0.7475, 0.03);
   EXPECT_NEAR(mean["sh3"], mean["truth"], 0.3);
   EXPECT_EQ(mean.size(), probe_format_names().size() + 2);
+  EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("outside")));
   EXPECT_EQ(bake("--probes 5,5,5 --points points.csv --check 3").exit_code, 2);
   EXPECT_EQ(bake("--probes 5,5,5 --points none.csv").exit_code, 3);
+  std::ofstream(folder / "far.csv") << "0,0.3,0.3,1,0,0\n-0.3,0.3,0.3,1,0,0\n0.3,5,0.3,0,1,0\n";
+  EXPECT_THAT(bake("--from pathtrace --spp 1 --probes 6,6,6 --points far.csv").err,
+              HasSubstr("2 of 3 points lie more than half a spacing outside the probes"));
+}
+
+TEST(ProbeGrid, IsFarBeyondHalfASpacing) {
+  const ProbeGrid grid{{3, 1, 2}, {0, 0, 0}, {2, 2, 4}};  // 1, 2 and 4 m apart
+  EXPECT_FALSE(grid.is_far({-0.5, 3, 6}));
+  EXPECT_TRUE(grid.is_far({-0.51, 3, 6}));
+  EXPECT_TRUE(grid.is_far({2.51, 0, 0}));
+  EXPECT_TRUE(grid.is_far({0, 3.01, 0}));
+  EXPECT_TRUE(grid.is_far({0, 0, -2.01}));
 }
 
 TEST_F(BakeCommand, OfASweepInAnArchive) {

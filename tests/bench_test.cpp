@@ -108,12 +108,13 @@ TEST(BenchCompare, RatiosAboveALimitFail) {
   EXPECT_THAT(alone.err, HasSubstr("--compare"));
 }
 
-/// Runs `clpv compare NEW OLD --fail-above 1.2` on these reports.
-test::Outcome compare_files(const nlohmann::json& before, const nlohmann::json& after) {
+/// Runs `clpv compare NEW OLD` on these reports.
+test::Outcome compare_files(const nlohmann::json& before, const nlohmann::json& after,
+                            const std::string& options = " --fail-above 1.2") {
   const test::TemporaryFolder folder;
   const std::string old = folder.write("old.json", before.dump()).string(),
                     now = folder.write("new.json", after.dump()).string();
-  return test::run_here("compare " + now + " " + old + " --fail-above 1.2");
+  return test::run_here("compare " + now + " " + old + options);
 }
 
 TEST(BenchCompare, ReportsOfQualityAndStats) {
@@ -202,6 +203,20 @@ TEST(BenchCompare, AGateWithoutAComparisonFails) {
   }
   EXPECT_THAT(compare_files(quality, quality).out,
               HasSubstr("s:dark nrmse: - (undefined in both)"));
+}
+
+// `clpv compare` without a limit once printed an empty table and passed.
+TEST(BenchCompare, ReportsWithoutACommonRowFail) {
+  const nlohmann::json one = report({{"a", 10, 0.1}}), other = report({{"b", 10, 0.1}});
+  const test::Outcome outcome = compare_files(one, other, "");
+  EXPECT_EQ(outcome.exit_code, 5);
+  EXPECT_THAT(outcome.out, HasSubstr("a: LOST: not in this run\nb: only in this run"));
+  EXPECT_THAT(outcome.err, HasSubstr("no row has a value in both reports"));
+  EXPECT_EQ(compare_files(report({{"a", 10, 0.1}, {"b", 10, 0.1}}), other, "").exit_code, 0)
+      << "a lost row is reported, and fails only with a limit";
+  const test::TemporaryFolder folder;
+  const std::string old = folder.write("old.json", one.dump()).string();
+  EXPECT_EQ(test::run_here("bench ceilings --compare " + old).exit_code, 5);
 }
 
 TEST(BenchCompare, LimitsAreNumbers) {

@@ -40,15 +40,6 @@ LookUp look_up_of(const std::string& format) {
   return {format.c_str(), "BASIS", format.c_str()};
 }
 
-struct Random {
-  std::uint64_t state;
-  double next() { return uniform(state = mix(state)); }
-  glm::dvec3 direction() {
-    const glm::dvec2 point(next(), next());
-    return phase_direction(glm::dvec3(0, 0, 1), 0, point);
-  }
-};
-
 struct Scene {
   bake::ProbeGrid grid{glm::ivec3(kSide), glm::dvec3(0), glm::dvec3(kSide - 1)};
   std::vector<glm::vec3> coefficients;

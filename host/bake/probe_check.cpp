@@ -12,16 +12,6 @@ namespace {
 constexpr std::uint64_t kSurfaceSeed = 11, kAirSeed = 12;
 constexpr std::size_t kTries = 64;  // places for each point
 
-/// Random numbers of one place.
-struct Random {
-  std::uint64_t state;
-  double next() { return uniform(state = mix(state)); }
-  glm::dvec3 direction() {
-    const glm::dvec2 point(next(), next());
-    return phase_direction(glm::dvec3(0, 0, 1), 0, point);
-  }
-};
-
 /// Random places that are not inside walls; each with the random numbers that follow.
 std::vector<std::pair<glm::dvec3, Random>> places(pathtracer::PointTracer& tracer,
                                                   const ProbeGrid& grid, std::size_t count,

@@ -44,6 +44,11 @@ struct ProbeGrid {
   }
   glm::dvec3 first() const { return position(0); }
   glm::dvec3 last() const { return position(size() - 1); }
+  /// Returns true if a position is more than half a spacing outside the bounds.
+  bool is_far(const glm::dvec3& position) const {
+    const glm::dvec3 outside = glm::max(lower - position, position - upper);
+    return glm::any(glm::greaterThan(outside, spacing() / 2.0));
+  }
 };
 
 /// Positions of all probes.

@@ -117,6 +117,16 @@ inline glm::dvec3 phase_direction(const glm::dvec3& along, double g, const glm::
   return sine * std::cos(angle) * tangent + sine * std::sin(angle) * bitangent + cosine * along;
 }
 
+/// A stream of random numbers and directions.
+struct Random {
+  std::uint64_t state;
+  double next() { return uniform(state = mix(state)); }
+  glm::dvec3 direction() {
+    const glm::dvec2 point(next(), next());
+    return phase_direction(glm::dvec3(0, 0, 1), 0, point);
+  }
+};
+
 /// A sampled interval of a discrete distribution.
 struct CdfSample {
   std::size_t index;

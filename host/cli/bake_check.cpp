@@ -92,6 +92,13 @@ void Check::report(const ProbeGrid& grid) const {
            grid.count.z, spacing.x, spacing.y, spacing.z);
   if (given_) {
     log_info("{} points, noise {}", surfaces_.points.size(), decimal(noise_[0], 4));
+    const auto far = std::ranges::count_if(
+        surfaces_.points, [&](const SurfacePoint& point) { return grid.is_far(point.position); });
+    if (far > 0)
+      log_warning(
+          "{} of {} points lie more than half a spacing outside the probes, which have only the "
+          "light of their border there; --bounds decides",
+          far, surfaces_.points.size());
     return;
   }
   log_info("{} points of surfaces and {} in the air, noise {} and {}", surfaces_.points.size(),

@@ -172,7 +172,7 @@ void run(Options options, const Shared& shared) {
   }
   session.store_programs();
   require_right_results(results.rows);
-  if (options.fail_above > 0) bench::require_ratios(changes, options.fail_above);
+  if (!before.is_null()) bench::require_ratios(changes, options.fail_above);
 }
 
 }  // namespace bench_command

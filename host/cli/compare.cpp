@@ -72,7 +72,7 @@ void compare_reports(const CompareOptions& options) {
   const bench::ReportChanges changes =
       bench::compare_runs(read_json(options.b), read_json(options.a), options.b, options.a);
   print_text(bench::changes_table(changes));
-  if (options.fail_above > 0) bench::require_ratios(changes, options.fail_above);
+  bench::require_ratios(changes, options.fail_above);
 }
 
 void run(const CompareOptions& options) {
@@ -125,7 +125,7 @@ void add_compare(CLI::App& app, Shared&) {
       *command, "--suite", "DIR", options->suite,
       "folder of images SCENE-CAMERA.exr of indirect light, by any renderer, in place of A and B; "
       "with metadata clpv:view_hash, or in\n"
-      "a suite.json beside the truths (docs/score.md)");
+      "a suite.json beside the truths (lab/docs/score.md)");
   suite->excludes(a)->excludes("--output")->excludes("--layer");
   add(*command, "--truths", "DIR", options->truths,
       "folder of their ground truths SCENE-CAMERA-HASH.exr (default: "
@@ -143,7 +143,7 @@ void add_compare(CLI::App& app, Shared&) {
       "al. 2020) is the mean\n"
       "difference that an observer sees, from 0 to 1, of linear images after tone curve aces.\n"
       "Different sizes, pixels that only one file has, and values that are not finite exit with "
-      "3.");
+      "3,\nreports without a row that has a value in both with 5.");
   command->callback([options] { run(*options); });
 }
 

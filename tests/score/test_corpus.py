@@ -78,9 +78,14 @@ os.execv({os.environ["CLPV"]!r}, [{os.environ["CLPV"]!r}, *sys.argv[1:]])
 
     def test_only_its_own_file_is_replaced(self):
         mine, other = self.root / "mine.md", self.root / "other.md"
+        done = self.run_script("--output", mine)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("found no model", done.stderr)
+        self.assertFalse(mine.exists())
+        self.write("a.gltf", {})
         for _ in range(2):  # a new one, and its own
             self.assertEqual(self.run_script("--output", mine).returncode, 0)
-        self.assertIn("0 models", mine.read_text())
+        self.assertIn("1 models: 0 loaded, 1 refused", mine.read_text())
         other.write_text("mine")
         (self.root / "link.md").symlink_to(mine)
         for name in ("other.md", "link.md"):

@@ -4,6 +4,7 @@ they are, whether it refuses the folder or wrote there before. Stubs stand for c
 that take minutes."""
 import os
 import pathlib
+import runpy
 import shutil
 import subprocess
 import sys
@@ -16,7 +17,7 @@ import numpy
 from bystanders import ROOT
 from clpv import output
 
-sys.path.append(str(ROOT / "tests/score"))
+sys.path += [str(ROOT / "tests/score"), str(ROOT / "scripts")]
 import exr_writer  # noqa: E402
 
 BAD_INPUT, USAGE = 3, 2
@@ -294,6 +295,22 @@ class OwnFolders(InTree):
             (self.folder / file).parent.mkdir(exist_ok=True)
             (self.folder / file).write_text("{}")
             self.refused(USAGE, "allowed: another file", "charts", chart, given, "-o", file)
+
+
+class Gates(InTree):
+    """A gate without anything to judge fails."""
+
+    def test_lines(self):
+        self.refused(1, "host: found nothing to count", "lines", "--check")
+
+    def test_links_of_the_docs(self):
+        (self.tree / "tests").symlink_to(ROOT / "tests")
+        self.full.mkdir()
+        self.refused(1, "found no page", "../tests/docs/check_links", self.full)
+
+    def test_kernels_that_only_the_record_has(self):
+        changes = runpy.run_path(str(ROOT / "scripts/gpu_report"))["changes"]
+        self.assertEqual(changes({"gather": {}}, {}), ["gather: only in the record"])
 
 
 class Arguments(InTree):
