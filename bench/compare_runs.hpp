@@ -47,8 +47,8 @@ struct ReportChanges {
 ReportChanges compare_runs(const nlohmann::json& before, const nlohmann::json& after,
                            const std::string& file, const std::string& after_file = "this run");
 
-/// Throws Error(validation) if no row has a value in both reports. With a `limit` above 0 also names
-/// the lost rows, and those whose ratio exceeds it, beyond the spread or with unknown spread.
+/// Throws Error(validation) if no row has a value in both reports. With a `limit` above 0 also
+/// names the lost rows, and those whose ratio exceeds it, beyond the spread or with unknown spread.
 void require_ratios(const ReportChanges& found, double limit);
 
 /// Text with one line per change: medians with MAD, ratio and verdict. The other rows follow.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Suite `probes`: a look-up of light probes on the device, by format (docs/bake.md).
-#include "basis/basis.hpp"
-#include "basis/sampling.hpp"
 #include "bake/probe_formats.hpp"
 #include "bake/probe_grid.hpp"
+#include "basis/basis.hpp"
+#include "basis/sampling.hpp"
 #include "bench/suites.hpp"
 #include "device/kernel.hpp"
 #include "support/error.hpp"
@@ -13,8 +13,8 @@
 namespace clpv::bench {
 namespace {
 
-constexpr int kSide = 16;          // probes along each axis
-constexpr int kLights = 3;         // distant lights of each probe
+constexpr int kSide = 16;   // probes along each axis
+constexpr int kLights = 3;  // distant lights of each probe
 constexpr std::size_t kLocal = 64;
 constexpr double kAllowed = 1e-4;  // of the largest irradiance: float, and pow of two floats
 
@@ -72,13 +72,13 @@ Deviation deviation_of(const bake::ProbeFormat& format, const Scene& scene,
   std::vector<double> wanted;
   for (std::size_t i = 0; 2 * i < scene.points.size(); i += kCheckedPixels) {
     const glm::dvec3 at(scene.points[2 * i]), n(scene.points[2 * i + 1]);
-    const glm::dvec3 e = format.irradiance(
-        bake::interpolated(scene.grid, scene.coefficients, format.size, at), n);
+    const glm::dvec3 e =
+        format.irradiance(bake::interpolated(scene.grid, scene.coefficients, format.size, at), n);
     wanted.insert(wanted.end(), {e.x, e.y, e.z});
   }
   const auto value = [&](std::size_t i) { return found[3 * kCheckedPixels * (i / 3) + i % 3]; };
-  const verify::WorstError worst = verify::worst_difference(
-      wanted.size(), value, [&](std::size_t i) { return wanted[i]; });
+  const verify::WorstError worst =
+      verify::worst_difference(wanted.size(), value, [&](std::size_t i) { return wanted[i]; });
   return {worst.value, kAllowed,
           fmt::format("{}, point {}: {}, expected {}", format.name, worst.at / 3 * kCheckedPixels,
                       value(worst.at), wanted[worst.at])};
