@@ -34,7 +34,7 @@ CLPV_INLINE float lobe_flux(const Coefficients alpha) {
   return add_product(0.0f, flux_weights, alpha);
 }
 
-// A^-1 a
+// A^-1 a. The second inner loop begins at 0: from i + 1, rusticl of Mesa 26.2 crashes.
 CLPV_INLINE Coefficients project_sum(const Coefficients a) {
   Coefficients r = a;
 #pragma unroll
@@ -47,8 +47,8 @@ CLPV_INLINE Coefficients project_sum(const Coefficients a) {
 #pragma unroll
   for (int i = CLPV_N - 1; i >= 0; --i) {
 #pragma unroll
-    for (int j = i + 1; j < CLPV_N; ++j)
-      if (gram_lower[j][i] != 0.0f) r.c[i] = fma(-gram_lower[j][i], r.c[j], r.c[i]);
+    for (int j = 0; j < CLPV_N; ++j)
+      if (j > i && gram_lower[j][i] != 0.0f) r.c[i] = fma(-gram_lower[j][i], r.c[j], r.c[i]);
     r.c[i] *= gram_inverse_diagonal[i];
   }
   return r;
