@@ -13,8 +13,8 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
 }
 
 #if W == 8
-// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed. PoCL 7.1
-// compiles a loop of loads wrongly, and PoCL 3.1 slowly.
+// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed. All loops
+// are unrolled: PoCL 7.1 compiles others wrongly inside of an unrolled loop, and PoCL 3.1 slowly.
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN volume,
                                                                  const int at, const int x) {
   float8 rows[CLPV_VOLUME_COUNT];
@@ -36,9 +36,11 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_eight)(CLPV_BUFFER_OUT volume, co
   float8 rows[CLPV_VOLUME_COUNT];
 #pragma unroll
   for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) {
+#pragma unroll
     for (int lane = 0; lane < 8; ++lane)
       ((float*)rows)[lane * CLPV_LANE + i] = ((const float*)&cell.c[i])[lane];
   }
+#pragma unroll
   for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_eight(volume, at + 8 * i, rows[i]);
 }
 #endif
