@@ -232,7 +232,23 @@ TEST(ApiCalls, HelpersCompileTheProgramsOfTheMedium) {
   request.changes.medium = ClpvMedium{};
   request.changes.medium->anisotropy = 0.5f;
   request.changes.medium->extinction[0] = 0.25f;
-  EXPECT_THAT(compilation_of(request, "").helpers, Contains("--medium=0,0.25,0.5"));
+  EXPECT_THAT(compilation_of(request, {}, "").helpers, Contains("--medium=0,0.25,0.5"));
+}
+
+// Those of a bake are not the ones that its user gave.
+TEST(ApiCalls, HelpersHaveTheOptionsOfTheFrames) {
+  RenderOptions options;
+  for (const PresetName preset : values_of<PresetName>()) {
+    apply_preset(options, preset);
+    options.cascades = 5, options.cascade_size = 1.0 / 3, options.near = Near::off;
+    OptionValues given;
+    for (const std::string& argument : compilation_of({}, options, "").helpers) {
+      const auto equals = argument.find('=');
+      if (equals != std::string::npos)
+        given[argument.substr(2, equals - 2)] = argument.substr(equals + 1);
+    }
+    EXPECT_EQ(to_json(resolve_options(given, SceneData{})), to_json(options)) << name_of(preset);
+  }
 }
 
 }  // namespace

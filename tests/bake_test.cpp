@@ -19,7 +19,7 @@
 #include "bake/probe_check.hpp"
 #include "cli/bake_parts.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "pipeline/frame/scene_options.hpp"
+#include "options/scene_options.hpp"
 #include "scene/load.hpp"
 #include "support/interrupt.hpp"
 #include "tests/support/error_of.hpp"

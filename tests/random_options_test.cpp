@@ -18,7 +18,7 @@
 
 #include "image/image_io.hpp"
 #include "options/show.hpp"
-#include "pipeline/frame/scene_options.hpp"
+#include "options/scene_options.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 

@@ -13,8 +13,6 @@
 #include "api/scene_contents.hpp"
 #include "clpv/renderer.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "pipeline/frame/frame_volumes.hpp"
-#include "pipeline/frame/scene_options.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -31,7 +29,7 @@ struct Renderer::State {
   std::shared_lock<std::shared_mutex> scene_stays;  ///< while the frame is made
   PosedScene posed;
   OptionValues given;
-  RenderOptions options;  ///< `given` for the scene
+  FrameSetup setup;  ///< `given` for the scene
   Session session;
   std::string description;  ///< never changes
   std::optional<Frame> frame;
@@ -56,10 +54,11 @@ struct Renderer::State {
         scene_stays(file.contents().mutex),
         posed(file),
         given(set.given()),
-        options(resolve_options(given, posed.scene())),
+        setup(given, posed.scene()),
         session(where, ProgramCache::of_user(device_of(where))),
         rebuilds(file.contents().rebuilds) {
-    frame.emplace(session, posed.scene(), options);
+    frame.emplace(session, posed.scene(), setup);
+    const RenderOptions& options = setup.options;
     description =
         fmt::format("{} x {}, basis {}, transport {}, on {}", options.width, options.height,
                     options.basis, name_of(options.transport), session.device().name);
@@ -108,8 +107,8 @@ struct Renderer::State {
     lit = lit_for_shown = false;
     if (!frame || rebuilds != file.contents().rebuilds) {
       metadata.clear();
-      options = resolve_options(given, posed.scene());  // cascades may fit the scene
-      frame.emplace(session, posed.scene(), options);
+      setup = FrameSetup(given, posed.scene());  // cascades may fit the scene
+      frame.emplace(session, posed.scene(), setup);
       rebuilds = file.contents().rebuilds;
     } else if (moved) {
       frame->scene_moved();
@@ -117,7 +116,7 @@ struct Renderer::State {
   }
 
   /// Throws Error(usage) unless cascades can have light without a frame.
-  void require_light_alone() const { require_own_blockers(options); }
+  void require_light_alone() const { setup.require_own_blockers(); }
 
   /// Lights pixels of the host.
   std::vector<std::array<float, 3>> light(const SceneCamera& camera, const GBuffer& surfaces);
@@ -147,14 +146,15 @@ struct Renderer::State {
               bool ahead = false) {
     const SceneCamera chosen = pose(camera, seconds);
     metadata.clear();
-    frame->resize(size ? (*size)[0] : options.width, size ? (*size)[1] : options.height);
+    frame->resize(size ? (*size)[0] : setup.options.width,
+                  size ? (*size)[1] : setup.options.height);
     frame->draw_ahead(ahead);
     frame->render(chosen);
     lit = lit_for_shown = true;
     shown = {chosen, seconds, file.contents().changes};
     for (const OptionDescription& option : list_options(frame->options()))
       metadata[option.name] = option.value;
-    metadata["centres"] = std::filesystem::path(options.centres).filename().string();
+    metadata["centres"] = std::filesystem::path(setup.options.centres).filename().string();
     metadata["camera"] = chosen.name;
     metadata["time"] = fmt::format("{}", seconds);
   }

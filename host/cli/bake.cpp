@@ -53,7 +53,7 @@ RenderOptions frame_options(const Options& options, const SceneData& scene, cons
   RenderRequest request = options.request;
   request.frame.emplace("near", "off");
   request.frame["bounces"] = options.tracing.bounces;
-  RenderOptions frame = resolve_request(request, scene);
+  RenderOptions frame = setup_of(request, scene).options;
   if (scene.cascade_size || scene.cascades || request.frame.contains("cascade-size") ||
       request.frame.contains("cascades"))
     return frame;
@@ -66,6 +66,7 @@ RenderOptions frame_options(const Options& options, const SceneData& scene, cons
 struct Light {
   std::unique_ptr<pathtracer::PointTracer> tracer;
   std::unique_ptr<Session> session;
+  RenderOptions frame;  ///< of a sweep
   std::unique_ptr<ProbeSource> source;
 };
 
@@ -80,9 +81,9 @@ Light light_from(const Options& options, const SceneData& scene, const SceneCame
     return light;
   }
   const Device device = choose_device(shared.device);
+  const RenderOptions& frame = light.frame = frame_options(options, scene, grid);
   light.session = std::make_unique<Session>(device, ProgramCache::of_user(device),
-                                            compilation_of(options.request, shared.device));
-  const RenderOptions frame = frame_options(options, scene, grid);
+                                            compilation_of(options.request, frame, shared.device));
   if (cell_of(frame) > kCoarse * least_spacing(grid))
     log_warning(
         "cells of {:.3g} m are far larger than the spacing of probes, {:.3g} m, and inexact in "
@@ -94,17 +95,17 @@ Light light_from(const Options& options, const SceneData& scene, const SceneCame
 
 /// Everything that the light of a bake depends on.
 std::string key_of(const Options& options, const SceneData& scene, const SceneCamera& camera,
-                   const ProbeGrid& grid, const Shared& shared) {
+                   const ProbeGrid& grid, const Light& light) {
   const pathtracer::PathTracerOptions paths = options.tracing.resolved();
   Fingerprint print;
   print.add(program_fingerprint()).add(scene_fingerprint(scene)).add(options.format);
-  for (const SceneLight& light : scene.lights_for(camera)) print.add(std::vector{light.data});
+  for (const SceneLight& each : scene.lights_for(camera)) print.add(std::vector{each.data});
   print.add(std::vector{grid.lower, grid.upper}).add(std::vector{grid.count});
   print.add(name_of(options.from)).add(paths.bounces);
   if (options.from == BakeSource::pathtrace) {
     print.add(paths.seed).add(paths.samples).add(paths.samples > 0 ? 0.0 : paths.noise);
   } else {
-    print.add(pixels_key(choose_device(shared.device), frame_options(options, scene, grid)));
+    print.add(pixels_key(light.session->device(), light.frame));
   }
   return print.hex();
 }
@@ -165,7 +166,7 @@ void bake_file(const Options& options, const SceneData& scene, const SceneCamera
   const ProbeGrid grid = grid_of(options, scene, std::max(format.size, format.moments.count));
   if (suffix_of(options) == ".ktx2") texture_size(format, grid);  // throws
   Light light = light_from(options, scene, camera, grid, formats, shared);
-  BlockCache cache(user_cache_folder(), key_of(options, scene, camera, grid, shared));
+  BlockCache cache(user_cache_folder(), key_of(options, scene, camera, grid, light));
   const GridLight all = computed(options, light, grid, formats, cache);
   const BakedProbes baked = encoded(
       format, all, 0, grid, validity(*light.tracer, positions_of(grid)), !options.no_dilate);

@@ -23,9 +23,8 @@ void run(const Options& options, const Shared& shared) {
   become_helper();
   MovingScene moving = options.request.open();
   moving.pose(0);
-  const RenderOptions resolved = resolve_options(options.request.frame, moving.scene());
   Session session(choose_device(shared.device), std::nullopt, {{}, Claims(options.claims)});
-  Frame frame(session, moving.scene(), resolved);
+  Frame frame(session, moving.scene(), FrameSetup(options.request.frame, moving.scene()));
   frame.render(moving.scene().camera(options.request.camera));
   session.mark_compiled();
 }

@@ -143,11 +143,12 @@ std::string light_of_volumes(const Options& options, const std::vector<SurfacePo
                              const SceneData& scene, const SceneCamera& camera,
                              const Shared& shared) {
   const RenderRequest request = of_volumes(options.request);
-  const RenderOptions resolved = resolve_request(request, scene);
-  log_scene(scene, camera, resolved);
+  const FrameSetup setup = setup_of(request, scene);
+  log_scene(scene, camera, setup.options);
   const Device device = choose_device(shared.device);
-  Session session(device, ProgramCache::of_user(device), compilation_of(request, shared.device));
-  Frame frame(session, scene, resolved);
+  Session session(device, ProgramCache::of_user(device),
+                  compilation_of(request, setup.options, shared.device));
+  Frame frame(session, scene, setup);
   frame.render(camera);
   std::string table = table_of(points, frame);
   session.store_programs();

@@ -86,7 +86,8 @@ void run(const Options& options, const Shared& shared) {
   MovingScene moving = request.open();
   const SceneData& scene = moving.scene();
   moving.pose(options.time);
-  const RenderOptions resolved = resolve_request(request, scene);
+  const FrameSetup setup = setup_of(request, scene);
+  const RenderOptions& resolved = setup.options;
   check_outputs(outputs);
   const SceneCamera& camera = scene.camera(request.camera);
   log_scene(scene, camera, resolved);
@@ -94,8 +95,9 @@ void run(const Options& options, const Shared& shared) {
 
   stats.begin_startup();
   const Device device = choose_device(shared.device);
-  Session session(device, ProgramCache::of_user(device), compilation_of(request, shared.device));
-  Frame frame(session, scene, resolved);
+  Session session(device, ProgramCache::of_user(device),
+                  compilation_of(request, resolved, shared.device));
+  Frame frame(session, scene, setup);
   stats.end_startup();
   log_debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
             session.device().driver);

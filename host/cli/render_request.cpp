@@ -52,17 +52,18 @@ void add_shown_options(CLI::App& command, RenderRequest& request) {
       "transparent background of a PNG (default: black)");
 }
 
-RenderOptions resolve_request(const RenderRequest& request, const SceneData& scene) {
-  const RenderOptions options = resolve_options(request.frame, scene);
+FrameSetup setup_of(const RenderRequest& request, const SceneData& scene) {
+  FrameSetup setup(request.frame, scene);
   try {
-    reject_without_effect(request.frame, options);
+    reject_without_effect(request.frame, setup.options, *setup.basis);
   } catch (const Error& error) {
     throw Error(error.code(), "--{}", error.what());
   }
-  return options;
+  return setup;
 }
 
-Compilation compilation_of(const RenderRequest& request, const std::string& device) {
+Compilation compilation_of(const SceneRequest& request, const RenderOptions& options,
+                           const std::string& device) {
   if (launcher_rank()) return {};
   std::vector<std::string> arguments = {"prepare", request.scene};
   const auto add = [&arguments](const std::string& name, const std::string& value) {
@@ -74,7 +75,9 @@ Compilation compilation_of(const RenderRequest& request, const std::string& devi
   for (const char* name : {"sun", "medium"})  // a camera's numbers change no kernel
     if (changes.contains(name)) add(name, changes[name].get<std::string>());
   add("device", device);
-  for (const auto& [name, value] : request.frame) add(name, value);
+  for (const OptionDescription& option : list_options(options)) {
+    if (option.name != "basis" || options.centres.empty()) add(option.name, option.value);
+  }
   return {std::move(arguments), std::nullopt};
 }
 

@@ -48,13 +48,14 @@ void add_render_request(CLI::App& command, RenderRequest& request);
 /// Adds the options for image display.
 void add_shown_options(CLI::App& command, RenderRequest& request);
 
-/// Returns the frame options of the request for `scene`, as resolve_options. Throws Error(usage) if
-/// a given option would have no effect with the others; it names both.
-RenderOptions resolve_request(const RenderRequest& request, const SceneData& scene);
+/// Returns the setup of the request's frames of `scene`. Throws Error(usage) if a given option
+/// would have no effect with the others; it names both.
+FrameSetup setup_of(const RenderRequest& request, const SceneData& scene);
 
-/// Returns who compiles the kernels of these frames: helper processes, unless a launcher started
-/// several ranks.
-Compilation compilation_of(const RenderRequest& request, const std::string& device);
+/// Returns who compiles the kernels of frames with these options: helper processes, which get every
+/// option by its value, unless a launcher started several ranks.
+Compilation compilation_of(const SceneRequest& request, const RenderOptions& options,
+                           const std::string& device);
 
 /// Logs the scene's notes, the automatic choice of cascades and its consequences.
 void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOptions& options);

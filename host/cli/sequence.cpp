@@ -86,7 +86,7 @@ void run(const Options& options, Shared& shared) {
     video.emplace(options.video, options.frames_per_second);
   const RenderRequest& request = options.request;
   MovingScene moving = request.open();
-  const RenderOptions resolved = resolve_request(request, moving.scene());
+  const FrameSetup setup = setup_of(request, moving.scene());
   check_outputs(outputs);
   InputRecord::close();  // from here on it reads its own frames
   spare_files_of_others(options);
@@ -94,7 +94,7 @@ void run(const Options& options, Shared& shared) {
   const auto camera = [&](const SceneData& scene) -> const SceneCamera& {
     return scene.camera(request.camera);
   };
-  log_scene(moving.scene(), camera(moving.scene()), resolved);
+  log_scene(moving.scene(), camera(moving.scene()), setup.options);
   if (!moving.moves()) log_warning("{}: nothing moves: all frames are equal", request.scene);
 
   SequenceSubject subject{request.camera, {}, {}, {}};
@@ -102,13 +102,13 @@ void run(const Options& options, Shared& shared) {
     return request.displayed(image, exposure);
   };
   subject.describe = [&](const SceneData& posed, double seconds) {
-    return describe(request, resolved, posed, camera(posed), seconds);
+    return describe(request, setup.options, posed, camera(posed), seconds);
   };
   subject.first_frame = [&](Session& session, Frame& frame) {
     warn_of_unreached(session, frame, camera(moving.scene()).name);
   };
-  Sequence sequence(options, subject, moving, resolved, device,
-                    compilation_of(request, shared.device), ranks);
+  Sequence sequence(options, subject, moving, setup, device,
+                    compilation_of(request, setup.options, shared.device), ranks);
   sequence.render();
   if (!ranks.is_root()) return;
   warn_of_later_frames(options);

@@ -50,7 +50,8 @@ struct Effect {
   std::string with;     ///< values with which there is one
 };
 
-std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& options) {
+std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& options,
+                               bool centred) {
   const auto found = [&](const char* name, std::string_view value) {
     const std::string preset = preset_note(options, name);
     const std::string source = given.contains(name) ? ""
@@ -59,7 +60,6 @@ std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& o
     return fmt::format("{} {}{}", name, value, source);
   };
   const bool sweeps = options.transport == TransportKind::sweep;
-  const bool centred = !make_basis(options)->centres().empty();
   const bool tables = options.lobe == LobeKind::rotate || options.evaluate != Evaluation::exact;
   const std::string transport = found("transport", name_of(options.transport)),
                     basis = found("basis", options.basis),
@@ -97,8 +97,9 @@ void validate(const RenderOptions& options, const SceneData& scene) {
   }
 }
 
-void reject_without_effect(const OptionValues& given, const RenderOptions& options) {
-  for (const Effect& effect : effects_of(given, options)) {
+void reject_without_effect(const OptionValues& given, const RenderOptions& options,
+                           const Basis& basis) {
+  for (const Effect& effect : effects_of(given, options, !basis.centres().empty())) {
     if (effect.exists) continue;
     for (const char* name : effect.options) {
       if (const auto found = given.find(name); found != given.end())

@@ -12,6 +12,8 @@ namespace clpv {
 void validate(const RenderOptions& options, const SceneData& scene);
 
 /// Throws Error(usage) if an option that the user gave has no effect with the others; names both.
-void reject_without_effect(const OptionValues& given, const RenderOptions& options);
+/// `basis`: of the options.
+void reject_without_effect(const OptionValues& given, const RenderOptions& options,
+                           const Basis& basis);
 
 }  // namespace clpv

@@ -72,20 +72,20 @@ fs::path SequenceOptions::file(int frame) const {
 }
 
 Sequence::Sequence(const SequenceOptions& options, SequenceSubject subject, MovingScene& scene,
-                   const RenderOptions& resolved, const Device& device, Compilation compilation,
+                   const FrameSetup& setup, const Device& device, Compilation compilation,
                    Ranks& ranks)
     : options_(options),
       subject_(std::move(subject)),
       moving_(scene),
-      resolved_(resolved),
+      setup_(setup),
       device_(device),
       compilation_(std::move(compilation)),
       ranks_(ranks),
       times_(fs::path(options.folder) / "times.jsonl") {
   Fingerprint still, settings;
-  still.add(pixels_key(device_, resolved_)).add(scene_fingerprint(moving_.scene()));
+  still.add(pixels_key(device_, setup_.options)).add(scene_fingerprint(moving_.scene()));
   still_ = still.hex();
-  settings.add(still_).add(times_key(device_, resolved_, ranks.processors()));
+  settings.add(still_).add(times_key(device_, setup_.options, ranks.processors()));
   settings_ = settings.add(header_json().dump()).hex();
 }
 
@@ -125,7 +125,7 @@ void Sequence::for_all_frames(const char* title, const char* lost, const Action&
 }
 
 void Sequence::measure_stability() {
-  Renderer renderer(device_, moving_.scene(), resolved_, compilation_);
+  Renderer renderer(device_, moving_.scene(), setup_, compilation_);
   Stability stability(renderer.session, renderer.frame, options_.traced);
   for_all_frames("stability", "stability.json is not written", [&](int i) {
     moving_.pose(options_.time_of(i));
@@ -158,7 +158,7 @@ std::string Sequence::key(const nlohmann::json& described) const {
   const SceneData& posed = moving_.scene();
   Fingerprint print;
   print.add(still_).add(described.dump());
-  print.add(std::vector{camera_view(camera(), resolved_.width, resolved_.height)});
+  print.add(std::vector{camera_view(camera(), setup_.options.width, setup_.options.height)});
   add_moving(print, posed);
   for (const SceneLight& light : posed.lights_for(camera())) print.add(std::vector{light.data});
   return print.hex();
@@ -177,7 +177,7 @@ bool Sequence::render(int number) {
   keys_ += line.key;
   if (holds_frame(options_.file(number), line.key)) return false;
   line.first = !renderer_;
-  if (line.first) renderer_.emplace(device_, moving_.scene(), resolved_, compilation_);
+  if (line.first) renderer_.emplace(device_, moving_.scene(), setup_, compilation_);
   auto& [session, frame] = *renderer_;
   started = Clock::now();
   if (moving_.moves()) frame.scene_moved();

@@ -12,7 +12,6 @@
 #include "device/session.hpp"
 #include "image/image.hpp"
 #include "image/tone_map.hpp"
-#include "options/render_options.hpp"
 #include "options/show.hpp"
 #include "parallel/ranks.hpp"
 #include "pipeline/frame/frame.hpp"
@@ -60,7 +59,7 @@ class Sequence {
  public:
   /// Throws as TimesFile.
   Sequence(const SequenceOptions& options, SequenceSubject subject, MovingScene& scene,
-           const RenderOptions& resolved, const Device& device, Compilation compilation,
+           const FrameSetup& setup, const Device& device, Compilation compilation,
            Ranks& ranks);
 
   /// Renders the missing frames of this rank, and appends the times of each to times.jsonl; then
@@ -78,10 +77,10 @@ class Sequence {
   struct Renderer {
     Session session;
     Frame frame;
-    Renderer(const Device& device, const SceneData& scene, const RenderOptions& options,
+    Renderer(const Device& device, const SceneData& scene, const FrameSetup& setup,
              Compilation compilation)
         : session(device, ProgramCache::of_user(device), std::move(compilation)),
-          frame(session, scene, options) {}
+          frame(session, scene, setup) {}
   };
   using Clock = std::chrono::steady_clock;
 
@@ -98,7 +97,7 @@ class Sequence {
   SequenceOptions options_;
   SequenceSubject subject_;
   MovingScene& moving_;
-  RenderOptions resolved_;
+  FrameSetup setup_;
   Device device_;
   Compilation compilation_;
   Ranks& ranks_;

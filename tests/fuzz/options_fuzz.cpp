@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Values of every render option, drawn from the option table by the input's bytes: resolved for a
 // scene, with basis and transport, without a device.
-#include "pipeline/frame/scene_options.hpp"
+#include "options/scene_options.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/support/random_options.hpp"
 

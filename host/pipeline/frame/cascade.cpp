@@ -10,12 +10,6 @@
 namespace clpv {
 namespace {
 
-// The coarsest cascade usually has 32 cells along each axis. The 26 around the eye receive full
-// light, and the next two fade out. 24 cells leave room for moving parts.
-constexpr double kRoom = 32.0 / 24;
-// Relative to the smallest edge that encloses the scene: it spans 1 of 4 cells.
-constexpr double kFarTooLarge = 4;
-
 // [finer cells]: float32 rounding of origins about 100 cells away.
 constexpr double kAligned = 1e-2;
 
@@ -60,11 +54,6 @@ std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size
   }
   require_resolved(grids, size);
   return grids;
-}
-
-double fitting_cascade_size(const SceneData& scene, int count, double size) {
-  const double just = std::ldexp(2 * scene.reach() * kRoom, 1 - count);
-  return just > 0 && (size < just || size > kFarTooLarge * just) ? just : size;
 }
 
 bool cascades_meet(const SceneData& scene, const glm::vec3& eye, int count, double size,

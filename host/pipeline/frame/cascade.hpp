@@ -17,11 +17,6 @@ namespace clpv {
 /// cells.
 std::vector<ClpvGrid> cascade_grids(const glm::vec3& eye, int count, double size, int cells);
 
-/// Returns the edge of the finest cascade for `scene` [m]. It is `size` if the coarsest of `count`
-/// cascades then encloses the scene's bounding box from each camera (at 0 s), and is not far too
-/// large. Otherwise it is the smallest edge with which the coarsest cascade encloses the box.
-double fitting_cascade_size(const SceneData& scene, int count, double size);
-
 /// Returns true if light at `position` [m] may come from the cascade, the coarsest one of a frame.
 bool reaches(const ClpvGrid& grid, const glm::dvec3& position);
 

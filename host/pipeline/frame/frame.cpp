@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "basis/sweep.hpp"
-#include "options/validate.hpp"
-#include "pipeline/frame/frame_volumes.hpp"
+#include "options/stage_options.hpp"
 #include "pipeline/frame/paint.hpp"
 #include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
@@ -38,71 +36,53 @@ std::vector<glm::vec4> first_points(const std::vector<float>& image, std::size_t
   return values;
 }
 
-/// A sky is far brighter than the interior behind walls, so leaks along diagonal links are most
-/// visible with a sky.
-constexpr double kClosedUnderASky = 0.75;
-
-/// Returns `options` after checking that they, the scene and the device allow a frame.
-const RenderOptions& checked(const Session& session, const SceneData& scene,
-                             const RenderOptions& options, const Basis& basis) {
-  validate(options, scene);
-  require_supported(session.device(), options.format(), light_shape(options, basis));
-  return options;
-}
-
-Transport transport_for(const RenderOptions& options, const Basis& basis, const SceneData& scene) {
-  Transport transport = make_transport(options, basis);
-  if (scene.sky && options.transport == TransportKind::sweep)
-    close_diagonals(std::get<std::vector<SweepLink>>(transport.scheme), kClosedUnderASky);
-  return transport;
-}
-
 }  // namespace
 
 Frame::Frame(Session& session, const SceneData& scene, const RenderOptions& options)
+    : Frame(session, scene, FrameSetup(options, scene)) {}
+
+Frame::Frame(Session& session, const SceneData& scene, FrameSetup setup)
     : session_(session),
       scene_(scene),
-      basis_(make_basis(options)),
-      swept_(swept_basis(options)),
-      options_(checked(session, scene, options, *basis_)),
-      transport_(transport_for(options, *basis_, scene)),
+      setup_(std::move(setup)),
       buffers_(upload_scene(session, scene)),
       rasterizer_(session, buffers_),
-      gatherer_(session, gathered(), options.transport, gather_options(options, buffers_.medium)),
+      gatherer_(session, gathered(), options().transport,
+                gather_options(options(), buffers_.medium)),
       shader_(session, buffers_.medium),
-      near_step_(near_options(options).step),
+      near_step_(near_options(options()).step),
       light_step_(near_step_),
-      lights_(session, scene, buffers_, rasterizer_, options_),
-      cascades_(session, scene, buffers_, options_, *basis_, swept_.get(), transport_, lights_) {
-  if (options.traces_near())
-    near_.emplace(session, gathered(), scene, buffers_, near_options(options));
-  if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options));
+      lights_(session, scene, buffers_, rasterizer_, setup_),
+      cascades_(session, scene, buffers_, setup_, lights_) {
+  if (options().traces_near())
+    near_.emplace(session, gathered(), scene, buffers_, near_options(options()));
+  if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options()));
   make_images();
   session.build_described();
   if (near_) near_->finish();
 }
 
 void Frame::make_images() {
-  const std::size_t bytes = std::size_t(options_.width) * options_.height * sizeof(cl_float4);
+  const std::size_t bytes = std::size_t(options().width) * options().height * sizeof(cl_float4);
   irradiance_ = {}, image_ = {};  // first: memory may not suffice for both sizes
   irradiance_ = session_.buffer(bytes, "irradiance");
   image_ = session_.buffer(bytes, "shaded image");
 }
 
 void Frame::resize(int width, int height) {
-  if (width == options_.width && height == options_.height && image_.exists()) return;
-  options_.width = width, options_.height = height;
+  if (width == options().width && height == options().height && image_.exists()) return;
+  setup_.options.width = width, setup_.options.height = height;
   camera_surface_.reset();
   near_hits_.invalidate();
   make_images();
 }
 
 void Frame::prepare_near(int step) {
-  if (!options_.traces_near() || (near_ && near_step_ == step)) return;
-  NearOptions options = near_options(options_);
-  options.step = near_step_ = step;
+  if (!options().traces_near() || (near_ && near_step_ == step)) return;
+  NearOptions near = near_options(options());
+  near.step = near_step_ = step;
   near_hits_.invalidate();
-  near_.emplace(session_, gathered(), scene_, buffers_, options);
+  near_.emplace(session_, gathered(), scene_, buffers_, near);
   session_.build_described();
   near_->finish();
 }
@@ -124,7 +104,7 @@ void Frame::invalidate() {
 }
 
 std::vector<ClpvGrid> Frame::grids_about(const glm::vec3& eye) const {
-  return cascade_grids(eye, options_.cascades, options_.cascade_size, options_.grid);
+  return cascade_grids(eye, options().cascades, options().cascade_size, options().grid);
 }
 
 void Frame::gather(const Surface& surface, CacheKey rays, Buffer& irradiance) {
@@ -136,7 +116,7 @@ void Frame::gather(const Surface& surface, CacheKey rays, Buffer& irradiance) {
 }
 
 void Frame::rasterize_camera(const SceneCamera& camera) {
-  const ClpvView view = camera_view(camera, options_.width, options_.height);
+  const ClpvView view = camera_view(camera, options().width, options().height);
   if (!camera_surface_)
     camera_surface_ = make_surface(session_, view, RsmFormat::float32, buffers_.emissive);
   camera_surface_->view = view;
@@ -149,9 +129,9 @@ void Frame::require_light(const char* what) const {
 }
 
 void Frame::require_lookups(const char* what) const {
-  if (!swept_) {
+  if (!setup_.sweeps()) {
     throw Error(ExitCode::usage, "{}: found transport '{}', allowed: sweep", what,
-                name_of(options_.transport));
+                name_of(options().transport));
   }
   if (!gatherer_.packs()) {
     throw Error(
@@ -163,7 +143,7 @@ void Frame::require_lookups(const char* what) const {
 
 std::string Frame::lookup_source() const {
   require_lookups("lookup source");
-  return program_text(with_radiance({"gather/lookup.h"}, *swept_, gather_options(options_))) +
+  return program_text(with_radiance({"gather/lookup.h"}, gathered(), gather_options(options()))) +
          "#line 1 \"kernel\"\n";
 }
 
@@ -177,13 +157,13 @@ CacheKey Frame::seen_by_rays(const std::vector<ClpvGrid>& grids) const {
 
 void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
   session_.timeline().clear();  // otherwise the events of all frames would accumulate
-  prepare_near(near_options(options_).step);
+  prepare_near(near_options(options()).step);
   const std::vector<ClpvGrid> grids = grids_about(camera.eye);
   lights_.prepare(camera, grids);
   timed(Pass::rasterize_camera, [&] { rasterize_camera(camera); });
   lights_.rasterize_shadows();
   cascades_.prepare(grids, &*camera_surface_);
-  for (int cascade = options_.cascades; cascade-- > 0;) cascades_.update(cascade, observer);
+  for (int cascade = options().cascades; cascade-- > 0;) cascades_.update(cascade, observer);
   const std::vector<ShadowedLight> shadowed = lights_.shadowed();
   gather(*camera_surface_, seen_by_rays(grids), irradiance_);
   if (medium_)
@@ -196,13 +176,13 @@ void Frame::render(const SceneCamera& camera, const CascadeObserver& observer) {
 }
 
 void Frame::enqueue_light(const SceneCamera& camera) {
-  require_own_blockers(options_);
+  setup_.require_own_blockers();
   session_.timeline().clear();
   const std::vector<ClpvGrid> grids = grids_about(camera.eye);
   lights_.prepare(camera, grids);
   lights_.rasterize_shadows();
   cascades_.prepare(grids, nullptr);
-  for (int cascade = options_.cascades; cascade-- > 0;) cascades_.update(cascade, {});
+  for (int cascade = options().cascades; cascade-- > 0;) cascades_.update(cascade, {});
 }
 
 void Frame::update(const SceneCamera& camera) {
@@ -263,7 +243,7 @@ std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
   Buffer radiances = session_.buffer(numbers * sizeof(float), "radiance at points");
   if (!radiance_) {
     radiance_.emplace(session_,
-                      with_radiance({"gather/radiance.cl"}, *swept_, gather_options(options_)),
+                      with_radiance({"gather/radiance.cl"}, gathered(), gather_options(options())),
                       "radiance");
   }
   radiance_->set(points.view, places, vectors, radiances);
@@ -296,7 +276,7 @@ std::vector<float> Frame::read(Show view) {
     std::vector<float> image = read(Show::irradiance);
     const ClpvView& seen = camera_surface_->view;
     paint_cells(
-        light().grids.front(), options_.gather_offset,
+        light().grids.front(), options().gather_offset,
         [this](auto positions, auto normals) {
           return irradiance_at(std::move(positions), std::move(normals));
         },
@@ -305,7 +285,7 @@ std::vector<float> Frame::read(Show view) {
     return image;
   }
   std::vector<float> image =
-      session_.read<float>(this->image(view), std::size_t(options_.width) * options_.height * 4);
+      session_.read<float>(this->image(view), std::size_t(options().width) * options().height * 4);
   if (scene_.sky && shows_sky(view)) {
     paint_sky(*scene_.sky, view == Show::full ? scene_.medium : std::nullopt, camera_surface_->view,
               image);

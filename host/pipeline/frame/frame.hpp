@@ -3,18 +3,15 @@
 // 'The frame').
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
-#include "basis/basis.hpp"
-#include "basis/transport.hpp"
 #include "device/session.hpp"
 #include "image/image.hpp"
-#include "options/render_options.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/frame/frame_cascades.hpp"
 #include "pipeline/frame/frame_lights.hpp"
+#include "pipeline/frame/frame_setup.hpp"
 #include "pipeline/gather/gather.hpp"
 #include "pipeline/gather/medium.hpp"
 #include "pipeline/gather/near.hpp"
@@ -30,8 +27,10 @@ namespace clpv {
 /// cameras.
 class Frame {
  public:
-  /// Throws Error(usage) for contradictory options (validate), Error(device) for volumes too large
-  /// for the device, and Error(run_time) if device memory does not suffice.
+  /// Throws Error(device) for volumes too large for the device, and Error(run_time) if device
+  /// memory does not suffice.
+  Frame(Session& session, const SceneData& scene, FrameSetup setup);
+  /// The same; also throws as FrameSetup.
   Frame(Session& session, const SceneData& scene, const RenderOptions& options);
   Frame(const Frame&) = delete;  // stages hold references to other members
   Frame& operator=(const Frame&) = delete;
@@ -105,10 +104,9 @@ class Frame {
   const Buffer& image(Show view);
   const Buffer& irradiance() const { return irradiance_; }
 
-  const RenderOptions& options() const { return options_; }
-  const Basis& basis() const { return *basis_; }  ///< basis of injected light
-  /// Basis of gathered light: the swept basis, or without a sweep that of injected light.
-  const Basis& gathered() const { return swept_ ? *swept_ : *basis_; }
+  const RenderOptions& options() const { return setup_.options; }
+  const Basis& basis() const { return *setup_.basis; }        ///< basis of injected light
+  const Basis& gathered() const { return *setup_.gathered; }  ///< basis of gathered light
 
  private:
   template <typename Stage>
@@ -132,9 +130,7 @@ class Frame {
 
   Session& session_;
   const SceneData& scene_;
-  std::unique_ptr<Basis> basis_, swept_;  ///< swept_: null without a sweep
-  RenderOptions options_;
-  Transport transport_;
+  FrameSetup setup_;
   SceneBuffers buffers_;
   Rasterizer rasterizer_;
   Gatherer gatherer_;

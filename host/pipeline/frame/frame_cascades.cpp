@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "basis/bounce.hpp"
-#include "pipeline/frame/frame_volumes.hpp"
 #include "pipeline/voxels/blockers.hpp"
 #include "pipeline/voxels/reflectors.hpp"
 #include "pipeline/voxels/visibility.hpp"
@@ -14,43 +13,42 @@
 namespace clpv {
 
 FrameCascades::FrameCascades(Session& session, const SceneData& scene, const SceneBuffers& buffers,
-                             const RenderOptions& options, const Basis& basis, const Basis* swept,
-                             const Transport& transport, FrameLights& lights) try
+                             const FrameSetup& setup, FrameLights& lights) try
     : session_(session),
       scene_(scene),
       buffers_(buffers),
-      options_(options),
+      options_(setup.options),
       lights_(lights),
-      injector_(session, basis, inject_options(options, transport.unit_flux_lobes)),
-      injected_(volumes(injected_volumes(options), light_shape(options, basis), "injected light")),
-      accumulated_(volumes(options.cascades, light_shape(options, swept ? *swept : basis),
-                           "accumulated light")),
-      geometry_(
-          volumes(geometry_volumes(options), geometry_shape(options, basis), "geometry volume")),
-      reflected_(volumes(options.bounces == Bounces::one ? 0 : options.cascades,
-                         {options.grid, kCellFaces, 3}, "reflectors")),
-      links_(options.cascades),
-      visible_cells_(options.cascades),
-      keys_(options.cascades) {
-  if (swept) {
-    SweepOptions sweep = sweep_options(options);
+      injector_(session, *setup.basis,
+                inject_options(options_, setup.transport.unit_flux_lobes)),
+      injected_(volumes(setup.injected_volumes(), setup.injected_shape(), "injected light")),
+      accumulated_(volumes(options_.cascades, setup.gathered_shape(), "accumulated light")),
+      geometry_(volumes(setup.geometry_volumes(), setup.geometry_shape(), "geometry volume")),
+      reflected_(volumes(options_.bounces == Bounces::one ? 0 : options_.cascades,
+                         {options_.grid, kCellFaces, 3}, "reflectors")),
+      links_(options_.cascades),
+      visible_cells_(options_.cascades),
+      keys_(options_.cascades) {
+  if (setup.sweeps()) {
+    SweepOptions sweep = sweep_options(options_);
     sweep.medium = scene.medium;
     sweep.sky = scene.sky.get();
-    sweeper_.emplace(session, basis, transport, sweep);
+    sweeper_.emplace(session, *setup.basis, setup.transport, sweep);
   } else {
-    propagator_.emplace(session, basis, transport, propagate_options(options));
+    propagator_.emplace(session, *setup.basis, setup.transport, propagate_options(options_));
   }
-  if (!geometry_.empty() && !blocked_by_view(options))
+  if (!geometry_.empty() && !setup.blocked_by_view())
     blockers_.emplace(session, buffers,
-                      blocker_masks(buffers, options.grid, options.cascades, options.format()));
+                      blocker_masks(buffers, options_.grid, options_.cascades, options_.format()));
   if (!reflected_.empty())
-    reflectors_.emplace(session, buffers, reflector_masks(buffers, options.grid, options.format()));
-  if (options.gather == Gathering::visible)
-    visibility_.emplace(session, buffers, visibility_masks(options.grid, options.cascades));
+    reflectors_.emplace(session, buffers,
+                        reflector_masks(buffers, options_.grid, options_.format()));
+  if (options_.gather == Gathering::visible)
+    visibility_.emplace(session, buffers, visibility_masks(options_.grid, options_.cascades));
 } catch (const TooLarge& error) {
   throw Error(
-      error.code(), "{}; grid: found {}, and at most {} can fit", error.what(), options.grid,
-      static_cast<int>(options.grid *
+      error.code(), "{}; grid: found {}, and at most {} can fit", error.what(), setup.options.grid,
+      static_cast<int>(setup.options.grid *
                        std::cbrt(error.share)));  // all that cascades have grows with its cube
 }
 

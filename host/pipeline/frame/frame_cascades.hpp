@@ -8,12 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "basis/basis.hpp"
-#include "basis/transport.hpp"
 #include "device/session.hpp"
-#include "options/render_options.hpp"
 #include "pipeline/frame/cached.hpp"
 #include "pipeline/frame/frame_lights.hpp"
+#include "pipeline/frame/frame_setup.hpp"
 #include "pipeline/gather/gather.hpp"
 #include "pipeline/inject/inject.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
@@ -38,12 +36,11 @@ using CascadeObserver = std::function<void(const CascadeVolumes&)>;
 
 class FrameCascades {
  public:
-  /// All arguments must outlive this object. `swept`: basis of swept light; null without a sweep.
+  /// All arguments must outlive this object.
   FrameCascades(Session& session, const SceneData& scene, const SceneBuffers& buffers,
-                const RenderOptions& options, const Basis& basis, const Basis* swept,
-                const Transport& transport, FrameLights& lights);
+                const FrameSetup& setup, FrameLights& lights);
 
-  /// Sets the cascade grids and the camera's G-buffer, which blocked_by_view() needs; else it may
+  /// Sets the cascade grids and the camera's G-buffer, which FrameSetup::blocked_by_view() needs; else it may
   /// be null. Call for each frame, after preparing its lights.
   void prepare(const std::vector<ClpvGrid>& grids, const Surface* camera);
 

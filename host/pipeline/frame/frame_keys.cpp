@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "basis/basis.hpp"
 #include "device/driver_settings.hpp"
 #include "device/kernel_files.hpp"
 #include "support/fingerprint.hpp"
+#include "support/input_file.hpp"
 
 namespace clpv {
 
@@ -16,12 +16,7 @@ std::string pixels_key(const Device& device, const RenderOptions& options) {
   print.add(program).add(device.platform).add(device.platform_version).add(device.name);
   print.add(device.version).add(device.driver).add(device.lanes);
   print.add(driver_settings(DriverSettings::compilation)).add(to_json(options).dump());
-  if (!options.centres.empty()) {
-    const auto basis = make_basis(options);
-    for (const glm::dvec3& centre : basis->centres())
-      print.add(centre.x).add(centre.y).add(centre.z);
-    for (const double lambda : basis->lambdas()) print.add(lambda);
-  }
+  if (!options.centres.empty()) print.add(file_bytes(options.centres).value_or(""));
   add_kernels(print);
   return print.hex();
 }

@@ -11,7 +11,7 @@ namespace clpv {
 
 /// Key of pixels, apart from scene and camera: program, text of all kernels, device, driver and its
 /// settings, lanes, and options with the content of the file of `centres`. Sub-devices and numbers
-/// of threads do not change pixels. Throws as make_basis.
+/// of threads do not change pixels.
 std::string pixels_key(const Device& device, const RenderOptions& options);
 
 /// Key of times of such frames: also compute units, all settings of the driver, and the number of

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/frame/frame_volumes.hpp"
 #include "pipeline/raster/view.hpp"
 #include "support/fingerprint.hpp"
 
@@ -24,12 +23,13 @@ double max_flux(const ClpvLight& light, double cell) {
 }  // namespace
 
 FrameLights::FrameLights(Session& session, const SceneData& scene, const SceneBuffers& buffers,
-                         Rasterizer& rasterizer, const RenderOptions& options)
+                         Rasterizer& rasterizer, const FrameSetup& setup)
     : session_(session),
       scene_(scene),
       buffers_(buffers),
       rasterizer_(rasterizer),
-      options_(options),
+      setup_(setup),
+      options_(setup.options),
       brightest_sky_(scene.sky ? scene.sky->max_radiance() : 0) {
   if (emits(scene)) emission_.emplace(session, scene, buffers);
 }
@@ -43,7 +43,7 @@ void FrameLights::prepare(const SceneCamera& camera, const std::vector<ClpvGrid>
         rsm_follows_cascade(lit.light) ? bounds_ : LightBounds{buffers_.bounds, buffers_.bounds};
     lit.shadow.light = lit.light;
     lit.shadow.views = shadow_views(lit.light, bounds.shadows, options_.shadow_size);
-    lit.rsms.resize(injected_volumes(options_));
+    lit.rsms.resize(setup_.injected_volumes());
     lit.wanted.clear();
     for (const ClpvGrid& grid : grids) {
       std::vector<ClpvView> views = rsm_views(lit.light, grid, bounds.rsms, options_.rsm_size);

@@ -10,9 +10,9 @@
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"
 #include "kernels/shared/light.h"
-#include "options/render_options.hpp"
 #include "pipeline/frame/cached.hpp"
 #include "pipeline/frame/frame_emission.hpp"
+#include "pipeline/frame/frame_setup.hpp"
 #include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/shadow_maps.hpp"
@@ -28,7 +28,7 @@ class FrameLights {
  public:
   /// All arguments must outlive this object. `buffers` hold `scene` at its current time.
   FrameLights(Session& session, const SceneData& scene, const SceneBuffers& buffers,
-              Rasterizer& rasterizer, const RenderOptions& options);
+              Rasterizer& rasterizer, const FrameSetup& setup);
 
   /// Prepares the lights of `camera` at the scene's current time, for cascades at `grids`.
   void prepare(const SceneCamera& camera, const std::vector<ClpvGrid>& grids);
@@ -86,6 +86,7 @@ class FrameLights {
   const SceneData& scene_;
   const SceneBuffers& buffers_;
   Rasterizer& rasterizer_;
+  const FrameSetup& setup_;
   const RenderOptions& options_;
   std::optional<FrameEmission> emission_;  ///< none without emissive surfaces
   float brightest_sky_;                    ///< [W/m^2/sr]

@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/frame/scene_options.hpp"
+#include "options/scene_options.hpp"
 
-#include "basis/basis.hpp"
-#include "pipeline/frame/cascade.hpp"
+#include <cmath>
+
 #include "scene/load.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
+namespace {
+
+// The coarsest cascade usually has 32 cells along each axis. The 26 around the eye receive full
+// light, and the next two fade out. 24 cells leave room for moving parts.
+constexpr double kRoom = 32.0 / 24;
+// Relative to the smallest edge that encloses the scene: it spans 1 of 4 cells.
+constexpr double kFarTooLarge = 4;
+
+}  // namespace
+
+double fitting_cascade_size(const SceneData& scene, int count, double size) {
+  const double just = std::ldexp(2 * scene.reach() * kRoom, 1 - count);
+  return just > 0 && (size < just || size > kFarTooLarge * just) ? just : size;
+}
 
 RenderOptions resolve_options(const OptionValues& given, const SceneData& scene) {
   RenderOptions options;
@@ -23,7 +37,6 @@ RenderOptions resolve_options(const OptionValues& given, const SceneData& scene)
   options.near = options.traces_near() ? Near::traced : Near::off;
   if (is_bare_model(scene) && !given.contains("cascade-size"))
     options.cascade_size = fitting_cascade_size(scene, options.cascades, options.cascade_size);
-  if (!options.centres.empty()) options.basis = make_basis(options)->name();
   return options;
 }
 

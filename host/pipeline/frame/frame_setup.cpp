@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/frame/frame_setup.hpp"
+
+#include "basis/sweep.hpp"
+#include "options/scene_options.hpp"
+#include "options/validate.hpp"
+#include "support/error.hpp"
+
+namespace clpv {
+namespace {
+
+/// A sky is far brighter than the interior behind walls, so leaks along diagonal links are most
+/// visible with a sky.
+constexpr double kClosedUnderASky = 0.75;
+
+}  // namespace
+
+FrameSetup::FrameSetup(const RenderOptions& resolved, const SceneData& scene) : options(resolved) {
+  validate(options, scene);
+  basis = make_basis(options);
+  options.basis = basis->name();
+  gathered = sweeps() ? swept_basis() : basis;
+  transport = make_transport(options, *basis);
+  if (scene.sky && sweeps())
+    close_diagonals(std::get<std::vector<SweepLink>>(transport.scheme), kClosedUnderASky);
+}
+
+FrameSetup::FrameSetup(const OptionValues& given, const SceneData& scene)
+    : FrameSetup(resolve_options(given, scene), scene) {}
+
+void FrameSetup::require_own_blockers() const {
+  if (!blocked_by_view()) return;
+  throw Error(ExitCode::usage,
+              "light: found blockers '{}', which a frame's G-buffer makes, allowed: scene",
+              name_of(options.blockers));
+}
+
+int FrameSetup::geometry_volumes() const {
+  if (!options.blocked()) return 0;
+  return options.blockers == Blockers::scene ? options.cascades : 1;
+}
+
+}  // namespace clpv

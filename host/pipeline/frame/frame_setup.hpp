@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// A frame's options, bases and transport, and the shapes and number of its volumes.
+#pragma once
+
+#include <memory>
+
+#include "basis/basis.hpp"
+#include "basis/transport.hpp"
+#include "options/render_options.hpp"
+#include "scene/scene.hpp"
+#include "volume/volume_format.hpp"
+
+namespace clpv {
+
+/// What frames of a scene are built from, checked once. Copies share the bases.
+struct FrameSetup {
+  /// Throws Error(usage) for contradictory options (validate), and as make_basis and
+  /// make_transport.
+  FrameSetup(const RenderOptions& resolved, const SceneData& scene);
+  /// The same for options of a user (resolve_options).
+  FrameSetup(const OptionValues& given, const SceneData& scene);
+
+  RenderOptions options;
+  std::shared_ptr<const Basis> basis;     ///< of injected light
+  std::shared_ptr<const Basis> gathered;  ///< of gathered light: that of a sweep, else `basis`
+  Transport transport;
+
+  bool sweeps() const { return options.transport == TransportKind::sweep; }
+  /// Shapes of volumes of injected and gathered light, and of blockers.
+  VolumeShape injected_shape() const { return {options.grid, basis->size(), 3}; }
+  VolumeShape gathered_shape() const { return {options.grid, gathered->size(), 3}; }
+  VolumeShape geometry_shape() const {
+    return {options.grid + 1, blocking_size(options.blocking, *basis), 1};
+  }
+  /// Returns true if surfaces in the camera's G-buffer block light. A new view then recomputes the
+  /// RSMs and injected light of every cascade.
+  bool blocked_by_view() const { return options.blockers == Blockers::seen; }
+  /// Throws Error(usage) if so: light without a frame has no G-buffer.
+  void require_own_blockers() const;
+  /// Number of stored volumes of injected light, and of stored RSMs that follow cascades. It is one
+  /// per cascade if any frame may need all of them, else one that is recomputed for the current
+  /// cascade.
+  int injected_volumes() const { return blocked_by_view() ? options.cascades : 1; }
+  /// Number of stored geometry volumes: one per cascade for scene blockers, else one; 0 without
+  /// occlusion.
+  int geometry_volumes() const;
+};
+
+}  // namespace clpv
