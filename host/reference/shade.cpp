@@ -71,7 +71,7 @@ struct Share {
 
 enum class Tap { blocks, passes, beyond };
 
-/// Sums the weights of the texels by kind(height, depth).
+/// Sums the weights of the texels by kind(row, column).
 template <typename Kind>
 Share weigh_taps(const Filter& filter, const Kind& kind) {
   Share share;
@@ -79,7 +79,7 @@ Share weigh_taps(const Filter& filter, const Kind& kind) {
     for (int column = 0; column < CLPV_SHADOW_TAPS; ++column) {
       const glm::dvec2& distance = filter.distance[row][column];
       const double weight = tap_weight(distance.x) * tap_weight(distance.y);
-      const Tap tap = kind(filter.height[row][column], filter.depth[row][column]);
+      const Tap tap = kind(row, column);
       share.blocked += tap == Tap::blocks ? weight : 0;
       share.whole += tap == Tap::beyond ? 0 : weight;
     }
@@ -88,7 +88,7 @@ Share weigh_taps(const Filter& filter, const Kind& kind) {
 }
 
 /// Returns true if the receiver is below a surface of the map: if the height of one of the inner
-/// texels, extrapolated to the receiver from higher outer neighbours, exceeds `rounding`.
+/// texels above `rounding`, extrapolated to the receiver from higher outer neighbours, is positive.
 bool below_surface(const Filter& filter, double rounding) {
   for (const int row : {1, 2}) {
     for (const int column : {1, 2}) {
@@ -98,10 +98,21 @@ bool below_surface(const Filter& filter, double rounding) {
       const glm::dvec2 distance = glm::abs(filter.distance[row][column]);
       const double fall =
           std::max(beside - inner, 0.0) * distance.x + std::max(past - inner, 0.0) * distance.y;
-      if (inner > rounding && inner - fall > rounding) return true;
+      if (inner > rounding && inner - fall > 0) return true;
     }
   }
   return false;
+}
+
+/// Returns true if the surface above a receiver meets its plane at a texel: if the heights of two
+/// texels in a row, closer to the filter's centre, extrapolate to 0.
+bool meets_surface(const Filter& filter, int row, int column, double rounding) {
+  const int right = column < 2 ? 1 : -1, down = row < 2 ? 1 : -1;
+  const auto meets = [&](double next, double past) {
+    return next > rounding && std::abs(2 * next - past) < 2 * rounding;
+  };
+  return meets(filter.height[row][column + right], filter.height[row][column + 2 * right]) ||
+         meets(filter.height[row + down][column], filter.height[row + 2 * down][column]);
 }
 
 }  // namespace
@@ -127,15 +138,19 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
                               double{CLPV_SHADOW_ROUNDING_PLACE};
   const double farthest = plane_depth(map.view, at.pixel, position + lift * normal, normal);
   const Filter filter = filter_at(map, at.pixel, position, normal);
-  const Share lifted = weigh_taps(filter, [&](double height, double depth) {
+  const Share lifted = weigh_taps(filter, [&](int row, int column) {
+    const double height = filter.height[row][column], depth = filter.depth[row][column];
     return height > lift && depth < farthest ? Tap::blocks : Tap::passes;
   });
-  const bool occluded = lifted.blocked >= double{CLPV_SHADOW_WHOLE} * lifted.whole;
-  if (occluded || !flat || !below_surface(filter, rounding)) return lifted.visible();
+  if (lifted.blocked >= double{CLPV_SHADOW_WHOLE} * lifted.whole) return 0;
+  if (!flat || !below_surface(filter, rounding)) return lifted.visible();
   return weigh_taps(filter,
-                    [&](double height, double) {
-                      if (height <= -rounding) return Tap::beyond;
-                      return height > rounding ? Tap::blocks : Tap::passes;
+                    [&](int row, int column) {
+                      const double height = filter.height[row][column];
+                      if (height > rounding) return Tap::blocks;
+                      return height > -rounding && !meets_surface(filter, row, column, rounding)
+                                 ? Tap::passes
+                                 : Tap::beyond;
                     })
       .visible();
 }

@@ -14,8 +14,10 @@
 // positive if it is below a surface. They are negative in a concave corner, whose texels are above
 // the receiver's plane, too. Lower neighbours do not count: they may lie on another surface, and
 // where a plane rises, one inner texel has higher ones. A receiver below a surface has no lift, and
-// texels beyond the edge do not count. Only receivers whose normals are one are tested: triangles
-// of a curved mesh lie above each other's planes.
+// texels beyond the edge do not count. Nor do texels on the edge itself, which may show either
+// surface: they lie in the receiver's plane and, by two texels closer to it, in the roof's. Only
+// receivers whose normals are one are tested: triangles of a curved mesh lie above each other's
+// planes.
 #pragma once
 
 #include "lanes.h"
@@ -119,8 +121,20 @@ CLPV_INLINE bool below_surface(const Receiver r, const float8 upper, const float
   const float4 x = fabs((float4)(r.dx.y, r.dx.z, r.dx.y, r.dx.z)),
                y = fabs((float4)(r.dy.y, r.dy.y, r.dy.z, r.dy.z));
   const float4 centre = inner - max(beside - inner, 0.0f) * x - max(past - inner, 0.0f) * y;
-  const int4 below = above & (centre > r.rounding);
+  const int4 below = above & (centre > 0.0f);
   return (below.x | below.y | below.z | below.w) != 0;
+}
+
+// Mask of the texels of two rows that count for a receiver below a surface: those neither below its
+// plane nor on the edge where the surface meets it. `h`: their heights; `inner`: heights of the two
+// inner rows; `others`: of the other two rows.
+CLPV_INLINE int8 counted_texels(const Receiver r, const float8 h, const float8 inner,
+                                const float8 others) {
+  const float8 beside = h.s12125656, past = h.s23016745;  // towards the filter's centre
+  const float8 along_x = fabs(2.0f * beside - past), along_y = fabs(2.0f * inner - others);
+  const int8 meets = ((beside > r.rounding) & (along_x < 2.0f * r.rounding)) |
+                     ((inner > r.rounding) & (along_y < 2.0f * r.rounding));
+  return (h > r.rounding) | ((h > -r.rounding) & ~meets);
 }
 
 // Filter weights of the texels of two rows.
@@ -143,9 +157,11 @@ CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, co
                          select(none, lower_w, (lower > r.lift) & (lower_d < depth));
   const float sum = dot(blocked.lo + blocked.hi, one);
   *whole = dot(wx, one) * dot(wy, one);
-  if (sum >= CLPV_SHADOW_WHOLE * *whole || !below_surface(r, upper, lower)) return sum;
-  const float8 counted = select(none, upper_w, upper > -r.rounding) +
-                         select(none, lower_w, lower > -r.rounding);
+  if (sum >= CLPV_SHADOW_WHOLE * *whole) return *whole;
+  if (!below_surface(r, upper, lower)) return sum;
+  const float8 inner = side_by_side(upper.hi, lower.lo);
+  const float8 counted = select(none, upper_w, counted_texels(r, upper, inner, lower)) +
+                         select(none, lower_w, counted_texels(r, lower, inner, upper));
   const float8 above = select(none, upper_w, upper > r.rounding) +
                        select(none, lower_w, lower > r.rounding);
   *whole = dot(counted.lo + counted.hi, one);
