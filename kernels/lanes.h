@@ -87,6 +87,13 @@ static inline void gather_rows(__global const float4* from, const uintW at, Rows
   rows->r7 = from[at.s7];
 }
 
+// Loads one float4 for all lanes.
+static inline void spread_row(__global const float4* from, const uint at, Rows* rows) {
+  const float4 row = from[at];
+  rows->r0 = rows->r1 = rows->r2 = rows->r3 = row;
+  rows->r4 = rows->r5 = rows->r6 = rows->r7 = row;
+}
+
 #define CLPV_COLUMN(rows, c)                                                             \
   ((realW)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, \
            (rows).r6.c, (rows).r7.c))
@@ -135,6 +142,10 @@ typedef struct {
 } Rows;
 
 static inline void gather_rows(__global const float4* from, const uintW at, Rows* rows) {
+  rows->r0 = from[at];
+}
+
+static inline void spread_row(__global const float4* from, const uint at, Rows* rows) {
   rows->r0 = from[at];
 }
 

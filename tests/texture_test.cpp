@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/mip_chain.hpp"
@@ -109,6 +112,27 @@ TEST(Texture, TexelsSitWhereTheyShould) {
   // Halfway between texel centres: the mean of both.
   EXPECT_THAT(reds(image_of(textured(stripes(CLPV_WRAP_CLAMP)), 4, {0.0625f, 0}, {1.0625f, 1})),
               close({0.25f, 0.75f, 0.25f, 1}));
+}
+
+TEST(Texture, TexelsOfEverySizeSitWhereTheyShould) {
+  for (const auto& [width, height] :
+       std::vector<std::pair<int, int>>{{1, 9}, {5, 3}, {4, 4}, {7, 8}, {13, 6}}) {
+    Texture made = texture(width, height, {});
+    for (int i = 0; i < width * height; ++i) {
+      made.rgba.insert(made.rgba.end(), {static_cast<std::uint8_t>(37 * i), 0, 0, 255});
+    }
+    const std::vector<std::uint8_t> bytes = made.rgba;
+    const int size = std::max(width, height);  // pixels; a texel each, repeated along one side
+    const SurfaceImage image = image_of(textured(std::move(made)), size, {0, 0},
+                                        {1.0f * size / width, 1.0f * size / height});
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < size; ++x) {
+        const int texel = (size - 1 - y) % height * width + x % width;
+        EXPECT_NEAR(image.colour[y * size + x].x, linear_from_srgb(bytes[4 * texel]), 1e-4)
+            << width << " x " << height << ", pixel " << x << ", " << y;
+      }
+    }
+  }
 }
 
 TEST(Texture, WrapModesRepeatMirrorAndClamp) {

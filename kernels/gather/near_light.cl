@@ -51,7 +51,7 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
           (realW)CLPV_GATHER(points, pixel + 2 * plane));
   const realW reach = (realW)CLPV_GATHER(points + CLPV_NEAR_REACH * plane, pixel);
   TriangleLanes t;
-  load_triangles(CLPV_PASS_SCENE, triangle, &t);
+  load_triangles(CLPV_PASS_SCENE, triangle, false, &t);
   const VertexAttributes a = t.a, b = t.b, c = t.c;
   const MaterialLanes material = t.material;
   const Vec w = vec(1.0f - u - v, u, v);

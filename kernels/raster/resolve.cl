@@ -51,7 +51,11 @@ static inline Uv uv_step(const Face face, const Weights weights, const Vec along
 CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const realW depth,
                                   const uintW triangle, CLPV_SCENE, PixelSurface* surface) {
   TriangleLanes t;
-  load_triangles(CLPV_PASS_SCENE, triangle, &t);
+  if (W > 1 && no_lane(triangle != (uintW)(first_lane(triangle)))) {
+    load_triangles(CLPV_PASS_SCENE, triangle, true, &t);
+  } else {
+    load_triangles(CLPV_PASS_SCENE, triangle, false, &t);
+  }
   const VertexAttributes a = t.a, b = t.b, c = t.c;
   const MaterialLanes material = t.material;
   const Face face = make_face(view, a.position, b.position, c.position);

@@ -17,6 +17,16 @@
       __global const uint *texels
 #define CLPV_PASS_SCENE vertices, triangles, materials, textures, texels
 
+// Gathers a row per lane, or loads one for all: `alike` is a literal.
+CLPV_INLINE void load_rows(__global const float4* from, const uintW at, const bool alike,
+                           Rows* rows) {
+  if (alike) {
+    spread_row(from, first_lane(at), rows);
+  } else {
+    gather_rows(from, at, rows);
+  }
+}
+
 // Attributes of one corner of each lane's triangle.
 typedef struct {
   Vec position, normal;
@@ -25,18 +35,18 @@ typedef struct {
 } VertexAttributes;
 
 CLPV_INLINE void load_corner(__global const float4* vertices, const uintW index,
-                             VertexAttributes* corner) {
+                             const bool alike, VertexAttributes* corner) {
   Rows first, second;
   const uintW row = CLPV_VERTEX_ROWS * index;
-  gather_rows(vertices + CLPV_VERTEX_POSITION, row, &first);
-  gather_rows(vertices + CLPV_VERTEX_UV, row, &second);
+  load_rows(vertices + CLPV_VERTEX_POSITION, row, alike, &first);
+  load_rows(vertices + CLPV_VERTEX_UV, row, alike, &second);
   corner->position = vec(CLPV_COLUMN(first, x), CLPV_COLUMN(first, y), CLPV_COLUMN(first, z));
   corner->normal = vec(CLPV_COLUMN(first, w), CLPV_COLUMN(second, x), CLPV_COLUMN(second, y));
   corner->uv.u = CLPV_COLUMN(second, z);
   corner->uv.v = CLPV_COLUMN(second, w);
   if (!CLPV_COLOURED) return;
   Rows third;
-  gather_rows(vertices + CLPV_VERTEX_COLOUR, row, &third);
+  load_rows(vertices + CLPV_VERTEX_COLOUR, row, alike, &third);
   corner->colour = vec(CLPV_COLUMN(third, x), CLPV_COLUMN(third, y), CLPV_COLUMN(third, z));
 }
 
@@ -46,17 +56,17 @@ typedef struct {
 } MaterialLanes;
 
 CLPV_INLINE void load_material(__global const float4* materials, const uintW index,
-                               MaterialLanes* material) {
+                               const bool alike, MaterialLanes* material) {
   Rows base, textures;
   const uintW row = CLPV_MATERIAL_ROWS * index;
-  gather_rows(materials + CLPV_MATERIAL_COLOUR, row, &base);
-  gather_rows(materials + CLPV_MATERIAL_TEXTURES, row, &textures);
+  load_rows(materials + CLPV_MATERIAL_COLOUR, row, alike, &base);
+  load_rows(materials + CLPV_MATERIAL_TEXTURES, row, alike, &textures);
   material->base_colour = vec(CLPV_COLUMN(base, x), CLPV_COLUMN(base, y), CLPV_COLUMN(base, z));
   material->texture = as_uintW(CLPV_COLUMN(textures, x));
   material->flags = as_uintW(CLPV_COLUMN(textures, z));
   if (!CLPV_EMISSIVE) return;
   Rows emissive;
-  gather_rows(materials + CLPV_MATERIAL_EMISSIVE, row, &emissive);
+  load_rows(materials + CLPV_MATERIAL_EMISSIVE, row, alike, &emissive);
   material->emissive =
       vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
   material->emissive_texture = as_uintW(CLPV_COLUMN(textures, y));
@@ -68,13 +78,15 @@ typedef struct {
   MaterialLanes material;
 } TriangleLanes;
 
-CLPV_INLINE void load_triangles(CLPV_SCENE, const uintW number, TriangleLanes* t) {
+// `alike`: all lanes have the same triangle.
+CLPV_INLINE void load_triangles(CLPV_SCENE, const uintW number, const bool alike,
+                                TriangleLanes* t) {
   Rows indices;
-  gather_rows(triangles, number, &indices);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, x)), &t->a);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, y)), &t->b);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, z)), &t->c);
-  load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), &t->material);
+  load_rows(triangles, number, alike, &indices);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, x)), alike, &t->a);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, y)), alike, &t->b);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, z)), alike, &t->c);
+  load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), alike, &t->material);
 }
 
 // Interpolated normal of length 1, flipped to the side of `front`. Near a silhouette the

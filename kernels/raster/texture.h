@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Filtered look-ups in the scene's textures (shared/mesh.h), W at a time: bilinear and trilinear,
-// with sRGB decoded before filtering.
+// with sRGB decoded before filtering. All levels of a texture wrap alike.
 #pragma once
 
 #include "lanes.h"
@@ -48,17 +48,29 @@ static inline realW fold_coordinate(const realW u, const uintW wrap) {
   return ((folded >= ZERO) & (folded <= ONE)) ? folded : ZERO;
 }
 
+// Texture coordinates in [0, 1], and masks of those that repeat.
+typedef struct {
+  realW u, v;
+  intW repeat_u, repeat_v;
+} Folded;
+
+static inline Folded fold(const Uv uv, const uintW wrap) {
+  const uintW wrap_u = wrap & 15u, wrap_v = wrap >> 4;
+  const Folded folded = {fold_coordinate(uv.u, wrap_u), fold_coordinate(uv.v, wrap_v),
+                         wrap_u == (uintW)(CLPV_WRAP_REPEAT), wrap_v == (uintW)(CLPV_WRAP_REPEAT)};
+  return folded;
+}
+
 // The two texels on either side of a coordinate, and the weight of the second.
 typedef struct {
   uintW first, second;
   realW weight;
 } TexelPair;
 
-static inline TexelPair find_texel_pair(const realW u, const uintW size, const uintW wrap) {
-  const realW at = fold_coordinate(u, wrap) * to_realW(as_intW(size)) - 0.5f;
+static inline TexelPair find_texel_pair(const realW u, const uintW size, const intW repeat) {
+  const realW at = u * to_realW(as_intW(size)) - 0.5f;
   const intW i = to_intW(at + 1.0f) - 1;  // floor(at), since at >= -1/2
   const intW last = as_intW(size) - 1, next = i + 1;
-  const intW repeat = wrap == (uintW)(CLPV_WRAP_REPEAT);
   TexelPair pair;
   pair.weight = at - to_realW(i);
   pair.first = as_uintW(i >= 0 ? i : (repeat ? last : (intW)(0)));
@@ -76,14 +88,20 @@ typedef struct {
   realW x, y;
 } TexelQuad;
 
-CLPV_INLINE void load_texel_quad(const Level level, __global const uint* texels, const Uv uv,
+// Index of a texel in its level, as a sum over column and row (ClpvTexture: blocks of 4 x 4).
+static inline uintW texel_column(const uintW x) { return 4u * x - 3u * (x & 3u); }
+static inline uintW texel_row(const Level level, const uintW y) {
+  return (y & ~3u) * ((level.width + 3u) & ~3u) + 4u * (y & 3u);
+}
+
+CLPV_INLINE void load_texel_quad(const Level level, __global const uint* texels, const Folded at,
                                  TexelQuad* quad) {
-  const TexelPair x = find_texel_pair(uv.u, level.width, level.wrap & 15u);
-  const TexelPair y = find_texel_pair(uv.v, level.height, level.wrap >> 4);
-  const uintW upper = level.offset + y.first * level.width,
-              lower = level.offset + y.second * level.width;
-  const uintW at00 = upper + x.first, at01 = upper + x.second, at10 = lower + x.first,
-              at11 = lower + x.second;
+  const TexelPair x = find_texel_pair(at.u, level.width, at.repeat_u);
+  const TexelPair y = find_texel_pair(at.v, level.height, at.repeat_v);
+  const uintW upper = level.offset + texel_row(level, y.first),
+              lower = level.offset + texel_row(level, y.second);
+  const uintW left = texel_column(x.first), right = texel_column(x.second);
+  const uintW at00 = upper + left, at01 = upper + right, at10 = lower + left, at11 = lower + right;
   // Volatile keeps LLVM from gather instructions, which are slower than scalar loads on processors
   // with mitigations.
   volatile __global const uint* each = texels;
@@ -123,11 +141,11 @@ CLPV_INLINE realW filter_channel(const TexelQuad f, const uint shift) {
 
 // Bilinear look-up in one entry of the table: linear colour.
 CLPV_INLINE void sample_bilinear(__global const float4* table, __global const uint* texels,
-                                 const uintW entry, const Uv uv, Vec* colour) {
+                                 const uintW entry, const Folded at, Vec* colour) {
   Level level;
   load_level(table, entry, &level);
   TexelQuad f;
-  load_texel_quad(level, texels, uv, &f);
+  load_texel_quad(level, texels, at, &f);
   colour->x = filter_channel(f, 0);
   colour->y = filter_channel(f, 8);
   colour->z = filter_channel(f, 16);
@@ -141,7 +159,7 @@ static inline realW alpha_of(const uintW texel) {
 // Bilinear look-up of alpha in a level, in [0, 1].
 CLPV_INLINE realW sample_level_alpha(const Level level, __global const uint* texels, const Uv uv) {
   TexelQuad f;
-  load_texel_quad(level, texels, uv, &f);
+  load_texel_quad(level, texels, fold(uv, level.wrap), &f);
   return filter_quad(f, alpha_of(f.texel00), alpha_of(f.texel01), alpha_of(f.texel10),
                      alpha_of(f.texel11));
 }
@@ -177,11 +195,12 @@ CLPV_INLINE void sample_trilinear(__global const float4* table, __global const u
   const intW fine = to_intW(level);
   const intW coarse = fine + 1 < CLPV_TEXTURE_LEVELS ? fine + 1 : fine;
   const realW weight = level - to_realW(fine);
+  const Folded at = fold(uv, whole.wrap);
   Vec a, b;
-  sample_bilinear(table, texels, finest + as_uintW(fine), uv, &a);
+  sample_bilinear(table, texels, finest + as_uintW(fine), at, &a);
   *colour = a;
   if (no_lane(weight > ZERO)) return;  // magnified: only level 0
-  sample_bilinear(table, texels, finest + as_uintW(coarse), uv, &b);
+  sample_bilinear(table, texels, finest + as_uintW(coarse), at, &b);
   colour->x = lerp(a.x, b.x, weight);
   colour->y = lerp(a.y, b.y, weight);
   colour->z = lerp(a.z, b.z, weight);

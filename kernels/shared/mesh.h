@@ -54,8 +54,8 @@ enum {
 enum { CLPV_TEXTURE_LEVELS = 16 };
 
 typedef struct {
-  unsigned int offset;  // of texel (0, 0) in the texel buffer: 4 bytes per texel, RGB in sRGB
-                        // encoding, linear alpha
+  unsigned int offset;  // of the level in the texel buffer: 4 bytes per texel, RGB in sRGB
+                        // encoding, linear alpha; in blocks of 4 x 4, which share a cache line
   unsigned int width, height;
   unsigned int wrap;  // CLPV_WRAP_* of u, plus 16 times that of v
 } ClpvTexture;

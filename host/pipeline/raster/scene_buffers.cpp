@@ -55,6 +55,23 @@ struct TextureTable {
   std::vector<std::uint32_t> texels;
 };
 
+/// Rounds a side up to whole blocks of texels (ClpvTexture).
+std::size_t to_blocks(std::size_t side) {
+  return (side + 3) / 4 * 4;
+}
+
+/// Writes a level in blocks of 4 x 4 texels, row by row; texels beyond its sides stay.
+void write_blocks(const Texture& level, std::uint32_t* to) {
+  const std::size_t row_of_blocks = 4 * to_blocks(level.width);
+  for (std::size_t y = 0; y < level.height; ++y) {
+    for (std::size_t x = 0; x < level.width; x += 4) {
+      const std::size_t count = std::min<std::size_t>(level.width - x, 4);
+      std::memcpy(to + y / 4 * row_of_blocks + y % 4 * 4 + x * 4,
+                  &level.rgba[4 * (y * level.width + x)], count * sizeof *to);
+    }
+  }
+}
+
 void append(TextureTable& table, const std::vector<Texture>& chain) {
   for (std::size_t level = 0; level < CLPV_TEXTURE_LEVELS; ++level) {
     if (level >= chain.size()) {
@@ -63,13 +80,13 @@ void append(TextureTable& table, const std::vector<Texture>& chain) {
     }
     const Texture& texture = chain[level];
     const std::size_t offset = table.texels.size();
-    const std::size_t count = std::size_t{texture.width} * texture.height;
+    const std::size_t count = to_blocks(texture.width) * to_blocks(texture.height);
     require(offset + count <= std::numeric_limits<std::uint32_t>::max(),
             "more than 2^32 texels in all textures");
     table.levels.push_back({static_cast<unsigned>(offset), texture.width, texture.height,
                             texture.wrap_u + 16 * texture.wrap_v});
     table.texels.resize(offset + count);
-    std::memcpy(&table.texels[offset], texture.rgba.data(), texture.rgba.size());
+    write_blocks(texture, &table.texels[offset]);
   }
 }
 
