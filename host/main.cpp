@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/commands.hpp"
+#include "cli/program_main.hpp"
 
 int main(int argc, char** argv) {
   return clpv::program_main(argc, argv);

@@ -205,12 +205,12 @@ class Bystanders : public ::testing::Test {
     });
   }
 
-  test::TemporaryFolder root_;
-  Snapshot planted_;
-};
-
-TEST_F(Bystanders, OnlyNamedOutputsAppear) {
-  for (const auto& [command, run] : runs()) {
+  /// Runs those commands, or all others.
+  void expect_only_named_outputs(const std::set<std::string>& commands, bool those) {
+    for (const auto& [command, run] : runs())
+      if (commands.contains(command) == those) expect_only_named_outputs(run);
+  }
+  void expect_only_named_outputs(const Invocation& run) {
     SCOPED_TRACE(run.arguments);
     const Snapshot before = snapshot_of(root_.path());
     const test::Outcome outcome = program(run.arguments);
@@ -232,6 +232,20 @@ TEST_F(Bystanders, OnlyNamedOutputsAppear) {
                                       }))
           << output << " is not written";
   }
+
+  test::TemporaryFolder root_;
+  Snapshot planted_;
+};
+
+const std::set<std::string> kDraw{"basis", "bench", "report"};
+
+TEST_F(Bystanders, OnlyNamedOutputsAppear) {
+  expect_only_named_outputs(kDraw, false);
+}
+
+using LongBystanders = Bystanders;
+TEST_F(LongBystanders, OnlyNamedOutputsOfDrawingAppear) {
+  expect_only_named_outputs(kDraw, true);
 }
 
 /// Options that name an output, by their help.

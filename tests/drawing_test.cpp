@@ -43,13 +43,19 @@ TEST_F(Drawing, BasisFiguresAreWrittenAndListed) {
 }
 
 TEST_F(Drawing, AReportIsOnePageWithItsViews) {
-  const test::Outcome outcome =
-      run_here("report " + file("page") + " " + test::kTinyRoom +
-               " --width 48 --height 27 --spp 4 --cache " + file("cache"));
+  const std::string size = " " + test::kTinyRoom + " --width 48 --height 27 ",
+                    report = "report " + file("page") + size + "--spp 4 --cache " + file("cache");
+  std::filesystem::create_directory(file("none"));
+  const test::Outcome missing = run_here(report + " --images " + file("none"));
+  EXPECT_EQ(missing.exit_code, 3);
+  EXPECT_THAT(missing.err, HasSubstr("none/tiny-eye.exr"));
+  std::filesystem::create_directory(file("theirs"));
+  ASSERT_EQ(run_here("render" + size + "-o " + file("theirs/tiny-eye.exr")).exit_code, 0);
+  const test::Outcome outcome = run_here(report + " --images " + file("theirs"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("index.html"));
   const std::string html = test::read_file(file("page/index.html"));
-  for (const char* part : {"</html>", "--preset best", "<td>clpv</td>"})
+  for (const char* part : {"</html>", "--preset best", "<td>clpv</td>", "<td>theirs</td>"})
     EXPECT_TRUE(html.find(part) != std::string::npos) << part;
 }
 

@@ -15,6 +15,7 @@
 
 #include "support/error.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/scenes.hpp"
 #include "verify/check.hpp"
 
 namespace clpv::helpers_test {
@@ -54,10 +55,7 @@ TEST(Helpers, ALibraryHasNone) {
   EXPECT_EQ(helper_count(), 0u) << "only clpv's main names a program";
 }
 
-const std::string kFrame = " -v render " CLPV_SOURCE_DIR
-                           "/tests/oclgrind/tiny.gltf --grid 5 --cascades 1 --cascade-size 5 "
-                           "--rsm-size 8 --shadow-size 8 --transport sampled --gather all "
-                           "--blockers seen --width 24 --height 18 -o ";
+const std::string kFrame = " -v render " + test::kTiny + test::kSmallSteps + "-o ";
 
 /// The variables of empty caches in that folder.
 std::string caches(const fs::path& folder) {

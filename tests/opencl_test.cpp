@@ -144,7 +144,7 @@ TEST(OpenCl, FramesAreEnqueuedAheadOfTheQueue) {
 TEST(OpenCl, AQueueWithoutProfilingHasNoTimes) {
   Owned own;
   own.queue = cl::CommandQueue(own.context, own.device);
-  Renderer renderer(Scene(kCornell), test::small_options(), own.given());
+  Renderer renderer(Scene(kCornell), test::few_steps(), own.given());
   renderer.render();
   EXPECT_EQ(ms_of(renderer.stats().times, "gather"), 0);
 }
@@ -232,7 +232,7 @@ TEST(OpenCl, ReferencesAreReturned) {
   };
   const auto before = references();
   {
-    Renderer renderer(Scene(kCornell), test::small_options(), own.given());
+    Renderer renderer(Scene(kCornell), test::few_steps(), own.given());
     EXPECT_GT(references(), before);
     renderer.enqueue();
   }
@@ -240,7 +240,7 @@ TEST(OpenCl, ReferencesAreReturned) {
   cl::Buffer kept;
   std::vector<float> values;
   {
-    Renderer renderer(Scene(kCornell), test::small_options(), own.given());
+    Renderer renderer(Scene(kCornell), test::few_steps(), own.given());
     const opencl::Frame frame = renderer.enqueue();
     kept = cl::Buffer(frame.image, true);
     values = own.read(frame.image, 4 * 48 * 27);
@@ -253,14 +253,14 @@ TEST(OpenCl, WrongObjectsAreNamed) {
   const Scene scene(kCornell);
   const auto rejected = [&](const std::string& part, const opencl::Queue& queue) {
     EXPECT_THAT(
-        test::error_of(ExitCode::usage, [&] { Renderer(scene, test::small_options(), queue); }),
+        test::error_of(ExitCode::usage, [&] { Renderer(scene, test::few_steps(), queue); }),
         AllOf(HasSubstr(part), HasSubstr("allowed")));
   };
   rejected("context and queue: found neither", {});
   rejected("queue: found one of another context", {own.context(), other.queue()});
   const cl::CommandQueue unordered(own.context, own.device, CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE);
   rejected("queue: found an out-of-order one", {nullptr, unordered()});
-  Renderer renderer(scene, test::small_options(), {own.context(), nullptr});
+  Renderer renderer(scene, test::few_steps(), {own.context(), nullptr});
   const cl::Buffer good(own.context, CL_MEM_READ_WRITE, 2 * 2 * 16),
       short_(own.context, CL_MEM_READ_WRITE, 63),
       foreign(other.context, CL_MEM_READ_WRITE, 2 * 2 * 16);
@@ -317,11 +317,12 @@ TEST(OpenCl, EitherOfTwoDevicesInOneContext) {
   }
   const cl::Context both({devices[0].handle, devices[1].handle}), one(devices[0].handle);
   const Scene scene(kCornell);
-  const std::vector<float> expected = Renderer(scene, test::small_options()).render().pixels;
+  const Options options = test::few_steps().set("blockers", "scene");  // light() needs them
+  const std::vector<float> expected = Renderer(scene, options).render().pixels;
   EXPECT_THAT(
       test::error_of(ExitCode::usage,
                      [&] {
-                       Renderer(scene, test::small_options(), {both(), nullptr});
+                       Renderer(scene, options, {both(), nullptr});
                      }),
       HasSubstr(
           "context: found 2 devices and no queue, allowed: one device, or a queue for one of"));
@@ -329,11 +330,11 @@ TEST(OpenCl, EitherOfTwoDevicesInOneContext) {
   std::vector<Renderer> renderers;
   for (const Device& device : devices) {
     const cl::CommandQueue& queue = queues.emplace_back(both, device.handle);
-    renderers.emplace_back(scene, test::small_options(), opencl::Queue{both(), queue()});
+    renderers.emplace_back(scene, options, opencl::Queue{both(), queue()});
     EXPECT_THAT(renderers.back().description(), HasSubstr(device.name));
     EXPECT_THAT(test::error_of(ExitCode::usage,
                                [&] {
-                                 Renderer(scene, test::small_options(), {one(), queue()});
+                                 Renderer(scene, options, {one(), queue()});
                                }),
                 HasSubstr("queue: found one of another context"));
   }
@@ -370,7 +371,7 @@ TEST(OpenCl, AContextWithoutAUsableDeviceIsNamed) {
        {opencl::Queue{context(), nullptr}, opencl::Queue{nullptr, queue()}}) {
     EXPECT_THAT(
         test::error_of(ExitCode::device,
-                       [&] { Renderer(Scene(kCornell), test::small_options(), given); }),
+                       [&] { Renderer(Scene(kCornell), test::few_steps(), given); }),
         AllOf(HasSubstr("queue: found one of " + useless.name), HasSubstr("lacks: compiler")));
   }
 }
@@ -381,11 +382,11 @@ TEST(OpenCl, ObjectsOfAFrameInFlightMayGo) {
   const Triangles square{{0, 1, 2}, {0, 2, 3}};
   const Vectors screen{
       {0.1f, 0.1f, 0.2f}, {0.4f, 0.1f, 0.2f}, {0.4f, 0.4f, 0.2f}, {0.1f, 0.4f, 0.2f}};
-  const std::vector<float> without = Renderer(scene, test::small_options()).render().pixels;
+  const std::vector<float> without = Renderer(scene, test::few_steps()).render().pixels;
   const int mesh = scene.add_mesh({.positions = screen, .triangles = square});
-  const std::vector<float> with = Renderer(scene, test::small_options()).render().pixels;
+  const std::vector<float> with = Renderer(scene, test::few_steps()).render().pixels;
   EXPECT_NE(with, without);
-  Renderer renderer(scene, test::small_options(), own.given());
+  Renderer renderer(scene, test::few_steps(), own.given());
   renderer.enqueue();  // compiles
   Barrier barrier(own);
   const opencl::Frame frame = renderer.enqueue();

@@ -234,7 +234,7 @@ TEST(PathTracer, StopsAtTheNoiseAskedFor) {
 // One reported share is the paths traced over those that the noise needs, within the estimate's
 // error; it never falls, and it is 1 only at the end.
 TEST(PathTracer, ReportsTheShareOfThePathsThatTheNoiseNeeds) {
-  const SceneData scene = box(0.8f, 1);
+  const SceneData scene = box(0.5f, 1);
   const ClpvView view = view_of({0.4, 0.5, 0.6}, {0.3, 0.1, -1}, {0, 1, 0}, 1, 32, 32);
   PathTracerOptions options;
   options.bounces = PathTracerOptions::kAllBounces;

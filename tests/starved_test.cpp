@@ -91,11 +91,11 @@ class Starved : public ::testing::Test {
 TemporaryFolder* Starved::cache_ = nullptr;
 
 TEST_F(Starved, OfDeviceMemoryAtSomeAllocations) {
-  expect_reported_at_some("memory", 23, "-4", "CL_MEM_OBJECT_ALLOCATION_FAILURE");
+  expect_reported_at_some("memory", 47, "-4", "CL_MEM_OBJECT_ALLOCATION_FAILURE");
 }
 
 TEST_F(Starved, OfItsDeviceAtSomeEnqueues) {
-  expect_reported_at_some("enqueue", 151, "-2", "CL_DEVICE_NOT_AVAILABLE");
+  expect_reported_at_some("enqueue", 301, "-2", "CL_DEVICE_NOT_AVAILABLE");
 }
 
 TEST_F(Starved, OfItsDeviceAtTheStart) {

@@ -267,6 +267,10 @@ int run_program(int argc, const char* const* argv, const Additions& additions) {
   }
 }
 
+int program_main(int argc, char** argv) {
+  return program_main(argc, argv, Additions{});
+}
+
 int program_main(int argc, char** argv, const Additions& additions) {
   reset_inherited_state();
   keep_absolute_path_entries();

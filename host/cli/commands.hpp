@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/additions.hpp"
+#include "cli/program_main.hpp"
 #include "parallel/ranks.hpp"
 
 namespace clpv {
@@ -42,9 +43,6 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv);
 /// The program without signal handling: parses, runs the command and logs errors to stderr. Returns
 /// the exit code. A failing rank aborts all ranks.
 int run_program(int argc, const char* const* argv, const Additions& additions = {});
-
-/// main() of a program: sets up signals and helper processes, then run_program().
-int program_main(int argc, char** argv, const Additions& additions = {});
 
 // Each command is in cli/NAME.cpp. The callbacks throw clpv::Error; run_program turns it into an
 // exit code.

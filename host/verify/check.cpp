@@ -94,13 +94,4 @@ bool passed(const CheckResults& results) {
   return has(Status::ok) && !has(Status::wrong) && !has(Status::failed);
 }
 
-CheckResults check(Stage stage, Session& session, const CheckScope& scope) {
-  CheckResults results;
-  for (const Case& compared : cases_of(stage, scope)) {
-    const CheckResults found = run_case(compared, session);
-    results.insert(results.end(), found.begin(), found.end());
-  }
-  return results;
-}
-
 }  // namespace clpv::verify

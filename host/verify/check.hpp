@@ -84,10 +84,6 @@ CheckResults run_case(const Case& compared, Session& session);
 /// not pass.
 bool passed(const CheckResults& results);
 
-/// Runs all cases of one stage. Inputs are small: apart from building kernels, each takes seconds
-/// on a CPU device.
-CheckResults check(Stage stage, Session& session, const CheckScope& scope = {});
-
 // One function per stage, in host/verify/.
 using StageCases = Cases(const CheckScope& scope);
 StageCases sizes_cases, rasterize_cases, emit_cases, inject_cases, blockers_cases, reflectors_cases,

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Judges a file of kernels by what Oclgrind found in the workloads that were run.
+"""Judges files of kernels by what Oclgrind found in the workloads that were run.
 
-    judge.py FOLDER KERNELS.cl [--expect KERNEL=TEXT...]
+    judge.py FOLDER KERNELS.cl... [--expect KERNEL=TEXT...]
 
-FOLDER holds one folder a workload, as `run` leaves it. Every kernel of the file must have been run
+FOLDER holds one folder a workload, as `run` leaves it. Every kernel of the files must have been run
 by a workload, and none may be reported. With --expect, exactly the kernels named must be, each with
 its text: the controls. """
 import pathlib
@@ -33,8 +33,12 @@ def merge(into, other):
         into.setdefault(key, []).extend(reports)
 
 
-def main(folder, source, expected):
-    kernels = set(KERNEL.findall(pathlib.Path(source).read_text(encoding="utf-8")))
+def main(folder, sources, expected):
+    faults, kernels = [], set()
+    for source in sources:
+        found = set(KERNEL.findall(pathlib.Path(source).read_text(encoding="utf-8")))
+        faults += [] if found else [f"{source}: no kernel found in it"]
+        kernels |= found
     ran, reports = set(), {}
     for output in sorted(pathlib.Path(folder).glob("*/output.txt")):
         ran |= set(RUN.findall(output.read_text(encoding="utf-8", errors="replace")))
@@ -42,7 +46,6 @@ def main(folder, source, expected):
             reports,
             reports_by_kernel(
                 (output.parent / "reports.log").read_text(encoding="utf-8", errors="replace")))
-    faults = [f"{source}: no kernel found in it"] if not kernels else []
     faults += [f"{kernel}: no workload runs it" for kernel in sorted(kernels - ran)]
     for kernel in sorted(kernels | {None}, key=str):
         found = reports.get(kernel, [])
@@ -59,5 +62,6 @@ def main(folder, source, expected):
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__.strip())
-    pairs = [argument.split("=", 1) for argument in sys.argv[4:]]
-    sys.exit(main(sys.argv[1], sys.argv[2], dict(pairs)))
+    end = sys.argv.index("--expect") if "--expect" in sys.argv else len(sys.argv)
+    pairs = [argument.split("=", 1) for argument in sys.argv[end + 1:]]
+    sys.exit(main(sys.argv[1], sys.argv[2:end], dict(pairs)))

@@ -9,7 +9,7 @@
 int main() {
   using namespace clpv;
   bench::SuiteOptions options;
-  options.settings.width = 10, options.settings.height = 7;
+  options.settings.width = 5, options.settings.height = 3;
   Session session(choose_device());
   for (const bench::Group& group : bench::probes_suite().groups(session, options)) {
     for (const bench::Row& row : bench::run_cases(session, group(), {.repetitions = 1})) {

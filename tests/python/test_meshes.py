@@ -219,7 +219,7 @@ def test_scene_of_trimesh():
 
 
 def test_colours_of_trimesh():
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
     look = clpv._trimesh._arguments  # pylint: disable=protected-access
     box = trimesh.creation.box((1, 1, 1))
     box.visual.face_colors = [[10 * face, 255, 0, 255] for face in range(12)]

@@ -3,6 +3,7 @@
 import random
 
 import numpy
+import pytest
 
 import clpv
 from conftest import CORNELL, SMALL
@@ -39,9 +40,10 @@ def state(scene):
             clpv.Renderer(scene, **SMALL).render().array.tobytes())
 
 
-def test_random_orders_give_the_same_state(scene):
+@pytest.mark.parametrize("seeds", [1, pytest.param(8, marks=pytest.mark.long)])
+def test_random_orders_give_the_same_state(seeds):
     options = SMALL | {"cascade_size": 1}
-    for seed in range(2):
+    for seed in range(seeds):
         found = set()
         for order in range(2):
             shuffle = random.Random(10 * seed + order)

@@ -562,7 +562,7 @@ def wait_for(port):
 
 @pytest.mark.skipif(not has_ipv6(), reason="no IPv6")
 def test_the_address_of_ipv6_is_printed_and_served():
-    pytest.importorskip("viser", reason="viser is not installed")
+    pytest.importorskip("viser", reason="viser is not installed (pip install viser)")
     port = free_port()
     words = [sys.executable, "-m", "clpv.view", CORNELL, "--host", "::1", "--port", port]
     with started(words, stdout=subprocess.PIPE) as viewer:

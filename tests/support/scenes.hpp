@@ -44,4 +44,13 @@ inline Options small_options() {
       .set("rsm-size", "64");
 }
 
+/// The same frame by few programs, for tests that need any frame.
+inline Options few_steps() {
+  return small_options()
+      .set("cascades", "1")
+      .set("transport", "sampled")
+      .set("gather", "all")
+      .set("blockers", "seen");
+}
+
 }  // namespace clpv::test
