@@ -14,27 +14,19 @@ import unittest
 
 import bystanders
 import numpy
+import PIL.Image
 from bystanders import ROOT
 from clpv import output
 
-sys.path += [str(ROOT / "tests/score"), str(ROOT / "scripts")]
-import exr_writer  # noqa: E402
+sys.path.append(str(ROOT / "scripts"))
 
 BAD_INPUT, USAGE = 3, 2
 CLPV = """#!/usr/bin/python3
-import json, os, pathlib, sys
+import os, pathlib, sys
 arguments = sys.argv[1:]
 dump = os.environ.get("CLPV_PROGRAM_DUMP")
 if dump:
     pathlib.Path(dump, "a.cl").write_text("kernel")
-if arguments[0] == "quality":
-    given = dict(each[2:].split("=", 1) for each in arguments if "=" in each)
-    truth = pathlib.Path(given["output"]).with_name("cornell-front-0123.exr")
-    truth.write_text("truth")
-    truth = pathlib.Path(os.environ["STORE"], truth.name)
-    truth.write_text("truth")
-    pathlib.Path(given["output"]).write_text(json.dumps({"ground_truths": [
-        {"file": str(truth), "camera": "front", "noise": 0.03, "spp": 1}]}))
 for option in "-o", "--stats":
     if option in arguments:
         pathlib.Path(arguments[arguments.index(option) + 1]).write_text(" ".join(arguments))
@@ -79,7 +71,6 @@ class InTree(unittest.TestCase):
         for name in ("python", "scenes", "docs", "lab", "results", "LICENSE", "CMakeLists.txt",
                      "README.md", "REPRODUCING.md", "CITATION.cff", "CHANGELOG.md"):
             (self.tree / name).symlink_to(ROOT / name)
-        (self.folder / "store").mkdir()
         for name, text in (("tree/build/clpv", CLPV), ("bin/oiiotool", OIIOTOOL),
                            ("bin/clang-15", CLANG), ("tree/scripts/build", "#!/bin/sh\n"),
                            ("tree/scripts/setup", "#!/bin/sh\n")):
@@ -92,7 +83,7 @@ class InTree(unittest.TestCase):
         words = [str(self.tree / "scripts" / name), *map(str, arguments)]
         path = f"{self.folder}/bin:/usr/bin:/bin:/usr/sbin:/sbin"
         env = {
-            "PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "STORE": str(self.folder / "store"),
+            "PATH": path, "PYTHONDONTWRITEBYTECODE": "1",
             "MPLCONFIGDIR": os.environ.get("MPLCONFIGDIR", str(self.folder / "fonts")), **environment
         }
         return subprocess.run(words, capture_output=True, text=True, check=False, env=env,
@@ -132,7 +123,6 @@ class FullFolders(InTree):
     def test_as_outputs(self):
         bystanders.fill(self.full)
         for script, *arguments in (
-            ("suite", "--scene=cornell", f"--output={self.full}"),
             ("gpu_report", f"--output={self.full}"),
             ("reproduce", "--no-build", "--part=lobes", f"--out={self.full}"),
             ("frame", "--out", self.full)):
@@ -184,35 +174,9 @@ class FullFolders(InTree):
             if name != "-x":
                 self.refused(USAGE, "allowed: letters", "measure", name)
 
-    def test_a_tar_beside_a_new_folder(self):
-        (self.folder / "photos.tar").write_text("precious")
-        self.refused(USAGE, "photos.tar; allowed: none", "suite", "--scene=cornell",
-                     "--output=photos")
-
 
 class OwnFolders(InTree):
     """Bystanders in a folder that the script wrote stay as they are, and out of tars."""
-
-    def test_suite(self):
-        made = self.folder / "made"
-        call = "suite", "--scene=cornell", "--output=made"
-        self.made(*call)
-        stays = self.add_bystanders(made)
-        self.made(*call)
-        self.assertEqual({path: bystanders.seen(made)[path] for path in stays}, stays)
-        with tarfile.open(self.folder / "made.tar") as tar:
-            names = tar.getnames()
-        self.assertEqual(sorted(names), sorted(f"made/{name}" for name in self.listed(made)))
-        for name in ("suite.json", "LICENSE", "score.md", "truths/cornell-front-0123.exr",
-                     "models/cornell.glb", "cameras/cornell.gltf", "clpv/output.py",
-                     "clpv/score/__main__.py"):
-            self.assertIn(f"made/{name}", names)
-
-    def test_the_scorer_of_a_suite_runs(self):
-        self.made("suite", "--scene=cornell", "--output=made")
-        found = subprocess.run([sys.executable, "-B", "-m", "clpv.score", "--help"],
-                               cwd=self.folder / "made", env={}, capture_output=True, check=False)
-        self.assertEqual(found.returncode, 0, found.stderr)
 
     def test_archive(self):
         made = output.Folder(self.folder / "made", "scripts/reproduce")
@@ -246,11 +210,9 @@ class OwnFolders(InTree):
         self.assertIn("gather", (made / "README.md").read_text())
 
     def test_demo(self):
-        layers = [f"{layer}{channel}" for channel in "RGBA"
-                  for layer in ("", "full.", "direct.", "indirect.")]
-        exr_writer.write(self.folder / "sample.exr",
-                         dict.fromkeys(layers, numpy.ones((3, 4), numpy.float32)))
-        (self.tree / "build/clpv").write_text(DEMO_CLPV.format(self.folder / "sample.exr"))
+        planes = self.folder / "planes.tif"  # of a layer, as oiiotool writes them
+        PIL.Image.fromarray(numpy.ones((9, 4), numpy.float32)).save(planes)
+        (self.tree / "build/clpv").write_text(DEMO_CLPV.format(planes))
         (self.folder / "caller").mkdir()
         for _ in range(2):
             found = self.made("demo", "--centres", "mine.json", "--width=40",
@@ -302,6 +264,9 @@ class Gates(InTree):
 
     def test_lines(self):
         self.refused(1, "host: found nothing to count", "lines", "--check")
+        (self.tree / "host").mkdir()
+        (self.tree / "host/a.py").write_text("import clpv_lab.score\n")
+        self.refused(1, "host/a.py: clpv_lab, which belongs to the lab", "lines", "--check")
 
     def test_links_of_the_docs(self):
         (self.tree / "tests").symlink_to(ROOT / "tests")
