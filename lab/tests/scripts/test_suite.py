@@ -1,16 +1,13 @@
 # SPDX-License-Identifier: MIT
 """lab/scripts/suite, with stubs in place of clpv and oiiotool: it leaves files that are none of its
 own, and its scorer runs where clpv is not built."""
-import shutil
 import subprocess
 import sys
 import tarfile
 import unittest
 
-import test_score
-sys.path.append(str(test_score.ROOT / "tests/scripts"))
-import bystanders  # noqa: E402
-import test_scripts  # noqa: E402
+import in_tree
+from in_tree import bystanders, test_scripts
 
 CLPV = """#!/usr/bin/python3
 import json, pathlib, sys
@@ -23,14 +20,9 @@ pathlib.Path(given["output"]).write_text(json.dumps({"ground_truths": [
 SCRIPT = "../lab/scripts/suite"
 
 
-class OfCornell(test_scripts.InTree):
+class OfCornell(in_tree.InTree):
     def setUp(self):
         super().setUp()
-        lab = self.tree / "lab"
-        lab.unlink()
-        shutil.copytree(test_score.ROOT / "lab/scripts", lab / "scripts")
-        for name in "docs", "python":
-            (lab / name).symlink_to(test_score.ROOT / "lab" / name)
         (self.tree / "build/clpv").write_text(CLPV)
 
     def test_bystanders_stay_and_are_not_packed(self):
