@@ -155,8 +155,7 @@ void add_render(CLI::App& app, Shared& shared) {
              "number of timed frames for --stats, after a warm-up frame; it has their medians",
              {1, 1000});
   add(*command, "--dump-normals", "FILE.json", options->normals,
-      "output file for lit surface normals, weighted by reflected flux, for python3 -m clpv.search "
-      "--weights");
+      "output file for lit surface normals, weighted by reflected flux, for a search for centres");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

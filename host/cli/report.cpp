@@ -18,10 +18,12 @@
 #include "cli/render_request.hpp"
 #include "cli/unreached.hpp"
 #include "clpv/version.hpp"
+#include "image/compare.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "options/validate.hpp"
 #include "pipeline/frame/frame.hpp"
+#include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 #include "support/log.hpp"
@@ -104,6 +106,10 @@ fs::path file_of(const std::string& folder, const Subject& subject, const SceneC
   return fs::path(folder) / (view_file_name(subject.scene.name, camera.name) + ".exr");
 }
 
+std::string title_of(const std::string& folder) {
+  return fs::weakly_canonical(folder).filename().string();
+}
+
 /// The image of another method for a view. Throws Error(bad_input) without channels R, G and B.
 Image read_image_of_method(const fs::path& path) {
   Image image = read_image_layer(path, "");
@@ -116,11 +122,40 @@ Image read_image_of_method(const fs::path& path) {
   return image;
 }
 
-/// Writes an image of method `number` where the scorer finds it.
-void add_image(const Drawing& drawing, std::size_t number, const std::string& view,
-               const Image& image) {
-  fs::create_directories(drawing.folder() / std::to_string(number));
-  write_exr(drawing.folder() / std::to_string(number) / (view + ".exr"), image);
+/// A view of the page, with the names of its images' files and their errors.
+struct PageView {
+  std::string name;
+  Image truth;
+  float exposure = 0;
+  nlohmann::json images;
+};
+
+/// Writes an image as NPY. Returns its entry in report.json.
+nlohmann::json add_image(const Drawing& drawing, const PageView& view, const std::string& title,
+                         const Image& image) {
+  const std::string file = fmt::format("{}-{}.npy", view.name, view.images.size());
+  write_npy(drawing.folder() / file, image.pixels,
+            std::array{static_cast<std::size_t>(image.height),
+                       static_cast<std::size_t>(image.width), image.channels.size()});
+  return {{"title", title}, {"file", file}};
+}
+
+/// Adds an image with its errors. `source` names it in messages.
+void add_compared(const Drawing& drawing, PageView& view, const std::string& title,
+                  const Image& image, const std::string& source) {
+  const Comparison errors = compare(image, source, view.truth, "ground truth", view.exposure);
+  const std::vector<double> map = flip_map(image, view.truth, view.exposure);
+  nlohmann::json entry = add_image(drawing, view, title, image);
+  const std::string file = fmt::format("{}-{}-flip.npy", view.name, view.images.size());
+  write_npy(drawing.folder() / file, std::vector<float>(map.begin(), map.end()),
+            std::array{static_cast<std::size_t>(image.height),
+                       static_cast<std::size_t>(image.width)});
+  entry["flip"] = file;
+  nlohmann::json& shown = entry["errors"];
+  const nlohmann::json all = to_json(errors);
+  shown["nrmse"] = all["nrmse_valid"];
+  for (const char* name : {"nrmse_best_gain", "energy_ratio", "flip"}) shown[name] = all[name];
+  view.images.push_back(std::move(entry));
 }
 
 /// Options of a variant for a scene, or none, with a warning: the published scheme has no sky.
@@ -137,57 +172,62 @@ std::optional<RenderOptions> options_for(const PageVariant& variant, const Optio
   }
 }
 
-/// Writes what a variant renders of all cameras of a subject.
+/// Adds what a variant renders of all cameras of a subject to their views.
 void add_variant(Session& session, const Options& options, const Subject& subject,
-                 std::size_t number, const Drawing& drawing, Progress& progress) {
-  const PageVariant variant = page_variants(options)[number];
+                 const PageVariant& variant, const Drawing& drawing, std::vector<PageView>& views,
+                 Progress& progress) {
   const auto resolved = options_for(variant, options, subject.scene);
-  for (const SceneCamera& camera : subject.cameras) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
     if (resolved) {
       Frame frame(session, subject.scene, *resolved);
-      frame.render(camera);
-      warn_of_unreached(session, frame, fmt::format("{}, {}", camera.name, variant.title));
-      add_image(drawing, number, view_file_name(subject.scene.name, camera.name),
-                view_image(frame, Show::indirect));
+      frame.render(subject.cameras[i]);
+      warn_of_unreached(session, frame,
+                        fmt::format("{}, {}", subject.cameras[i].name, variant.title));
+      add_compared(drawing, views[i], variant.title, view_image(frame, Show::indirect),
+                   variant.title);
     }
     progress.advance();
   }
 }
 
-/// Writes truth and images of others of each view. Returns the views as of suite.json.
-nlohmann::json add_truths(const Options& options, const Subject& subject, const Drawing& drawing) {
-  nlohmann::json views = nlohmann::json::array();
+/// The views of a subject, with their ground truths.
+std::vector<PageView> views_of(const Subject& subject, const Drawing& drawing) {
+  std::vector<PageView> views;
   for (std::size_t i = 0; i < subject.cameras.size(); ++i) {
     const GroundTruth& traced = subject.truths[i];
-    const std::string name = view_file_name(subject.scene.name, subject.cameras[i].name);
-    const std::string file = fmt::format("truths/{}.exr", name);
-    write_exr(drawing.folder() / file, traced.image);
-    for (std::size_t k = 0; k < options.images.size(); ++k) {
-      add_image(drawing, page_variants(options).size() + k, name,
-                read_image_of_method(file_of(options.images[k], subject, subject.cameras[i])));
-    }
-    const Image truth = extract_layer(traced.image, "indirect", traced.file.string());
-    views.push_back({{"name", name},
-                     {"truth", file},
-                     {"noise", traced.noise},
-                     {"exposure", exposure_of(truth)}});
+    PageView view{view_file_name(subject.scene.name, subject.cameras[i].name),
+                  extract_layer(traced.image, "indirect", traced.file.string()), 0,
+                  nlohmann::json::array()};
+    view.exposure = exposure_of(view.truth);
+    view.images.push_back(add_image(drawing, view, "path tracing", view.truth));
+    views.push_back(std::move(view));
   }
   return views;
 }
 
-/// Titles of all methods, in the order of their folders.
+/// Adds the images of other methods.
+void add_others(const Options& options, const Subject& subject, const Drawing& drawing,
+                std::vector<PageView>& views) {
+  for (const std::string& folder : options.images) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const fs::path file = file_of(folder, subject, subject.cameras[i]);
+      add_compared(drawing, views[i], title_of(folder), read_image_of_method(file), file.string());
+    }
+  }
+}
+
+/// Titles of all methods, in the order of their images.
 nlohmann::json methods(const Options& options) {
   nlohmann::json all = nlohmann::json::array();
   for (const PageVariant& variant : page_variants(options))
     all.push_back({{"title", variant.title}, {"options", as_arguments(variant.given)}});
   for (const std::string& folder : options.images)
-    all.push_back(
-        {{"title", fs::weakly_canonical(folder).filename().string()}, {"options", nullptr}});
+    all.push_back({{"title", title_of(folder)}, {"options", nullptr}});
   return all;
 }
 
-/// Writes the suite of all views, and the images of all methods.
-void add_views(Session& session, const Options& options, const Drawing& drawing) {
+/// Writes the images of all views. Returns the views as of report.json.
+nlohmann::json add_views(Session& session, const Options& options, const Drawing& drawing) {
   nlohmann::json all = nlohmann::json::array();
   std::vector<Subject> subjects = load_subjects(options.subjects);
   require_distinct_names("report", subjects);
@@ -196,18 +236,25 @@ void add_views(Session& session, const Options& options, const Drawing& drawing)
       for (const std::string& folder : options.images)
         read_image_of_method(file_of(folder, subject, camera));
   check_outputs({{"DIR", page_of(options)}});
-  fs::create_directory(drawing.folder() / "truths");
-  const std::size_t variants = page_variants(options).size();
+  const std::vector<PageVariant> variants = page_variants(options);
   for (Subject& subject : subjects) {
     const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
     trace_truths(subject, size.width, size.height, options.tracing.resolved(),
                  quality_cache(options.cache) / "references");
-    for (nlohmann::json& view : add_truths(options, subject, drawing)) all.push_back(view);
-    Progress progress("report", subject.cameras.size() * variants);
-    for (std::size_t i = 0; i < variants; ++i)
-      add_variant(session, options, subject, i, drawing, progress);
+    std::vector<PageView> views = views_of(subject, drawing);
+    Progress progress("report", subject.cameras.size() * variants.size());
+    for (const PageVariant& variant : variants)
+      add_variant(session, options, subject, variant, drawing, views, progress);
+    add_others(options, subject, drawing, views);
+    for (PageView& view : views) {
+      all.push_back({{"name", view.name},
+                     {"width", view.truth.width},
+                     {"height", view.truth.height},
+                     {"exposure", view.exposure},
+                     {"images", std::move(view.images)}});
+    }
   }
-  drawing.add("suite.json", {{"schema", 1}, {"hash", "report"}, {"views", all}});
+  return all;
 }
 
 void run(const Options& options, const Shared& shared) {
@@ -222,9 +269,9 @@ void run(const Options& options, const Shared& shared) {
   const Drawing drawing("report", "clpv report");
   const Device device = choose_device(shared.device);
   Session session(device, ProgramCache::of_user(device));
-  report["methods"] = nlohmann::json::array();
+  report["methods"] = report["views"] = nlohmann::json::array();
   if (!options.subjects.scenes.empty()) {
-    add_views(session, options, drawing);
+    report["views"] = add_views(session, options, drawing);
     report["methods"] = methods(options);
   }
   session.store_programs();

@@ -105,13 +105,16 @@ Image shown(const Image& image, const std::vector<bool>& valid, float exposure) 
   return image.encoding == Encoding::srgb ? rgb : display_image(rgb, exposure, ToneMap::aces);
 }
 
-std::optional<double> mean_flip(const Image& a, const Image& b, const std::vector<bool>& valid,
-                                float exposure) {
-  const std::vector<double> differences =
-      flip(shown(a, valid, exposure), shown(b, valid, exposure));
-  double sum = 0;
-  for (std::size_t p = 0; p < valid.size(); ++p) sum += valid[p] ? differences[p] : 0;
-  return ratio(sum, static_cast<double>(std::ranges::count(valid, true)));
+/// The file has the pixel, and its alpha, if any, is above 0.
+bool is_valid(const Image& image, std::size_t index) {
+  const auto alpha = image.channel("A");
+  return has_pixel(image, index) && (!alpha || pixel(image, index)[*alpha] > 0);
+}
+
+std::vector<bool> valid_pixels(const Image& a, const Image& b) {
+  std::vector<bool> valid(a.pixel_count());
+  for (std::size_t p = 0; p < valid.size(); ++p) valid[p] = is_valid(a, p) && is_valid(b, p);
+  return valid;
 }
 
 /// Sums over pairs of values.
@@ -158,7 +161,7 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b,
   check_comparable(a, a_name, b, b_name);
   const std::vector<std::size_t> in_a = colour_channels(a, a_name),
                                  in_b = colour_channels(b, b_name);
-  const auto alpha_a = a.channel("A"), alpha_b = b.channel("A");
+  const std::vector<bool> valid_at = valid_pixels(a, b);
   const std::size_t pixels = a.pixel_count(), channels = in_a.size();
 
   Comparison result;
@@ -167,21 +170,19 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b,
   result.channels = static_cast<int>(channels);
   result.encoding = a.encoding;
   Sums all, valid;
-  std::vector<bool> is_valid(pixels);
   double relative = 0;
   std::size_t present = 0;
   for (std::size_t p = 0; p < pixels; ++p) {
     if (!has_pixel(a, p)) continue;
     ++present;
     const float *pa = pixel(a, p), *pb = pixel(b, p);
-    is_valid[p] = (!alpha_a || pa[*alpha_a] > 0) && (!alpha_b || pb[*alpha_b] > 0);
-    result.valid_pixels += is_valid[p];
+    result.valid_pixels += valid_at[p];
     result.mean_luminance[0] += pixel_luminance(pa, in_a);
     result.mean_luminance[1] += pixel_luminance(pb, in_b);
     for (std::size_t c = 0; c < channels; ++c) {
       const double x = pa[in_a[c]], y = pb[in_b[c]], error = std::abs(x - y);
       all.add(x, y);
-      if (is_valid[p]) valid.add(x, y);
+      if (valid_at[p]) valid.add(x, y);
       relative += error * error / (y * y + kRelativeFloor);
       if (error > result.max_error) {
         result.max_error = error;
@@ -197,8 +198,19 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b,
   for (double& mean : result.mean_luminance) mean /= static_cast<double>(present);
   result.identical = result.max_error == 0;
   set_valid_errors(result, valid);
-  result.flip = mean_flip(a, b, is_valid, exposure);
+  double flips = 0;
+  for (const double each : flip_map(a, b, exposure)) flips += each;
+  result.flip = ratio(flips, static_cast<double>(result.valid_pixels));
   return result;
+}
+
+std::vector<double> flip_map(const Image& a, const Image& b, float exposure) {
+  const std::vector<bool> valid = valid_pixels(a, b);
+  std::vector<double> map = flip(shown(a, valid, exposure), shown(b, valid, exposure));
+  for (std::size_t p = 0; p < valid.size(); ++p) {
+    if (!valid[p]) map[p] = 0;
+  }
+  return map;
 }
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, width, height, channels, rmse, nrmse, relative_mse,

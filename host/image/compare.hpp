@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "clpv/compare.hpp"
 #include "image/image.hpp"
@@ -18,6 +19,10 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b,
                    const std::string& b_name, float exposure = 0);
 
 nlohmann::json to_json(const Comparison& comparison);
+
+/// FLIP of each pixel, row by row, as in compare(); 0 where a pixel is not valid. The images must be
+/// ones that compare() accepts.
+std::vector<double> flip_map(const Image& a, const Image& b, float exposure);
 
 /// Difference image amplify * |A - B| over the colour channels, as R, G, B, in the encoding of A
 /// and B. The images must be ones that compare() accepts.

@@ -25,7 +25,7 @@ std::vector<WeightedDirection> normal_weights(Session& session, const SceneData&
                                               const SceneCamera& camera,
                                               const RenderOptions& options);
 
-/// Writes a JSON file {"weights": [[x, y, z, weight], ...]}, which clpv.search reads.
+/// Writes a JSON file {"weights": [[x, y, z, weight], ...]}, for a search for centres.
 void write_normal_weights(const std::filesystem::path& path,
                           const std::vector<WeightedDirection>& weights);
 

@@ -21,10 +21,6 @@ as W/sr.
     Image, read_image, compare           images as arrays, files, errors
     pathtrace                            ground truth on the CPU
     Basis, bases()                       functions on the sphere
-    clpv.search                          python3 -m clpv.search N: centres of radial functions
-                                         (needs SciPy)
-    clpv.score                           python3 -m clpv.score DIR: errors of images by any
-                                         renderer; works without the native module
     clpv.draw                            charts (needs matplotlib); works without the native module
     clpv.view                            python3 -m clpv.view SCENE, clpv.view.show(scene): viewer in
                                          the browser (needs viser)
@@ -55,13 +51,13 @@ def ms_of(times, stage):
 
 
 def __getattr__(name):
-    """Loads the native module on first use, so that clpv.draw and clpv.score work without it."""
+    """Loads the native module on first use, so that clpv.draw works without it."""
     if name in __all__ or name == "__version__":
         return getattr(importlib.import_module("clpv._native"), name)
-    if name in ("draw", "score", "search", "view"):
+    if name in ("draw", "view"):
         return importlib.import_module(f"clpv.{name}")
     raise AttributeError(f"module 'clpv' has no attribute '{name}'")
 
 
 def __dir__():
-    return sorted([*__all__, "__version__", "draw", "score", "search", "view"])
+    return sorted([*__all__, "__version__", "draw", "view"])

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from clpv import draw as draw, score as score, search as search, view as view
+from clpv import draw as draw, view as view
 
 _Path = str | os.PathLike[str]
 _Vector = Sequence[float] | NDArray[Any]

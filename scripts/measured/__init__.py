@@ -10,6 +10,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / os.environ.get("CLPV_BUILD_DIR", "build")
@@ -25,6 +26,16 @@ def native():
     import clpv
     clpv.__path__.append(str(BUILD / "python/clpv"))
     return clpv
+
+
+def lab(module, *arguments):
+    """Runs a module of the lab's Python package. Returns its stdout; None without a lab."""
+    if not (BUILD / "python/clpv_lab").is_dir():
+        print(f"skipped: {module}: the lab is not built (-DCLPV_LAB=ON)", file=sys.stderr)
+        return None
+    return subprocess.run([sys.executable, "-B", "-m", module, *arguments], check=True, cwd=ROOT,
+                          text=True, stdout=subprocess.PIPE,
+                          env={**os.environ, "PYTHONPATH": str(BUILD / "python")}).stdout
 
 
 def described():
@@ -49,6 +60,21 @@ def hash_of(paths):
                 content = hashlib.sha256(file.read_bytes()).hexdigest()
                 sums.update(f"{file.relative_to(path.parent)} {content}\n".encode())
     return sums.hexdigest()
+
+
+def model_files(model):
+    """The model and the files that it names."""
+    if model.suffix == ".glb":
+        return [model]
+    document = json.loads(model.read_text())
+    uris = [
+        entry["uri"] for entry in [*document.get("buffers", []), *document.get("images", [])]
+        if "uri" in entry
+    ]
+    return [
+        model, *(model.parent / urllib.parse.unquote(uri) for uri in uris
+                 if not uri.startswith("data:"))
+    ]
 
 
 def json_lines(document):

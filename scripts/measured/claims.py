@@ -20,17 +20,15 @@ lit      share of pixels without direct light, in each camera
 
 All but lobes and tables are of Sponza. `arguments`: model, out (output.Folder) and
 quick, of scripts/reproduce. """
-import concurrent.futures
 import itertools
 import json
 import math
 
 import numpy as np
 
-from . import ROOT, native
+from . import ROOT, lab, native
 
 clpv = native()
-from clpv import search  # noqa: E402
 
 BASES = ("sh2", "srbf8v2")
 STEPS, SIZES, TEXELS = (8, 24), (12.5, 50), (256, 1024)
@@ -101,23 +99,12 @@ def of_lobes(bases):
     return rows
 
 
-SEARCHES = [*itertools.product((4, 6, 8, 9, 12, 14), ("all", "axes"), ("none", "one", "each"))]
-
-
-def searched_for(count, over, lambdas):
-    found = search.search(count, over, lambdas)
-    return {"n": count, "over": over, "lambdas": lambdas, "error": found.error,
-            "bound": search.minimum_error(count) if over == "all" else None,
-            "condition": found.condition, "lambda": 0 if lambdas == "each" else found.lambdas[0]}
-
-
 def lobes(arguments):
     """Errors of the named bases, of other guesses, and of the best sets that a search finds."""
     guesses = {name: clpv.Basis(name, centres=centres) for name, centres in GUESSES.items()}
     rows = of_lobes({**{name: clpv.Basis(name) for name in NAMED}, **guesses})
-    with concurrent.futures.ProcessPoolExecutor() as processes:
-        searched = [] if arguments.quick else list(processes.map(searched_for, *zip(*SEARCHES)))
-    return {"sets": rows, "searched": searched}
+    searched = None if arguments.quick else lab("clpv_lab.searches")
+    return {"sets": rows, "searched": json.loads(searched) if searched else []}
 
 
 def along_z(name, value):

@@ -13,12 +13,12 @@ import subprocess
 import sys
 
 import numpy
+import PIL.Image
 
 from . import CLPV, ROOT, output
 from .tables.stages import print_stages
 from clpv import ms_of
 from clpv.draw import style
-from clpv.score import exr
 
 SCENE = ROOT / "scenes/atrium.json"
 EXPOSURE = -0.7  # [EV]
@@ -59,8 +59,12 @@ class Demo:
         return file
 
     def shown(self, file, layer):
-        rgb, alpha = exr.colours(exr.read(file), file, layer)
-        return displayed(rgb * alpha[..., None])
+        planes = self.folder.file(f"{file.stem}-{layer}.tif")
+        each = [word for colour in "RGB" for word in (file, "--ch", f"{layer}.{colour}")]
+        subprocess.run(["oiiotool", *each, "--mosaic", "1x3", "-d", "float", "-o", planes],
+                       check=True)
+        rows = numpy.asarray(PIL.Image.open(planes))
+        return displayed(numpy.moveaxis(rows.reshape(3, -1, rows.shape[1]), 0, -1))
 
     def make(self):
         """Returns [(caption, sRGB image)], and the error of a frame with all bounces."""

@@ -22,7 +22,6 @@ its packages.
 """
 import argparse
 import datetime
-import functools
 import json
 import os
 import pathlib
@@ -31,7 +30,7 @@ import subprocess
 import sys
 import tempfile
 
-from . import LAB, RESULTS, ROOT, bake, charts, described, json_lines, leaks, output, rows
+from . import LAB, RESULTS, ROOT, bake, charts, described, json_lines, lab, leaks, output, rows
 
 FRAME_COUNT = 9
 STANDING_COUNT = 5
@@ -203,15 +202,11 @@ def measure_docs(folder, model, parts):
 
 def search_centres(sponza):
     (ROOT / "out").mkdir(exist_ok=True)
-    clpv = functools.partial(subprocess.run, stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
-    search = [sys.executable, "-m", "clpv.search", "8", "-o"]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
-    clpv([*search, rows.SEARCHED], env=environment)
-    clpv([
-        str(LAB), "render", "scenes/sponza.json", *sponza, "--dump-normals=out/normals.json", "-o",
-        "out/normals.png"
-    ])
-    clpv([*search, rows.SEARCHED_NORMALS, "--weights=out/normals.json"], env=environment)
+    subprocess.run([str(LAB), "render", "scenes/sponza.json", *sponza, "-o", "out/normals.png",
+                    "--dump-normals=out/normals.json"], stdout=subprocess.DEVNULL, check=True,
+                   cwd=ROOT)
+    lab("clpv_lab.search", "8", "-o", rows.SEARCHED)
+    lab("clpv_lab.search", "8", "-o", rows.SEARCHED_NORMALS, "--weights=out/normals.json")
 
 
 def measure_quality(folder, name, model, measured):

@@ -24,10 +24,10 @@ import sys
 import tempfile
 import time
 
-from . import BUILD, CLPV, RESULTS, ROOT, described, expected, hash_of, output, tables, verdicts
+from . import (BUILD, CLPV, RESULTS, ROOT, described, expected, hash_of, model_files, output,
+               tables, verdicts)
 from .expected import CLAIMS, PARTS
 from .measure import measured_with, write
-from .suite import model_files
 
 LEFT = 5  # exit code
 FACTORS_OF_QUICK = "--filter=/paper/(layout=soa.*|evaluate=[a-z]*)?$"
@@ -72,7 +72,8 @@ def key_of(arguments):
     """What the numbers of a part depend on, by content: program and module, scripts and scenes, the
     model, replaced kernels, the devices, and the environment of clpv and its drivers."""
     module = sorted((BUILD / "python/clpv").glob("_native*.so"))
-    sources = [CLPV, *module, ROOT / "python/clpv", ROOT / "scripts/measured", ROOT / "scenes"]
+    sources = [CLPV, *module, ROOT / "python/clpv", BUILD / "python/clpv_lab",
+               ROOT / "scripts/measured", ROOT / "scenes"]
     kernels = os.environ.get("CLPV_KERNEL_DIR")
     environment = {name: value for name, value in sorted(os.environ.items())
                    if name.startswith(("CLPV_", "POCL_", "OCL_"))}

@@ -66,7 +66,7 @@ STEPS = {
     }, "srbf14, exact transport too": {**EXACT_LOBES, "basis": "srbf14", "transport": "exact"}
 }
 
-# Centres that clpv.search finds: over all directions, and for the normals that Sponza's light sees.
+# Centres that the lab finds: over all directions, and for the normals that Sponza's light sees.
 SEARCHED, SEARCHED_NORMALS = "out/searched8.json", "out/searched8-normals.json"
 CENTRES = {
     "srbf8v2": {"basis": "srbf8v2"}, "eight searched centres": {"centres": SEARCHED},

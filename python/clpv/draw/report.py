@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The report page: one self-contained HTML file.
 
-With methods, its folder is a suite as the scorer reads it (clpv.score.suite); images of method i lie
-in the folder i. report.json: "subtitle"; "methods", each with "title" and "options" (null: images of
-another program); "quality" and "benchmarks": {"file", "document"} of `clpv quality` and `clpv bench`
-with --output; "marked": options of variants to highlight.
+report.json: "subtitle"; "methods", each with "title" and "options" (null: images of another
+program); "views", each with "name", "width", "height", "exposure" [EV] and "images", of which the
+first is the truth: "title", "file" (NPY of height x width x channels, R, G and B first) and, but for
+the truth, "flip" (NPY of height x width) and "errors"; "quality" and "benchmarks": {"file",
+"document"} of `clpv quality` and `clpv bench` with --output; "marked": options of variants to
+highlight.
 """
 import pathlib
 import re
@@ -15,10 +17,8 @@ from markupsafe import Markup
 from matplotlib import pyplot
 
 from clpv import output
-from clpv.draw import bench, documents, style
+from clpv.draw import bench, documents, style, viewer
 from clpv.draw.documents import NUMBER
-from clpv.score import page, suite
-from clpv.score.exr import BadImage
 
 VARIANT = {
     "options": dict, "rejected": int, "nrmse": NUMBER, "worst_nrmse": NUMBER,
@@ -116,25 +116,27 @@ def table1(rows):
                    for line, cells in lines.items()]
 
 
-def viewer(source, methods):
-    """HTML of the images, empty without methods."""
-    try:
-        return Markup(page.viewer(source, methods)) if methods else ""
-    except BadImage as error:
-        raise documents.BadDocument(error) from None
+def images(source, views):
+    """HTML of the images of all views, empty without views."""
+    def entry(image):
+        flip = numpy.load(source / image["flip"]) if "flip" in image else None
+        return viewer.entry(image["title"], numpy.load(source / image["file"])[..., :3], flip)
+
+    rows = [{"view": view["name"], "image": image["title"], **image["errors"]}
+            for view in views for image in view["images"][1:]]
+    shown = [{**view, "images": [entry(image) for image in view["images"]]} for view in views]
+    return Markup(viewer.markup(shown, rows)) if views else ""
 
 
 def draw(source: pathlib.Path, target: pathlib.Path) -> None:
     report = documents.read(source / "report.json")
-    methods = [(method["title"], source / str(i)) for i, method in enumerate(report["methods"])]
-    read = suite.inputs([folder for _, folder in methods], source) if methods else []
-    made = output.Output(target, [source / "report.json", *read])
+    made = output.Output(target, [source / "report.json", *source.glob("*.npy")])
     rows = [row for given in report["benchmarks"]
             for row in documents.checked(given["document"], given["file"], "benchmarks", bench.ROW)]
     quality = variants(report["quality"], report["marked"])
     layouts = [row for row in rows if row["suite"] == "layouts"]
     tables = table1([row for row in rows if row["suite"] == "table1"])
-    missing = [words for given, words in ((methods, "scenes"), (quality, "--quality"),
+    missing = [words for given, words in ((report["views"], "scenes"), (quality, "--quality"),
                                           (tables[1], "--bench of clpv bench table1"),
                                           (layouts, "--bench of clpv bench layouts")) if not given]
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(pathlib.Path(__file__).parent),
@@ -142,7 +144,7 @@ def draw(source: pathlib.Path, target: pathlib.Path) -> None:
                                      undefined=jinja2.StrictUndefined)
     html = environment.get_template("page.html").render(
         subtitle=report["subtitle"], methods=report["methods"],
-        viewer=viewer(source, methods), quality=quality,
+        viewer=images(source, report["views"]), quality=quality,
         quality_chart=inlined(error_against_cost(quality), [row["name"] for row in quality]),
         table1=tables, layouts=layouts, layouts_chart=inlined(bench.layouts(layouts)),
         missing=missing, colours=page_colours())

@@ -17,7 +17,7 @@ METHODS = {
 
 
 def handed_in():
-    """Scores of other renderers, as `python3 -m clpv.score -o` writes them."""
+    """Scores of other renderers, as `python3 -m clpv_lab.score -o` writes them."""
     return [
         json.loads(path.read_text(encoding="utf-8"))
         for path in sorted((RESULTS / "quality/scores").glob("*.json"))

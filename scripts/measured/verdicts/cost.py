@@ -169,7 +169,7 @@ claim("conclusions", "perfect lobes are very difficult to find",
       lambda each: each["error"] > (1 + SIMILAR) * each["bound"], "{error:.3f}, bound {bound:.3f}")
 claim("conclusions", "centres should be tested for each scene",
       "mean E with centres for Sponza's normals < 0.9 of that of", "other set",
-      "python3 -m clpv.search", of_centres, "set",
+      "python3 -m clpv_lab.search", of_centres, "set",
       lambda each: each["found"] < (1 - SIMILAR) * each["error"], "{found:.3f}, {error:.3f}")
 claim("conclusions", "more coefficients of SH should be investigated",
       "mean E of sh3 < that of sh2 by at least a tenth", "scheme", "clpv quality", of_sh3, "scheme",

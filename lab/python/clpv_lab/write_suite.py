@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Writes the suite of views that python3 -m clpv.score scores: truths, cameras and lights for any
+"""Writes the suite of views that python3 -m clpv_lab.score scores: truths, cameras and lights for any
 renderer (lab/docs/score.md).
 
-    scripts/suite --output DIR --model PATH/Sponza.gltf    DIR/suite.json and the files that it
+    lab/scripts/suite --output DIR --model PATH/Sponza.gltf    DIR/suite.json and the files that it
                                                            names, and DIR.tar with them alone
 
-DIR: a new or empty folder, or one that scripts/suite wrote.
+DIR: a new or empty folder, or one that lab/scripts/suite wrote.
 
 The views are those of the standing benchmark and Sponza under three other suns. Needs a built clpv
 and oiiotool; traces the ground truths that `clpv quality` has not cached, a minute of processor
@@ -17,11 +17,10 @@ import math
 import pathlib
 import subprocess
 import tempfile
-import urllib.parse
 
 import numpy
 
-from . import CLPV, ROOT, output
+from measured import CLPV, ROOT, model_files, output
 
 SCHEMA, SIZE, NOISE = 1, (240, 135), 0.03
 SCENES = {
@@ -31,6 +30,8 @@ SCENES = {
 TIMES = {"atrium_living": 4}  # [s]
 LAYERS = "indirect", "direct", "irradiance", "depth", "normal", "albedo"
 LARGEST = 64 * 2**20  # bytes of the tar
+SCORER = (("python", "clpv/output.py", "clpv/draw/viewer.*"),
+          ("lab/python", "clpv_lab/score/*.py", "clpv_lab/score/*.html"))  # files by their root
 UNITS = {
     "indirect": "radiance after one bounce: albedo / pi x indirect irradiance [W/m^2/sr]",
     "direct": "radiance: albedo / pi x irradiance from the lights [W/m^2/sr]",
@@ -138,21 +139,6 @@ def sha256(file):
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
-def model_files(model):
-    """The model and the files that it names."""
-    if model.suffix == ".glb":
-        return [model]
-    document = json.loads(model.read_text())
-    uris = [
-        entry["uri"] for entry in [*document.get("buffers", []), *document.get("images", [])]
-        if "uri" in entry
-    ]
-    return [
-        model, *(model.parent / urllib.parse.unquote(uri) for uri in uris
-                 if not uri.startswith("data:"))
-    ]
-
-
 def ground_truths(name, cameras, model, cache):
     """Traces what is not cached. Returns rows of `clpv quality`: file, camera, noise, spp."""
     with tempfile.TemporaryDirectory() as folder:
@@ -227,9 +213,9 @@ def write_suite(folder, tar, sponza, cache, names):
         "scenes": scenes, "views": views
     }
     folder.write("suite.json", json.dumps(document, indent=1) + "\n")
-    scorer = ROOT / "python/clpv"
-    for file in [scorer / "output.py", *scorer.glob("score/*.py"), *scorer.glob("score/*.html")]:
-        folder.write(f"clpv/{file.relative_to(scorer)}", file.read_bytes())
+    for root, *patterns in SCORER:
+        for file in (file for pattern in patterns for file in sorted((ROOT / root).glob(pattern))):
+            folder.write(str(file.relative_to(ROOT / root)), file.read_bytes())
     for file in ROOT / "lab/docs/score.md", ROOT / "LICENSE":
         folder.write(file.name, file.read_bytes())
     packed = output.tar_of(folder.path.name, folder.contents(sorted(folder.written)))
@@ -258,7 +244,7 @@ def main():
     packed = place.with_name(place.name + ".tar")
     if packed.exists() and not (place / output.MARKER).exists():
         parser.error(f"--output {place}: found a file {packed}; allowed: none where DIR is new")
-    folder, tar = output.Folder(place, "scripts/suite"), output.Output(packed)
+    folder, tar = output.Folder(place, "lab/scripts/suite"), output.Output(packed)
     write_suite(folder, tar, arguments.model and arguments.model.resolve(),
                 arguments.cache and arguments.cache.resolve(), names)
     return 0

@@ -4,8 +4,8 @@
 them.
 
     pip install mitsuba OpenEXR
-    python3 examples/suite_mitsuba.py SUITE OUTPUT [--sponza Sponza.gltf] [--only 'cornell-*']
-    python3 -m clpv.score OUTPUT --suite SUITE --only 'cornell-*'
+    python3 lab/examples/suite_mitsuba.py SUITE OUTPUT [--sponza Sponza.gltf] [--only 'cornell-*']
+    python3 -m clpv_lab.score OUTPUT --suite SUITE --only 'cornell-*'
 
 Reads cameras, lights and models of SUITE as any renderer would, and writes OUTPUT/VIEW.NUMBER.exr:
 radiance after one bounce. """
@@ -229,8 +229,8 @@ def main():
     suite = json.loads((given.suite / "suite.json").read_text())
     sys.path.insert(0, str(given.suite))  # the scorer, and how clpv writes files
     from clpv import output
-    from clpv.score import exr
-    folder = output.Folder(given.output, "examples/suite_mitsuba.py")
+    from clpv_lab.score import exr
+    folder = output.Folder(given.output, "lab/examples/suite_mitsuba.py")
     for name, entry in suite["scenes"].items():
         views = [
             view for view in suite["views"]

@@ -18,11 +18,11 @@ import unittest
 
 import numpy
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts")]
-from clpv.score import __main__ as command, exr, flip, mistakes, suite as scored  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "lab/python"), str(ROOT / "scripts")]
+from clpv_lab.score import __main__ as command, exr, flip, mistakes, suite as scored  # noqa: E402
 from exr_writer import write  # noqa: E402
-from measured import suite  # noqa: E402
+from clpv_lab import write_suite as suite  # noqa: E402
 
 CLPV = os.environ["CLPV"]
 SIZE = 40, 24

@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m clpv.score DIR...: errors of folders of images of indirect light against the truths of
+"""python3 -m clpv_lab.score DIR...: errors of folders of images of indirect light against the truths of
 a suite."""
 import argparse
 import json
 import pathlib
 import sys
 
+from clpv.draw import viewer
 from clpv.output import BadOutput, Output, printable
-from clpv.score import page, suite, table
-from clpv.score.exr import BadImage
+from clpv_lab.score import page, suite
+from clpv_lab.score.exr import BadImage
 
 RUN_TIME, BAD_INPUT = 1, 3
+
+
+def table(score):
+    """Lines of text: a view each, then the mean."""
+    lines = viewer.cells([*score["views"], {"view": "mean", **score["mean"]}], ["view"])
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    return "\n".join("  ".join(
+        cell.ljust(width) if i == 0 else cell.rjust(width)
+        for i, (cell, width) in enumerate(zip(line, widths))) for line in lines)
 
 
 def report(score):
@@ -18,16 +28,16 @@ def report(score):
     method = printable(score["method"])
     for row in score["views"]:
         for suspicion in row["suspected"]:
-            print(f"clpv.score: {method}: {row['view']} {suspicion}", file=sys.stderr)
+            print(f"clpv_lab.score: {method}: {row['view']} {suspicion}", file=sys.stderr)
     for measure, count in score["undefined"].items():
         if count:
-            print(f"clpv.score: {method}: {measure} is undefined in {count} of "
+            print(f"clpv_lab.score: {method}: {measure} is undefined in {count} of "
                   f"{len(score['views'])} views, whose truth is black, and so is its mean",
                   file=sys.stderr)
 
 
 def main(arguments):
-    parser = argparse.ArgumentParser(prog="python3 -m clpv.score", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python3 -m clpv_lab.score", description=__doc__)
     parser.add_argument(
         "folders", metavar="DIR", type=pathlib.Path, nargs="+",
         help="images VIEW.exr, or frames VIEW.NUMBER.exr of the same still view: linear radiance")
@@ -65,17 +75,17 @@ def main(arguments):
         if given.output:
             outputs[0].write(json.dumps(scores[0], indent=1, allow_nan=False) + "\n")
     except (BadImage, BadOutput) as error:
-        print(f"clpv.score: {printable(error)}", file=sys.stderr)
+        print(f"clpv_lab.score: {printable(error)}", file=sys.stderr)
         return getattr(error, "code", BAD_INPUT)
     try:
         for score in scores:
             report(score)
             names = [printable(score["method"])] if len(scores) > 1 else []
-            sys.stdout.write("\n".join([*names, table.text(score), ""]))
+            sys.stdout.write("\n".join([*names, table(score), ""]))
         sys.stdout.flush()
     except (OSError, AttributeError) as error:  # a full disk; None where stdout is closed
         sys.stdout = None  # Python would try again at its exit
-        print(f"clpv.score: stdout: cannot be written: {error}", file=sys.stderr)
+        print(f"clpv_lab.score: stdout: cannot be written: {error}", file=sys.stderr)
         return RUN_TIME
     return 0
 

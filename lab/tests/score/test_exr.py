@@ -10,7 +10,7 @@ import numpy
 
 import test_score
 from exr_writer import write
-from clpv.score import exr
+from clpv_lab.score import exr
 
 REC2020 = 0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329
 

@@ -2,7 +2,7 @@
 """Writes EXR files for tests."""
 import struct
 
-from clpv.score import exr
+from clpv_lab.score import exr
 
 
 def write(file, planes, data=None, display=None, more=b""):

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import pathlib
 import subprocess
 import sys
 
@@ -10,13 +11,19 @@ import numpy as np
 import pytest
 
 import clpv
-from conftest import CORNELL, program
 
 pytest.importorskip("scipy", reason="all of it: SciPy is not installed (Debian: apt install python3-scipy)")
-from clpv import search  # noqa: E402
+from clpv_lab import search  # noqa: E402
+
+CORNELL = pathlib.Path(__file__).resolve().parents[3] / "scenes/cornell.json"
 
 SLANTED = np.array([[1, 2, -3], [0, math.sqrt(14), 0]]) / math.sqrt(14), np.array([0.75, 0.25])
 LAMBDAS = np.array([0.2, 0.3, 0.25, 0.4, 0.33, 0.21])
+
+
+def program(*arguments):
+    words = [os.path.join(os.environ["CLPV_BUILD"], "clpv"), *map(str, arguments)]
+    return subprocess.run(words, check=True, capture_output=True, text=True).stdout
 
 
 def even_directions(count):
@@ -117,7 +124,7 @@ def test_bad_weights(tmp_path, text, place):
 
 
 def run(*arguments):
-    return subprocess.run([sys.executable, "-m", "clpv.search", *map(str, arguments)],
+    return subprocess.run([sys.executable, "-m", "clpv_lab.search", *map(str, arguments)],
                           capture_output=True, text=True, check=False, timeout=300, env=os.environ)
 
 

@@ -2,7 +2,7 @@
 """Search for the centres of radial functions that best represent clamped cosines (docs/bases.md,
 'Searched centres').
 
-    python3 -m clpv.search 8 -o mine.json && clpv render scenes/cornell.json --centres mine.json -o
+    python3 -m clpv_lab.search 8 -o mine.json && clpv render scenes/cornell.json --centres mine.json -o
     image.png
 
 Minimises the root mean square of the relative L2 error of clamped cosines: SciPy's SLSQP descends
@@ -246,7 +246,7 @@ def document_of(name, found):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="clpv.search", description=__doc__,
+    parser = argparse.ArgumentParser(prog="clpv_lab.search", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("count", metavar="N", type=int,
                         help=f"number of centres (1 to {MAX_CENTRES})")

@@ -4,7 +4,7 @@ import itertools
 
 import numpy
 
-from clpv.score import flip
+from clpv_lab.score import flip
 
 GAIN_LIMIT = 1.8  # of another exposure
 EXPLAINED = 0.6  # each correction must leave at most this share of the error

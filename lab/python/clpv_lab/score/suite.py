@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy
 
-from clpv.score import errors, exr, mistakes
-from clpv.score.exr import BadImage
+from clpv_lab.score import errors, exr, mistakes
+from clpv_lab.score.exr import BadImage
 
 SCHEMA = 1
 MAX_NUMBER = 1000  # noise, and exposures [EV], whose powers of 2 are finite
@@ -46,7 +46,7 @@ def read_suite(folder):
         suite = json.loads(file.read_text(), object_pairs_hook=unique)
     except OSError as error:
         raise BadImage(
-            f"{file}: {error.strerror}; allowed: a folder that scripts/suite wrote") from None
+            f"{file}: {error.strerror}; allowed: a folder that lab/scripts/suite wrote") from None
     except (ValueError, RecursionError) as error:
         raise BadImage(f"{file}: {error}") from None
     views = suite.get("views") if isinstance(suite, dict) else None

@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 import test_score
-from clpv.score import exr, page
+from clpv_lab.score import exr, page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 # Sums of all channels as the page draws them, with the controls moved.

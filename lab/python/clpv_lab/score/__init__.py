@@ -2,7 +2,7 @@
 """Scores images of indirect light, by any renderer, against path-traced truths. Needs NumPy alone;
 lab/docs/score.md.
 
-    python3 -m clpv.score DIR [--suite FOLDER]     a folder of images, one for each view of the
+    python3 -m clpv_lab.score DIR [--suite FOLDER]     a folder of images, one for each view of the
                                                    suite
-    clpv.score.suite.score(folder, suite)          the same as a dictionary
+    clpv_lab.score.suite.score(folder, suite)          the same as a dictionary
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""scripts/corpus: the table of a folder of models, and the files that it may replace."""
+"""lab/scripts/corpus: the table of a folder of models, and the files that it may replace."""
 import base64
 import json
 import os
@@ -10,7 +10,7 @@ import sys
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "corpus"
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/corpus"
 
 
 def model(**changes):

@@ -2,7 +2,7 @@
 """Errors of an image against a ground truth, as `clpv compare` computes them."""
 import numpy
 
-from clpv.score import flip
+from clpv_lab.score import flip
 
 
 def root_of_ratio(power, of):
