@@ -17,6 +17,7 @@
 #include "clpv/renderer.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/variable.hpp"
 
 namespace clpv::api_calls_test {
 namespace {
@@ -28,23 +29,9 @@ using test::kCornell;
 
 const Vec3 kEye{0.3, 0.25, 0.2}, kElsewhere{-0.4, 0.5, 0.1};
 
-/// A variable of the environment, during a test.
-class Variable {
- public:
-  Variable(const char* name, const std::string& value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    ::setenv(name, value.c_str(), 1);
-  }
-  ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
-
 TEST(ApiCalls, TheLibraryPrintsNothingAndTheReceiverGetsAll) {
   all_devices();  // chooses PoCL's cache, which keeps its place
-  const Variable cache("CLPV_PROGRAM_CACHE", "on"), nowhere("XDG_CACHE_HOME", "/dev/null/nowhere");
+  const test::Variable cache("CLPV_PROGRAM_CACHE", "on"), nowhere("XDG_CACHE_HOME", "/dev/null/nowhere");
   std::mutex mutex;
   std::vector<std::pair<LogLevel, std::string>> received;
   testing::internal::CaptureStdout();

@@ -14,6 +14,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/variable.hpp"
 #include "volume/volume_format.hpp"
 
 namespace clpv::basis_kernels_test {
@@ -42,7 +43,7 @@ std::vector<float> on_device(const Basis& basis, const LobeOptions& lobes,
   Session& session = test_session();
   const test::TemporaryFolder folder;
   folder.write("values.cl", kKernel);
-  setenv("CLPV_KERNEL_DIR", folder.path().c_str(), 1);
+  const test::Variable kernels("CLPV_KERNEL_DIR", folder.path().string());
   const LookupTable table(session, basis, lobes, TableStorage::buffer, TableUse::lobes);
   ProgramSource source{"values.cl", lobe_literals(basis, lobes)};
   add_coefficient_literals(source.literals, basis.size(), "float");
@@ -58,7 +59,6 @@ std::vector<float> on_device(const Basis& basis, const LobeOptions& lobes,
                out = session.buffer(numbers * sizeof(float), "values");
   table.add_to(kernel.set(in, out));
   kernel.launch(directions.size(), 1);
-  unsetenv("CLPV_KERNEL_DIR");
   return session.read<float>(out, numbers);
 }
 

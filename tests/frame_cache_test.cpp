@@ -3,10 +3,7 @@
 // before it.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -18,6 +15,7 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/variable.hpp"
 
 namespace clpv::frame_cache_test {
 namespace {
@@ -197,76 +195,34 @@ TEST_F(CachedFrame, AnObserverReceivesSharedVolumes) {
   EXPECT_TRUE(observed() == recomputed);
 }
 
-void add_sky(json& scene, json&) {
-  scene["sky"] = {{"radiance", {0.5, 1, 2}}};
-}
-void add_medium(json& scene, json&) {
-  scene["medium"] = {{"scattering", {0.2, 0.2, 0.2}}, {"anisotropy", 0.3}};
-}
-void add_emission(json&, json& model) {  // of the wall
-  model["materials"][0]["emissiveFactor"] = {1, 0.5, 0.25};
-}
-
-struct CachedSky : CachedFrame {
-  CachedSky() : CachedFrame({}, add_sky) {}
-};
-struct CachedMedium : CachedFrame {
-  CachedMedium() : CachedFrame({}, add_medium) {}
-};
-struct CachedEmission : CachedFrame {
-  CachedEmission() : CachedFrame({}, add_emission) {}
-};
+/// A sky, a medium and an emissive wall.
 struct CachedAll : CachedFrame {
   CachedAll()
       : CachedFrame({}, [](json& scene, json& model) {
-          add_sky(scene, model), add_medium(scene, model), add_emission(scene, model);
+          scene["sky"] = {{"radiance", {0.5, 1, 2}}};
+          scene["medium"] = {{"scattering", {0.2, 0.2, 0.2}}, {"anisotropy", 0.3}};
+          model["materials"][0]["emissiveFactor"] = {1, 0.5, 0.25};
         }) {}
 };
 
-TEST_F(CachedSky, RecomputesOnlyWhatChanged) {
-  Instants at;
-  const Passes all = with(with(with(kOfEveryFrame, kOfView), kOfLight), kOfCells);
-  EXPECT_EQ(passes(at), all);
-  EXPECT_EQ(passes(at), kOfEveryFrame);
-  at.eye.x += 0.5f * kCell;
-  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfView));
-  at.sun = 0.3;
-  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight));
-  at.wall = 0.6;
-  EXPECT_EQ(passes(at), all) << "it shadows the sky";
-  at.eye.x += kCell;
-  EXPECT_EQ(passes(at), with(with(with(kOfEveryFrame, kOfView), kOfCells),
-                             {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}));
-}
-
-TEST_F(CachedMedium, RecomputesOnlyWhatChanged) {
+TEST_F(CachedAll, RecomputesOnlyWhatChanged) {
   const Passes always = with(kOfEveryFrame, {Pass::medium});
   Instants at;
-  const Passes all = with(with(with(always, kOfView), kOfLight), kOfCells);
+  const Passes all = with(with(with(with(always, kOfView), kOfLight), kOfCells), {Pass::emit});
   EXPECT_EQ(passes(at), all);
   EXPECT_EQ(passes(at), always);
   at.eye.x += 0.5f * kCell;
   EXPECT_EQ(passes(at), with(always, kOfView));
   at.sun = 0.3;
-  EXPECT_EQ(passes(at), with(always, kOfLight)) << "scattered sunlight, too";
+  EXPECT_EQ(passes(at), with(always, kOfLight)) << "scattered sunlight too; the wall is still";
   at.wall = 0.6;
-  EXPECT_EQ(passes(at), all);
-}
-
-TEST_F(CachedEmission, RecomputesOnlyWhatChanged) {
-  Instants at;
-  const Passes all =
-      with(with(with(with(kOfEveryFrame, kOfView), kOfLight), kOfCells), {Pass::emit});
-  EXPECT_EQ(passes(at), all);
-  EXPECT_EQ(passes(at), kOfEveryFrame);
-  at.eye.x += 0.5f * kCell;
-  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfView));
-  at.sun = 0.3;
-  EXPECT_EQ(passes(at), with(kOfEveryFrame, kOfLight)) << "the emissive wall is still";
-  at.wall = 0.6;
-  EXPECT_EQ(passes(at), all) << "the emissive wall moves";
+  EXPECT_EQ(passes(at), all) << "it emits, and shadows the sky";
+  at.eye.x += kCell;
+  EXPECT_EQ(passes(at), with(with(with(always, kOfView), kOfCells),
+                             {Pass::rasterize_rsm, Pass::inject_light, Pass::propagate}))
+      << "the emitted light of the scene's triangles stands";
   frame_.invalidate_light();
-  EXPECT_EQ(passes(at), with(with(with(kOfEveryFrame, kOfView), kOfLight), {Pass::emit}));
+  EXPECT_EQ(passes(at), with(with(with(always, kOfView), kOfLight), {Pass::emit}));
 }
 
 TEST_F(CachedAll, IsTheSameAlongAPathAcrossCells) {
@@ -278,23 +234,6 @@ TEST_F(CachedAll, IsTheSameAlongAPathAcrossCells) {
     passes(at);
   }
 }
-
-/// Sets environment variables, and restores them at the end.
-class Environment {
- public:
-  void set(const std::string& name, const std::string& value) {
-    const char* before = std::getenv(name.c_str());
-    before_.try_emplace(name, before ? std::optional<std::string>(before) : std::nullopt);
-    ::setenv(name.c_str(), value.c_str(), 1);
-  }
-  ~Environment() {
-    for (const auto& [name, value] : before_)
-      value ? ::setenv(name.c_str(), value->c_str(), 1) : ::unsetenv(name.c_str());
-  }
-
- private:
-  std::map<std::string, std::optional<std::string>> before_;
-};
 
 TEST(FrameKeys, ChangeWithEachInput) {
   const test::TemporaryFolder folder;
@@ -321,19 +260,20 @@ TEST(FrameKeys, ChangeWithEachInput) {
   both("centres");
   folder.write("set.json", R"({"centres": [[1, 0, 0], [0, 0, 1]]})"), both("their content");
 
-  Environment environment;
-  environment.set("CLPV_KERNEL_DIR", folder.path().string());
+  const test::Variable kernels("CLPV_KERNEL_DIR", folder.path().string());
   folder.write("gather/gather.cl", "#include \"mine.h\"\n"), both("a kernel");
   folder.write("mine.h", "#include \"more.h\"\n"), both("a file that it includes");
   folder.write("more.h", "a"), both("a file that that one includes");
   folder.write("more.h", "b"), both("its content");
-  environment.set("POCL_EXTRA_BUILD_FLAGS", "-g"), both("flags of the driver");
+  const test::Variable flags("POCL_EXTRA_BUILD_FLAGS", "-g");
+  both("flags of the driver");
 
-  environment.set("POCL_MAX_PTHREAD_COUNT", "1"), only_times("threads");
+  const test::Variable threads("POCL_MAX_PTHREAD_COUNT", "1");
+  only_times("threads");
   device.compute_units = 1, only_times("compute units");
   only_times("processors", 1);
   const std::string before = times_key(device, options, 1);
-  environment.set("POCL_CACHE_DIR", folder.path().string());
+  const test::Variable cache("POCL_CACHE_DIR", folder.path().string());
   EXPECT_EQ(times_key(device, options, 1), before) << "a cache changes nothing";
 }
 

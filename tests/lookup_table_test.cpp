@@ -15,6 +15,7 @@
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/variable.hpp"
 
 namespace clpv::lookup_table_test {
 namespace {
@@ -45,7 +46,7 @@ std::vector<float> entries(const LookupTable& table, const Basis& basis,
                "__kernel void entries(__global float* out CLPV_AND_H) {\n"
                "  const int i = (int)get_global_id(0);\n"
                "  out[i] = table_entry(singular_table, i);\n}\n");
-  setenv("CLPV_KERNEL_DIR", folder.path().c_str(), 1);
+  const test::Variable kernels("CLPV_KERNEL_DIR", folder.path().string());
   ProgramSource source{"entries.cl", lobe_literals(basis, options)};
   add_coefficient_literals(source.literals, basis.size(), "float");
   table.add_literals(source.literals);
@@ -54,7 +55,6 @@ std::vector<float> entries(const LookupTable& table, const Basis& basis,
   const Buffer out = session.buffer(size * sizeof(float), "entries");
   table.add_to(kernel.set(out));
   kernel.launch(size, 1);
-  unsetenv("CLPV_KERNEL_DIR");
   return session.read<float>(out, size);
 }
 

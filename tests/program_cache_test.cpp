@@ -13,6 +13,7 @@
 #include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/variable.hpp"
 
 namespace clpv::program_cache_test {
 namespace {
@@ -114,41 +115,37 @@ TEST_F(ProgramCacheTest, DropsTheLeastRecentlyUsed) {
 TEST_F(ProgramCacheTest, UsersFolderIsTheDocumentedOne) {
   Device device = choose_device();  // PoCL takes its cache's folder from the environment now
   const fs::path home = folder_.path() / "home", cache = folder_.path() / "cache";
-  setenv("HOME", home.c_str(), 1);
-  setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+  const test::Variable homes("HOME", home.string()), caches("XDG_CACHE_HOME", cache.string()),
+      setting("CLPV_PROGRAM_CACHE", std::nullopt);
   device.platform = "of a driver without a cache";
-  unsetenv("CLPV_PROGRAM_CACHE");
   EXPECT_EQ(ProgramCache::of_user(device)->folder(), cache / "clpv");
-  setenv("XDG_CACHE_HOME", "", 1);
+  caches.set("");
   EXPECT_EQ(ProgramCache::of_user(device)->folder(), home / ".cache/clpv");
-  setenv("CLPV_PROGRAM_CACHE", "off", 1);
+  setting.set("off");
   EXPECT_FALSE(ProgramCache::of_user(device).has_value());
-  unsetenv("CLPV_PROGRAM_CACHE");
-  unsetenv("HOME");
+  setting.set(std::nullopt), homes.set(std::nullopt);
   EXPECT_FALSE(ProgramCache::of_user(device).has_value());
 }
 
 TEST_F(ProgramCacheTest, DriversThatKeepKernelsNeedNone) {
   Device device = choose_device();
-  setenv("XDG_CACHE_HOME", (folder_.path() / "cache").c_str(), 1);
-  unsetenv("CLPV_PROGRAM_CACHE");
+  const test::Variable caches("XDG_CACHE_HOME", (folder_ / "cache").string()),
+      setting("CLPV_PROGRAM_CACHE", std::nullopt);
   device.platform = "Portable Computing Language";
   EXPECT_FALSE(ProgramCache::of_user(device).has_value());
-  setenv("CLPV_PROGRAM_CACHE", "on", 1);
+  setting.set("on");
   EXPECT_TRUE(ProgramCache::of_user(device).has_value());
-  unsetenv("CLPV_PROGRAM_CACHE");
 }
 
 /// A session's program from the cache; its kernel writes another value than a compiled one.
 class CachedSession : public ProgramCacheTest {
  protected:
   CachedSession() {
-    setenv("CLPV_KERNEL_DIR", folder_.path().c_str(), 1);
     write_file(folder_.path() / "answer.cl",
                "__kernel void answer(__global int* a) { if (get_global_id(0) == 0) a[0] = "
                "CLPV_ANSWER; }\n");
   }
-  ~CachedSession() override { unsetenv("CLPV_KERNEL_DIR"); }
+  const test::Variable kernels_{"CLPV_KERNEL_DIR", folder_.path().string()};
 
   static ProgramSource source(int value) {
     const int lanes = choose_device().lanes;  // as a session adds them

@@ -12,6 +12,7 @@
 #include "device/session.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/variable.hpp"
 
 namespace clpv::program_test {
 namespace {
@@ -21,12 +22,11 @@ using ::testing::HasSubstr;
 /// A folder of kernel files that CLPV_KERNEL_DIR names while this lives.
 class KernelFolder {
  public:
-  KernelFolder() { setenv("CLPV_KERNEL_DIR", folder_.path().c_str(), 1); }
-  ~KernelFolder() { unsetenv("CLPV_KERNEL_DIR"); }
   void write(const std::string& name, const std::string& text) { folder_.write(name, text); }
 
  private:
   test::TemporaryFolder folder_;
+  const test::Variable variable_{"CLPV_KERNEL_DIR", folder_.path().string()};
 };
 
 TEST(KernelFiles, EveryFileIsEmbeddedByteForByte) {

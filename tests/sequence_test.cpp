@@ -10,6 +10,7 @@
 #include "image/image_io.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/variable.hpp"
 
 namespace clpv::test::sequence_test {
 namespace {
@@ -24,18 +25,6 @@ constexpr const char* kSmall = " --width 48 --height 27 --rsm-size 64";
 constexpr const char *kSwept = " --grid 16",
                      *kStepped =
                          " --grid 5 --transport sampled --gather all --blockers seen --cascades 1";
-
-/// PATH while this lives.
-class Path {
- public:
-  explicit Path(const std::string& path) : before_(std::getenv("PATH")) {
-    ::setenv("PATH", path.c_str(), 1);
-  }
-  ~Path() { ::setenv("PATH", before_.c_str(), 1); }
-
- private:
-  std::string before_;
-};
 
 struct SequenceTest : ::testing::Test {
   TemporaryFolder folder;
@@ -255,13 +244,14 @@ TEST_F(SequenceTest, TimesOfEveryStageAreSummedUp) {
 
 TEST_F(SequenceTest, AFilmHasEveryFrame) {
   {
-    const Path path(
+    const Variable path(
+        "PATH",
         fake_ffmpeg("for last; do :; done; { echo \"$@\"; wc -c; } > \"${last#file:}\"\n"));
     ASSERT_EQ(sequence("--frames 3 --fps 12.5 --video film.mp4").exit_code, 0);
   }
   EXPECT_THAT(read_file(folder / "film.mp4"), AllOf(HasSubstr("-video_size 48x27 -framerate 12.5"),
                                                     HasSubstr(std::to_string(3 * 48 * 27 * 3))));
-  const Path path(fake_ffmpeg("[ $1 = -version ] || { echo no codec >&2; exit 9; }\n"));
+  const Variable path("PATH", fake_ffmpeg("[ $1 = -version ] || { echo no codec >&2; exit 9; }\n"));
   const Outcome failing = sequence("--frames 3 --fps 12.5 --video other.mp4");
   EXPECT_EQ(failing.exit_code, 1);
   EXPECT_THAT(failing.err,
@@ -270,7 +260,7 @@ TEST_F(SequenceTest, AFilmHasEveryFrame) {
 }
 
 TEST_F(SequenceTest, AMissingFfmpegIsReportedBeforeTheWork) {
-  const Path path("/nowhere");
+  const Variable path("PATH", "/nowhere");
   const Outcome outcome = sequence("--frames 3 --fps 25 --video film.mp4");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err,

@@ -33,6 +33,7 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/variable.hpp"
 #include "times/time_record.hpp"
 
 namespace clpv::trust_test {
@@ -133,11 +134,10 @@ TEST_F(CacheTest, ProgramsAndMarksAreEntries) {
   EXPECT_TRUE(programs.store("key", {1}));
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(programs.file_of("key"))));
 
-  ::setenv("POCL_CACHE_DIR", (folder / "pocl").c_str(), 1);
+  const test::Variable variable("POCL_CACHE_DIR", (folder / "pocl").string());
   Device device;
   device.platform = "Portable Computing Language";
   const CompiledMarks marks(device);
-  ::unsetenv("POCL_CACHE_DIR");
   EXPECT_FALSE(marks.has("key"));
   marks.add("key");
   EXPECT_TRUE(marks.has("key"));
@@ -257,9 +257,7 @@ std::map<std::string, std::string> contents_of(const fs::path& folder) {
 struct ScratchFolders : ::testing::Test {
   test::TemporaryFolder folder;
   const fs::path own = folder / (".clpv-scratch-" + std::to_string(::geteuid()));
-
-  void SetUp() override { ::setenv("TMPDIR", folder.path().c_str(), 1); }
-  void TearDown() override { ::unsetenv("TMPDIR"); }
+  const test::Variable variable{"TMPDIR", folder.path().string()};
 
   /// Kills a process that has a temporary folder; returns that folder.
   fs::path killed() const {
@@ -368,12 +366,7 @@ fs::path chosen_cache(const fs::path& home, const std::string& cache, std::strin
 // Without HOME, PoCL loads code from /tmp/pocl, whoever made it.
 TEST(DriverCache, IsAFolderThatNobodyElseCanWrite) {
   const test::TemporaryFolder folder;
-  const std::map<std::string, std::string> before = [] {
-    std::map<std::string, std::string> values;
-    for (const char* name : {"POCL_CACHE_DIR", "HOME", "XDG_CACHE_HOME"})
-      if (const char* value = std::getenv(name)) values[name] = value;
-    return values;
-  }();
+  const test::Variable pocl("POCL_CACHE_DIR"), home("HOME"), cache("XDG_CACHE_HOME");
   std::string err;
   EXPECT_EQ(chosen_cache("/none", folder.path(), err), folder / "clpv/pocl");
   EXPECT_EQ(mode_of(folder / "clpv/pocl"), 0700u);
@@ -391,10 +384,6 @@ TEST(DriverCache, IsAFolderThatNobodyElseCanWrite) {
     ASSERT_EQ(::chown((folder / "clpv/pocl").c_str(), 65534, 65534), 0);
     EXPECT_EQ(chosen_cache("", folder.path(), err), scratch);
     EXPECT_THAT(err, HasSubstr("another user"));
-  }
-  for (const char* name : {"POCL_CACHE_DIR", "HOME", "XDG_CACHE_HOME"}) {
-    const auto value = before.find(name);
-    value == before.end() ? ::unsetenv(name) : ::setenv(name, value->second.c_str(), 1);
   }
 }
 
@@ -437,9 +426,10 @@ TEST_F(Inputs, AreReplacedByNoOutput) {
   const std::string scene = " my.json" + steps,
                     film = "sequence" + scene + "--frames 3 --fps 1 --format png -o . ",
                     cached = " --spp 1 --frames 1 --cache " + cache.path().string();
-  ::setenv("CLPV_KERNEL_DIR", folder.path().c_str(), 1);
-  const test::Outcome kernel = run_here("check --list --junit gather/gather.cl", folder.path());
-  ::unsetenv("CLPV_KERNEL_DIR");
+  const test::Outcome kernel = [&] {
+    const test::Variable kernels("CLPV_KERNEL_DIR", folder.path().string());
+    return run_here("check --list --junit gather/gather.cl", folder.path());
+  }();
   EXPECT_EQ(kernel.exit_code, 2) << kernel.err;
   const std::string rendered = "render" + scene;
   const std::vector<std::string> commands{
