@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "cli/commands.hpp"
 #include "cli/drawing.hpp"
@@ -130,32 +131,32 @@ struct PageView {
   nlohmann::json images;
 };
 
-/// Writes an image as NPY. Returns its entry in report.json.
-nlohmann::json add_image(const Drawing& drawing, const PageView& view, const std::string& title,
-                         const Image& image) {
-  const std::string file = fmt::format("{}-{}.npy", view.name, view.images.size());
-  write_npy(drawing.folder() / file, image.pixels,
-            std::array{static_cast<std::size_t>(image.height),
-                       static_cast<std::size_t>(image.width), image.channels.size()});
-  return {{"title", title}, {"file", file}};
+/// Writes values of each pixel. Returns the name of the file.
+std::string add_values(const Drawing& drawing, const PageView& view, const char* kind,
+                       std::span<const float> values) {
+  const std::size_t height = static_cast<std::size_t>(view.truth.height),
+                    width = static_cast<std::size_t>(view.truth.width);
+  const std::string file = fmt::format("{}-{}-{}.npy", view.name, view.images.size(), kind);
+  write_npy(drawing.folder() / file, values,
+            std::array{height, width, values.size() / (height * width)});
+  return file;
 }
 
 /// Adds an image with its errors. `source` names it in messages.
 void add_compared(const Drawing& drawing, PageView& view, const std::string& title,
                   const Image& image, const std::string& source) {
-  const Comparison errors = compare(image, source, view.truth, "ground truth", view.exposure);
+  const nlohmann::json errors =
+      to_json(compare(image, source, view.truth, "ground truth", view.exposure));
   const std::vector<double> map = flip_map(image, view.truth, view.exposure);
-  nlohmann::json entry = add_image(drawing, view, title, image);
-  const std::string file = fmt::format("{}-{}-flip.npy", view.name, view.images.size());
-  write_npy(drawing.folder() / file, std::vector<float>(map.begin(), map.end()),
-            std::array{static_cast<std::size_t>(image.height),
-                       static_cast<std::size_t>(image.width)});
-  entry["flip"] = file;
-  nlohmann::json& shown = entry["errors"];
-  const nlohmann::json all = to_json(errors);
-  shown["nrmse"] = all["nrmse_valid"];
-  for (const char* name : {"nrmse_best_gain", "energy_ratio", "flip"}) shown[name] = all[name];
-  view.images.push_back(std::move(entry));
+  view.images.push_back(
+      {{"title", title},
+       {"file", add_values(drawing, view, "image", image.pixels)},
+       {"flip", add_values(drawing, view, "flip", std::vector<float>(map.begin(), map.end()))},
+       {"errors",
+        {{"nrmse", errors["nrmse_valid"]},
+         {"nrmse_best_gain", errors["nrmse_best_gain"]},
+         {"energy_ratio", errors["energy_ratio"]},
+         {"flip", errors["flip"]}}}});
 }
 
 /// Options of a variant for a scene, or none, with a warning: the published scheme has no sky.
@@ -199,7 +200,8 @@ std::vector<PageView> views_of(const Subject& subject, const Drawing& drawing) {
                   extract_layer(traced.image, "indirect", traced.file.string()), 0,
                   nlohmann::json::array()};
     view.exposure = exposure_of(view.truth);
-    view.images.push_back(add_image(drawing, view, "path tracing", view.truth));
+    view.images.push_back({{"title", "path tracing"},
+                           {"file", add_values(drawing, view, "image", view.truth.pixels)}});
     views.push_back(std::move(view));
   }
   return views;

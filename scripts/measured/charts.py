@@ -3,7 +3,7 @@
 
     scripts/charts errors [LABEL=]FILE.json ... -o FILE.png     error over frame time, from files of
                                                                 `clpv quality -o FILE.json` or of
-                                                                results/quality; a point per variant
+                                                                lab/results/quality; a point a variant
     scripts/charts lambda -o FILE.png                           condition, error and energy of SRBF
                                                                 bases over the bandwidth; lambdas
                                                                 that clpv rejects are missing. Needs

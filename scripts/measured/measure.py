@@ -1,23 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Measures a device for results/, the standing benchmark of quality, or all numbers that the tables
-in the docs show.
+"""Measures a device for results/, or all numbers that the tables in the docs show.
 
     scripts/measure NAME [DEVICE]                              into results/NAME: 15 minutes on two
                                                                cores
-    scripts/measure quality --model PATH/Sponza.gltf [DEVICE]  into results/quality: 13 minutes on
-                                                               two cores, as much again for truths
     scripts/measure docs --model PATH/Sponza.gltf [DEVICE]     into results/docs: up to two hours on
                                                                two cores
 
 NAME: driver and processor or GPU, such as pocl-3.1-epyc-2-cores. DEVICE: as --device of clpv takes
 it; default: the first. The first form runs `clpv check` and four suites of `clpv bench`. The second
-compares clpv and other methods at equal time with path tracing, and names its file after device and
-commit (docs/results.md). The third runs more suites, frames with --stats, and `clpv quality`
-against path tracing, and redraws the charts in docs/images; scripts/tables then writes the tables.
+runs more suites, frames with --stats, and `clpv quality` against path tracing, and redraws the
+charts in docs/images; scripts/tables and lab/scripts/tables then write the tables.
 The paper's numbers are those of scripts/reproduce --record. Commit and build first (scripts/build),
 and keep the machine free of other work. results/NAME of the first form is new, empty, or of an
 earlier run. Files hold no samples and no host name. `clpv quality` caches ground truths, and for
-the docs finished cells, so a second run of it is short. The third form needs Debian's Python and
+the docs finished cells, so a second run of it is short. The second form needs Debian's Python and
 its packages.
 """
 import argparse
@@ -33,7 +29,6 @@ import tempfile
 from . import LAB, RESULTS, ROOT, bake, charts, described, json_lines, lab, leaks, output, rows
 
 FRAME_COUNT = 9
-STANDING_COUNT = 5
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # of a folder in results/
 PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "bake", "bake-leaks", "leaks"]
 
@@ -90,71 +85,6 @@ def scenes_of(arguments, model):
 def measured_with(device):
     return {"commit": described(), "date": str(datetime.date.today()),
             "device": device["name"], "driver": f"{device['platform']} {device['driver']}"}
-
-
-def method_of(cell, options):
-    """Name of what a cell measures; None for the frame beside baselines, which another run
-    measures."""
-    if options[0] == "--preset=paper":
-        return "published scheme"
-    near = cell["options"].get("near")
-    return {"traced": "clpv", "off": "clpv, near off"
-            }[near] if near else cell["options"].get("baseline")
-
-
-def measure_standing(folder, model):
-    """Three groups of cells: 240x135 and 960x540, each with its frame's time, and 240x135 with the
-    time of 960x540."""
-    stats = run("render", "scenes/sponza.json", f"--model={model}", "--camera=curtains",
-                f"--frames={FRAME_COUNT}", "--output=FOLDER/frame.png", "--stats")
-    time = sum(stage["median"] for stage in stats["times"]
-               if stage["stage"] not in ("frame", "host", *rows.SHARED))
-    groups = {
-        "small": (rows.STANDING, "small", rows.STANDING_FRAMES + [rows.BASELINES]),
-        "small_with_time_of_large": (rows.STANDING, "small",
-                                     [rows.OF_A_TIME + [f"--baseline-time={time:.1f}"]]),
-        "large": (rows.STANDING_LARGE, "large", rows.STANDING_FRAMES + [rows.BASELINES])
-    }
-    document = {
-        "measured": measured_with(stats["device"]), "frames": STANDING_COUNT,
-        "time_of_large_ms": time, "ground_truths": []
-    }
-    for name, (scenes, size, runs) in groups.items():
-        document[name] = []
-        for arguments in scenes:
-            for options in runs:
-                report = run("quality", *scenes_of(arguments, model), *rows.SIZES[size], *options,
-                             "--fresh", f"--frames={STANDING_COUNT}", "--output")
-                for cell in report["cells"]:
-                    cell["method"] = method_of(cell, options)
-                document[name] += [cell for cell in report["cells"] if cell["method"]]
-            document["ground_truths"] += [
-                {**truth, "file": pathlib.Path(truth["file"]).name, "size": size}
-                for truth in report["ground_truths"] if name != "small_with_time_of_large"
-            ]
-    document["variants"] = measure_front(model)
-    measured = document["measured"]
-    slug = re.sub("[^a-z0-9.]+", "-",
-                  f"{measured['device']} {measured['driver']} {measured['commit']}".lower())
-    write(folder, slug, document)
-    charts.draw_errors([("", folder / f"{slug}.json")], ROOT / "docs/images/baselines.png")
-
-
-def measure_front(model):
-    """Variants of clpv by grid, and of other methods by time, with the series that each belongs
-    to."""
-    given = [*scenes_of(rows.FRONT, model), "--fresh", "--frames=3"]
-    variants = []
-    for series, options in rows.FRONT_GRIDS.items():
-        variants += [
-            {**row, "series": series}
-            for row in run("quality", *given, "--preset=best", *options, "--output")["variants"]
-        ]
-    for time in rows.FRONT_TIMES:
-        report = run("quality", *given, *rows.OF_A_TIME, f"--baseline-time={time}", "--output")
-        variants += [{**row, "series": row["options"]["baseline"]} for row in report["variants"]
-                     if "baseline" in row["options"]]
-    return variants
 
 
 def measure_docs(folder, model, parts):
@@ -242,19 +172,19 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
         "name", metavar="NAME", help=
-        "folder in results/; quality: the standing benchmark; docs: all that the docs' tables show")
+        "folder in results/; docs: all that the docs' tables show")
     parser.add_argument("device", metavar="DEVICE", nargs="?",
                         help="as --device of clpv takes it (default: the first)")
     parser.add_argument("--model",
-                        help="Sponza's glTF, of the Khronos sample models; for quality and docs")
+                        help="Sponza's glTF, of the Khronos sample models; for docs")
     parser.add_argument("--part", metavar="NAME", action="append",
                         help="of docs: a file of results/docs, repeatable (default: all)")
     arguments = parser.parse_intermixed_args()
     for part in arguments.part or []:
         if arguments.name != "docs" or part not in PARTS:
             parser.error(f"--part {part}: allowed for docs: {', '.join(PARTS)}")
-    if (arguments.name in ("docs", "quality")) != (arguments.model is not None):
-        parser.error("--model: needed for docs and quality, and for these alone")
+    if (arguments.name == "docs") != (arguments.model is not None):
+        parser.error("--model: needed for docs, and for these alone")
     if arguments.device:
         os.environ["CLPV_DEVICE"] = arguments.device
     if not re.fullmatch(NAME, arguments.name):
@@ -262,10 +192,7 @@ def main():
     folder = RESULTS / arguments.name
     if arguments.name == "docs":
         measure_docs(folder, pathlib.Path(arguments.model).resolve(), arguments.part or PARTS)
-        print("results/docs is written; scripts/tables writes the tables of the docs")
-    elif arguments.name == "quality":
-        measure_standing(folder, pathlib.Path(arguments.model).resolve())
-        print("results/quality is written; scripts/tables writes docs/results.md")
+        print("results/docs is written; scripts/tables and lab/scripts/tables write the tables of the docs")
     else:
         measure_device(output.Folder(folder, "scripts/measure"))
         print(f"results/{arguments.name} is written; results/README.md says how to send it")

@@ -164,27 +164,3 @@ DOCS_SUITES = {
     "rasterize-opengl": ["sponza"],
 }
 CHARTS = {"layouts": ("layouts", "roofline"), "scaling": ("scaling",)}  # those in docs/images
-
-# The standing benchmark, results/quality: scenes and their cameras by run, then what each run
-# measures.
-STANDING = [[
-    "sponza", "cornell", "atrium", "--camera=curtains", "--camera=atrium", "--camera=columns",
-    "--camera=front", "--camera=nave", "--camera=gallery"
-], ["atrium_living", "--time=4"]]
-STANDING_LARGE = [[
-    "sponza", "cornell", "atrium", "--camera=curtains", "--camera=front", "--camera=nave"
-]]
-STANDING_FRAMES = [["--preset=best", "--vary=near=traced,off"], ["--preset=paper", "--basis=sh2"]]
-METHODS = ("paths", "paths-filtered", "vpl", "vpl-interleaved", "ddgi-first", "ddgi-converged",
-           "radiance-cascades", "radiance-cascades-fine")
-BASELINES = ["--preset=best", f"--baseline={','.join(METHODS)}"]
-OF_A_TIME = ["--preset=best", f"--baseline={','.join(METHODS[:-1])}"]  # the last takes its own time
-SIZES = {"small": ["--noise=0.03"], "large": ["--width=960", "--height=540", "--noise=0.06"]}
-SHARED = "rasterize-camera", "rasterize-shadow", "shade"  # stages whose time baselines do not get
-# Error against time, for the chart: clpv by grid, other methods by their time [ms].
-FRONT = [*VIEWS, "--noise=0.03"]
-FRONT_GRIDS = {
-    "clpv": ["--vary=grid=16,24,32,48,64"],
-    "clpv, near off": ["--near=off", "--vary=grid=16,24,32,48,64"]
-}
-FRONT_TIMES = 5, 20, 80

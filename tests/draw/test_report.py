@@ -39,7 +39,7 @@ class Page(unittest.TestCase):
                 images.append(image)
             self.document["views"].append(
                 {"name": name, "width": 2, "height": 1, "exposure": 0, "images": images})
-        numpy.save(self.folder / "flip.npy", numpy.full((1, 2), 0.2, "f4"))
+        numpy.save(self.folder / "flip.npy", numpy.full((1, 2, 1), 0.2, "f4"))
 
     def page(self):
         (self.folder / "report.json").write_text(json.dumps(self.document))

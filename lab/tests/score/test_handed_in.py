@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scores that others hand in, results/quality/scores: each has the form that `python3 -m clpv_lab.score
+"""Scores that others hand in, lab/results/quality/scores: each has the form that `python3 -m clpv_lab.score
 -o` writes."""
 import copy
 import json
@@ -11,7 +11,7 @@ import test_score  # noqa: F401, the paths of the modules
 from clpv_lab.score import suite as scored
 from clpv_lab import write_suite as suite
 
-FILES = sorted((test_score.ROOT / "results/quality/scores").glob("*.json"))
+FILES = sorted((test_score.ROOT / "lab/results/quality/scores").glob("*.json"))
 NEEDED = "nrmse", "nrmse_best_gain", "energy_ratio", "flip"
 
 

@@ -4,7 +4,7 @@
 report.json: "subtitle"; "methods", each with "title" and "options" (null: images of another
 program); "views", each with "name", "width", "height", "exposure" [EV] and "images", of which the
 first is the truth: "title", "file" (NPY of height x width x channels, R, G and B first) and, but for
-the truth, "flip" (NPY of height x width) and "errors"; "quality" and "benchmarks": {"file",
+the truth, "flip" (NPY of height x width x 1) and "errors"; "quality" and "benchmarks": {"file",
 "document"} of `clpv quality` and `clpv bench` with --output; "marked": options of variants to
 highlight.
 """

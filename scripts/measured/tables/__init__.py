@@ -2,7 +2,7 @@
 """Writes the tables of measured numbers in the docs, between <!-- table: NAME --> and <!-- end -->,
 from results/docs.
 
-    scripts/tables            rewrites them in README.md, docs/ and lab/, and claims.json and
+    scripts/tables            rewrites them in README.md and docs/, and claims.json and
                               expected.json in results/paper
     scripts/tables --check    changes nothing; fails if one of them differs from results/docs
     scripts/tables --list     names of all tables
@@ -15,13 +15,13 @@ import re
 import sys
 
 from .. import ROOT, RESULTS, expected, json_lines, output, verdicts
-from . import bake, benchmarks, quality, paper, standing, tutorial  # they fill TABLES
+from . import bake, benchmarks, quality, paper, tutorial  # they fill TABLES
 from .cells import LOADED, MEASURED, TABLES, read, result
 from .stages import print_stages
 
 __all__ = [
-    "MEASURED", "TABLES", "benchmarks", "main", "paper", "quality", "read", "result", "standing",
-    "tutorial"
+    "MEASURED", "TABLES", "bake", "benchmarks", "main", "pages", "paper", "quality", "read",
+    "result", "tutorial"
 ]
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 def drawn(lines):
@@ -64,7 +64,23 @@ def written(text):
         if match[2] == "measured-on" else match[0], text)
 
 
-def main():
+def pages(files):
+    """(page, its text with its tables) of files that are no links."""
+    for page in files:
+        if not page.is_symlink():
+            yield page, written(page.read_text(encoding="utf-8"))
+
+
+def of_core():
+    """(file, its text) of all that scripts/tables writes."""
+    for name, document in (("claims", {"claims": verdicts.judged(result)}),
+                           ("expected", expected.expected(result))):
+        yield RESULTS / f"paper/{name}.json", json_lines(document)
+    yield from pages([ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))])
+
+
+def main(files=of_core):
+    """`files`: returns what of_core() does, for other pages."""
     arguments = sys.argv[1:]
     if arguments in (["-h"], ["--help"]):
         print(__doc__.strip())
@@ -78,23 +94,11 @@ def main():
         print(__doc__.strip(), file=sys.stderr)
         return 2
     differing = []
-    for name, document in (("claims", {"claims": verdicts.judged(result)}),
-                           ("expected", expected.expected(result))):
-        file = RESULTS / f"paper/{name}.json"
-        text = json_lines(document)
+    for file, text in files():
         if not file.exists() or file.read_text(encoding="utf-8") != text:
             differing.append(str(file.relative_to(ROOT)))
             if not arguments:
                 output.write(file, text)
-    for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md")),
-                 *sorted((ROOT / "lab").glob("**/*.md"))]:
-        if page.is_symlink():
-            continue
-        text = page.read_text(encoding="utf-8")
-        if written(text) != text:
-            differing.append(str(page.relative_to(ROOT)))
-            if not arguments:
-                output.write(page, written(text))
     if arguments and differing:
         print(f"{', '.join(differing)}: tables differ from results/docs; run scripts/tables",
               file=sys.stderr)

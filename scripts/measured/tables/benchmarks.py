@@ -200,41 +200,6 @@ def frames_recomputed():
     return lines
 
 
-@table
-def rasterize():
-    names = {"rasterize-camera": "camera, 960x540", "rasterize-shadow": "shadow map, 1024^2",
-             "rasterize-rsm": "three RSMs, 256^2"}
-    rows = []
-    for stage, name in names.items():
-        ours, theirs = (found(bench("rasterize-opengl"), name=stage + peer)
-                        for peer in ("", "/opengl"))
-        wall = ours["wall_ms"]
-        rows.append({"name": name, "wall": wall, "triangle": 1e6 * wall / ours["triangles"],
-                     "pixel": 1e6 * wall / ours["pixels"], "theirs": theirs["wall_ms"],
-                     "ratio": theirs["wall_ms"] / wall})
-    return shown({"": "{name}", "clpv [ms]": "{wall:#}", "per triangle [ns]": "{triangle:#}",
-                  "per pixel [ns]": "{pixel:#}", "OpenGL [ms]": "{theirs:#}",
-                  "OpenGL / clpv": "{ratio:#}x"}, rows)
-
-
-@table
-def baseline():
-    lines = [[
-        "sh2", "OpenCL, minimum [ms]", "GFLOP/s", "of the ceiling", "C++, minimum [ms]", "GFLOP/s",
-        "of the ceiling", "OpenCL / C++"
-    ]]
-    for occlusion, name in ((False, "without blockers"), (True, "with blockers")):
-        rows = [found(bench("native"), stage=stage, occlusion=occlusion)
-                for stage in ("propagate", "native")]
-        cells = [
-            cell for row in rows
-            for cell in (number(row["min"]), f"{row['gflops'] * row['median'] / row['min']:.0f}",
-                         f"{100 * row['ceiling_share'] * row['median'] / row['min']:.0f} %")
-        ]
-        lines.append([name, *cells, ratio(rows[0]["min"], rows[1]["min"])])
-    return lines
-
-
 # One option at a time, by `clpv bench factors`.
 
 

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Tables of docs/quality.md and README.md: NRMSE of indirect light in %, and energy over the ground
 truth's."""
-from clpv import ms_of
-
 from .. import rows as known
 from ..rows import PAPER
-from .cells import found, load, number, percent, shown, table
+from .cells import found, load, percent, shown, table
 
 
 VIEWS = {
@@ -186,29 +184,3 @@ def readme():
     }, [{**found(load("quality")["variants"], options=options), "name": name}
         for name, options in (("the defaults", known.BEST), ("`--preset fast`", known.FAST),
                               ("published scheme, sh2", PAPER))])
-
-
-@table
-def quality_cascades():
-    cells = load("quality-cascades")["cells"]
-    views = list(dict.fromkeys((cell["scene"], cell["camera"]) for cell in cells))
-    lines = [[
-        "NRMSE [%]", *(f"{scene}, {camera}" for scene, camera in views), "mean", "FLIP",
-        "light [ms]", "memory [MB]"
-    ]]
-    for method in (None, *known.CASCADE_METHODS):
-        options = {"baseline": method} if method else {}
-        found_cells = [
-            found(cells, options=options, scene=scene, camera=camera) for scene, camera in views
-        ]
-        times = sorted(ms_of(cell["times"], "baseline") for cell in found_cells)
-        memory = max(cell["settings"].get("megabytes", 0) for cell in found_cells)
-        lines.append([
-            f"`{method}`" if method else "clpv, the defaults", *(percent(cell["nrmse"])
-                                                                 for cell in found_cells),
-            *(f"{sum(cell[name] for cell in found_cells) * factor / len(views):.{digits}f}"
-              for name, factor, digits in (("nrmse", 100, 1), ("flip", 1, 3))),
-            f"{times[0]:.0f}-{times[-1]:.0f}" if method else "-",
-            number(memory) if memory else "-"
-        ])
-    return lines
