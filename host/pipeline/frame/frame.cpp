@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "options/stage_options.hpp"
-#include "pipeline/frame/paint.hpp"
+#include "pipeline/raster/paint.hpp"
 #include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
