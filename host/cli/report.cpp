@@ -227,7 +227,7 @@ void run(const Options& options, const Shared& shared) {
     add_views(session, options, drawing);
     report["methods"] = methods(options);
   }
-  session.store_programs();
+  session.programs().store();
   const RenderOptions best;
   report["marked"] = {{{"preset", "paper"}},
                       {{"preset", "best"}},
