@@ -73,7 +73,7 @@ std::size_t peak_host_bytes() {
 /// Sets up a case and runs it once. Its row becomes `unsupported` if the device lacks a capability.
 void prepare(Session& session, const Case& source, CaseRun& run) {
   run.row = source.row;
-  const double build_ms_before = session.build_ms();
+  const double build_ms_before = session.programs().build_ms();
   try {
     run.job = source.make();
     const auto start = Clock::now();
@@ -84,7 +84,7 @@ void prepare(Session& session, const Case& source, CaseRun& run) {
     run.row.status = Status::unsupported;
     run.row.reason = error.what();
   }
-  run.row.build_ms = session.build_ms() - build_ms_before;
+  run.row.build_ms = session.programs().build_ms() - build_ms_before;
   run.wall_ms.clear();
 }
 

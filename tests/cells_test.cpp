@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // View `cells`: which sphere a pixel shows, and its light.
-#include "pipeline/frame/cells.hpp"
+#include "pipeline/raster/cells.hpp"
 
 #include <gmock/gmock.h>
 

@@ -160,7 +160,7 @@ class CachedSession : public ProgramCacheTest {
     const Buffer out = session.buffer(sizeof(int), "answer");
     Kernel(session, source(value), "answer").set(out).launch(1, 1);
     const int read = session.read<int>(out, 1)[0];
-    session.store_programs();
+    session.programs().store();
     return read;
   }
 };
@@ -169,7 +169,7 @@ TEST_F(CachedSession, TakesTheStoredProgram) {
   EXPECT_EQ(answer(1), 1);
   EXPECT_EQ(answer(2), 2);
   const auto two = cache_.load(key(2));
-  ASSERT_TRUE(two.has_value()) << "store_programs() kept it";
+  ASSERT_TRUE(two.has_value()) << "Programs::store() kept it";
   cache_.store(key(1), *two);
   EXPECT_EQ(answer(1), 2) << "the cache was not asked";
 }

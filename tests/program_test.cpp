@@ -106,7 +106,7 @@ TEST(ProgramErrors, BuildFailureShowsLogOptionsAndTheLine) {
   Session session(choose_device());
   const std::string message = test::error_of(ExitCode::run_time, [&] {
     const Kernel kernel(session, {"broken.cl", Literals().integer("CLPV_X", 1)}, "k");
-    session.build_described();
+    session.programs().build_described();
   });
   for (const std::string& words :
        {std::string("kernels/broken.cl"), std::string("-cl-std=CL1.2"), session.device().name,

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "image/image_io.hpp"
-#include "options/show.hpp"
 #include "options/scene_options.hpp"
+#include "options/show.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 

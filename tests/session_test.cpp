@@ -82,7 +82,7 @@ TEST(Kernel, MissingArgumentsAreReported) {
   Session session(choose_device());
   const Buffer bytes = session.buffer(1024, "sizes");
   Kernel kernel(session, {"sizes.cl"}, "sizes");
-  EXPECT_EQ(session.build_ms(), 0) << "described, not built";
+  EXPECT_EQ(session.programs().build_ms(), 0) << "described, not built";
   kernel.set(bytes).launch(1, 1);
   EXPECT_THAT([&] { kernel.set().launch(1, 1); },
               ThrowsMessage<Error>(HasSubstr("kernel 'sizes' was given 0 of its 1 arguments")));
@@ -91,15 +91,15 @@ TEST(Kernel, MissingArgumentsAreReported) {
 TEST(Kernel, ADescribedProgramIsBuiltOnce) {
   Session session(choose_device());
   { const Kernel gone(session, {"sizes.cl", Literals().flag("CLPV_GONE", true)}, "sizes"); }
-  session.build_described();
-  EXPECT_EQ(session.build_ms(), 0) << "nobody holds it";
+  session.programs().build_described();
+  EXPECT_EQ(session.programs().build_ms(), 0) << "nobody holds it";
   const Kernel kernel(session, {"sizes.cl"}, "sizes");
-  session.build_described();
-  const double built = session.build_ms();
+  session.programs().build_described();
+  const double built = session.programs().build_ms();
   EXPECT_GT(built, 0);
   const Kernel again(session, {"sizes.cl"}, "sizes");
-  session.build_described();
-  EXPECT_EQ(session.build_ms(), built);
+  session.programs().build_described();
+  EXPECT_EQ(session.programs().build_ms(), built);
 }
 
 TEST(Session, ProgramsOfAnEarlierSessionAreNotBuiltAgain) {
@@ -107,8 +107,8 @@ TEST(Session, ProgramsOfAnEarlierSessionAreNotBuiltAgain) {
   cl::Program built[2];
   for (cl::Program& each : built) {
     Session session(choose_device());
-    const std::shared_ptr<Program> program = session.describe(source);
-    session.build_described();
+    const std::shared_ptr<Program> program = session.programs().describe(source);
+    session.programs().build_described();
     each = program->built;
   }
   EXPECT_NE(built[0](), nullptr);

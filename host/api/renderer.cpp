@@ -134,7 +134,7 @@ Renderer::Renderer(const Scene& scene, const Options& options, const std::string
 Renderer::~Renderer() {
   if (!state_) return;
   try {
-    state_->session.store_programs();
+    state_->session.programs().store();
   } catch (const std::exception& error) {  // a cache never makes the program fail
     log_debug("compiled programs not cached: {}", error.what());
   }
@@ -269,7 +269,7 @@ Stats Renderer::stats() const {
   for (const StageTime& stage : state().session.timeline().times())
     stats.times.push_back(time_record(stage.mark, {stage.ms}));
   stats.launches = host.launches, stats.waits = host.waits;
-  stats.build_ms = state().session.build_ms();
+  stats.build_ms = state().session.programs().build_ms();
   stats.device_bytes = state().session.device_bytes();
   stats.peak_device_bytes = state().session.peak_device_bytes();
   return stats;

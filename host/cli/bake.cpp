@@ -119,7 +119,7 @@ GridLight computed(const Options& options, Light& light, const ProbeGrid& grid,
     all = light_of(*light.source, grid, moments.count, cache,
                    [&](std::size_t done) { progress.reach(done); });
   }
-  if (light.session) light.session->store_programs();
+  if (light.session) light.session->programs().store();
   if (options.direct) {
     const std::vector<glm::dvec3> direct = light.tracer->direct(positions_of(grid), moments);
     for (std::size_t i = 0; i < direct.size(); ++i) all.integrals[i] += glm::vec3(direct[i]);

@@ -170,7 +170,7 @@ void run(Options options, const Shared& shared) {
     plot->add("bench.json", report_of(options, session, results));
     plot->draw(options.plot);
   }
-  session.store_programs();
+  session.programs().store();
   require_right_results(results.rows);
   if (!before.is_null()) bench::require_ratios(changes, options.fail_above);
 }

@@ -26,7 +26,7 @@ void run(const Options& options, const Shared& shared) {
   Session session(choose_device(shared.device), std::nullopt, {{}, Claims(options.claims)});
   Frame frame(session, moving.scene(), FrameSetup(options.request.frame, moving.scene()));
   frame.render(moving.scene().camera(options.request.camera));
-  session.mark_compiled();
+  session.programs().mark_compiled();
 }
 
 }  // namespace prepare_command

@@ -151,7 +151,7 @@ std::string light_of_volumes(const Options& options, const std::vector<SurfacePo
   Frame frame(session, scene, setup);
   frame.render(camera);
   std::string table = table_of(points, frame);
-  session.store_programs();
+  session.programs().store();
   return table;
 }
 

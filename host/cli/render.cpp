@@ -128,7 +128,7 @@ void run(const Options& options, const Shared& shared) {
       write_file(options.stats, text);
   }
   progress.advance();
-  session.store_programs();
+  session.programs().store();
 }
 
 }  // namespace render_command

@@ -276,7 +276,7 @@ void run(const Options& options, const Shared& shared) {
     report["views"] = add_views(session, options, drawing);
     report["methods"] = methods(options);
   }
-  session.store_programs();
+  session.programs().store();
   const RenderOptions best;
   report["marked"] = {{{"preset", "paper"}},
                       {{"preset", "best"}},

@@ -32,6 +32,7 @@ struct Device {
   std::vector<std::string> missing;  ///< features that clpv needs; empty: supported
 
   bool supported() const { return missing.empty(); }
+  bool oclgrind() const { return platform == "Oclgrind"; }
 };
 
 struct DeviceList {

@@ -7,17 +7,17 @@
 namespace clpv {
 
 Kernel::Kernel(Session& session, const ProgramSource& source, std::string name)
-    : session_(&session), program_(session.describe(source)), name_(std::move(name)) {
+    : session_(&session), program_(session.programs().describe(source)), name_(std::move(name)) {
   program_->kernels.insert(name_);
 }
 
 bool Kernel::claimed() const {
-  return session_->claims(*program_);
+  return session_->programs().claims(*program_);
 }
 
 cl::Kernel& Kernel::built() {
   if (kernel_() == nullptr) {
-    kernel_ = session_->kernel(*program_, name_);
+    kernel_ = session_->programs().kernel(*program_, name_);
     parameter_count_ = kernel_.getInfo<CL_KERNEL_NUM_ARGS>();
   }
   return kernel_;
@@ -40,7 +40,7 @@ void Kernel::launch(const cl::NDRange& global, const cl::NDRange& local) {
                 argument_count_, parameter_count_);
   }
   session_->launch(built(), global, local);
-  session_->finish_first_launch(*program_, name_);
+  session_->programs().finish_first_launch(*program_, name_, [this] { session_->finish(); });
 }
 
 }  // namespace clpv

@@ -35,7 +35,8 @@ concept KernelArgument = KernelValue<T> || KernelMemory<T>;
 /// One kernel function of a program, with its arguments.
 class Kernel {
  public:
-  /// Describes the kernel `name`. Session::build_described() or the first set() builds its program.
+  /// Describes the kernel `name`. Programs::build_described() or the first set() builds its
+  /// program.
   Kernel(Session& session, const ProgramSource& source, std::string name);
 
   /// Sets arguments from the first parameter on.
@@ -78,7 +79,7 @@ class Kernel {
   void record(const cl::Memory& memory);
   void record(std::span<const std::byte> value);
   cl::Kernel& built();
-  bool claimed() const;  ///< Session::claims
+  bool claimed() const;  ///< Programs::claims
 
   Session* session_;
   std::shared_ptr<Program> program_;

@@ -3,9 +3,16 @@
 #pragma once
 
 #include <CL/opencl.hpp>
+#include <array>
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "device/device.hpp"
+#include "device/given_queue.hpp"
+#include "support/error.hpp"
 
 namespace clpv {
 
@@ -54,5 +61,45 @@ class DeviceMemory {
 
 using Buffer = DeviceMemory<cl::Buffer>;
 using Image3D = DeviceMemory<cl::Image3D>;
+
+/// More memory or numbers than the device allows.
+class TooLarge : public Error {
+ public:
+  TooLarge(Error error, double share) : Error(std::move(error)), share(share) {}
+  double share;  ///< what the device allows over what the session has and needs; less than 1
+};
+
+/// Allocates memory on one device, and counts it.
+class Memory {
+ public:
+  /// `zeroed`: all buffers start with zeros. The other arguments must outlive this object.
+  Memory(const Device& device, const cl::Context& context, const cl::CommandQueue& queue,
+         bool zeroed)
+      : device_(device), context_(context), queue_(queue), zeroed_(zeroed) {}
+
+  /// As the functions of Session.
+  Buffer buffer(std::size_t bytes, const std::string& what);
+  Buffer given(cl_mem memory, std::size_t bytes, const char* what) const {
+    return {given_buffer(context_, memory, bytes, what), std::make_shared<MemoryShare>(use_, 0)};
+  }
+  void reserve(Buffer& buffer, std::size_t bytes, const std::string& what);
+  Image3D image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
+                std::size_t bytes, const std::string& what);
+  std::size_t largest_buffer() const;
+  const MemoryUse& use() const { return *use_; }
+
+  /// Lets all later buffers start with zeros.
+  void zero_buffers() { zeroed_ = true; }
+
+ private:
+  void require_room(std::size_t bytes, const std::string& what) const;
+
+  const Device& device_;
+  const cl::Context& context_;
+  const cl::CommandQueue& queue_;
+  bool zeroed_;
+  std::vector<Buffer> retained_;  ///< for Oclgrind, see buffer()
+  std::shared_ptr<MemoryUse> use_ = std::make_shared<MemoryUse>();
+};
 
 }  // namespace clpv

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A session on one device: context, in-order queue, programs, memory use and stage times.
+// A session on one device: context, in-order queue, stage times, programs and memory.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -9,58 +9,26 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/driver_cache.hpp"
 #include "device/given_queue.hpp"
 #include "device/memory.hpp"
-#include "device/program.hpp"
-#include "device/program_cache.hpp"
+#include "device/programs.hpp"
 #include "device/recorder.hpp"
 #include "device/timeline.hpp"
 #include "support/error.hpp"
-#include "support/helpers.hpp"
 
 namespace clpv {
-
-/// A program of a session: described first, built on first use.
-struct Program {
-  ProgramSource source;
-  std::string text, key;                ///< program_text(source), ProgramCache::key
-  cl::Program built;                    ///< null until built
-  bool stored = false;                  ///< true if the cache has it
-  std::set<std::string> kernels = {};   ///< names of the kernels described so far
-  std::set<std::string> launched = {};  ///< names of the kernels launched so far
-  std::optional<bool> claimed = {};     ///< in a helper: true if it compiles this program
-};
-
-/// Who compiles a session's kernels.
-struct Compilation {
-  /// Arguments of clpv for helper processes that do what this session is about to do. Empty: the
-  /// session itself compiles.
-  std::vector<std::string> helpers;
-  /// In such a helper: claims of programs. The session builds and launches only the kernels of
-  /// programs that it claims, and all its buffers start with zeros.
-  std::optional<Claims> claims;
-};
-
-/// More memory or numbers than the device allows.
-class TooLarge : public Error {
- public:
-  TooLarge(Error error, double share) : Error(std::move(error)), share(share) {}
-  double share;  ///< what the device allows over what the session has and needs; less than 1
-};
 
 /// One open device. All commands go to one in-order queue. Not thread safe: use one session per
 /// thread.
 class Session {
  public:
-  /// `cache`: source of compiled programs and target of store_programs(). Without one every program
-  /// is compiled.
+  /// `cache`: source of compiled programs and target of Programs::store(). Without one every
+  /// program is compiled.
   explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt,
                    Compilation compilation = {});
   /// In a caller's context and queue. Stages have times only if the queue has profiling.
@@ -80,49 +48,32 @@ class Session {
   cl::Context& context() { return context_; }
   cl::CommandQueue& queue() { return queue_; }
   Timeline& timeline() { return timeline_; }
+  Programs& programs() { return programs_; }
+  const Programs& programs() const { return programs_; }
 
-  /// Returns the program of this source, with Device::lanes as CLPV_W unless it says another.
-  /// build_described() or the first kernel() of it builds it, once per session.
-  std::shared_ptr<Program> describe(const ProgramSource& source);
-
-  /// Builds all described programs that have an owner and are not built yet, with helpers if they
-  /// are many. Throws Error(run_time) with the compiler's log, as does kernel(). Throws Interrupted
-  /// after a signal.
-  void build_described();
-
-  /// Returns the kernel `name` of a program of describe(), which it builds if needed.
-  cl::Kernel kernel(Program& program, const std::string& name);
-
-  /// In a helper: returns true if it builds and launches this program's kernels. Elsewhere always
-  /// true.
-  bool claims(Program& program);
-
-  /// Waits for the first launch of a kernel, which compiles it on some drivers, so that a signal
-  /// can end the process there. Logs (debug) the time.
-  void finish_first_launch(Program& program, const std::string& name);
-
-  /// In a helper: marks the claimed programs as compiled, after the frame. First builds those whose
-  /// kernels it did not launch.
-  void mark_compiled();
-
-  /// Stores compiled programs in the cache. Call it last, after results are written: some drivers
-  /// compile again when a binary is read.
-  void store_programs();
+  /// Waits for the queue, and counts the wait.
+  void finish() {
+    timeline_.wait([this] { queue_.finish(); });
+  }
 
   /// Allocates a buffer of max(bytes, 4) bytes with undefined contents. `what` names it in errors.
   /// Throws Error(run_time), before allocating, if the device's memory does not suffice; it states
   /// the limit.
-  Buffer buffer(std::size_t bytes, const std::string& what);
+  Buffer buffer(std::size_t bytes, const std::string& what) { return memory_.buffer(bytes, what); }
   /// A caller's buffer, whose memory does not count as the session's. Throws as given_buffer().
   Buffer given(cl_mem memory, std::size_t bytes, const char* what) const {
-    return {given_buffer(context_, memory, bytes, what), std::make_shared<MemoryShare>(use_, 0)};
+    return memory_.given(memory, bytes, what);
   }
   /// Replaces `buffer` by a new one with undefined contents if it has fewer than `bytes` bytes.
-  void reserve(Buffer& buffer, std::size_t bytes, const std::string& what);
+  void reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {
+    memory_.reserve(buffer, bytes, what);
+  }
   /// Allocates an image of `extent` texels and `bytes` bytes with undefined contents. Throws like
   /// buffer().
   Image3D image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
-                std::size_t bytes, const std::string& what);
+                std::size_t bytes, const std::string& what) {
+    return memory_.image(texel, extent, bytes, what);
+  }
 
   /// Runs `kernel` over `global` work-items, rounded up to whole work-groups of `local` in each
   /// dimension (OpenCL 1.2 has no non-uniform work-groups; kernels guard their range). Timed under
@@ -176,51 +127,32 @@ class Session {
   const cl::Image1DBuffer& table_image(const std::vector<float>& values, const std::string& what);
 
   /// Size of the largest buffer that can be allocated now [bytes].
-  std::size_t largest_buffer() const;
+  std::size_t largest_buffer() const { return memory_.largest_buffer(); }
 
-  std::size_t device_bytes() const { return use_->now; }        ///< device memory in use
-  std::size_t peak_device_bytes() const { return use_->peak; }  ///< maximum so far
-  /// Time spent compiling programs or loading them [ms].
-  double build_ms() const { return build_ms_; }
+  std::size_t device_bytes() const { return memory_.use().now; }        ///< device memory in use
+  std::size_t peak_device_bytes() const { return memory_.use().peak; }  ///< maximum so far
 
  private:
   Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;
   Timeline timeline_;
-  void build(Program& program);
-  bool load(Program& program);
-  void note_compiling(const Program& program, double ms);
-  void compile_with_helpers();
-  std::unique_ptr<Helpers> started_helpers() const;
-  void build_one_compiled(const Claims& claims);
-
   void write_bytes(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t at);
-  void require_room(std::size_t bytes, const std::string& what) const;
 
-  bool oclgrind() const { return device_.platform == "Oclgrind"; }
-
-  std::optional<ProgramCache> cache_;
-  Compilation compilation_;
   std::unique_ptr<Recorder> recorder_;
-  CompiledMarks marks_;
-  bool helped_ = false;                                       ///< helpers compiled
-  std::map<std::string, std::shared_ptr<Program>> programs_;  ///< by ProgramCache::key
-  struct Write {                                              ///< bytes on their way to the device
+  Memory memory_;
+  Programs programs_;
+  struct Write {  ///< bytes on their way to the device
     std::vector<std::byte> bytes;
     cl::Event done;
   };
   std::vector<Write> writes_;
   std::vector<std::shared_ptr<Arriving>> reads_;  ///< of read_later(), until they have arrived
-  std::vector<Buffer> retained_;                  ///< for Oclgrind, see buffer()
   struct TableImage {
     Buffer values;
     cl::Image1DBuffer image;
   };
   std::map<std::vector<float>, TableImage> table_images_;  ///< see table_image()
-  std::shared_ptr<MemoryUse> use_ = std::make_shared<MemoryUse>();
-  double build_ms_ = 0;
-  double compiling_ms_ = 0;  ///< since build_described(), without kernels that are marked
 };
 
 /// Times all launches during its lifetime as one stage of the timeline.

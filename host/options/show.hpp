@@ -31,8 +31,8 @@ template <>
 inline constexpr auto kNames<Show> = name_list("full", "direct", "indirect", "irradiance", "albedo",
                                                "normal", "depth", "medium", "cells");
 
-/// Views of surfaces, which kernels shade. `medium` is computed by pipeline/medium, `cells` drawn
-/// by pipeline/cells.
+/// Views of surfaces, which kernels shade. `medium` is computed by stage `medium`, `cells` drawn
+/// by the host (raster/cells).
 inline constexpr std::array kSurfaceViews{Show::full,       Show::direct, Show::indirect,
                                           Show::irradiance, Show::albedo, Show::normal,
                                           Show::depth};

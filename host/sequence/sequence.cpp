@@ -110,7 +110,7 @@ void Sequence::render() {
   if (there > 0) log_info("{} of {} frames existed already", there, options_.frames);
   if (rendered > 0) log_info("{} frames in {:.1f} s", rendered, milliseconds_since(started) / 1000);
   write_summary();
-  if (renderer_) renderer_->session.store_programs();
+  if (renderer_) renderer_->session.programs().store();
   renderer_.reset();
 }
 

@@ -59,8 +59,7 @@ class Sequence {
  public:
   /// Throws as TimesFile.
   Sequence(const SequenceOptions& options, SequenceSubject subject, MovingScene& scene,
-           const FrameSetup& setup, const Device& device, Compilation compilation,
-           Ranks& ranks);
+           const FrameSetup& setup, const Device& device, Compilation compilation, Ranks& ranks);
 
   /// Renders the missing frames of this rank, and appends the times of each to times.jsonl; then
   /// rank 0 appends a summary. Throws Interrupted, which names the frames that are kept.

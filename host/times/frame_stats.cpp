@@ -67,7 +67,7 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
           {"launches", median(samples([](const FrameCost& cost) { return cost.host.launches; }))},
           {"waits", median(samples([](const FrameCost& cost) { return cost.host.waits; }))},
           {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
-          {"build_ms", session.build_ms()},
+          {"build_ms", session.programs().build_ms()},
           {"startup_ms", startup_ms_},
           {"device_bytes", session.peak_device_bytes()},
           {"energy", energy}};

@@ -10,8 +10,7 @@ constexpr std::size_t kLocalX = 64;
 ProgramSource source_of(const VolumeShape& shape, Storage storage) {
   ProgramSource source{"volume/convert.cl"};
   add_coefficient_literals(source.literals, shape.coefficients);
-  source.literals.integer("CLPV_GRID", shape.n);
-  add_format_literals(source.literals, {Layout::image, storage});
+  add_volume_literals(source.literals, shape.n, {Layout::image, storage});
   return source;
 }
 

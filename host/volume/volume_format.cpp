@@ -100,8 +100,9 @@ int lanes_of(const Device& device, const VolumeFormat& format) {
   return format.layout == Layout::image ? 1 : device.lanes;
 }
 
-void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes) {
-  literals.word("CLPV_LAYOUT", kLayoutLiterals[static_cast<std::size_t>(format.layout)])
+void add_volume_literals(Literals& literals, int grid, const VolumeFormat& format, int lanes) {
+  literals.integer("CLPV_GRID", grid)
+      .word("CLPV_LAYOUT", kLayoutLiterals[static_cast<std::size_t>(format.layout)])
       .flag("CLPV_STORAGE_HALF", format.storage == Storage::float16)
       .integer("CLPV_W", lanes);
 }

@@ -38,8 +38,8 @@ void require_supported(const Device& device, const VolumeFormat& format, const V
 /// Cells along x that a work-item processes: the device's lanes for buffers, 1 for images.
 int lanes_of(const Device& device, const VolumeFormat& format);
 
-/// Adds the literals that kernels/volume/instance.h needs.
-void add_format_literals(Literals& literals, const VolumeFormat& format, int lanes = 1);
+/// Adds the literals that kernels/volume/instance.h needs, for `grid` cells along each axis.
+void add_volume_literals(Literals& literals, int grid, const VolumeFormat& format, int lanes = 1);
 
 /// Adds the literals that kernels/volume/coefficients.h needs. `number`: type of a coefficient,
 /// "realW" for those of W cells (kernels/lanes.h), or "float" for kernels that read one cell at a

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "options/stage_options.hpp"
-#include "pipeline/frame/paint.hpp"
+#include "pipeline/raster/paint.hpp"
 #include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
@@ -58,7 +58,7 @@ Frame::Frame(Session& session, const SceneData& scene, FrameSetup setup)
     near_.emplace(session, gathered(), scene, buffers_, near_options(options()));
   if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options()));
   make_images();
-  session.build_described();
+  session.programs().build_described();
   if (near_) near_->finish();
 }
 
@@ -83,7 +83,7 @@ void Frame::prepare_near(int step) {
   near.step = near_step_ = step;
   near_hits_.invalidate();
   near_.emplace(session_, gathered(), scene_, buffers_, near);
-  session_.build_described();
+  session_.programs().build_described();
   near_->finish();
 }
 

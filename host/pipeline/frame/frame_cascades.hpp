@@ -40,8 +40,8 @@ class FrameCascades {
   FrameCascades(Session& session, const SceneData& scene, const SceneBuffers& buffers,
                 const FrameSetup& setup, FrameLights& lights);
 
-  /// Sets the cascade grids and the camera's G-buffer, which FrameSetup::blocked_by_view() needs; else it may
-  /// be null. Call for each frame, after preparing its lights.
+  /// Sets the cascade grids and the camera's G-buffer, which FrameSetup::blocked_by_view() needs;
+  /// else it may be null. Call for each frame, after preparing its lights.
   void prepare(const std::vector<ClpvGrid>& grids, const Surface* camera);
 
   /// Updates the light of a cascade. Call for the coarsest cascade first.

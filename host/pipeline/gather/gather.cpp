@@ -27,15 +27,15 @@ std::string each_cascade(std::size_t cascades) {
 }
 
 void add_literals(Literals& literals, const Basis& basis, const GatherOptions& options) {
-  literals.integer("CLPV_GRID", options.grid)
-      .real("CLPV_GATHER_OFFSET", options.gather_offset)
+  literals.real("CLPV_GATHER_OFFSET", options.gather_offset)
       .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells);
   add_coefficient_literals(literals, basis.size(), "float");
   basis.add_literals(literals);
 }
 
 void add_packed_literals(Literals& literals, const Basis& basis, const GatherOptions& options) {
-  literals.flag("CLPV_VISIBLE", options.gather == Gathering::visible)
+  literals.integer("CLPV_GRID", options.grid)
+      .flag("CLPV_VISIBLE", options.gather == Gathering::visible)
       .integer("CLPV_PAIRS", packed_pairs(basis));
 }
 
@@ -49,7 +49,8 @@ ProgramSource source_of(const Basis& basis, TransportKind transport, const Gathe
   if (packed) {
     add_packed_literals(source.literals, basis, options);
   } else {
-    add_format_literals(source.literals, options.format, 8);  // pixels; cells are read one by one
+    constexpr int kPixels = 8;  // cells are read one by one
+    add_volume_literals(source.literals, options.grid, options.format, kPixels);
     source.literals.flag("CLPV_FILTERED", options.filtered);
   }
   return source;

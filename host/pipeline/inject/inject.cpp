@@ -74,9 +74,8 @@ Injector::Kernels Injector::make_kernels(const Variant& variant) const {
   find.literals.flag("CLPV_GEOMETRY", !light)
       .number("CLPV_STRIP", strip_)
       .flag("CLPV_POINTS", variant.points);
-  sum.literals.integer("CLPV_GRID", options_.grid)
-      .add(light ? light_literals() : blocking_literals());
-  add_format_literals(sum.literals, Accumulator::cells_format(options_.format));
+  sum.literals.add(light ? light_literals() : blocking_literals());
+  add_volume_literals(sum.literals, options_.grid, Accumulator::cells_format(options_.format));
   return {Kernel(session_, find, "find_cells"), Kernel(session_, sum, "sum_segments"),
           Kernel(session_, sum, "join_segments")};
 }

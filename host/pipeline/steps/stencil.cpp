@@ -20,8 +20,8 @@ std::size_t Stencil::row() const {
 
 Literals Stencil::literals() const {
   Literals literals;
-  literals.integer("CLPV_GRID", grid_).integer("CLPV_LOCAL_X", group_);
-  add_format_literals(literals, format_, lanes_);
+  literals.integer("CLPV_LOCAL_X", group_);
+  add_volume_literals(literals, grid_, format_, lanes_);
   return literals;
 }
 

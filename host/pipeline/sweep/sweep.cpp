@@ -56,8 +56,8 @@ bool within(const ClpvSweepHalo& halo, int grid) {
 /// Kernels that set the boundary condition of a cascade whose bins have parts^2 parts.
 ProgramSource border_program(const char* file, const SweepOptions& options, int parts, int lanes) {
   ProgramSource source{file};
-  source.literals.integer("CLPV_GRID", options.grid).integer("CLPV_PARTS", parts * parts);
-  add_format_literals(source.literals, options.format, lanes);
+  source.literals.integer("CLPV_PARTS", parts * parts);
+  add_volume_literals(source.literals, options.grid, options.format, lanes);
   return source;
 }
 
@@ -134,14 +134,13 @@ bool Sweeper::last_light_enters() const {
 /// Program of sweep_bins.cl or sweep_planes.cl, for light of `coefficients`.
 ProgramSource Sweeper::sweep_program(int coefficients, const SweepMeans& means, int parts) const {
   ProgramSource source{whole_bins() ? "sweep/sweep_bins.cl" : "sweep/sweep_planes.cl"};
-  source.literals.integer("CLPV_GRID", options_.grid)
-      .integer("CLPV_PARTS", parts * parts)
+  source.literals.integer("CLPV_PARTS", parts * parts)
       .integer("CLPV_SOURCES", coefficients)
       .integer("CLPV_EMITTING", means.emitting)
       .integer("CLPV_SOURCE_LANES", volumes_.lanes())
       .flag("CLPV_BLOCKING", options_.blocking)
       .flag("CLPV_MEDIUM", options_.medium.has_value());
-  add_format_literals(source.literals, options_.format, whole_bins() ? 8 : 1);
+  add_volume_literals(source.literals, options_.grid, options_.format, whole_bins() ? 8 : 1);
   source.literals.flag("CLPV_COSINE_REST", means.rest.has_value());
   if (means.rest) {
     for (std::size_t i = 0; i < means.rest->even.size(); ++i)

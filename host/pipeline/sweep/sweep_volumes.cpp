@@ -23,8 +23,7 @@ SweepVolumes::SweepVolumes(Session& session, int grid, const VolumeFormat& forma
 
 ProgramSource SweepVolumes::program(const char* file, Literals literals) const {
   ProgramSource source{file, std::move(literals)};
-  source.literals.integer("CLPV_GRID", grid_);
-  add_format_literals(source.literals, format_, tile_);
+  add_volume_literals(source.literals, grid_, format_, tile_);
   return source;
 }
 

@@ -16,8 +16,7 @@ VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades,
       .volume_program = {"voxels/blocked_areas.cl"},
       .volume_kernel = "blocked_areas"};
   kind.program.literals.integer("CLPV_GRID", grid).flag("CLPV_MASKED", scene.masked);
-  kind.volume_program.literals.integer("CLPV_GRID", grid);
-  add_format_literals(kind.volume_program.literals, format);
+  add_volume_literals(kind.volume_program.literals, grid, format);
   add_coefficient_literals(kind.volume_program.literals, 3);
   return kind;
 }

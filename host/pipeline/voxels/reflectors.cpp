@@ -21,8 +21,8 @@ VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeForma
       .flag("CLPV_MASKED", scene.masked)
       .flag("CLPV_TEXTURED", scene.textured)
       .flag("CLPV_COLOURED", scene.coloured);
-  kind.volume_program.literals.integer("CLPV_GRID", grid).real("CLPV_EDGE_LOSS", edge_loss());
-  add_format_literals(kind.volume_program.literals, format);
+  kind.volume_program.literals.real("CLPV_EDGE_LOSS", edge_loss());
+  add_volume_literals(kind.volume_program.literals, grid, format);
   add_coefficient_literals(kind.volume_program.literals, kCellFaces);
   return kind;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/frame/cells.hpp"
+#include "pipeline/raster/cells.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/frame/paint.hpp"
+#include "pipeline/raster/paint.hpp"
 
 #include <limits>
 
-#include "pipeline/frame/cells.hpp"
+#include "pipeline/raster/cells.hpp"
 #include "scene/medium.hpp"
 #include "scene/scene.hpp"
 

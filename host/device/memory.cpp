@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "device/memory.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "device/cl_error.hpp"
+
+namespace clpv {
+namespace {
+
+double mib(std::size_t bytes) {
+  return static_cast<double>(bytes) / (1 << 20);
+}
+
+}  // namespace
+
+std::size_t Memory::largest_buffer() const {
+  const std::uint64_t left =
+      device_.memory_bytes > use_->now ? device_.memory_bytes - use_->now : 0;
+  return std::min<std::uint64_t>(device_.max_alloc_bytes, left);
+}
+
+void Memory::require_room(std::size_t bytes, const std::string& what) const {
+  if (bytes <= largest_buffer()) return;
+  const auto share = [](std::uint64_t allowed, std::size_t needed) {
+    return static_cast<double>(allowed) / static_cast<double>(needed);
+  };
+  throw TooLarge(Error(ExitCode::run_time,
+                       "{} needs {:.1f} MiB, but a buffer on {} can have at most {:.1f} MiB (limit "
+                       "of one buffer: {:.1f} MiB; memory: {:.1f} MiB, {:.1f} MiB of it in use): "
+                       "try a smaller grid, rsm-size or image",
+                       what, mib(bytes), device_.name, mib(largest_buffer()),
+                       mib(device_.max_alloc_bytes), mib(device_.memory_bytes), mib(use_->now)),
+                 std::min(share(device_.max_alloc_bytes, bytes),
+                          share(device_.memory_bytes, use_->now + bytes)));
+}
+
+Buffer Memory::buffer(std::size_t bytes, const std::string& what) {
+  bytes = std::max<std::size_t>(bytes, 4);
+  require_room(bytes, what);
+  try {
+    const Buffer made(cl::Buffer(context_, CL_MEM_READ_WRITE, bytes),
+                      std::make_shared<MemoryShare>(use_, bytes));
+    if (zeroed_) queue_.enqueueFillBuffer(made.handle(), cl_uchar{0}, 0, bytes);
+    // Oclgrind 21.10's memory checker confuses a new buffer at a freed address with the old one and
+    // its size.
+    if (device_.oclgrind()) retained_.push_back(made);
+    return made;
+  } catch (const cl::Error& error) {
+    throw cl_error(error, fmt::format("{} ({:.1f} MiB) on {}", what, mib(bytes), device_.name));
+  }
+}
+
+void Memory::reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {
+  if (buffer.exists() && buffer.bytes() >= bytes) return;
+  buffer = {};  // first: memory may not suffice for both
+  buffer = this->buffer(bytes, what);
+}
+
+Image3D Memory::image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
+                      std::size_t bytes, const std::string& what) {
+  require_room(bytes, what);
+  try {
+    return {cl::Image3D(context_, CL_MEM_READ_WRITE, texel, extent[0], extent[1], extent[2]),
+            std::make_shared<MemoryShare>(use_, bytes)};
+  } catch (const cl::Error& error) {
+    throw cl_error(error, fmt::format("{} (an image of {} texels) on {}", what,
+                                      fmt::join(extent, " x "), device_.name));
+  }
+}
+
+}  // namespace clpv
