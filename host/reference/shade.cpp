@@ -142,6 +142,7 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
     const double height = filter.height[row][column], depth = filter.depth[row][column];
     return height > lift && depth < farthest ? Tap::blocks : Tap::passes;
   });
+  if (lifted.whole == 0) return 1;  // outside the map
   if (lifted.blocked >= double{CLPV_SHADOW_WHOLE} * lifted.whole) return 0;
   if (!flat || !below_surface(filter, rounding)) return lifted.visible();
   return weigh_taps(filter,
