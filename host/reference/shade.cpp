@@ -88,8 +88,7 @@ Share weigh_taps(const Filter& filter, const Kind& kind) {
 }
 
 /// Returns true if the receiver is below a surface of the map: if the height of one of the inner
-/// texels above `rounding`, extrapolated to the receiver from higher outer neighbours, exceeds
-/// CLPV_SHADOW_BELOW of it.
+/// texels above `rounding`, extrapolated to the receiver from higher outer neighbours, is positive.
 bool below_surface(const Filter& filter, double rounding) {
   for (const int row : {1, 2}) {
     for (const int column : {1, 2}) {
@@ -99,7 +98,7 @@ bool below_surface(const Filter& filter, double rounding) {
       const glm::dvec2 distance = glm::abs(filter.distance[row][column]);
       const double fall =
           std::max(beside - inner, 0.0) * distance.x + std::max(past - inner, 0.0) * distance.y;
-      if (inner > rounding && inner - fall > double{CLPV_SHADOW_BELOW} * rounding) return true;
+      if (inner > rounding && inner - fall > 0) return true;
     }
   }
   return false;
@@ -143,6 +142,7 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
     const double height = filter.height[row][column], depth = filter.depth[row][column];
     return height > lift && depth < farthest ? Tap::blocks : Tap::passes;
   });
+  if (lifted.whole == 0) return 1;  // outside the map
   if (lifted.blocked >= double{CLPV_SHADOW_WHOLE} * lifted.whole) return 0;
   if (!flat || !below_surface(filter, rounding)) return lifted.visible();
   return weigh_taps(filter,

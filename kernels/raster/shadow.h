@@ -121,7 +121,7 @@ CLPV_INLINE bool below_surface(const Receiver r, const float8 upper, const float
   const float4 x = fabs((float4)(r.dx.y, r.dx.z, r.dx.y, r.dx.z)),
                y = fabs((float4)(r.dy.y, r.dy.y, r.dy.z, r.dy.z));
   const float4 centre = inner - max(beside - inner, 0.0f) * x - max(past - inner, 0.0f) * y;
-  const int4 below = above & (centre > CLPV_SHADOW_BELOW * r.rounding);
+  const int4 below = above & (centre > 0.0f);
   return (below.x | below.y | below.z | below.w) != 0;
 }
 

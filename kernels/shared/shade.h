@@ -29,8 +29,5 @@ enum {
 #define CLPV_SHADOW_ROUNDING_DEPTH 2e-6f
 // The same relative to its coordinates, whose roundings grow with the distance from the origin.
 #define CLPV_SHADOW_ROUNDING_PLACE 5e-7f
-// Share of that rounding by which a receiver below a surface is at least below it. On the edge
-// where both meet it is 0, and floats do not decide.
-#define CLPV_SHADOW_BELOW 0.1f
 // Share of the filter's weight from which all texels occlude.
 #define CLPV_SHADOW_WHOLE 0.999f
