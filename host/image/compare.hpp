@@ -20,8 +20,8 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b,
 
 nlohmann::json to_json(const Comparison& comparison);
 
-/// FLIP of each pixel, row by row, as in compare(); 0 where a pixel is not valid. The images must be
-/// ones that compare() accepts.
+/// FLIP of each pixel, row by row, as in compare(); 0 where a pixel is not valid. The images must
+/// be ones that compare() accepts.
 std::vector<double> flip_map(const Image& a, const Image& b, float exposure);
 
 /// Difference image amplify * |A - B| over the colour channels, as R, G, B, in the encoding of A

@@ -26,21 +26,22 @@ import subprocess
 import sys
 import tempfile
 
-from . import LAB, RESULTS, ROOT, bake, charts, described, json_lines, lab, leaks, output, rows
+from . import (CLPV, LAB, RESULTS, ROOT, bake, charts, described, json_lines, lab, leaks, output,
+               rows)
 
 FRAME_COUNT = 9
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # of a folder in results/
 PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "bake", "bake-leaks", "leaks"]
 
 
-def run(*arguments, charts_of=()):
+def run(*arguments, charts_of=(), program=CLPV):
     """Returns the JSON of `clpv ARGUMENTS FILE.json`, with FOLDER a temporary folder. Where that
     fails and leaves a file, as `clpv bench` does, goes on. `charts_of`: images in FOLDER that go to
     docs/images."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "result.json"
         command = [
-            str(LAB), *(argument.replace("FOLDER", folder) for argument in arguments),
+            str(program), *(argument.replace("FOLDER", folder) for argument in arguments),
             str(file)
         ]
         print("scripts/measure: clpv", *arguments, file=sys.stderr)
@@ -65,7 +66,7 @@ def write(folder, name, document):
 
 
 def measure_device(folder):
-    checks = subprocess.run([str(LAB), "check", "--format=json"], stdout=subprocess.PIPE,
+    checks = subprocess.run([str(CLPV), "check", "--format=json"], stdout=subprocess.PIPE,
                             text=True, check=False, cwd=ROOT)
     if checks.returncode != 0:
         print(f"scripts/measure: clpv check did not pass: exit code {checks.returncode}",
@@ -89,6 +90,11 @@ def measured_with(device):
 
 def measure_docs(folder, model, parts):
     """`parts`: names of files in results/docs."""
+    for name in rows.OF_LAB:
+        if name in parts and not LAB.exists():
+            print(f"scripts/measure: skipped: {name}: the lab is not built (-DCLPV_LAB=ON)",
+                  file=sys.stderr)
+            parts = [part for part in parts if part != name]
     sponza = [f"--model={model}", "--camera=curtains"]
     tiny = run("render", "scenes/cornell.json", "--width=16", "--height=9",
                "--output=FOLDER/frame.png", "--stats")
@@ -107,7 +113,7 @@ def measure_docs(folder, model, parts):
         if options[:1] == ["sponza"]:
             options = ["--scene=scenes/sponza.json", *sponza, *options[1:]]
         document = run("bench", suite, *options, "--plot=FOLDER", "--output",
-                       charts_of=rows.CHARTS.get(suite, ()))
+                       charts_of=rows.CHARTS.get(suite, ()), program=program_of(suite))
         write(folder, suite, {"measured": measured, **document})
     if "quality-centres" in parts:
         search_centres(sponza)
@@ -130,9 +136,14 @@ def measure_docs(folder, model, parts):
             ROOT / "docs/images/front.png")
 
 
+def program_of(name):
+    """The program that measures a file of results/docs."""
+    return LAB if name in rows.OF_LAB else CLPV
+
+
 def search_centres(sponza):
     (ROOT / "out").mkdir(exist_ok=True)
-    subprocess.run([str(LAB), "render", "scenes/sponza.json", *sponza, "-o", "out/normals.png",
+    subprocess.run([str(CLPV), "render", "scenes/sponza.json", *sponza, "-o", "out/normals.png",
                     "--dump-normals=out/normals.json"], stdout=subprocess.DEVNULL, check=True,
                    cwd=ROOT)
     lab("clpv_lab.search", "8", "-o", rows.SEARCHED)
@@ -148,7 +159,7 @@ def measure_quality(folder, name, model, measured):
             "--preset=best")  # bases and transports that a run does not name keep their defaults
     for options in runs:
         vary = [f"--vary={option}={value}" for option, value in options.items()]
-        document = run("quality", *given, *vary, "--output")
+        document = run("quality", *given, *vary, "--output", program=program_of(name))
         cells += document["cells"]
         variants += document["variants"]
     write(folder, name,

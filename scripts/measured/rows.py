@@ -163,4 +163,5 @@ DOCS_SUITES = {
     "frame": ["sponza", "--repetitions=9", "--basis=sh2", "--filter=best"],
     "rasterize-opengl": ["sponza"],
 }
+OF_LAB = "native", "rasterize-opengl", "quality-cascades", "quality-centres"  # need a built lab
 CHARTS = {"layouts": ("layouts", "roofline"), "scaling": ("scaling",)}  # those in docs/images

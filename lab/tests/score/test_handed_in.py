@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Scores that others hand in, lab/results/quality/scores: each has the form that `python3 -m clpv_lab.score
--o` writes."""
+"""Scores that others hand in, lab/results/quality/scores: each has the form that `python3 -m
+clpv_lab.score -o` writes."""
 import copy
 import json
 import math
@@ -9,7 +9,7 @@ import unittest
 
 import test_score  # noqa: F401, the paths of the modules
 from clpv_lab.score import suite as scored
-from clpv_lab import write_suite as suite
+from lab_measured import suite
 
 FILES = sorted((test_score.ROOT / "lab/results/quality/scores").glob("*.json"))
 NEEDED = "nrmse", "nrmse_best_gain", "energy_ratio", "flip"

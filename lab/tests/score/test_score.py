@@ -19,10 +19,11 @@ import unittest
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "python"), str(ROOT / "lab/python"), str(ROOT / "scripts")]
+sys.path[:0] = [str(ROOT / folder)
+                for folder in ("python", "lab/python", "scripts", "lab/scripts")]
 from clpv_lab.score import __main__ as command, exr, flip, mistakes, suite as scored  # noqa: E402
 from exr_writer import write  # noqa: E402
-from clpv_lab import write_suite as suite  # noqa: E402
+from lab_measured import suite  # noqa: E402
 
 CLPV = os.environ["CLPV"]
 SIZE = 40, 24

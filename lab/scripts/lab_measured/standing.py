@@ -14,7 +14,7 @@ import os
 import pathlib
 import re
 
-from measured import ROOT, charts
+from measured import LAB, ROOT, charts
 from measured.measure import FRAME_COUNT, measured_with, run, scenes_of, write
 from measured.rows import VIEWS
 
@@ -76,7 +76,7 @@ def measure_standing(folder, model):
         for arguments in scenes:
             for options in runs:
                 report = run("quality", *scenes_of(arguments, model), *SIZES[size], *options,
-                             "--fresh", f"--frames={STANDING_COUNT}", "--output")
+                             "--fresh", f"--frames={STANDING_COUNT}", "--output", program=LAB)
                 for cell in report["cells"]:
                     cell["method"] = method_of(cell, options)
                 document[name] += [cell for cell in report["cells"] if cell["method"]]
@@ -100,10 +100,12 @@ def measure_front(model):
     for series, options in FRONT_GRIDS.items():
         variants += [
             {**row, "series": series}
-            for row in run("quality", *given, "--preset=best", *options, "--output")["variants"]
+            for row in run("quality", *given, "--preset=best", *options, "--output",
+                           program=LAB)["variants"]
         ]
     for time in FRONT_TIMES:
-        report = run("quality", *given, *OF_A_TIME, f"--baseline-time={time}", "--output")
+        report = run("quality", *given, *OF_A_TIME, f"--baseline-time={time}", "--output",
+                     program=LAB)
         variants += [{**row, "series": row["options"]["baseline"]} for row in report["variants"]
                      if "baseline" in row["options"]]
     return variants

@@ -8,7 +8,7 @@ from measured.tables.benchmarks import bench
 from measured.tables.cells import found, load, number, percent, ratio, shown, table
 from measured.verdicts.judge import sentence
 
-from clpv_lab import standing as benchmark
+from . import standing as benchmark
 
 RESULTS = ROOT / "lab/results/quality"
 
@@ -86,7 +86,8 @@ def standing_lines(group):
 
 def light_ms(cell):
     """Time that baselines get: the frame without G-buffer, shadow maps and shading."""
-    return ms_of(cell["times"], "frame") - sum(ms_of(cell["times"], stage) for stage in benchmark.SHARED)
+    return ms_of(cell["times"], "frame") - sum(
+        ms_of(cell["times"], stage) for stage in benchmark.SHARED)
 
 
 @table

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Writes the suite of views that python3 -m clpv_lab.score scores: truths, cameras and lights for any
-renderer (lab/docs/score.md).
+"""Writes the suite of views that python3 -m clpv_lab.score scores: truths, cameras and lights for
+any renderer (lab/docs/score.md).
 
     lab/scripts/suite --output DIR --model PATH/Sponza.gltf    DIR/suite.json and the files that it
                                                            names, and DIR.tar with them alone
