@@ -13,8 +13,8 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
 }
 
 #if W == 8
-// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed. All loops
-// are unrolled: PoCL 7.1 compiles others wrongly inside of an unrolled loop, and PoCL 3.1 slowly.
+// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed. All
+// loops are unrolled: PoCL 7.1 compiles others wrongly in an unrolled loop, and PoCL 3.1 slowly.
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN volume,
                                                                  const int at, const int x) {
   float8 rows[CLPV_VOLUME_COUNT];
