@@ -99,7 +99,7 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagat
     for (int channel = 0; channel < 3; ++channel)
       gained[channel] = add_scaled(gained[channel], fluxes[channel].face[face], lobe);
   }
-  // Without a loop, in which rusticl loses members of structs passed by value (lab/docs/rusticl.md).
+  // Without a loop, in which rusticl loses structs passed by value (lab/docs/rusticl.md).
   store_step(gained[0], target, sum_so_far, sum, 0, x, y, z);
   store_step(gained[1], target, sum_so_far, sum, 1, x, y, z);
   store_step(gained[2], target, sum_so_far, sum, 2, x, y, z);
