@@ -111,8 +111,9 @@ std::string title_of(const std::string& folder) {
   return fs::weakly_canonical(folder).filename().string();
 }
 
-/// The image of another method for a view. Throws Error(bad_input) without channels R, G and B.
-Image read_image_of_method(const fs::path& path) {
+/// The image of another method for a view. Throws Error(bad_input) without channels R, G and B, and
+/// as check_comparable() with an image of the page.
+Image read_image_of_method(const fs::path& path, const Options& options) {
   Image image = read_image_layer(path, "");
   const std::array colours{"R", "G", "B"};
   if (image.channels.size() < colours.size() ||
@@ -120,6 +121,8 @@ Image read_image_of_method(const fs::path& path) {
     throw Error(ExitCode::bad_input, "{}: channels {}; allowed: R, G, B and perhaps A",
                 path.string(), fmt::join(image.channels, ", "));
   }
+  check_comparable(image, path.string(), make_image(options.width, options.height, {"R", "G", "B"}),
+                   "the page");
   return image;
 }
 
@@ -213,7 +216,8 @@ void add_others(const Options& options, const Subject& subject, const Drawing& d
   for (const std::string& folder : options.images) {
     for (std::size_t i = 0; i < views.size(); ++i) {
       const fs::path file = file_of(folder, subject, subject.cameras[i]);
-      add_compared(drawing, views[i], title_of(folder), read_image_of_method(file), file.string());
+      add_compared(drawing, views[i], title_of(folder), read_image_of_method(file, options),
+                   file.string());
     }
   }
 }
@@ -236,7 +240,7 @@ nlohmann::json add_views(Session& session, const Options& options, const Drawing
   for (const Subject& subject : subjects)  // before minutes of tracing
     for (const SceneCamera& camera : subject.cameras)
       for (const std::string& folder : options.images)
-        read_image_of_method(file_of(folder, subject, camera));
+        read_image_of_method(file_of(folder, subject, camera), options);
   check_outputs({{"DIR", page_of(options)}});
   const std::vector<PageVariant> variants = page_variants(options);
   for (Subject& subject : subjects) {

@@ -62,6 +62,8 @@ bool has_pixel(const Image& image, std::size_t index) {
   return x >= window.left && x < window.right && y >= window.top && y < window.bottom;
 }
 
+}  // namespace
+
 void check_comparable(const Image& a, const std::string& a_name, const Image& b,
                       const std::string& b_name) {
   if (a.width != b.width || a.height != b.height) {
@@ -87,6 +89,8 @@ void check_comparable(const Image& a, const std::string& a_name, const Image& b,
   check_finite(a, a_name);
   check_finite(b, b_name);
 }
+
+namespace {
 
 std::optional<double> ratio(double numerator, double denominator) {
   if (denominator == 0) return std::nullopt;

@@ -11,9 +11,13 @@
 
 namespace clpv {
 
-/// Compares A with the reference B; messages contain `a_name` and `b_name`. Throws Error(bad_input)
-/// for different sizes, pixels that only one of the files has, different numbers of colour
-/// channels or encodings, and for values that are not finite. Linear images are tone-mapped for
+/// Throws Error(bad_input) for different sizes, pixels that only one of the files has, different
+/// numbers of colour channels or encodings, and for values that are not finite. Messages contain
+/// `a_name` and `b_name`.
+void check_comparable(const Image& a, const std::string& a_name, const Image& b,
+                      const std::string& b_name);
+
+/// Compares A with the reference B. Throws as check_comparable(). Linear images are tone-mapped for
 /// FLIP: ToneMap::aces at `exposure` [EV].
 Comparison compare(const Image& a, const std::string& a_name, const Image& b,
                    const std::string& b_name, float exposure = 0);

@@ -44,6 +44,14 @@ class GpuReport(in_tree.InTree):
         self.refused(test_scripts.USAGE, f"one that {SCRIPT[3:]} wrote", SCRIPT,
                      f"--output={self.full}")
 
+    def test_a_record_without_kernels(self):
+        for text in ("", "[]", "{}", '{"frames": {"default": {"gfx1030": {}}}}',
+                     '{"frames": {"default": {"gfx1030": {"gather": {}}}}}'):
+            (self.folder / "record.json").write_text(text)
+            self.refused(test_scripts.BAD_INPUT, "record.json: found", SCRIPT,
+                         "--check=record.json")
+        self.refused(test_scripts.BAD_INPUT, "none.json: found", SCRIPT, "--check=none.json")
+
     def test_kernels_that_only_the_record_has(self):
         changes = runpy.run_path(str(ROOT / "lab/scripts/gpu_report"))["changes"]
         self.assertEqual(changes({"gather": {}}, {}), ["gather: only in the record"])
