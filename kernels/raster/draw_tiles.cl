@@ -15,6 +15,7 @@
 //          counts        CLPV_LISTED and so on. With more entries than most_entered, `starts` and
 //                        `binned` are incomplete: every tile then draws the whole list, slowly
 //          fresh         1: tiles start empty; 0: they continue from `keys` and `seen`
+//          only_depth    1: a shadow map, which needs no `seen`
 //          vertices, triangles, materials, textures, texels   the scene, for masked materials
 // In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers
 //                        per row of a tile, CLPV_TILE rows per tile, tiles row by row; INFINITY and
@@ -45,12 +46,13 @@ typedef struct {
   CLPV_COLUMNS uintW* seen;
   int x, y;  // first pixel
   float far_key;
+  bool only_depth;
 } Tile;
 
 // Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: of a masked material;
-// unused for others.
+// unused for others. `only_depth`: that of the tile, a literal where time counts.
 CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r,
-                      const uint kind, const bool masked, const Mask* mask,
+                      const uint kind, const bool masked, const Mask* mask, const bool only_depth,
                       __global const uint* texels) {
   const realW column = to_realW(lane_numbers());
   const uint triangle = kind & CLPV_TRIANGLE_INDEX;
@@ -71,15 +73,19 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
     key = key < farthest ? key : farthest;
     const int at = row * CLPV_PITCH;
     const realW old = tile.keys[at];
-    const uintW old_seen = tile.seen[at];
-    closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
+    closer &= key <= tile.far_key;
+    if (only_depth) {
+      closer &= key < old;
+    } else {
+      closer &= (key < old) | ((key == old) & (triangle < tile.seen[at]));
+    }
     if (masked) {
       if (no_lane(closer)) continue;
       const realW depth = hit_depth(view, key);
       closer &= solid(view, mask, (float)tile.x, (float)(tile.y + row), depth, texels);
     }
     tile.keys[at] = select(old, key, closer);
-    tile.seen[at] = select(old_seen, (uintW)(triangle), closer);
+    if (!only_depth) tile.seen[at] = select(tile.seen[at], (uintW)(triangle), closer);
   }
 }
 
@@ -88,7 +94,7 @@ CLPV_RARE void draw_masked(const ClpvView view, const Tile tile,
                            const Scene scene) {
   Mask mask;
   load_mask(view, kind & CLPV_TRIANGLE_INDEX, scene, &mask);
-  draw(view, tile, r, kind, true, &mask, scene.texels);
+  draw(view, tile, r, kind, true, &mask, tile.only_depth, scene.texels);
 }
 
 // Largest key of the pixels.
@@ -106,8 +112,10 @@ CLPV_INLINE void draw_listed(const ClpvView view, const Tile tile,
   const uint kind = r->triangle;
   if (kind & CLPV_TRIANGLE_MASKED) {
     draw_masked(view, tile, r, kind, scene);
+  } else if (tile.only_depth) {
+    draw(view, tile, r, kind, false, 0, true, scene.texels);
   } else {
-    draw(view, tile, r, kind, false, 0, scene.texels);
+    draw(view, tile, r, kind, false, 0, false, scene.texels);
   }
 }
 
@@ -151,7 +159,7 @@ CLPV_INLINE void draw_binned(const ClpvView view, const Tile tile,
 #if W == 1
 __attribute__((reqd_work_group_size(8, CLPV_GROUP / 8, 1)))
 #endif
-__kernel void draw_tiles(const ClpvView view, const uint fresh,
+__kernel void draw_tiles(const ClpvView view, const uint fresh, const uint only_depth,
                          __global const ClpvRasterTriangle* list, __global const uint* starts,
                          __global const uint2* binned, __global const uint* counts,
                          const uint most_entered, __global const ClpvVertex* vertices,
@@ -173,23 +181,27 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh,
              vector = get_global_id(0) % CLPV_TILE_VECTORS;
   if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
   const uint at = y * tiles_x + x;
+  const bool sorted = counts[CLPV_ENTERED] <= most_entered && counts[CLPV_ENTERED_TOO_MANY] == 0;
+  const uint start = starts[at * CLPV_SLICES], end = starts[(at + 1) * CLPV_SLICES];
+  if (!fresh && sorted && start == end) return;
   const Scene scene = {vertices, triangles, materials, textures, texels};
   const Tile tile = {near_keys + column, nearest + column, (int)(x * CLPV_TILE + vector * W),
                      (int)y * CLPV_TILE,
-                     CLPV_IS_ORTHOGRAPHIC(view) ? view.far_depth : -1.0f / view.far_depth};
+                     CLPV_IS_ORTHOGRAPHIC(view) ? view.far_depth : -1.0f / view.far_depth,
+                     only_depth != 0};
   for (int row = 0; row < CLPV_TILE; ++row) {
     tile.keys[row * CLPV_PITCH] = fresh ? (realW)(INFINITY) : keys[tile_row(at, row, vector)];
+    if (only_depth) continue;
     tile.seen[row * CLPV_PITCH] = fresh ? (uintW)(UINT_MAX) : seen[tile_row(at, row, vector)];
   }
-  if (counts[CLPV_ENTERED] > most_entered || counts[CLPV_ENTERED_TOO_MANY] > 0) {
-    draw_whole_list(view, tile, list, counts[CLPV_LISTED], scene);
+  if (sorted) {
+    draw_binned(view, tile, list, binned, start, end, scene);
   } else {
-    draw_binned(view, tile, list, binned, starts[at * CLPV_SLICES], starts[(at + 1) * CLPV_SLICES],
-                scene);
+    draw_whole_list(view, tile, list, counts[CLPV_LISTED], scene);
   }
   for (int row = 0; row < CLPV_TILE; ++row) {
     keys[tile_row(at, row, vector)] = tile.keys[row * CLPV_PITCH];
-    seen[tile_row(at, row, vector)] = tile.seen[row * CLPV_PITCH];
+    if (!only_depth) seen[tile_row(at, row, vector)] = tile.seen[row * CLPV_PITCH];
   }
   farthest[at * CLPV_TILE_VECTORS + vector] = farthest_of(tile.keys);
 }

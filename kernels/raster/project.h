@@ -57,8 +57,10 @@ static inline intW subpixel(const realW screen, const float half_extent, const f
 
 static inline ScreenCorner project(const ClpvView view, const ViewPoint p) {
   ScreenCorner corner;
-  corner.x = subpixel(p.x / p.w, view.half_width, (float)view.width);
-  corner.y = subpixel(-p.y / p.w, view.half_height, (float)view.height);
-  corner.key = CLPV_IS_ORTHOGRAPHIC(view) ? p.z : -1.0f / p.z;
+  realW x = p.x, y = -p.y, key = p.z;
+  if (!CLPV_IS_ORTHOGRAPHIC(view)) x /= p.w, y /= p.w, key = -1.0f / p.z;
+  corner.x = subpixel(x, view.half_width, (float)view.width);
+  corner.y = subpixel(y, view.half_height, (float)view.height);
+  corner.key = key;
   return corner;
 }

@@ -161,7 +161,7 @@ std::vector<Rasterizer::Range> Rasterizer::list_clusters(const ClpvView& view) {
 
 void Rasterizer::draw_range(const Drawing& drawing, const Range& range, bool fresh) {
   if (counted_ != nullptr) count_set_up(range);
-  if (list_ahead(drawing, range)) return draw_tiles(drawing.view, fresh);
+  if (list_ahead(drawing, range)) return draw_tiles(drawing, fresh);
   draw(drawing, range.first, range.count, fresh);
 }
 
@@ -250,16 +250,18 @@ void Rasterizer::take_counts() {
 /// Draws a range of clusters. `fresh`: starts from an empty surface, else adds to it. Halves the
 /// range if the tile lists would exceed their limit.
 void Rasterizer::draw(const Drawing& drawing, unsigned first, unsigned count, bool fresh) {
-  if (list(drawing, first, count)) return draw_tiles(drawing.view, fresh);
+  if (list(drawing, first, count)) return draw_tiles(drawing, fresh);
   draw(drawing, first, count / 2, fresh);
   draw(drawing, first + count / 2, count - count / 2, false);
 }
 
-void Rasterizer::draw_tiles(const ClpvView& view, bool fresh) {
+void Rasterizer::draw_tiles(const Drawing& drawing, bool fresh) {
+  const ClpvView& view = drawing.view;
+  const bool only_depth = drawing.kind == Kind::shadow;
   draw_tiles_
-      .set(view, cl_uint{fresh}, listed_, slice_counts_, binned_, counts_, entry_room(),
-           scene_.vertices, scene_.triangles, scene_.materials, scene_.textures, scene_.texels,
-           keys_, seen_, farthest_)
+      .set(view, cl_uint{fresh}, cl_uint{only_depth}, listed_, slice_counts_, binned_, counts_,
+           entry_room(), scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
+           scene_.texels, keys_, seen_, farthest_)
       .launch(cl::NDRange(tiles_along(view.width) * (CLPV_TILE / session_.device().lanes),
                           tiles_along(view.height)),
               pixel_group(session_));

@@ -101,7 +101,7 @@ class Rasterizer {
   void take_counts();
   void set_up(const Drawing& drawing, unsigned first, unsigned count);
   void bin(const ClpvView& view);
-  void draw_tiles(const ClpvView& view, bool fresh);
+  void draw_tiles(const Drawing& drawing, bool fresh);
 
   Session& session_;
   SceneBuffers scene_;
