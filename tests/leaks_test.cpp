@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <vector>
@@ -68,15 +69,22 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
   }
 }
 
-/// Mean direct light in a picture of the inside over that of the ground.
-double direct_leak(const SceneData& scene, unsigned shadow_size) {
+/// Direct light of a picture of 240 x 136 pixels, RGBA.
+std::vector<float> direct_light(const SceneData& scene, const SceneCamera& camera,
+                                unsigned shadow_size) {
   RenderOptions options;
   options.near = Near::off, options.grid = 8, options.cascades = 1;
   options.width = 240, options.height = 136, options.rsm_size = 64;
   options.shadow_size = shadow_size;
   Frame frame(test_session(), scene, options);
-  frame.render(camera_at({-1, 1.6f, -1.2f}, {1, -0.2f, 1.2f}));
-  const std::vector<float> pixels = frame.read(Show::direct);
+  frame.render(camera);
+  return frame.read(Show::direct);
+}
+
+/// Mean direct light in a picture of the inside over that of the ground.
+double direct_leak(const SceneData& scene, unsigned shadow_size) {
+  const std::vector<float> pixels =
+      direct_light(scene, camera_at({-1, 1.6f, -1.2f}, {1, -0.2f, 1.2f}), shadow_size);
   double sum = 0;
   for (std::size_t i = 0; i < pixels.size(); i += 4) sum += double{pixels[i]};
   const double light = 0.8 / std::numbers::pi * static_cast<double>(pixels.size()) / 4;
@@ -101,6 +109,25 @@ TEST(Leaks, DirectLightStaysOutsideOfOneSheet) {
     for (const unsigned shadow_size : {256u, 500u, 777u, 1024u}) {
       EXPECT_LT(direct_leak(scene, shadow_size), 1e-5) << degrees << ' ' << shadow_size;
     }
+  }
+}
+
+// Receivers on the edge of a concave corner are up to rounding below the other surface, and were
+// half dark: a lamp far away lights three faces of a corner, each evenly.
+TEST(Leaks, ConcaveCornersAreLit) {
+  SceneData scene;
+  const unsigned white = add_material(scene);
+  const glm::vec3 x(3, 0, 0), y(0, 3, 0), z(0, 0, 3), lamp(20, 50, 35);
+  add_quad(scene, {0, 0, 0}, x, y, white);
+  add_quad(scene, {0, 0, 0}, y, z, white);
+  add_quad(scene, {0, 0, 0}, z, x, white);
+  scene.lights = {{"lamp", spot_light(lamp, -lamp, 0.06f, 0.09f)}};
+  const double distance = glm::length(lamp), least = lamp.x / std::pow(distance, 3);
+  for (const unsigned shadow_size : {64u, 128u, 1024u}) {
+    const std::vector<float> pixels =
+        direct_light(scene, camera_at({1, 0.8f, 1}, {-1, -0.8f, -1}), shadow_size);
+    for (std::size_t i = 0; i < pixels.size(); i += 4)
+      ASSERT_GT(pixels[i] * std::numbers::pi, 0.65 * least) << shadow_size << ", pixel " << i / 4;
   }
 }
 

@@ -87,9 +87,10 @@ Share weigh_taps(const Filter& filter, const Kind& kind) {
   return share;
 }
 
-/// Returns true if the receiver is below a surface of the map: if the height of one of the inner
-/// texels above `rounding`, extrapolated to the receiver from higher outer neighbours, is positive.
-bool below_surface(const Filter& filter, double rounding) {
+/// Height of a surface of the map above the receiver [m]: the largest one of inner texels above
+/// `rounding`, extrapolated to the receiver from higher outer neighbours; 0: it is below none.
+double surface_above(const Filter& filter, double rounding) {
+  double highest = 0;
   for (const int row : {1, 2}) {
     for (const int column : {1, 2}) {
       const double inner = filter.height[row][column],
@@ -98,10 +99,10 @@ bool below_surface(const Filter& filter, double rounding) {
       const glm::dvec2 distance = glm::abs(filter.distance[row][column]);
       const double fall =
           std::max(beside - inner, 0.0) * distance.x + std::max(past - inner, 0.0) * distance.y;
-      if (inner > rounding && inner - fall > 0) return true;
+      if (inner > rounding) highest = std::max(highest, inner - fall);
     }
   }
-  return false;
+  return highest;
 }
 
 /// Returns true if the surface above a receiver meets its plane at a texel: if the heights of two
@@ -144,16 +145,16 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
   });
   if (lifted.whole == 0) return 1;  // outside the map
   if (lifted.blocked >= double{CLPV_SHADOW_WHOLE} * lifted.whole) return 0;
-  if (!flat || !below_surface(filter, rounding)) return lifted.visible();
-  return weigh_taps(filter,
-                    [&](int row, int column) {
-                      const double height = filter.height[row][column];
-                      if (height > rounding) return Tap::blocks;
-                      return height > -rounding && !meets_surface(filter, row, column, rounding)
-                                 ? Tap::passes
-                                 : Tap::beyond;
-                    })
-      .visible();
+  const double surface = flat ? surface_above(filter, rounding) : 0;
+  if (surface <= 0) return lifted.visible();
+  const Share below = weigh_taps(filter, [&](int row, int column) {
+    const double height = filter.height[row][column];
+    if (height > rounding) return Tap::blocks;
+    return height > -rounding && !meets_surface(filter, row, column, rounding) ? Tap::passes
+                                                                               : Tap::beyond;
+  });
+  const bool lit_beside = below.whole > below.blocked;
+  return surface <= rounding && lit_beside ? lifted.visible() : below.visible();
 }
 
 glm::dvec3 direct_irradiance(const MappedLight& light, const glm::dvec3& position,

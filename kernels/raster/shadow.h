@@ -15,9 +15,10 @@
 // the receiver's plane, too. Lower neighbours do not count: they may lie on another surface, and
 // where a plane rises, one inner texel has higher ones. A receiver below a surface has no lift, and
 // texels beyond the edge do not count. Nor do texels on the edge itself, which may show either
-// surface: they lie in the receiver's plane and, by two texels closer to it, in the roof's. Only
-// receivers whose normals are one are tested: triangles of a curved mesh lie above each other's
-// planes.
+// surface: they lie in the receiver's plane and, by two texels closer to it, in the roof's. A
+// receiver below it by no more than rounding may as well be in a concave corner, which then has lit
+// texels in its plane. Only receivers whose normals are one are tested: triangles of a curved mesh
+// lie above each other's planes.
 #pragma once
 
 #include "lanes.h"
@@ -110,19 +111,19 @@ CLPV_INLINE float8 texel_heights(const Receiver r, const float8 d, const float2 
   return select((float8)(-1e6f * r.lift), height, d > 0.0f);
 }
 
-// True if a receiver is below a surface of the map. `upper`, `lower`: heights of the filter's first
-// and last two rows.
-CLPV_INLINE bool below_surface(const Receiver r, const float8 upper, const float8 lower) {
+// Height of a surface of the map above a receiver [m]; 0 or less: it is below none. `upper`,
+// `lower`: heights of the filter's first and last two rows.
+CLPV_INLINE float surface_above(const Receiver r, const float8 upper, const float8 lower) {
   const float4 inner = (float4)(upper.s5, upper.s6, lower.s1, lower.s2);
   const int4 above = inner > r.rounding;
-  if ((above.x | above.y | above.z | above.w) == 0) return false;
+  if ((above.x | above.y | above.z | above.w) == 0) return 0.0f;
   const float4 beside = (float4)(upper.s4, upper.s7, lower.s0, lower.s3),
                past = (float4)(upper.s1, upper.s2, lower.s5, lower.s6);
   const float4 x = fabs((float4)(r.dx.y, r.dx.z, r.dx.y, r.dx.z)),
                y = fabs((float4)(r.dy.y, r.dy.y, r.dy.z, r.dy.z));
   const float4 centre = inner - max(beside - inner, 0.0f) * x - max(past - inner, 0.0f) * y;
-  const int4 below = above & (centre > 0.0f);
-  return (below.x | below.y | below.z | below.w) != 0;
+  const float4 height = select((float4)(0.0f), centre, above);
+  return max(max(height.x, height.y), max(height.z, height.w));
 }
 
 // Mask of the texels of two rows that count for a receiver below a surface: those neither below its
@@ -158,12 +159,15 @@ CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, co
   const float sum = dot(blocked.lo + blocked.hi, one);
   *whole = dot(wx, one) * dot(wy, one);
   if (sum >= CLPV_SHADOW_WHOLE * *whole) return *whole;
-  if (!below_surface(r, upper, lower)) return sum;
+  const float surface = surface_above(r, upper, lower);
+  if (surface <= 0.0f) return sum;
   const float8 inner = side_by_side(upper.hi, lower.lo);
   const float8 counted = select(none, upper_w, counted_texels(r, upper, inner, lower)) +
                          select(none, lower_w, counted_texels(r, lower, inner, upper));
   const float8 above = select(none, upper_w, upper > r.rounding) +
                        select(none, lower_w, lower > r.rounding);
+  const float8 lit = counted - above;
+  if (surface <= r.rounding && dot(lit.lo + lit.hi, one) > 0.0f) return sum;
   *whole = dot(counted.lo + counted.hi, one);
   return dot(above.lo + above.hi, one);
 }
