@@ -93,6 +93,11 @@ TEST_F(Drawing, AReportRejectsWithItsOwnExitCode) {
   }
   EXPECT_EQ(run_here("report " + file("page") + " --bench " + file("absent.json")).exit_code, 3);
   EXPECT_FALSE(std::filesystem::exists(file("page/index.html")));
+  folder_.write("page/index.html", "<html>mine</html>");
+  const test::Outcome foreign = run_here("report " + file("page") + " " + test::kTinyRoom);
+  EXPECT_EQ(foreign.exit_code, 1);
+  EXPECT_THAT(foreign.err, HasSubstr("page/index.html: found a file that clpv did not write"));
+  EXPECT_EQ(test::read_file(file("page/index.html")), "<html>mine</html>");
 }
 
 }  // namespace

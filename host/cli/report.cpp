@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -222,6 +223,17 @@ void add_others(const Options& options, const Subject& subject, const Drawing& d
   }
 }
 
+/// Throws Error(run_time) for a page that clpv did not write (python/clpv/draw/base.html).
+void require_own_page(const fs::path& page) {
+  if (!fs::is_regular_file(page)) return;
+  std::ifstream file(page, std::ios::binary);
+  std::string start(1000, ' ');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start.find("<meta name=\"generator\" content=\"clpv\">") != std::string::npos) return;
+  throw Error(ExitCode::run_time, "{}: found a file that clpv did not write; allowed: none, or a page",
+              page.string());
+}
+
 /// Titles of all methods, in the order of their images.
 nlohmann::json methods(const Options& options) {
   nlohmann::json all = nlohmann::json::array();
@@ -272,6 +284,7 @@ void run(const Options& options, const Shared& shared) {
   nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},
                         {"benchmarks", read_documents(options.benchmarks, "benchmarks", "bench")}};
   check_outputs({{"DIR", page_of(options)}});
+  require_own_page(page_of(options));
   const Drawing drawing("report", "clpv report");
   const Device device = choose_device(shared.device);
   Session session(device, ProgramCache::of_user(device));
