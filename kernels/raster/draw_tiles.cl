@@ -73,19 +73,15 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
     key = key < farthest ? key : farthest;
     const int at = row * CLPV_PITCH;
     const realW old = tile.keys[at];
-    closer &= key <= tile.far_key;
-    if (only_depth) {
-      closer &= key < old;
-    } else {
-      closer &= (key < old) | ((key == old) & (triangle < tile.seen[at]));
-    }
+    const uintW old_seen = only_depth ? (uintW)(0u) : tile.seen[at];  // 0: an equal key stays
+    closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
     if (masked) {
       if (no_lane(closer)) continue;
       const realW depth = hit_depth(view, key);
       closer &= solid(view, mask, (float)tile.x, (float)(tile.y + row), depth, texels);
     }
     tile.keys[at] = select(old, key, closer);
-    if (!only_depth) tile.seen[at] = select(tile.seen[at], (uintW)(triangle), closer);
+    if (!only_depth) tile.seen[at] = select(old_seen, (uintW)(triangle), closer);
   }
 }
 
