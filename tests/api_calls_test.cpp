@@ -31,7 +31,8 @@ const Vec3 kEye{0.3, 0.25, 0.2}, kElsewhere{-0.4, 0.5, 0.1};
 
 TEST(ApiCalls, TheLibraryPrintsNothingAndTheReceiverGetsAll) {
   all_devices();  // chooses PoCL's cache, which keeps its place
-  const test::Variable cache("CLPV_PROGRAM_CACHE", "on"), nowhere("XDG_CACHE_HOME", "/dev/null/nowhere");
+  const test::Variable cache("CLPV_PROGRAM_CACHE", "on"),
+      nowhere("XDG_CACHE_HOME", "/dev/null/nowhere");
   std::mutex mutex;
   std::vector<std::pair<LogLevel, std::string>> received;
   testing::internal::CaptureStdout();

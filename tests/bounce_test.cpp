@@ -176,8 +176,8 @@ TEST(BouncedFrame, LaterBouncesLeaveALamp) {
 }
 
 /// Mean of irradiance() by all bounces over that by one, in a closed box that emits on all of its
-/// faces: eight cells of the coarsest of three cascades along each edge, seen by an eye that has one
-/// face within the finest cascade.
+/// faces: eight cells of the coarsest of three cascades along each edge, seen by an eye that has
+/// one face within the finest cascade.
 double furnace_series(float albedo) {
   SceneData scene;
   const unsigned material = add_material(scene, glm::vec3(albedo));
@@ -191,8 +191,8 @@ double furnace_series(float albedo) {
   return light(Bounces::all) / light(Bounces::one);
 }
 
-// The series 1 + a + a^2 + ... over three cascades. Errors grow with 1 / (1 - a): a white furnace may
-// be too dark, never too bright.
+// The series 1 + a + a^2 + ... over three cascades. Errors grow with 1 / (1 - a): a white furnace
+// may be too dark, never too bright.
 TEST(BouncedFrame, FurnacesOfThreeCascadesMatchTheirClosedForm) {
   EXPECT_NEAR(furnace_series(0.2f) * 0.8, 1, 0.02);
   EXPECT_NEAR(furnace_series(0.5f) * 0.5, 1, 0.02);

@@ -112,8 +112,7 @@ class Replay : public ::testing::Test {
 
   test::Outcome replay(const fs::path& capsule, const std::string& more = {},
                        const std::string& before = {}) const {
-    return test::run(before + " " + program().string() + " " + capsule.string() +
-                     " " + more);
+    return test::run(before + " " + program().string() + " " + capsule.string() + " " + more);
   }
   test::Outcome replay() const { return replay(folder_ / "small"); }
 
@@ -152,10 +151,10 @@ TEST_F(Replay, ACapsuleIsCleanUnderOclgrind) {
     GTEST_SKIP() << "oclgrind is not installed (Debian: apt install oclgrind)";
   const fs::path capsule = capsule_of(std::end(kRows)[-1], folder_ / "rows");
   const std::string log = (folder_ / "log").string();
-  const test::Outcome outcome =
-      replay(capsule, "",
-             "oclgrind --data-races --uninitialized --build-options "
-             "'-cl-opt-disable -Dalways_inline=noinline' --log " + log);
+  const test::Outcome outcome = replay(capsule, "",
+                                       "oclgrind --data-races --uninitialized --build-options "
+                                       "'-cl-opt-disable -Dalways_inline=noinline' --log " +
+                                           log);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("\nok: "));
   EXPECT_EQ(test::read_file(log), "");
@@ -173,8 +172,7 @@ TEST_F(Replay, PrintsTheFirstWrongPlace) {
 }
 
 TEST_F(Replay, AKernelThatNeverEndsFails) {
-  capsule(
-      "buffer 0 16\nwrite 0 in\nprogram 0 a.cl\nlaunch 0 endless 1 1 1 m0 v00000040\n");
+  capsule("buffer 0 16\nwrite 0 in\nprogram 0 a.cl\nlaunch 0 endless 1 1 1 m0 v00000040\n");
   const test::Outcome outcome = replay(folder_ / "small", "", "REPLAY_SECONDS=1");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.out, HasSubstr("failed: ended by signal 14 (14: did not end within"));
@@ -188,7 +186,8 @@ TEST_F(Replay, NamesDamagedLines) {
       {"buffer 0 -1", "capsule.txt:1: found '-1', allowed: bytes"},
       {"buffer 99999 4", "capsule.txt:1: found '99999', allowed: a memory, at most 4095"},
       {"write 3 in", "capsule.txt:1: found memory 3, allowed: one of an earlier line"},
-      {"buffer 0 4\nwrite 0 in", "capsule.txt:2: in: found 16 bytes (-1: no file), allowed: at most 4"},
+      {"buffer 0 4\nwrite 0 in",
+       "capsule.txt:2: in: found 16 bytes (-1: no file), allowed: at most 4"},
       {"buffer 0 16\nwrite 0 no", "capsule.txt:2: no: found -1 bytes (-1: no file)"},
       {before + "launch 1 twice 1 4 2 m0", "capsule.txt:4: found program 1, allowed"},
       {before + "launch 0 none 1 4 2 m0", "capsule.txt:4: clCreateKernel: error -46"},
@@ -251,13 +250,13 @@ test::Outcome check(const std::string& before, const fs::path& folder, const std
 TEST(Capsules, ACompilerErrorLeavesOneWithoutLaunches) {
   const test::TemporaryFolder folder;
   folder.write("kernels/sizes.cl", "__kernel void sizes(");
-  const test::Outcome outcome = check("CLPV_KERNEL_DIR=" + (folder / "kernels").string(),
-                                      folder / "capsules", "");
+  const test::Outcome outcome =
+      check("CLPV_KERNEL_DIR=" + (folder / "kernels").string(), folder / "capsules", "");
   EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
   const fs::path capsule = folder / "capsules/sizes-shared-structs";
   EXPECT_THAT(outcome.err, HasSubstr("capsule of sizes shared structs: " + capsule.string()));
-  EXPECT_THAT(test::read_file(capsule / "capsule.txt"), AllOf(HasSubstr("\nprogram 0 0-sizes.cl "),
-                                                              ::testing::Not(HasSubstr("\nlaunch"))));
+  EXPECT_THAT(test::read_file(capsule / "capsule.txt"),
+              AllOf(HasSubstr("\nprogram 0 0-sizes.cl "), ::testing::Not(HasSubstr("\nlaunch"))));
   EXPECT_THAT(test::read_file(capsule / "README.md"),
               AllOf(HasSubstr("sizes shared structs"), HasSubstr("failed"), HasSubstr("driver ")));
 }

@@ -52,8 +52,8 @@ TEST_F(Drawing, AReportIsOnePageWithItsViews) {
   std::filesystem::create_directory(file("theirs"));
   ASSERT_EQ(run_here("render" + size + "-o " + file("theirs/tiny-eye.exr")).exit_code, 0);
   const test::Outcome larger =
-      run_here("report " + file("page") + " " + test::kTinyRoom + " --width 48 --height 28 --cache " +
-               file("cache") + " --images " + file("theirs"));
+      run_here("report " + file("page") + " " + test::kTinyRoom +
+               " --width 48 --height 28 --cache " + file("cache") + " --images " + file("theirs"));
   EXPECT_EQ(larger.exit_code, 3);
   EXPECT_THAT(larger.err, HasSubstr("tiny-eye.exr has 48 x 27 pixels, the page has 48 x 28"));
   EXPECT_FALSE(std::filesystem::exists(file("cache"))) << "found before tracing";

@@ -49,15 +49,16 @@ TEST_F(DriverFiles, ThatAreMissingOrForeignAreNamed) {
   add("8-other.icd", "libc.so.6");
   const test::Outcome outcome = devices();
   EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
-  EXPECT_THAT(outcome.out,
-              AllOf(HasSubstr("1-missing.icd: /nonexistent/libmissing.so: no such file\n"),
-                    HasSubstr("2-foreign.icd: " + (folder_ / "foreign.so").string() +
-                              ": of another machine; allowed: that of clpv\n"),
-                    HasSubstr("text.so: no ELF file\n"), HasSubstr("4-empty.icd: names no library\n"),
-                    HasSubstr("6-pipe.icd: " + pipe + ": no regular file\n"),
-                    HasSubstr("7-folder.icd: " + folder_.path().string() + ": no regular file\n"),
-                    HasSubstr("libclpv-none.so.7: cannot open shared object file"),
-                    HasSubstr("libc.so.6: offers no OpenCL platform\n")));
+  EXPECT_THAT(
+      outcome.out,
+      AllOf(HasSubstr("1-missing.icd: /nonexistent/libmissing.so: no such file\n"),
+            HasSubstr("2-foreign.icd: " + (folder_ / "foreign.so").string() +
+                      ": of another machine; allowed: that of clpv\n"),
+            HasSubstr("text.so: no ELF file\n"), HasSubstr("4-empty.icd: names no library\n"),
+            HasSubstr("6-pipe.icd: " + pipe + ": no regular file\n"),
+            HasSubstr("7-folder.icd: " + folder_.path().string() + ": no regular file\n"),
+            HasSubstr("libclpv-none.so.7: cannot open shared object file"),
+            HasSubstr("libc.so.6: offers no OpenCL platform\n")));
 }
 
 TEST_F(DriverFiles, ThatEndTheProcessAreNamedAndTheOthersListed) {
@@ -75,11 +76,11 @@ TEST_F(DriverFiles, ThatEndTheProcessAreNamedAndTheOthersListed) {
   ASSERT_EQ(::mkfifo((folder_ / "vendors/pipe.icd").c_str(), 0600), 0);
   const test::Outcome outcome = devices();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("Portable Computing Language"),
-                                 HasSubstr("aborts.icd: "), HasSubstr("signal 6"),
-                                 HasSubstr("exits.icd: "), HasSubstr("with exit code 0 when loaded"),
-                                 HasSubstr("pipe.icd: names no library"),
-                                 Not(HasSubstr("pocl.icd"))));
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("Portable Computing Language"), HasSubstr("aborts.icd: "),
+                    HasSubstr("signal 6"), HasSubstr("exits.icd: "),
+                    HasSubstr("with exit code 0 when loaded"),
+                    HasSubstr("pipe.icd: names no library"), Not(HasSubstr("pocl.icd"))));
   EXPECT_THAT(devices("--format json").out,
               AllOf(HasSubstr("\"faulty_drivers\": [\n"), HasSubstr("aborts.icd")));
 }

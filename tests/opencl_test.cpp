@@ -252,9 +252,8 @@ TEST(OpenCl, WrongObjectsAreNamed) {
   const Owned own, other;
   const Scene scene(kCornell);
   const auto rejected = [&](const std::string& part, const opencl::Queue& queue) {
-    EXPECT_THAT(
-        test::error_of(ExitCode::usage, [&] { Renderer(scene, test::few_steps(), queue); }),
-        AllOf(HasSubstr(part), HasSubstr("allowed")));
+    EXPECT_THAT(test::error_of(ExitCode::usage, [&] { Renderer(scene, test::few_steps(), queue); }),
+                AllOf(HasSubstr(part), HasSubstr("allowed")));
   };
   rejected("context and queue: found neither", {});
   rejected("queue: found one of another context", {own.context(), other.queue()});

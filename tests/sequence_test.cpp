@@ -245,8 +245,7 @@ TEST_F(SequenceTest, TimesOfEveryStageAreSummedUp) {
 TEST_F(SequenceTest, AFilmHasEveryFrame) {
   {
     const Variable path(
-        "PATH",
-        fake_ffmpeg("for last; do :; done; { echo \"$@\"; wc -c; } > \"${last#file:}\"\n"));
+        "PATH", fake_ffmpeg("for last; do :; done; { echo \"$@\"; wc -c; } > \"${last#file:}\"\n"));
     ASSERT_EQ(sequence("--frames 3 --fps 12.5 --video film.mp4").exit_code, 0);
   }
   EXPECT_THAT(read_file(folder / "film.mp4"), AllOf(HasSubstr("-video_size 48x27 -framerate 12.5"),

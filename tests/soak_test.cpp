@@ -41,8 +41,8 @@ RenderOptions small(TransportKind transport, Layout layout, int grid) {
 }
 
 TEST(Soak, MemoryStaysFlatOverFramesOfChangingOptions) {
-  const std::vector<RenderOptions> all = {
-      small(TransportKind::sweep, Layout::soa, 16), small(TransportKind::sampled, Layout::aos, 5)};
+  const std::vector<RenderOptions> all = {small(TransportKind::sweep, Layout::soa, 16),
+                                          small(TransportKind::sampled, Layout::aos, 5)};
   const SceneData scene = load_scene(test::kTiny);
   Session session(choose_device());
   const auto render = [&](int i) {

@@ -3,6 +3,7 @@
 // OpenCL.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
@@ -96,6 +97,8 @@ std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
 std::unique_ptr<Basis> make_basis_from_centres(const std::string& name,
                                                const std::vector<glm::dvec3>& centres,
                                                const std::vector<double>& lambdas);
+
+inline constexpr std::uintmax_t kCentresBytes = 1 << 20;  ///< maximum of a file of centres
 
 /// Loads an SRBF basis from a JSON file {"name": "mine", "lambda": 0.3, "centres": [[x, y, z],
 /// ...]}. Directions may have any length. The default name is the file's stem. "lambda", a number

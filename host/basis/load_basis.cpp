@@ -14,8 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uintmax_t kMaxBytes = 1 << 20;
-
 glm::dvec3 unit_vector(const json& value, const std::string& path, std::size_t index) {
   const auto reject = [&](const std::string& place, const json& found) {
     return Error(ExitCode::bad_input,
@@ -90,7 +88,7 @@ std::string name_of(const json& file, const std::string& path) {
 }  // namespace
 
 std::unique_ptr<Basis> load_basis(const std::string& path, double lambda) {
-  const json file = read_json(path, kMaxBytes);
+  const json file = read_json(path, kCentresBytes);
   if (!file.is_object()) {
     throw Error(ExitCode::bad_input, "{}: found {}; allowed: an object", path, quoted(file));
   }

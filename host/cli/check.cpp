@@ -146,8 +146,7 @@ std::vector<std::size_t> recorded_cases(const verify::Cases& cases, const Option
                                         const std::vector<CheckResults>& results) {
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const bool faulty =
-        count(results[i], Status::wrong) + count(results[i], Status::failed) > 0;
+    const bool faulty = count(results[i], Status::wrong) + count(results[i], Status::failed) > 0;
     if (faulty || std::ranges::count(options.capsule, title_of(cases[i])) > 0) numbers.push_back(i);
   }
   return numbers;

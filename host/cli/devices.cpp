@@ -72,8 +72,9 @@ void add_devices(CLI::App& app, Shared& shared) {
       list = {{choose_device(list.devices, shared.device)}, {}};
     }
     if (*format == "json") {
-      print_json(to_json(list, faulty).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                 "\n");
+      print_json(
+          to_json(list, faulty).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+          "\n");
     } else {
       print(list);
       for (const FaultyDriver& each : faulty) print_data("-  {}: {}\n", each.file, each.reason);

@@ -230,8 +230,8 @@ void require_own_page(const fs::path& page) {
   std::string start(1000, ' ');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   if (start.find("<meta name=\"generator\" content=\"clpv\">") != std::string::npos) return;
-  throw Error(ExitCode::run_time, "{}: found a file that clpv did not write; allowed: none, or a page",
-              page.string());
+  throw Error(ExitCode::run_time,
+              "{}: found a file that clpv did not write; allowed: none, or a page", page.string());
 }
 
 /// Titles of all methods, in the order of their images.

@@ -23,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kVendors = "/etc/OpenCL/vendors";
-constexpr std::uintmax_t kMostBytes = 4096;   // of an .icd file: one path
-constexpr std::chrono::seconds kLoading{20};  // longer than any driver takes
-constexpr int kSignalled = 128;               // exit code after a signal, less the signal
+constexpr std::uintmax_t kMostBytes = 4096;         // of an .icd file: one path
+constexpr std::chrono::seconds kLoading{20};        // longer than any driver takes
+constexpr int kSignalled = 128;                     // exit code after a signal, less the signal
 constexpr const char* kLoaded = "driver loaded\n";  // since a driver may end the child with code 0
 
 std::string library_of(const fs::path& icd_file) {
@@ -38,7 +38,11 @@ std::string library_of(const fs::path& icd_file) {
 std::string machine_of(const fs::path& file) {
   char header[20] = {};
   std::ifstream(file, std::ios::binary).read(header, sizeof header);
-  if (std::memcmp(header, "\x7f" "ELF", 4) != 0) return {};
+  if (std::memcmp(header,
+                  "\x7f"
+                  "ELF",
+                  4) != 0)
+    return {};
   return std::string(header + 4, 2) + std::string(header + 18, 2);
 }
 

@@ -22,8 +22,10 @@ constexpr const char* kCommands =
     "#   program PROGRAM FILE OPTION...                       builds it\n"
     "#   launch PROGRAM KERNEL DIMENSIONS GLOBAL... LOCAL... ARGUMENT...\n"
     "#                           an argument is mMEMORY, or vBYTES of a value\n"
-    "#   expect MEMORY KIND FILE FILE: the least and the largest value (two floats) of each number;\n"
-    "#                           KIND: float, half, uint or bits (bytes, from their least to their largest bits)\n";
+    "#   expect MEMORY KIND FILE FILE: the least and the largest value (two floats) of each "
+    "number;\n"
+    "#                           KIND: float, half, uint or bits (bytes, from their least to their "
+    "largest bits)\n";
 
 std::string sizes_of(const cl::NDRange& range) {
   return fmt::format("{}", fmt::join(range.get(), range.get() + range.dimensions(), " "));
@@ -48,8 +50,8 @@ std::string command_of(const cl::Memory& memory, std::size_t number, std::size_t
   const cl::Image& image = static_cast<const cl::Image&>(memory);
   const auto format = image.getImageInfo<CL_IMAGE_FORMAT>();
   const auto extent = extent_of(memory);
-  const std::string texel = fmt::format("{} {} {}", number, format.image_channel_order,
-                                        format.image_channel_data_type);
+  const std::string texel =
+      fmt::format("{} {} {}", number, format.image_channel_order, format.image_channel_data_type);
   if (type == CL_MEM_OBJECT_IMAGE1D_BUFFER)
     return fmt::format("image1d {} {} {}", texel, extent[0], buffer);
   return fmt::format("image3d {} {} {}", texel, fmt::join(extent, " "),

@@ -69,7 +69,7 @@ class Recorder {
   std::map<cl_mem, Known> memories_;
   std::vector<cl::Program> programs_;
   std::map<cl_kernel, std::map<cl_uint, Argument>> arguments_;
-  std::vector<cl::Memory> launched_;           ///< memories of the launch in progress
+  std::vector<cl::Memory> launched_;          ///< memories of the launch in progress
   std::map<std::string, std::string> files_;  ///< names by contents
   std::size_t bytes_ = 0, program_command_ = 0;
 };

@@ -32,8 +32,8 @@ class SharedPrograms {
       return;
     programs_[{context(), key}] = {built, ++uses_};
     if (programs_.size() <= kKept) return;
-    programs_.erase(std::ranges::min_element(
-        programs_, {}, [](const auto& entry) { return entry.second.used; }));
+    programs_.erase(std::ranges::min_element(programs_, {},
+                                             [](const auto& entry) { return entry.second.used; }));
   }
 
  private:

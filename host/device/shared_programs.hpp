@@ -16,7 +16,8 @@ cl::Context shared_context(const cl::Device& device);
 /// built, if many others were used since, or in any other context. Thread safe.
 cl::Program shared_program(const cl::Context& context, const std::string& key);
 
-/// Keeps a built program for later sessions, if its context is one of shared_context(). Thread safe.
+/// Keeps a built program for later sessions, if its context is one of shared_context(). Thread
+/// safe.
 void share_program(const cl::Context& context, const std::string& key, const cl::Program& built);
 
 }  // namespace clpv

@@ -51,8 +51,8 @@ std::size_t commands(const std::string& text, const std::string& command) {
 std::string readme(const Case& c, const Device& device, const CheckResults& checked,
                    const CheckResults& recorded, const std::string& capsule) {
   const std::size_t launches = commands(capsule, "launch "), outputs = commands(capsule, "expect ");
-  std::string text = fmt::format("# A capsule of clpv {}: {} {}\n\n", version(), name_of(c.stage),
-                                 c.name);
+  std::string text =
+      fmt::format("# A capsule of clpv {}: {} {}\n\n", version(), name_of(c.stage), c.name);
   text += fmt::format("Device: {} ({}), driver {}, {}, {} lanes\n", device.name, device.platform,
                       device.driver, device.version, device.lanes);
   text += fmt::format("Result: {}\n", words_of(checked));
@@ -62,7 +62,8 @@ std::string readme(const Case& c, const Device& device, const CheckResults& chec
                       outputs > 0 ? "" : ": the process ended, or was ended, before");
   text += "`make check` builds replay.c, which needs only OpenCL 1.2, and replays capsule.txt.\n";
   text += "`make check DEVICE=TEXT` takes a device whose \"PLATFORM: DEVICE\" has that text.\n";
-  text += "It ends with 0 (ok), 1 (wrong or failed) or 77 (unsupported). Expected values are those\n";
+  text +=
+      "It ends with 0 (ok), 1 (wrong or failed) or 77 (unsupported). Expected values are those\n";
   text += "of clpv's reference in double precision. License of all files: MIT.\n";
   return text;
 }

@@ -104,7 +104,8 @@ void expect_functions(Session& session, const Volume& volume, std::span<const do
   Ranges ranges;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const double error = allowed * largest * errors[i / samples % size];
-    ranges.push_back({std::min(expected[i], other[i]) - error, std::max(expected[i], other[i]) + error});
+    ranges.push_back(
+        {std::min(expected[i], other[i]) - error, std::max(expected[i], other[i]) + error});
   }
   expect(session, volume, ranges);
 }

@@ -182,7 +182,8 @@ Job propagate_job(Session& session, const PropagateProblem& problem, const Share
     // In half-floats, the rounding of storage is larger than that of lobes rotated at run time.
     const Storage storage = q.options.format.storage;
     const bool at_run_time = q.options.lobe_time == LobeTime::kernel && storage == Storage::float32;
-    const double allowed = tolerance(at_run_time ? "propagate-run-time-lobes" : "propagate", storage);
+    const double allowed =
+        tolerance(at_run_time ? "propagate-run-time-lobes" : "propagate", storage);
     expect(session, p->accumulated, ranges_about(*expected, allowed));
     return compare_volumes(p->accumulated.read(session), *expected, q.options.grid, allowed);
   };

@@ -194,8 +194,7 @@ void help(const Cases& cases, const std::function<CheckResults(const Case&)>& ru
     for (std::size_t number = 0; number < cases.size(); ++number) {
       if (cases[number].stage != stage || !claims.take(claim_of(number))) continue;
       nlohmann::json results = nlohmann::json::array();
-      for (const CheckResult& result : run(cases[number]))
-        results.push_back(to_json(result));
+      for (const CheckResult& result : run(cases[number])) results.push_back(to_json(result));
       claims.finish(claim_of(number), results.dump());
     }
   };

@@ -3,10 +3,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "basis/basis.hpp"
 #include "device/driver_settings.hpp"
 #include "device/kernel_files.hpp"
 #include "support/fingerprint.hpp"
-#include "support/input_file.hpp"
+#include "support/json_schema.hpp"
 
 namespace clpv {
 
@@ -16,7 +17,7 @@ std::string pixels_key(const Device& device, const RenderOptions& options) {
   print.add(program).add(device.platform).add(device.platform_version).add(device.name);
   print.add(device.version).add(device.driver).add(device.lanes);
   print.add(driver_settings(DriverSettings::compilation)).add(to_json(options).dump());
-  if (!options.centres.empty()) print.add(file_bytes(options.centres).value_or(""));
+  if (!options.centres.empty()) print.add(read_json(options.centres, kCentresBytes).dump());
   add_kernels(print);
   return print.hex();
 }
