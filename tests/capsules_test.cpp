@@ -137,6 +137,16 @@ class Replay : public ::testing::Test {
   int rows_ = 0;
 };
 
+TEST_F(Replay, MakeCheckReplaysOnTheFirstDeviceOrOneNamed) {
+  for (const char* name : {"replay.c", "Makefile"})
+    fs::copy(fs::path(CLPV_SOURCE_DIR) / "host/verify/replay" / name, folder_ / "small");
+  const std::string check = "make -s check -C " + (folder_ / "small").string();
+  const test::Outcome first = test::run(check);
+  EXPECT_EQ(first.exit_code, 0) << first.out << first.err;
+  EXPECT_THAT(first.out, HasSubstr("ok: 1 launches"));
+  EXPECT_THAT(test::run(check + " DEVICE=nowhere").err, HasSubstr("Error 77"));
+}
+
 TEST_F(Replay, RowsAreOkAndWrongWithAnotherConstant) {
   for (const Row& row : kRows) expect_judged(row);
 }
