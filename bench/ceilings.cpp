@@ -94,8 +94,8 @@ Job fma_job(Session& session, int width) {
   const cl_uint passes = std::max<cl_uint>(kMinPasses, calibrated_passes(session, launch));
   Job job;
   job.run = [launch, passes] { launch(passes); };
-  job.compare = [&session, out, size] {
-    return deviation_from(session.read<float>(out, size.items), 2.0 * kChains);
+  job.compare = [&session, out, size, width] {
+    return deviation_from(session.read<float>(out, size.items), 2.0 * kChains * width);
   };
   job.cost.flops = 2.0 * kChains * kUnrolled * width * passes * static_cast<double>(size.items);
   return job;

@@ -39,7 +39,10 @@ __kernel void fma_peak(const uint passes, const float start, __global float* out
 #define CLPV_DO(i) sum += a##i;
   CLPV_EACH_CHAIN(CLPV_DO)
 #undef CLPV_DO
-  out[item] = sum.s0;
+  // All components count: a compiler for scalars would drop the chains of unused ones.
+  float total = 0.0f;
+  for (int i = 0; i < CLPV_WIDTH; ++i) total += ((const float*)&sum)[i];
+  out[item] = total;
 }
 
 // `blocks`: blocks of CLPV_BLOCK vectors per work-item.

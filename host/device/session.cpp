@@ -129,7 +129,7 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global,
                                       kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(), device_.name));
   }
   if (recorder_) recorder_->end_launch();
-  timeline_.add(event);
+  timeline_.add(event, kernel);
 }
 
 // Oclgrind 21.10's memory checker does not count a fill as initialisation. After a write or copy to

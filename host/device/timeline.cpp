@@ -25,22 +25,42 @@ void Timeline::abandon() {
   current_ = -1;
 }
 
-void Timeline::add(const cl::Event& event) {
+void Timeline::add(const cl::Event& event, const cl::Kernel& kernel) {
   ++host_.launches;
-  if (current_ >= 0 && events_valid_) entries_[current_].events.push_back(event);
+  if (current_ >= 0 && events_valid_) entries_[current_].launches.push_back({event, kernel});
+}
+
+double Timeline::Launch::ms() const {
+  event.wait();
+  const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+  const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+  return static_cast<double>(end - start) * 1e-6;
 }
 
 std::vector<StageTime> Timeline::times() const {
   std::vector<StageTime> result;
   for (const Entry& entry : entries_) {
     StageTime time{entry.mark, entry.wall_ms, events_valid_};
-    for (const cl::Event& event : entry.events) {
-      event.wait();
-      const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
-      const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
-      time.ms += static_cast<double>(end - start) * 1e-6;
-    }
+    for (const Launch& launch : entry.launches) time.ms += launch.ms();
     result.push_back(std::move(time));
+  }
+  return result;
+}
+
+std::vector<KernelTime> Timeline::kernel_times() const {
+  std::vector<KernelTime> result;
+  for (const Entry& entry : entries_) {
+    const auto stage = static_cast<std::ptrdiff_t>(result.size());
+    for (const Launch& launch : entry.launches) {
+      const std::string name = launch.kernel() != nullptr
+                                   ? launch.kernel.getInfo<CL_KERNEL_FUNCTION_NAME>()
+                                   : "fill and copy";
+      auto found = std::find_if(result.begin() + stage, result.end(),
+                                [&](const KernelTime& time) { return time.kernel == name; });
+      if (found == result.end()) found = result.insert(found, {entry.mark, name});
+      ++found->launches;
+      found->ms += launch.ms();
+    }
   }
   return result;
 }

@@ -5,6 +5,7 @@
 #include <CL/opencl.hpp>
 #include <chrono>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "options/stages.hpp"
@@ -27,6 +28,14 @@ struct StageTime {
   bool from_events = true;  ///< false: wall time, since the device's events are implausible
 };
 
+/// Device time of one kernel in one stage.
+struct KernelTime {
+  StageMark mark;
+  std::string kernel;  ///< its function, or "fill and copy"
+  unsigned launches = 0;
+  double ms = 0;  ///< sum of the launches [ms]
+};
+
 /// Work of the host for a frame.
 struct HostWork {
   unsigned launches = 0;  ///< kernels, fills and copies
@@ -46,7 +55,8 @@ class Timeline {
   void begin(StageMark mark);  ///< starts a stage; times of repeated stages add up
   void end(cl::CommandQueue& queue);
   void abandon();                    ///< ends a stage that failed, without its time
-  void add(const cl::Event& event);  ///< counts a launch, whose event it adds to the current stage
+  /// Counts a launch, whose event it adds to the current stage. No kernel: a fill or a copy.
+  void add(const cl::Event& event, const cl::Kernel& kernel = {});
   /// Calls `wait`, which waits for the device, and counts it.
   template <typename Wait>
   void wait(const Wait& wait) {
@@ -57,6 +67,9 @@ class Timeline {
   }
   std::vector<StageTime> times()
       const;        ///< waits for the events; one entry per stage, in order of first begin
+  /// Waits for the events. One entry per stage and kernel, in order of first launch; none without
+  /// valid events.
+  std::vector<KernelTime> kernel_times() const;
   void clear();     ///< begins a frame
   void enqueued();  ///< ends the host's part of a frame
   const HostWork& host() const { return host_; }  ///< since clear()
@@ -66,9 +79,14 @@ class Timeline {
   static double since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   }
+  struct Launch {
+    cl::Event event;
+    cl::Kernel kernel;
+    double ms() const;  ///< waits for the event
+  };
   struct Entry {
     StageMark mark;
-    std::vector<cl::Event> events;
+    std::vector<Launch> launches;
     double wall_ms = 0;
   };
   bool events_valid_, waits_;

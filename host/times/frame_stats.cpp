@@ -57,12 +57,20 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
   std::vector<TimeRecord> times = {
       time_record("frame", samples([](const FrameCost& cost) { return cost.wall_ms; })),
       time_record("host", samples([](const FrameCost& cost) { return cost.host.host_ms; }))};
+  nlohmann::json kernels = nlohmann::json::array();
+  for (const KernelTime& time : times_.kernels()) {
+    kernels.push_back({{"stage", name_of(time_record(time.mark, {time.ms}))},
+                       {"kernel", time.kernel},
+                       {"launches", time.launches},
+                       {"ms", time.ms}});
+  }
   const double frame_ms = times[0].median;
   std::ranges::move(times_.stage_records(), std::back_inserter(times));
   return {{"schema", 2},
           {"device", clpv::to_json(session.device())},
           {"options", options},
           {"times", times},
+          {"kernels", kernels},
           {"timer", times_.from_events() ? "event" : "wall"},
           {"launches", median(samples([](const FrameCost& cost) { return cost.host.launches; }))},
           {"waits", median(samples([](const FrameCost& cost) { return cost.host.waits; }))},

@@ -66,6 +66,7 @@ FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& cam
     if (after) after();
     if (i >= 0) times.add(session.timeline().times(), {wall.count(), host});
   }
+  times.set_kernels(session.timeline().kernel_times());
   return times;
 }
 

@@ -23,6 +23,8 @@ struct FrameCost {
 class FrameTimes {
  public:
   void add(const std::vector<StageTime>& stages, const FrameCost& cost = {});
+  void set_kernels(std::vector<KernelTime> times) { kernels_ = std::move(times); }
+  const std::vector<KernelTime>& kernels() const { return kernels_; }  ///< of the last frame
   std::size_t count() const { return costs_.size(); }
 
   const std::vector<FrameCost>& costs() const { return costs_; }
@@ -44,6 +46,7 @@ class FrameTimes {
   };
   std::vector<Series> series_;
   std::vector<FrameCost> costs_;
+  std::vector<KernelTime> kernels_;
   bool from_events_ = true;
 };
 

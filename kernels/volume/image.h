@@ -24,6 +24,18 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(__read_only image3d_t
   return cell;
 }
 
+// What an image of halves stores: the nearest half. Devices may round towards zero when they write
+// (OpenCL 1.2, 8.3.2), which would lose light with each step.
+CLPV_INLINE float4 CLPV_PASTE(CLPV_VOLUME, stored)(const float4 texel) {
+#if CLPV_STORAGE_HALF
+  ushort4 bits;
+  vstore_half4_rte(texel, 0, (half*)&bits);
+  return vload_half4(0, (const half*)&bits);
+#else
+  return texel;
+#endif
+}
+
 CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(__write_only image3d_t volume, const int channel,
                                                 const int x, const int y, const int z,
                                                 const CLPV_VOLUME_CELL cell) {
@@ -32,7 +44,8 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(__write_only image3d_t volume, c
 #pragma unroll
   for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) ((float*)texels)[i] = cell.c[i];
   for (int four = 0; four < CLPV_FOURS; ++four) {
-    write_imagef(volume, (int4)(x, y + channel * CLPV_STEP, z + four * CLPV_STEP, 0), texels[four]);
+    write_imagef(volume, (int4)(x, y + channel * CLPV_STEP, z + four * CLPV_STEP, 0),
+                 CLPV_PASTE(CLPV_VOLUME, stored)(texels[four]));
   }
 }
 
