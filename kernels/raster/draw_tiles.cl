@@ -20,8 +20,8 @@
 // In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers
 //                        per row of a tile, CLPV_TILE rows per tile, tiles row by row; INFINITY and
 //                        UINT_MAX for empty pixels
-// Out:     farthest      largest key of the pixels of each work-item
-// A work-item draws W columns of a tile: all of it with W 8; with W 1 a work-group has eight tiles.
+// Out:     farthest      largest key of the pixels of each tile
+// With W 8 a work-item draws a tile, with W 1 a pixel: a work-group has a tile.
 #include "lanes.h"
 #include "prefetch.h"
 #include "raster/alpha_mask.h"
@@ -30,20 +30,17 @@
 #include "raster/triangle.h"
 #include "shared/loops.h"
 
-// A work-item's columns while it draws: keys and triangles, rows CLPV_PITCH apart. They are indexed
-// at run time, so with one lane they lie in local memory, columns of a work-group next to each
-// other (GPUs keep private arrays in scratch memory).
+// Rows of a tile that a work-item draws.
 #if W == 1
-#define CLPV_GROUP 64
-#define CLPV_PITCH CLPV_GROUP
-#define CLPV_COLUMNS __local
+#define CLPV_ROWS 1
 #else
-#define CLPV_PITCH 1
-#define CLPV_COLUMNS
+#define CLPV_ROWS CLPV_TILE
 #endif
+
+// A work-item's part of a tile while it draws.
 typedef struct {
-  CLPV_COLUMNS realW* keys;
-  CLPV_COLUMNS uintW* seen;
+  realW* keys;
+  uintW* seen;
   int x, y;  // first pixel
   float far_key;
   bool only_depth;
@@ -58,20 +55,20 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
   const uint triangle = kind & CLPV_TRIANGLE_INDEX;
   const int first_x = (int)(r->first & 0xffffu), first_y = (int)(r->first >> 16);
   const int top = max(first_y - tile.y, 0),
-            bottom = min((int)(r->last >> 16) - tile.y, CLPV_TILE - 1);
+            bottom = min((int)(r->last >> 16) - tile.y, CLPV_ROWS - 1);
   Edges edges;
   edges_at(r, tile.x, tile.y + top, &edges);
   const realW key_left = r->key + r->key_x * (column + (float)(tile.x - first_x));
   const realW nearest = (realW)(r->nearest), farthest = (realW)(r->farthest);
   const float key_y = r->key_y;
   for (int row = top; row <= bottom; ++row) {
+    const int at = CLPV_ROWS == 1 ? 0 : row;
     intW closer = (edges.e0 | edges.e1 | edges.e2) >= 0;
     edges.e0 += edges.step0, edges.e1 += edges.step1, edges.e2 += edges.step2;
     if (kind & CLPV_TRIANGLE_GIANT) closer = covered_by_giant(r, tile.x, tile.y + row);
     realW key = key_left + key_y * (float)(tile.y + row - first_y);
     key = key > nearest ? key : nearest;
     key = key < farthest ? key : farthest;
-    const int at = row * CLPV_PITCH;
     const realW old = tile.keys[at];
     const uintW old_seen = only_depth ? (uintW)(0u) : tile.seen[at];  // 0: an equal key stays
     closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
@@ -94,10 +91,10 @@ CLPV_RARE void draw_masked(const ClpvView view, const Tile tile,
 }
 
 // Largest key of the pixels.
-static inline float farthest_of(CLPV_COLUMNS const realW* keys) {
+static inline float farthest_of(const realW* keys) {
   realW largest = keys[0];
-  for (int row = 1; row < CLPV_TILE; ++row) {
-    const realW key = keys[row * CLPV_PITCH];
+  for (int row = 1; row < CLPV_ROWS; ++row) {
+    const realW key = keys[row];
     largest = key > largest ? key : largest;
   }
   return -min_lane(-largest);
@@ -119,7 +116,7 @@ CLPV_INLINE void draw_listed(const ClpvView view, const Tile tile,
 CLPV_RARE void draw_whole_list(const ClpvView view, const Tile tile,
                                __global const ClpvRasterTriangle* list, const uint count,
                                const Scene scene) {
-  const int right = tile.x + W - 1, bottom = tile.y + CLPV_TILE - 1;
+  const int right = tile.x + W - 1, bottom = tile.y + CLPV_ROWS - 1;
   for (uint first = 0; first < count; first += CLPV_LONGEST_LOOP) {
     const uint stop = min(count - first, CLPV_LONGEST_LOOP) + first;
     for (uint i = first; i < stop; ++i) {
@@ -153,7 +150,7 @@ CLPV_INLINE void draw_binned(const ClpvView view, const Tile tile,
 }
 
 #if W == 1
-__attribute__((reqd_work_group_size(8, CLPV_GROUP / 8, 1)))
+__attribute__((reqd_work_group_size(CLPV_TILE, CLPV_TILE, 1)))
 #endif
 __kernel void draw_tiles(const ClpvView view, const uint fresh, const uint only_depth,
                          __global const ClpvRasterTriangle* list, __global const uint* starts,
@@ -163,53 +160,59 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, const uint only_
                          __global const ClpvMaterial* materials, __global const float4* textures,
                          __global const uint* texels, __global realW* keys, __global uintW* seen,
                          __global float* farthest) {
-#if W == 1
-  __local float near_keys[CLPV_TILE * CLPV_GROUP];
-  __local uint nearest[CLPV_TILE * CLPV_GROUP];
-  const uint column = get_local_id(1) * 8 + get_local_id(0);
-#else
-  realW near_keys[CLPV_TILE];
-  uintW nearest[CLPV_TILE];
-  const uint column = 0;
-#endif
   const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE,
-             x = get_global_id(0) / CLPV_TILE_VECTORS, y = get_global_id(1),
-             vector = get_global_id(0) % CLPV_TILE_VECTORS;
+             x = get_global_id(0) / CLPV_TILE_VECTORS, y = get_global_id(1) * CLPV_ROWS / CLPV_TILE,
+             vector = get_global_id(0) % CLPV_TILE_VECTORS,
+             first_row = get_global_id(1) * CLPV_ROWS % CLPV_TILE;
   if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
   const uint at = y * tiles_x + x;
   const bool sorted = counts[CLPV_ENTERED] <= most_entered && counts[CLPV_ENTERED_TOO_MANY] == 0;
   const uint start = starts[at * CLPV_SLICES], end = starts[(at + 1) * CLPV_SLICES];
   if (!fresh && sorted && start == end) return;
   const Scene scene = {vertices, triangles, materials, textures, texels};
-  const Tile tile = {near_keys + column, nearest + column, (int)(x * CLPV_TILE + vector * W),
-                     (int)y * CLPV_TILE,
+  realW near_keys[CLPV_ROWS];
+  uintW nearest[CLPV_ROWS];
+  const Tile tile = {near_keys, nearest, (int)(x * CLPV_TILE + vector * W),
+                     (int)(y * CLPV_TILE + first_row),
                      CLPV_IS_ORTHOGRAPHIC(view) ? view.far_depth : -1.0f / view.far_depth,
                      only_depth != 0};
-  for (int row = 0; row < CLPV_TILE; ++row) {
-    tile.keys[row * CLPV_PITCH] = fresh ? (realW)(INFINITY) : keys[tile_row(at, row, vector)];
+  for (int row = 0; row < CLPV_ROWS; ++row) {
+    const uint from = tile_row(at, first_row + row, vector);
+    near_keys[row] = fresh ? (realW)(INFINITY) : keys[from];
     if (only_depth) continue;
-    tile.seen[row * CLPV_PITCH] = fresh ? (uintW)(UINT_MAX) : seen[tile_row(at, row, vector)];
+    nearest[row] = fresh ? (uintW)(UINT_MAX) : seen[from];
   }
   if (sorted) {
     draw_binned(view, tile, list, binned, start, end, scene);
   } else {
     draw_whole_list(view, tile, list, counts[CLPV_LISTED], scene);
   }
-  for (int row = 0; row < CLPV_TILE; ++row) {
-    keys[tile_row(at, row, vector)] = tile.keys[row * CLPV_PITCH];
-    if (!only_depth) seen[tile_row(at, row, vector)] = tile.seen[row * CLPV_PITCH];
+  for (int row = 0; row < CLPV_ROWS; ++row) {
+    const uint to = tile_row(at, first_row + row, vector);
+    keys[to] = near_keys[row];
+    if (!only_depth) seen[to] = nearest[row];
   }
-  farthest[at * CLPV_TILE_VECTORS + vector] = farthest_of(tile.keys);
+#if W == 1
+  __local float of_pixels[CLPV_TILE * CLPV_TILE];
+  const uint pixel = first_row * CLPV_TILE + vector;
+  of_pixels[pixel] = near_keys[0];
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (pixel != 0) return;
+  float largest = of_pixels[0];
+  for (int i = 1; i < CLPV_TILE * CLPV_TILE; ++i) largest = fmax(largest, of_pixels[i]);
+  farthest[at] = largest;
+#else
+  farthest[at] = farthest_of(near_keys);
+#endif
 }
 
-// Returns true if some work-item of the tiles of a cluster has pixels behind its nearest key.
+// Returns true if some tile of a cluster has pixels behind its nearest key.
 static inline bool may_be_seen(const ClpvView view, const ClpvViewCluster cluster,
                                __global const float* farthest) {
   const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE;
   const uint left = cluster.first & 0xffffu, right = cluster.last & 0xffffu;
   for (uint y = cluster.first >> 16; y <= cluster.last >> 16; ++y) {
-    const uint end = (y * tiles_x + right + 1) * CLPV_TILE_VECTORS;
-    for (uint at = (y * tiles_x + left) * CLPV_TILE_VECTORS; at < end; ++at) {
+    for (uint at = y * tiles_x + left; at <= y * tiles_x + right; ++at) {
       if (!(farthest[at] < cluster.nearest)) return true;
     }
   }

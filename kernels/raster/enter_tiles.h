@@ -16,17 +16,32 @@ typedef struct {
   uint list, entries;
 } Capacity;
 
+// Where a triangle's entries go.
+typedef struct {
+  __global uint* entries;
+  volatile __global uint* slice_counts;
+  __global uint2* wide;
+} Entries;
+
 // Range of tiles that the box of a triangle overlaps.
 typedef struct {
   int left, right, top, bottom;
 } TileRange;
 
-static inline TileRange tiles_of(const RasterWords* words, const int lane) {
-  const uint first = (uint)words->word[CLPV_FIRST_WORD][lane],
-             last = (uint)words->word[CLPV_LAST_WORD][lane];
+static inline uint tile_count(const TileRange tiles) {
+  return (uint)((tiles.right - tiles.left + 1) * (tiles.bottom - tiles.top + 1));
+}
+
+// `first`, `last`: of a ClpvRasterTriangle.
+static inline TileRange tiles_between(const uint first, const uint last) {
   const TileRange tiles = {(int)(first & 0xffffu) / CLPV_TILE, (int)(last & 0xffffu) / CLPV_TILE,
                        (int)(first >> 16) / CLPV_TILE, (int)(last >> 16) / CLPV_TILE};
   return tiles;
+}
+
+static inline TileRange tiles_of(const RasterWords* words, const int lane) {
+  return tiles_between((uint)words->word[CLPV_FIRST_WORD][lane],
+                       (uint)words->word[CLPV_LAST_WORD][lane]);
 }
 
 // Depth slice of a triangle with this smallest key. Orthographic: slices of equal depth;
@@ -56,15 +71,14 @@ static inline Edge side_of(const RasterWords* words, const int i, const int lane
 // Writes entries of a triangle from `at` on, one for each tile of its box that it may cover.
 // Returns the index after the last one.
 static inline uint enter_all(const ClpvView view, const RasterWords* words, const int lane,
-                             const uint index, uint at, __global uint* entries,
-                             volatile __global uint* slice_counts) {
+                             const uint index, uint at, const Entries to) {
   const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE,
              nearest = (uint)words->word[CLPV_NEAREST_WORD][lane];
   const uint slice = slice_of(view, as_float(nearest));
   const TileRange tiles = tiles_of(words, lane);
   if (tiles.left == tiles.right && tiles.top == tiles.bottom) {
-    enter(entries + CLPV_ENTRY_WORDS * at, (tiles.top * tiles_x + tiles.left) * CLPV_SLICES + slice,
-          index, nearest, slice_counts);
+    enter(to.entries + CLPV_ENTRY_WORDS * at, (tiles.top * tiles_x + tiles.left) * CLPV_SLICES + slice,
+          index, nearest, to.slice_counts);
     return at + 1;
   }
   const int left = tiles.left * CLPV_TILE, top = tiles.top * CLPV_TILE;
@@ -77,8 +91,8 @@ static inline uint enter_all(const ClpvView view, const RasterWords* words, cons
     long a_here = a_left, b_here = b_left, c_here = c_left;
     for (int x = tiles.left; x <= tiles.right; ++x) {
       if ((a_here | b_here | c_here) >= 0) {
-        enter(entries + CLPV_ENTRY_WORDS * at++, (y * tiles_x + x) * CLPV_SLICES + slice, index,
-              nearest, slice_counts);
+        enter(to.entries + CLPV_ENTRY_WORDS * at++, (y * tiles_x + x) * CLPV_SLICES + slice, index,
+              nearest, to.slice_counts);
       }
       a_here += CLPV_TILE * a.step_x, b_here += CLPV_TILE * b.step_x,
           c_here += CLPV_TILE * c.step_x;
@@ -96,20 +110,18 @@ static inline uint take_entries(volatile __global uint* counts, const uint wante
   return at;
 }
 
-// Appends the triangles of the lanes in `mask`, with their entries. Beyond a capacity it only
-// counts them.
+// Appends the triangles of the lanes in `mask`, with their entries, or leaves those of wide ones to
+// enter_wide. Beyond a capacity it only counts them.
 CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const intW mask,
                             volatile __global uint* counts, const Capacity capacity,
-                            __global ClpvRasterTriangle* list, __global uint* entries,
-                            volatile __global uint* slice_counts) {
+                            __global ClpvRasterTriangle* list, const Entries entries) {
   int listed[W];
   store_lanes(mask, listed);
   uint triangles = 0, room = 0;
   for (int lane = 0; lane < W; ++lane) {
     if (!listed[lane]) continue;
-    const TileRange tiles = tiles_of(words, lane);
     ++triangles;
-    room += (uint)((tiles.right - tiles.left + 1) * (tiles.bottom - tiles.top + 1));
+    room += tile_count(tiles_of(words, lane));
   }
   uint index = atomic_add(counts + CLPV_LISTED, triangles), at = take_entries(counts, room);
   const uint end = at + room;
@@ -119,8 +131,14 @@ CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const
     if (!listed[lane]) continue;
     __global int* to = (__global int*)(list + index);
     for (int w = 0; w < CLPV_RASTER_WORDS; ++w) to[w] = words->word[w][lane];
-    if (room_for_entries) at = enter_all(view, words, lane, index, at, entries, slice_counts);
+    const uint tiles = tile_count(tiles_of(words, lane));
+    if (room_for_entries && tiles > CLPV_FEW_TILES) {
+      entries.wide[atomic_inc(counts + CLPV_WIDE)] = (uint2)(index, at);
+      at += tiles;
+    } else if (room_for_entries) {
+      at = enter_all(view, words, lane, index, at, entries);
+    }
     ++index;
   }
-  for (; room_for_entries && at < end; ++at) entries[CLPV_ENTRY_WORDS * at] = CLPV_NO_SLICE;
+  for (; room_for_entries && at < end; ++at) entries.entries[CLPV_ENTRY_WORDS * at] = CLPV_NO_SLICE;
 }

@@ -4,6 +4,7 @@
 //
 //   set_up           triangles of the clusters in view
 //   set_up_clipped   those that cross the near plane or the guard band, which set_up defers
+//   enter_wide       entries of wide triangles, which both defer: one work-item would take long
 //
 // bin_tiles.cl then sorts the entries by tile, draw_tiles.cl finds the nearest triangle of each
 // pixel, and resolve.cl evaluates its surface.
@@ -18,6 +19,7 @@
 //          entries   CLPV_ENTRY_WORDS words for each listed triangle and tile of 8 x 8 pixels that
 //                    it may cover
 //          to_clip   numbers of the triangles that set_up defers
+//          wide      those whose entries are deferred: index in `list`, first entry
 // In, out: counts    CLPV_LISTED and so on. They count beyond the capacities most_listed and
 //                    most_entered as well: the host then enlarges the lists and starts again, or
 //                    draw_tiles draws without entries.
@@ -63,7 +65,8 @@ __kernel void set_up(const ClpvView view, __global const ClpvViewCluster* cluste
                      __global const ClpvMaterial* materials, volatile __global uint* counts,
                      const uint most_listed, __global ClpvRasterTriangle* list,
                      const uint most_entered, __global uint* entries,
-                     volatile __global uint* slice_counts, __global uint* to_clip) {
+                     volatile __global uint* slice_counts, __global uint2* wide,
+                     __global uint* to_clip) {
   const uint item = get_global_id(0), cluster = item / (CLPV_CLUSTER / W);
   if (cluster >= count) return;
   const uint in_scene = clusters[first + cluster].number;
@@ -89,7 +92,8 @@ __kernel void set_up(const ClpvView view, __global const ClpvViewCluster* cluste
                              project(view, r), make_face(view, at.a, at.b, at.c),
                              triangle,         flags};
   const Capacity capacity = {most_listed, most_entered};
-  append(view, t, visible & (clipped == 0), cull, counts, capacity, list, entries, slice_counts);
+  const Entries to = {entries, slice_counts, wide};
+  append(view, t, visible & (clipped == 0), cull, counts, capacity, list, to);
 }
 
 // Clips the deferred triangles. The clipped polygon becomes a fan about its first corner.
@@ -101,7 +105,8 @@ __kernel void set_up_clipped(const ClpvView view, const uint cull, __global cons
                              __global const ClpvMaterial* materials, volatile __global uint* counts,
                              const uint most_listed, __global ClpvRasterTriangle* list,
                              const uint most_entered, __global uint* entries,
-                             volatile __global uint* slice_counts, __global uint* to_clip) {
+                             volatile __global uint* slice_counts, __global uint2* wide,
+                             __global uint* to_clip) {
 #if W == 1
   __local float4 polygons[CLPV_CLIP_CORNERS * CLPV_CLIP_GROUP];
   __local float4* polygon = polygons + get_local_id(0);
@@ -109,6 +114,7 @@ __kernel void set_up_clipped(const ClpvView view, const uint cull, __global cons
   float4 polygon[CLPV_CLIP_CORNERS];
 #endif
   const Capacity capacity = {most_listed, most_entered};
+  const Entries to = {entries, slice_counts, wide};
   const intW lane = lane_numbers();
   for (uint i = get_global_id(0); i < counts[CLPV_TO_CLIP]; i += get_global_size(0)) {
     const uint triangle = to_clip[i];
@@ -126,8 +132,35 @@ __kernel void set_up_clipped(const ClpvView view, const uint cull, __global cons
       const ScreenTriangles fan = {outline_apex(view, &outline), outline_corners(view, &outline, k),
                                    outline_corners(view, &outline, k + 1), face, (uintW)(triangle),
                                    (uintW)(materials[t.w].flags)};
-      append(view, fan, k + 1 + lane < corners, cull, counts, capacity, list, entries,
-             slice_counts);
+      append(view, fan, k + 1 + lane < corners, cull, counts, capacity, list, to);
+    }
+  }
+}
+
+// A work-group enters one triangle after the other. Returns at once if a list overflowed.
+__kernel void enter_wide(const ClpvView view, __global const uint* counts, const uint most_listed,
+                         const uint most_entered, __global const ClpvRasterTriangle* list,
+                         __global const uint2* wide, __global uint* entries,
+                         volatile __global uint* slice_counts) {
+  if (counts[CLPV_ENTERED] > most_entered || counts[CLPV_ENTERED_TOO_MANY] > 0) return;
+  if (counts[CLPV_LISTED] > most_listed) return;
+  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE;
+  for (uint i = get_group_id(0); i < counts[CLPV_WIDE]; i += get_num_groups(0)) {
+    const uint index = wide[i].x;
+    __global const ClpvRasterTriangle* r = list + index;
+    const TileRange tiles = tiles_between(r->first, r->last);
+    const uint slice = slice_of(view, r->nearest), columns = tiles.right - tiles.left + 1;
+    for (uint k = get_local_id(0); k < tile_count(tiles); k += get_local_size(0)) {
+      const int x = tiles.left + k % columns, y = tiles.top + k / columns;
+      const int px = x * CLPV_TILE, py = y * CLPV_TILE;
+      __global uint* entry = entries + CLPV_ENTRY_WORDS * (wide[i].y + k);
+      if ((largest_in_tile(edge_at(r, 0, px, py)) | largest_in_tile(edge_at(r, 1, px, py)) |
+           largest_in_tile(edge_at(r, 2, px, py))) >= 0) {
+        enter(entry, (y * tiles_x + x) * CLPV_SLICES + slice, index, as_uint(r->nearest),
+              slice_counts);
+      } else {
+        entry[0] = CLPV_NO_SLICE;
+      }
     }
   }
 }

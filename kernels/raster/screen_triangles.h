@@ -115,8 +115,7 @@ CLPV_INLINE void write_words(const ClpvView view, const ScreenTriangles t, const
 // culled back faces.
 CLPV_INLINE void append(const ClpvView view, ScreenTriangles t, intW mask, const uint cull,
                         volatile __global uint* counts, const Capacity capacity,
-                        __global ClpvRasterTriangle* list, __global uint* entries,
-                        volatile __global uint* slice_counts) {
+                        __global ClpvRasterTriangle* list, const Entries entries) {
   const intW wound = winding(t);
   const intW one_sided = (t.flags & CLPV_MATERIAL_DOUBLE_SIDED) == 0u;
   mask &= (wound < 0) | ((wound > 0) & ((cull ? 0 : -1) | (one_sided == 0)));
@@ -130,5 +129,5 @@ CLPV_INLINE void append(const ClpvView view, ScreenTriangles t, intW mask, const
   if (no_lane(mask)) return;
   RasterWords words;
   write_words(view, t, box, &words);
-  list_lanes(view, &words, mask, counts, capacity, list, entries, slice_counts);
+  list_lanes(view, &words, mask, counts, capacity, list, entries);
 }

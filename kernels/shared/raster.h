@@ -67,15 +67,19 @@ enum {
   CLPV_RASTER_WORDS = 16,
 };
 
-// Counters of a pass: triangles listed, triangles to clip, entries, and overflows of 32 bits in the
-// number of entries.
+// Counters of a pass: triangles listed, triangles to clip, wide ones, entries, and overflows of 32
+// bits in the number of entries.
 enum {
   CLPV_LISTED,
   CLPV_TO_CLIP,
+  CLPV_WIDE,
   CLPV_ENTERED,
   CLPV_ENTERED_TOO_MANY,
   CLPV_RASTER_COUNTERS,
 };
+
+// A triangle whose box overlaps more tiles is wide: a work-group enters it.
+enum { CLPV_FEW_TILES = 64 };
 
 // Depth slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most
 // hidden ones are skipped.

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kRasterGroup = 64;
 // Work-items that share the triangles to be clipped, usually none.
 constexpr std::size_t kClippers = 1024;
+constexpr std::size_t kWideGroupsPerUnit = 4;  // work-groups that enter wide triangles
 constexpr std::size_t kMostAhead = std::size_t{1} << 22;  // triangles (256 MiB); longer lists wait
 constexpr std::size_t kClippedParts = CLPV_CLIP_CORNERS - 2;  // triangles that one can become
 constexpr std::size_t kSpare = 4;      // lists grow by an extra 1/4, since cameras move
@@ -70,6 +71,7 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
       least_hidden_(least_hidden),
       set_up_(session, kSetUp, "set_up"),
       set_up_clipped_(session, kSetUp, "set_up_clipped"),
+      enter_wide_(session, kSetUp, "enter_wide"),
       sum_slices_(session, kBin, "sum_slices"),
       scan_slices_(session, kBin, "scan_slices"),
       bin_entries_(session, kBin, "bin_entries"),
@@ -103,6 +105,7 @@ void Rasterizer::reserve_entries(std::size_t count) {
   count += count / kSpare;
   session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
   session_.reserve(binned_, count * sizeof(cl_uint2), "triangles by tile");
+  session_.reserve(wide_, (count / CLPV_FEW_TILES + 1) * sizeof(cl_uint2), "wide triangles");
 }
 
 Kernel& Rasterizer::resolve(const Resolving& wanted) {
@@ -125,7 +128,7 @@ void Rasterizer::find_visible(const Drawing& drawing) {
   const unsigned slices = slice_count(drawing.view);
   session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
-  session_.reserve(farthest_, pixels / CLPV_TILE / session_.device().lanes * sizeof(cl_float),
+  session_.reserve(farthest_, tile_count(drawing.view) * sizeof(cl_float),
                    "farthest keys of tiles");
   session_.reserve(slice_counts_, (std::size_t{slices} + 1) * sizeof(cl_uint), "slices of tiles");
   session_.reserve(totals_, (slices / chunk_slices(slices) + 1) * sizeof(cl_uint),
@@ -187,12 +190,16 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
   set_up_
       .set(drawing.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices,
            scene_.triangles, scene_.materials, counts_, list_room(), listed_, entry_room(),
-           entries_, slice_counts_, to_clip_)
+           entries_, slice_counts_, wide_, to_clip_)
       .launch(count * (std::size_t{CLPV_CLUSTER} / session_.device().lanes), kRasterGroup);
   set_up_clipped_
       .set(drawing.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
-           list_room(), listed_, entry_room(), entries_, slice_counts_, to_clip_)
+           list_room(), listed_, entry_room(), entries_, slice_counts_, wide_, to_clip_)
       .launch(kClippers, kRasterGroup);
+  enter_wide_
+      .set(drawing.view, counts_, list_room(), entry_room(), listed_, wide_, entries_,
+           slice_counts_)
+      .launch(session_.device().compute_units * kWideGroupsPerUnit * kRasterGroup, kRasterGroup);
 }
 
 /// Sorts the entries of set_up() by tile.
@@ -262,8 +269,10 @@ void Rasterizer::draw_tiles(const Drawing& drawing, bool fresh) {
       .set(view, cl_uint{fresh}, cl_uint{only_depth}, listed_, slice_counts_, binned_, counts_,
            entry_room(), scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
            scene_.texels, keys_, seen_, farthest_)
-      .launch(cl::NDRange(tiles_along(view.width) * (CLPV_TILE / session_.device().lanes),
-                          tiles_along(view.height)),
+      .launch(session_.device().lanes == 1 ? cl::NDRange(tiles_along(view.width) * CLPV_TILE,
+                                                         tiles_along(view.height) * CLPV_TILE)
+                                           : cl::NDRange(tiles_along(view.width),
+                                                         tiles_along(view.height)),
               pixel_group(session_));
   if (counted_ == nullptr) return;
   const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);

@@ -107,7 +107,7 @@ class Rasterizer {
   SceneBuffers scene_;
   std::size_t max_listed_;
   unsigned least_hidden_;
-  Kernel set_up_, set_up_clipped_;
+  Kernel set_up_, set_up_clipped_, enter_wide_;
   std::map<Resolving, Kernel> resolve_;
   Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, hide_clusters_, resolve_depth_;
   bool ahead_ = false;
@@ -116,7 +116,7 @@ class Rasterizer {
   std::size_t entered_ = 0;  ///< largest number of entries so far
   /// Counters of views drawn ahead.
   std::deque<std::shared_ptr<const Session::Arriving>> counting_;
-  Buffer clusters_, listed_, to_clip_, counts_, entries_, slice_counts_, totals_, binned_, keys_,
+  Buffer clusters_, listed_, to_clip_, wide_, counts_, entries_, slice_counts_, totals_, binned_, keys_,
       seen_, farthest_;
 };
 
