@@ -2,8 +2,8 @@
 // Sorts the texels of a surface by cell: a stable radix sort of two passes, low and high digit,
 // without atomics. Sums of a cell's texels are then deterministic (docs/method.md, 'Injection').
 //
-//   count_runs, sum_digits, place_digits, scatter_runs        low digit: texels -> runs
-//   count_texels, sum_digits, place_digits, scatter_texels    high digit: runs -> sorted texels
+//   count_runs, scatter_runs        low digit: texels -> runs
+//   count_texels, scatter_texels    high digit: runs -> sorted texels
 //
 // Neighbouring texels mostly belong to one cell. The first pass sorts runs of them, which are far
 // fewer than texels; the second splits them again.
@@ -11,8 +11,8 @@
 // In:   keys    cell of each texel, or CLPV_NO_CELL (cell_keys.h)
 // Out:  sorted  (key, texel) of each texel that has a cell, two words each; the host reads their
 //               number from `total`
-// counts[digit][chunk] holds the number of elements of a chunk with a digit, then the index of the
-// first of them. The host zeroes it.
+// counts[digit][chunk] holds the number of elements of a chunk with a digit, then, by prefix_sum.cl,
+// the index of the first of them. The host zeroes it.
 #include "shared/sort.h"
 
 // A run starts where the key changes, and at every multiple of CLPV_LONGEST_RUN.
@@ -94,30 +94,4 @@ __kernel void scatter_texels(__global const uint* runs, __global const uint* run
       sorted[2 * (to + k) + 1] = first + k;
     }
   }
-}
-
-// Prefix sum, first half: totals[digit] = sum over its chunks.
-__kernel void sum_digits(__global const uint* counts, const uint chunks, const uint digits,
-                         __global uint* totals) {
-  const uint digit = get_global_id(0);
-  if (digit >= digits) return;
-  uint sum = 0;
-  for (uint c = 0; c < chunks; ++c) sum += counts[digit * chunks + c];
-  totals[digit] = sum;
-}
-
-// Prefix sum, second half: counts become the index of each chunk's first element with a digit.
-// total[0]: number of elements.
-__kernel void place_digits(__global uint* counts, const uint chunks, const uint digits,
-                           __global const uint* totals, __global uint* total) {
-  const uint digit = get_global_id(0);
-  if (digit >= digits) return;
-  uint at = 0;
-  for (uint d = 0; d < digit; ++d) at += totals[d];
-  for (uint c = 0; c < chunks; ++c) {
-    const uint count = counts[digit * chunks + c];
-    counts[digit * chunks + c] = at;
-    at += count;
-  }
-  if (digit == digits - 1) total[0] = at;
 }

@@ -1,37 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Sorts the entries of rasterize.cl by tile and depth slice: a counting sort, whose counts
-// rasterize.cl has made.
+// Sorts the entries of rasterize.cl by tile and depth slice: a counting sort. rasterize.cl has
+// counted them, prefix_sum.cl has made `slice_starts` of the counts.
 //
-//   sum_slices     totals = number of entries of each chunk of `chunk_slices` slices
-//   scan_slices    slice_counts -> slice_starts, in place: exclusive prefix sum; one more number is
-//                  the end of the last slice
 //   bin_entries    entries -> binned: index in the list of triangles, smallest key (two words each)
 #include "shared/raster.h"
-
-__kernel void sum_slices(const uint slices, const uint chunk_slices,
-                         __global const uint* slice_counts, __global uint* totals) {
-  const uint chunk = get_global_id(0), first = chunk * chunk_slices;
-  if (first >= slices) return;
-  const uint end = min(first + chunk_slices, slices);
-  uint sum = 0;
-  for (uint slice = first; slice < end; ++slice) sum += slice_counts[slice];
-  totals[chunk] = sum;
-}
-
-__kernel void scan_slices(const uint slices, const uint chunk_slices, __global uint* slice_starts,
-                          __global const uint* totals) {
-  const uint chunk = get_global_id(0), first = chunk * chunk_slices;
-  if (first >= slices) return;
-  const uint end = min(first + chunk_slices, slices);
-  uint at = 0;
-  for (uint before = 0; before < chunk; ++before) at += totals[before];
-  for (uint slice = first; slice < end; ++slice) {
-    const uint count = slice_starts[slice];
-    slice_starts[slice] = at;
-    at += count;
-  }
-  if (end == slices) slice_starts[slices] = at;
-}
 
 // A work-group sorts CLPV_ENTRY_GROUP entries. Returns at once if a list overflowed, since the
 // lists then have gaps.

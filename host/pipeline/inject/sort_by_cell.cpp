@@ -15,13 +15,20 @@ static_assert(1u << CLPV_RUN_BITS == CLPV_LONGEST_RUN);
 
 constexpr std::size_t kMaxTexels = std::size_t{1}
                                    << (32 - CLPV_RUN_BITS);  // limit of the bits in a run's entry
-// Enough chunks to occupy a GPU, with a small table of counts. Each is long enough to amortise its
-// column. A work-item processes a chunk in one loop.
-constexpr std::size_t kMaxChunks = 512, kMinChunk = 256,
-                      kLongestChunk = CLPV_LONGEST_LOOP / CLPV_LONGEST_RUN * CLPV_LONGEST_RUN;
+// Longest chunk: a work-item processes it in one loop.
+constexpr std::size_t kLongestChunk = CLPV_LONGEST_LOOP / CLPV_LONGEST_RUN * CLPV_LONGEST_RUN;
 // Few, long work-items: small groups spread them over all compute units.
 const cl::NDRange kLocal(16);
 const ProgramSource kSource{"inject/sort_by_cell.cl"};
+
+/// Numbers of texels and of chunks that occupy a device with a small table of counts. On CPUs a
+/// chunk is long enough to amortise its column; on GPUs many work-items hide each other's waits.
+struct ChunkLimits {
+  std::size_t least_texels, most;
+};
+ChunkLimits chunk_limits(const Device& device) {
+  return device.lanes == 1 ? ChunkLimits{64, 4096} : ChunkLimits{256, 512};
+}
 
 std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
@@ -35,8 +42,7 @@ CellSorter::CellSorter(Session& session)
       scatter_runs_(session, kSource, "scatter_runs"),
       count_texels_(session, kSource, "count_texels"),
       scatter_texels_(session, kSource, "scatter_texels"),
-      sum_digits_(session, kSource, "sum_digits"),
-      place_digits_(session, kSource, "place_digits"),
+      prefix_sum_(session),
       run_count_(session.buffer(sizeof(cl_uint), "sort by cell, count")),
       count_(session.buffer(sizeof(cl_uint), "sort by cell, count")) {}
 
@@ -50,38 +56,32 @@ void CellSorter::reserve(std::size_t texels) {
   session_.reserve(sorted_, texels * sizeof(cl_uint2), "sort by cell, result");
 }
 
-void CellSorter::reserve_counts(std::size_t digits, std::size_t chunks) {
-  session_.reserve(totals_, digits * sizeof(cl_uint), "sort by cell, totals");
-  session_.reserve(counts_, digits * chunks * sizeof(cl_uint), "sort by cell, counts");
-}
-
-void CellSorter::add_up(const Buffer& count, cl_uint digits, cl_uint chunks) {
-  sum_digits_.set(counts_, chunks, digits, totals_).launch(cl::NDRange(digits), kLocal);
-  place_digits_.set(counts_, chunks, digits, totals_, count).launch(cl::NDRange(digits), kLocal);
-}
-
 void CellSorter::sort(std::size_t texels, std::size_t cells) {
   const cl_uint bits = std::bit_width(std::max<std::size_t>(cells, 2) - 1);
   const cl_uint low_bits = (bits + 1) / 2, low_digits = 1u << low_bits,
                 high_digits = 1u << (bits - low_bits);
+  const ChunkLimits limits = chunk_limits(session_.device());
   const cl_uint chunk = std::min(
       kLongestChunk,
-      round_up(std::max(kMinChunk, (texels + kMaxChunks - 1) / kMaxChunks), CLPV_LONGEST_RUN));
+      round_up(std::max(limits.least_texels, (texels + limits.most - 1) / limits.most),
+               CLPV_LONGEST_RUN));
   const cl_uint count = texels;
   const cl_uint chunks = (count + chunk - 1) / chunk;
-  reserve_counts(low_digits, chunks);
+  const std::size_t low_counts = std::size_t{low_digits} * chunks,
+                    high_counts = std::size_t{high_digits} * chunks;
+  session_.reserve(counts_, (low_counts + 1) * sizeof(cl_uint), "sort by cell, counts");
 
-  session_.fill_zero(counts_, std::size_t{low_digits} * chunks * sizeof(cl_uint));
+  session_.fill_zero(counts_, low_counts * sizeof(cl_uint));
   count_runs_.set(keys_, count, chunk, chunks, low_bits, counts_)
       .launch(cl::NDRange(chunks), kLocal);
-  add_up(run_count_, low_digits, chunks);
+  prefix_sum_.run(counts_, low_counts, run_count_);
   scatter_runs_.set(keys_, count, chunk, chunks, low_bits, counts_, runs_)
       .launch(cl::NDRange(chunks), kLocal);
 
-  session_.fill_zero(counts_, std::size_t{high_digits} * chunks * sizeof(cl_uint));
+  session_.fill_zero(counts_, high_counts * sizeof(cl_uint));
   count_texels_.set(runs_, run_count_, chunk, chunks, low_bits, counts_)
       .launch(cl::NDRange(chunks), kLocal);
-  add_up(count_, high_digits, chunks);
+  prefix_sum_.run(counts_, high_counts, count_);
   scatter_texels_.set(runs_, run_count_, chunk, chunks, low_bits, counts_, sorted_)
       .launch(cl::NDRange(chunks), kLocal);
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "device/kernel.hpp"
+#include "device/prefix_sum.hpp"
 #include "device/session.hpp"
 
 namespace clpv {
@@ -29,12 +30,10 @@ class CellSorter {
   const Buffer& count() const { return count_; }
 
  private:
-  void add_up(const Buffer& count, cl_uint digits, cl_uint chunks);
-  void reserve_counts(std::size_t digits, std::size_t chunks);
-
   Session& session_;
-  Kernel count_runs_, scatter_runs_, count_texels_, scatter_texels_, sum_digits_, place_digits_;
-  Buffer keys_, runs_, sorted_, counts_, totals_, run_count_, count_;
+  Kernel count_runs_, scatter_runs_, count_texels_, scatter_texels_;
+  PrefixSum prefix_sum_;
+  Buffer keys_, runs_, sorted_, counts_, run_count_, count_;
 };
 
 }  // namespace clpv

@@ -31,11 +31,6 @@ unsigned tile_count(const ClpvView& view) {
 unsigned slice_count(const ClpvView& view) {
   return tile_count(view) * CLPV_SLICES;
 }
-/// Slices that a work-item sums; beyond the square of the least, as many as there are chunks.
-unsigned chunk_slices(unsigned slices) {
-  constexpr unsigned kLeast = 256;
-  return std::max(kLeast, static_cast<unsigned>(std::ceil(std::sqrt(double{1} * slices))));
-}
 unsigned padded_pixels(const ClpvView& view) {
   return tile_count(view) * CLPV_TILE * CLPV_TILE;
 }
@@ -72,13 +67,13 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
       set_up_(session, kSetUp, "set_up"),
       set_up_clipped_(session, kSetUp, "set_up_clipped"),
       enter_wide_(session, kSetUp, "enter_wide"),
-      sum_slices_(session, kBin, "sum_slices"),
-      scan_slices_(session, kBin, "scan_slices"),
+      prefix_sum_(session),
       bin_entries_(session, kBin, "bin_entries"),
       draw_tiles_(session, kDraw, "draw_tiles"),
       hide_clusters_(session, kDraw, "hide_clusters"),
       resolve_depth_(session, kDraw, "resolve_depth") {
   session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
+  session_.reserve(in_slices_, sizeof(cl_uint), "entries in slices");
   session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
   session_.reserve(clusters_, scene.clusters->bounds().size() * sizeof(ClpvViewCluster),
                    "clusters of triangles in sight");
@@ -131,8 +126,6 @@ void Rasterizer::find_visible(const Drawing& drawing) {
   session_.reserve(farthest_, tile_count(drawing.view) * sizeof(cl_float),
                    "farthest keys of tiles");
   session_.reserve(slice_counts_, (std::size_t{slices} + 1) * sizeof(cl_uint), "slices of tiles");
-  session_.reserve(totals_, (slices / chunk_slices(slices) + 1) * sizeof(cl_uint),
-                   "slices by chunks");
   const std::vector<Range> ranges = list_clusters(drawing.view);
   draw_range(drawing, ranges[0], true);
   if (ranges.size() > 1) {
@@ -204,11 +197,7 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
 
 /// Sorts the entries of set_up() by tile.
 void Rasterizer::bin(const ClpvView& view) {
-  const unsigned slices = slice_count(view);
-  const cl_uint chunk = chunk_slices(slices);
-  const std::size_t chunks = (slices + chunk - 1) / chunk;
-  sum_slices_.set(slices, chunk, slice_counts_, totals_).launch(chunks, kRasterGroup);
-  scan_slices_.set(slices, chunk, slice_counts_, totals_).launch(chunks, kRasterGroup);
+  prefix_sum_.run(slice_counts_, slice_count(view), in_slices_);
   const std::size_t groups = (entry_room() + CLPV_ENTRY_GROUP - 1) / CLPV_ENTRY_GROUP;
   bin_entries_.set(counts_, list_room(), entry_room(), entries_, slice_counts_, binned_)
       .launch(groups * kRasterGroup, kRasterGroup);

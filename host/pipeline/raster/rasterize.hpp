@@ -13,6 +13,7 @@
 #include <set>
 
 #include "device/kernel.hpp"
+#include "device/prefix_sum.hpp"
 #include "device/session.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/surface.hpp"
@@ -109,14 +110,15 @@ class Rasterizer {
   unsigned least_hidden_;
   Kernel set_up_, set_up_clipped_, enter_wide_;
   std::map<Resolving, Kernel> resolve_;
-  Kernel sum_slices_, scan_slices_, bin_entries_, draw_tiles_, hide_clusters_, resolve_depth_;
+  PrefixSum prefix_sum_;
+  Kernel bin_entries_, draw_tiles_, hide_clusters_, resolve_depth_;
   bool ahead_ = false;
   RasterCounts* counted_ = nullptr;
   std::set<Kind> drawn_;     ///< kinds of views drawn so far
   std::size_t entered_ = 0;  ///< largest number of entries so far
   /// Counters of views drawn ahead.
   std::deque<std::shared_ptr<const Session::Arriving>> counting_;
-  Buffer clusters_, listed_, to_clip_, wide_, counts_, entries_, slice_counts_, totals_, binned_, keys_,
+  Buffer clusters_, listed_, to_clip_, wide_, counts_, entries_, slice_counts_, in_slices_, binned_, keys_,
       seen_, farthest_;
 };
 
