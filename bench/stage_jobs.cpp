@@ -53,6 +53,7 @@ Job make_inject_job(Bench& bench, const Problem& problem, bool light, bool geome
   const int cascade = problem.cascade.value_or(0);
   const Inputs::CascadeViews& views = bench.inputs().views(cascade);
   verify::InjectProblem input{make_basis(o), inject_options(o, false), views.grid, {}, {}};
+  input.on_entries = true;
   if (light) input.light = views.rsm;
   if (geometry) input.blockers = {views.rsm, views.camera};
   const std::string key = fmt::format("inject {} {} {} {} {} {} {}", o.basis, o.lambda, lobes_of(o),

@@ -32,6 +32,7 @@ struct InjectProblem {
   std::optional<InjectedSurface> light;   ///< none: no light volume
   std::vector<InjectedSurface> blockers;  ///< empty: no geometry volume
   int stride = 1;                         ///< of the blockers' pixels
+  bool on_entries = false;  ///< rounding may decide entries of tables (rounding_decides)
 };
 
 Job inject_job(Session& session, const InjectProblem& problem, const Share& share = not_shared);
