@@ -179,6 +179,26 @@ TEST_F(CompareCommand, ComparesALayerAndWritesTheDifference) {
   EXPECT_EQ(run(file("a.exr") + ":direct " + file("c.exr")), 3);
 }
 
+// It once printed nulls and ended with 0.
+TEST_F(CompareCommand, ImagesWithoutACommonValidPixelFail) {
+  Image left = plain(2, 1, 1, 1, 1), right = left;
+  left.at(0, 0, 3) = right.at(1, 0, 3) = 0;
+  write_exr(file("a.exr"), left);
+  write_exr(file("b.exr"), right);
+  EXPECT_EQ(run(file("a.exr") + " " + file("b.exr")), 5);
+  EXPECT_THAT(outcome_.err, testing::HasSubstr("b.exr: found no pixel with alpha above 0 in both"));
+  EXPECT_EQ(output()["valid_pixels"], 0);
+  EXPECT_EQ(run(file("a.exr") + " " + file("a.exr")), 0);
+  Image truth;
+  append_layer(truth, right, "indirect");
+  truth.metadata["view_hash"] = left.metadata["view_hash"] = "0011223344556677";
+  write_exr(file("a-0123456789abcdef.exr"), truth);
+  std::filesystem::create_directory(file("ours"));
+  write_exr(file("ours/a.exr"), left);
+  EXPECT_EQ(run("--suite " + file("ours") + " --truths " + file("")), 5);
+  EXPECT_THAT(outcome_.err, testing::HasSubstr("ours/a.exr and "));
+}
+
 TEST_F(CompareCommand, ComparesASuiteOfImagesWithTheirGroundTruths) {
   for (const char* folder : {"ours", "truths"}) std::filesystem::create_directory(file(folder));
   Image truth;

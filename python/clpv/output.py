@@ -22,15 +22,21 @@ RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3  # exit codes
 MARKER = ".clpv-output"  # of a script's output folder: the script, then its files, a line each
 LONGEST_NAME = 255  # bytes
 GET_FLAGS, APPEND_ONLY = 0x80086601, 0x20  # FS_IOC_GETFLAGS of Linux
+PACKAGES = {"PIL": "python3-pil", **{name: f"python3-{name}" for name in (
+    "jinja2", "matplotlib", "numpy", "scipy")}}  # of Debian, by their modules
 NO_SYNC = errno.EINVAL, errno.ENOTSUP  # file systems without fsync
 
 
-class BadOutput(Exception):
-    """What cannot be written, and why. `code`: exit code of the command."""
+class Failure(Exception):
+    """What ends a command. `code`: its exit code."""
 
     def __init__(self, words, code=RUN_TIME):
         super().__init__(words)
         self.code = code
+
+
+class BadOutput(Failure):
+    """What cannot be written, and why."""
 
 
 def printable(text):
@@ -162,12 +168,26 @@ def write(path, data):
 
 
 def exit_code(main, *arguments):
-    """That of a script's main function. Prints what cannot be written."""
+    """That of a script's main function. Prints its Failure."""
     try:
         return main(*arguments)
-    except BadOutput as error:
+    except Failure as error:
         print(f"{sys.argv[0]}: {error}", file=sys.stderr)
         return error.code
+
+
+def name_missing_modules():
+    """For programs: a module that is not installed ends them with a line and exit code 1."""
+    usual = sys.excepthook
+
+    def hook(kind, error, trace):
+        if not issubclass(kind, ModuleNotFoundError):
+            return usual(kind, error, trace)
+        package = PACKAGES.get(str(error.name).split(".", maxsplit=1)[0])
+        hint = f" (Debian: {package})" if package else ""
+        print(f"{sys.argv[0]}: {error}{hint}", file=sys.stderr)
+
+    sys.excepthook = hook
 
 
 def read_regular(path):

@@ -14,10 +14,9 @@ import pathlib
 import sys
 
 from clpv import output
-from clpv.draw.documents import BadDocument
 
 KINDS = "bench", "basis", "report"
-RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3
+RUN_TIME, USAGE = 1, 2
 
 
 def fail(code, words):
@@ -36,9 +35,7 @@ def main(arguments):
     try:
         if paths:
             module.draw(*map(pathlib.Path, paths))
-    except BadDocument as error:
-        return fail(BAD_INPUT, error)
-    except output.BadOutput as error:
+    except output.Failure as error:
         return fail(error.code, error)
     return 0
 

@@ -50,7 +50,7 @@ def block(match):
     if name == "measured-on":
         return match[0]
     if name not in TABLES:
-        sys.exit(f"scripts/tables: no table '{name}'; allowed: measured-on, {', '.join(TABLES)}")
+        sys.exit(f"{sys.argv[0]}: no table '{name}'; allowed: measured-on, {', '.join(TABLES)}")
     content = TABLES[name]()
     return match[1] + (content if isinstance(content, str) else drawn(content)) + match[3]
 
@@ -79,19 +79,20 @@ def of_core():
     yield from pages([ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))])
 
 
-def main(files=of_core):
-    """`files`: returns what of_core() does, for other pages."""
+def main(files=of_core, usage=__doc__):
+    """`files`: returns what of_core() does, for other pages, of which `usage` tells."""
     arguments = sys.argv[1:]
     if arguments in (["-h"], ["--help"]):
-        print(__doc__.strip())
+        print(usage.strip())
         return 0
     if arguments == ["--list"]:
         print("\n".join(["measured-on", *TABLES]))
         return 0
-    if arguments[:1] == ["--stages"] and len(arguments) > 1:
-        return print_stages(arguments[1:])
+    if arguments[:1] == ["--stages"] and len(arguments) > 1 and files is of_core:
+        print_stages(arguments[1:])
+        return 0
     if arguments not in ([], ["--check"]):
-        print(__doc__.strip(), file=sys.stderr)
+        print(usage.strip(), file=sys.stderr)
         return 2
     differing = []
     for file, text in files():
@@ -100,7 +101,7 @@ def main(files=of_core):
             if not arguments:
                 output.write(file, text)
     if arguments and differing:
-        print(f"{', '.join(differing)}: tables differ from results/docs; run scripts/tables",
+        print(f"{', '.join(differing)}: tables differ from results; run {sys.argv[0]}",
               file=sys.stderr)
         return 1
     return 0
