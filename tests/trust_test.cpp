@@ -222,8 +222,8 @@ TEST_F(CacheTest, AFullDiskDoesNotEndQuality) {
     GTEST_SKIP() << "no tmpfs may be mounted here";
   for (const char* size : {"4k", "16k"}) {
     const test::Outcome outcome = test::run(
-        test::own_mounts() + "sh -c 'mount -t tmpfs -o size=" + std::string(size) + " none " + disk +
-        " && " CLPV_PROGRAM + quality(folder.path()) + " --vary iterations=1,2,3,4,5'");
+        test::own_mounts() + "sh -c 'mount -t tmpfs -o size=" + std::string(size) + " none " +
+        disk + " && " CLPV_PROGRAM + quality(folder.path()) + " --vary iterations=1,2,3,4,5'");
     EXPECT_EQ(outcome.exit_code, 0) << size << outcome.err;
     EXPECT_EQ(nlohmann::json::parse(outcome.out).at("cells").size(), 5u) << size << outcome.out;
     EXPECT_THAT(outcome.err, HasSubstr("not cached")) << size;

@@ -2,8 +2,6 @@
 // clpv compare: error metrics of an image against a ground truth, or changes between two reports.
 #include "image/compare.hpp"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "bench/compare_runs.hpp"
@@ -144,7 +142,8 @@ void add_compare(CLI::App& app, Shared&) {
       "al. 2020) is the mean\n"
       "difference that an observer sees, from 0 to 1, of linear images after tone curve aces.\n"
       "Different sizes, pixels that only one file has, and values that are not finite exit with "
-      "3,\nimages without a pixel that is valid in both, and reports without a row that has a value "
+      "3,\nimages without a pixel that is valid in both, and reports without a row that has a "
+      "value "
       "in both, with 5.");
   command->callback([options] { run(*options); });
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/compare_suite.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>

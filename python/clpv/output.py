@@ -22,8 +22,6 @@ RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3  # exit codes
 MARKER = ".clpv-output"  # of a script's output folder: the script, then its files, a line each
 LONGEST_NAME = 255  # bytes
 GET_FLAGS, APPEND_ONLY = 0x80086601, 0x20  # FS_IOC_GETFLAGS of Linux
-PACKAGES = {"PIL": "python3-pil", **{name: f"python3-{name}" for name in (
-    "jinja2", "matplotlib", "numpy", "scipy")}}  # of Debian, by their modules
 NO_SYNC = errno.EINVAL, errno.ENOTSUP  # file systems without fsync
 
 
@@ -177,14 +175,13 @@ def exit_code(main, *arguments):
 
 
 def name_missing_modules():
-    """For programs: a module that is not installed ends them with a line and exit code 1."""
+    """For programs: a module that cannot be imported ends them with a line and exit code 1."""
     usual = sys.excepthook
 
     def hook(kind, error, trace):
-        if not issubclass(kind, ModuleNotFoundError):
+        if not issubclass(kind, ImportError):
             return usual(kind, error, trace)
-        package = PACKAGES.get(str(error.name).split(".", maxsplit=1)[0])
-        hint = f" (Debian: {package})" if package else ""
+        hint = f" (Debian: python3-{error.name})" if kind is ModuleNotFoundError else ""
         print(f"{sys.argv[0]}: {error}{hint}", file=sys.stderr)
 
     sys.excepthook = hook

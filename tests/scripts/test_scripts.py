@@ -262,13 +262,6 @@ class Arguments(InTree):
             self.assertEqual(found.returncode, 0, name)
             self.assertIn(f"  scripts/{name}", found.stdout)
 
-    def test_stages_of_what_is_no_file_of_times(self):
-        file = self.folder / "stats.json"
-        for text in (None, "x", "[]", "{}", '{"times": [{"stage": "frame", "median": 1}]}'):
-            if text:
-                file.write_text(text)
-            self.refused(BAD_INPUT, "stats.json: ", "tables", "--stages", file)
-
     def test_checks_of_the_docs_without_arguments_say_how(self):
         (self.tree / "tests").symlink_to(ROOT / "tests")
         for name in "run_tutorial", "check_links", "check_kernels":

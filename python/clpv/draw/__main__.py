@@ -16,7 +16,6 @@ import sys
 from clpv import output
 
 KINDS = "bench", "basis", "report"
-RUN_TIME, USAGE = 1, 2
 
 
 def fail(code, words):
@@ -26,12 +25,9 @@ def fail(code, words):
 
 def main(arguments):
     if len(arguments) not in (1, 3) or arguments[0] not in KINDS:
-        return fail(USAGE, __doc__.strip())
+        return fail(output.USAGE, __doc__.strip())
     kind, *paths = arguments
-    try:
-        module = importlib.import_module(f"clpv.draw.{kind}")
-    except ImportError as error:
-        return fail(RUN_TIME, f"{error} (Debian: python3-matplotlib python3-numpy python3-jinja2)")
+    module = importlib.import_module(f"clpv.draw.{kind}")
     try:
         if paths:
             module.draw(*map(pathlib.Path, paths))
@@ -41,4 +37,5 @@ def main(arguments):
 
 
 if __name__ == "__main__":
+    output.name_missing_modules()
     sys.exit(main(sys.argv[1:]))

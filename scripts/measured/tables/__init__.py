@@ -6,8 +6,6 @@ from results/docs.
                               expected.json in results/paper
     scripts/tables --check    changes nothing; fails if one of them differs from results/docs
     scripts/tables --list     names of all tables
-    scripts/tables --stages FILE.json...   prints stage times of files of `clpv render --stats`,
-                                           side by side
 
 scripts/measure writes results/docs. Only the standard library.
 """
@@ -17,7 +15,6 @@ import sys
 from .. import ROOT, RESULTS, expected, json_lines, output, verdicts
 from . import bake, benchmarks, quality, paper, tutorial  # they fill TABLES
 from .cells import LOADED, MEASURED, TABLES, read, result
-from .stages import print_stages
 
 __all__ = [
     "MEASURED", "TABLES", "bake", "benchmarks", "main", "pages", "paper", "quality", "read",
@@ -87,9 +84,6 @@ def main(files=of_core, usage=__doc__):
         return 0
     if arguments == ["--list"]:
         print("\n".join(["measured-on", *TABLES]))
-        return 0
-    if arguments[:1] == ["--stages"] and len(arguments) > 1 and files is of_core:
-        print_stages(arguments[1:])
         return 0
     if arguments not in ([], ["--check"]):
         print(usage.strip(), file=sys.stderr)
