@@ -179,6 +179,18 @@ TEST_F(CompareCommand, ComparesALayerAndWritesTheDifference) {
   EXPECT_EQ(run(file("a.exr") + ":direct " + file("c.exr")), 3);
 }
 
+// It once printed nulls and ended with 0.
+TEST_F(CompareCommand, ImagesWithoutACommonValidPixelFail) {
+  Image left = plain(2, 1, 1, 1, 1), right = left;
+  left.at(0, 0, 3) = right.at(1, 0, 3) = 0;
+  write_exr(file("a.exr"), left);
+  write_exr(file("b.exr"), right);
+  EXPECT_EQ(run(file("a.exr") + " " + file("b.exr")), 5);
+  EXPECT_THAT(outcome_.err, testing::HasSubstr("b.exr: found no pixel with alpha above 0 in both"));
+  EXPECT_EQ(output()["valid_pixels"], 0);
+  EXPECT_EQ(run(file("a.exr") + " " + file("a.exr")), 0);
+}
+
 TEST_F(CompareCommand, ComparesASuiteOfImagesWithTheirGroundTruths) {
   for (const char* folder : {"ours", "truths"}) std::filesystem::create_directory(file(folder));
   Image truth;
@@ -211,6 +223,11 @@ TEST_F(CompareCommand, ComparesASuiteOfImagesWithTheirGroundTruths) {
   std::filesystem::rename(file("ours/room-left.exr"), file("left.exr"));
   ASSERT_EQ(run(suite), 0) << outcome_.err;
   EXPECT_TRUE(output()["mean_nrmse"].is_null());
+  Image clear;
+  append_layer(clear, plain(6, 4, 1, 1, 1), "");
+  for (std::size_t p = 0; p < clear.pixel_count(); ++p) clear.pixels[4 * p + 3] = 0;
+  write_exr(file("ours/room-dark.exr"), clear);
+  EXPECT_EQ(run(suite), 5) << "no pixel is valid in both";
   std::filesystem::rename(file("left.exr"), file("ours/room-left.exr"));
   std::filesystem::remove(file("ours/room-dark.exr"));
 

@@ -126,31 +126,24 @@ std::map<std::string, std::string> statuses(const test::Outcome& outcome) {
   return all;
 }
 
-TEST(Check, AKernelThatDoesNotCompileFailsOnlyItsRow) {
-  for (const std::string stages :
-       {"sizes,emit", "sizes"}) {  // in helpers, and in the process itself
-    const test::Outcome outcome =
-        check_with_sizes("#error broken for a test\n", "--stage " + stages);
+TEST(Check, AKernelThatDoesNotCompileOrCrashesFailsOnlyItsRow) {
+  const std::string broken = "#error broken for a test\n",
+                    crashing =
+                        "__kernel void sizes(__global uint* bytes) { "
+                        "*(volatile __global uint*)(size_t)16 = *bytes; }\n";
+  for (const auto& [text, stages, reason] :
+       {std::tuple{broken, "sizes,emit", "broken for a test"},  // in helpers
+        {broken, "sizes", "broken for a test"},                 // in the process itself
+        {crashing, "sizes,emit", "signal 11"}}) {
+    const test::Outcome outcome = check_with_sizes(text, std::string("--stage ") + stages);
     EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
     auto all = statuses(outcome);
     EXPECT_EQ(all["shared structs"], "failed");
-    EXPECT_THAT(all["reason"], HasSubstr("broken for a test"));
-    EXPECT_EQ(all["plain"], stages == "sizes" ? "" : "ok");
+    EXPECT_THAT(all["reason"], HasSubstr(reason));
+    for (const char* row : {"plain", "textures and holes"})
+      EXPECT_EQ(all[row], stages == std::string("sizes") ? "" : "ok");
     EXPECT_THAT(outcome.err, HasSubstr("1 failed"));
   }
-}
-
-TEST(Check, AKernelThatCrashesFailsOnlyItsRow) {
-  const test::Outcome outcome = check_with_sizes(
-      "__kernel void sizes(__global uint* bytes) { *(volatile __global uint*)(size_t)16 = *bytes; "
-      "}\n",
-      "--stage sizes,emit");
-  EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
-  auto all = statuses(outcome);
-  EXPECT_EQ(all["shared structs"], "failed");
-  EXPECT_THAT(all["reason"], HasSubstr("signal 11"));
-  EXPECT_EQ(all["plain"], "ok");
-  EXPECT_EQ(all["textures and holes"], "ok");
 }
 
 TEST(Check, AKernelThatDoesNotEndExceedsTheLimit) {

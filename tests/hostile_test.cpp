@@ -37,6 +37,7 @@ struct HostileInput {
   /// "HOME=@ XDG_CACHE_HOME=", or the name of another program, before the program, through the
   /// shell; without, the command runs in this process.
   std::string surroundings{};
+  std::string program = CLPV_PROGRAM;  ///< with surroundings
 };
 
 std::string with_folder(std::string text, const TemporaryFolder& folder) {
@@ -57,7 +58,7 @@ void expect_rejected(const HostileInput& input) {
   const Outcome outcome = input.surroundings.empty()
                               ? run_here(command, folder.path())
                               : run(with_folder("cd @ && " + input.surroundings + " ", folder) +
-                                    kPatience + CLPV_PROGRAM + " " + command);
+                                    kPatience + input.program + " " + command);
   EXPECT_EQ(outcome.exit_code, input.exit_code) << outcome.err;
   for (const std::string& word : input.words) EXPECT_THAT(outcome.err, ::testing::HasSubstr(word));
   for (const char* foreign :
@@ -251,18 +252,21 @@ TEST(HostileSurroundings, Variables) {
   rejected("env POCL_CACHE_DIR=@/file/below", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
 }
 
-/// The program for someone who is not root, for whom permissions count; empty where that cannot be
-/// had.
+/// For someone who is not root, for whom permissions count; empty where that cannot be had.
 std::string as_nobody() {
   if (::geteuid() != 0) return " ";
   const std::string become = "setpriv --reuid=65534 --regid=65534 --clear-groups ";
-  return run(become + CLPV_PROGRAM " --version").exit_code == 0 ? become : "";
+  return run(become + "true").exit_code == 0 ? become : "";
 }
 
 TEST(HostileSurroundings, Permissions) {
   const std::string nobody = as_nobody();
   if (nobody.empty())
     GTEST_SKIP() << "root, and no setpriv to become someone else: permissions bind nobody";
+  const TemporaryFolder open;  // with umask 077 nobody else may run the program of the build
+  const fs::path program = open / "clpv";
+  fs::copy_file(CLPV_PROGRAM, program);
+  for (const fs::path& each : {open.path(), program}) ::chmod(each.c_str(), 0755);
   const auto locked = [&](const std::string& command, int code, const char* file, mode_t mode,
                           const char* inside = nullptr) {
     const auto lock = [=](const TemporaryFolder& folder) {
@@ -271,7 +275,7 @@ TEST(HostileSurroundings, Permissions) {
     };
     const char* made = inside != nullptr ? inside : file;
     const char* words = code == 1 ? "Permission denied" : "cannot be read";
-    expect_rejected({command, command, code, {file, words}, {{made, "{}"}}, lock, nobody});
+    expect_rejected({command, command, code, {file, words}, {{made, "{}"}}, lock, nobody, program});
   };
   locked(kTiny + "-o @/f/a.exr", 1, "f", 0555, "f/x");
   locked(kTiny + "-o @/a.exr", 1, "a.exr", 0444);

@@ -15,7 +15,7 @@
 #include "kernels/shared/region.h"
 #include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
-#include "tests/support/on_device.hpp"
+#include "tests/support/drawn.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace clpv::rasterize_test {
@@ -26,18 +26,11 @@ using test::add_quad;
 using test::add_vertex;
 using test::camera_at;
 using test::directional_light;
+using test::drawn;
 using test::test_session;
 
 ClpvView small_camera(int width = 48, int height = 32) {
   return camera_view(camera_at({0, 0, 0}, {0, 0, -1}), width, height);
-}
-
-SurfaceImage camera_image(const SceneData& scene, const ClpvView& view) {
-  Session& session = test_session();
-  Rasterizer rasterizer(session, upload_scene(session, scene));
-  Surface surface = make_surface(session, view, RsmFormat::float32, true);
-  rasterizer.rasterize_camera(surface);
-  return read_surface(session, surface);
 }
 
 SurfaceImage rsm_image(const SceneData& scene, const ClpvLight& light, const ClpvView& view,
@@ -72,7 +65,7 @@ SceneData wall(float distance = 4) {
 }
 
 TEST(Rasterize, WallFillsEveryPixel) {
-  const SurfaceImage image = camera_image(wall(), small_camera(45, 31));
+  const SurfaceImage image = drawn(wall(), small_camera(45, 31));
   for (const float depth : image.depth) EXPECT_FLOAT_EQ(depth, 4);
   for (const glm::vec4& normal : image.normal) EXPECT_EQ(glm::vec3(normal), glm::vec3(0, 0, 1));
   for (const glm::vec4& colour : image.colour)
@@ -83,9 +76,9 @@ TEST(Rasterize, BackFacesAreCulledUnlessDoubleSided) {
   SceneData scene;
   const unsigned material = add_material(scene);
   add_quad(scene, {20, -20, -4}, {-40, 0, 0}, {0, 40, 0}, material);
-  EXPECT_EQ(covered(camera_image(scene, small_camera()).depth), 0u);
+  EXPECT_EQ(covered(drawn(scene, small_camera()).depth), 0u);
   scene.materials[material].flags = CLPV_MATERIAL_DOUBLE_SIDED;
-  const SurfaceImage image = camera_image(scene, small_camera());
+  const SurfaceImage image = drawn(scene, small_camera());
   EXPECT_EQ(covered(image.depth), image.depth.size());
   for (const glm::vec4& normal : image.normal) EXPECT_EQ(glm::vec3(normal), glm::vec3(0, 0, 1));
 }
@@ -107,7 +100,7 @@ TEST(Rasterize, DepthOfATiltedPlane) {
   SceneData scene;  // z = -5 + x / 2 - y / 4
   add_quad(scene, {-20, -20, -10}, {40, 0, 20}, {0, 40, -10}, add_material(scene));
   const ClpvView view = small_camera(64, 48);
-  const SurfaceImage image = camera_image(scene, view);
+  const SurfaceImage image = drawn(scene, view);
   for (unsigned y = 0; y < view.height; ++y) {
     for (unsigned x = 0; x < view.width; ++x) {
       const double sx = (2 * (x + 0.5) / view.width - 1) * view.half_width;
@@ -206,7 +199,7 @@ TEST(Rasterize, NearPlaneCutsWithoutHoles) {
   const ClpvView view = camera_view(camera, 36, 36);
   const std::vector<int> count = coverage(scene, view);
   for (const int c : count) EXPECT_LE(c, 1);
-  const SurfaceImage image = camera_image(scene, view);
+  const SurfaceImage image = drawn(scene, view);
   for (unsigned y = 0; y < 36; ++y) {
     for (unsigned x = 0; x < 36; ++x) {
       const glm::vec3 ray = glm::vec3(view.forward[0], view.forward[1], view.forward[2]) +
@@ -227,7 +220,7 @@ TEST(Rasterize, FarawayCornersAreClippedToTheGuardBand) {
   // 40,000 km to each side: without clipping its corners overflow the screen's integers.
   SceneData scene;
   add_quad(scene, {-4e7f, -4e7f, -4}, {8e7f, 0, 0}, {0, 8e7f, 0}, add_material(scene));
-  for (const float depth : camera_image(scene, small_camera()).depth) EXPECT_NEAR(depth, 4, 1e-4);
+  for (const float depth : drawn(scene, small_camera()).depth) EXPECT_NEAR(depth, 4, 1e-4);
   for (const float depth : shadow_depth(scene, orthographic_square(1, 16)))
     EXPECT_NEAR(depth, 4, 1e-4);
 }
@@ -237,11 +230,9 @@ TEST(Rasterize, NearerSurfaceWinsAndTiesGoToTheFirst) {
   const unsigned red = add_material(scene, {1, 0, 0}), green = add_material(scene, {0, 1, 0});
   add_quad(scene, {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, red);
   add_quad(scene, {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, green);
-  for (const glm::vec4& colour : camera_image(scene, small_camera()).colour)
-    EXPECT_FLOAT_EQ(colour.x, 1);
+  for (const glm::vec4& colour : drawn(scene, small_camera()).colour) EXPECT_FLOAT_EQ(colour.x, 1);
   add_quad(scene, {-9, -9, -3.99f}, {18, 0, 0}, {0, 18, 0}, green);
-  for (const glm::vec4& colour : camera_image(scene, small_camera()).colour)
-    EXPECT_FLOAT_EQ(colour.y, 1);
+  for (const glm::vec4& colour : drawn(scene, small_camera()).colour) EXPECT_FLOAT_EQ(colour.y, 1);
 }
 
 TEST(Rasterize, ATileOfMoreTrianglesThanOneLoopCanDraw) {
@@ -252,8 +243,7 @@ TEST(Rasterize, ATileOfMoreTrianglesThanOneLoopCanDraw) {
   };
   for (unsigned i = 0; i < CLPV_LONGEST_LOOP; ++i) wall_at(5);  // two triangles each
   wall_at(4.9995f);  // of the same slice; work-items enter it in any order, but late
-  for (const float depth : camera_image(scene, small_camera(8, 8)).depth)
-    EXPECT_FLOAT_EQ(depth, 4.9995f);
+  for (const float depth : drawn(scene, small_camera(8, 8)).depth) EXPECT_FLOAT_EQ(depth, 4.9995f);
 }
 
 TEST(Rasterize, OrthographicDepthsBeforeTheNearOneClampToItAndFarOnesDrop) {
@@ -311,13 +301,11 @@ TEST(Rasterize, PaperFormatKeepsEightBits) {
 TEST(Rasterize, SeveralLaunchesDrawTheSame) {
   const SceneData scene = jittered_plane(20, 5, 4, 0);
   const ClpvView view = small_camera(160, 90);
-  const SurfaceImage whole = camera_image(scene, view);
+  const SurfaceImage whole = drawn(scene, view);
   Session& session = test_session();
   for (const std::size_t max_listed : {1, 100, 700}) {  // of about 2000
     Rasterizer rasterizer(session, upload_scene(session, scene), max_listed);
-    Surface surface = make_surface(session, view, RsmFormat::float32, false);
-    rasterizer.rasterize_camera(surface);
-    const SurfaceImage parts = read_surface(session, surface);
+    const SurfaceImage parts = drawn(rasterizer, view);
     EXPECT_EQ(whole.depth, parts.depth);
     EXPECT_EQ(whole.normal, parts.normal);
   }
@@ -359,13 +347,6 @@ TEST(Rasterize, HiddenClustersChangeNothing) {
   }
 }
 
-/// A surface drawn by `rasterizer`.
-SurfaceImage drawn(Rasterizer& rasterizer, const ClpvView& view) {
-  Surface surface = make_surface(test_session(), view, RsmFormat::float32, false);
-  rasterizer.rasterize_camera(surface);
-  return read_surface(test_session(), surface);
-}
-
 TEST(Rasterize, DrawnAheadIsTheSameWithListsThatAreTooShort) {
   SceneData scene = jittered_plane(20, 5, 4, 0);
   for (int i = 0; i < 200; ++i) {  // through the near plane, and each over the whole screen
@@ -373,7 +354,7 @@ TEST(Rasterize, DrawnAheadIsTheSameWithListsThatAreTooShort) {
              add_material(scene, {0.5f, 0.25f, 0.75f}));
   }
   const ClpvView small = small_camera(16, 9), large = small_camera(320, 180);
-  const SurfaceImage whole = camera_image(scene, large);
+  const SurfaceImage whole = drawn(scene, large);
   Session& session = test_session();
   Rasterizer rasterizer(session, upload_scene(session, scene));
   rasterizer.draw_ahead(true);

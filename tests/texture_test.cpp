@@ -9,7 +9,7 @@
 #include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/mip_chain.hpp"
-#include "tests/support/on_device.hpp"
+#include "tests/support/drawn.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace clpv::texture_test {
@@ -17,7 +17,6 @@ namespace {
 
 using test::add_material;
 using test::add_quad;
-using test::test_session;
 
 Texture texture(std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba) {
   Texture made;
@@ -73,11 +72,7 @@ SurfaceImage image_of(SceneData scene, int size, const glm::vec2& from, const gl
   view.eye[0] = view.eye[1] = 0.5f;
   view.orthographic = 1;
   view.half_width = view.half_height = 0.5f;
-  Session& session = test_session();
-  Rasterizer rasterizer(session, upload_scene(session, scene));
-  Surface surface = make_surface(session, view, RsmFormat::float32, true);
-  rasterizer.rasterize_camera(surface);
-  return read_surface(session, surface);
+  return test::drawn(scene, view);
 }
 
 /// A scene with a textured white material and no triangles yet.
@@ -103,10 +98,11 @@ std::vector<float> reds(const SurfaceImage& image) {  // of the top row
   return values;
 }
 
+auto close(const std::vector<float>& values) {
+  return ::testing::Pointwise(::testing::FloatNear(1e-5f), values);
+}
+
 TEST(Texture, TexelsSitWhereTheyShould) {
-  const auto close = [](std::vector<float> values) {
-    return ::testing::Pointwise(::testing::FloatNear(1e-5f), values);
-  };
   EXPECT_THAT(reds(image_of(textured(stripes(CLPV_WRAP_CLAMP)), 4, {0, 0}, {1, 1})),
               close({0, 1, 0, 1}));
   // Halfway between texel centres: the mean of both.
@@ -136,9 +132,6 @@ TEST(Texture, TexelsOfEverySizeSitWhereTheyShould) {
 }
 
 TEST(Texture, WrapModesRepeatMirrorAndClamp) {
-  const auto close = [](std::vector<float> values) {
-    return ::testing::Pointwise(::testing::FloatNear(1e-5f), values);
-  };
   const auto from_minus_half = [&](std::uint32_t wrap) {  // texels -2 .. 5
     return reds(image_of(textured(stripes(wrap)), 8, {-0.5f, 0}, {1.5f, 1}));
   };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "bake/probe_check.hpp"
 
-#include <array>
 #include <cmath>
 
 #include "basis/sampling.hpp"
@@ -21,7 +20,8 @@ std::vector<std::pair<glm::dvec3, Random>> places(pathtracer::PointTracer& trace
     std::vector<glm::dvec3> positions;
     std::vector<Random> randoms;
     for (std::size_t i = 0; i < count; ++i) {
-      Random& random = randoms.emplace_back(mix(mix(seed, attempt), i));
+      randoms.push_back({mix(mix(seed, attempt), i)});
+      Random& random = randoms.back();
       const glm::dvec3 share(random.next(), random.next(), random.next());
       positions.push_back(grid.lower + share * (grid.upper - grid.lower));
     }

@@ -2,8 +2,6 @@
 // clpv compare: error metrics of an image against a ground truth, or changes between two reports.
 #include "image/compare.hpp"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "bench/compare_runs.hpp"
@@ -97,6 +95,7 @@ void run(const CompareOptions& options) {
   if (!options.output.empty())
     write_difference(options.output, difference_image(a, b, options.amplify));
   print_json(to_json(comparison).dump(2) + "\n");
+  require_valid_pixels(comparison, options.a, options.b);
 }
 
 }  // namespace
@@ -143,7 +142,9 @@ void add_compare(CLI::App& app, Shared&) {
       "al. 2020) is the mean\n"
       "difference that an observer sees, from 0 to 1, of linear images after tone curve aces.\n"
       "Different sizes, pixels that only one file has, and values that are not finite exit with "
-      "3,\nreports without a row that has a value in both with 5.");
+      "3,\nimages without a pixel that is valid in both, and reports without a row that has a "
+      "value "
+      "in both, with 5.");
   command->callback([options] { run(*options); });
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/compare_suite.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -106,6 +104,7 @@ nlohmann::json compare_suite(const fs::path& folder, const fs::path& truths, flo
     const Image image = read_image_layer(file, "");
     const auto [path, truth] = truth_of(file, image, candidates, listed, truths);
     const Comparison errors = compare(image, file.string(), truth, path.string(), exposure);
+    require_valid_pixels(errors, file.string(), path.string());
     nlohmann::json view = to_json(errors);
     view.update({{"view", file.stem().string()}, {"ground_truth", path.filename().string()}});
     views.push_back(std::move(view));

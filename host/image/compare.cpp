@@ -208,6 +208,14 @@ Comparison compare(const Image& a, const std::string& a_name, const Image& b,
   return result;
 }
 
+void require_valid_pixels(const Comparison& comparison, const std::string& a_name,
+                          const std::string& b_name) {
+  if (comparison.valid_pixels > 0) return;
+  throw Error(ExitCode::validation,
+              "{} and {}: found no pixel with alpha above 0 in both; allowed: one or more", a_name,
+              b_name);
+}
+
 std::vector<double> flip_map(const Image& a, const Image& b, float exposure) {
   const std::vector<bool> valid = valid_pixels(a, b);
   std::vector<double> map = flip(shown(a, valid, exposure), shown(b, valid, exposure));

@@ -22,6 +22,10 @@ void check_comparable(const Image& a, const std::string& a_name, const Image& b,
 Comparison compare(const Image& a, const std::string& a_name, const Image& b,
                    const std::string& b_name, float exposure = 0);
 
+/// Throws Error(validation), with both names, if no pixel is valid in both.
+void require_valid_pixels(const Comparison& comparison, const std::string& a_name,
+                          const std::string& b_name);
+
 nlohmann::json to_json(const Comparison& comparison);
 
 /// FLIP of each pixel, row by row, as in compare(); 0 where a pixel is not valid. The images must

@@ -25,12 +25,16 @@ GET_FLAGS, APPEND_ONLY = 0x80086601, 0x20  # FS_IOC_GETFLAGS of Linux
 NO_SYNC = errno.EINVAL, errno.ENOTSUP  # file systems without fsync
 
 
-class BadOutput(Exception):
-    """What cannot be written, and why. `code`: exit code of the command."""
+class Failure(Exception):
+    """What ends a command. `code`: its exit code."""
 
     def __init__(self, words, code=RUN_TIME):
         super().__init__(words)
         self.code = code
+
+
+class BadOutput(Failure):
+    """What cannot be written, and why."""
 
 
 def printable(text):
@@ -162,12 +166,25 @@ def write(path, data):
 
 
 def exit_code(main, *arguments):
-    """That of a script's main function. Prints what cannot be written."""
+    """That of a script's main function. Prints its Failure."""
     try:
         return main(*arguments)
-    except BadOutput as error:
+    except Failure as error:
         print(f"{sys.argv[0]}: {error}", file=sys.stderr)
         return error.code
+
+
+def name_missing_modules():
+    """For programs: a module that cannot be imported ends them with a line and exit code 1."""
+    usual = sys.excepthook
+
+    def hook(kind, error, trace):
+        if not issubclass(kind, ImportError):
+            return usual(kind, error, trace)
+        hint = f" (Debian: python3-{error.name})" if kind is ModuleNotFoundError else ""
+        print(f"{sys.argv[0]}: {error}{hint}", file=sys.stderr)
+
+    sys.excepthook = hook
 
 
 def read_regular(path):

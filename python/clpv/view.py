@@ -20,8 +20,12 @@ import threading
 import time
 
 import clpv
-from clpv import view_controls, view_gate
-from clpv.view_frames import LEVELS, Client, Renderers, camera_of, next_client, size_of
+from clpv import output
+if __name__ == "__main__":
+    output.name_missing_modules()
+from clpv import view_controls, view_gate  # noqa: E402
+from clpv.view_frames import (  # noqa: E402
+    LEVELS, Client, Renderers, camera_of, next_client, size_of)
 
 # Distance from the eye to the point that a drag turns the camera about, of the scene's diagonal.
 PIVOT = 0.03

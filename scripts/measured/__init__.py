@@ -19,6 +19,7 @@ LAB = BUILD / "clpv-lab"  # has other methods and peers too
 RESULTS = ROOT / "results"
 sys.path.insert(0, str(ROOT / "python"))
 from clpv import output  # noqa: E402
+output.name_missing_modules()
 
 
 def native():

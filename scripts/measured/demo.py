@@ -16,7 +16,6 @@ import numpy
 import PIL.Image
 
 from . import CLPV, ROOT, output
-from .tables.stages import print_stages
 from clpv import ms_of
 from clpv.draw import style
 
@@ -102,6 +101,22 @@ def picture(tiles):
     return style.rendered(figure, "png", dpi=DPI)
 
 
+def print_stages(stats):
+    """Of `clpv render --stats`; sums over cascades and lights."""
+    rows = [[stage, ms_of(stats["times"], stage)]
+            for stage in dict.fromkeys(time["stage"] for time in stats["times"])]
+    rows.sort(key=lambda row: row[0] in ("frame", "host"))
+    started = [[key.removesuffix("_ms").replace("_", " "), stats[key]]
+               for key in ("first_launch_ms", "build_ms", "startup_ms")]
+    width = max(len(name) for name, _ in rows + started)
+    rule = "-" * width + "  " + "-" * 8
+    print(f"{'stage [ms]':{width}}  {stats['options']['basis']:>8}", rule, sep="\n")
+    for name, milliseconds in rows + [[rule, None]] + started:
+        print(name if milliseconds is None else f"{name:{width}}  {milliseconds:8.2f}")
+    device = stats["device"]
+    print(f"on {device['name']} ({device['platform']}, driver {device['driver']})")
+
+
 def main():
     parser = argparse.ArgumentParser(prog="scripts/demo", add_help=False, allow_abbrev=False)
     parser.add_argument("folder", type=pathlib.Path)
@@ -112,8 +127,9 @@ def main():
     demo = Demo(folder, (arguments.width, arguments.height), options)
     tiles, error = demo.make()
     folder.write("demo.png", picture(tiles))
-    print_stages([demo.stats])
-    milliseconds = ms_of(json.loads(demo.stats.read_text())["times"], "frame")
+    stats = json.loads(demo.stats.read_text())
+    print_stages(stats)
+    milliseconds = ms_of(stats["times"], "frame")
     print(f"All bounces: {milliseconds:.0f} ms per frame of {arguments.width}x{arguments.height}; "
           f"error of indirect light {100 * error:.0f} % (NRMSE against path tracing at "
           f"{demo.small[0]}x{demo.small[1]})")

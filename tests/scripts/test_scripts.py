@@ -43,6 +43,8 @@ while [[ $# -gt 0 ]]; do
   shift
 done
 """
+WITHOUT_NUMPY = "raise ModuleNotFoundError(\"No module named 'numpy'\", name='numpy')\n"
+MISSING = "No module named 'numpy' (Debian: python3-numpy)"
 OIIOTOOL = '#!/bin/bash\ncp "$1" "${@: -1}"\n'
 
 
@@ -259,6 +261,22 @@ class Arguments(InTree):
                                    text=True, check=False, cwd=self.folder)
             self.assertEqual(found.returncode, 0, name)
             self.assertIn(f"  scripts/{name}", found.stdout)
+
+    def test_checks_of_the_docs_without_arguments_say_how(self):
+        (self.tree / "tests").symlink_to(ROOT / "tests")
+        for name in "run_tutorial", "check_links", "check_kernels":
+            self.refused(1, f"tests/docs/{name} ", f"../tests/docs/{name}")
+
+    def test_a_missing_module_is_named(self):
+        (self.folder / "numpy.py").write_text(WITHOUT_NUMPY)
+        environment = {"PYTHONPATH": f"{self.folder}:{ROOT}/python:{ROOT}/scripts"}
+        for name in "charts", "frame", "leaks":
+            self.refused(1, MISSING, name, **environment)
+        for name in "clpv.view", "measured.demo":
+            found = subprocess.run([sys.executable, "-B", "-m", name], capture_output=True,
+                                   text=True, check=False, env=environment)
+            self.assertEqual((found.returncode, found.stderr.count("\n")), (1, 1), found.stderr)
+            self.assertIn(MISSING, found.stderr)
 
     def test_unknown_arguments(self):
         for name, argument in (("build", "--fast"), ("test", "gather"), ("fuzz", "none"),

@@ -58,6 +58,16 @@ inline SceneData floor_scene(float albedo) {
   return scene;
 }
 
+/// A unit cube seen from inside, faces inwards, whose walls emit and reflect.
+inline SceneData furnace(float albedo, float emitted) {
+  SceneData scene;
+  scene.path = "furnace";
+  add_grey(scene, albedo);
+  for (float& e : scene.materials[0].emissive) e = emitted;
+  add_box(scene, glm::vec3(0), 1, 0);
+  return scene;
+}
+
 /// Down on the middle of the floor from 2 m above it.
 inline const ClpvView kDown = view_of({0, 2, 0}, {0, -1, 0}, {0, 0, -1}, 0.5f, 9, 7);
 

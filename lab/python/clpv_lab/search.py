@@ -15,10 +15,11 @@ import pathlib
 import sys
 import warnings
 
-import numpy as np
-
 from clpv import output
-from clpv.draw import documents
+if __name__ == "__main__":
+    output.name_missing_modules()
+import numpy as np  # noqa: E402
+from clpv.draw import documents  # noqa: E402
 
 NORM = 2 * np.pi / 3  # integral of max(0, w . d)^2
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
@@ -215,11 +216,8 @@ def minimum_error(count):
 def weights(path):
     """Reads {"weights": [[x, y, z, weight], ...]}. Returns unit directions and weights, whose sum
     is 1. Raises BadDocument."""
-    try:
-        document = documents.read(pathlib.Path(path))
-        rows = document.get("weights") if isinstance(document, dict) else None
-    except (OSError, ValueError, RecursionError) as error:
-        raise documents.BadDocument(f"{path}: {error}") from error
+    document = documents.read(pathlib.Path(path))
+    rows = document.get("weights") if isinstance(document, dict) else None
     if not isinstance(rows, list) or not 1 <= len(rows) <= MAX_WEIGHTS:
         raise documents.BadDocument(
             f"{path}: /weights: allowed: an array of 1 to {MAX_WEIGHTS} entries [x, y, z, weight]")
@@ -275,11 +273,9 @@ def main(arguments=None):
         found = search(**given)
         if path:
             target.write(json.dumps(document_of(path.stem, found), indent=1) + "\n")
-    except ImportError as error:
-        sys.exit(f"{error} (Debian: python3-scipy)")
-    except (documents.BadDocument, output.BadOutput, ValueError) as error:
+    except (output.Failure, ValueError) as error:
         print(error, file=sys.stderr)
-        return 3 if isinstance(error, documents.BadDocument) else getattr(error, "code", 2)
+        return getattr(error, "code", output.USAGE)
     print(
         f"error {found.error:.4f}; minimum of any {count} functions over all directions: "
         f"{minimum_error(count):.4f}\ncondition number {found.condition:.4g}; {found.valid} of "

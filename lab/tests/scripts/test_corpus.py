@@ -76,6 +76,21 @@ os.execv({os.environ["CLPV"]!r}, [{os.environ["CLPV"]!r}, *sys.argv[1:]])
         self.assertIn("1 models: 0 loaded, 0 refused, 1 differs.", done.stdout)
         self.assertRegex(done.stdout, r"\| differs \| albedo [1-9][0-9.]* %, depth 0.0 %, normal 0.0 %")
 
+    def test_without_a_device_no_model_counts_as_refused(self):
+        self.write("plain.gltf", model())
+        stub = self.beside / "stub"
+        for text, code, words in (("echo no device >&2; exit 4", 4, "render: exit 4: no device"),
+                                  (None, 1, "No such file")):
+            if text:
+                stub.write_text(f"#!/bin/sh\n{text}\n")
+                stub.chmod(0o755)
+            else:
+                stub.unlink()
+            done = self.run_script(CLPV=str(stub))
+            self.assertEqual((done.returncode, done.stdout), (code, ""), done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
+
     def test_only_its_own_file_is_replaced(self):
         mine, other = self.root / "mine.md", self.root / "other.md"
         done = self.run_script("--output", mine)

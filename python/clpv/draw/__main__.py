@@ -14,10 +14,8 @@ import pathlib
 import sys
 
 from clpv import output
-from clpv.draw.documents import BadDocument
 
 KINDS = "bench", "basis", "report"
-RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3
 
 
 def fail(code, words):
@@ -27,21 +25,17 @@ def fail(code, words):
 
 def main(arguments):
     if len(arguments) not in (1, 3) or arguments[0] not in KINDS:
-        return fail(USAGE, __doc__.strip())
+        return fail(output.USAGE, __doc__.strip())
     kind, *paths = arguments
-    try:
-        module = importlib.import_module(f"clpv.draw.{kind}")
-    except ImportError as error:
-        return fail(RUN_TIME, f"{error} (Debian: python3-matplotlib python3-numpy python3-jinja2)")
+    module = importlib.import_module(f"clpv.draw.{kind}")
     try:
         if paths:
             module.draw(*map(pathlib.Path, paths))
-    except BadDocument as error:
-        return fail(BAD_INPUT, error)
-    except output.BadOutput as error:
+    except output.Failure as error:
         return fail(error.code, error)
     return 0
 
 
 if __name__ == "__main__":
+    output.name_missing_modules()
     sys.exit(main(sys.argv[1:]))

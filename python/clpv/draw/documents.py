@@ -2,6 +2,8 @@
 """Reads and validates the JSON of clpv."""
 import json
 
+from clpv import output
+
 NUMBER = (int, float)
 TEXT_OR_NULL = (str, type(None))
 NAMES = {
@@ -10,12 +12,19 @@ NAMES = {
 }
 
 
-class BadDocument(Exception):
+class BadDocument(output.Failure):
     """An invalid document. The message has file, place, value found and value allowed."""
+
+    def __init__(self, words):
+        super().__init__(words, output.BAD_INPUT)
 
 
 def read(path):
-    return json.loads(path.read_text(encoding="utf-8"))
+    """Raises BadDocument for a file that cannot be read, or is no JSON."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise BadDocument(f"{path}: {error}") from error
 
 
 def checked(document, source, key, fields):

@@ -6,8 +6,6 @@ from results/docs.
                               expected.json in results/paper
     scripts/tables --check    changes nothing; fails if one of them differs from results/docs
     scripts/tables --list     names of all tables
-    scripts/tables --stages FILE.json...   prints stage times of files of `clpv render --stats`,
-                                           side by side
 
 scripts/measure writes results/docs. Only the standard library.
 """
@@ -17,7 +15,6 @@ import sys
 from .. import ROOT, RESULTS, expected, json_lines, output, verdicts
 from . import bake, benchmarks, quality, paper, tutorial  # they fill TABLES
 from .cells import LOADED, MEASURED, TABLES, read, result
-from .stages import print_stages
 
 __all__ = [
     "MEASURED", "TABLES", "bake", "benchmarks", "main", "pages", "paper", "quality", "read",
@@ -50,7 +47,7 @@ def block(match):
     if name == "measured-on":
         return match[0]
     if name not in TABLES:
-        sys.exit(f"scripts/tables: no table '{name}'; allowed: measured-on, {', '.join(TABLES)}")
+        sys.exit(f"{sys.argv[0]}: no table '{name}'; allowed: measured-on, {', '.join(TABLES)}")
     content = TABLES[name]()
     return match[1] + (content if isinstance(content, str) else drawn(content)) + match[3]
 
@@ -79,19 +76,17 @@ def of_core():
     yield from pages([ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))])
 
 
-def main(files=of_core):
-    """`files`: returns what of_core() does, for other pages."""
+def main(files=of_core, usage=__doc__):
+    """`files`: returns what of_core() does, for other pages, of which `usage` tells."""
     arguments = sys.argv[1:]
     if arguments in (["-h"], ["--help"]):
-        print(__doc__.strip())
+        print(usage.strip())
         return 0
     if arguments == ["--list"]:
         print("\n".join(["measured-on", *TABLES]))
         return 0
-    if arguments[:1] == ["--stages"] and len(arguments) > 1:
-        return print_stages(arguments[1:])
     if arguments not in ([], ["--check"]):
-        print(__doc__.strip(), file=sys.stderr)
+        print(usage.strip(), file=sys.stderr)
         return 2
     differing = []
     for file, text in files():
@@ -100,7 +95,7 @@ def main(files=of_core):
             if not arguments:
                 output.write(file, text)
     if arguments and differing:
-        print(f"{', '.join(differing)}: tables differ from results/docs; run scripts/tables",
+        print(f"{', '.join(differing)}: tables differ from results; run {sys.argv[0]}",
               file=sys.stderr)
         return 1
     return 0

@@ -6,10 +6,11 @@ import json
 import pathlib
 import sys
 
-from clpv.draw import viewer
-from clpv.output import BadOutput, Output, printable
-from clpv_lab.score import page, suite
-from clpv_lab.score.exr import BadImage
+from clpv.output import BadOutput, Output, name_missing_modules, printable
+name_missing_modules()
+from clpv.draw import viewer  # noqa: E402
+from clpv_lab.score import page, suite  # noqa: E402
+from clpv_lab.score.exr import BadImage  # noqa: E402
 
 RUN_TIME, BAD_INPUT = 1, 3
 
