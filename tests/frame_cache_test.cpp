@@ -7,10 +7,10 @@
 #include <set>
 #include <stdexcept>
 
+#include "device/result_keys.hpp"
 #include "options/render_options.hpp"
 #include "pipeline/frame/cached.hpp"
 #include "pipeline/frame/frame.hpp"
-#include "pipeline/frame/frame_keys.hpp"
 #include "scene/load.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/on_device.hpp"

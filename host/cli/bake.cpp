@@ -18,7 +18,7 @@
 #include "bake/ktx2.hpp"
 #include "cli/bake_parts.hpp"
 #include "cli/commands.hpp"
-#include "pipeline/frame/frame_keys.hpp"
+#include "device/result_keys.hpp"
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "scene/points_file.hpp"

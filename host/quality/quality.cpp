@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "device/result_keys.hpp"
 #include "image/compare.hpp"
-#include "pipeline/frame/frame_keys.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/log.hpp"

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "device/result_keys.hpp"
 #include "image/image_io.hpp"
-#include "pipeline/frame/frame_keys.hpp"
 #include "pipeline/raster/view.hpp"
 #include "sequence/stability.hpp"
 #include "support/error.hpp"

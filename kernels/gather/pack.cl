@@ -16,7 +16,7 @@ CLPV_INLINE float number_at(const Coefficients* cell, const int i, const int lan
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void pack(
     CLPV_VOLUME_IN volume, __global float8* packed, const uint first) {
   const int x = W * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
-  CLPV_RETURN_OUTSIDE(x, y);
+  if (outside_grid(x, y)) return;
   const Coefficients r = light_load(volume, 0, x, y, z), g = light_load(volume, 1, x, y, z),
                      b = light_load(volume, 2, x, y, z);
   __global float8* record =

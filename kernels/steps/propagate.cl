@@ -53,7 +53,7 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagat
     CLPV_VOLUME_OUT sum CLPV_AND_TRANSMITTANCE) {
   const int x = W * (int)get_global_id(0), y = (int)get_global_id(1),
             z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
-  CLPV_RETURN_OUTSIDE(x, y);
+  if (outside_grid(x, y)) return;
   const Links t = face_transmittances(x, y, z CLPV_PASS_TRANSMITTANCE);
   store_step(gain_light(source, channel, x, y, z, t), target, sum_so_far, sum, channel, x, y, z);
 }

@@ -87,7 +87,7 @@ __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagat
     CLPV_VOLUME_OUT sum CLPV_AND_TRANSMITTANCE, __global const float4* normals,
     __global const float4* links CLPV_AND_H CLPV_AND_G) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
-  CLPV_RETURN_OUTSIDE(x, y);
+  if (outside_grid(x, y)) return;
   const Links t = face_transmittances(x, y, z CLPV_PASS_TRANSMITTANCE);
   Fluxes fluxes[3];
   find_fluxes(source, x, y, z, t, links, fluxes CLPV_PASS_G);

@@ -17,6 +17,6 @@
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void transmit(
     CLPV_VOLUME_IN blockers, CLPV_VOLUME_OUT transmittance) {
   const int x = W * (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
-  CLPV_RETURN_OUTSIDE(x, y);
+  if (outside_grid(x, y)) return;
   transmittance_store(transmittance, 0, x, y, z, find_transmittance(blockers, x, y, z));
 }

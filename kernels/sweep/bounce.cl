@@ -29,6 +29,7 @@
 #include "volume/light.h"
 
 #define CLPV_VOLUME faces
+#define CLPV_VOLUME_N CLPV_GRID
 #define CLPV_VOLUME_CELL FaceFluxes
 #define CLPV_VOLUME_COUNT CLPV_CELL_FACES
 #include "volume/instance.h"

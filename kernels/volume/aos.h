@@ -12,35 +12,32 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
   return (((channel * rows + (z + 1)) * rows + (y + 1)) * pitch + (x + 1)) * CLPV_VOLUME_COUNT;
 }
 
-#if W == 8
-// Eight samples are loaded as CLPV_VOLUME_COUNT vectors of eight numbers, then transposed. All
-// loops are unrolled: PoCL 7.1 compiles others wrongly in an unrolled loop, and PoCL 3.1 slowly.
-CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN volume,
+// Cells are loaded as CLPV_VOLUME_COUNT vectors of W numbers, then transposed. All loops are
+// unrolled: PoCL 7.1 compiles others wrongly in an unrolled loop, and PoCL 3.1 slowly.
+CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_cells)(CLPV_BUFFER_IN volume,
                                                                  const int at, const int x) {
-  float8 rows[CLPV_VOLUME_COUNT];
+  realW rows[CLPV_VOLUME_COUNT];
 #pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) rows[i] = read_eight(volume, at + 8 * i);
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) rows[i] = read_numbers(volume, at + W * i);
   CLPV_VOLUME_CELL cell;
 #pragma unroll
   for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) {
-    const float* from = (const float*)rows + i;
-    cell.c[i] = (float8)(from[0], from[CLPV_LANE], from[2 * CLPV_LANE], from[3 * CLPV_LANE],
-                         from[4 * CLPV_LANE], from[5 * CLPV_LANE], from[6 * CLPV_LANE],
-                         from[7 * CLPV_LANE]);
+#pragma unroll
+    for (int lane = 0; lane < W; ++lane)
+      ((float*)&cell.c[i])[lane] = ((const float*)rows)[lane * CLPV_LANE + i];
   }
   return cell;
 }
 
-CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_eight)(CLPV_BUFFER_OUT volume, const int at,
+CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_cells)(CLPV_BUFFER_OUT volume, const int at,
                                                       const CLPV_VOLUME_CELL cell) {
-  float8 rows[CLPV_VOLUME_COUNT];
+  realW rows[CLPV_VOLUME_COUNT];
 #pragma unroll
   for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) {
 #pragma unroll
-    for (int lane = 0; lane < 8; ++lane)
+    for (int lane = 0; lane < W; ++lane)
       ((float*)rows)[lane * CLPV_LANE + i] = ((const float*)&cell.c[i])[lane];
   }
 #pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_eight(volume, at + 8 * i, rows[i]);
+  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_numbers(volume, at + W * i, rows[i]);
 }
-#endif

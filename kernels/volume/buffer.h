@@ -5,36 +5,20 @@
 // A layout defines
 //   NAME_address(channel, x, y, z)     index of coefficient 0
 //   CLPV_NEXT, CLPV_LANE               steps to the next coefficient, and to the next cell along x
-//   NAME_load_eight(volume, at, x)     with W 8: the cells x to x + 7, from index `at` on
-//   NAME_store_eight(volume, at, cell) with W 8, aos.h: stores them; all are inside the grid
-#if W == 8 && CLPV_LAYOUT != CLPV_AOS  // eight samples of a coefficient are adjacent
-CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store_eight)(CLPV_BUFFER_OUT volume, const int at,
-                                                      const CLPV_VOLUME_CELL cell) {
-#pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_eight(volume, at + i * CLPV_NEXT, cell.c[i]);
-}
-#endif
-
+//   NAME_load_cells(volume, at, x)     the W cells from x on, from index `at` on
+//   NAME_store_cells(volume, at, cell) stores them; all are inside the grid
 CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(CLPV_BUFFER_IN volume, const int channel,
                                                            const int x, const int y, const int z) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
-#if W == 8
-  return CLPV_PASTE(CLPV_VOLUME, load_eight)(volume, at, x);
-#else
-  CLPV_VOLUME_CELL cell;
-#pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = read_number(volume, at + i * CLPV_NEXT);
-  return cell;
-#endif
+  return CLPV_PASTE(CLPV_VOLUME, load_cells)(volume, at, x);
 }
 
 CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const int channel,
                                                 const int x, const int y, const int z,
                                                 const CLPV_VOLUME_CELL cell) {
   const int at = CLPV_PASTE(CLPV_VOLUME, address)(channel, x, y, z);
-#if W == 8
-#if CLPV_VOLUME_N % 8  // PoCL compiles even a dead branch, to a thousand instructions
-  if (x + 8 > CLPV_VOLUME_N) {  // end of the row: lanes beyond belong to the next one
+#if CLPV_VOLUME_N % W  // PoCL compiles even a dead branch, to a thousand instructions
+  if (x + W > CLPV_VOLUME_N) {  // end of the row: lanes beyond belong to the next one
     for (int lane = 0; lane < CLPV_VOLUME_N - x; ++lane) {
 #pragma unroll
       for (int i = 0; i < CLPV_VOLUME_COUNT; ++i)
@@ -44,11 +28,7 @@ CLPV_INLINE void CLPV_PASTE(CLPV_VOLUME, store)(CLPV_BUFFER_OUT volume, const in
     return;
   }
 #endif
-  CLPV_PASTE(CLPV_VOLUME, store_eight)(volume, at, cell);
-#else
-#pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) write_number(volume, at + i * CLPV_NEXT, cell.c[i]);
-#endif
+  CLPV_PASTE(CLPV_VOLUME, store_cells)(volume, at, cell);
 }
 
 #undef CLPV_LANE

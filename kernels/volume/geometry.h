@@ -4,4 +4,6 @@
 #include "volume/coefficients.h"
 #define CLPV_VOLUME geometry
 #define CLPV_VOLUME_N (CLPV_GRID + 1)
+#define CLPV_VOLUME_CELL Coefficients
+#define CLPV_VOLUME_COUNT CLPV_N
 #include "volume/instance.h"

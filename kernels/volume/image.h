@@ -72,13 +72,10 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, sample)(__read_only image3d
   for (int four = 0; four < CLPV_FOURS; ++four) {
     const int iz = (int)fz + four * CLPV_STEP;
     // At the last sample the neighbour beyond is zero and has weight 0.
-#define CLPV_AT(dx, dy, dz) \
-  read_imagef(volume, nearest_sampler, (int4)(ix + (dx), iy + (dy), iz + (dz), 0))
-#define CLPV_ROW(dy, dz) mix(CLPV_AT(0, dy, dz), CLPV_AT(1, dy, dz), tx)
-    texels[four] =
-        mix(mix(CLPV_ROW(0, 0), CLPV_ROW(1, 0), ty), mix(CLPV_ROW(0, 1), CLPV_ROW(1, 1), ty), tz);
-#undef CLPV_ROW
-#undef CLPV_AT
+    texels[four] = mix(
+        mix(mix_texels(volume, ix, iy, iz, tx), mix_texels(volume, ix, iy + 1, iz, tx), ty),
+        mix(mix_texels(volume, ix, iy, iz + 1, tx), mix_texels(volume, ix, iy + 1, iz + 1, tx), ty),
+        tz);
   }
 #endif
   CLPV_VOLUME_CELL cell;

@@ -4,9 +4,9 @@
 //
 // Parameters: define before each inclusion, which undefines them
 //   CLPV_VOLUME         prefix of the functions below (light, geometry, ...)
-//   CLPV_VOLUME_N       samples along each axis, a literal; default: CLPV_GRID
+//   CLPV_VOLUME_N       samples along each axis, a literal
 //   CLPV_VOLUME_CELL    struct with an array c of the numbers of a sample and channel, and
-//                       CLPV_VOLUME_COUNT, number of them; default: Coefficients and CLPV_N
+//                       CLPV_VOLUME_COUNT, number of them
 // It defines
 //   CELL NAME_load(in, channel, x, y, z)               x, y, z in -1..n; the border is 0
 //   void NAME_store(out, channel, x, y, z, cell)       x, y, z in 0..n-1
@@ -14,14 +14,6 @@
 // load undefined values and are not stored. Every layout has a border of zeros, so that a neighbour
 // outside the grid reads 0 without a test.
 #include "volume/layouts.h"
-
-#ifndef CLPV_VOLUME_N
-#define CLPV_VOLUME_N CLPV_GRID
-#endif
-#ifndef CLPV_VOLUME_CELL
-#define CLPV_VOLUME_CELL Coefficients
-#define CLPV_VOLUME_COUNT CLPV_N
-#endif
 
 #if CLPV_LAYOUT == CLPV_IMAGE
 #include "volume/image.h"

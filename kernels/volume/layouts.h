@@ -25,6 +25,13 @@ __constant sampler_t nearest_sampler =
 __constant sampler_t linear_sampler =
     CLK_NORMALIZED_COORDS_FALSE | CLK_ADDRESS_CLAMP | CLK_FILTER_LINEAR;
 #endif
+
+// (1 - t) texel x + t texel x + 1
+CLPV_INLINE float4 mix_texels(__read_only image3d_t volume, const int x, const int y, const int z,
+                              const float4 t) {
+  return mix(read_imagef(volume, nearest_sampler, (int4)(x, y, z, 0)),
+             read_imagef(volume, nearest_sampler, (int4)(x + 1, y, z, 0)), t);
+}
 #else
 #include "volume/numbers.h"
 #define CLPV_VOLUME_IN CLPV_BUFFER_IN

@@ -13,12 +13,8 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
          (x + 1);
 }
 
-#if W == 8
-CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN volume,
-                                                                 const int at, const int x) {
-  CLPV_VOLUME_CELL cell;
-#pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i) cell.c[i] = read_eight(volume, at + i * CLPV_NEXT);
-  return cell;
+CLPV_INLINE realW CLPV_PASTE(CLPV_VOLUME, samples)(CLPV_BUFFER_IN volume, const int at,
+                                                  const int x) {
+  return read_numbers(volume, at);
 }
-#endif
+#include "volume/adjacent.h"

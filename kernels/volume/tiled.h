@@ -15,9 +15,10 @@ CLPV_INLINE int CLPV_PASTE(CLPV_VOLUME, address)(const int channel, const int x,
 }
 
 #if W == 8
-// Loads 8 samples from x on. Most callers have x a multiple of 8, or 1 less or more, which
-// compilers derive from literal offsets.
-CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int at, const int x) {
+// Most callers have x a multiple of 8, or 1 less or more, which compilers derive from literal
+// offsets.
+CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, samples)(CLPV_BUFFER_IN volume, const int at,
+                                                   const int x) {
   const int block = at - (x & 7);
   const float8 row = read_eight(volume, block);
   if ((x & 7) == 0) return row;
@@ -30,13 +31,10 @@ CLPV_INLINE float8 CLPV_PASTE(CLPV_VOLUME, row)(CLPV_BUFFER_IN volume, const int
   const float8 both[2] = {row, next};
   return vload8(0, (const float*)both + (x & 7));
 }
-
-CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load_eight)(CLPV_BUFFER_IN volume,
-                                                                 const int at, const int x) {
-  CLPV_VOLUME_CELL cell;
-#pragma unroll
-  for (int i = 0; i < CLPV_VOLUME_COUNT; ++i)
-    cell.c[i] = CLPV_PASTE(CLPV_VOLUME, row)(volume, at + i * CLPV_NEXT, x);
-  return cell;
+#else
+CLPV_INLINE float CLPV_PASTE(CLPV_VOLUME, samples)(CLPV_BUFFER_IN volume, const int at,
+                                                  const int x) {
+  return read_number(volume, at);
 }
 #endif
+#include "volume/adjacent.h"

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Returns from work-items outside a grid, unless whole work-groups fill it: the branch would
-// prevent vectorisation (lanes.h).
-#if (CLPV_GRID + W - 1) / W % CLPV_LOCAL_X
-#define CLPV_RETURN_OUTSIDE(x, y) if (x >= CLPV_GRID || y >= CLPV_GRID) return
-#else
-#define CLPV_RETURN_OUTSIDE(x, y)
-#endif
+// Work-items outside a grid: none where whole work-groups fill it. A branch would then prevent
+// vectorisation (lanes.h), so that the test is a constant.
+#pragma once
+
+#include "lanes.h"
+
+CLPV_INLINE bool outside_grid(const int x, const int y) {
+  const bool whole = (CLPV_GRID + W - 1) / W % CLPV_LOCAL_X == 0;
+  return !whole && (x >= CLPV_GRID || y >= CLPV_GRID);
+}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/frame/frame_keys.hpp"
+#include "device/result_keys.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Keys of results of frames that outlive a process: an input missing from them is a bug.
+// Keys of results that outlive a process: an input missing from them is a bug.
 #pragma once
 
 #include <string>
