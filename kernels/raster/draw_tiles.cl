@@ -46,16 +46,17 @@ typedef struct {
   bool only_depth;
 } Tile;
 
-// Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: of a masked material;
-// unused for others. `only_depth`: that of the tile, a literal where time counts.
+// Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: room for the mask of a
+// masked material; unused for others. `only_depth`: that of the tile, a literal where time counts.
 CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r,
-                      const uint kind, const bool masked, const Mask* mask, const bool only_depth,
-                      __global const uint* texels) {
+                      const uint kind, const bool masked, Mask* mask, const bool only_depth,
+                      const Scene scene) {
   const realW column = to_realW(lane_numbers());
   const uint triangle = kind & CLPV_TRIANGLE_INDEX;
   const int first_x = (int)(r->first & 0xffffu), first_y = (int)(r->first >> 16);
   const int top = max(first_y - tile.y, 0),
             bottom = min((int)(r->last >> 16) - tile.y, CLPV_ROWS - 1);
+  bool loaded = false;  // the mask is
   Edges edges;
   edges_at(r, tile.x, tile.y + top, &edges);
   const realW key_left = r->key + r->key_x * (column + (float)(tile.x - first_x));
@@ -74,8 +75,10 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
     closer &= (key <= tile.far_key) & ((key < old) | ((key == old) & (triangle < old_seen)));
     if (masked) {
       if (no_lane(closer)) continue;
+      if (!loaded) load_mask(view, triangle, scene, mask);
+      loaded = true;
       const realW depth = hit_depth(view, key);
-      closer &= solid(view, mask, (float)tile.x, (float)(tile.y + row), depth, texels);
+      closer &= solid(view, mask, (float)tile.x, (float)(tile.y + row), depth, scene.texels);
     }
     tile.keys[at] = select(old, key, closer);
     if (!only_depth) tile.seen[at] = select(old_seen, (uintW)(triangle), closer);
@@ -86,8 +89,7 @@ CLPV_RARE void draw_masked(const ClpvView view, const Tile tile,
                            __global const ClpvRasterTriangle* r, const uint kind,
                            const Scene scene) {
   Mask mask;
-  load_mask(view, kind & CLPV_TRIANGLE_INDEX, scene, &mask);
-  draw(view, tile, r, kind, true, &mask, tile.only_depth, scene.texels);
+  draw(view, tile, r, kind, true, &mask, tile.only_depth, scene);
 }
 
 // Largest key of the pixels.
@@ -106,9 +108,9 @@ CLPV_INLINE void draw_listed(const ClpvView view, const Tile tile,
   if (kind & CLPV_TRIANGLE_MASKED) {
     draw_masked(view, tile, r, kind, scene);
   } else if (tile.only_depth) {
-    draw(view, tile, r, kind, false, 0, true, scene.texels);
+    draw(view, tile, r, kind, false, 0, true, scene);
   } else {
-    draw(view, tile, r, kind, false, 0, false, scene.texels);
+    draw(view, tile, r, kind, false, 0, false, scene);
   }
 }
 

@@ -44,12 +44,15 @@ static inline TileRange tiles_of(const RasterWords* words, const int lane) {
                        (uint)words->word[CLPV_LAST_WORD][lane]);
 }
 
-// Depth slice of a triangle with this smallest key. Orthographic: slices of equal depth;
+// Slice of a triangle with these flags and smallest key. Orthographic: slices of equal depth;
 // perspective: one per doubling of the depth.
-static inline uint slice_of(const ClpvView view, const float nearest) {
+static inline uint slice_of(const ClpvView view, const uint kind, const float nearest) {
+  if (kind & CLPV_TRIANGLE_MASKED) return CLPV_DEPTH_SLICES;
   if (CLPV_IS_ORTHOGRAPHIC(view))
-    return (uint)clamp(nearest * (CLPV_SLICES / view.far_depth), 0.0f, CLPV_SLICES - 1.0f);
-  return (uint)clamp((as_int(-1.0f / nearest) - as_int(view.near_depth)) >> 23, 0, CLPV_SLICES - 1);
+    return (uint)clamp(nearest * (CLPV_DEPTH_SLICES / view.far_depth), 0.0f,
+                       CLPV_DEPTH_SLICES - 1.0f);
+  return (uint)clamp((as_int(-1.0f / nearest) - as_int(view.near_depth)) >> 23, 0,
+                     CLPV_DEPTH_SLICES - 1);
 }
 
 // Writes an entry for triangle `index` of the list, as the next one of a tile's slice.
@@ -74,11 +77,13 @@ static inline uint enter_all(const ClpvView view, const RasterWords* words, cons
                              const uint index, uint at, const Entries to) {
   const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE,
              nearest = (uint)words->word[CLPV_NEAREST_WORD][lane];
-  const uint slice = slice_of(view, as_float(nearest));
+  const uint slice =
+      slice_of(view, (uint)words->word[CLPV_TRIANGLE_WORD][lane], as_float(nearest));
   const TileRange tiles = tiles_of(words, lane);
   if (tiles.left == tiles.right && tiles.top == tiles.bottom) {
-    enter(to.entries + CLPV_ENTRY_WORDS * at, (tiles.top * tiles_x + tiles.left) * CLPV_SLICES + slice,
-          index, nearest, to.slice_counts);
+    enter(to.entries + CLPV_ENTRY_WORDS * at,
+          (tiles.top * tiles_x + tiles.left) * CLPV_SLICES + slice, index, nearest,
+          to.slice_counts);
     return at + 1;
   }
   const int left = tiles.left * CLPV_TILE, top = tiles.top * CLPV_TILE;

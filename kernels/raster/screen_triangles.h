@@ -108,7 +108,7 @@ CLPV_INLINE void write_words(const ClpvView view, const ScreenTriangles t, const
   store_lanes(as_intW(farthest), words->word[12]);
   store_lanes(box.left + (box.top << 16), words->word[CLPV_FIRST_WORD]);
   store_lanes(box.right + (box.bottom << 16), words->word[CLPV_LAST_WORD]);
-  store_lanes(as_intW(t.triangle | kinds), words->word[15]);
+  store_lanes(as_intW(t.triangle | kinds), words->word[CLPV_TRIANGLE_WORD]);
 }
 
 // Appends the triangles of the lanes in `mask`, except those that cover no pixel's centre and

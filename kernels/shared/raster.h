@@ -64,6 +64,7 @@ enum {
   CLPV_NEAREST_WORD = 11,
   CLPV_FIRST_WORD = 13,
   CLPV_LAST_WORD = 14,
+  CLPV_TRIANGLE_WORD = 15,
   CLPV_RASTER_WORDS = 16,
 };
 
@@ -81,9 +82,9 @@ enum {
 // A triangle whose box overlaps more tiles is wide: a work-group enters it.
 enum { CLPV_FEW_TILES = 64 };
 
-// Depth slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most
-// hidden ones are skipped.
-enum { CLPV_SLICES = 8 };
+// Slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most hidden ones
+// are skipped. Those of masked materials are the last slice: each of their pixels needs a texture.
+enum { CLPV_DEPTH_SLICES = 8, CLPV_SLICES };
 
 // An entry has four uint32 words: slice of a tile or CLPV_NO_SLICE, number within the slice, index
 // of the triangle in the list, and its smallest key. Sorted entries keep the last two.
