@@ -218,6 +218,9 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
   const std::vector<TimeRecord> times = report.at("times");
   EXPECT_GT(ms_of(times, "host"), 0);
   EXPECT_LT(ms_of(times, "host"), ms_of(times, "frame"));
+  double launches = 0;
+  for (const nlohmann::json& kernel : report.at("kernels")) launches += kernel.at("launches");
+  EXPECT_EQ(launches, report.at("launches")) << "each launch belongs to a stage";
   EXPECT_EQ(options["preset"], "paper");
   EXPECT_EQ(options["basis"], "sh2");
   EXPECT_EQ(options["transport"], "sampled");

@@ -6,7 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "device/kernel.hpp"
+#include "device/prefix_sum.hpp"
 #include "tests/support/error_of.hpp"
 #include "verify/check.hpp"
 
@@ -149,6 +152,53 @@ TEST(Session, StagesAreTimedAndAddUpByMark) {
       EXPECT_EQ(time.from_events, events);
       EXPECT_GT(time.ms, 0.01) << "8 MiB in 10 us would be 800 GB/s";
       EXPECT_LT(time.ms, 60e3);
+    }
+  }
+}
+
+TEST(Session, KernelsHaveTheTimeOfTheirStage) {
+  Session session(choose_device());
+  const Buffer numbers = session.upload(std::vector<cl_uint>(5000, 1), "numbers"),
+               total = session.buffer(sizeof(cl_uint), "total");
+  PrefixSum sums(session);
+  session.timeline().clear();
+  {
+    const StageScope gather(session, {Pass::gather});
+    session.fill_zero(numbers, 64);
+    for (int i = 0; i < 3; ++i) sums.run(numbers, 4000, total);
+  }
+  {
+    const StageScope shade(session, {Pass::shade});
+    session.fill_zero(numbers, 64);
+  }
+  const std::vector<KernelTime> kernels = session.timeline().kernel_times();
+  ASSERT_EQ(kernels.size(), 4u);
+  EXPECT_EQ(kernels[0].kernel, "fill and copy");
+  EXPECT_EQ(kernels[1].kernel, "sum_blocks");
+  EXPECT_EQ(kernels[1].launches, 3u);
+  EXPECT_EQ(kernels[2].kernel, "place_blocks");
+  EXPECT_EQ(kernels[3].mark, (StageMark{Pass::shade}));
+  const auto stages = session.timeline().times();
+  EXPECT_NEAR(kernels[0].ms + kernels[1].ms + kernels[2].ms, stages[0].ms, 1e-9);
+  EXPECT_GT(kernels[1].ms, 0);
+}
+
+// Both widths: one work-item a block, and 64 of them.
+TEST(PrefixSums, AreThoseOfTheHost) {
+  for (const int lanes : {8, 1}) {
+    Device device = choose_device();
+    device.lanes = lanes;
+    Session session(device);
+    PrefixSum sums(session);
+    for (const std::size_t count : {1u, 15u, 16u, 1023u, 1024u, 1025u, 70000u, 300000u}) {
+      std::vector<cl_uint> values(count + 1), expected(count + 1);
+      for (std::size_t i = 0; i <= count; ++i) values[i] = (i * 2654435761u) >> 27;
+      std::exclusive_scan(values.begin(), values.end(), expected.begin(), 0u);
+      const Buffer buffer = session.upload(values, "numbers"),
+                   total = session.buffer(sizeof(cl_uint), "total");
+      sums.run(buffer, count, total);
+      EXPECT_EQ(session.read<cl_uint>(buffer, count + 1), expected) << count << ", " << lanes;
+      EXPECT_EQ(session.read<cl_uint>(total, 1)[0], expected[count]);
     }
   }
 }

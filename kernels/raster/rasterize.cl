@@ -149,7 +149,8 @@ __kernel void enter_wide(const ClpvView view, __global const uint* counts, const
     const uint index = wide[i].x;
     __global const ClpvRasterTriangle* r = list + index;
     const TileRange tiles = tiles_between(r->first, r->last);
-    const uint slice = slice_of(view, r->triangle, r->nearest), columns = tiles.right - tiles.left + 1;
+    const uint slice = slice_of(view, r->triangle, r->nearest),
+               columns = tiles.right - tiles.left + 1;
     for (uint k = get_local_id(0); k < tile_count(tiles); k += get_local_size(0)) {
       const int x = tiles.left + k % columns, y = tiles.top + k / columns;
       const int px = x * CLPV_TILE, py = y * CLPV_TILE;

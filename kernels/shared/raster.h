@@ -80,7 +80,7 @@ enum {
 };
 
 // A triangle whose box overlaps more tiles is wide: a work-group enters it.
-enum { CLPV_FEW_TILES = 64 };
+enum { CLPV_FEW_TILES = 16 };
 
 // Slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most hidden ones
 // are skipped. Those of masked materials are the last slice: each of their pixels needs a texture.
