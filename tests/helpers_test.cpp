@@ -108,7 +108,8 @@ TEST(Check, HelpersFindWhatOneProcessFinds) {
 // Results come in order, while helpers do the last stages first: '1 of 108, 2:13:02 left'.
 TEST(Check, ProgressCountsWhatHelpersHaveFinished) {
   set_helper_program(CLPV_PROGRAM);
-  const verify::CheckChoice choice{.stages = {Stage::sizes, Stage::emit}};
+  verify::CheckChoice choice;
+  choice.stages = {Stage::sizes, Stage::emit};
   std::size_t reached = 0, found = 0;
   verify::run_in_helpers(
       choice.cases(), choice.arguments(), 60,
