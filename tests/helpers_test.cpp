@@ -17,6 +17,7 @@
 #include "tests/support/run_program.hpp"
 #include "tests/support/scenes.hpp"
 #include "verify/check.hpp"
+#include "verify/schedule.hpp"
 
 namespace clpv::helpers_test {
 namespace {
@@ -102,6 +103,20 @@ TEST(Check, HelpersFindWhatOneProcessFinds) {
   ASSERT_EQ(helped.exit_code, 0) << helped.err;
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
   EXPECT_EQ(results_of(helped), results_of(alone));
+}
+
+// Results come in order, while helpers do the last stages first: '1 of 108, 2:13:02 left'.
+TEST(Check, ProgressCountsWhatHelpersHaveFinished) {
+  set_helper_program(CLPV_PROGRAM);
+  verify::CheckChoice choice;
+  choice.stages = {Stage::sizes, Stage::emit};
+  std::size_t reached = 0, found = 0;
+  verify::run_in_helpers(
+      choice.cases(), choice.arguments(), 60,
+      [&](const verify::CheckResults&) { EXPECT_LE(++found, reached); },
+      [&](std::size_t count) { reached = count; });
+  set_helper_program("");
+  EXPECT_EQ(reached, choice.cases().size());
 }
 
 /// Outcome of `clpv check` with another file kernels/sizes.cl.

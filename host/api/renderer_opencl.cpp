@@ -66,8 +66,13 @@ opencl::Frame Renderer::enqueue(View view, const CameraChoice& camera, double se
   return frame;
 }
 
-opencl::Event Renderer::State::enqueue_light(const SceneCamera& camera, const GivenPixels& pixels,
-                                             const Buffer& receives) {
+opencl::Event Renderer::State::enqueue_light(const opencl::GBuffer& surfaces,
+                                             const std::function<SceneCamera()>& posed) {
+  const std::lock_guard lock(mutex);
+  const std::shared_lock scene_stays(file.contents().mutex);
+  const auto [pixels, receives] = checked(session, surfaces);
+  require_light_alone();
+  const SceneCamera camera = posed();
   frame->draw_ahead(true);
   const Buffer& irradiance = light(camera, pixels);
   session.copy(irradiance, receives, std::size_t{pixels.width} * pixels.height * sizeof(cl_float4));
@@ -76,12 +81,7 @@ opencl::Event Renderer::State::enqueue_light(const SceneCamera& camera, const Gi
 
 opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const CameraChoice& camera,
                                       double seconds) {
-  const std::lock_guard lock(state().mutex);
-  const std::shared_lock scene_stays(state().file.contents().mutex);
-  const GivenLight given = checked(state().session, surfaces);
-  state().require_light_alone();
-  const SceneCamera chosen = state().pose(camera, seconds);
-  return state().enqueue_light(chosen, given.pixels, given.irradiance);
+  return state().enqueue_light(surfaces, [&] { return state().pose(camera, seconds); });
 }
 
 opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Vec3& eye,
@@ -90,12 +90,10 @@ opencl::Event Renderer::enqueue_light(const opencl::GBuffer& surfaces, const Vec
     throw Error(ExitCode::usage,
                 "light: found no positions for an eye, allowed: positions, or depths and a camera");
   const SceneCamera camera = camera_at("light", eye);
-  const std::lock_guard lock(state().mutex);
-  const std::shared_lock scene_stays(state().file.contents().mutex);
-  const GivenLight given = checked(state().session, surfaces);
-  state().require_light_alone();
-  state().pose(seconds);
-  return state().enqueue_light(camera, given.pixels, given.irradiance);
+  return state().enqueue_light(surfaces, [&] {
+    state().pose(seconds);
+    return camera;
+  });
 }
 
 opencl::Volumes Renderer::device_volumes() {

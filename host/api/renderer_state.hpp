@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -127,9 +128,10 @@ struct Renderer::State {
     return irradiance;
   }
 
-  /// Enqueues the light of pixels on the device (host/api/renderer_opencl.cpp).
-  opencl::Event enqueue_light(const SceneCamera& camera, const GivenPixels& pixels,
-                              const Buffer& receives);
+  /// Enqueues the light of pixels on the device (host/api/renderer_opencl.cpp). `posed` poses the
+  /// scene; returns the camera.
+  opencl::Event enqueue_light(const opencl::GBuffer& surfaces,
+                              const std::function<SceneCamera()>& posed);
 
   /// Lights the cascades alone.
   void update(const SceneCamera& camera, double seconds) {

@@ -95,12 +95,13 @@ class Results {
     all_.insert(all_.end(), results.begin(), results.end());
     by_case_.push_back(results);
     const Stage stage = cases_[done_++].stage;
-    progress_.advance();
+    reach(done_);
     if (done_ < cases_.size() && cases_[done_].stage == stage) return;
     if (prints_)
       print(name_of(stage), {all_.begin() + static_cast<std::ptrdiff_t>(printed_), all_.end()});
     printed_ = all_.size();
   }
+  void reach(std::size_t count) { progress_.reach(count); }
   const CheckResults& all() const { return all_; }
   const std::vector<CheckResults>& by_case() const { return by_case_; }
 
@@ -130,7 +131,8 @@ void run_cases(const verify::Cases& cases, const Options& options, const Shared&
     Session session(device);
     verify::run_here(cases, session, add);
   } else {
-    verify::run_in_helpers(cases, helper_arguments(options.choice, shared), options.limit, add);
+    verify::run_in_helpers(cases, helper_arguments(options.choice, shared), options.limit, add,
+                           [&](std::size_t count) { results.reach(count); });
   }
 }
 

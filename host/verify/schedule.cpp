@@ -51,10 +51,12 @@ class Dispatch {
   Dispatch(const Cases& cases, const std::vector<std::string>& arguments, double limit)
       : cases_(cases), limit_(limit), helpers_(arguments, std::max(1u, helper_count())) {}
 
-  void run(const Finished& finished) {
+  void run(const Finished& finished, const Reached& reached) {
     for (std::size_t next = 0; next < cases_.size();) {
       bool running = helpers_.wait();
-      stop_if_interrupted(fmt::format("{} of {} comparisons were finished", next, cases_.size()));
+      const std::size_t count = helpers_.claims().finished_count();
+      stop_if_interrupted(fmt::format("{} of {} comparisons were finished", count, cases_.size()));
+      reached(count);
       end_overdue();
       running = replace_ended() || running;
       if (!running) fail_rest();
@@ -184,8 +186,8 @@ void run_here(const Cases& cases, Session& session, const Finished& finished) {
 }
 
 void run_in_helpers(const Cases& cases, const std::vector<std::string>& arguments, double limit,
-                    const Finished& finished) {
-  Dispatch(cases, arguments, limit).run(finished);
+                    const Finished& finished, const Reached& reached) {
+  Dispatch(cases, arguments, limit).run(finished, reached);
 }
 
 void help(const Cases& cases, const std::function<CheckResults(const Case&)>& run,

@@ -29,6 +29,8 @@ struct CheckChoice {
 
 /// Receives the results of each case, in order.
 using Finished = std::function<void(const CheckResults&)>;
+/// Receives how many cases are finished; with helpers, the last ones are so first.
+using Reached = std::function<void(std::size_t)>;
 
 /// Runs all cases in this process. Throws Interrupted.
 void run_here(const Cases& cases, Session& session, const Finished& finished);
@@ -36,8 +38,9 @@ void run_here(const Cases& cases, Session& session, const Finished& finished);
 /// Runs the cases in helper processes, which `arguments` start. A case fails whose helper ends by a
 /// signal or takes more than `limit` seconds; another helper then takes its place. Throws
 /// Interrupted.
-void run_in_helpers(const Cases& cases, const std::vector<std::string>& arguments, double limit,
-                    const Finished& finished);
+void run_in_helpers(
+    const Cases& cases, const std::vector<std::string>& arguments, double limit,
+    const Finished& finished, const Reached& reached = [](std::size_t) {});
 
 /// The work of a helper: takes whole stages, since their cases share kernels, and then single cases
 /// of stages that others took, until none is left.
