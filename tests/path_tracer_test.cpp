@@ -19,16 +19,6 @@ namespace {
 using std::numbers::pi;
 using namespace test;
 
-/// A unit cube seen from inside, faces inwards.
-SceneData box(float albedo, float emitted) {
-  SceneData scene;
-  scene.path = "box";
-  add_grey(scene, albedo);
-  for (float& e : scene.materials[0].emissive) e = emitted;
-  add_box(scene, glm::vec3(0), 1, 0);
-  return scene;
-}
-
 /// Point of the floor at the centre of a pixel of kDown.
 glm::dvec2 on_floor(unsigned px, unsigned py) {
   const double sx = (2 * (px + 0.5) / kDown.width - 1) * kDown.half_width;
@@ -47,7 +37,7 @@ double corner_factor(double a, double b) {
 // one bounce.
 TEST(PathTracer, FurnaceHasTheRadianceOfAGeometricSeries) {
   for (const float albedo : {0.0f, 0.5f, 0.8f}) {
-    const SceneData scene = box(albedo, 2);
+    const SceneData scene = furnace(albedo, 2);
     const ClpvView view = view_of({0.4, 0.5, 0.6}, {0.3, 0.1, -1}, {0, 1, 0}, 1, 8, 8);
     PathTracerOptions options;
     options.samples = 4096;
@@ -234,7 +224,7 @@ TEST(PathTracer, StopsAtTheNoiseAskedFor) {
 // One reported share is the paths traced over those that the noise needs, within the estimate's
 // error; it never falls, and it is 1 only at the end.
 TEST(PathTracer, ReportsTheShareOfThePathsThatTheNoiseNeeds) {
-  const SceneData scene = box(0.5f, 1);
+  const SceneData scene = furnace(0.5f, 1);
   const ClpvView view = view_of({0.4, 0.5, 0.6}, {0.3, 0.1, -1}, {0, 1, 0}, 1, 32, 32);
   PathTracerOptions options;
   options.bounces = PathTracerOptions::kAllBounces;
@@ -261,7 +251,7 @@ TEST(PathTracer, ReportsTheShareOfThePathsThatTheNoiseNeeds) {
 }
 
 TEST(PathTracer, SameBytesWhateverTheThreads) {
-  SceneData scene = box(0.7f, 0);
+  SceneData scene = furnace(0.7f, 0);
   scene.lights = {lamp({0.5f, 0.9f, 0.5f}, 1)};
   const ClpvView view = view_of({0.4f, 0.5f, 0.9f}, {0, 0, -1}, {0, 1, 0}, 0.9f, 40, 35);
   PathTracerOptions options;

@@ -48,16 +48,6 @@ pathtracer::Moments nine() {
   return {9, [](const glm::dvec3& w, std::span<double> g) { kBasis.evaluate(w, g); }};
 }
 
-/// Walls of a unit cube, seen from inside, that emit E and reflect a.
-SceneData furnace(float albedo, float emitted) {
-  SceneData scene;
-  scene.path = "furnace";
-  add_grey(scene, albedo);
-  for (float& e : scene.materials[0].emissive) e = emitted;
-  add_box(scene, glm::vec3(0), 1, 0);
-  return scene;
-}
-
 // Radiance E / (1 - a) from everywhere.
 TEST(PointTracer, FurnaceHasOneRadiance) {
   const SceneData scene = furnace(0.5f, 2);

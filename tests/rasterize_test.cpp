@@ -15,7 +15,7 @@
 #include "kernels/shared/region.h"
 #include "pipeline/raster/view.hpp"
 #include "support/error.hpp"
-#include "tests/support/on_device.hpp"
+#include "tests/support/drawn.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace clpv::rasterize_test {
@@ -25,19 +25,12 @@ using test::add_material;
 using test::add_quad;
 using test::add_vertex;
 using test::camera_at;
+using test::camera_image;
 using test::directional_light;
 using test::test_session;
 
 ClpvView small_camera(int width = 48, int height = 32) {
   return camera_view(camera_at({0, 0, 0}, {0, 0, -1}), width, height);
-}
-
-SurfaceImage camera_image(const SceneData& scene, const ClpvView& view) {
-  Session& session = test_session();
-  Rasterizer rasterizer(session, upload_scene(session, scene));
-  Surface surface = make_surface(session, view, RsmFormat::float32, true);
-  rasterizer.rasterize_camera(surface);
-  return read_surface(session, surface);
 }
 
 SurfaceImage rsm_image(const SceneData& scene, const ClpvLight& light, const ClpvView& view,

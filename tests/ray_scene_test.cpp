@@ -7,9 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/view.hpp"
-#include "tests/support/on_device.hpp"
+#include "tests/support/drawn.hpp"
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::ray_scene_test {
@@ -87,7 +86,6 @@ TEST(RayScene, AlphaOfTheCutoffIsOpaque) {
   const ClpvView view = view_of({0.1f, 3, 0.03f}, {0.05f, -1, 0.02f}, {0, 0, -1}, 0.3f, 61, 59);
   PathTracerOptions options;
   options.samples = 1;
-  Session& session = test_session();
   for (const Case& c : cases) {
     SCOPED_TRACE(c.cutoff);
     SceneData scene = floor_scene(0.5);
@@ -104,10 +102,7 @@ TEST(RayScene, AlphaOfTheCutoffIsOpaque) {
     add_quad(scene, {-2, 1, -2}, {0, 0, 4}, {4, 0, 0}, 1);
     for (std::size_t i = 4; i < 8; ++i) scene.vertices[i].colour[3] = c.vertex;
     scene.lights = {sun({0, -1, 0}, 1)};
-    Rasterizer rasterizer(session, upload_scene(session, scene));
-    Surface surface = make_surface(session, view, RsmFormat::float32, false);
-    rasterizer.rasterize_camera(surface);
-    const SurfaceImage drawn = read_surface(session, surface);
+    const SurfaceImage drawn = camera_image(scene, view);
     const TracedImage traced = trace_paths(scene, view, options);
     for (std::size_t i = 0; i < traced.depth.size(); ++i) {
       ASSERT_LT(drawn.depth[i], 2.1) << "the floor shows in pixel " << i;
@@ -159,11 +154,7 @@ TEST(RayScene, SeesWhatTheRasteriserSees) {
   PathTracerOptions options;
   options.samples = 1;
   const TracedImage traced = trace_paths(scene, view, options);
-  Session& session = test_session();
-  Rasterizer rasterizer(session, upload_scene(session, scene));
-  Surface surface = make_surface(session, view, RsmFormat::float32, true);
-  rasterizer.rasterize_camera(surface);
-  const SurfaceImage drawn = read_surface(session, surface);
+  const SurfaceImage drawn = camera_image(scene, view);
   std::size_t seen = 0, elsewhere = 0, differ = 0;
   for (std::size_t i = 0; i < traced.depth.size(); ++i) {
     if (traced.depth[i] == 0 && drawn.depth[i] == 0) continue;

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/mip_chain.hpp"
-#include "tests/support/on_device.hpp"
+#include "tests/support/drawn.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace clpv::texture_test {
@@ -17,7 +16,7 @@ namespace {
 
 using test::add_material;
 using test::add_quad;
-using test::test_session;
+using test::camera_image;
 
 Texture texture(std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t> rgba) {
   Texture made;
@@ -73,11 +72,7 @@ SurfaceImage image_of(SceneData scene, int size, const glm::vec2& from, const gl
   view.eye[0] = view.eye[1] = 0.5f;
   view.orthographic = 1;
   view.half_width = view.half_height = 0.5f;
-  Session& session = test_session();
-  Rasterizer rasterizer(session, upload_scene(session, scene));
-  Surface surface = make_surface(session, view, RsmFormat::float32, true);
-  rasterizer.rasterize_camera(surface);
-  return read_surface(session, surface);
+  return camera_image(scene, view);
 }
 
 /// A scene with a textured white material and no triangles yet.
