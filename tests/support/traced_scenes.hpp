@@ -49,22 +49,22 @@ inline SceneLight lamp(const glm::vec3& position, float intensity) {
   return {"lamp", point_light(position, glm::vec3(intensity))};
 }
 
-/// A horizontal square of edge 20 m round the origin, facing up.
-inline SceneData floor_scene(float albedo) {
-  SceneData scene;
-  scene.path = "floor";
-  add_grey(scene, albedo);
-  add_quad(scene, {-10, 0, -10}, {0, 0, 20}, {20, 0, 0}, 0);
-  return scene;
-}
-
-/// A unit cube seen from inside, faces inwards, whose walls emit and reflect.
+/// Walls of a unit cube, seen from inside, that emit E and reflect a.
 inline SceneData furnace(float albedo, float emitted) {
   SceneData scene;
   scene.path = "furnace";
   add_grey(scene, albedo);
   for (float& e : scene.materials[0].emissive) e = emitted;
   add_box(scene, glm::vec3(0), 1, 0);
+  return scene;
+}
+
+/// A horizontal square of edge 20 m round the origin, facing up.
+inline SceneData floor_scene(float albedo) {
+  SceneData scene;
+  scene.path = "floor";
+  add_grey(scene, albedo);
+  add_quad(scene, {-10, 0, -10}, {0, 0, 20}, {20, 0, 0}, 0);
   return scene;
 }
 
