@@ -47,15 +47,9 @@ static inline realW stored_depth(const ClpvView view, const realW key) {
 
 static inline void store_depth(const ClpvView view, const PixelRow p, const realW key,
                                __global float* depths) {
-  __global float* to = depths + p.py * view.width + p.px;
-  const realW depth = stored_depth(view, key);
-  if (W > 1 && p.count == W) {
-    store_lanes(depth, to);
-    return;
-  }
   float stored[W];
-  store_lanes(depth, stored);
-  for (uint i = 0; i < p.count; ++i) to[i] = stored[i];
+  store_lanes(stored_depth(view, key), stored);
+  for (uint i = 0; i < p.count; ++i) depths[p.py * view.width + p.px + i] = stored[i];
 }
 
 // 0 in lanes outside the mask `hit`.
