@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Charts of benchmarks: they go by the fields of rows."""
+import contextlib
+import io
 import json
 import pathlib
 import re
 import tempfile
 import unittest
+from unittest import mock
 
 from support import bench_document, row
-from clpv.draw import bench, documents
+from clpv.draw import __main__ as draw, bench, documents
 from matplotlib import pyplot
 
 
@@ -53,6 +56,13 @@ class Charts(unittest.TestCase):
         ticks = [t.get_text() for t in figure.axes[0].get_xticklabels()]
         self.assertIn("10", ticks)
         self.assertFalse([t for t in ticks if "math" in t])
+
+    def test_a_missing_module_is_named(self):
+        said = io.StringIO()
+        gone = {"clpv.draw.report": None}  # the program imports main and calls it
+        with mock.patch.dict("sys.modules", gone), contextlib.redirect_stderr(said):
+            self.assertEqual(draw.main(["report"]), 1)
+        self.assertIn("python3-jinja2", said.getvalue())
 
     def test_rows_that_failed_are_left_out(self):
         failed = row("layouts", "gather", status="unsupported", median=0, min=0, p95=0)
