@@ -32,8 +32,7 @@ def main(arguments):
         if paths:
             module.draw(*map(pathlib.Path, paths))
     except ImportError as error:
-        return fail(output.RUN_TIME,
-                    f"{error} (Debian: python3-matplotlib python3-numpy python3-jinja2)")
+        return fail(output.RUN_TIME, f"{error} (Debian: python3-matplotlib python3-numpy python3-jinja2)")
     except output.Failure as error:
         return fail(error.code, error)
     return 0
