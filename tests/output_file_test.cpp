@@ -193,11 +193,10 @@ TEST_F(OutputFile, AMountPointIsRejectedBeforeTheWork) {
   write_file(folder_ / "file", std::string_view("x"));
   const std::string file = (folder_ / "file").string();
   const std::string mount = "mount --bind " + file + " " + file;
-  const test::Outcome mounted = test::run(test::own_mounts() + mount);
+  const test::Outcome mounted = test::run("unshare -rm " + mount);
   if (mounted.exit_code != 0) GTEST_SKIP() << "nothing may be mounted here: " << mounted.err;
-  const test::Outcome outcome =
-      test::run(test::own_mounts() + "sh -c '" + mount +
-                " && " CLPV_PROGRAM " check --list --junit " + file + "'");
+  const test::Outcome outcome = test::run(
+      "unshare -rm sh -c '" + mount + " && " CLPV_PROGRAM " check --list --junit " + file + "'");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("file: cannot be written: it is a mount point"));
   EXPECT_EQ(entries(), 1u);

@@ -124,12 +124,12 @@ TEST_F(Starved, OfACompiler) {
 TEST_F(Starved, OfASmallDisk) {
   const std::string disk = folder_.path().string(),
                     mount = "mount -t tmpfs -o size=64k none " + disk;
-  if (run(own_mounts() + mount).exit_code != 0) GTEST_SKIP() << "no tmpfs may be mounted here";
-  const Outcome outcome = run(own_mounts() + "sh -c '" + mount +
-                              " && POCL_CACHE_DIR=" + (compiled() / "pocl").string() +
-                              " CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + disk + " " CLPV_PROGRAM +
-                              kFrame + "--width 400 --height 300 -o " + disk +
-                              "/a.exr; code=$?; ls -A " + disk + " >&2; exit $code'");
+  if (run("unshare -rm " + mount).exit_code != 0) GTEST_SKIP() << "no tmpfs may be mounted here";
+  const Outcome outcome =
+      run("unshare -rm sh -c '" + mount + " && POCL_CACHE_DIR=" + (compiled() / "pocl").string() +
+          " CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + disk + " " CLPV_PROGRAM + kFrame +
+          "--width 400 --height 300 -o " + disk + "/a.exr; code=$?; ls -A " + disk +
+          " >&2; exit $code'");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("a.exr: cannot be written: No space left on device"));
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
@@ -181,11 +181,11 @@ TEST_F(Starved, OfASmallDiskForTheDriversCache) {
   const std::string disk = mounted.path().string();
   const auto render = [&](const std::string& kind) {
     const std::string mount = "mount -t tmpfs -o " + kind + " none " + disk;
-    return run(own_mounts() + "sh -c '" + mount + " && POCL_CACHE_DIR=" + disk +
+    return run("unshare -rm sh -c '" + mount + " && POCL_CACHE_DIR=" + disk +
                "/pocl CLPV_PROGRAM_CACHE=off " + CLPV_PROGRAM + kFrame + "-o " +
                (folder_ / "a.exr").string() + "'");
   };
-  if (run(own_mounts() + "mount -t tmpfs none " + disk).exit_code != 0)
+  if (run("unshare -rm mount -t tmpfs none " + disk).exit_code != 0)
     GTEST_SKIP() << "no tmpfs may be mounted here";
   const Outcome full = render("size=64k"), read_only = render("ro");
   EXPECT_EQ(full.exit_code, 1) << full.err;

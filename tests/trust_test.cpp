@@ -218,12 +218,12 @@ TEST_F(CacheTest, AFifoInPlaceOfACellOrTruthDoesNotEndQuality) {
 /// Disks of 4 and 16 kB as --cache, where one may be mounted.
 TEST_F(CacheTest, AFullDiskDoesNotEndQuality) {
   const std::string disk = folder.path().string();
-  if (test::run(test::own_mounts() + "mount -t tmpfs none " + disk).exit_code != 0)
+  if (test::run("unshare -rm mount -t tmpfs none " + disk).exit_code != 0)
     GTEST_SKIP() << "no tmpfs may be mounted here";
   for (const char* size : {"4k", "16k"}) {
     const test::Outcome outcome = test::run(
-        test::own_mounts() + "sh -c 'mount -t tmpfs -o size=" + std::string(size) + " none " +
-        disk + " && " CLPV_PROGRAM + quality(folder.path()) + " --vary iterations=1,2,3,4,5'");
+        "unshare -rm sh -c 'mount -t tmpfs -o size=" + std::string(size) + " none " + disk +
+        " && " CLPV_PROGRAM + quality(folder.path()) + " --vary iterations=1,2,3,4,5'");
     EXPECT_EQ(outcome.exit_code, 0) << size << outcome.err;
     EXPECT_EQ(nlohmann::json::parse(outcome.out).at("cells").size(), 5u) << size << outcome.out;
     EXPECT_THAT(outcome.err, HasSubstr("not cached")) << size;

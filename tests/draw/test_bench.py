@@ -5,9 +5,10 @@ import pathlib
 import re
 import tempfile
 import unittest
+from unittest import mock
 
 from support import bench_document, row
-from clpv.draw import bench, documents
+from clpv.draw import __main__ as draw, bench, documents
 from matplotlib import pyplot
 
 
@@ -53,6 +54,10 @@ class Charts(unittest.TestCase):
         ticks = [t.get_text() for t in figure.axes[0].get_xticklabels()]
         self.assertIn("10", ticks)
         self.assertFalse([t for t in ticks if "math" in t])
+
+    def test_a_missing_module_is_named(self):
+        with mock.patch.dict("sys.modules", {"clpv.draw.report": None}):  # main is what clpv calls
+            self.assertEqual(draw.main(["report"]), 1)
 
     def test_rows_that_failed_are_left_out(self):
         failed = row("layouts", "gather", status="unsupported", median=0, min=0, p95=0)

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -33,11 +32,6 @@ inline Outcome run(const std::string& command) {
       std::system(("( " + command + " ) >" + out.string() + " 2>" + err.string()).c_str());
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return {code, read_file(out), read_file(err)};
-}
-
-/// Start of a command with mounts of its own; a chroot lets only root have them.
-inline std::string own_mounts() {
-  return ::geteuid() == 0 ? "unshare -m " : "unshare -rm ";
 }
 
 /// "POCL_CACHE_DIR=... ", for a process whose XDG_CACHE_HOME is empty: PoCL would compile all

@@ -27,15 +27,16 @@ def main(arguments):
     if len(arguments) not in (1, 3) or arguments[0] not in KINDS:
         return fail(output.USAGE, __doc__.strip())
     kind, *paths = arguments
-    module = importlib.import_module(f"clpv.draw.{kind}")
     try:
+        module = importlib.import_module(f"clpv.draw.{kind}")
         if paths:
             module.draw(*map(pathlib.Path, paths))
+    except ImportError as error:
+        return fail(output.RUN_TIME, f"{error} (Debian: python3-matplotlib python3-numpy python3-jinja2)")
     except output.Failure as error:
         return fail(error.code, error)
     return 0
 
 
 if __name__ == "__main__":
-    output.name_missing_modules()
     sys.exit(main(sys.argv[1:]))
