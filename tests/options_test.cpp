@@ -219,7 +219,8 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
   EXPECT_GT(ms_of(times, "host"), 0);
   EXPECT_LT(ms_of(times, "host"), ms_of(times, "frame"));
   double launches = 0;
-  for (const nlohmann::json& kernel : report.at("kernels")) launches += kernel.at("launches").get<double>();
+  for (const nlohmann::json& kernel : report.at("kernels"))
+    launches += kernel.at("launches").get<double>();
   EXPECT_EQ(launches, report.at("launches")) << "each launch belongs to a stage";
   EXPECT_EQ(options["preset"], "paper");
   EXPECT_EQ(options["basis"], "sh2");

@@ -54,7 +54,7 @@ class Timeline {
 
   void begin(StageMark mark);  ///< starts a stage; times of repeated stages add up
   void end(cl::CommandQueue& queue);
-  void abandon();                    ///< ends a stage that failed, without its time
+  void abandon();  ///< ends a stage that failed, without its time
   /// Counts a launch, whose event it adds to the current stage. No kernel: a fill or a copy.
   void add(const cl::Event& event, const cl::Kernel& kernel = {});
   /// Calls `wait`, which waits for the device, and counts it.
@@ -66,12 +66,12 @@ class Timeline {
     host_.waited_ms += since(start);
   }
   std::vector<StageTime> times()
-      const;        ///< waits for the events; one entry per stage, in order of first begin
+      const;  ///< waits for the events; one entry per stage, in order of first begin
   /// Waits for the events. One entry per stage and kernel, in order of first launch; none without
   /// valid events.
   std::vector<KernelTime> kernel_times() const;
-  void clear();     ///< begins a frame
-  void enqueued();  ///< ends the host's part of a frame
+  void clear();                                   ///< begins a frame
+  void enqueued();                                ///< ends the host's part of a frame
   const HostWork& host() const { return host_; }  ///< since clear()
 
  private:

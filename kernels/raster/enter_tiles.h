@@ -138,7 +138,9 @@ CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const
     for (int w = 0; w < CLPV_RASTER_WORDS; ++w) to[w] = words->word[w][lane];
     const uint tiles = tile_count(tiles_of(words, lane));
     if (room_for_entries && tiles > CLPV_FEW_TILES) {
-      entries.wide[atomic_inc(counts + CLPV_WIDE)] = (uint2)(index, at);
+      const uint slot = atomic_inc(counts + CLPV_WIDE);
+      // Beyond it only after an overflow of 32 bits.
+      if (slot < capacity.entries / CLPV_FEW_TILES) entries.wide[slot] = (uint2)(index, at);
       at += tiles;
     } else if (room_for_entries) {
       at = enter_all(view, words, lane, index, at, entries);

@@ -24,7 +24,7 @@ CLPV_INLINE CLPV_VOLUME_CELL CLPV_PASTE(CLPV_VOLUME, load)(__read_only image3d_t
   return cell;
 }
 
-// What an image of halves stores: the nearest half. Devices may round towards zero when they write
+// An image of halves stores the nearest half. Devices may round towards zero when they write
 // (OpenCL 1.2, 8.3.2), which would lose light with each step.
 CLPV_INLINE float4 CLPV_PASTE(CLPV_VOLUME, stored)(const float4 texel) {
 #if CLPV_STORAGE_HALF

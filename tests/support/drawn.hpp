@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the rasteriser sees.
+// Surfaces that the rasteriser sees.
 #pragma once
 
 #include "pipeline/raster/rasterize.hpp"

@@ -61,10 +61,10 @@ void CellSorter::sort(std::size_t texels, std::size_t cells) {
   const cl_uint low_bits = (bits + 1) / 2, low_digits = 1u << low_bits,
                 high_digits = 1u << (bits - low_bits);
   const ChunkLimits limits = chunk_limits(session_.device());
-  const cl_uint chunk = std::min(
-      kLongestChunk,
-      round_up(std::max(limits.least_texels, (texels + limits.most - 1) / limits.most),
-               CLPV_LONGEST_RUN));
+  const cl_uint chunk =
+      std::min(kLongestChunk,
+               round_up(std::max(limits.least_texels, (texels + limits.most - 1) / limits.most),
+                        CLPV_LONGEST_RUN));
   const cl_uint count = texels;
   const cl_uint chunks = (count + chunk - 1) / chunk;
   const std::size_t low_counts = std::size_t{low_digits} * chunks,

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kRasterGroup = 64;
 // Work-items that share the triangles to be clipped, usually none.
 constexpr std::size_t kClippers = 1024;
-constexpr std::size_t kWideGroupsPerUnit = 4;  // work-groups that enter wide triangles
+constexpr std::size_t kWideGroupsPerUnit = 4;             // work-groups that enter wide triangles
 constexpr std::size_t kMostAhead = std::size_t{1} << 22;  // triangles (256 MiB); longer lists wait
 constexpr std::size_t kClippedParts = CLPV_CLIP_CORNERS - 2;  // triangles that one can become
 constexpr std::size_t kSpare = 4;      // lists grow by an extra 1/4, since cameras move
@@ -258,10 +258,10 @@ void Rasterizer::draw_tiles(const Drawing& drawing, bool fresh) {
       .set(view, cl_uint{fresh}, cl_uint{only_depth}, listed_, slice_counts_, binned_, counts_,
            entry_room(), scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
            scene_.texels, keys_, seen_, farthest_)
-      .launch(session_.device().lanes == 1 ? cl::NDRange(tiles_along(view.width) * CLPV_TILE,
-                                                         tiles_along(view.height) * CLPV_TILE)
-                                           : cl::NDRange(tiles_along(view.width),
-                                                         tiles_along(view.height)),
+      .launch(session_.device().lanes == 1
+                  ? cl::NDRange(tiles_along(view.width) * CLPV_TILE,
+                                tiles_along(view.height) * CLPV_TILE)
+                  : cl::NDRange(tiles_along(view.width), tiles_along(view.height)),
               pixel_group(session_));
   if (counted_ == nullptr) return;
   const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);

@@ -118,8 +118,8 @@ class Rasterizer {
   std::size_t entered_ = 0;  ///< largest number of entries so far
   /// Counters of views drawn ahead.
   std::deque<std::shared_ptr<const Session::Arriving>> counting_;
-  Buffer clusters_, listed_, to_clip_, wide_, counts_, entries_, slice_counts_, in_slices_, binned_, keys_,
-      seen_, farthest_;
+  Buffer clusters_, listed_, to_clip_, wide_, counts_, entries_, slice_counts_, in_slices_, binned_,
+      keys_, seen_, farthest_;
 };
 
 }  // namespace clpv
