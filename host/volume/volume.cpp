@@ -3,7 +3,6 @@
 
 #include <glm/gtc/packing.hpp>
 
-#include "device/kernel.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
@@ -55,14 +54,6 @@ const cl::Memory& Volume::memory() const {
 void Volume::clear(Session& session) {
   if (format_.layout != Layout::image) {
     session.fill_zero(buffer_, bytes_);
-    return;
-  }
-  if (session.device().lanes == 1) {
-    // NVIDIA's driver waits 0.7 ms in each fill of an image. PoCL fills faster than a kernel.
-    const auto extent = region(shape_);
-    Kernel(session, {"volume/clear.cl"}, "clear")
-        .set(image_)
-        .launch(cl::NDRange(extent[0], extent[1], extent[2]), cl::NDRange(8, 8, 1));
     return;
   }
   cl::Event event;
