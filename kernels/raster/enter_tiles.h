@@ -137,7 +137,7 @@ CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const
     __global int* to = (__global int*)(list + index);
     for (int w = 0; w < CLPV_RASTER_WORDS; ++w) to[w] = words->word[w][lane];
     const uint tiles = tile_count(tiles_of(words, lane));
-    if (room_for_entries && tiles > CLPV_FEW_TILES) {
+    if (room_for_entries && W == 1 && tiles > CLPV_FEW_TILES) {
       const uint slot = atomic_inc(counts + CLPV_WIDE);
       // Beyond it only after an overflow of 32 bits.
       if (slot < capacity.entries / CLPV_FEW_TILES) entries.wide[slot] = (uint2)(index, at);

@@ -79,7 +79,8 @@ enum {
   CLPV_RASTER_COUNTERS,
 };
 
-// A triangle whose box overlaps more tiles is wide: a work-group enters it.
+// With one lane, a triangle whose box overlaps more tiles is wide: a work-group enters it. On CPUs
+// one work-item steps through its tiles in a third of the time.
 enum { CLPV_FEW_TILES = 16 };
 
 // Slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most hidden ones

@@ -189,6 +189,7 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
       .set(drawing.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
            list_room(), listed_, entry_room(), entries_, slice_counts_, wide_, to_clip_)
       .launch(kClippers, kRasterGroup);
+  if (session_.device().lanes != 1) return;
   enter_wide_
       .set(drawing.view, counts_, list_room(), entry_room(), listed_, wide_, entries_,
            slice_counts_)
