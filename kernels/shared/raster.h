@@ -79,8 +79,8 @@ enum {
   CLPV_RASTER_COUNTERS,
 };
 
-// With one lane, a triangle whose box overlaps more tiles is wide: a work-group enters it. On CPUs
-// one work-item steps through its tiles in a third of the time.
+// With one lane, a triangle whose box overlaps more tiles is wide: a work-group enters it. A CPU is
+// faster if one work-item steps through the tiles (a shadow map: 0.7 ms in place of 5.6).
 enum { CLPV_FEW_TILES = 16 };
 
 // Slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most hidden ones
