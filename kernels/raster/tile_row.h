@@ -47,8 +47,13 @@ static inline realW stored_depth(const ClpvView view, const realW key) {
 
 static inline void store_depth(const ClpvView view, const PixelRow p, const realW key,
                                __global float* depths) {
+  const realW depth = stored_depth(view, key);
+  if (W > 1 && p.count == W) {
+    store_lanes(depth, depths + p.py * view.width + p.px);
+    return;
+  }
   float stored[W];
-  store_lanes(stored_depth(view, key), stored);
+  store_lanes(depth, stored);
   for (uint i = 0; i < p.count; ++i) depths[p.py * view.width + p.px + i] = stored[i];
 }
 
