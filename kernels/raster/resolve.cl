@@ -75,7 +75,7 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const r
   if (!CLPV_TEXTURED) return;
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
   const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
-  const realW scale = CLPV_IS_ORTHOGRAPHIC(view) ? ONE : depth;
+  const realW scale = is_orthographic(view) ? ONE : depth;
   const Vec along = vec_times(ray, 1.0f / facing);
   const Vec right = vec_times(vec_of(view.right), scale * pixel_step_x(view));
   const Vec down = vec_times(vec_of(view.up), scale * pixel_step_y(view));
