@@ -85,7 +85,8 @@ Job fma_job(Session& session, int width) {
   constexpr double kStart = 3;
   constexpr int kMinPasses = 32;  // 128 steps x -> x / 2 + 1 converge to 2 in float
   const LaunchSize size = fma_size(session.device());
-  const ProgramSource source{"ceilings.cl", Literals().integer("CLPV_WIDTH", width)};
+  const ProgramSource source{"ceilings.cl",
+                             Literals().word("CLPV_VECTOR", fmt::format("float{}", width))};
   auto kernel = std::make_shared<Kernel>(session, source, "fma_peak");
   const Buffer out = session.buffer(size.items * sizeof(float), "ceilings, results");
   const auto launch = [kernel, out, size](cl_uint passes) {
@@ -109,7 +110,7 @@ Job stream_job(Session& session, std::size_t bytes) {
                     vectors = per_item * size.items, values = vectors * kWidth;
   const std::size_t block = session.device().type == "cpu" ? per_item : 1;
   const ProgramSource source{"ceilings.cl",
-                             Literals().integer("CLPV_WIDTH", kWidth).number("CLPV_BLOCK", block)};
+                             Literals().word("CLPV_VECTOR", "float16").number("CLPV_BLOCK", block)};
   auto kernel = std::make_shared<Kernel>(session, source, "stream");
   const Buffer a = session.upload(std::vector<float>(values, 1.0f), "ceilings, stream"),
                b = session.upload(std::vector<float>(values, 2.0f), "ceilings, stream"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Zeroes and copies ranges of uint32 words in buffers, on devices whose fill and copy commands fail
-// (Session::fill_by_kernel).
+// (Session::fill_zero, Session::copy).
 //
 //   zero   words[first .. first + count) = 0
 //   copy   to[first .. first + count) = from[0 .. count)

@@ -6,42 +6,37 @@
 //   stream     c = a + pass b, three vectors moved per element (McCalpin's STREAM triad)
 //   nothing    an empty kernel
 //
-// From the host: CLPV_WIDTH, floats of a vector; CLPV_BLOCK, consecutive vectors of a work-item:
+// From the host: CLPV_VECTOR, the type of a vector; CLPV_BLOCK, consecutive vectors of a work-item:
 // all of its vectors on a CPU, whose cores stream through a part of memory each, or 1 where
 // neighbouring work-items should access neighbouring memory.
-#ifndef CLPV_WIDTH
-#define CLPV_WIDTH 8
+#ifndef CLPV_VECTOR
+#define CLPV_VECTOR float8
 #endif
 #ifndef CLPV_BLOCK
 #define CLPV_BLOCK 1u
 #endif
-#define CLPV_PASTE2(a, b) a##b
-#define CLPV_PASTE(a, b) CLPV_PASTE2(a, b)
-typedef CLPV_PASTE(float, CLPV_WIDTH) Vector;
+typedef CLPV_VECTOR Vector;
 
 // Independent chains: enough to hide the latency of an FMA, few enough to fit into registers.
-#define CLPV_EACH_CHAIN(DO) \
-  DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(8) DO(9) DO(10) DO(11)
+enum { CLPV_CHAINS = 12, CLPV_UNROLLED = 4 };
 
 // Every chain converges to 2 from any start, which verifies the result.
 __kernel void fma_peak(const uint passes, const float start, __global float* out) {
   const uint item = get_global_id(0);
-#define CLPV_DO(i) Vector a##i = (Vector)(start + i + item);
-  CLPV_EACH_CHAIN(CLPV_DO)
-#undef CLPV_DO
-#define CLPV_DO(i) a##i = fma(a##i, (Vector)(0.5f), (Vector)(1.0f));
+  Vector a[CLPV_CHAINS];
+#pragma unroll
+  for (int i = 0; i < CLPV_CHAINS; ++i) a[i] = (Vector)(start + i + item);
   for (uint pass = 0; pass < passes; ++pass) {
-    CLPV_EACH_CHAIN(CLPV_DO)
-    CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO) CLPV_EACH_CHAIN(CLPV_DO)
+#pragma unroll
+    for (int i = 0; i < CLPV_UNROLLED * CLPV_CHAINS; ++i)
+      a[i % CLPV_CHAINS] = fma(a[i % CLPV_CHAINS], (Vector)(0.5f), (Vector)(1.0f));
   }
-#undef CLPV_DO
   Vector sum = 0.0f;
-#define CLPV_DO(i) sum += a##i;
-  CLPV_EACH_CHAIN(CLPV_DO)
-#undef CLPV_DO
+#pragma unroll
+  for (int i = 0; i < CLPV_CHAINS; ++i) sum += a[i];
   // All components count: a compiler for scalars would drop the chains of unused ones.
   float total = 0.0f;
-  for (int i = 0; i < CLPV_WIDTH; ++i) total += ((const float*)&sum)[i];
+  for (int i = 0; i < (int)(sizeof(Vector) / sizeof(float)); ++i) total += ((const float*)&sum)[i];
   out[item] = total;
 }
 

@@ -30,7 +30,8 @@
 // numbers.
 #if W == 8
 #define CLPV_VECTOR(name) name##8
-#define CLPV_ROUNDED(name) name##8_rte
+#define to_intW_rte convert_int8_rte
+#define to_uintW_rte convert_uint8_rte
 #define load_lanes(from) vload8(0, from)
 #define store_lanes(value, to) vstore8(value, 0, to)
 #define first_lane(value) ((value).s0)
@@ -41,7 +42,8 @@
    (from)[(at).s4] member, (from)[(at).s5] member, (from)[(at).s6] member, (from)[(at).s7] member)
 #else
 #define CLPV_VECTOR(name) name
-#define CLPV_ROUNDED(name) name##_rte
+#define to_intW_rte convert_int_rte
+#define to_uintW_rte convert_uint_rte
 #define load_lanes(from) (*(from))
 #define store_lanes(value, to) (*(to) = (value))
 #define first_lane(value) (value)
@@ -57,8 +59,6 @@ typedef CLPV_VECTOR(uchar) bytesW;
 #define to_uintW CLPV_VECTOR(convert_uint)
 #define to_longW CLPV_VECTOR(convert_long)
 #define to_bytesW CLPV_VECTOR(convert_uchar)
-#define to_intW_rte CLPV_ROUNDED(convert_int)
-#define to_uintW_rte CLPV_ROUNDED(convert_uint)
 #define as_realW CLPV_VECTOR(as_float)
 #define as_intW CLPV_VECTOR(as_int)
 #define as_uintW CLPV_VECTOR(as_uint)
@@ -67,36 +67,29 @@ typedef CLPV_VECTOR(uchar) bytesW;
 #define ZERO ((realW)(0.0f))
 #define ONE ((realW)(1.0f))
 
-// Gathers a float4 per lane, then reads it by columns: one load per lane instead of four. Functions
-// that read buffers return structs through pointers: Oclgrind does not know the annotations that
-// compilers give to functions that return one.
-#if W == 8
-
+// A float4 per lane, read by columns: one load per lane instead of four. Functions that read
+// buffers return structs through pointers: Oclgrind does not know the annotations that compilers
+// give to functions that return one.
 typedef struct {
-  float4 r0, r1, r2, r3, r4, r5, r6, r7;
+  float4 row[W];
 } Rows;
 
-static inline void gather_rows(__global const float4* from, const uintW at, Rows* rows) {
-  rows->r0 = from[at.s0];
-  rows->r1 = from[at.s1];
-  rows->r2 = from[at.s2];
-  rows->r3 = from[at.s3];
-  rows->r4 = from[at.s4];
-  rows->r5 = from[at.s5];
-  rows->r6 = from[at.s6];
-  rows->r7 = from[at.s7];
+CLPV_INLINE void gather_rows(__global const float4* from, const uintW at, Rows* rows) {
+#pragma unroll
+  for (int i = 0; i < W; ++i) rows->row[i] = from[((const uint*)&at)[i]];
 }
 
 // Loads one float4 for all lanes.
-static inline void spread_row(__global const float4* from, const uint at, Rows* rows) {
-  const float4 row = from[at];
-  rows->r0 = rows->r1 = rows->r2 = rows->r3 = row;
-  rows->r4 = rows->r5 = rows->r6 = rows->r7 = row;
+CLPV_INLINE void spread_row(__global const float4* from, const uint at, Rows* rows) {
+#pragma unroll
+  for (int i = 0; i < W; ++i) rows->row[i] = from[at];
 }
 
-#define CLPV_COLUMN(rows, c)                                                             \
-  ((realW)((rows).r0.c, (rows).r1.c, (rows).r2.c, (rows).r3.c, (rows).r4.c, (rows).r5.c, \
-           (rows).r6.c, (rows).r7.c))
+#if W == 8
+
+#define CLPV_COLUMN(rows, c)                                                               \
+  ((realW)((rows).row[0].c, (rows).row[1].c, (rows).row[2].c, (rows).row[3].c,             \
+           (rows).row[4].c, (rows).row[5].c, (rows).row[6].c, (rows).row[7].c))
 
 // 0 to W - 1.
 static inline intW lane_numbers(void) { return (int8)(0, 1, 2, 3, 4, 5, 6, 7); }
@@ -137,19 +130,7 @@ static inline int max_lane_int(const intW v) {
 
 #else
 
-typedef struct {
-  float4 r0;
-} Rows;
-
-static inline void gather_rows(__global const float4* from, const uintW at, Rows* rows) {
-  rows->r0 = from[at];
-}
-
-static inline void spread_row(__global const float4* from, const uint at, Rows* rows) {
-  rows->r0 = from[at];
-}
-
-#define CLPV_COLUMN(rows, c) ((rows).r0.c)
+#define CLPV_COLUMN(rows, c) ((rows).row[0].c)
 
 static inline intW lane_numbers(void) { return 0; }
 static inline intW all_bits(const intW mask) { return mask ? -1 : 0; }

@@ -2,8 +2,8 @@
 // Reports the layout of the structs that device and host share, for `clpv check`: sizes and offsets
 // of members.
 //
-// Out:  bytes  one number per SIZE and OFFSET of CLPV_EACH_SHARED (shared/fields.h), in its order
-//              [bytes]
+// Out:  bytes  size of the struct and offset of the member for each FIELD of CLPV_EACH_SHARED
+//              (shared/fields.h), in its order [bytes]
 // A single work-item.
 #include "shared/emit.h"
 #include "shared/fields.h"
@@ -17,11 +17,11 @@
 __kernel void sizes(__global uint* bytes) {
   if (get_global_id(0) != 0) return;
   uint i = 0;
-#define CLPV_SIZE(type) bytes[i++] = (uint)sizeof(type);
-#define CLPV_OFFSET(type, field)                                                                \
+#define CLPV_FIELD(type, field)                                                                 \
   {                                                                                             \
     type value;                                                                                 \
+    bytes[i++] = (uint)sizeof(type);                                                            \
     bytes[i++] = (uint)((__private const uchar*)&value.field - (__private const uchar*)&value); \
   }
-  CLPV_EACH_SHARED(CLPV_SIZE, CLPV_OFFSET)
+  CLPV_EACH_SHARED(CLPV_FIELD)
 }

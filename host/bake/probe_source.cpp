@@ -92,7 +92,7 @@ class Swept : public ProbeSource {
   /// Divides the grid into boxes in which the finest cascade has full weight.
   void divide(const RenderOptions& options) {
     const double cell = options.cascade_size / options.grid, blend = GatherOptions().blend_cells,
-                 reach = (CLPV_GRID_REACH(options.grid) - blend) * cell;
+                 reach = (grid_reach(options.grid) - blend) * cell;
     if (!(reach > 0))
       throw Error(ExitCode::usage,
                   "grid: found {} cells, of which none has full weight; allowed: {} or more",

@@ -15,7 +15,7 @@ namespace clpv {
 /// opposite directions.
 std::vector<glm::dvec3> sky_means(const Sky& sky, int parts);
 
-/// Returns D = L |w_m| of the sky at the border for cells of 1 m^2, in the order of CLPV_ORDINATE
+/// Returns D = L |w_m| of the sky at the border for cells of 1 m^2, in the order of ordinate_of
 /// (kernels/sweep/sweep_border.h).
 std::vector<float> swept_sky(const Sky& sky, int parts);
 

@@ -13,6 +13,7 @@
 #include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
 #include "support/input_record.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -21,14 +22,9 @@ constexpr std::string_view kOnce = "#pragma once";
 // Deeper than any kernel nests; stops a file that includes itself.
 constexpr int kMaxIncludeDepth = 8;
 
-std::string_view trim(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view{} : text.substr(first);
-}
-
 /// Returns NAME of a line `#include "NAME"`; empty for other lines.
 std::string included_name(std::string_view line) {
-  line = trim(line);
+  line = trimmed(line);
   if (!line.starts_with("#include")) return {};
   const auto open = line.find('"');
   const auto close = line.rfind('"');

@@ -20,21 +20,6 @@ namespace {
 
 constexpr double kNoticeMs = 2000;  // longer waits are explained in the log
 
-/// Builds a program from a cached binary; returns nothing if the driver rejects it.
-std::optional<cl::Program> load_program(const cl::Context& context, const Device& device,
-                                        const std::string& options,
-                                        const ProgramCache::Binary& binary) {
-  try {
-    cl::Program program(context, {device.handle}, {binary});
-    program.build(device.handle, options.c_str());
-    return program;
-  } catch (const cl::Error& error) {
-    log_debug("{} rejects a cached program: {}; compiling it again", device.name,
-              cl_error_name(error.err()));
-    return std::nullopt;
-  }
-}
-
 /// Name of the file that a helper writes when it has compiled a kernel of the program with that
 /// key.
 std::string name_of_claim(const std::string& key, const std::string& kernel) {
@@ -220,15 +205,19 @@ void Programs::note_compiling(const Program& program, double ms) {
 
 /// Loads a program from the cache; returns false if it is missing or the driver rejects it.
 bool Programs::load(Program& program) {
-  if (!cache_) return false;
-  const auto binary = cache_->load(program.key);
+  const auto binary = cache_ ? cache_->load(program.key) : std::nullopt;
   if (!binary) return false;
-  if (const auto loaded = load_program(context_, device_, program.source.options, *binary)) {
-    program.built = *loaded;
+  try {
+    cl::Program loaded(context_, {device_.handle}, {*binary});
+    loaded.build(device_.handle, program.source.options.c_str());
+    program.built = loaded;
     return true;
+  } catch (const cl::Error& error) {
+    log_debug("{} rejects a cached program: {}; compiling it again", device_.name,
+              cl_error_name(error.err()));
+    cache_->remove(program.key);
+    return false;
   }
-  cache_->remove(program.key);
-  return false;
 }
 
 void Programs::store() {

@@ -12,14 +12,15 @@
 namespace clpv {
 namespace {
 
-ProgramSource words_program() {
-  return {"buffer_ops.cl"};
-}
-constexpr std::size_t kWordsGroup = 64;
 constexpr std::size_t kCopiedBytes = 1 << 20;  // larger writes wait for the queue rather than copy
 
-cl_uint words_of(std::size_t bytes) {
-  return bytes / sizeof(cl_uint);
+/// Runs a kernel of buffer_ops.cl on `bytes` bytes of its last buffer, from byte `from` on.
+template <typename... Buffers>
+void run_on_words(Session& session, const char* kernel, std::size_t bytes, std::size_t from,
+                  const Buffers&... buffers) {
+  constexpr std::size_t kGroup = 64;
+  const cl_uint words = bytes / sizeof(cl_uint), first = from / sizeof(cl_uint);
+  Kernel(session, {"buffer_ops.cl"}, kernel).set(buffers..., first, words).launch(words, kGroup);
 }
 
 std::size_t round_up(std::size_t value, std::size_t step) {
@@ -136,13 +137,7 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global,
 // a part of a buffer it also loses track of the rest. Either would make it report valid reads, so
 // kernels fill and copy there.
 void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from) {
-  if (device_.oclgrind()) {
-    const cl_uint words = words_of(bytes), first = words_of(from);
-    Kernel(*this, words_program(), "zero")
-        .set(buffer, first, words)
-        .launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
-    return;
-  }
+  if (device_.oclgrind()) return run_on_words(*this, "zero", bytes, from, buffer);
   cl::Event event;
   // A pattern of 1 byte makes PoCL call memset: 5x faster than 4-byte patterns or a kernel.
   queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, from, bytes, nullptr, &event);
@@ -150,13 +145,7 @@ void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t fro
 }
 
 void Session::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte) {
-  if (device_.oclgrind()) {
-    const cl_uint words = words_of(bytes), first = words_of(to_byte);
-    Kernel(*this, words_program(), "copy")
-        .set(from, to, first, words)
-        .launch(cl::NDRange(words), cl::NDRange(kWordsGroup));
-    return;
-  }
+  if (device_.oclgrind()) return run_on_words(*this, "copy", bytes, to_byte, from, to);
   cl::Event event;
   queue_.enqueueCopyBuffer(from.handle(), to.handle(), 0, to_byte, bytes, nullptr, &event);
   timeline_.add(event);

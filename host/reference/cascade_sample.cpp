@@ -91,7 +91,7 @@ double share_of(const glm::dvec3& position, const ClpvGrid& grid, int n, double 
   double distance = n;
   for (int axis = 0; axis < 3; ++axis) {
     const double off = std::abs(position[axis] - double{grid.middle[axis]}) / double{grid.cell};
-    distance = std::min(distance, CLPV_GRID_REACH(n) - off);
+    distance = std::min(distance, grid_reach(n) - off);
   }
   return std::clamp(distance / blend_cells, 0.0, 1.0);
 }

@@ -28,11 +28,10 @@ struct Place {
 };
 
 constexpr Place kHost[] = {
-#define CLPV_SIZE(type) {"size of " #type, sizeof(type)},
-#define CLPV_OFFSET(type, field) {#type "." #field, offsetof(type, field)},
-    CLPV_EACH_SHARED(CLPV_SIZE, CLPV_OFFSET)
-#undef CLPV_SIZE
-#undef CLPV_OFFSET
+#define CLPV_FIELD(type, field) \
+  {"size of " #type, sizeof(type)}, {#type "." #field, offsetof(type, field)},
+    CLPV_EACH_SHARED(CLPV_FIELD)
+#undef CLPV_FIELD
 };
 
 Deviation compare_sizes(Session& session) {

@@ -23,7 +23,7 @@ CLPV_INLINE realW cascade_share(const ClpvGrid grid, const Vec position) {
   const Vec from_eye = vec_minus(position, vec_of(grid.middle));
   const realW x = fabs(from_eye.x), y = fabs(from_eye.y), z = fabs(from_eye.z), xy = x > y ? x : y;
   const realW farthest = xy > z ? xy : z;
-  const realW inside = (float)CLPV_GRID_REACH(CLPV_GRID) - farthest * (1.0f / grid.cell);
+  const realW inside = (float)grid_reach(CLPV_GRID) - farthest * (1.0f / grid.cell);
   return clamp_to(inside * CLPV_INVERSE_BLEND, 1.0f);
 }
 

@@ -67,26 +67,20 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   s->normal = normal_towards(front, vec_interpolated(w, a.normal, b.normal, c.normal));
   s->geometric = geometric_towards(front, s->normal);
   s->albedo = material.base_colour;
-#if CLPV_COLOURED
-  s->albedo = vec_product(s->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
-#endif
-#if CLPV_EMISSIVE
+  if (CLPV_COLOURED)
+    s->albedo = vec_product(s->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
   const intW emits = (back == 0) | ((material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);
-  s->emitted = vec_masked(emits, material.emissive);
-#else
   s->emitted = vec(ZERO, ZERO, ZERO);
-#endif
-#if CLPV_TEXTURED
+  if (CLPV_EMISSIVE) s->emitted = vec_masked(emits, material.emissive);
+  if (!CLPV_TEXTURED) return true;
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
   const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
   const realW uv_area2 = fabs(uv1.u * uv2.v - uv1.v * uv2.u);
   const realW step = distance * CLPV_NEAR_CONE * sqrt(uv_area2 / area2);
   const Uv step_x = {step, ZERO}, step_y = {ZERO, step};
   apply_texture(textures, texels, material.texture, uv, step_x, step_y, &s->albedo);
-#if CLPV_EMISSIVE
-  apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y, &s->emitted);
-#endif
-#endif
+  if (CLPV_EMISSIVE)
+    apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y, &s->emitted);
   return true;
 }
 

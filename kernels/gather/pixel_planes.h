@@ -26,14 +26,14 @@ static inline uint plane_pixels(const uint pixels) {
 
 // First row of the second layer, and the number of rows of all layers.
 static inline uint second_layer_row(const ClpvView view) {
-  return CLPV_PLANE_SECOND_OF(plane_pixels(view.height));
+  return second_plane_row(plane_pixels(view.height));
 }
 static inline uint plane_rows(const ClpvView view) {
   const uint height = plane_pixels(view.height);
-  return CLPV_PLANE_LAYERS == 1 ? height : CLPV_PLANE_SECOND_OF(height) + height;
+  return CLPV_PLANE_LAYERS == 1 ? height : second_plane_row(height) + height;
 }
 static inline uint plane_size(const ClpvView view) {
-  return CLPV_PLANE_SIZE_OF(plane_pixels(view.width), plane_rows(view));
+  return pixel_plane_size(plane_pixels(view.width), plane_rows(view));
 }
 
 // The pixels from (W column, row) on.
@@ -41,7 +41,7 @@ static inline PlaneRow find_plane_row(const ClpvView view, const int column, con
   PlaneRow r;
   r.width = plane_pixels(view.width);
   r.height = plane_rows(view);
-  r.pitch = CLPV_PLANE_PITCH_OF(r.width);
+  r.pitch = pixel_plane_pitch(r.width);
   r.plane = plane_size(view);
   r.x = column * W;
   r.y = row;

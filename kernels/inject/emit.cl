@@ -53,11 +53,6 @@ static inline SubTriangle find_sub_triangle(const ClpvEmitter emitter, const uin
   return sub;
 }
 
-// A constant field stays that constant.
-#define CLPV_BLEND(w1, w2, corner, field)                                \
-  ((corner)[0]->field + (w1) * ((corner)[1]->field - (corner)[0]->field) + \
-   (w2) * ((corner)[2]->field - (corner)[0]->field))
-
 // Mean emission of a material over a sub-triangle, relative to its emissive factor: from
 // CLPV_EMIT_SAMPLES^2 samples of its texture and, if masked, its alpha.
 CLPV_INLINE void mean_emission(const SubTriangle sub, __global const ClpvVertex* const corner[3],
@@ -79,16 +74,16 @@ CLPV_INLINE void mean_emission(const SubTriangle sub, __global const ClpvVertex*
     const realW along = at - row * row;
     const realW column = to_realW(to_intW(0.5f * along)), inverted = along - 2.0f * column;
     const realW middle = (1.0f / 3.0f) * (1.0f - 2.0f * inverted);
-    const realW w1 = sub.u + step * (row - column + middle),
-                w2 = sub.v + step * (column + inverted + middle);
-    const Uv uv = {CLPV_BLEND(w1, w2, corner, uv[0]), CLPV_BLEND(w1, w2, corner, uv[1])};
+    const Vec w = vec(ZERO, sub.u + step * (row - column + middle),
+                      sub.v + step * (column + inverted + middle));  // the first is not used
+    const Uv uv = {uv_at(w, corner, 0), uv_at(w, corner, 1)};
     Vec sample = vec(ONE, ONE, ONE);
     if (material->emissive_texture != white)
       sample_trilinear(textures, texels, (uintW)(material->emissive_texture), uv, to_second,
                        to_third, &sample);
     if (masked) {
       const realW alpha =
-          material->base_colour[3] * CLPV_BLEND(w1, w2, corner, colour[3]) *
+          material->base_colour[3] * colour_at(w, corner, 3) *
           sample_alpha(textures, texels, (uintW)(material->texture * CLPV_TEXTURE_LEVELS), uv);
       sample = vec_times(sample, alpha >= (realW)(material->alpha_cutoff) ? ONE : ZERO);
     }

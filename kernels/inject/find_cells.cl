@@ -60,15 +60,15 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
 #if !CLPV_GEOMETRY
   const uint stride = 1;
 #endif
-  const uint width = CLPV_TAKEN(view.width, stride), height = CLPV_TAKEN(view.height, stride);
+  const uint width = taken_texels(view.width, stride), height = taken_texels(view.height, stride);
   const uint first = get_global_id(0) * CLPV_STRIP, row = get_global_id(1);
   if (first >= width || row >= height) return;
   const uint last = min(first + CLPV_STRIP, width);
-  const uint py = CLPV_TAKEN_TEXEL(row, stride);
+  const uint py = taken_texel(row, stride);
   const uint n = grid.n + CLPV_GEOMETRY;
   const float per_metre = 1.0f / grid.cell;
   for (uint column = first; column < last; ++column) {
-    const uint px = CLPV_TAKEN_TEXEL(column, stride), texel = py * view.width + px,
+    const uint px = taken_texel(column, stride), texel = py * view.width + px,
                i = row * width + column;
     const float3 normal = load_normal(normals, texel);
     const float depth = CLPV_POINTS ? 1.0f : places[texel];

@@ -40,9 +40,9 @@ typedef struct {
 
 // Index of the i-th texel taken from a surface.
 static inline uint taken_index(const Texels texels, const uint i) {
-  const uint of_row = CLPV_TAKEN(texels.width, texels.stride);
-  return CLPV_TAKEN_TEXEL(i / of_row, texels.stride) * texels.width +
-         CLPV_TAKEN_TEXEL(i % of_row, texels.stride);
+  const uint of_row = taken_texels(texels.width, texels.stride);
+  return taken_texel(i / of_row, texels.stride) * texels.width +
+         taken_texel(i % of_row, texels.stride);
 }
 
 static inline Sums add_texel(Sums sums, const uint texel, const Texels texels CLPV_AND_H) {

@@ -11,16 +11,16 @@
 
 enum { CLPV_CLIP_PLANES = 5 };
 
-// A polygon of CLPV_CLIP_CORNERS corners, of which CLPV_CORNER(k) is the k-th. Corners are indexed
-// at run time: GPUs keep such a private array in scratch memory, so with one lane polygons lie in
-// local memory, corners of a work-group's CLPV_CLIP_GROUP work-items next to each other.
+// A polygon of CLPV_CLIP_CORNERS corners, CLPV_CORNER apart. Corners are indexed at run time: GPUs
+// keep such a private array in scratch memory, so with one lane polygons lie in local memory,
+// corners of a work-group's CLPV_CLIP_GROUP work-items next to each other.
 enum { CLPV_CLIP_GROUP = 64 };
 #if W == 1
 #define CLPV_POLYGON __local
-#define CLPV_CORNER(k) ((k) * CLPV_CLIP_GROUP)
+#define CLPV_CORNER CLPV_CLIP_GROUP
 #else
 #define CLPV_POLYGON
-#define CLPV_CORNER(k) (k)
+#define CLPV_CORNER 1
 #endif
 
 // Point of the first lane.
@@ -35,7 +35,7 @@ static inline float clip_distance(const ClpvView view, const float4 p, const int
   if (plane == 1) return guard.x * p.z + p.x;
   if (plane == 2) return guard.y * p.z - p.y;
   if (plane == 3) return guard.y * p.z + p.y;
-  return CLPV_IS_ORTHOGRAPHIC(view) ? 1.0f : p.w - view.near_depth;
+  return is_orthographic(view) ? 1.0f : p.w - view.near_depth;
 }
 
 // Clips a convex polygon of `count` corners to the positive side of a plane. Returns the number of
@@ -47,17 +47,17 @@ static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON float4* polygo
   const float4 first = polygon[0];
   float4 a = first;
   for (int i = 0; i < count; ++i) {
-    const float4 b = i + 1 == count ? first : polygon[CLPV_CORNER(i + 1)];
+    const float4 b = i + 1 == count ? first : polygon[CLPV_CORNER * (i + 1)];
     const float da = clip_distance(view, a, plane), db = clip_distance(view, b, plane);
     const int room = min(i + 2, CLPV_CLIP_CORNERS);
-    if (da >= 0.0f && kept < room) polygon[CLPV_CORNER(kept++)] = a;
+    if (da >= 0.0f && kept < room) polygon[CLPV_CORNER * kept++] = a;
     if ((da >= 0.0f) != (db >= 0.0f) && kept < room) {
       const float4 inside = da >= 0.0f ? a : b, outside = da >= 0.0f ? b : a;
       const float di = da >= 0.0f ? da : db, dd = da >= 0.0f ? db : da;
       float4 hit = inside + (outside - inside) * (di / (di - dd));
       if (plane == CLPV_CLIP_PLANES - 1)
-        hit.zw = CLPV_IS_ORTHOGRAPHIC(view) ? hit.zw : (float2)(view.near_depth);
-      polygon[CLPV_CORNER(kept++)] = hit;
+        hit.zw = is_orthographic(view) ? hit.zw : (float2)(view.near_depth);
+      polygon[CLPV_CORNER * kept++] = hit;
     }
     a = b;
   }
@@ -121,7 +121,7 @@ static inline void project_polygon(const ClpvView view, CLPV_POLYGON const float
 }
 
 CLPV_INLINE ScreenCorner outline_corners(const ClpvView view, const Outline* outline, const int k) {
-  const float4 at = outline->polygon[CLPV_CORNER(k)];
+  const float4 at = outline->polygon[CLPV_CORNER * k];
   const ViewPoint point = {at.x, at.y, at.w, at.z};
   return project(view, point);
 }

@@ -144,7 +144,7 @@ CLPV_INLINE void draw_binned(const ClpvView view, const Tile tile,
     for (uint i = first; i < stop; ++i) {
       if (as_float(binned[i].y) > farthest) continue;
       __global const ClpvRasterTriangle* r = list + binned[i].x;
-      CLPV_PREFETCH(list + binned[min(i + CLPV_DRAW_AHEAD, stop - 1)].x);
+      prefetch_line(list + binned[min(i + CLPV_DRAW_AHEAD, stop - 1)].x);
       draw_listed(view, tile, r, scene);
       farthest = farthest_of(tile.keys);
     }
@@ -176,7 +176,7 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, const uint only_
   uintW nearest[CLPV_ROWS];
   const Tile tile = {near_keys, nearest, (int)(x * CLPV_TILE + vector * W),
                      (int)(y * CLPV_TILE + first_row),
-                     CLPV_IS_ORTHOGRAPHIC(view) ? view.far_depth : -1.0f / view.far_depth,
+                     is_orthographic(view) ? view.far_depth : -1.0f / view.far_depth,
                      only_depth != 0};
   for (int row = 0; row < CLPV_ROWS; ++row) {
     const uint from = tile_row(at, first_row + row, vector);

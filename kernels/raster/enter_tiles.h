@@ -48,7 +48,7 @@ static inline TileRange tiles_of(const RasterWords* words, const int lane) {
 // perspective: one per doubling of the depth.
 static inline uint slice_of(const ClpvView view, const uint kind, const float nearest) {
   if (kind & CLPV_TRIANGLE_MASKED) return CLPV_DEPTH_SLICES;
-  if (CLPV_IS_ORTHOGRAPHIC(view))
+  if (is_orthographic(view))
     return (uint)clamp(nearest * (CLPV_DEPTH_SLICES / view.far_depth), 0.0f,
                        CLPV_DEPTH_SLICES - 1.0f);
   return (uint)clamp((as_int(-1.0f / nearest) - as_int(view.near_depth)) >> 23, 0,

@@ -23,7 +23,7 @@ static inline ViewPoint view_point(const ClpvView view, const Vec position) {
   point.x = vec_dot(p, vec_of(view.right));
   point.y = vec_dot(p, vec_of(view.up));
   point.z = vec_dot(p, vec_of(view.forward));
-  point.w = CLPV_IS_ORTHOGRAPHIC(view) ? ONE : point.z;
+  point.w = is_orthographic(view) ? ONE : point.z;
   return point;
 }
 
@@ -40,7 +40,7 @@ static inline intW where_is(const ClpvView view, const ViewPoint p) {
   intW where = (all_bits(p.x < -width) & CLPV_LEFT) | (all_bits(p.x > width) & CLPV_RIGHT) |
                (all_bits(p.y > height) & CLPV_ABOVE) | (all_bits(p.y < -height) & CLPV_BELOW) |
                (all_bits(p.z > view.far_depth) & CLPV_BEYOND);
-  if (!CLPV_IS_ORTHOGRAPHIC(view)) where |= all_bits(p.z < view.near_depth) & CLPV_BEHIND;
+  if (!is_orthographic(view)) where |= all_bits(p.z < view.near_depth) & CLPV_BEHIND;
   const intW in_guard = (fabs(p.x) <= guard.x * p.w) & (fabs(p.y) <= guard.y * p.w);
   return where | (all_bits(in_guard == 0) & CLPV_OUT_OF_GUARD);
 }
@@ -58,7 +58,7 @@ static inline intW subpixel(const realW screen, const float half_extent, const f
 static inline ScreenCorner project(const ClpvView view, const ViewPoint p) {
   ScreenCorner corner;
   realW x = p.x, y = -p.y, key = p.z;
-  if (!CLPV_IS_ORTHOGRAPHIC(view)) x /= p.w, y /= p.w, key = -1.0f / p.z;
+  if (!is_orthographic(view)) x /= p.w, y /= p.w, key = -1.0f / p.z;
   corner.x = subpixel(x, view.half_width, (float)view.width);
   corner.y = subpixel(y, view.half_height, (float)view.height);
   corner.key = key;

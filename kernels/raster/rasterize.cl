@@ -120,9 +120,9 @@ __kernel void set_up_clipped(const ClpvView view, const uint cull, __global cons
     const uint triangle = to_clip[i];
     const uint4 t = as_uint4(triangles[triangle]);
     const Positions at = load_positions(vertices, (uintW)(t.x), (uintW)(t.y), (uintW)(t.z));
-    polygon[CLPV_CORNER(0)] = polygon_corner(view_point(view, at.a));
-    polygon[CLPV_CORNER(1)] = polygon_corner(view_point(view, at.b));
-    polygon[CLPV_CORNER(2)] = polygon_corner(view_point(view, at.c));
+    polygon[0] = polygon_corner(view_point(view, at.a));
+    polygon[CLPV_CORNER] = polygon_corner(view_point(view, at.b));
+    polygon[2 * CLPV_CORNER] = polygon_corner(view_point(view, at.c));
     const int corners = clip_polygon(view, polygon);
     if (corners == 0) continue;
     Outline outline;

@@ -75,7 +75,7 @@ CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const r
   if (!CLPV_TEXTURED) return;
   const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
   const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
-  const realW scale = CLPV_IS_ORTHOGRAPHIC(view) ? ONE : depth;
+  const realW scale = is_orthographic(view) ? ONE : depth;
   const Vec along = vec_times(ray, 1.0f / facing);
   const Vec right = vec_times(vec_of(view.right), scale * pixel_step_x(view));
   const Vec down = vec_times(vec_of(view.up), scale * pixel_step_y(view));
@@ -106,12 +106,7 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
                              __global const float4* triangles, __global const float4* materials,
                              __global const float4* textures, __global const uint* texels,
                              __global float* depths, __global SurfaceTexel* normals,
-                             __global SurfaceTexel* colours
-#if CLPV_EMISSIVE
-                             ,
-                             __global float4* emissives
-#endif
-) {
+                             __global SurfaceTexel* colours, __global float4* emissives) {
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
@@ -121,11 +116,10 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
   const realW geometric = pack_geometric_normal(surface.geometric, surface.normal);
   store_normals(p, vec_masked(hit, surface.normal), hit ? geometric : ZERO, normals + first);
   store_colours(p, vec_masked(hit, surface.albedo), 1.0f, colours + first);
-#if CLPV_EMISSIVE
+  if (!CLPV_EMISSIVE) return;
   const VecLanes emissive = unpack(hit, surface.emissive);
   for (uint i = 0; i < p.count; ++i)
     emissives[first + i] = (float4)(emissive.x[i], emissive.y[i], emissive.z[i], 0.0f);
-#endif
 }
 
 #else

@@ -44,13 +44,14 @@ static inline float3 load_colour(__global const SurfaceTexel* colours, const uin
 }
 #endif
 
-// Nonzero for an orthographic view. The literal CLPV_ORTHOGRAPHIC (0 or 1) from the host
-// specialises a kernel for one kind of view.
+// The literal CLPV_ORTHOGRAPHIC (0 or 1) from the host specialises a kernel for one kind of view.
+static inline bool is_orthographic(const ClpvView view) {
 #ifdef CLPV_ORTHOGRAPHIC
-#define CLPV_IS_ORTHOGRAPHIC(view) CLPV_ORTHOGRAPHIC
+  return CLPV_ORTHOGRAPHIC;
 #else
-#define CLPV_IS_ORTHOGRAPHIC(view) ((view).orthographic != 0.0f)
+  return view.orthographic != 0.0f;
 #endif
+}
 
 // Screen coordinates (sx, sy) of a pixel's centre.
 static inline float2 screen_point(const ClpvView view, const float px, const float py) {

@@ -112,24 +112,22 @@ static inline realW stored_alpha(void) { return ONE; }
 
 #if W == 8
 
-// Interleaved lanes, and interleaved pairs of lanes, of two vectors; compilers turn these into
-// shuffles.
-#define CLPV_INTERLEAVE(a, b, i, j, k, l) \
-  ((channelW)(a.s##i, b.s##i, a.s##j, b.s##j, a.s##k, b.s##k, a.s##l, b.s##l))
-#define CLPV_INTERLEAVE_PAIRS(a, b, i, j, k, l) \
-  ((channelW)(a.s##i, a.s##j, b.s##i, b.s##j, a.s##k, a.s##l, b.s##k, b.s##l))
+// Interleaved numbers, and interleaved pairs of numbers; compilers turn these into shuffles.
+static inline channelW interleave(const SurfaceTexel a, const SurfaceTexel b) {
+  return (channelW)(a.x, b.x, a.y, b.y, a.z, b.z, a.w, b.w);
+}
+static inline channelW interleave_pairs(const SurfaceTexel a, const SurfaceTexel b) {
+  return (channelW)(a.lo, b.lo, a.hi, b.hi);
+}
 
 // Stores `count` texels of four numbers from `to` on.
 CLPV_INLINE void store_texels(const uint count, const channelW x, const channelW y,
                               const channelW z, const channelW w, __global SurfaceTexel* to) {
-  const channelW left_xy = CLPV_INTERLEAVE(x, y, 0, 1, 2, 3),
-                 left_zw = CLPV_INTERLEAVE(z, w, 0, 1, 2, 3);
-  const channelW right_xy = CLPV_INTERLEAVE(x, y, 4, 5, 6, 7),
-                 right_zw = CLPV_INTERLEAVE(z, w, 4, 5, 6, 7);
-  const channelW twos[4] = {CLPV_INTERLEAVE_PAIRS(left_xy, left_zw, 0, 1, 2, 3),
-                            CLPV_INTERLEAVE_PAIRS(left_xy, left_zw, 4, 5, 6, 7),
-                            CLPV_INTERLEAVE_PAIRS(right_xy, right_zw, 0, 1, 2, 3),
-                            CLPV_INTERLEAVE_PAIRS(right_xy, right_zw, 4, 5, 6, 7)};
+  const channelW left_xy = interleave(x.lo, y.lo), left_zw = interleave(z.lo, w.lo);
+  const channelW right_xy = interleave(x.hi, y.hi), right_zw = interleave(z.hi, w.hi);
+  const channelW twos[4] = {
+      interleave_pairs(left_xy.lo, left_zw.lo), interleave_pairs(left_xy.hi, left_zw.hi),
+      interleave_pairs(right_xy.lo, right_zw.lo), interleave_pairs(right_xy.hi, right_zw.hi)};
   __global Channel* numbers = (__global Channel*)to;
   if (count == W) {
     for (int i = 0; i < 4; ++i) vstore8(twos[i], i, numbers);

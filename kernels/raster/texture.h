@@ -12,6 +12,16 @@ typedef struct {
   realW u, v;
 } Uv;
 
+// Attributes at barycentric weights w of the corners of a triangle.
+static inline realW colour_at(const Vec w, __global const ClpvVertex* const* corner, const int i) {
+  return interpolated(w, (realW)(corner[0]->colour[i]), (realW)(corner[1]->colour[i]),
+                      (realW)(corner[2]->colour[i]));
+}
+static inline realW uv_at(const Vec w, __global const ClpvVertex* const* corner, const int i) {
+  return interpolated(w, (realW)(corner[0]->uv[i]), (realW)(corner[1]->uv[i]),
+                      (realW)(corner[2]->uv[i]));
+}
+
 // Entries of the texture table, one per lane.
 typedef struct {
   uintW offset, width, height, wrap;

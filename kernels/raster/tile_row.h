@@ -36,7 +36,7 @@ static inline PixelRow find_pixel_row(const ClpvView view) {
 
 // Depth [m] of the surface with a key; may be less than the near depth. Undefined for empty pixels.
 static inline realW hit_depth(const ClpvView view, const realW key) {
-  return CLPV_IS_ORTHOGRAPHIC(view) ? key : -1.0f / key;
+  return is_orthographic(view) ? key : -1.0f / key;
 }
 
 // Depth [m] that is stored: at least the near depth; 0 for empty pixels.

@@ -42,13 +42,13 @@ static inline Vec across_view(const ClpvView view, const realW px, const realW p
 
 // Vector along a pixel's ray, of depth 1 m.
 static inline Vec along_ray(const ClpvView view, const realW px, const realW py) {
-  if (CLPV_IS_ORTHOGRAPHIC(view)) return vec_of(view.forward);
+  if (is_orthographic(view)) return vec_of(view.forward);
   return vec_add_scaled(across_view(view, px, py), ONE, vec_of(view.forward));
 }
 
 // Vector from the eye to the point at `depth` [m] behind a pixel.
 static inline Vec to_point(const ClpvView view, const realW px, const realW py, const realW depth) {
-  if (CLPV_IS_ORTHOGRAPHIC(view))
+  if (is_orthographic(view))
     return vec_add_scaled(across_view(view, px, py), depth, vec_of(view.forward));
   return vec_times(along_ray(view, px, py), depth);
 }
@@ -59,7 +59,7 @@ static inline Vec find_key_plane(const ClpvView view, const Face face, const rea
                                  const realW py) {
   const realW right = vec_dot(face.normal, vec_of(view.right)) * pixel_step_x(view);
   const realW down = vec_dot(face.normal, vec_of(view.up)) * pixel_step_y(view);
-  if (CLPV_IS_ORTHOGRAPHIC(view)) {
+  if (is_orthographic(view)) {
     const realW scale = 1.0f / vec_dot(face.normal, vec_of(view.forward));
     const Vec beside = vec_minus(face.corner, across_view(view, px, py));
     return vec(vec_dot(face.normal, beside) * scale, -right * scale, -down * scale);

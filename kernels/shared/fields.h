@@ -2,44 +2,42 @@
 // List of the structs that host and kernels share, with the members whose offsets must agree
 // (sizes.cl).
 //
-// CLPV_EACH_SHARED(SIZE, OFFSET) writes SIZE(type) and OFFSET(type, field) in a fixed order.
-// Include the headers of the structs before: host and kernels name them by different paths.
+// CLPV_EACH_SHARED(FIELD) writes FIELD(type, member) in a fixed order. Include the headers of the
+// structs before: host and kernels name them by different paths.
 #pragma once
 
 // clang-format off
-#define CLPV_EACH_SHARED(SIZE, OFFSET)                                                             \
-  SIZE(ClpvGrid) OFFSET(ClpvGrid, origin) OFFSET(ClpvGrid, cell) OFFSET(ClpvGrid, n)               \
-    OFFSET(ClpvGrid, middle)                                                                       \
-  SIZE(ClpvLight) OFFSET(ClpvLight, position) OFFSET(ClpvLight, kind) OFFSET(ClpvLight, direction) \
-    OFFSET(ClpvLight, range) OFFSET(ClpvLight, intensity) OFFSET(ClpvLight, cone_scale)            \
-    OFFSET(ClpvLight, cone_offset) OFFSET(ClpvLight, narrow_cone) OFFSET(ClpvLight, medium)        \
-  SIZE(ClpvMedium) OFFSET(ClpvMedium, lower) OFFSET(ClpvMedium, upper)                             \
-    OFFSET(ClpvMedium, scattering) OFFSET(ClpvMedium, extinction) OFFSET(ClpvMedium, anisotropy)   \
-  SIZE(ClpvVertex) OFFSET(ClpvVertex, position) OFFSET(ClpvVertex, normal) OFFSET(ClpvVertex, uv)  \
-    OFFSET(ClpvVertex, colour)                                                                     \
-  SIZE(ClpvTriangle) OFFSET(ClpvTriangle, vertex) OFFSET(ClpvTriangle, material)                   \
-  SIZE(ClpvMaterial) OFFSET(ClpvMaterial, base_colour) OFFSET(ClpvMaterial, emissive)              \
-    OFFSET(ClpvMaterial, alpha_cutoff) OFFSET(ClpvMaterial, texture)                               \
-    OFFSET(ClpvMaterial, emissive_texture) OFFSET(ClpvMaterial, flags)                             \
-  SIZE(ClpvTexture) OFFSET(ClpvTexture, offset) OFFSET(ClpvTexture, width)                         \
-    OFFSET(ClpvTexture, height) OFFSET(ClpvTexture, wrap)                                          \
-  SIZE(ClpvEmitter) OFFSET(ClpvEmitter, triangle) OFFSET(ClpvEmitter, u) OFFSET(ClpvEmitter, v)    \
-    OFFSET(ClpvEmitter, size) OFFSET(ClpvEmitter, rows) OFFSET(ClpvEmitter, first)                 \
-    OFFSET(ClpvEmitter, side)                                                                      \
-  SIZE(ClpvView) OFFSET(ClpvView, eye) OFFSET(ClpvView, orthographic) OFFSET(ClpvView, right)      \
-    OFFSET(ClpvView, half_width) OFFSET(ClpvView, up) OFFSET(ClpvView, half_height)                \
-    OFFSET(ClpvView, forward) OFFSET(ClpvView, near_depth) OFFSET(ClpvView, width)                 \
-    OFFSET(ClpvView, height) OFFSET(ClpvView, far_depth)                                           \
-  SIZE(ClpvSweepBin) OFFSET(ClpvSweepBin, plane_sign) OFFSET(ClpvSweepBin, row_sign)               \
-    OFFSET(ClpvSweepBin, column_sign) OFFSET(ClpvSweepBin, plane_axis)                             \
-    OFFSET(ClpvSweepBin, row_axis) OFFSET(ClpvSweepBin, column_axis) OFFSET(ClpvSweepBin, links)   \
-    OFFSET(ClpvSweepBin, transposed) OFFSET(ClpvSweepBin, plane) OFFSET(ClpvSweepBin, row)         \
-  SIZE(ClpvSweepDirection) OFFSET(ClpvSweepDirection, taps) OFFSET(ClpvSweepDirection, share)      \
-    OFFSET(ClpvSweepDirection, from_coarser) OFFSET(ClpvSweepDirection, coarser)                   \
-    OFFSET(ClpvSweepDirection, attenuation)                                                        \
-  SIZE(ClpvSweepHalo) OFFSET(ClpvSweepHalo, first) OFFSET(ClpvSweepHalo, side)                  \
-    OFFSET(ClpvSweepHalo, layers)                                                                 \
-  SIZE(ClpvRegion) OFFSET(ClpvRegion, base) OFFSET(ClpvRegion, cell) OFFSET(ClpvRegion, first)     \
-    OFFSET(ClpvRegion, boxes) OFFSET(ClpvRegion, moved) OFFSET(ClpvRegion, all)                    \
-    OFFSET(ClpvRegion, box)
+#define CLPV_EACH_SHARED(FIELD)                                                                    \
+  FIELD(ClpvGrid, origin) FIELD(ClpvGrid, cell) FIELD(ClpvGrid, n) FIELD(ClpvGrid, middle)         \
+  FIELD(ClpvLight, position) FIELD(ClpvLight, kind) FIELD(ClpvLight, direction)                    \
+    FIELD(ClpvLight, range) FIELD(ClpvLight, intensity) FIELD(ClpvLight, cone_scale)               \
+    FIELD(ClpvLight, cone_offset) FIELD(ClpvLight, narrow_cone) FIELD(ClpvLight, medium)           \
+  FIELD(ClpvMedium, lower) FIELD(ClpvMedium, upper) FIELD(ClpvMedium, scattering)                  \
+    FIELD(ClpvMedium, extinction) FIELD(ClpvMedium, anisotropy)                                    \
+  FIELD(ClpvVertex, position) FIELD(ClpvVertex, normal) FIELD(ClpvVertex, uv)                      \
+    FIELD(ClpvVertex, colour)                                                                      \
+  FIELD(ClpvTriangle, vertex) FIELD(ClpvTriangle, material)                                        \
+  FIELD(ClpvMaterial, base_colour) FIELD(ClpvMaterial, emissive)                                   \
+    FIELD(ClpvMaterial, alpha_cutoff) FIELD(ClpvMaterial, texture)                                 \
+    FIELD(ClpvMaterial, emissive_texture) FIELD(ClpvMaterial, flags)                               \
+  FIELD(ClpvTexture, offset) FIELD(ClpvTexture, width) FIELD(ClpvTexture, height)                  \
+    FIELD(ClpvTexture, wrap)                                                                       \
+  FIELD(ClpvEmitter, triangle) FIELD(ClpvEmitter, u) FIELD(ClpvEmitter, v)                         \
+    FIELD(ClpvEmitter, size) FIELD(ClpvEmitter, rows) FIELD(ClpvEmitter, first)                    \
+    FIELD(ClpvEmitter, side)                                                                       \
+  FIELD(ClpvView, eye) FIELD(ClpvView, orthographic) FIELD(ClpvView, right)                        \
+    FIELD(ClpvView, half_width) FIELD(ClpvView, up) FIELD(ClpvView, half_height)                   \
+    FIELD(ClpvView, forward) FIELD(ClpvView, near_depth) FIELD(ClpvView, width)                    \
+    FIELD(ClpvView, height) FIELD(ClpvView, far_depth)                                             \
+  FIELD(ClpvSweepBin, plane_sign) FIELD(ClpvSweepBin, row_sign) FIELD(ClpvSweepBin, column_sign)   \
+    FIELD(ClpvSweepBin, plane_axis) FIELD(ClpvSweepBin, row_axis)                                  \
+    FIELD(ClpvSweepBin, column_axis) FIELD(ClpvSweepBin, links) FIELD(ClpvSweepBin, transposed)    \
+    FIELD(ClpvSweepBin, plane) FIELD(ClpvSweepBin, row)                                            \
+  FIELD(ClpvSweepDirection, taps) FIELD(ClpvSweepDirection, share)                                 \
+    FIELD(ClpvSweepDirection, from_coarser) FIELD(ClpvSweepDirection, coarser)                     \
+    FIELD(ClpvSweepDirection, attenuation)                                                         \
+  FIELD(ClpvSweepHalo, first) FIELD(ClpvSweepHalo, side) FIELD(ClpvSweepHalo, layers)              \
+  FIELD(ClpvRegion, base) FIELD(ClpvRegion, cell) FIELD(ClpvRegion, first)                         \
+    FIELD(ClpvRegion, boxes) FIELD(ClpvRegion, moved) FIELD(ClpvRegion, all)                       \
+    FIELD(ClpvRegion, box)
 // clang-format on

@@ -15,4 +15,4 @@ typedef struct {
 
 // Cells on each side of `middle` that lie inside a grid of n cells along each axis, for any
 // position of `middle` in its cell.
-#define CLPV_GRID_REACH(n) (((n) - 1) / 2)
+static inline int grid_reach(const int n) { return (n - 1) / 2; }

@@ -12,10 +12,14 @@ enum {
 
 // First row of the second layer (near_points.cl); at least CLPV_PLANE_ROWS empty rows lie before
 // it.
-#define CLPV_PLANE_SECOND_OF(height) \
-  (((height) + CLPV_PLANE_ROWS + CLPV_PLANE_TILE - 1) / CLPV_PLANE_TILE * CLPV_PLANE_TILE)
+static inline unsigned int second_plane_row(const unsigned int height) {
+  return (height + CLPV_PLANE_ROWS + CLPV_PLANE_TILE - 1) / CLPV_PLANE_TILE * CLPV_PLANE_TILE;
+}
 
 // Numbers of a row and of a plane of `width` x `height` pixels, the rows of both layers.
-#define CLPV_PLANE_PITCH_OF(width) (((width) + 7) / 8 * 8 + 2 * CLPV_PLANE_COLUMNS)
-#define CLPV_PLANE_SIZE_OF(width, height) \
-  (CLPV_PLANE_PITCH_OF(width) * ((height) + 2 * CLPV_PLANE_ROWS))
+static inline unsigned int pixel_plane_pitch(const unsigned int width) {
+  return (width + 7) / 8 * 8 + 2 * CLPV_PLANE_COLUMNS;
+}
+static inline unsigned int pixel_plane_size(const unsigned int width, const unsigned int height) {
+  return pixel_plane_pitch(width) * (height + 2 * CLPV_PLANE_ROWS);
+}

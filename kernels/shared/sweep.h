@@ -52,15 +52,19 @@ enum {
   CLPV_SWEEP_FIRST =
       8,  // from the start of a bordered row to its first cell: aligned for eight lanes
 };
-#define CLPV_SWEEP_ROW_OF(n) (((n) + 7) / 8 * 8)
-#define CLPV_SWEEP_PLANE_OF(n) ((n) * CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_LINE)
-#define CLPV_SWEEP_VOLUME_OF(n) ((n) * CLPV_SWEEP_PLANE_OF(n) + CLPV_SWEEP_LINE)
-#define CLPV_SWEEP_PITCH_OF(n) (CLPV_SWEEP_ROW_OF(n) + CLPV_SWEEP_FIRST)
-#define CLPV_SWEEP_BORDERED_PLANE_OF(n) (((n) + 2) * CLPV_SWEEP_PITCH_OF(n) + CLPV_SWEEP_FIRST)
-#define CLPV_SWEEP_BORDERED_VOLUME_OF(n) (((n) + 2) * CLPV_SWEEP_BORDERED_PLANE_OF(n))
+static inline int sweep_row_size(const int n) { return (n + 7) / 8 * 8; }
+static inline int sweep_plane_size(const int n) { return n * sweep_row_size(n) + CLPV_SWEEP_LINE; }
+static inline int sweep_volume_size(const int n) {
+  return n * sweep_plane_size(n) + CLPV_SWEEP_LINE;
+}
+static inline int bordered_pitch(const int n) { return sweep_row_size(n) + CLPV_SWEEP_FIRST; }
+static inline int bordered_plane_size(const int n) {
+  return (n + 2) * bordered_pitch(n) + CLPV_SWEEP_FIRST;
+}
+static inline int bordered_volume_size(const int n) { return (n + 2) * bordered_plane_size(n); }
 
 // Sizes of a halo: cells along an edge; numbers of a row and of a face, which has two layers of
 // side x side cells. Loads of eight may read past the end of a row, hence the padding.
-#define CLPV_SWEEP_HALO_SIDE_OF(n) (((n) + 1) / 2 + 3)
-#define CLPV_SWEEP_HALO_PITCH_OF(side) (((side) + 7) / 8 * 8 + 8)
-#define CLPV_SWEEP_HALO_FACE_OF(side) (2 * (side)*CLPV_SWEEP_HALO_PITCH_OF(side) + 8)
+static inline int halo_side(const int n) { return (n + 1) / 2 + 3; }
+static inline int halo_pitch(const int side) { return (side + 7) / 8 * 8 + 8; }
+static inline int halo_face_size(const int side) { return 2 * side * halo_pitch(side) + 8; }

@@ -4,7 +4,11 @@
 #pragma once
 
 // Number of texels taken of `texels` along a row or column.
-#define CLPV_TAKEN(texels, stride) (((texels) + (stride) - 1u - (stride) / 2u) / (stride))
+static inline unsigned int taken_texels(const unsigned int texels, const unsigned int stride) {
+  return (texels + stride - 1u - stride / 2u) / stride;
+}
 
 // Coordinate of the i-th texel taken.
-#define CLPV_TAKEN_TEXEL(i, stride) ((i) * (stride) + (stride) / 2u)
+static inline unsigned int taken_texel(const unsigned int i, const unsigned int stride) {
+  return i * stride + stride / 2u;
+}

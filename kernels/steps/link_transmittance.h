@@ -41,9 +41,11 @@ CLPV_INLINE Links find_transmittance(CLPV_VOLUME_IN blockers, const int x, const
                                      const int z) {
   Coefficients corners[8];
 #pragma unroll
-  for (int c = 0; c < 8; ++c)
-    CLPV_SET_COEFFICIENTS(
-        corners[c], geometry_load(blockers, 0, x + (c & 1), y + (c >> 1 & 1), z + (c >> 2)));
+  for (int c = 0; c < 8; ++c) {
+    const Coefficients corner =
+        geometry_load(blockers, 0, x + (c & 1), y + (c >> 1 & 1), z + (c >> 2));
+    copy_coefficients(&corner, corners + c);
+  }
   Links links;
 #pragma unroll
   for (int link = 0; link < CLPV_LINKS; ++link) {

@@ -38,39 +38,26 @@ typedef struct {
   float face[CLPV_FACES];
 } Fluxes;
 
-#if CLPV_EVALUATE_AT_RUN_TIME
-
 // max(0, Omega_f I(w_f)) T_f of each face and channel.
 CLPV_INLINE void find_fluxes(CLPV_VOLUME_IN source, const int x, const int y, const int z,
                              const Links t, __global const float4* links,
                              Fluxes fluxes[3] CLPV_AND_G) {
   Coefficients along[CLPV_FACES];
-  for (int face = 0; face < CLPV_FACES; ++face)
+  for (int face = 0; face < CLPV_FACES && CLPV_EVALUATE_AT_RUN_TIME; ++face)
     along[face] = functions_of_link(links[face] CLPV_PASS_G);
 #pragma unroll
   for (int channel = 0; channel < 3; ++channel) {
 #pragma unroll
     for (int k = 0; k < CLPV_AXES; ++k) {
       const Coefficients from = load_upstream(source, channel, k, x, y, z);
+#if CLPV_EVALUATE_AT_RUN_TIME
+      SeenFaces flux;
 #pragma unroll
-      for (int f = 0; f < CLPV_SEEN_FACES; ++f) {
-        const int face = CLPV_SEEN_FACES * k + f;
-        fluxes[channel].face[face] = fmax(dot_coefficients(along[face], from), 0.0f) * t.c[face];
-      }
-    }
-  }
-}
-
+      for (int f = 0; f < CLPV_SEEN_FACES; ++f)
+        flux.face[f] = dot_coefficients(along[CLPV_SEEN_FACES * k + f], from);
 #else
-
-CLPV_INLINE void find_fluxes(CLPV_VOLUME_IN source, const int x, const int y, const int z,
-                             const Links t, __global const float4* links,
-                             Fluxes fluxes[3] CLPV_AND_G) {
-#pragma unroll
-  for (int channel = 0; channel < 3; ++channel) {
-#pragma unroll
-    for (int k = 0; k < CLPV_AXES; ++k) {
-      const SeenFaces flux = fluxes_to(k, load_upstream(source, channel, k, x, y, z));
+      const SeenFaces flux = fluxes_to(k, from);
+#endif
 #pragma unroll
       for (int f = 0; f < CLPV_SEEN_FACES; ++f) {
         const int face = CLPV_SEEN_FACES * k + f;
@@ -79,8 +66,6 @@ CLPV_INLINE void find_fluxes(CLPV_VOLUME_IN source, const int x, const int y, co
     }
   }
 }
-
-#endif
 
 __kernel __attribute__((reqd_work_group_size(CLPV_LOCAL_X, 1, 1))) void propagate_lobes(
     CLPV_VOLUME_IN source, CLPV_VOLUME_OUT target, CLPV_VOLUME_IN sum_so_far,

@@ -9,4 +9,4 @@ enum {
 };
 
 // Number of the pair of centres i < j: 0 to 27.
-#define CLPV_PAIR(i, j) ((i) * (13 - (i)) / 2 + (j)-1)
+static inline int pair_number(const int i, const int j) { return i * (13 - i) / 2 + j - 1; }

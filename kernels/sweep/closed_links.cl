@@ -6,7 +6,7 @@
 // In:   occluded  visibility of cell centres: 64 points in each cube between eight centres
 //                 (voxels/visibility.cl)
 //       cascade   number of the cascade whose bytes to read
-// Out:  closed    a word per cube, with a border of one cube: bit CLPV_PAIR(i, j)
+// Out:  closed    a word per cube, with a border of one cube: bit pair_number(i, j)
 //                 (sweep/centre_pairs.h) is set if the pair is closed, bit CLPV_ENCLOSED_BIT if
 //                 the cube's lowest centre is enclosed
 // A work-item tests a cube.
@@ -65,7 +65,7 @@ __kernel void find_closed_links(__global const ulong* occluded, const uint casca
   if (any != 0) {
     for (int i = 0; i < CLPV_CENTRES - 1; ++i) {
       for (int j = i + 1; j < CLPV_CENTRES; ++j)
-        if (closed_pair(points, i, j)) bits |= 1u << CLPV_PAIR(i, j);
+        if (closed_pair(points, i, j)) bits |= 1u << pair_number(i, j);
     }
   }
   if (count_seen(occluded, cascade, x, y, z) < CLPV_ENCLOSED) bits |= 1u << CLPV_ENCLOSED_BIT;

@@ -40,11 +40,11 @@ CLPV_INLINE void store_halo_row(const ClpvSweepHalo halo, __global const float* 
 CLPV_INLINE void store_halo_column(const ClpvSweepHalo halo, __global const float* d, const int row,
                                    const int column, CLPV_BUFFER_OUT halo_light, const int at) {
   for (int i = 0; i < halo.side; i += W) {
-#define CLPV_CELL(lane) d[plane_index(clamp(row + i + lane, -1, CLPV_GRID), column)]
-    const realW light = {CLPV_CELL(0), CLPV_CELL(1), CLPV_CELL(2), CLPV_CELL(3),
-                          CLPV_CELL(4), CLPV_CELL(5), CLPV_CELL(6), CLPV_CELL(7)};
-#undef CLPV_CELL
-    store_halo(light, row + i, halo_light, at + i);
+    float light[W];
+#pragma unroll
+    for (int lane = 0; lane < W; ++lane)
+      light[lane] = d[plane_index(clamp(row + i + lane, -1, CLPV_GRID), column)];
+    store_halo(load_lanes(light), row + i, halo_light, at + i);
   }
 }
 
@@ -77,7 +77,7 @@ CLPV_INLINE void store_halo_plane(const BinSweep* s, const ClpvSweepHalo halo, c
 // reads.
 CLPV_INLINE void end_plane(const BinSweep* s, const ClpvSweepHalo halo, const int dark,
                            __global float* plane_buffer, const int plane) {
-  const int first = CLPV_ORDINATE(s->number, 0, 0);
+  const int first = ordinate_of(s->number, 0, 0);
   for (int ordinate = first; ordinate < first + 3 * CLPV_PARTS; ++ordinate) {
     store_halo_plane(s, halo, ordinate, plane, plane_buffer + ordinate * CLPV_BORDERED_PLANE);
     for (int at = -1; at <= CLPV_GRID && !dark; at += W) {
@@ -95,9 +95,9 @@ CLPV_INLINE void prefetch_row(const BinSweep* s, const int plane, const int row)
   for (int column = 0; column < CLPV_SWEEP_ROW; column += CLPV_LINE / (CLPV_STORAGE_HALF ? 2 : 4)) {
     const int at = sweep_index(next, row, column);
     for (int channel = 0; channel < 3; ++channel)
-      CLPV_PREFETCH(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME + at);
+      prefetch_line(s->sums + (channel * CLPV_SWEEP_BINS + s->number) * CLPV_SWEEP_VOLUME + at);
     for (int k = 0; k < 4 && CLPV_BLOCKING; ++k)
-      CLPV_PREFETCH(s->links + bin.links[k] * CLPV_SWEEP_VOLUME + at);
+      prefetch_line(s->links + bin.links[k] * CLPV_SWEEP_VOLUME + at);
   }
 }
 
@@ -106,12 +106,15 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(
     __constant const int* coefficients, __constant const float* means, CLPV_BUFFER_IN sources,
     __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,
     const ClpvSweepHalo halo, __global float* plane_buffer, CLPV_BUFFER_OUT sums,
-    CLPV_BUFFER_OUT halo_light, const int dark CLPV_MEDIUM_PARAMETER) {
+    CLPV_BUFFER_OUT halo_light, const int dark, __global const float* inside,
+    CLPV_BUFFER_IN scattered) {
   const int b = (int)get_global_id(0);
   const ClpvSweepBin bin = bins[b];
-  const BinSweep s = CLPV_BIN_SWEEP(b);
-  for (int i = 0; i < CLPV_ORDINATE(1, 0, 0) * CLPV_BORDERED_PLANE && dark; i += W)
-    store_lanes(ZERO, plane_buffer + CLPV_ORDINATE(b, 0, 0) * CLPV_BORDERED_PLANE + i);
+  BinSweep s = {b, bin, directions, coefficients, means, sources, lit, links, border, sums,
+                halo_light, inside, scattered};
+  select_bin(&s);
+  for (int i = 0; i < ordinate_of(1, 0, 0) * CLPV_BORDERED_PLANE && dark; i += W)
+    store_lanes(ZERO, plane_buffer + ordinate_of(b, 0, 0) * CLPV_BORDERED_PLANE + i);
   const int last_column = (CLPV_GRID - 1) / W * W;
   for (int p = 0; p < CLPV_GRID; ++p) {
     const int plane = bin.plane_sign > 0 ? p : CLPV_GRID - 1 - p;

@@ -37,7 +37,7 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins,
   const int layer = (sign > 0 ? -1 : CLPV_GRID) + along_axis(across, dx, dy, dz);
   const int r = row + along_axis(row_axis, dx, dy, dz),
             c = column + along_axis(column_axis, dx, dy, dz);
-  const int pitch = CLPV_SWEEP_HALO_PITCH_OF(halo.side), next = halo.side * pitch;
+  const int pitch = halo_pitch(halo.side), next = halo.side * pitch;
   const int coarser = ordinate / CLPV_PARTS * CLPV_COARSER_PARTS + direction->coarser;
   CLPV_BUFFER_IN light =
       halo_light + halo_index(halo, coarser, face, 0, lower_cell(r) - halo_first(halo, row_axis),

@@ -12,7 +12,9 @@
 #include "sweep/sweep_layout.h"
 
 // Number of an ordinate.
-#define CLPV_ORDINATE(bin, channel, part) ((((bin)*3) + (channel)) * CLPV_PARTS + (part))
+CLPV_INLINE int ordinate_of(const int bin, const int channel, const int part) {
+  return (bin * 3 + channel) * CLPV_PARTS + part;
+}
 
 enum {
   CLPV_BORDER_PLANE,
@@ -49,6 +51,6 @@ CLPV_INLINE int halo_layer(const ClpvSweepHalo halo, const int axis, const int s
 // and (plane, row) in CLPV_BORDER_COLUMN.
 CLPV_INLINE int halo_index(const ClpvSweepHalo halo, const int ordinate, const int face,
                            const int layer, const int i, const int j) {
-  return (ordinate * 3 + face) * CLPV_SWEEP_HALO_FACE_OF(halo.side) +
-         (layer * halo.side + i) * CLPV_SWEEP_HALO_PITCH_OF(halo.side) + j;
+  return (ordinate * 3 + face) * halo_face_size(halo.side) +
+         (layer * halo.side + i) * halo_pitch(halo.side) + j;
 }

@@ -42,27 +42,19 @@ typedef struct {
   CLPV_BUFFER_IN border;       // D in the cells beside the grid (sweep_border.h)
   CLPV_BUFFER_OUT sums;        // L s^2, a volume for each channel and bin
   CLPV_BUFFER_OUT halo_light;  // D in the cells of the halo (sweep_border.h)
-#if CLPV_MEDIUM
+  // With CLPV_MEDIUM:
   __global const float* inside;  // part in the medium of each cell along each axis, with border
   CLPV_BUFFER_IN scattered;      // J s^2, a volume for each channel and bin
-#endif
 } BinSweep;
 
-#if CLPV_MEDIUM
-#define CLPV_MEDIUM_PARAMETER , __global const float *inside, CLPV_BUFFER_IN scattered
-#define CLPV_MEDIUM_MEMBER , inside, scattered
-#else
-#define CLPV_MEDIUM_PARAMETER
-#define CLPV_MEDIUM_MEMBER
-#endif
-
-// A BinSweep of bin b, from the kernel's parameters and its `bin`, by their names.
-#define CLPV_BIN_SWEEP(b)                                                                       \
-  {b, bin, directions + (b) * CLPV_PARTS, coefficients + (b) * CLPV_EMITTING,                   \
-   means + (b) * CLPV_PARTS * CLPV_EMITTING,                                                    \
-   sources + bin.transposed * 3 * CLPV_SOURCES * CLPV_SWEEP_VOLUME,                             \
-   lit + bin.transposed * CLPV_SWEEP_VOLUME / CLPV_SOURCE_LANES, links, border, sums,           \
-   halo_light CLPV_MEDIUM_MEMBER}
+// Moves pointers from the tables of all bins, the kernel's parameters, to those of the bin.
+CLPV_INLINE void select_bin(BinSweep* s) {
+  s->directions += s->number * CLPV_PARTS;
+  s->coefficients += s->number * CLPV_EMITTING;
+  s->means += s->number * CLPV_PARTS * CLPV_EMITTING;
+  s->sources += s->bin.transposed * 3 * CLPV_SOURCES * CLPV_SWEEP_VOLUME;
+  s->lit += s->bin.transposed * CLPV_SWEEP_VOLUME / CLPV_SOURCE_LANES;
+}
 
 // Returns true if any of W cells holds sources.
 CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
@@ -93,25 +85,23 @@ CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float
 #endif
 #pragma unroll
     for (int part = 0; part < CLPV_PARTS; ++part) {
-      const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
+      const int ordinate = ordinate_of(0, channel, part) * CLPV_BORDERED_PLANE;
       store_lanes(load_lanes(planes + ordinate) + injected[part], planes + ordinate);
       sum[channel] = fma((realW)(s->directions[part].share), injected[part], sum[channel]);
     }
   }
 }
 
-#if CLPV_MEDIUM
 CLPV_INLINE int inside_index(const int axis, const int i) {
   return axis * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + i;
 }
-#endif
 
 // `from`: plane buffer of the previous plane; `to`: that of this one, which may be the same.
 CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __global float* to,
                              const int plane, const int row, const int column) {
   const ClpvSweepBin bin = s->bin;
   const int at = sweep_index(plane, row, column);
-  const int here = CLPV_ORDINATE(s->number, 0, 0) * CLPV_BORDERED_PLANE + plane_index(row, column);
+  const int here = ordinate_of(s->number, 0, 0) * CLPV_BORDERED_PLANE + plane_index(row, column);
   __global const float* from0 = from + here;
   __global const float* from1 = from0 - bin.column_sign;
   __global const float* from2 = from0 - bin.row_sign * CLPV_SWEEP_PITCH;
@@ -152,7 +142,7 @@ CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __gl
     }
 #pragma unroll
     for (int channel = 0; channel < 3; ++channel) {
-      const int ordinate = CLPV_ORDINATE(0, channel, part) * CLPV_BORDERED_PLANE;
+      const int ordinate = ordinate_of(0, channel, part) * CLPV_BORDERED_PLANE;
       realW d = t[0] * load_lanes(from0 + ordinate);
       d = fma(t[1], load_lanes(from1 + ordinate), d);
       d = fma(t[2], load_lanes(from2 + ordinate), d);
@@ -189,12 +179,7 @@ CLPV_INLINE void copy_border_column(const BinSweep* s, __global float* planes, c
   const realW light =
       read_numbers(s->border, border_index(ordinate, CLPV_BORDER_COLUMN, plane, row));
   planes += ordinate * CLPV_BORDERED_PLANE + plane_index(row, upstream_of_grid(s->bin.column_sign));
-#if W == 8
-#define CLPV_DO(lane) \
-  if (row + 0x##lane <= CLPV_GRID) planes[0x##lane * CLPV_SWEEP_PITCH] = light.s##lane;
-  CLPV_DO(0) CLPV_DO(1) CLPV_DO(2) CLPV_DO(3) CLPV_DO(4) CLPV_DO(5) CLPV_DO(6) CLPV_DO(7)
-#undef CLPV_DO
-#else
-  *planes = light;
-#endif
+#pragma unroll
+  for (int i = 0; i < W; ++i)
+    if (row + i <= CLPV_GRID) planes[i * CLPV_SWEEP_PITCH] = ((const float*)&light)[i];
 }

@@ -12,19 +12,14 @@
 #include "shared/sweep.h"
 #include "volume/numbers.h"
 
-enum {
-  CLPV_SWEEP_ROW = CLPV_SWEEP_ROW_OF(CLPV_GRID),
-  CLPV_SWEEP_PLANE = CLPV_SWEEP_PLANE_OF(CLPV_GRID),
-  CLPV_SWEEP_VOLUME = CLPV_SWEEP_VOLUME_OF(CLPV_GRID),
-};
+#define CLPV_SWEEP_ROW sweep_row_size(CLPV_GRID)
+#define CLPV_SWEEP_PLANE sweep_plane_size(CLPV_GRID)
+#define CLPV_SWEEP_VOLUME sweep_volume_size(CLPV_GRID)
 
 // Plane buffers, and volumes that a finer cascade interpolates, have a border of one cell on every
 // side.
-enum {
-  CLPV_SWEEP_PITCH = CLPV_SWEEP_PITCH_OF(CLPV_GRID),
-  CLPV_BORDERED_PLANE = CLPV_SWEEP_BORDERED_PLANE_OF(CLPV_GRID),
-  CLPV_BORDERED_VOLUME = CLPV_SWEEP_BORDERED_VOLUME_OF(CLPV_GRID),
-};
+#define CLPV_SWEEP_PITCH bordered_pitch(CLPV_GRID)
+#define CLPV_BORDERED_PLANE bordered_plane_size(CLPV_GRID)
 
 // Index of a cell in a volume, in a plane buffer and in a bordered volume.
 CLPV_INLINE int sweep_index(const int plane, const int row, const int column) {

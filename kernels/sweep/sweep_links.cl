@@ -54,7 +54,7 @@ CLPV_INLINE Links close_links(Links links, __global const int* closed, const int
     for (int o = 0; o < 8; ++o) {
       const int here = 7 - o, there = here + sx + 2 * sy + 4 * sz;
       if (crosses(o, sx, sy, sz))
-        bits &= cubes[o] >> CLPV_PAIR(min(here, there), max(here, there));
+        bits &= cubes[o] >> pair_number(min(here, there), max(here, there));
     }
     const intW neighbour = read_words(closed, bordered_index(z + sz, y + sy, x + sx));
     const intW enclosed = (cubes[7] | neighbour) >> CLPV_ENCLOSED_BIT & bits;

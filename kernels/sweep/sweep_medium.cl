@@ -46,12 +46,13 @@ CLPV_INLINE void cell_irradiance(const ClpvGrid grid, const ClpvLight light, con
     if (lower[axis] >= medium.upper[axis] || lower[axis] + cell <= medium.lower[axis]) return;
   for (int point = 0; point < 8; point += W) {
     const intW corner = point + lane_numbers();
-    const Vec at = vec(to_realW(corner & 1), to_realW(corner >> 1 & 1), to_realW(corner >> 2));
-#define CLPV_POINT(axis, c)                                                      \
-  clamp(lower[axis] + cell * (0.25f + 0.5f * at.c), (realW)(medium.lower[axis]), \
-        (realW)(medium.upper[axis]))
-    const Vec points = vec(CLPV_POINT(0, x), CLPV_POINT(1, y), CLPV_POINT(2, z));
-#undef CLPV_POINT
+    realW points_at[3];
+#pragma unroll
+    for (int axis = 0; axis < 3; ++axis)
+      points_at[axis] = clamp(
+          lower[axis] + cell * (0.25f + 0.5f * to_realW(corner >> axis & 1)),
+          (realW)(medium.lower[axis]), (realW)(medium.upper[axis]));
+    const Vec points = vec(points_at[0], points_at[1], points_at[2]);
     Vec towards;
     Vec irradiance = light_irradiance(light, points, &towards);
     realW share = 0.125f * light_reaches(shadow, points);

@@ -49,19 +49,22 @@ __kernel void sweep_plane(__constant const ClpvSweepBin* bins,
                           CLPV_BUFFER_IN sources, __global const uchar* lit, CLPV_BUFFER_IN links,
                           CLPV_BUFFER_IN border, const ClpvSweepHalo halo,
                           __global float* plane_buffer, CLPV_BUFFER_OUT sums,
-                          CLPV_BUFFER_OUT halo_light, const int step CLPV_MEDIUM_PARAMETER) {
+                          CLPV_BUFFER_OUT halo_light, const int step,
+                          __global const float* inside, CLPV_BUFFER_IN scattered) {
   const int column = W * (int)get_global_id(0), row = (int)get_global_id(1),
             b = (int)get_global_id(2);
   if (column >= CLPV_GRID || row >= CLPV_GRID) return;
   const ClpvSweepBin bin = bins[b];
-  const BinSweep s = CLPV_BIN_SWEEP(b);
+  BinSweep s = {b, bin, directions, coefficients, means, sources, lit, links, border, sums,
+                halo_light, inside, scattered};
+  select_bin(&s);
   const int plane = bin.plane_sign > 0 ? step : CLPV_GRID - 1 - step;
   // Numbers in all even planes.
-  const int planes = CLPV_ORDINATE(CLPV_SWEEP_BINS, 0, 0) * CLPV_BORDERED_PLANE;
+  const int planes = ordinate_of(CLPV_SWEEP_BINS, 0, 0) * CLPV_BORDERED_PLANE;
   __global float* to = plane_buffer + (step % 2) * planes;
   __global const float* from = plane_buffer + (1 - step % 2) * planes;
   sweep_cells(&s, from, to, plane, row, column);
-  const int first = CLPV_ORDINATE(b, 0, 0);
+  const int first = ordinate_of(b, 0, 0);
   const int first_row = row == 0 ? -1 : row, last_row = row == CLPV_GRID - 1 ? CLPV_GRID : row;
   for (int ordinate = first; ordinate < first + 3 * CLPV_PARTS; ++ordinate) {
     for (int lane = 0; lane < W; ++lane) {

@@ -10,19 +10,15 @@ typedef struct {
   realW row[W];
 } SweepTile;
 
-#if W == 8
-#define CLPV_COLUMN_OF_ROWS(s)                                                                 \
-  ((realW)(a.row[0].s, a.row[1].s, a.row[2].s, a.row[3].s, a.row[4].s, a.row[5].s, a.row[6].s, \
-           a.row[7].s))
 CLPV_INLINE SweepTile transpose_tile(const SweepTile a) {
-  const SweepTile t = {{CLPV_COLUMN_OF_ROWS(s0), CLPV_COLUMN_OF_ROWS(s1), CLPV_COLUMN_OF_ROWS(s2),
-                        CLPV_COLUMN_OF_ROWS(s3), CLPV_COLUMN_OF_ROWS(s4), CLPV_COLUMN_OF_ROWS(s5),
-                        CLPV_COLUMN_OF_ROWS(s6), CLPV_COLUMN_OF_ROWS(s7)}};
+  SweepTile t;
+#pragma unroll
+  for (int r = 0; r < W; ++r) {
+#pragma unroll
+    for (int i = 0; i < W; ++i) ((float*)(t.row + r))[i] = ((const float*)(a.row + i))[r];
+  }
   return t;
 }
-#else
-CLPV_INLINE SweepTile transpose_tile(const SweepTile a) { return a; }
-#endif
 
 // Sets lanes beyond the grid's last cell to 0.
 CLPV_INLINE realW zero_outside(const int x, const realW value) {
@@ -47,7 +43,7 @@ CLPV_INLINE void load_x_bins(CLPV_BUFFER_IN volumes, const int x, const int y, c
       if (x + r < CLPV_GRID)
         columns.row[r] = read_numbers(volumes + b * CLPV_SWEEP_VOLUME, sweep_index(x + r, z, y));
     }
-    const SweepTile transposed = transpose_tile(columns);  // as in CLPV_SET_COEFFICIENTS
+    const SweepTile transposed = transpose_tile(columns);  // as in copy_coefficients()
     for (int r = 0; r < W; ++r) tiles[b].row[r] = transposed.row[r];
   }
 }

@@ -14,18 +14,12 @@ typedef struct {
   Coefficient c[CLPV_N];
 } Coefficients;
 
+// Copies into an element of an array. In a loop, rusticl loses structs that an assignment, or a
+// parameter passed by value, stores there.
 CLPV_INLINE void copy_coefficients(const Coefficients* from, Coefficients* to) {
 #pragma unroll
   for (int i = 0; i < CLPV_N; ++i) to->c[i] = from->c[i];
 }
-
-// Stores what a function returns in an element of an array. In a loop, rusticl loses structs that
-// an assignment, or a parameter passed by value, stores there.
-#define CLPV_SET_COEFFICIENTS(to, call)   \
-  do {                                    \
-    const Coefficients returned = (call); \
-    copy_coefficients(&returned, &(to));  \
-  } while (false)
 
 CLPV_INLINE Coefficients zero_coefficients(void) {
   Coefficients r;

@@ -51,11 +51,11 @@ CLPV_INLINE void find_albedo(const ProjectedTriangle* t, const TriangleSurface* 
                              const realW u, const realW v, const realW across, Vec* albedo) {
   __global const ClpvVertex* const* corner = surface->corner;
   *albedo = vec_load(surface->material->base_colour);
-  const BarycentricWeights w = voxel_weights(t, u, v);
+  const Vec w = voxel_weights(t, u, v);
   if (CLPV_COLOURED)
     *albedo =
-        vec_product(*albedo, vec(CLPV_BLEND(w, corner, colour[0]), CLPV_BLEND(w, corner, colour[1]),
-                                 CLPV_BLEND(w, corner, colour[2])));
+        vec_product(*albedo, vec(colour_at(w, corner, 0), colour_at(w, corner, 1),
+                                 colour_at(w, corner, 2)));
   if (!CLPV_TEXTURED) return;
   const float u1 = corner[1]->uv[0] - corner[0]->uv[0], v1 = corner[1]->uv[1] - corner[0]->uv[1];
   const float u2 = corner[2]->uv[0] - corner[0]->uv[0], v2 = corner[2]->uv[1] - corner[0]->uv[1];
@@ -63,7 +63,7 @@ CLPV_INLINE void find_albedo(const ProjectedTriangle* t, const TriangleSurface* 
               right2 = (t->v[0] - t->v[1]) * t->inverse_area;
   const float below1 = (t->u[0] - t->u[2]) * t->inverse_area,
               below2 = (t->u[1] - t->u[0]) * t->inverse_area;
-  const Uv at = {CLPV_BLEND(w, corner, uv[0]), CLPV_BLEND(w, corner, uv[1])};
+  const Uv at = {uv_at(w, corner, 0), uv_at(w, corner, 1)};
   const Uv right = {across * (right1 * u1 + right2 * u2), across * (right1 * v1 + right2 * v2)};
   const Uv below = {(realW)(below1 * u1 + below2 * u2), (realW)(below1 * v1 + below2 * v2)};
   Vec factor;

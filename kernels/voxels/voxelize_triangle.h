@@ -119,13 +119,8 @@ CLPV_INLINE realW voxel_depth(const ProjectedTriangle* t, const float u, const f
   return not_before < farthest ? not_before : farthest;
 }
 
-// Barycentric weights of the second and third corner, clamped to the triangle.
-typedef struct {
-  realW w1, w2;
-} BarycentricWeights;
-
-static inline BarycentricWeights voxel_weights(const ProjectedTriangle* t, const realW u,
-                                               const realW v) {
+// Weights of W samples, clamped to the triangle.
+static inline Vec voxel_weights(const ProjectedTriangle* t, const realW u, const realW v) {
   const realW from = u - t->u[0], row = v - t->v[0];
   realW w1 = (from * (t->v[2] - t->v[0]) - row * (t->u[2] - t->u[0])) * t->inverse_area;
   realW w2 = (row * (t->u[1] - t->u[0]) - from * (t->v[1] - t->v[0])) * t->inverse_area;
@@ -133,24 +128,17 @@ static inline BarycentricWeights voxel_weights(const ProjectedTriangle* t, const
   w1 = w1 < ONE ? w1 : ONE;
   w2 = w2 > ZERO ? w2 : ZERO;
   w2 = w2 < ONE - w1 ? w2 : ONE - w1;
-  const BarycentricWeights weights = {w1, w2};
-  return weights;
+  return (Vec){ONE - w1 - w2, w1, w2};
 }
-
-// Vertex attribute `field`, interpolated between corners; a constant one stays that constant.
-#define CLPV_BLEND(weights, corner, field)                                         \
-  ((corner)[0]->field + (weights).w1 * ((corner)[1]->field - (corner)[0]->field) + \
-   (weights).w2 * ((corner)[2]->field - (corner)[0]->field))
 
 // Mask of those samples where the alpha of a masked material reaches its cutoff: no hole.
 CLPV_INLINE intW voxel_solid(const ProjectedTriangle* t, __global const ClpvVertex* const corner[3],
                              __global const ClpvMaterial* material, __global const float4* textures,
                              __global const uint* texels, const float u, const float v) {
-  const BarycentricWeights w =
-      voxel_weights(t, u + 0.5f + to_realW(lane_numbers()), (realW)(v + 0.5f));
-  const Uv uv = {CLPV_BLEND(w, corner, uv[0]), CLPV_BLEND(w, corner, uv[1])};
+  const Vec w = voxel_weights(t, u + 0.5f + to_realW(lane_numbers()), (realW)(v + 0.5f));
+  const Uv uv = {uv_at(w, corner, 0), uv_at(w, corner, 1)};
   const uintW finest = (uintW)(material->texture * CLPV_TEXTURE_LEVELS);
-  const realW alpha = material->base_colour[3] * CLPV_BLEND(w, corner, colour[3]) *
+  const realW alpha = material->base_colour[3] * colour_at(w, corner, 3) *
                        sample_alpha(textures, texels, finest, uv);
   return alpha >= material->alpha_cutoff;
 }

@@ -75,7 +75,7 @@ bool cascades_meet(const SceneData& scene, const glm::vec3& eye, int count, doub
 bool reaches(const ClpvGrid& grid, const glm::dvec3& position) {
   const glm::dvec3 off =
       glm::abs(position - glm::dvec3(grid.middle[0], grid.middle[1], grid.middle[2]));
-  return glm::all(glm::lessThan(off, glm::dvec3(CLPV_GRID_REACH(grid.n) * double{grid.cell})));
+  return glm::all(glm::lessThan(off, glm::dvec3(grid_reach(grid.n) * double{grid.cell})));
 }
 
 }  // namespace clpv

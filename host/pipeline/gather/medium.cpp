@@ -35,8 +35,7 @@ MediumLight::MediumLight(Session& session, const Basis& basis, const ClpvMedium&
       add_(session, medium_source(basis, options), "medium_add") {}
 
 void MediumLight::reserve(const ClpvView& view) {
-  const std::size_t plane =
-      CLPV_PLANE_SIZE_OF(std::size_t{medium_pixels(view.width)}, medium_pixels(view.height));
+  const std::size_t plane = pixel_plane_size(medium_pixels(view.width), medium_pixels(view.height));
   if (plane == plane_) return;
   plane_ = plane;
   session_.reserve(ends_, plane * sizeof(cl_float), "ends of rays in the medium");

@@ -20,7 +20,7 @@ int layers(int step) {
 /// Rows of all layers.
 unsigned near_rows(unsigned height, int step) {
   const unsigned rows = near_pixels(height, step);
-  return layers(step) == 1 ? rows : CLPV_PLANE_SECOND_OF(rows) + rows;
+  return layers(step) == 1 ? rows : second_plane_row(rows) + rows;
 }
 
 unsigned tiles_down(unsigned rows) {
@@ -126,9 +126,9 @@ void NearField::upload_tree() {
 }
 
 void NearField::reserve(const ClpvView& view) {
-  const std::size_t width = near_pixels(view.width, options_.step),
-                    height = near_rows(view.height, options_.step);
-  const std::size_t numbers = CLPV_PLANE_SIZE_OF(width, height) * sizeof(cl_float);
+  const unsigned width = near_pixels(view.width, options_.step),
+                 height = near_rows(view.height, options_.step);
+  const std::size_t numbers = std::size_t{pixel_plane_size(width, height)} * sizeof(cl_float);
   if (width == width_ && height == height_) return;
   width_ = height_ = 0;  // until memory suffices
   session_.reserve(points_, CLPV_NEAR_PLANES * numbers, "points of the near field");
@@ -185,7 +185,7 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
   reserve(view);
   const unsigned width = near_pixels(view.width, options_.step),
                  height = near_rows(view.height, options_.step);
-  const cl::NDRange with_border(items_along(session_, CLPV_PLANE_PITCH_OF(width)),
+  const cl::NDRange with_border(items_along(session_, pixel_plane_pitch(width)),
                                 height + 2 * CLPV_PLANE_ROWS);
   PixelKernels& pixels = pixel_kernels(camera.points());
   pixels.first

@@ -106,8 +106,8 @@ void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& g
                             const Volume& volume) {
   const bool light = kind == Kind::light;
   const unsigned step = stride;
-  const std::size_t width = CLPV_TAKEN(surface.view.width, step),
-                    height = CLPV_TAKEN(surface.view.height, step), texels = width * height;
+  const std::size_t width = taken_texels(surface.view.width, step),
+                    height = taken_texels(surface.view.height, step), texels = width * height;
   if (texels == 0) return;
   reserve(texels);
   const bool points = surface.position.exists();

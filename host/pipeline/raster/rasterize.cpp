@@ -288,14 +288,14 @@ void Rasterizer::rasterize_camera(Surface& surface) {
   if (scene_.triangle_count == 0) return clear(surface);
   find_visible({view, Kind::camera});
   const bool emissive = has_emissive && scene_.emissive;
-  Kernel& kernel = resolve({.orthographic = view.orthographic != 0,
-                            .from_light = false,
-                            .paper = surface.format == RsmFormat::paper,
-                            .emissive = emissive});
-  kernel.set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
-             scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour);
-  if (emissive) kernel.add(surface.emissive);
-  kernel.launch(items_of(session_, view), pixel_group(session_));
+  resolve({.orthographic = view.orthographic != 0,
+           .from_light = false,
+           .paper = surface.format == RsmFormat::paper,
+           .emissive = emissive})
+      .set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
+           scene_.texels, surface.depth, surface.normal, surface.colour,
+           emissive ? surface.emissive : surface.colour)
+      .launch(items_of(session_, view), pixel_group(session_));
 }
 
 void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {

@@ -21,18 +21,13 @@ std::size_t directions_of(int parts) {
   return kSweepBins * parts * parts;
 }
 
-/// Numbers of one plane buffer.
-std::size_t plane_numbers(int grid) {
-  return CLPV_SWEEP_BORDERED_PLANE_OF(std::size_t(grid));
-}
-
 /// Coarser cells that the border of a finer cascade interpolates. `offset`: offset_in_coarser().
 ClpvSweepHalo halo_of(int grid, const std::array<int, 3>& offset) {
   const auto lower = [](int u) {
     return (u - 1) >> 1;
   };  // CLPV_LOWER of kernels/sweep/coarse_to_fine.h
   ClpvSweepHalo halo{};
-  halo.side = CLPV_SWEEP_HALO_SIDE_OF(grid);
+  halo.side = halo_side(grid);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     halo.first[axis] = lower(offset[axis] - 1);
     halo.layers[2 * axis] = lower(offset[axis] - 1);
@@ -43,8 +38,7 @@ ClpvSweepHalo halo_of(int grid, const std::array<int, 3>& offset) {
 
 /// Bytes of the halo light that a cascade stores for the next finer one.
 std::size_t halo_bytes(const SweepOptions& options, int parts) {
-  const std::size_t side = CLPV_SWEEP_HALO_SIDE_OF(options.grid);
-  return 3 * 3 * directions_of(parts) * CLPV_SWEEP_HALO_FACE_OF(side) *
+  return 3 * 3 * directions_of(parts) * halo_face_size(halo_side(options.grid)) *
          number_bytes(options.format.storage);
 }
 
@@ -72,19 +66,19 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
               "sweep_source"),
       collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals()),
                "sweep_collect") {
-  const std::size_t plane = plane_numbers(options.grid) * sizeof(float);
+  const std::size_t plane = bordered_plane_size(options.grid) * sizeof(float);
   const std::size_t ordinates =
       3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
   bins_ = session.upload(sweep_bin_table(options.grid), "bins to sweep");
   sources_ = volumes_.make(2 * 3 * basis.size(), "sources of the sweep");
-  lit_ =
-      zeroed_buffer(session, 2 * CLPV_SWEEP_VOLUME_OF(std::size_t(options.grid)) / volumes_.lanes(),
-                    "lit rows of the sweep");
+  lit_ = zeroed_buffer(session, 2 * sweep_volume_size(options.grid) / volumes_.lanes(),
+                       "lit rows of the sweep");
   swept_ = volumes_.make(3 * kSweepBins, "sums of the sweep");
   plane_buffer_ = zeroed_buffer(session, (whole_bins() ? 1 : 2) * ordinates * plane,
                                 "plane buffer of the sweep");
   border_ = zeroed_buffer(
-      session, 2 * ordinates * plane_numbers(options.grid) * number_bytes(options.format.storage),
+      session,
+      2 * ordinates * bordered_plane_size(options.grid) * number_bytes(options.format.storage),
       "boundary condition of the sweep");
   if (options.blocking) {
     find_closed_links_.emplace(session, volumes_.program("sweep/closed_links.cl"),
@@ -92,9 +86,8 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
     transmittance_.emplace(
         session, volumes_.program("sweep/sweep_links.cl", sweep_links_literals(basis, transport)),
         "sweep_links");
-    closed_ = zeroed_buffer(
-        session, CLPV_SWEEP_BORDERED_VOLUME_OF(std::size_t(options.grid)) * sizeof(cl_uint),
-        "closed links of the sweep");
+    closed_ = zeroed_buffer(session, bordered_volume_size(options.grid) * sizeof(cl_uint),
+                            "closed links of the sweep");
   }
   if (options.medium)
     medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
@@ -285,7 +278,7 @@ bool Sweeper::light_border(bool all_directions, const SweepInput& input) {
   Kernel& kernel = directions.border ? *directions.border : *directions.sky_border;
   // A sweep by planes reads the plane upstream of the grid among the odd ones.
   const cl_int upstream =
-      whole_bins() ? 0 : 3 * directions_of(directions.parts) * plane_numbers(options_.grid);
+      whole_bins() ? 0 : 3 * directions_of(directions.parts) * bordered_plane_size(options_.grid);
   if (directions.border) {
     const std::array<int, 3> offset = offset_in_coarser(input.grids[c + 1], input.grids[c]);
     kernel.set(bins_, directions.table, directions_in(c + 1).halo_light,
@@ -313,7 +306,10 @@ void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSwee
     directions.sweep.set(bins_, directions.table, directions.coefficients, directions.means,
                          sources_, lit_, cascades_[cascade].links, border_, halo, plane_buffer_,
                          swept_, directions.halo_light, last);
-    if (medium_) medium_->add_to(directions.sweep, cascade, scattered);
+    if (medium_)
+      medium_->add_to(directions.sweep, cascade, scattered);
+    else
+      directions.sweep.add(directions.table, sources_);  // not read
   };
   if (whole_bins()) {
     set(lit ? 0 : 1);
@@ -330,7 +326,8 @@ void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSwee
 
 /// Zeroes the boundary condition, which sweep_plane always reads.
 void Sweeper::darken_border(const Directions& directions) {
-  const std::size_t planes = 3 * directions_of(directions.parts) * plane_numbers(options_.grid);
+  const std::size_t planes =
+      3 * directions_of(directions.parts) * bordered_plane_size(options_.grid);
   session_.fill_zero(border_, 2 * planes * number_bytes(options_.format.storage));
   session_.fill_zero(plane_buffer_, 2 * planes * sizeof(float));
 }

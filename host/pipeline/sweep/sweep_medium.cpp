@@ -43,7 +43,7 @@ SweepMedium::SweepMedium(Session& session, const SweepVolumes& volumes, const Cl
       scatter_swept_(session, scattering_program(volumes, medium), "scatter_swept"),
       bins_(session.upload(mean_directions(), "mean directions of bins")),
       of_lights_(volumes.make(kSourceVolumes, "light of lights that the medium scatters")) {
-  const std::size_t numbers = 3 * CLPV_SWEEP_PITCH_OF(std::size_t(grid)) + CLPV_SWEEP_FIRST;
+  const std::size_t numbers = 3 * bordered_pitch(grid) + CLPV_SWEEP_FIRST;
   for (std::size_t c = 0; c < cascades; ++c)
     inside_.push_back(zeroed_buffer(session, numbers * sizeof(float), "cells in the medium"));
 }

@@ -29,7 +29,7 @@ std::vector<ClpvSweepBin> sweep_bin_table(int grid) {
       entry.links[k] = links.volume(bin.axis, bin.offset[k]);
     // Volumes across z serve bins across y with plane and row exchanged.
     entry.transposed = bin.axis == 0 ? 1 : 0;
-    entry.plane = CLPV_SWEEP_PLANE_OF(grid), entry.row = CLPV_SWEEP_ROW_OF(grid);
+    entry.plane = sweep_plane_size(grid), entry.row = sweep_row_size(grid);
     if (bin.axis == 1) std::swap(entry.plane, entry.row);
     table.push_back(entry);
   }
@@ -74,7 +74,7 @@ void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedi
 }
 
 std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& grid) {
-  const int n = static_cast<int>(grid.n), pitch = CLPV_SWEEP_PITCH_OF(n);
+  const int n = static_cast<int>(grid.n), pitch = bordered_pitch(n);
   std::vector<float> inside(3 * std::size_t(pitch) + CLPV_SWEEP_FIRST, 0.0f);
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = -1; i <= n; ++i) {

@@ -23,7 +23,7 @@ void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedi
                double cell);
 
 /// Separable cell coverage by the medium's box, in [0, 1]; multiply x, y and z. Three rows of
-/// CLPV_SWEEP_PITCH_OF(n) numbers, cell i at CLPV_SWEEP_FIRST + i, with the halo's cells.
+/// bordered_pitch(n) numbers, cell i at CLPV_SWEEP_FIRST + i, with the halo's cells.
 std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& grid);
 
 /// part_means() without the coefficients that no direction of a bin depends on (they belong to

@@ -35,7 +35,7 @@ void SweepVolumes::launch(Kernel& kernel, int channels) const {
 
 Buffer SweepVolumes::make(std::size_t count, const char* what) const {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-  const std::size_t numbers = count * CLPV_SWEEP_VOLUME_OF(std::size_t(grid_));
+  const std::size_t numbers = count * sweep_volume_size(grid_);
   if (numbers > kMost)
     throw TooLarge(
         Error(ExitCode::device, "unsupported: {} of {} numbers; kernels address at most {}", what,
