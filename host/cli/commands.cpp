@@ -179,6 +179,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.fallthrough();
   app.parse_complete_callback([&] { set_log(shared); });
   for (const Command& command : commands) command.add(app, shared);
+  if (shared.additions.command != nullptr) shared.additions.command(app, shared);
   add_prepare(app, shared);
   for (CLI::App* command : app.get_subcommands({})) {
     const std::string name = command->get_name();
