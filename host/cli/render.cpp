@@ -113,7 +113,7 @@ void run(const Options& options, const Shared& shared) {
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
   std::map<std::string, std::string> metadata = metadata_of(described);
-  if (std::ranges::count(options.views, Show::indirect) > 0)  // for `compare --suite`
+  if (std::ranges::count(options.views, Show::indirect) > 0)  // as of its ground truth
     metadata[kViewHash] = view_hash(scene, camera, resolved.width, resolved.height);
   write_images(frame, options, request.exposure_of(scene), metadata);
   if (!options.stats.empty()) {
