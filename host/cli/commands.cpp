@@ -145,10 +145,12 @@ Ranks& Shared::ranks() {
 
 std::span<const Command> all_commands() {
   static constexpr Command kCommands[] = {
-      {"devices", add_devices}, {"render", add_render},   {"sequence", add_sequence},
-      {"query", add_query},     {"bake", add_bake},       {"check", add_check},
-      {"compare", add_compare}, {"quality", add_quality}, {"pathtrace", add_pathtrace},
-      {"basis", add_basis},     {"bench", add_bench},     {"report", add_report},
+      {"devices", "Verify", add_devices},   {"render", "Look", add_render},
+      {"sequence", "Look", add_sequence},   {"query", "Look", add_query},
+      {"bake", "Look", add_bake},           {"check", "Verify", add_check},
+      {"compare", "Look", add_compare},     {"quality", "Measure", add_quality},
+      {"pathtrace", "Look", add_pathtrace}, {"basis", "Measure", add_basis},
+      {"bench", "Measure", add_bench},      {"report", "Measure", add_report},
   };
   return kCommands;
 }
@@ -178,21 +180,12 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.require_subcommand(1);
   app.fallthrough();
   app.parse_complete_callback([&] { set_log(shared); });
-  for (const Command& command : commands) command.add(app, shared);
+  for (const Command& command : commands) {
+    command.add(app, shared);
+    app.get_subcommand(command.name)->group(command.group);
+  }
   if (shared.additions.command != nullptr) shared.additions.command(app, shared);
   add_prepare(app, shared);
-  for (CLI::App* command : app.get_subcommands({})) {
-    const std::string name = command->get_name();
-    const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
-      return std::ranges::find(names, name) != names.end();
-    };
-    if (is_one_of({"render", "sequence", "query", "bake", "pathtrace", "compare"}))
-      command->group("Look");
-    else if (is_one_of({"quality", "bench", "basis", "report"}))
-      command->group("Measure");
-    else if (is_one_of({"devices", "check"}))
-      command->group("Verify");
-  }
   reject_ranks_except(app, {"quality", "sequence", "pathtrace"});
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad "
