@@ -3,13 +3,14 @@
 
 #include "baselines/quality_baselines.hpp"
 #include "peers/peers.hpp"
+#include "search/normals.hpp"
 
 namespace clpv {
 
 Additions lab_additions() {
   static const std::vector<bench::Suite> suites{
       bench::native_suite(), bench::rasterize_suite({"opengl", bench::rasterize_gl_job})};
-  return {std::make_shared<QualityBaselines>(), &suites};
+  return {std::make_shared<QualityBaselines>(), &suites, add_normals};
 }
 
 }  // namespace clpv

@@ -10,6 +10,7 @@ about y, `slit` has a slit of half a cell in a wall, `door` has two rooms with a
 one of them open to the sun, `corner` has two walls and a floor, `legs` a floor on four thin legs.
 Each is lit by a sun, an even sky or a lamp outside.
 """
+import itertools
 import json
 import math
 import pathlib
@@ -98,6 +99,20 @@ def shapes():
     yield "door", two_rooms()
     yield "corner", box(LOWER, UPPER, True, [(0, 1), (1, 1), (2, 1)])
     yield "legs", legs()
+
+
+def inner_points(shape, count):
+    """(point, normal) on the faces inside, `count`^2 a face. Legs have a floor only."""
+    degrees = TURN if shape == "turned" else 0
+    for axis, side, k in itertools.product(range(3), (0, 1), range(count**2)):
+        if shape == "legs" and (axis, side) != (1, 0) or shape == "corner" and side == 1:
+            continue
+        p, n = [0.0] * 3, [0] * 3
+        p[axis], n[axis] = (LOWER, UPPER)[side][axis], 1 - 2 * side
+        for along, i in (((axis + 1) % 3, k % count), ((axis + 2) % 3, k // count)):
+            low, high = LOWER[along], UPPER[along]
+            p[along] = low + (high - low) * (i + 0.5) / count
+        yield turned([p, n], degrees)
 
 
 LIGHTS = {

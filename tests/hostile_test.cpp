@@ -224,7 +224,6 @@ TEST(HostileSurroundings, Outputs) {
   for (const std::string& command :
        {"render " + kCornell + " -o @/none/a.exr",
         "render " + kCornell + " -o @/out.exr --stats @/none/a.json",
-        "render " + kCornell + " -o @/out.exr --dump-normals @/none/a.json",
         std::string("bench ceilings --output @/none/a.json"),
         "pathtrace " + kCornell + " -o @/none/a.exr",
         "pathtrace " + kCornell + " -o @/out.exr --stats @/none/a.json",

@@ -435,7 +435,6 @@ TEST_F(Inputs, AreReplacedByNoOutput) {
   const std::string rendered = "render" + scene;
   const std::vector<std::string> commands{
       rendered + "-o o.exr --stats o.exr",
-      rendered + "-o o.exr --dump-normals ./o.exr",
       rendered + "-o o.exr --stats my.json",
       rendered + "-o o.exr --stats model.gltf",
       rendered + "-o o.exr --stats hard.json",

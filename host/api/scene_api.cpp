@@ -117,34 +117,41 @@ void Scene::set_medium(const std::optional<Medium>& medium) {
 }
 
 int Scene::add_mesh(const Mesh& mesh, const Transform& transform) {
-  const std::lock_guard lock(contents_->mutex);
-  const int number = contents_->moving.add_mesh(mesh, transform);
-  contents_->changed(true);
+  int number = 0;
+  contents_->change_meshes([&](AddedMeshes& meshes, SceneData& scene) {
+    number = meshes.add(mesh, transform, scene);
+    return true;
+  });
   return number;
 }
 
 int Scene::add_instance(int mesh, const Transform& transform) {
-  const std::lock_guard lock(contents_->mutex);
-  const int number = contents_->moving.add_instance(mesh, transform);
-  contents_->changed(true);
+  int number = 0;
+  contents_->change_meshes([&](AddedMeshes& meshes, SceneData& scene) {
+    number = meshes.add_instance(mesh, transform, scene);
+    return true;
+  });
   return number;
 }
 
 void Scene::remove_mesh(int mesh) {
-  const std::lock_guard lock(contents_->mutex);
-  contents_->moving.remove_mesh(mesh);
-  contents_->changed(true);
+  contents_->change_meshes([&](AddedMeshes& meshes, SceneData& scene) {
+    meshes.remove(mesh, scene);
+    return true;
+  });
 }
 
 void Scene::set_positions(int mesh, std::span<const std::array<float, 3>> positions,
                           std::span<const std::array<float, 3>> normals) {
-  const std::lock_guard lock(contents_->mutex);
-  contents_->changed(contents_->moving.set_positions(mesh, positions, normals));
+  contents_->change_meshes([&](AddedMeshes& meshes, SceneData& scene) {
+    return meshes.set_positions(mesh, positions, normals, scene);
+  });
 }
 
 void Scene::set_transform(int mesh, const Transform& transform) {
-  const std::lock_guard lock(contents_->mutex);
-  contents_->changed(contents_->moving.set_transform(mesh, transform));
+  contents_->change_meshes([&](AddedMeshes& meshes, SceneData& scene) {
+    return meshes.set_transform(mesh, transform, scene);
+  });
 }
 
 void Scene::save(const std::filesystem::path& path) const {

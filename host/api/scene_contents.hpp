@@ -2,6 +2,7 @@
 // Data of a Scene, shared by its copies and their renderers.
 #pragma once
 
+#include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <vector>
@@ -28,10 +29,10 @@ struct Scene::Contents {
   unsigned geometries = 0;  ///< changes of meshes
   unsigned changes = 0;     ///< of anything
 
-  /// Counts a change of meshes.
-  void changed(bool rebuilds_frames) {
-    ++geometries, ++changes;
-    if (rebuilds_frames) ++rebuilds;
+  void change_meshes(const MovingScene::MeshChange& change) {
+    const std::lock_guard lock(mutex);
+    const bool rebuilds_frames = moving.change_meshes(change);
+    ++geometries, ++changes, rebuilds += rebuilds_frames ? 1 : 0;
   }
 
   Contents() = default;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "bake/ktx2.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "support/bytes.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bake {
@@ -13,45 +15,20 @@ namespace {
 constexpr std::uint32_t kFormatRgbaHalf = 97;  // VK_FORMAT_R16G16B16A16_SFLOAT
 constexpr int kShVolumes = 7;
 
-class Bytes {
- public:
-  template <typename T>
-  Bytes& add(T value) {
-    static_assert(std::endian::native == std::endian::little);
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-    return *this;
-  }
-  Bytes& add(const std::string& text) {
-    bytes_ += text;
-    return *this;
-  }
-  Bytes& align(std::size_t alignment) {
-    bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment, '\0');
-    return *this;
-  }
-  std::size_t size() const { return bytes_.size(); }
-  std::string take() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-};
-
 /// Data format descriptor of four signed linear halves (Khronos Data Format 1.3, basic block).
 std::string descriptor() {
-  constexpr std::uint8_t kModelRgbsda = 1, kBt709 = 1, kLinear = 1, kFloatSigned = 0xC0;
-  Bytes block;
-  block.add<std::uint32_t>(4 + 24 + 4 * 16).add<std::uint32_t>(0);  // total size; vendor, type
-  block.add<std::uint16_t>(2).add<std::uint16_t>(24 + 4 * 16);      // version, size
-  block.add(kModelRgbsda).add(kBt709).add(kLinear).add<std::uint8_t>(0);
-  block.add<std::uint32_t>(0);                         // texel block of 1 x 1 x 1
-  block.add<std::uint32_t>(8).add<std::uint32_t>(0);   // bytes of plane 0
+  constexpr std::uint8_t kModelRgbsda = 1, kBt709 = 1, kLinear = 1, kFloatSigned = 0xC0, kNone = 0;
+  constexpr std::uint16_t kVersion = 2, kSize = 24 + 4 * 16;
+  std::string block;
+  append_little(block, 4u + kSize, 0u);  // total size; vendor, type
+  append_little(block, kVersion, kSize, kModelRgbsda, kBt709, kLinear, kNone);
+  append_little(block, 0u, 8u, 0u);                    // texel block of 1 x 1 x 1; bytes of plane 0
   constexpr std::uint8_t kChannels[] = {0, 1, 2, 15};  // red, green, blue, alpha
   for (std::uint16_t i = 0; i < 4; ++i) {
-    block.add<std::uint16_t>(static_cast<std::uint16_t>(16 * i)).add<std::uint8_t>(15);
-    block.add<std::uint8_t>(kChannels[i] | kFloatSigned).add<std::uint32_t>(0);
-    block.add(-1.0f).add(1.0f);
+    append_little(block, static_cast<std::uint16_t>(16 * i), std::uint8_t{15},
+                  static_cast<std::uint8_t>(kChannels[i] | kFloatSigned), 0u, -1.0f, 1.0f);
   }
-  return block.take();
+  return block;
 }
 
 Texture3d cubes(const ProbeFormat& format, const BakedProbes& baked, float factor) {
@@ -98,19 +75,7 @@ Texture3d harmonics_atlas(const ProbeFormat& format, const BakedProbes& baked, f
 }  // namespace
 
 std::uint16_t half_of(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  const auto sign = static_cast<std::uint16_t>(bits >> 16 & 0x8000);
-  const float size = std::abs(value);
-  if (std::isnan(value)) return 0x7e00;
-  if (size == 0) return sign;
-  if (size >= 65520) return sign | 0x7c00;
-  int exponent = 0;
-  std::frexp(size, &exponent);         // size = m 2^exponent, m in [1/2, 1)
-  exponent = std::max(exponent, -13);  // below 2^-14: steps of 2^-24
-  const double steps = std::ldexp(double{size}, 11 - exponent);
-  const auto rounded = static_cast<std::uint32_t>(std::nearbyint(steps));  // ties to even
-  return sign |
-         static_cast<std::uint16_t>(rounded + (static_cast<std::uint32_t>(exponent + 13) << 10));
+  return std::bit_cast<std::uint16_t>(Eigen::half(value));
 }
 
 glm::uvec3 texture_size(const ProbeFormat& format, const ProbeGrid& grid) {
@@ -164,21 +129,23 @@ std::string ktx2_bytes(const Texture3d& texture, const std::string& writer) {
                     pairs_at = first + description.size(),
                     texels_at = (pairs_at + pair_size + kTexel - 1) / kTexel * kTexel,
                     size = texture.texels.size() * kTexel;
-  Bytes file;
-  file.add(std::string("\xABKTX 20\xBB\r\n\x1A\n"));
-  const auto add = [&file](std::size_t value) { file.add(static_cast<std::uint32_t>(value)); };
-  add(kFormatRgbaHalf), add(2);  // bytes of a number
-  add(texture.size.x), add(texture.size.y), add(texture.size.z);
-  add(0), add(1), add(1), add(0);  // layers, faces, levels, supercompression
-  add(first), add(description.size()), add(pairs_at), add(pair_size);
-  file.add<std::uint64_t>(0).add<std::uint64_t>(0);
-  file.add<std::uint64_t>(texels_at).add<std::uint64_t>(size).add<std::uint64_t>(size);
-  file.add(description);
+  std::string file("\xABKTX 20\xBB\r\n\x1A\n");
+  const auto add = [&file](auto... values) {
+    append_little(file, static_cast<std::uint32_t>(values)...);
+  };
+  add(kFormatRgbaHalf, 2);  // bytes of a number
+  add(texture.size.x, texture.size.y, texture.size.z);
+  add(0, 1, 1, 0);  // layers, faces, levels, supercompression
+  add(first, description.size(), pairs_at, pair_size);
+  append_little(file, std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{texels_at},
+                std::uint64_t{size}, std::uint64_t{size});
+  file += description;
   add(pair.size());
-  file.add(pair).align(kTexel);
+  file += pair;
+  file.resize(texels_at, '\0');
   for (const glm::vec4& texel : texture.texels)
-    for (int channel = 0; channel < 4; ++channel) file.add(half_of(texel[channel]));
-  return file.take();
+    for (int channel = 0; channel < 4; ++channel) append_little(file, half_of(texel[channel]));
+  return file;
 }
 
 }  // namespace clpv::bake

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Additions of another program to the commands: the lab (lab/README.md) adds methods to `quality`
-// and suites to `bench`.
+// Additions of another program to the commands: the lab (lab/README.md) adds methods to `quality`,
+// suites to `bench`, and commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,6 +16,7 @@
 
 namespace clpv {
 
+struct Shared;
 namespace bench {
 struct Suite;
 }
@@ -39,8 +40,9 @@ class QualityAddition {
 };
 
 struct Additions {
-  std::shared_ptr<QualityAddition> quality;           ///< null: none
-  const std::vector<bench::Suite>* suites = nullptr;  ///< null: none
+  std::shared_ptr<QualityAddition> quality;                  ///< null: none
+  const std::vector<bench::Suite>* suites = nullptr;         ///< null: none
+  void (*command)(CLI::App& app, Shared& shared) = nullptr;  ///< adds a command; null: none
 };
 
 }  // namespace clpv

@@ -18,30 +18,20 @@ constexpr double kMaxBytes = 1 << 30;  // of all coefficients, as 32-bit floats
 constexpr int kDefaultProbes = 16;     // along the longest edge
 constexpr double kInset = 0.125;       // of the default bounds, in spacings: off walls
 
-/// `count` numbers between commas. Throws Error(usage).
-template <typename Number>
-std::vector<Number> numbers_of(const std::string& option, std::string text, std::size_t count,
-                               const char* allowed) {
-  std::vector<Number> numbers;
-  const std::string given = text;
-  for (std::size_t end = 0; end != std::string::npos; text.erase(0, end + 1)) {
-    end = text.find(',');
-    const auto value = parse_number<Number>(trimmed(std::string_view(text).substr(0, end)));
-    if (value) numbers.push_back(*value);
-    if (!value || numbers.size() > count || end == std::string::npos) break;
-  }
-  const auto commas = static_cast<std::size_t>(std::ranges::count(given, ','));
-  if (numbers.size() != count || commas + 1 != count)
-    throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", option, given, allowed);
-  return numbers;
+/// Throws Error(usage).
+template <typename Number, std::size_t Count>
+std::array<Number, Count> numbers_of(const char* option, const std::string& text,
+                                     const char* allowed) {
+  if (const auto numbers = parse_numbers<Number, Count>(text)) return *numbers;
+  throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", option, text, allowed);
 }
 
 /// Sets the positions of the outermost probes.
 void set_bounds(const Options& options, const SceneData& scene, ProbeGrid& grid) {
   grid.lower = glm::dvec3(scene.lower), grid.upper = glm::dvec3(scene.upper);
   if (!options.bounds.empty()) {
-    const auto n = numbers_of<double>("--bounds", options.bounds, 6,
-                                      "six numbers between commas, the lower and the upper corner");
+    const auto n = numbers_of<double, 6>(
+        "--bounds", options.bounds, "six numbers between commas, the lower and the upper corner");
     grid.lower = {n[0], n[1], n[2]}, grid.upper = {n[3], n[4], n[5]};
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -63,7 +53,7 @@ ProbeGrid grid_of(const Options& options, const SceneData& scene, std::size_t nu
   const glm::dvec3 edges = grid.upper - grid.lower;
   std::array<double, 3> count{};
   if (!options.probes.empty()) {
-    const auto n = numbers_of<int>("--probes", options.probes, 3, "three numbers between commas");
+    const auto n = numbers_of<int, 3>("--probes", options.probes, "three numbers between commas");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (n[axis] < 1)
         throw Error(ExitCode::usage, "--probes: found {}, allowed: 1 or more along each axis",

@@ -26,12 +26,12 @@ struct Options {
 };
 
 glm::dvec3 unit_axis(const std::string& text) {
-  const glm::dvec3 axis = parse_dvec3(text, "--axis");
-  const double length = std::hypot(axis.x, axis.y, axis.z);
+  const auto [x, y, z] = parse_vector(text, "--axis");
+  const double length = std::hypot(x, y, z);
   if (!(length > 0) || !std::isfinite(length))
     throw Error(ExitCode::usage, "--axis: '{}' has length {}; allowed: a vector other than 0", text,
                 length);
-  return axis / length;
+  return glm::dvec3(x, y, z) / length;
 }
 
 std::vector<std::unique_ptr<Basis>> bases_of(const Options& options) {

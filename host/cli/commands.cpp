@@ -89,36 +89,17 @@ void reject_misspelt_option(const CLI::App& app) {
   }
 }
 
-/// Leaves the options of some groups to --help-all.
-class ShortHelp : public CLI::Formatter {
- public:
-  std::string make_help(const CLI::App* app, std::string name,
-                        CLI::AppFormatMode mode) const override {
-    short_ = mode == CLI::AppFormatMode::Normal;
-    std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
-    for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;)
-      text.erase(at, 1);  // left by empty groups
-    return text;
-  }
-
-  std::string make_group(std::string group, bool positional,
-                         std::vector<const CLI::Option*> options) const override {
-    if (short_ && group.starts_with(kMoreOptions)) return {};
-    return CLI::Formatter::make_group(std::move(group), positional, std::move(options));
-  }
-
-  std::string make_footer(const CLI::App* app) const override {
-    const auto more = std::ranges::count_if(app->get_options(), [](const CLI::Option* option) {
-      return option->get_group().starts_with(kMoreOptions);
-    });
-    if (more == 0 || !short_) return CLI::Formatter::make_footer(app);
-    return fmt::format("\n--help-all lists {} more option{}, by stage.\n{}", more,
-                       more == 1 ? "" : "s", CLI::Formatter::make_footer(app));
-  }
-
- private:
-  mutable bool short_ = true;  ///< --help, not --help-all
-};
+/// Leaves the options of some groups to --help-all, before `app` prints its help and ends.
+void shorten_help(CLI::App& app) {
+  const std::vector<CLI::Option*> rare = app.get_options(
+      [](CLI::Option* option) { return option->get_group().starts_with(kMoreOptions); });
+  for (CLI::Option* option : rare) app.remove_option(option);
+  const std::string footer = app.get_footer();
+  if (!rare.empty())
+    app.footer(fmt::format("--help-all lists {} more option{}, by stage.{}{}", rare.size(),
+                           rare.size() == 1 ? "" : "s", footer.empty() ? "" : "\n", footer));
+  for (CLI::App* command : app.get_subcommands()) shorten_help(*command);
+}
 
 /// Returns a message prefix like "rank 3 on node7: " if there are several ranks.
 std::string rank_prefix(const Shared& shared) {
@@ -145,10 +126,12 @@ Ranks& Shared::ranks() {
 
 std::span<const Command> all_commands() {
   static constexpr Command kCommands[] = {
-      {"devices", add_devices}, {"render", add_render},   {"sequence", add_sequence},
-      {"query", add_query},     {"bake", add_bake},       {"check", add_check},
-      {"compare", add_compare}, {"quality", add_quality}, {"pathtrace", add_pathtrace},
-      {"basis", add_basis},     {"bench", add_bench},     {"report", add_report},
+      {"devices", "Verify", add_devices},   {"render", "Look", add_render},
+      {"sequence", "Look", add_sequence},   {"query", "Look", add_query},
+      {"bake", "Look", add_bake},           {"check", "Verify", add_check},
+      {"compare", "Look", add_compare},     {"quality", "Measure", add_quality},
+      {"pathtrace", "Look", add_pathtrace}, {"basis", "Measure", add_basis},
+      {"bench", "Measure", add_bench},      {"report", "Measure", add_report},
   };
   return kCommands;
 }
@@ -156,7 +139,6 @@ std::span<const Command> all_commands() {
 void add_commands(CLI::App& app, Shared& shared, std::span<const Command> commands) {
   app.description("clpv: cascaded light propagation volumes in OpenCL");
   app.name("clpv");
-  app.formatter(std::make_shared<ShortHelp>());  // commands inherit it
   app.set_version_flag("--version", "clpv " + version(), "version of the program");
   app.set_help_flag("-h,--help", "this help");
   app.set_help_all_flag("--help-all", "help of all commands");
@@ -178,20 +160,12 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.require_subcommand(1);
   app.fallthrough();
   app.parse_complete_callback([&] { set_log(shared); });
-  for (const Command& command : commands) command.add(app, shared);
-  add_prepare(app, shared);
-  for (CLI::App* command : app.get_subcommands({})) {
-    const std::string name = command->get_name();
-    const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
-      return std::ranges::find(names, name) != names.end();
-    };
-    if (is_one_of({"render", "sequence", "query", "bake", "pathtrace", "compare"}))
-      command->group("Look");
-    else if (is_one_of({"quality", "bench", "basis", "report"}))
-      command->group("Measure");
-    else if (is_one_of({"devices", "check"}))
-      command->group("Verify");
+  for (const Command& command : commands) {
+    command.add(app, shared);
+    app.get_subcommand(command.name)->group(command.group);
   }
+  if (shared.additions.command != nullptr) shared.additions.command(app, shared);
+  add_prepare(app, shared);
   reject_ranks_except(app, {"quality", "sequence", "pathtrace"});
   app.footer(
       "Exit codes: 0 ok; 1 run-time failure (device memory, unwritable output); 2 usage; 3 bad "
@@ -216,8 +190,9 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
 namespace {
 
 /// Prints help, or a usage error. Returns the exit code.
-int answer(const CLI::App& app, const CLI::ParseError& error) {
+int answer(CLI::App& app, const CLI::ParseError& error) {
   std::ostringstream out, err;
+  if (error.get_name() == "CallForHelp") shorten_help(app);
   app.exit(error, out, err);
   print_text(out.str());
   if (!err.str().empty()) print_message("clpv: " + err.str());
@@ -227,6 +202,7 @@ int answer(const CLI::App& app, const CLI::ParseError& error) {
 /// Parses the command line and runs the command, or prints the help. Returns the exit code.
 int parse_and_run(CLI::App& app, int argc, const char* const* argv) {
   if (argc == 1) {
+    shorten_help(app);
     print_text(app.help());
     return 0;
   }

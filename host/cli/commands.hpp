@@ -25,7 +25,7 @@ struct Shared {
 };
 
 struct Command {
-  const char* name;
+  const char *name, *group;  ///< group: in --help
   void (*add)(CLI::App& app, Shared& shared);
 };
 

@@ -6,10 +6,8 @@
 
 #include "bench/compare_runs.hpp"
 #include "cli/commands.hpp"
-#include "cli/compare_suite.hpp"
 #include "cli/image_layer.hpp"
 #include "cli/options.hpp"
-#include "cli/quality_subjects.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "support/error.hpp"
@@ -21,7 +19,7 @@ namespace clpv {
 namespace {
 
 struct CompareOptions {
-  std::string a, b, layer, output, suite, truths;
+  std::string a, b, layer, output;
   float amplify = 15, exposure = 0;
   double fail_above = 0;  ///< 0: not given
 };
@@ -74,15 +72,6 @@ void compare_reports(const CompareOptions& options) {
 }
 
 void run(const CompareOptions& options) {
-  if (!options.suite.empty()) {
-    const std::filesystem::path truths = options.truths.empty()
-                                             ? quality_cache({}) / "references"
-                                             : std::filesystem::path(options.truths);
-    print_json(compare_suite(options.suite, truths, options.exposure).dump(2) + "\n");
-    return;
-  }
-  for (const auto& [name, value] : {std::pair{"A", &options.a}, {"B", &options.b}})
-    if (value->empty()) throw Error(ExitCode::usage, "{} is required without --suite", name);
   if (is_report(options.a) && is_report(options.b)) return compare_reports(options);
   if (options.fail_above > 0)
     throw Error(ExitCode::usage,
@@ -104,13 +93,16 @@ void add_compare(CLI::App& app, Shared&) {
   CLI::App* command = app.add_subcommand(
       "compare", "Errors of image A against ground truth B, or changes of report A against B");
   auto options = std::make_shared<CompareOptions>();
-  CLI::Option* a =
-      command->add_option("A", options->a,
-                          "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer or part. "
-                          "Or a report: JSON of bench, quality or --stats");
-  command->add_option("B", options->b,
-                      "ground truth of the same size, with a layer likewise. Or the earlier report "
-                      "of the same command");
+  command
+      ->add_option("A", options->a,
+                   "image: .exr, .png or .hdr; FILE.exr:LAYER names a layer or part. Or a report: "
+                   "JSON of bench, quality or --stats")
+      ->required();
+  command
+      ->add_option("B", options->b,
+                   "ground truth of the same size, with a layer likewise. Or the earlier report of "
+                   "the same command")
+      ->required();
   add(*command, "-o,--output", "FILE", options->output,
       "difference image |A-B| x amplify, .png or .exr");
   add_number(*command, "--amplify", "X", options->amplify, "factor of the difference image",
@@ -120,17 +112,7 @@ void add_compare(CLI::App& app, Shared&) {
       ->default_str("0");
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
-  CLI::Option* suite = add(
-      *command, "--suite", "DIR", options->suite,
-      "folder of images SCENE-CAMERA.exr of indirect light, by any renderer, in place of A and B; "
-      "with metadata clpv:view_hash, or in\n"
-      "a suite.json beside the truths (lab/docs/score.md)");
-  suite->excludes(a)->excludes("--output")->excludes("--layer");
-  add(*command, "--truths", "DIR", options->truths,
-      "folder of their ground truths SCENE-CAMERA-HASH.exr (default: "
-      "$XDG_CACHE_HOME/clpv/quality/references)")
-      ->needs(suite);
-  add_fail_above(*command, options->fail_above)->excludes("--output")->excludes(suite);
+  add_fail_above(*command, options->fail_above)->excludes("--output");
   command->footer(
       "Errors are over the colour channels (R, G and B; alpha is not compared), on the values as "
       "stored: linear in EXR\n"

@@ -23,54 +23,38 @@ namespace {
 // A smaller noise takes more paths than there may be; a larger one is none.
 constexpr double kMinNoise = 1e-9, kMaxNoise = 1e9;
 
-/// Empty if the text is not three comma-separated numbers.
-template <typename T>
-std::optional<glm::vec<3, T>> parse_three(std::string_view text) {
-  glm::vec<3, T> values;
-  for (int i = 0; i < 3; ++i) {
-    const std::size_t end = i < 2 ? text.find(',') : text.size();
-    if (end == std::string_view::npos) return std::nullopt;
-    const auto value = parse_number<T>(trimmed(text.substr(0, end)));
-    if (!value) return std::nullopt;
-    values[i] = *value;
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return values;
-}
-
 /// Parses a direction and an optional illuminance [lx].
 Light parse_sun(const std::string& text) {
-  const auto third = text.find(',', text.find(',', text.find(',') + 1) + 1);
   const bool has_lux = std::ranges::count(text, ',') == 3;
-  const auto lux = has_lux ? parse_number<double>(text.substr(third + 1)) : kSunIlluminance;
-  const auto direction = parse_three<double>(has_lux ? text.substr(0, third) : text);
-  if (!direction || !lux) {
+  const auto numbers =
+      parse_numbers<double, 4>(has_lux ? text : fmt::format("{},{}", text, kSunIlluminance));
+  if (!numbers) {
     throw Error(ExitCode::usage,
                 "--sun: found '{}', allowed: a direction and an illuminance [lx] like 1,-3,0.5,10",
                 text);
   }
   Light sun;
   sun.name = "sun";
-  sun.direction = {direction->x, direction->y, direction->z};
-  sun.intensity = {*lux, *lux, *lux};
+  std::copy_n(numbers->begin(), 3, sun.direction.begin());
+  sun.intensity.fill(numbers->back());
   return sun;
 }
 
 ClpvMedium parse_medium(const std::string& text) {
   std::string all = text;
   for (auto commas = std::ranges::count(text, ','); commas < 2; ++commas) all += ",0";
-  const auto numbers = parse_three<double>(all);
+  const auto numbers = parse_numbers<double, 3>(all);
   const auto coefficient = [](double value) { return value >= 0 && value <= bounds::kExtinction; };
-  if (!numbers || !coefficient(numbers->x) || !coefficient(numbers->y) ||
-      !(std::abs(numbers->z) <= bounds::kAnisotropy)) {
+  if (!numbers || !coefficient((*numbers)[0]) || !coefficient((*numbers)[1]) ||
+      !(std::abs((*numbers)[2]) <= bounds::kAnisotropy)) {
     throw Error(
         ExitCode::usage,
         "--medium: found '{}', allowed: scattering and absorption, 0..{:.0f} /m, and anisotropy, "
         "-{}..{}, like 0.05,0.01,0.6",
         text, bounds::kExtinction, bounds::kAnisotropy, bounds::kAnisotropy);
   }
-  Medium medium{.anisotropy = numbers->z};
-  medium.scattering.fill(numbers->x), medium.absorption.fill(numbers->y);
+  Medium medium{.anisotropy = (*numbers)[2]};
+  medium.scattering.fill((*numbers)[0]), medium.absorption.fill((*numbers)[1]);
   return scene_medium(medium, rejected_in("--medium"));
 }
 
@@ -109,9 +93,8 @@ CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& sec
       ->default_str(fmt::format("{}", seconds));
 }
 
-glm::dvec3 parse_dvec3(const std::string& text, const char* option) {
-  const auto v = parse_three<double>(text);
-  if (v) return *v;
+Vec3 parse_vector(const std::string& text, const std::string& option) {
+  if (const auto v = parse_numbers<double, 3>(text)) return *v;
   throw Error(ExitCode::usage, "{}: '{}' is not three finite numbers between commas, like 0,0.5,-1",
               option, text);
 }
@@ -190,12 +173,7 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
   const auto vector = [&](const std::string& name, const char* type, auto& to, const char* help) {
     return command
         .add_option_function<std::string>(
-            name,
-            [&to, name](const std::string& text) {
-              const glm::dvec3 v = parse_dvec3(text, name.c_str());
-              to = Vec3{v.x, v.y, v.z};
-            },
-            help)
+            name, [&to, name](const std::string& text) { to = parse_vector(text, name); }, help)
         ->type_name(type)
         ->group(kGroup);
   };

@@ -110,7 +110,7 @@ CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& sec
 
 /// Parses three comma-separated numbers. Throws Error(usage) with the option, the text and the
 /// allowed form.
-glm::dvec3 parse_dvec3(const std::string& text, const char* option);
+Vec3 parse_vector(const std::string& text, const std::string& option);
 
 /// Prefix of the groups of options that --help leaves to --help-all.
 inline constexpr std::string_view kMoreOptions = "More: ";

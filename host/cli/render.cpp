@@ -14,7 +14,6 @@
 #include "image/image_io.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "quality/ground_truth.hpp"
-#include "quality/normal_weights.hpp"
 #include "scene/load.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
@@ -32,7 +31,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   RenderRequest request;
-  std::string output, stats, normals;
+  std::string output, stats;
   int frames = 5;
   double time = 0;
   std::vector<Show> views = {Show::full};
@@ -53,7 +52,6 @@ std::vector<NamedFile> outputs_of(const Options& options) {
     outputs.push_back({"--output", png_path(options.output, view, several)});
   if (!several) outputs.resize(1);
   if (options.stats != "-") outputs.push_back({"--stats", options.stats});
-  outputs.push_back({"--dump-normals", options.normals});
   return outputs;
 }
 
@@ -115,11 +113,9 @@ void run(const Options& options, const Shared& shared) {
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
   std::map<std::string, std::string> metadata = metadata_of(described);
-  if (std::ranges::count(options.views, Show::indirect) > 0)  // for `compare --suite`
+  if (std::ranges::count(options.views, Show::indirect) > 0)  // as of its ground truth
     metadata[kViewHash] = view_hash(scene, camera, resolved.width, resolved.height);
   write_images(frame, options, request.exposure_of(scene), metadata);
-  if (!options.normals.empty())
-    write_normal_weights(options.normals, normal_weights(session, scene, camera, resolved));
   if (!options.stats.empty()) {
     const std::string text = stats.to_json(session, described).dump(2) + "\n";
     if (options.stats == "-")
@@ -154,8 +150,6 @@ void add_render(CLI::App& app, Shared& shared) {
   add_number(*command, "--frames", "N", options->frames,
              "number of timed frames for --stats, after a warm-up frame; it has their medians",
              {1, 1000});
-  add(*command, "--dump-normals", "FILE.json", options->normals,
-      "output file for lit surface normals, weighted by reflected flux, for a search for centres");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "image/image_header.hpp"
+#include "support/bytes.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 
@@ -66,7 +67,7 @@ constexpr std::array<FixedSize, 24> kFixedSizes = {{
 constexpr std::array<std::int64_t, 10> kChunkRows = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
 std::int32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
-  return static_cast<std::int32_t>(little_endian_word(bytes, at));
+  return little_endian<std::int32_t>(bytes, at);
 }
 
 /// Reader of bytes that rejects reads beyond their end.
@@ -89,7 +90,7 @@ class Cursor {
     return taken;
   }
 
-  std::uint32_t number(std::string_view place) { return little_endian_word(take(4, place), 0); }
+  std::uint32_t number(std::string_view place) { return little_endian(take(4, place), 0); }
 
   /// Returns the text up to the next NUL and advances past the NUL.
   std::string name(std::string_view place) {
@@ -192,7 +193,7 @@ ExrWindow window_at(std::span<const unsigned char> bytes) {
 Chromaticities chromaticities_at(std::span<const unsigned char> bytes) {
   Chromaticities found;
   for (std::size_t i = 0; i < found.size(); ++i)
-    found[i] = double{std::bit_cast<float>(little_endian_word(bytes, 4 * i))};
+    found[i] = double{std::bit_cast<float>(little_endian(bytes, 4 * i))};
   return found;
 }
 
@@ -211,8 +212,8 @@ void store_value(ExrPart& part, const Cursor& file, std::string_view place, std:
   } else if (name == "name" && type == "string") {
     part.name.assign(bytes.begin(), bytes.end());
   } else if (name == "tiles" && type == "tiledesc") {
-    part.tile_width = little_endian_word(bytes, 0);
-    part.tile_height = little_endian_word(bytes, 4);
+    part.tile_width = little_endian(bytes, 0);
+    part.tile_height = little_endian(bytes, 4);
   } else if (name == "compression" && type == "compression") {
     part.rows = kChunkRows[std::min<std::size_t>(bytes[0], kChunkRows.size() - 1)];
     part.compressed = bytes[0] != 0;
@@ -287,8 +288,7 @@ void check_chunks(const std::string& file, std::span<const unsigned char> bytes,
   if (part.compressed || part.tiled || part.deep) return;
   for (std::int64_t row = 0; row < part.height; ++row) {
     const std::size_t at = table + static_cast<std::size_t>(row * kOffsetBytes);
-    const std::uint64_t offset =
-        little_endian_word(bytes, at) | std::uint64_t{little_endian_word(bytes, at + 4)} << 32;
+    const auto offset = little_endian<std::uint64_t>(bytes, at);
     // OpenEXR recovers missing offsets, and rejects those behind the end.
     if (offset == 0 || offset > bytes.size() || bytes.size() - offset < kPixelsAt) continue;
     const std::int64_t size = number_at(bytes, offset + kSizeAt),

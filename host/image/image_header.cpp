@@ -11,18 +11,13 @@
 #include <cmath>
 #include <string_view>
 
+#include "support/bytes.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
 namespace {
 
 using Data = std::span<const std::uint8_t>;
-
-std::uint32_t big_endian(Data bytes, std::size_t offset, std::size_t size) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < size; ++i) value = value << 8 | bytes[offset + i];
-  return value;
-}
 
 bool starts_with(Data bytes, Data prefix) {
   return bytes.size() >= prefix.size() && std::equal(prefix.begin(), prefix.end(), bytes.begin());
@@ -82,12 +77,6 @@ std::optional<ImageHeader> jpeg_header(Data bytes) {
     at += 2 + big_endian(bytes, at + 2, 2);
   }
   return std::nullopt;
-}
-
-std::uint32_t little_endian(Data bytes, std::size_t offset, std::size_t size) {
-  std::uint32_t value = 0;
-  for (std::size_t i = size; i-- > 0;) value = value << 8 | bytes[offset + i];
-  return value;
 }
 
 constexpr std::size_t kRiffHeader = 12, kRiffChunkHeader = 8;

@@ -3,11 +3,11 @@
 // reads no images but Radiance HDR.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <numeric>
 #include <string_view>
 
 #include "image/codec.hpp"
+#include "support/bytes.hpp"
 
 namespace clpv {
 namespace {
@@ -24,17 +24,9 @@ void append_name(EncodedBytes& to, std::string_view text) {
   to.push_back(0);
 }
 
-void append_little(EncodedBytes& to, std::uint64_t value, int bytes) {
-  for (int i = 0; i < bytes; ++i) to.push_back(static_cast<unsigned char>(value >> 8 * i));
-}
-
 void append_big(EncodedBytes& to, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8)
     to.push_back(static_cast<unsigned char>(value >> shift));
-}
-
-void append_float(EncodedBytes& to, float value) {
-  append_little(to, std::bit_cast<std::uint32_t>(value), 4);
 }
 
 // EXR (OpenEXR's documentation, "File Layout"): rows of pixels, each with its channels one after
@@ -47,7 +39,7 @@ void append_attribute(EncodedBytes& to, std::string_view name, std::string_view 
                       const EncodedBytes& value) {
   append_name(to, name);
   append_name(to, type);
-  append_little(to, value.size(), 4);
+  append_little(to, static_cast<std::uint32_t>(value.size()));
   to.insert(to.end(), value.begin(), value.end());
 }
 
@@ -64,7 +56,7 @@ EncodedBytes channel_list(const CodedImage& image) {
   EncodedBytes list;
   for (const std::size_t c : order_of(image.channels)) {
     append_name(list, image.channels[c]);
-    for (const int field : {kFloat, 0, 1, 1}) append_little(list, static_cast<unsigned>(field), 4);
+    append_little(list, kFloat, 0, 1, 1);
   }
   list.push_back(0);
   return list;
@@ -74,8 +66,7 @@ EncodedBytes exr_header(const CodedImage& image) {
   const auto is_long = [](const std::string& name) { return name.size() > kShortName; };
   bool long_names = std::ranges::any_of(image.channels, is_long);
   EncodedBytes box, header{0x76, 0x2f, 0x31, 0x01};
-  for (const int side : {0, 0, image.width - 1, image.height - 1})
-    append_little(box, static_cast<std::uint32_t>(side), 4);
+  append_little(box, 0, 0, image.width - 1, image.height - 1);
   EncodedBytes attributes;
   append_attribute(attributes, "channels", "chlist", channel_list(image));
   append_attribute(attributes, "compression", "compression", {0});
@@ -83,7 +74,7 @@ EncodedBytes exr_header(const CodedImage& image) {
   append_attribute(attributes, "displayWindow", "box2i", box);
   append_attribute(attributes, "lineOrder", "lineOrder", {0});
   EncodedBytes one, centre(8, 0);
-  append_float(one, 1);
+  append_little(one, 1.0f);
   append_attribute(attributes, "pixelAspectRatio", "float", one);
   append_attribute(attributes, "screenWindowCenter", "v2f", centre);
   append_attribute(attributes, "screenWindowWidth", "float", one);
@@ -92,7 +83,7 @@ EncodedBytes exr_header(const CodedImage& image) {
     long_names = long_names || is_long(attribute);
     append_attribute(attributes, attribute, "string", {value.begin(), value.end()});
   }
-  append_little(header, kVersion | (long_names ? kLongNames : 0), 4);
+  append_little(header, kVersion | (long_names ? kLongNames : 0));
   header.insert(header.end(), attributes.begin(), attributes.end());
   header.push_back(0);
   return header;
@@ -104,13 +95,13 @@ EncodedBytes plain_exr(const CodedImage& image, const float* pixels) {
   const auto width = static_cast<std::size_t>(image.width),
              height = static_cast<std::size_t>(image.height), channels = order.size(),
              row = width * channels * sizeof(float), first = bytes.size() + 8 * height;
-  for (std::size_t y = 0; y < height; ++y) append_little(bytes, first + y * (8 + row), 8);
+  for (std::size_t y = 0; y < height; ++y)
+    append_little(bytes, std::uint64_t{first + y * (8 + row)});
   for (std::size_t y = 0; y < height; ++y) {
-    append_little(bytes, y, 4);
-    append_little(bytes, row, 4);
+    append_little(bytes, static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(row));
     for (const std::size_t c : order) {
       for (std::size_t x = 0; x < width; ++x)
-        append_float(bytes, pixels[(y * width + x) * channels + c]);
+        append_little(bytes, pixels[(y * width + x) * channels + c]);
     }
   }
   return bytes;
@@ -118,15 +109,6 @@ EncodedBytes plain_exr(const CodedImage& image, const float* pixels) {
 
 // PNG (W3C, "Portable Network Graphics", third edition), with stored blocks of zlib (RFC 1950,
 // RFC 1951).
-
-std::uint32_t crc_of(const unsigned char* from, const unsigned char* end) {
-  std::uint32_t crc = ~0u;
-  for (; from != end; ++from) {
-    crc ^= *from;
-    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
-  }
-  return ~crc;
-}
 
 std::uint32_t adler_of(const EncodedBytes& bytes) {
   std::uint32_t a = 1, b = 0;
@@ -139,7 +121,7 @@ void append_chunk(EncodedBytes& to, std::string_view type, const EncodedBytes& d
   const std::size_t start = to.size();
   append_text(to, type);
   to.insert(to.end(), data.begin(), data.end());
-  append_big(to, crc_of(to.data() + start, to.data() + to.size()));
+  append_big(to, crc32(std::as_bytes(std::span(to).subspan(start))));
 }
 
 EncodedBytes stored(const EncodedBytes& rows) {
@@ -148,8 +130,7 @@ EncodedBytes stored(const EncodedBytes& rows) {
   for (std::size_t at = 0; at < rows.size(); at += kBlock) {
     const std::size_t size = std::min(kBlock, rows.size() - at);
     data.push_back(at + size == rows.size() ? 1 : 0);
-    append_little(data, size, 2);
-    append_little(data, ~size, 2);
+    append_little(data, static_cast<std::uint16_t>(size), static_cast<std::uint16_t>(~size));
     const auto from = rows.begin() + static_cast<std::ptrdiff_t>(at);
     data.insert(data.end(), from, from + static_cast<std::ptrdiff_t>(size));
   }

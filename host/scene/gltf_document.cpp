@@ -8,6 +8,7 @@
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_accessor.hpp"
+#include "support/bytes.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 #include "support/input_record.hpp"
@@ -19,7 +20,7 @@ using nlohmann::json;
 
 bool is_glb(const Bytes& bytes) {
   constexpr std::uint32_t kMagic = 0x46546C67;
-  return bytes.size() >= 4 && little_endian_word(bytes, 0) == kMagic;
+  return bytes.size() >= 4 && little_endian(bytes, 0) == kMagic;
 }
 
 /// The document's JSON, and the binary chunk of a .glb.
@@ -35,9 +36,9 @@ Container chunks_of_glb(const Bytes& bytes, const std::string& file) {
   if (bytes.size() < kText)
     reject(file, {}, fmt::format("a .glb of {} bytes", bytes.size()),
            "at least 20: it is truncated");
-  if (const auto version = little_endian_word(bytes, 4); version != 2)
+  if (const auto version = little_endian(bytes, 4); version != 2)
     reject(file, {}, fmt::format(".glb version {}", version), "version 2");
-  const std::size_t length = little_endian_word(bytes, 8), size = little_endian_word(bytes, 12);
+  const std::size_t length = little_endian(bytes, 8), size = little_endian(bytes, 12);
   const std::size_t end = kText + size;
   if (length > bytes.size() || end > length) {
     reject(file, {},
@@ -45,16 +46,16 @@ Container chunks_of_glb(const Bytes& bytes, const std::string& file) {
                        length, size),
            "chunks within the file: it is truncated");
   }
-  if (const auto type = little_endian_word(bytes, 16); type != kJson)
+  if (const auto type = little_endian(bytes, 16); type != kJson)
     reject(file, {}, fmt::format("a first .glb chunk of type {:#x}", type), "JSON, 0x4e4f534a");
   Container chunks{{reinterpret_cast<const char*>(bytes.data()) + kText, size}};
   if (end + kChunkHeader > length) return chunks;
-  const std::size_t second = little_endian_word(bytes, end);
+  const std::size_t second = little_endian(bytes, end);
   if (end + kChunkHeader + second > length) {
     reject(file, {}, fmt::format("a second .glb chunk of {} bytes", second),
            fmt::format("at most {}, the rest of the file", length - end - kChunkHeader));
   }
-  if (little_endian_word(bytes, end + 4) == kBinary)
+  if (little_endian(bytes, end + 4) == kBinary)
     chunks.binary = std::span(bytes).subspan(end + kChunkHeader, second);
   return chunks;
 }

@@ -14,6 +14,7 @@
 #include "image/image_io.hpp"
 #include "scene/light_kind.hpp"
 #include "scene/view_values.hpp"
+#include "support/bytes.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
@@ -60,19 +61,15 @@ class GlbWriter {
       throw Error(ExitCode::run_time, "save: found {} bytes, allowed in a .glb: below 4 GiB",
                   bytes);
     std::string file = "glTF";
-    for (const std::size_t word : {std::size_t{2}, bytes, text.size()}) append(file, word);
+    const auto word = [](std::size_t value) { return static_cast<std::uint32_t>(value); };
+    append_little(file, word(2), word(bytes), word(text.size()));
     file += "JSON" + text;
     if (binary_.empty()) return file;
-    append(file, binary_.size());
+    append_little(file, word(binary_.size()));
     return file + std::string("BIN\0", 4) + binary_;
   }
 
  private:
-  static void append(std::string& file, std::size_t word) {
-    const auto little = static_cast<std::uint32_t>(word);
-    file.append(reinterpret_cast<const char*>(&little), sizeof little);
-  }
-
   /// Adds bytes to the binary part; returns the index of their view.
   std::size_t view(std::span<const std::byte> bytes) {
     document_["bufferViews"].push_back(

@@ -110,17 +110,6 @@ void check_camera_lights(const SceneData& scene) {
   }
 }
 
-std::vector<MeshRange> ranges_of(const std::vector<Instance>& meshes) {
-  std::vector<MeshRange> ranges;
-  for (const Instance& instance : meshes) {
-    ranges.push_back({instance.first_vertex,
-                      static_cast<std::uint32_t>(instance.primitive->vertices.size()),
-                      instance.first_triangle,
-                      static_cast<std::uint32_t>(instance.primitive->triangles.size())});
-  }
-  return ranges;
-}
-
 // Default light of a model without lights: a steep sun from behind and to the right of the default
 // camera. With 10 lx, a white floor has radiance 3.2, so that diffuse walls fill the tone curve's
 // range at exposure 0.
@@ -280,7 +269,7 @@ MovingScene::MovingScene(const std::filesystem::path& path,
            ".json (a scene file), .gltf or .glb");
   }
   if (motion_.empty()) motion_.tree = {};  // frees its memory
-  scene_.moving = ranges_of(motion_.meshes);
+  for (const Instance& instance : motion_.meshes) scene_.moving.push_back(range_of(instance));
   find_bounds(scene_);
   note_small_scene(scene_, description_.metres_per_unit, notes);
   if (scene_.medium) set_medium(*scene_.medium);
@@ -292,7 +281,8 @@ MovingScene::MovingScene(const std::filesystem::path& path,
   scene_.name = printable(path.stem().string());  // JSON and metadata have UTF-8 only
 }
 
-bool MovingScene::meshes_changed() {
+bool MovingScene::change_meshes(const MeshChange& change) {
+  const bool longer = change(added_, scene_);
   find_bounds(scene_);
   const bool refitted = fit_medium();
   std::erase(scene_.notes, kNoTriangles);
@@ -303,35 +293,7 @@ bool MovingScene::meshes_changed() {
     scene_.start_reach.reset();
     scene_.start_reach = scene_.reach();
   }
-  return refitted;
-}
-
-int MovingScene::add_mesh(const Mesh& mesh, const Transform& transform) {
-  const int number = added_.add(mesh, transform, scene_);
-  meshes_changed();
-  return number;
-}
-
-int MovingScene::add_instance(int mesh, const Transform& transform) {
-  const int number = added_.add_instance(mesh, transform, scene_);
-  meshes_changed();
-  return number;
-}
-
-void MovingScene::remove_mesh(int mesh) {
-  added_.remove(mesh, scene_);
-  meshes_changed();
-}
-
-bool MovingScene::set_positions(int mesh, std::span<const std::array<float, 3>> positions,
-                                std::span<const std::array<float, 3>> normals) {
-  const bool first = added_.set_positions(mesh, positions, normals, scene_);
-  return meshes_changed() || first;
-}
-
-bool MovingScene::set_transform(int mesh, const Transform& transform) {
-  const bool first = added_.set_transform(mesh, transform, scene_);
-  return meshes_changed() || first;
+  return longer || refitted;
 }
 
 void MovingScene::pose(double seconds) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "scene/added_meshes.hpp"
 #include "scene/motion.hpp"
@@ -52,15 +53,11 @@ class MovingScene {
   void set_medium(std::optional<ClpvMedium> medium);
   bool medium_fills_scene() const { return medium_fills_scene_; }
 
-  /// Change meshes in memory, as clpv::Scene does. set_positions() and set_transform() return true
-  /// if frames allocate their memory again: the mesh moves for the first time, so that
-  /// SceneData::moving is longer, or the medium's box changed. Call before pose().
-  int add_mesh(const Mesh& mesh, const Transform& transform);
-  int add_instance(int mesh, const Transform& transform);
-  void remove_mesh(int mesh);
-  bool set_positions(int mesh, std::span<const std::array<float, 3>> positions,
-                     std::span<const std::array<float, 3>> normals);
-  bool set_transform(int mesh, const Transform& transform);
+  /// Changes meshes in memory, and updates what depends on them. `change` returns true if
+  /// SceneData::moving is longer. Returns true if frames allocate their memory again: it is, or the
+  /// medium's box changed. Call before pose().
+  using MeshChange = std::function<bool(AddedMeshes& meshes, SceneData& scene)>;
+  bool change_meshes(const MeshChange& change);
 
   SceneData take() && { return std::move(scene_); }
 
@@ -69,8 +66,6 @@ class MovingScene {
                        Notes& notes);
   void set_views(SceneViews views);
   void add_defaults(bool has_lights);
-  /// Updates what depends on the meshes. Returns fit_medium().
-  bool meshes_changed();
   /// Fits a medium without a box of its own to the scene. Returns true if its box changed.
   bool fit_medium();
 

@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -19,24 +17,12 @@ namespace {
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 31;
 constexpr double kShortest = 1e-6;  // minimum length of a valid normal
 
-/// Returns the part up to the separator; removes both from `text`.
-std::string_view cut(std::string_view& text, char separator) {
-  const std::size_t end = std::min(text.find(separator), text.size());
-  const std::string_view part = text.substr(0, end);
+/// Returns the line that `text` begins with; removes it.
+std::string_view cut_line(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string_view line = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
-  return part;
-}
-
-/// Parses six finite comma-separated numbers; empty if the text differs.
-std::optional<std::array<double, 6>> parse_six(std::string_view line) {
-  std::array<double, 6> values{};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0 && line.empty()) return std::nullopt;
-    const auto value = parse_number<double>(trimmed(cut(line, ',')));
-    if (!value) return std::nullopt;
-    values[i] = *value;
-  }
-  return trimmed(line).empty() ? std::optional(values) : std::nullopt;
+  return trimmed(line);
 }
 
 /// Returns true for a header line: it begins with a letter, as no finite number does.
@@ -48,7 +34,8 @@ bool is_header(std::string_view line) {
 
 SurfacePoint point_of(std::string_view line, const std::string& file, const std::string& place) {
   constexpr std::size_t kShown = 60;
-  const auto six = parse_six(line);
+  const auto six =
+      parse_numbers<double, 6>(line.ends_with(',') ? line.substr(0, line.size() - 1) : line);
   if (!six) {
     reject(file, place, "'" + std::string(line.substr(0, kShown)) + "'",
            "six finite numbers between commas: x,y,z,nx,ny,nz");
@@ -74,7 +61,7 @@ std::vector<SurfacePoint> read_points(const std::filesystem::path& path) {
   std::vector<SurfacePoint> points;
   bool first = true;
   for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::string_view line = trimmed(cut(text, '\n'));
+    const std::string_view line = cut_line(text);
     if (line.empty() || line.front() == '#') continue;
     const bool header = std::exchange(first, false) && is_header(line);
     if (header) continue;

@@ -3,18 +3,15 @@
 
 #include <fmt/ranges.h>
 
-#include <array>
-#include <bit>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
 
+#include "support/bytes.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "arrays are written in memory order");
 
 constexpr std::string_view kMagic("\x93NUMPY\x01\x00", 8);
 constexpr std::size_t kPreamble = kMagic.size() + 2;  // magic, then the header's length in 16 bits
@@ -32,27 +29,6 @@ std::string preamble(const std::string& type, const std::string& shape) {
   return file + header;
 }
 
-/// CRC-32 of ZIP (ISO 3309).
-std::uint32_t checksum(std::string_view bytes) {
-  static const std::array<std::uint32_t, 256> kTable = [] {
-    std::array<std::uint32_t, 256> table{};
-    for (std::uint32_t i = 0; i < 256; ++i) {
-      table[i] = i;
-      for (int bit = 0; bit < 8; ++bit)
-        table[i] = table[i] & 1 ? table[i] >> 1 ^ 0xedb88320u : table[i] >> 1;
-    }
-    return table;
-  }();
-  std::uint32_t crc = ~0u;
-  for (const char c : bytes) crc = crc >> 8 ^ kTable[(crc ^ static_cast<unsigned char>(c)) & 0xff];
-  return ~crc;
-}
-
-template <typename... Numbers>
-void append(std::string& to, Numbers... numbers) {
-  (to.append(reinterpret_cast<const char*>(&numbers), sizeof numbers), ...);
-}
-
 }  // namespace
 
 std::string npy_bytes(std::span<const float> values, std::span<const std::size_t> shape) {
@@ -68,7 +44,7 @@ std::string npy_bytes(std::span<const float> values, std::span<const std::size_t
 
 std::string npy_bytes(const std::string& text) {
   std::string file = preamble(fmt::format("<U{}", text.size()), "");
-  for (const char c : text) append(file, static_cast<std::uint32_t>(c));
+  for (const char c : text) append_little(file, static_cast<std::uint32_t>(c));
   return file;
 }
 
@@ -80,20 +56,21 @@ std::string npz_bytes(const std::vector<std::pair<std::string, std::string>>& ar
     const auto size = static_cast<std::uint32_t>(bytes.size()),
                start = static_cast<std::uint32_t>(file.size());
     std::string common;  // of both headers
-    append(common, kVersion, kNone, kNone, kNone, kFirstDay, checksum(bytes), size, size,
-           static_cast<std::uint16_t>(name.size()), kNone);
+    append_little(common, kVersion, kNone, kNone, kNone, kFirstDay,
+                  crc32(std::as_bytes(std::span(bytes))), size, size,
+                  static_cast<std::uint16_t>(name.size()), kNone);
     file += "PK\x03\x04" + common + name + bytes;
     directory += "PK\x01\x02";
-    append(directory, kVersion);
+    append_little(directory, kVersion);
     directory += common;
-    append(directory, kNone, kNone, kNone, std::uint32_t{0}, start);
+    append_little(directory, kNone, kNone, kNone, std::uint32_t{0}, start);
     directory += name;
   }
   const auto start = static_cast<std::uint32_t>(file.size()),
              size = static_cast<std::uint32_t>(directory.size());
   const auto count = static_cast<std::uint16_t>(arrays.size());
   file += directory + "PK\x05\x06";
-  append(file, kNone, kNone, count, count, size, start, kNone);
+  append_little(file, kNone, kNone, count, count, size, start, kNone);
   return file;
 }
 

@@ -34,9 +34,4 @@ Bytes read_file(const std::filesystem::path& path, std::uint64_t limit, const st
 /// Does not create the folder.
 std::optional<std::filesystem::path> user_cache_folder();
 
-/// Returns the 32-bit little-endian word at byte `at`. Requires at + 4 <= bytes.size().
-inline std::uint32_t little_endian_word(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16 | std::uint32_t{bytes[at + 3]} << 24;
-}
-
 }  // namespace clpv

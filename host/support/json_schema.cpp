@@ -341,17 +341,7 @@ std::string quoted(const json& value) {
 }
 
 std::string pointer_to(const std::string& parent, const std::string& key) {
-  std::string out = parent + "/";
-  for (const char c : key) {
-    if (c == '~') {
-      out += "~0";
-    } else if (c == '/') {
-      out += "~1";
-    } else {
-      out += c;
-    }
-  }
-  return out;
+  return (json::json_pointer(parent) / key).to_string();
 }
 
 }  // namespace clpv

@@ -2,6 +2,8 @@
 // Conversions between numbers and text, and sanitising of untrusted text.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -53,6 +55,22 @@ std::optional<Number> parse_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc{} && end == text.data() + text.size();
   return whole && std::isfinite(static_cast<double>(value)) ? std::optional(value) : std::nullopt;
+}
+
+/// Parses `text` as `Count` numbers between commas, with blanks around them, each as parse_number()
+/// does; returns nothing if it is not these.
+template <typename Number, std::size_t Count>
+std::optional<std::array<Number, Count>> parse_numbers(std::string_view text) {
+  std::array<Number, Count> numbers{};
+  for (std::size_t i = 0; i < Count; ++i) {
+    const std::size_t end = i + 1 < Count ? text.find(',') : text.size();
+    if (end == std::string_view::npos) return std::nullopt;
+    const auto number = parse_number<Number>(trimmed(text.substr(0, end)));
+    if (!number) return std::nullopt;
+    numbers[i] = *number;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return numbers;
 }
 
 }  // namespace clpv

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <chrono>
+#include <concepts>
+#include <cstring>
 #include <future>
 #include <optional>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "basis/basis.hpp"
 #include "clpv/compare.hpp"
 #include "clpv/image.hpp"
+#include "clpv/opencl.hpp"
 #include "clpv/renderer.hpp"
 #include "clpv/scene.hpp"
 #include "support/interrupt.hpp"
@@ -86,6 +89,20 @@ inline py::array_t<float> array_of(std::vector<float> values,
   const py::capsule owner(owned.release(),
                           [](void* p) { delete static_cast<std::vector<float>*>(p); });
   return py::array_t<float>(shape, data, owner);
+}
+
+using Vectors = std::span<const std::array<float, 3>>;
+
+/// The vectors of vectors().
+inline Vectors span_of(const FloatArray& array) {
+  return {reinterpret_cast<const std::array<float, 3>*>(array.data()),
+          static_cast<std::size_t>(array.size()) / 3};
+}
+
+inline py::array_t<float> array_of(Vectors values, const std::vector<py::ssize_t>& shape) {
+  py::array_t<float> result(shape);
+  if (!values.empty()) std::memcpy(result.mutable_data(), values.data(), values.size_bytes());
+  return result;
 }
 
 /// Red, green, blue; or one number for all of them.
@@ -194,27 +211,21 @@ class InitialisedCaster : public py::detail::type_caster_base<T> {
   }
 };
 
+struct PythonFrame;
+struct PythonVolume;
+
+template <typename T, typename... Classes>
+concept OneOf = (std::same_as<T, Classes> || ...);
+/// Classes of the module.
+template <typename T>
+concept Wrapped = OneOf<T, Basis, Camera, Comparison, Image, Light, Material, Medium, Renderer,
+                        Scene, opencl::Event, opencl::Volumes, PythonFrame, PythonVolume>;
+
 }  // namespace clpv::python
 
 namespace pybind11::detail {
 
-template <>
-class type_caster<clpv::Basis> : public clpv::python::InitialisedCaster<clpv::Basis> {};
-template <>
-class type_caster<clpv::Camera> : public clpv::python::InitialisedCaster<clpv::Camera> {};
-template <>
-class type_caster<clpv::Comparison> : public clpv::python::InitialisedCaster<clpv::Comparison> {};
-template <>
-class type_caster<clpv::Image> : public clpv::python::InitialisedCaster<clpv::Image> {};
-template <>
-class type_caster<clpv::Light> : public clpv::python::InitialisedCaster<clpv::Light> {};
-template <>
-class type_caster<clpv::Material> : public clpv::python::InitialisedCaster<clpv::Material> {};
-template <>
-class type_caster<clpv::Medium> : public clpv::python::InitialisedCaster<clpv::Medium> {};
-template <>
-class type_caster<clpv::Renderer> : public clpv::python::InitialisedCaster<clpv::Renderer> {};
-template <>
-class type_caster<clpv::Scene> : public clpv::python::InitialisedCaster<clpv::Scene> {};
+template <clpv::python::Wrapped T>
+class type_caster<T> : public clpv::python::InitialisedCaster<T> {};
 
 }  // namespace pybind11::detail

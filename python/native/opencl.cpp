@@ -13,21 +13,6 @@ struct PythonFrame {
   opencl::Frame frame;
 };
 
-}  // namespace clpv::python
-
-namespace pybind11::detail {
-template <>
-class type_caster<clpv::opencl::Event>
-    : public clpv::python::InitialisedCaster<clpv::opencl::Event> {};
-template <>
-class type_caster<clpv::python::PythonFrame>
-    : public clpv::python::InitialisedCaster<clpv::python::PythonFrame> {};
-template <>
-class type_caster<clpv::opencl::Volumes>
-    : public clpv::python::InitialisedCaster<clpv::opencl::Volumes> {};
-}  // namespace pybind11::detail
-
-namespace clpv::python {
 namespace {
 
 /// A handle as an integer; None for null.
@@ -63,18 +48,16 @@ void add_classes(py::module_& module) {
       "width", [](const PythonFrame& f) { return f.frame.width; }, "Pixels of a row.");
   frame.def_property_readonly(
       "height", [](const PythonFrame& f) { return f.frame.height; }, "Rows.");
-  frame.def_property_readonly(
-      "image", [](const PythonFrame& f) { return number_of(f.frame.image); },
-      "float4 per pixel: R, G, B, A of the view, linear, without a sky.");
-  frame.def_property_readonly(
-      "irradiance", [](const PythonFrame& f) { return number_of(f.frame.irradiance); },
-      "float4 per pixel: E [W/m^2] of red, green, blue, and 0.");
-  frame.def_property_readonly(
-      "depth", [](const PythonFrame& f) { return number_of(f.frame.depth); },
-      "float per pixel [m]; 0 without a surface.");
-  frame.def_property_readonly(
-      "normals", [](const PythonFrame& f) { return number_of(f.frame.normals); },
-      "float4 per pixel: unit normal, and 0.");
+  const auto memory = [&](const char* name, cl_mem opencl::Frame::*member, const char* doc) {
+    frame.def_property_readonly(
+        name, [member](const PythonFrame& f) { return number_of(f.frame.*member); }, doc);
+  };
+  memory("image", &opencl::Frame::image,
+         "float4 per pixel: R, G, B, A of the view, linear, without a sky.");
+  memory("irradiance", &opencl::Frame::irradiance,
+         "float4 per pixel: E [W/m^2] of red, green, blue, and 0.");
+  memory("depth", &opencl::Frame::depth, "float per pixel [m]; 0 without a surface.");
+  memory("normals", &opencl::Frame::normals, "float4 per pixel: unit normal, and 0.");
   frame.def_property_readonly(
       "int_ptr", [](const PythonFrame& f) { return number_of(f.frame.done.get()); },
       "The cl_event of the whole frame.");

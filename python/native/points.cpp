@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Scene.pathtrace_points.
-#include <cstring>
-
 #include "clpv/pathtrace.hpp"
 #include "module.hpp"
 
@@ -16,19 +14,6 @@ int bounces_of(const std::variant<int, std::string>& given) {
 
 namespace {
 
-using Colours = std::vector<std::array<float, 3>>;
-
-py::array_t<float> array_of_colours(const Colours& colours, const std::vector<py::ssize_t>& shape) {
-  std::vector<float> values(3 * colours.size());
-  if (!colours.empty()) std::memcpy(values.data(), colours.data(), values.size() * sizeof(float));
-  return array_of(std::move(values), shape);
-}
-
-std::span<const std::array<float, 3>> span_of(const FloatArray& array) {
-  return {reinterpret_cast<const std::array<float, 3>*>(array.data()),
-          static_cast<std::size_t>(array.size()) / 3};
-}
-
 py::dict pathtrace_points_of(const Scene& scene, const py::object& given_positions,
                              const py::object& given_normals,
                              const std::variant<int, std::string>& bounces, std::uint32_t samples,
@@ -42,9 +27,9 @@ py::dict pathtrace_points_of(const Scene& scene, const py::object& given_positio
   const PointLights lights = interruptible(
       [&] { return pathtrace_points(scene, span_of(positions), span_of(normals), options); });
   const std::vector<py::ssize_t> shape = shape_with_last(positions, 3);
-  return py::dict(py::arg("indirect") = array_of_colours(lights.indirect, shape),
-                  py::arg("direct") = array_of_colours(lights.direct, shape),
-                  py::arg("error") = array_of_colours(lights.error, shape),
+  return py::dict(py::arg("indirect") = array_of(lights.indirect, shape),
+                  py::arg("direct") = array_of(lights.direct, shape),
+                  py::arg("error") = array_of(lights.error, shape),
                   py::arg("samples") = lights.samples, py::arg("noise") = lights.noise);
 }
 

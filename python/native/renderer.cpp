@@ -80,21 +80,7 @@ std::vector<View> views_of(const std::variant<std::string, std::vector<std::stri
   return all;
 }
 
-using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(
-    std::span<const std::array<float, 3>>, std::span<const std::array<float, 3>>);
-
-std::span<const std::array<float, 3>> as_span(const FloatArray& array) {
-  return {reinterpret_cast<const std::array<float, 3>*>(array.data()),
-          static_cast<std::size_t>(array.size()) / 3};
-}
-
-py::array_t<float> array_of_vectors(const std::vector<std::array<float, 3>>& values,
-                                    const std::vector<py::ssize_t>& shape) {
-  py::array_t<float> result(shape);
-  if (!values.empty())
-    std::memcpy(result.mutable_data(), values.data(), values.size() * sizeof(values[0]));
-  return result;
-}
+using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(Vectors, Vectors);
 
 /// Calls `function` for points and a vector of each; `what` names the vectors.
 py::array_t<float> at_points(Renderer& renderer, OfPoints function, const py::object& points,
@@ -106,9 +92,9 @@ py::array_t<float> at_points(Renderer& renderer, OfPoints function, const py::ob
     throw Error(ExitCode::usage, "{}: found shape {}, allowed: (3,) or that of points, {}", what,
                 shape_text(along), shape_text(positions));
   }
-  const auto found =
-      interruptible([&] { return (renderer.*function)(as_span(positions), as_span(along)); });
-  return array_of_vectors(found, shape);
+  return array_of(
+      interruptible([&] { return (renderer.*function)(span_of(positions), span_of(along)); }),
+      shape);
 }
 
 /// Light of a G-buffer of NumPy arrays.
@@ -134,12 +120,12 @@ py::array_t<float> light(Renderer& renderer, const py::object& normals, const py
   const int limit = std::numeric_limits<int>::max();
   GBuffer surfaces{.width = static_cast<int>(std::min<py::ssize_t>(n.shape(1), limit)),
                    .height = static_cast<int>(std::min<py::ssize_t>(n.shape(0), limit)),
-                   .normals = as_span(n)};
+                   .normals = span_of(n)};
   FloatArray p, d;
   if (!positions.is_none()) {
     p = vectors<FloatArray>(positions, "positions");
     require_image(p, 3, "positions");
-    surfaces.positions = as_span(p);
+    surfaces.positions = span_of(p);
   } else {
     d = real_array<FloatArray>(depths, "depths");
     require_image(d, 2, "depths");
@@ -149,7 +135,7 @@ py::array_t<float> light(Renderer& renderer, const py::object& normals, const py
     return eye ? renderer.light(surfaces, *eye, time)
                : renderer.light(surfaces, camera_choice(camera), time);
   });
-  return array_of_vectors(found, shape_with_last(n, 3));
+  return array_of(found, shape_with_last(n, 3));
 }
 
 std::vector<PythonVolume> volumes(Renderer& renderer) {
@@ -161,18 +147,6 @@ std::vector<PythonVolume> volumes(Renderer& renderer) {
   }
   return all;
 }
-
-}  // namespace
-}  // namespace clpv::python
-
-namespace pybind11::detail {
-template <>
-class type_caster<clpv::python::PythonVolume>
-    : public clpv::python::InitialisedCaster<clpv::python::PythonVolume> {};
-}  // namespace pybind11::detail
-
-namespace clpv::python {
-namespace {
 
 void add_volume(py::module_& module) {
   py::class_<PythonVolume> type(module, "Volume",

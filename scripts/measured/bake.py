@@ -96,27 +96,13 @@ def error_at(line, size):
     return first + (last - first) * math.log(size / low) / math.log(high / low)
 
 
-def inner_points():
-    """x, y, z, nx, ny, nz of points on the faces inside."""
-    for axis in range(3):
-        for side, corner in enumerate((scenes.LOWER, scenes.UPPER)):
-            for k in range(ROOM_POINTS**2):
-                p, n = [0.0] * 3, [0] * 3
-                p[axis], n[axis] = corner[axis], 1 - 2 * side
-                for along, i in (((axis + 1) % 3, k % ROOM_POINTS), ((axis + 2) % 3,
-                                                                     k // ROOM_POINTS)):
-                    low, high = scenes.LOWER[along], scenes.UPPER[along]
-                    p[along] = low + (high - low) * (i + 0.5) / ROOM_POINTS
-                yield [*p, *n]
-
-
 def leaks_of(folder, room, spacing, fill):
     """Mean irradiance on the inner faces of a closed room under an even sky, in % of that of open
     ground, by format; mean over all shifts. `folder`: where the scene is written."""
     scenes.write(folder / room, names=[room], double_sided=ROOMS[room])
     points = folder / "points.csv"
     with open(points, "w", encoding="utf-8") as file:
-        csv.writer(file).writerows(inner_points())
+        csv.writer(file).writerows(p + n for p, n in scenes.inner_points(room, ROOM_POINTS))
     found = {}
     for shift in SHIFTS:
         bounds = [a + spacing * b for corner in (ROOM_LOW, ROOM_HIGH)

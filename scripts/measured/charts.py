@@ -231,7 +231,7 @@ def main():
     if len(files) not in allowed:
         parser.error(
             f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
-    read = {"times": "/times.json", "stability": "/stability.json"}.get(arguments.chart, "")
+    read = {"times": "/times.jsonl", "stability": "/stability.json"}.get(arguments.chart, "")
     output.Output(arguments.output, [path + read for _, path in files])
     if arguments.chart == "errors":
         draw_errors(files, arguments.output)

@@ -34,22 +34,6 @@ GROUND = {
 }
 
 
-def surfaces(shape):
-    """Points on the faces inside, and their normals: (n, 3) each. Legs have a floor only."""
-    points, normals = [], []
-    for axis, side, k in itertools.product(range(3), (0, 1), range(POINTS**2)):
-        if shape == "legs" and (axis, side) != (1, 0) or shape == "corner" and side == 1:
-            continue
-        p, n = [0.0] * 3, [0] * 3
-        p[axis], n[axis] = (scenes.LOWER, scenes.UPPER)[side][axis], 1 - 2 * side
-        for along, i in (((axis + 1) % 3, k % POINTS), ((axis + 2) % 3, k // POINTS)):
-            low, high = scenes.LOWER[along], scenes.UPPER[along]
-            p[along] = low + (high - low) * (i + 0.5) / POINTS
-        points.append(p), normals.append(n)
-    degrees = scenes.TURN if shape == "turned" else 0
-    return (numpy.array(scenes.turned(points, degrees)), numpy.array(scenes.turned(normals, degrees)))
-
-
 def offsets(count):
     """Positions between the cells of the finest cascade [m]; the first is 0."""
     return [[scenes.CELL * 0.37 * (i >> axis & 1) for axis in range(3)] for i in range(count)]
@@ -65,7 +49,7 @@ class Room:
     def __init__(self, folder, shape, light, offset):
         self.shape, self.light = shape, light
         self.scene = clpv.Scene(f"{folder}/{shape}-{light}.json")
-        points, self.normals = surfaces(shape)
+        points, self.normals = map(numpy.array, zip(*scenes.inner_points(shape, POINTS)))
         self.points = points + numpy.array(offset)
 
     def leak(self, bounces, options):

@@ -143,9 +143,8 @@ def program_of(name):
 
 def search_centres(sponza):
     (ROOT / "out").mkdir(exist_ok=True)
-    subprocess.run([str(CLPV), "render", "scenes/sponza.json", *sponza, "-o", "out/normals.png",
-                    "--dump-normals=out/normals.json"], stdout=subprocess.DEVNULL, check=True,
-                   cwd=ROOT)
+    subprocess.run([str(LAB), "normals", "scenes/sponza.json", *sponza, "-o", "out/normals.json"],
+                   stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
     lab("clpv_lab.search", "8", "-o", rows.SEARCHED)
     lab("clpv_lab.search", "8", "-o", rows.SEARCHED_NORMALS, "--weights=out/normals.json")
 

@@ -62,6 +62,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::vector<std::string> arguments = lines_of(fuzz::text_of(data, size));
   fuzz::read_or_reject({ExitCode::usage}, [&] { parse(arguments); });
   for (const std::string& argument : arguments)
-    fuzz::read_or_reject({ExitCode::usage}, [&] { parse_dvec3(argument, "--option"); });
+    fuzz::read_or_reject({ExitCode::usage}, [&] { parse_vector(argument, "--option"); });
   return 0;
 }

@@ -230,7 +230,7 @@ class OwnFolders(InTree):
 
     def test_charts_spare_their_inputs(self):
         for chart, given, file in (("errors", "q.json", "q.json"), ("probes", "p.json", "p.json"),
-                                   ("times", "s", "s/times.json"),
+                                   ("times", "s", "s/times.jsonl"),
                                    ("stability", "a=s", "s/stability.json")):
             (self.folder / file).parent.mkdir(exist_ok=True)
             (self.folder / file).write_text("{}")

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -22,7 +23,7 @@ LAMBDAS = np.array([0.2, 0.3, 0.25, 0.4, 0.33, 0.21])
 
 
 def program(*arguments):
-    words = [os.path.join(os.environ["CLPV_BUILD"], "clpv"), *map(str, arguments)]
+    words = [os.path.join(os.environ["CLPV_BUILD"], "clpv-lab"), *map(str, arguments)]
     return subprocess.run(words, check=True, capture_output=True, text=True).stdout
 
 
@@ -130,8 +131,12 @@ def run(*arguments):
 
 def test_from_a_scenes_normals_to_a_set(tmp_path):
     normals, file = tmp_path / "normals.json", tmp_path / "mine.json"
-    program("render", CORNELL, "--width", 16, "--height", 9, "--grid", 16, "--rsm-size", 32,
-            "--dump-normals", normals, "-o", tmp_path / "a.exr")
+    for name in "cornell.json", "cornell.glb":
+        shutil.copy(CORNELL.with_name(name), tmp_path)
+    drawn = "normals", tmp_path / "cornell.json", "--grid", 16, "--rsm-size", 32, "-o"
+    program(*drawn, normals)
+    with pytest.raises(subprocess.CalledProcessError, match="status 2"):
+        program(*drawn, tmp_path / "cornell.json")  # its input
     directions, weights = search.weights(normals)
     assert weights.sum() == pytest.approx(1) and len(weights) < 97
     assert weights[directions[:, 1] > 0.99].sum() > 0.2, "the floor"

@@ -2,8 +2,8 @@
 // Surface normals of a scene's reflective shadow maps, weighted by reflected flux.
 #pragma once
 
-#include <filesystem>
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "device/session.hpp"
@@ -25,8 +25,7 @@ std::vector<WeightedDirection> normal_weights(Session& session, const SceneData&
                                               const SceneCamera& camera,
                                               const RenderOptions& options);
 
-/// Writes a JSON file {"weights": [[x, y, z, weight], ...]}, for a search for centres.
-void write_normal_weights(const std::filesystem::path& path,
-                          const std::vector<WeightedDirection>& weights);
+/// Returns {"weights": [[x, y, z, weight], ...]}, the input of clpv_lab.search.
+std::string to_json(const std::vector<WeightedDirection>& weights);
 
 }  // namespace clpv

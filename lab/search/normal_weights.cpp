@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quality/normal_weights.hpp"
+#include "search/normal_weights.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,6 @@
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/surface.hpp"
 #include "pipeline/raster/view.hpp"
-#include "support/output_file.hpp"
 
 namespace clpv {
 namespace {
@@ -88,11 +87,10 @@ std::vector<WeightedDirection> normal_weights(Session& session, const SceneData&
   return patches.weights();
 }
 
-void write_normal_weights(const std::filesystem::path& path,
-                          const std::vector<WeightedDirection>& weights) {
+std::string to_json(const std::vector<WeightedDirection>& weights) {
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [n, weight] : weights) list.push_back({n.x, n.y, n.z, weight});
-  write_file(path, nlohmann::json{{"weights", list}}.dump(1) + "\n");
+  return nlohmann::json{{"weights", list}}.dump(1) + "\n";
 }
 
 }  // namespace clpv
