@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <vector>
 
 #include "tests/support/on_device.hpp"
@@ -15,15 +16,17 @@ namespace {
 
 using namespace test;
 
-constexpr int kGrid = 4;
+// The grid of `clpv check`: the same programs.
+constexpr int kGrid = 9, kCorners = kGrid + 1;
+constexpr std::size_t kAll = kCorners * kCorners * kCorners;
 const ClpvGrid kCells = {
-    {0, 0, 0}, 1, kGrid, {}};  // corners at 0..4, their cells half a metre round them
+    {0, 0, 0}, 1, kGrid, {}};  // corners at 0..9, their cells half a metre round them
 
 /// Shares [axis][z][y][x], by the kernels.
 struct Shares {
   std::vector<float> values;
   float at(int axis, int x, int y, int z) const {
-    return values[static_cast<std::size_t>(((axis * 5 + z) * 5 + y) * 5 + x)];
+    return values[static_cast<std::size_t>(((axis * kCorners + z) * kCorners + y) * kCorners + x)];
   }
 };
 
@@ -36,9 +39,8 @@ Shares blocked(const SceneData& scene) {
 }
 
 float sum(const Shares& shares, int axis) {
-  float total = 0;
-  for (int i = 0; i < 125; ++i) total += shares.values[static_cast<std::size_t>(axis * 125 + i)];
-  return total;
+  const auto first = shares.values.begin() + static_cast<std::ptrdiff_t>(kAll) * axis;
+  return std::accumulate(first, first + static_cast<std::ptrdiff_t>(kAll), 0.0f);
 }
 
 TEST(Blockers, AWallBlocksExactlyTheSquaresItCovers) {
@@ -48,7 +50,7 @@ TEST(Blockers, AWallBlocksExactlyTheSquaresItCovers) {
   for (int y = 0; y <= kGrid; ++y) {
     for (int z = 0; z <= kGrid; ++z) EXPECT_EQ(shares.at(0, 2, y, z), 1) << y << ' ' << z;
   }
-  EXPECT_EQ(sum(shares, 0), 25) << "one layer of corners alone";
+  EXPECT_EQ(sum(shares, 0), kCorners * kCorners) << "one layer of corners alone";
   EXPECT_EQ(sum(shares, 1), 0);
   EXPECT_EQ(sum(shares, 2), 0);
 }
@@ -58,7 +60,7 @@ TEST(Blockers, OverlappingWallsCountOnce) {
   const unsigned material = add_material(scene);
   for (const float x : {1.6f, 1.9f, 2.3f})
     add_quad(scene, {x, -9, -9}, {0, 20, 0}, {0, 0, 20}, material);
-  EXPECT_EQ(sum(blocked(scene), 0), 25);
+  EXPECT_EQ(sum(blocked(scene), 0), kCorners * kCorners);
 }
 
 TEST(Blockers, BlockingIsProportionalToCoveredArea) {
@@ -102,7 +104,7 @@ TEST(Blockers, HolesOfMaskedMaterialsLetLightPass) {
 TEST(Blockers, AHugeTriangleIsAWall) {
   SceneData scene;
   add_triangle(scene, {-3e7f, 2, -1e7f}, {3e7f, 2, -1e7f}, {0, 2, 5e7f}, add_material(scene));
-  EXPECT_EQ(sum(blocked(scene), 1), 25);
+  EXPECT_EQ(sum(blocked(scene), 1), kCorners * kCorners);
 }
 
 }  // namespace

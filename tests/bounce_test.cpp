@@ -144,7 +144,6 @@ TEST(Bounce, AWhiteFurnaceInventsNoLight) {
 RenderOptions small_frame(Bounces bounces, int cascades) {
   RenderOptions options;
   options.bounces = bounces, options.cascades = cascades;
-  options.directions = options.coarser_directions = Directions::of24;
   options.width = 48, options.height = 27, options.grid = 16,
   options.cascade_size = cascades == 1 ? 1.5 : 0.75;
   options.rsm_size = 64, options.shadow_size = 64;

@@ -44,7 +44,6 @@ double leak(const SceneData& scene, const glm::vec3& eye, Bounces bounces) {
   RenderOptions options;
   options.bounces = bounces, options.near = Near::off;
   options.grid = 16, options.cascades = 2, options.cascade_size = 16 * kCell;
-  options.directions = options.coarser_directions = Directions::of24;
   options.width = 32, options.height = 18, options.rsm_size = 128, options.shadow_size = 256;
   Frame frame(test_session(), scene, options);
   SceneCamera camera = camera_at(eye, {1, -0.2f, 1.2f});
@@ -73,7 +72,7 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
 std::vector<float> direct_light(const SceneData& scene, const SceneCamera& camera,
                                 unsigned shadow_size) {
   RenderOptions options;
-  options.near = Near::off, options.grid = 8, options.cascades = 1;
+  options.near = Near::off, options.grid = 16, options.cascades = 1;
   options.width = 240, options.height = 136, options.rsm_size = 64;
   options.shadow_size = shadow_size;
   Frame frame(test_session(), scene, options);

@@ -113,7 +113,7 @@ TEST(Light, OfAFramesDepthsIsItsIrradianceToTheByte) {
 
 TEST(Light, OfPositionsIsThatOfDepths) {
   const Scene scene(kCornell);
-  for (const char* size : {"full", "quarter"}) {
+  for (const char* size : {"full", "half"}) {
     Renderer renderer(scene, small().set("near-size", size));
     const Camera camera = camera_of(scene);
     const Seen seen(renderer, camera);

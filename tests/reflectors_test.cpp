@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-constexpr int kGrid = 4;
+constexpr int kGrid = 9;  // that of `clpv check`: the same programs
 constexpr int kCells = kGrid * kGrid * kGrid;
 constexpr float kColour = 1.0f / 4096;
 const ClpvGrid kGridCells = {{0, 0, 0}, 1, kGrid, {}};

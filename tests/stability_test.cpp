@@ -113,7 +113,6 @@ class SteadyFrame : public ::testing::Test {
     RenderOptions options;
     options.width = 48, options.height = 27, options.grid = 16, options.cascade_size = 1.5;
     options.rsm_size = 64, options.shadow_size = 64, options.near = Near::off;
-    options.directions = options.coarser_directions = Directions::of24;
     return options;
   }
   static constexpr float kCell = 1.5f / 16;

@@ -126,8 +126,8 @@ TEST_F(Starved, OfASmallDisk) {
                     mount = "mount -t tmpfs -o size=64k none " + disk;
   if (run("unshare -rm " + mount).exit_code != 0) GTEST_SKIP() << "no tmpfs may be mounted here";
   const Outcome outcome =
-      run("unshare -rm sh -c '" + mount + " && POCL_CACHE_DIR=" + (compiled() / "pocl").string() +
-          " CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + disk + " " CLPV_PROGRAM + kFrame +
+      run("unshare -rm sh -c '" + mount + " && " + usual_kernels() +
+          "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + disk + " " CLPV_PROGRAM + kFrame +
           "--width 400 --height 300 -o " + disk + "/a.exr; code=$?; ls -A " + disk +
           " >&2; exit $code'");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;

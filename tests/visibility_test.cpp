@@ -16,8 +16,8 @@ namespace {
 
 using namespace test;
 
-constexpr int kGrid = 4;
-const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 3.5
+constexpr int kGrid = 9;  // that of `clpv check`: the same programs
+const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 8.5
 
 /// Bytes of all points, by the kernel.
 std::vector<std::uint8_t> occluded(const SceneData& scene, const ClpvGrid& grid = kCells) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs gather.cl and radiance.cl at points, whose number fills no row, and light() on a G-buffer of
-// positions and of depths, some of them no surface: points SCENE.
+// Renders a frame with a medium; then gather.cl and radiance.cl at points, whose number fills no
+// row, and light() on a G-buffer of positions and of depths, some of them no surface: points SCENE.
 #include <cmath>
 
 #include "clpv/renderer.hpp"
@@ -14,12 +14,15 @@ int main(int, char** arguments) {
                                                                       {"cascade-size", "5"},
                                                                       {"rsm-size", "8"},
                                                                       {"shadow-size", "8"},
-                                                                      {"directions", "24"},
+                                                                      {"bounces", "2"},
                                                                       {"coarser-directions", "24"}})
     options.set(name, value);
-  clpv::Renderer renderer(clpv::Scene(arguments[1]), options);
+  clpv::Scene scene(arguments[1]);
+  scene.set_medium(clpv::Medium{
+      .scattering = {0.1, 0.1, 0.1}, .absorption = {0.05, 0.05, 0.05}, .anisotropy = 0.3});
+  clpv::Renderer renderer(scene, options);
+  renderer.render();
   const clpv::Vec3 eye{0, 0.8, 2};  // the camera's: all calls have the same light
-  renderer.update(eye);
   std::vector<std::array<float, 3>> points, directions;
   for (int i = 0; i < 11; ++i) {
     points.push_back({0.3f * i - 1, 0.2f, 0.1f * i});

@@ -33,7 +33,7 @@ class QualityCommand : public ::testing::Test {
   Outcome quality(const std::string& arguments, const Additions& additions = {}) const {
     return run_here(
         "quality " + file("room.json") + " --cache " + file("cache") +
-            " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --blockers none --rsm-size 64 " +
+            " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --rsm-size 64 " +
             arguments,
         ".", additions);
   }

@@ -44,9 +44,10 @@ inline Options small_options() {
       .set("rsm-size", "64");
 }
 
-/// The same frame by few programs, for tests that need any frame.
+/// The same frame by the programs of kSmallSteps, for tests that need any frame.
 inline Options few_steps() {
   return small_options()
+      .set("grid", "5")
       .set("cascades", "1")
       .set("transport", "sampled")
       .set("gather", "all")
