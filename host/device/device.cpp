@@ -15,7 +15,8 @@
 namespace clpv {
 namespace {
 
-std::string trimmed(std::string text) {
+/// A string of a driver without blanks and zeros at its end.
+std::string without_padding(std::string text) {
   while (!text.empty() &&
          (std::isspace(static_cast<unsigned char>(text.back())) || text.back() == '\0'))
     text.pop_back();
@@ -68,9 +69,9 @@ int lanes_of(std::string_view type) {
 /// Queries all properties of a device. Throws cl::Error if the driver fails to answer.
 void describe(Device& device) {
   const cl::Device& handle = device.handle;
-  device.name = trimmed(handle.getInfo<CL_DEVICE_NAME>());
-  device.driver = trimmed(handle.getInfo<CL_DRIVER_VERSION>());
-  device.version = trimmed(handle.getInfo<CL_DEVICE_VERSION>());
+  device.name = without_padding(handle.getInfo<CL_DEVICE_NAME>());
+  device.driver = without_padding(handle.getInfo<CL_DRIVER_VERSION>());
+  device.version = without_padding(handle.getInfo<CL_DEVICE_VERSION>());
   device.type = type_name(handle.getInfo<CL_DEVICE_TYPE>());
   device.lanes = lanes_of(device.type);
   device.compute_units = handle.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
@@ -137,13 +138,13 @@ DeviceList ask_platforms() {
     } catch (const cl::Error&) {
       handles.clear();  // CL_DEVICE_NOT_FOUND: common for Mesa's platforms
     }
-    const std::string platform = trimmed(platforms[p].getInfo<CL_PLATFORM_NAME>());
+    const std::string platform = without_padding(platforms[p].getInfo<CL_PLATFORM_NAME>());
     if (handles.empty()) list.platforms_without_devices.push_back(platform);
     for (std::size_t d = 0; d < handles.size(); ++d) {
       Device device;
       device.handle = handles[d];
       device.platform = platform;
-      device.platform_version = trimmed(platforms[p].getInfo<CL_PLATFORM_VERSION>());
+      device.platform_version = without_padding(platforms[p].getInfo<CL_PLATFORM_VERSION>());
       device.index = list.devices.size();
       device.platform_index = p;
       device.device_index = d;
@@ -244,8 +245,8 @@ Device device_of(const cl::Device& handle) {
   Device device;
   device.handle = handle;
   const cl::Platform platform(handle.getInfo<CL_DEVICE_PLATFORM>());
-  device.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
-  device.platform_version = trimmed(platform.getInfo<CL_PLATFORM_VERSION>());
+  device.platform = without_padding(platform.getInfo<CL_PLATFORM_NAME>());
+  device.platform_version = without_padding(platform.getInfo<CL_PLATFORM_VERSION>());
   describe(device);
   return device;
 }
