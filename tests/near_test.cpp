@@ -223,9 +223,9 @@ std::vector<float> irradiance_of(const SceneData& scene, const RenderOptions& op
 
 TEST(Near, FramesAreEqualToTheBit) {
   const SceneData scene = lit_corner();
-  RenderOptions options;
+  RenderOptions options = small_sweep();
   options.width = 50, options.height = 38;  // no multiples of eight or four
-  options.cascade_size = 4, options.grid = 16, options.cascades = 2;
+  options.cascade_size = 4, options.cascades = 2;
   options.near = Near::off;
   const std::vector<float> off = irradiance_of(scene, options);
   options.near = Near::traced;

@@ -219,7 +219,7 @@ TEST(OpenCl, ACallersKernelLooksLightUp) {
     EXPECT_GT(irradiance[0][0], 0);
   }
   Renderer steps(Scene(kCornell),
-                 test::small_options().set("transport", "exact").set("near", "off"));
+                 test::small_images().set("transport", "exact").set("near", "off"));
   EXPECT_THAT(test::error_of(ExitCode::usage, [&] { steps.lookup_source(); }),
               HasSubstr("transport 'exact'"));
 }

@@ -152,7 +152,8 @@ TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
 
 TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   const std::string matrix =
-      "--transport sampled --blockers none --vary basis=sh2,srbf4 --format json --output " + file("a.json");
+      "--transport sampled --blockers none --vary basis=sh2,srbf4 --format json --output " +
+      file("a.json");
   const test::Outcome first = quality(matrix);
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const nlohmann::json json = nlohmann::json::parse(first.out);
@@ -191,9 +192,8 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
 
 TEST_F(QualityCommand, AnImageIsComparedWithTheTruthOfItsScene) {
   const std::string render = "render " + file("room.json") +
-                             " --view indirect --width 32 --height 18 --grid 16 "
-                             "--rsm-size 16 --camera left -o " +
-                             file("ours/room-left.exr"),
+                             " --view indirect --width 32 --height 18 --rsm-size 16" +
+                             test::kSweepOfOne + "--camera left -o " + file("ours/room-left.exr"),
                     compare =
                         "compare --suite " + file("ours") + " --truths " + file("cache/references");
   fs::create_directory(file("ours"));

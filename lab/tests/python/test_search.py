@@ -130,7 +130,8 @@ def run(*arguments):
 
 def test_from_a_scenes_normals_to_a_set(tmp_path):
     normals, file = tmp_path / "normals.json", tmp_path / "mine.json"
-    program("render", CORNELL, "--width", 16, "--height", 9, "--grid", 16, "--rsm-size", 32,
+    program("render", CORNELL, "--width", 16, "--height", 9, "--grid", 16, "--directions", 24,
+            "--coarser-directions", 24, "--rsm-size", 32,
             "--dump-normals", normals, "-o", tmp_path / "a.exr")
     directions, weights = search.weights(normals)
     assert weights.sum() == pytest.approx(1) and len(weights) < 97
