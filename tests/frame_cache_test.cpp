@@ -75,7 +75,8 @@ class CachedFrame : public ::testing::Test {
     RenderOptions options = test::small_sweep();
     options.bounces = Bounces::all;
     if (change) change(options);
-    options.width = 32, options.height = 18, options.rsm_size = 64, options.shadow_size = 64;
+    options.grid = kGrid, options.width = 32, options.height = 18, options.rsm_size = 64,
+    options.shadow_size = 64;
     options.cascades = kCascades, options.cascade_size = double{kSize};
     return options;
   }

@@ -151,9 +151,8 @@ TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
 }
 
 TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
-  const std::string matrix =
-      "--transport sampled --blockers none --vary basis=sh2,srbf4 --format json --output " +
-      file("a.json");
+  method = " --grid 16 --transport sampled --blockers none ";
+  const std::string matrix = "--vary basis=sh2,srbf4 --format json --output " + file("a.json");
   const test::Outcome first = quality(matrix);
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const nlohmann::json json = nlohmann::json::parse(first.out);

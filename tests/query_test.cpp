@@ -155,12 +155,12 @@ TEST(RadianceAtPoints, NeedsPackedVolumesOfASweep) {
     if (rendered) frame.render(scene.camera(""));
     return error_of(ExitCode::usage, [&] { frame.radiance_at(at, along); });
   };
-  RenderOptions options = small_options(scene);
+  RenderOptions options = small_options(scene), steps = options;
   EXPECT_THAT(rejected(options, false), HasSubstr("radiance: no frame was rendered"));
-  options.transport = TransportKind::sampled;
-  EXPECT_THAT(rejected(options, true),
+  steps.transport = TransportKind::sampled, steps.grid = 5, steps.cascades = 1;
+  steps.gather = Gathering::all, steps.blockers = Blockers::seen;  // the programs of kSmallSteps
+  EXPECT_THAT(rejected(steps, true),
               AllOf(HasSubstr("transport 'sampled'"), HasSubstr("allowed: sweep")));
-  options.transport = TransportKind::sweep;
   options.layout = Layout::image, options.gather = Gathering::all;
   EXPECT_THAT(rejected(options, true), AllOf(HasSubstr("layout 'image'"), HasSubstr("'visible'")));
 }

@@ -134,7 +134,7 @@ TEST_F(SpotCone, BothRenderersShowAConeOfADegree) {
       "lights": [{{"kind": "spot", "position": [0, 2, 0], "direction": [0, -1, 0],
                    "intensity_candela": {}, {}}}]}})",
                                             kIntensity, angles));
-    for (const std::string command :
+    for (const std::string& command :
          {"render" + test::kSweepOfOne + "--rsm-size 32", std::string("pathtrace")}) {
       const Outcome outcome =
           run_here(command + " narrow.json --view direct --width 33 --height 33 -o image.exr",

@@ -31,9 +31,10 @@ class QualityCommand : public ::testing::Test {
  protected:
   void SetUp() override { write_room(folder_); }
 
+  std::string method = kSweepOfOne;
   Outcome quality(const std::string& arguments, const Additions& additions = {}) const {
     return run_here("quality " + file("room.json") + " --cache " + file("cache") +
-                        " --width 32 --height 18 --spp 64 --frames 1 --rsm-size 64 " + kSweepOfOne +
+                        " --width 32 --height 18 --spp 64 --frames 1 --rsm-size 64 " + method +
                         arguments,
                     ".", additions);
   }
