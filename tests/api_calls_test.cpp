@@ -44,9 +44,7 @@ TEST(ApiCalls, TheLibraryPrintsNothingAndTheReceiverGetsAll) {
       },
       LogLevel::debug);
   {
-    Options few_kernels = test::small_options().set("transport", "sampled").set("gather", "all");
-    Renderer renderer(Scene(kCornell), few_kernels.set("blockers", "seen"));
-    renderer.render();
+    Renderer(Scene(kCornell), test::few_steps()).render();
     TraceOptions options;
     options.width = options.height = 4, options.samples = 1;
     pathtrace(Scene(kCornell), View::full, {}, options);

@@ -193,6 +193,7 @@ TEST(Bake, CascadesFitTheSpacing) {
 TEST(Bake, SweptProbesHaveTheLightOfTheVolumes) {
   const SceneData scene = load_scene(kCornell);
   RenderOptions options = resolve_options({{"grid", "16"},
+                                           {"directions", "24"},
                                            {"rsm-size", "64"},
                                            {"near", "off"},
                                            {"gather-offset", "0"},
@@ -361,8 +362,7 @@ TEST(ProbeGrid, IsFarBeyondHalfASpacing) {
 }
 
 TEST_F(BakeCommand, OfASweepInAnArchive) {
-  const std::string small =
-      "--grid 16 --rsm-size 64 --cascades 1 --cascade-size 1.6 --gather-offset 0 ";
+  const std::string small = kSweepOfOne + "--rsm-size 64 --cascade-size 1.6 --gather-offset 0 ";
   const Outcome outcome = bake(small + "--probes 3,4,5 --format zh3 --no-dilate -o a.npz");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json json = description("a.npz");

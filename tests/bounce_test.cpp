@@ -142,10 +142,9 @@ TEST(Bounce, AWhiteFurnaceInventsNoLight) {
 }
 
 RenderOptions small_frame(Bounces bounces, int cascades) {
-  RenderOptions options;
+  RenderOptions options = small_sweep();
   options.bounces = bounces, options.cascades = cascades;
-  options.width = 48, options.height = 27, options.grid = 16,
-  options.cascade_size = cascades == 1 ? 1.5 : 0.75;
+  options.width = 48, options.height = 27, options.cascade_size = cascades == 1 ? 1.5 : 0.75;
   options.rsm_size = 64, options.shadow_size = 64;
   return options;
 }
@@ -170,7 +169,10 @@ double irradiance(const RenderOptions& options, const char* file = "scenes/corne
 TEST(BouncedFrame, LaterBouncesLeaveALamp) {
   const char* lamp = "scenes/cornell_lamp.json";
   RenderOptions two = small_frame(Bounces::two, 2), all = small_frame(Bounces::all, 2);
-  two.grid = all.grid = 32, two.cascade_size = all.cascade_size = 2;
+  for (RenderOptions* options : {&two, &all}) {
+    options->grid = 32, options->cascade_size = 2;
+    options->directions = options->coarser_directions = Directions::of96;
+  }
   EXPECT_NEAR(irradiance(all, lamp) / irradiance(two, lamp), 1.29, 0.15);
 }
 

@@ -14,6 +14,7 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/scene_builder.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::cascade_test {
 namespace {
@@ -112,9 +113,10 @@ class WideModel : public ::testing::Test {
     path_ = model.write(folder_).string();
   }
   test::Outcome render(const std::string& more) const {
-    return test::run_here(
-        "render " + path_ + " --width 12 --height 9 --grid 16 --rsm-size 64 --shadow-size 16 " +
-        "-o " + (folder_ / "a.exr").string() + " --frames 1 --stats " + stats() + " " + more);
+    return test::run_here("render " + path_ + test::kSmallSweep +
+                          "--width 12 --height 9 --rsm-size 64 --shadow-size 16 " + "-o " +
+                          (folder_ / "a.exr").string() + " --frames 1 --stats " + stats() + " " +
+                          more);
   }
   std::string stats() const { return (folder_ / "stats.json").string(); }
 

@@ -56,10 +56,9 @@ TEST(CellSpheres, NoneBesideThemAndNextToTheEye) {
 
 TEST(CellSpheres, AreShadedByTheirIrradiance) {
   const SceneData scene = load_scene(kCornell);
-  RenderOptions options;
+  RenderOptions options = small_sweep();
   options.width = 64;
   options.height = 36;
-  options.grid = 16;
   options.rsm_size = 64;
   options.cascade_size = 1;
   options.near = Near::off;  // cells have none
@@ -90,8 +89,8 @@ TEST(CellSpheres, AreShadedByTheirIrradiance) {
 
 TEST(CellSpheres, AreAViewOfRenderAndNotOfPathtrace) {
   const TemporaryFolder folder;
-  EXPECT_EQ(run_here("render " + kCornell +
-                         " --width 32 --height 18 --grid 16 --rsm-size 32 --view cells -o a.exr",
+  EXPECT_EQ(run_here("render " + kCornell + kSmallSweep +
+                         "--width 32 --height 18 --rsm-size 32 --view cells -o a.exr",
                      folder.path())
                 .exit_code,
             0);

@@ -7,9 +7,9 @@
 #
 # All tests keep compiled programs in CACHE: clpv's, and PoCL's unless POCL_CACHE_DIR is set. PATH begins with /usr/bin, since drawing
 # needs the modules of Debian's Python. Time-outs have room for a machine five times slower. FIRST are the longest, so that none of
-# them runs alone at the end.
+# them runs alone at the end, in an order in which two that run at once compile different programs.
 cmake_minimum_required(VERSION 3.22)
-set(FIRST check killed helpers drawing starved bench soak quality hostile sequence frame)
+set(FIRST check soak helpers bench drawing killed frame_cache starved opencl frame empty_room quality trust sequence programs)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${OUTPUT}.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(STRINGS ${OUTPUT}.json lines REGEX "\"(name|file)\":")
 foreach(line IN LISTS lines)
@@ -43,9 +43,10 @@ function(append name tests properties)
 endfunction()
 
 foreach(stem IN LISTS stems)
+  list(FIND FIRST ${stem} place)
   set(cost 0)
-  if(stem IN_LIST FIRST)
-    set(cost 100)
+  if(NOT place EQUAL -1)
+    math(EXPR cost "100 - ${place}")
   endif()
   if(usual_${stem})
     append(${stem} "${usual_${stem}}" "COST ${cost}")

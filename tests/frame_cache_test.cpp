@@ -39,7 +39,7 @@ TEST(Cached, HoldsNothingAfterAFailure) {
 using nlohmann::json;
 using Passes = std::set<Pass>;
 
-constexpr int kGrid = 16, kCascades = 2;  // the grid of other tests, whose programs are the same
+constexpr int kGrid = 16, kCascades = 2;
 constexpr float kSize = 3;  // [m], of the finest cascade
 constexpr float kCell = kSize / kGrid;
 const Passes kOfEveryFrame{Pass::rasterize_camera, Pass::gather, Pass::near, Pass::shade};
@@ -72,10 +72,10 @@ class CachedFrame : public ::testing::Test {
   }
 
   static RenderOptions options(const std::function<void(RenderOptions&)>& change) {
-    RenderOptions options;
+    RenderOptions options = test::small_sweep();
     options.bounces = Bounces::all;
     if (change) change(options);
-    options.width = 32, options.height = 18, options.grid = kGrid, options.rsm_size = 64,
+    options.grid = kGrid, options.width = 32, options.height = 18, options.rsm_size = 64,
     options.shadow_size = 64;
     options.cascades = kCascades, options.cascade_size = double{kSize};
     return options;

@@ -41,9 +41,9 @@ SceneData sealed_room(float degrees, const glm::vec3& offset) {
 
 /// Mean irradiance inside over that of the ground.
 double leak(const SceneData& scene, const glm::vec3& eye, Bounces bounces) {
-  RenderOptions options;
+  RenderOptions options = small_sweep();
   options.bounces = bounces, options.near = Near::off;
-  options.grid = 16, options.cascades = 2, options.cascade_size = 16 * kCell;
+  options.cascades = 2, options.cascade_size = 16 * kCell;
   options.width = 32, options.height = 18, options.rsm_size = 128, options.shadow_size = 256;
   Frame frame(test_session(), scene, options);
   SceneCamera camera = camera_at(eye, {1, -0.2f, 1.2f});
@@ -71,8 +71,8 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
 /// Direct light of a picture of 240 x 136 pixels, RGBA.
 std::vector<float> direct_light(const SceneData& scene, const SceneCamera& camera,
                                 unsigned shadow_size) {
-  RenderOptions options;
-  options.near = Near::off, options.grid = 16, options.cascades = 1;
+  RenderOptions options = small_sweep();
+  options.near = Near::off, options.cascades = 1;
   options.width = 240, options.height = 136, options.rsm_size = 64;
   options.shadow_size = shadow_size;
   Frame frame(test_session(), scene, options);

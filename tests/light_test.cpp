@@ -242,7 +242,7 @@ TEST(Light, RejectsBadSizesAndCameras) {
   rejected("eye: found", {2, 2, four, four}, {0, NAN, 0});
   EXPECT_THROW(renderer.light({2, 2, four, {}, depths}, "nowhere"), Error);
   EXPECT_THROW(renderer.volumes(), Error) << "no light yet";
-  Renderer by_view(scene, small()
+  Renderer by_view(scene, test::small_images()
                               .set("transport", "exact")
                               .set("blockers", "seen")
                               .set("blocking", "one-sided")

@@ -219,7 +219,7 @@ TEST(OpenCl, ACallersKernelLooksLightUp) {
     EXPECT_GT(irradiance[0][0], 0);
   }
   Renderer steps(Scene(kCornell),
-                 test::small_options().set("transport", "exact").set("near", "off"));
+                 test::small_images().set("transport", "exact").set("near", "off"));
   EXPECT_THAT(test::error_of(ExitCode::usage, [&] { steps.lookup_source(); }),
               HasSubstr("transport 'exact'"));
 }
@@ -311,7 +311,7 @@ TEST(OpenCl, EitherOfTwoDevicesInOneContext) {
   if (devices.empty()) {
     if (choose_device().platform != "Portable Computing Language")
       GTEST_SKIP() << "one device, and a driver that cannot make it two";
-    EXPECT_TRUE(passes_with("POCL_DEVICES='pthread basic'"));
+    EXPECT_TRUE(passes_with("POCL_DEVICES='pthread pthread'"));
     return;
   }
   const cl::Context both({devices[0].handle, devices[1].handle}), one(devices[0].handle);

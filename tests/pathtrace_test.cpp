@@ -146,15 +146,6 @@ TEST_F(CachedReference, KeyDependsOnEveryInput) {
   EXPECT_FALSE(get().traced) << "neither of these changes the image";
 }
 
-TEST_F(CachedReference, DamagedFilesAreTracedAgain) {
-  const fs::path file = get().file;
-  fs::resize_file(file, fs::file_size(file) / 2);
-  const GroundTruth again = get();
-  EXPECT_TRUE(again.traced);
-  EXPECT_EQ(again.file, file);
-  EXPECT_FALSE(get().traced);
-}
-
 TEST_F(CachedReference, WithoutACacheItIsTraced) {
   temporary_.write("references", "a file where the folder should be");
   EXPECT_TRUE(get().traced);

@@ -27,10 +27,9 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 RenderOptions small_options(const SceneData& scene) {
-  RenderOptions options;
+  RenderOptions options = small_sweep();
   options.width = 48;
   options.height = 27;
-  options.grid = 16;
   options.rsm_size = 64;
   options.near = Near::off;  // points have none
   options.cascade_size = scene.cascade_size.value_or(options.cascade_size);
@@ -156,12 +155,12 @@ TEST(RadianceAtPoints, NeedsPackedVolumesOfASweep) {
     if (rendered) frame.render(scene.camera(""));
     return error_of(ExitCode::usage, [&] { frame.radiance_at(at, along); });
   };
-  RenderOptions options = small_options(scene);
+  RenderOptions options = small_options(scene), steps = options;
   EXPECT_THAT(rejected(options, false), HasSubstr("radiance: no frame was rendered"));
-  options.transport = TransportKind::sampled;
-  EXPECT_THAT(rejected(options, true),
+  steps.transport = TransportKind::sampled, steps.grid = 5, steps.cascades = 1;
+  steps.gather = Gathering::all, steps.blockers = Blockers::seen;  // the programs of kSmallSteps
+  EXPECT_THAT(rejected(steps, true),
               AllOf(HasSubstr("transport 'sampled'"), HasSubstr("allowed: sweep")));
-  options.transport = TransportKind::sweep;
   options.layout = Layout::image, options.gather = Gathering::all;
   EXPECT_THAT(rejected(options, true), AllOf(HasSubstr("layout 'image'"), HasSubstr("'visible'")));
 }
@@ -210,13 +209,12 @@ TEST_F(PointsFile, BadLinesAreNamed) {
 
 TEST(UnreachedSurfaces, AreReported) {
   const test::TemporaryFolder images;
-  const std::string render = "render " + kCornell +
-                             " --width 48 --height 27 --grid 16 --rsm-size 64 -o " +
+  const std::string render = "render " + kCornell + " --width 48 --height 27 --rsm-size 64 -o " +
                              (images / "a.exr").string();
-  const Outcome all = run_here(render);
+  const Outcome all = run_here(render + kSmallSweep);
   ASSERT_EQ(all.exit_code, 0) << all.err;
   EXPECT_THAT(all.err, ::testing::Not(HasSubstr("outside the cascades")));
-  const Outcome few = run_here(render + " --cascades 1 --cascade-size 1");
+  const Outcome few = run_here(render + kSweepOfOne + "--cascade-size 1");
   ASSERT_EQ(few.exit_code, 0) << few.err;
   EXPECT_THAT(few.err, ::testing::ContainsRegex(
                            "[0-9.]+ % of the visible surface lies outside the cascades"));
@@ -225,8 +223,8 @@ TEST(UnreachedSurfaces, AreReported) {
 TEST_F(PointsFile, QueryAddsLightToEachPoint) {
   folder.write("p.csv", "0.28,0.27,0.3,0,-1,0\n900,0,0,0,1,0\n");
   const auto query = [&](const std::string& more) {
-    return run_here("query " + kCornell +
-                        " --points p.csv --width 48 --height 27 --grid 16 --rsm-size 64" + more,
+    return run_here("query " + kCornell + kSmallSweep +
+                        "--points p.csv --width 48 --height 27 --rsm-size 64" + more,
                     folder.path());
   };
   const Outcome outcome = query("");

@@ -235,7 +235,8 @@ class RandomOptions : public ::testing::Test {
 
 // With the kernels of other tests.
 TEST_F(RandomOptions, GiveAnImageOrAReason) {
-  expect_images_or_reasons(OptionValues{{"basis", "sh2"}, {"grid", "16"}});
+  expect_images_or_reasons(OptionValues{
+      {"basis", "sh2"}, {"grid", "16"}, {"directions", "24"}, {"coarser-directions", "24"}});
 }
 
 struct LongRandomOptions : RandomOptions {};

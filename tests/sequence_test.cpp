@@ -22,9 +22,9 @@ using ::testing::Not;
 
 constexpr const char* kSmall = " --width 48 --height 27 --rsm-size 64";
 // Grids of other tests, whose programs these tests share.
-constexpr const char *kSwept = " --grid 16",
-                     *kStepped =
-                         " --grid 5 --transport sampled --gather all --blockers seen --cascades 1";
+const std::string kSwept = kSmallSweep,
+                  kStepped =
+                      " --grid 5 --transport sampled --gather all --blockers seen --cascades 1";
 
 struct SequenceTest : ::testing::Test {
   TemporaryFolder folder;

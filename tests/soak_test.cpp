@@ -8,6 +8,7 @@
 
 #include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
+#include "tests/support/on_device.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace clpv::soak_test {
@@ -30,20 +31,21 @@ double resident_bytes() {
 }
 
 /// Frames of other tests' programs.
-RenderOptions small(TransportKind transport, int grid) {
-  RenderOptions options;
-  options.transport = transport, options.grid = grid;
+RenderOptions small(TransportKind transport) {
+  RenderOptions options = test::small_sweep();
   options.width = 24, options.height = 18;
   options.cascades = 2, options.cascade_size = 5;
   options.rsm_size = 16, options.shadow_size = 16;
-  if (transport == TransportKind::sampled)
+  if (transport == TransportKind::sampled) {
+    options.transport = transport, options.grid = 5;
     options.gather = Gathering::all, options.blockers = Blockers::seen;
+  }
   return options;
 }
 
 TEST(Soak, MemoryStaysFlatOverFramesOfChangingOptions) {
-  const std::vector<RenderOptions> all = {small(TransportKind::sweep, 16),
-                                          small(TransportKind::sampled, 5)};
+  const std::vector<RenderOptions> all = {small(TransportKind::sweep),
+                                          small(TransportKind::sampled)};
   const SceneData scene = load_scene(test::kTiny);
   Session session(choose_device());
   const auto render = [&](int i) {

@@ -9,6 +9,7 @@
 #include "scene/light_kind.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::test::spot_cone_test {
 namespace {
@@ -133,7 +134,8 @@ TEST_F(SpotCone, BothRenderersShowAConeOfADegree) {
       "lights": [{{"kind": "spot", "position": [0, 2, 0], "direction": [0, -1, 0],
                    "intensity_candela": {}, {}}}]}})",
                                             kIntensity, angles));
-    for (const std::string command : {"render --grid 16 --cascades 1 --rsm-size 32", "pathtrace"}) {
+    for (const std::string& command :
+         {"render" + test::kSweepOfOne + "--rsm-size 32", std::string("pathtrace")}) {
       const Outcome outcome =
           run_here(command + " narrow.json --view direct --width 33 --height 33 -o image.exr",
                    folder.path());

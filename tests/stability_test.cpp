@@ -110,8 +110,8 @@ TEST(Stability, DarknessAndNothingHaveNoShare) {
 class SteadyFrame : public ::testing::Test {
  protected:
   static RenderOptions small_options() {
-    RenderOptions options;
-    options.width = 48, options.height = 27, options.grid = 16, options.cascade_size = 1.5;
+    RenderOptions options = test::small_sweep();
+    options.width = 48, options.height = 27, options.cascade_size = 1.5;
     options.rsm_size = 64, options.shadow_size = 64, options.near = Near::off;
     return options;
   }

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string kFront = " --eye 0.278,0.273,-0.18 --target 0.278,0.273,0.28 --fov 75";
-const std::string kSmall = " --width 32 --height 18 --grid 16 --rsm-size 32 --cascades 1";
+const std::string kSmall = test::kSweepOfOne + "--width 32 --height 18 --rsm-size 32";
 
 struct CameraByNumbers : ::testing::Test {
   TemporaryFolder folder;
@@ -94,7 +94,8 @@ TEST_F(CameraByNumbers, FileNamesInAnotherEncodingAreWrittenInUtf8) {
             "caf?.gltf");
   const Outcome quality =
       run("quality " + name +
-          " --basis sh2 --width 16 --height 9 --grid 16 --noise 0.5 --cache cache --format json");
+          " --basis sh2 --width 16 --height 9 --noise 0.5 --cache cache --format json" +
+          test::kSmallSweep);
   EXPECT_EQ(quality.exit_code, 0) << quality.err;
 }
 
@@ -103,8 +104,8 @@ TEST_F(CameraByNumbers, WorksInEveryCommandWithACamera) {
   for (const std::string& command : std::vector<std::string>{
            "query " + kCornell + " --points p.csv" + kFront + kSmall,
            "sequence " + kCornell + " -o frames --frames 1 --fps 1" + kFront + kSmall,
-           "quality " + kCornell +
-               " --basis sh2 --width 16 --height 9 --grid 16 --noise 0.5 --cache cache" + kFront}) {
+           "quality " + kCornell + " --basis sh2 --width 16 --height 9 --noise 0.5 --cache cache" +
+               test::kSmallSweep + kFront}) {
     const Outcome outcome = run(command);
     EXPECT_EQ(outcome.exit_code, 0) << command << outcome.err;
   }

@@ -310,7 +310,8 @@ TEST(BaselineCommand, MeasuresBesideFrames) {
   const std::string cornell = scene_file("cornell.json").string();
   const std::string command =
       "quality " + cornell + " --cache " + (folder / "cache").string() +
-      " --camera front --width 32 --height 18 --spp 64 --frames 1 --grid 16 --format json";
+      " --camera front --width 32 --height 18 --spp 64 --frames 1 --format json" +
+      test::kSmallSweep;
   const test::Outcome outcome =
       test::run_here(command + " --bounces all --baseline paths,vpl --baseline-time 5 --images " +
                          (folder / "images").string() + " --output " + (folder / "a.json").string(),

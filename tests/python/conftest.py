@@ -12,9 +12,13 @@ import clpv
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["CLPV_BUILD"])
 CORNELL = ROOT / "scenes/cornell.json"
-SMALL = {"basis": "sh2", "width": 48, "height": 27, "grid": 16, "rsm_size": 64}
-STEPS = SMALL | {
-    "grid": 5, "cascades": 1, "transport": "sampled", "gather": "all", "blockers": "seen"
+SMALL = {
+    "basis": "sh2", "width": 48, "height": 27, "grid": 16, "directions": 24,
+    "coarser_directions": 24, "rsm_size": 64
+}  # the programs of all tests
+STEPS = {
+    "basis": "sh2", "width": 48, "height": 27, "rsm_size": 64, "grid": 5, "cascades": 1,
+    "transport": "sampled", "gather": "all", "blockers": "seen"
 }  # the fewest programs, for processes of their own
 FRONT = clpv.Camera(eye=(0.278, 0.273, -0.18), target=(0.278, 0.273, 0.28), fov=75)
 

@@ -239,7 +239,8 @@ def test_colours_of_trimesh():
 def test_the_example_of_arrays_runs(tmp_path):
     script = (ROOT / "examples/arrays.py").read_text(encoding="utf-8")
     small = script.replace("width=480, height=270",
-                           "width=32, height=18").replace("grid=32", "grid=16")
+                           "width=32, height=18").replace(
+        "grid=32", "grid=16, directions=24, coarser_directions=24")
     assert small != script
     ended = subprocess.run([sys.executable, "-c", small], capture_output=True, text=True,
                            check=False, cwd=tmp_path)

@@ -158,7 +158,7 @@ class FullFolders(InTree):
 
     def test_outside_of_a_scripts_folder(self):
         bystanders.fill(self.full)
-        for name in "../../full", "../full", "/", ".", "..", "a/../..", "-x":
+        for name in "../../full", "..", "-x":
             self.refused(USAGE, "allowed: a name such as trixie", "check_pocl", name)
             if name != "-x":
                 self.refused(USAGE, "allowed: letters", "measure", name)

@@ -9,6 +9,7 @@
 
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::test {
 
@@ -30,12 +31,12 @@ class QualityCommand : public ::testing::Test {
  protected:
   void SetUp() override { write_room(folder_); }
 
+  std::string method = kSweepOfOne;
   Outcome quality(const std::string& arguments, const Additions& additions = {}) const {
-    return run_here(
-        "quality " + file("room.json") + " --cache " + file("cache") +
-            " --width 32 --height 18 --spp 64 --frames 1 --grid 16 --rsm-size 64 " +
-            arguments,
-        ".", additions);
+    return run_here("quality " + file("room.json") + " --cache " + file("cache") +
+                        " --width 32 --height 18 --spp 64 --frames 1 --rsm-size 64 " + method +
+                        arguments,
+                    ".", additions);
   }
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   std::size_t kept() const {

@@ -34,19 +34,22 @@ inline std::filesystem::path sponza() {
   return std::filesystem::exists(path) ? path : std::filesystem::path();
 }
 
-/// 48x27 pixels, sh2, cascades of 16^3 cells, RSMs of 64^2 texels.
+/// A small frame's sweep. All tests share its programs: other numbers would be compiled anew.
+inline const std::string kSmallSweep = " --grid 16 --directions 24 --coarser-directions 24 ",
+                         kSweepOfOne = " --grid 16 --directions 24 --cascades 1 ";
+
+inline Options small_images() {
+  return Options().set("basis", "sh2").set("width", "48").set("height", "27").set("rsm-size", "64");
+}
+
+/// 48x27 pixels, sh2, kSmallSweep, RSMs of 64^2 texels.
 inline Options small_options() {
-  return Options()
-      .set("basis", "sh2")
-      .set("width", "48")
-      .set("height", "27")
-      .set("grid", "16")
-      .set("rsm-size", "64");
+  return small_images().set("grid", "16").set("directions", "24").set("coarser-directions", "24");
 }
 
 /// The same frame by the programs of kSmallSteps, for tests that need any frame.
 inline Options few_steps() {
-  return small_options()
+  return small_images()
       .set("grid", "5")
       .set("cascades", "1")
       .set("transport", "sampled")
