@@ -88,7 +88,7 @@ TEST(HostileCommandLines, OfFrames) {
   expect_usage(
       "render " + kCornell + " -o @/out.exr ",
       {
-          {"--view inside", {"--view", "inside", "indirect"}},
+          {"--view inside", {"--view: found 'inside', allowed: full|direct|"}},
           {"--tonemap sepia", {"--tonemap", "sepia"}},
           {"--grid 0", {"grid", "'0'", "1..512"}},
           {"--grid 99999999999999999999", {"grid", "1..512"}},
@@ -142,7 +142,8 @@ TEST(HostileCommandLines, OfFrames) {
            {"--blocking areas has no effect with blockers none;"}},
           {"--preset paper --transport sweep", {"found 'kernel' (set by --preset paper)"}},
           {"--grid 8 --grid 16", {"--grid"}},
-          {"--grid", {"--grid"}},
+          {"--grid", {"--grid: found no value"}},
+          {"--samples 64", {"render: unknown option '--samples'; --help-all"}},
           {"--basis a\033[31mb", {"basis"}},
           {"--basis \377\376", {"basis"}},
       });
@@ -163,9 +164,10 @@ TEST(HostileCommandLines, OfCommands) {
                    {"qualtiy", {"did you mean quality?"}},
                    {"report @/out", {"nothing to show"}},
                    {"--quiet", {"subcommand"}},
+                   {"--verison", {"clpv: unknown option '--verison'; did you mean --version?"}},
                    {"--device 99 devices2", {"devices"}},
                    {"devices check", {"check"}},
-                   {"bench everything", {"everything"}},
+                   {"bench everything", {"SUITE: found 'everything', allowed: table1|"}},
                    {"bench bases --filter (", {"--filter", "regular expression"}},
                    {"bench bases --repetitions 0", {"--repetitions"}},
                    {"bench bases --repetitions 99999", {"--repetitions"}},

@@ -69,8 +69,8 @@ void reject_misspelt_command(const CLI::App& app) {
   throw Error(ExitCode::usage, "unknown command '{}'; allowed: {}", *word, fmt::join(names, ", "));
 }
 
-/// Throws Error(usage) that suggests the closest option for an unknown one of the command.
-void reject_misspelt_option(const CLI::App& app) {
+/// Throws Error(usage) for an unknown option of the command, with the closest one.
+void reject_unknown_option(const CLI::App& app) {
   const std::vector<const CLI::App*> commands =
       app.get_subcommands().empty()
           ? std::vector<const CLI::App*>{&app}
@@ -82,10 +82,12 @@ void reject_misspelt_option(const CLI::App& app) {
   }
   for (const std::string& word : app.remaining(true)) {
     const std::string given = word.substr(0, word.find('='));
-    if (!word.starts_with("--")) continue;
-    if (const std::string meant = nearest(given, names); !meant.empty())
-      throw Error(ExitCode::usage, "{}: unknown option '{}'; did you mean {}?",
-                  commands.front()->get_name(), given, meant);
+    if (!word.starts_with('-')) continue;
+    const std::string meant = nearest(given, names);
+    const bool bare = app.get_subcommands().empty();
+    throw Error(ExitCode::usage, "{}unknown option '{}'; {}",
+                bare ? "" : commands.front()->get_name() + ": ", given,
+                meant.empty() ? "--help-all lists the allowed ones" : "did you mean " + meant + "?");
   }
 }
 
@@ -153,7 +155,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
          "pixels, cells or rays that a work-item processes (default: CLPV_LANES, else auto: 8 on "
          "CPUs, 1 elsewhere)")
       ->type_name("auto|1|8")
-      ->check(CLI::IsMember({"auto", "1", "8"}))
+      ->check(one_of({"auto", "1", "8"}))
       ->group(std::string(kMoreOptions) + "device");
   app.add_flag("-q,--quiet", shared.quiet, "no messages but errors");
   app.add_flag("-v,--verbose", shared.verbose, "more log messages")->disable_flag_override();
@@ -178,12 +180,17 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ExtrasError&) {
-    reject_misspelt_option(app);
+    reject_unknown_option(app);
     throw;
   } catch (const CLI::RequiredError&) {
-    if (!app.get_subcommands().empty()) reject_misspelt_option(app);
     if (app.get_subcommands().empty()) reject_misspelt_command(app);
+    reject_unknown_option(app);
     throw;
+  } catch (const CLI::ArgumentMismatch& error) {
+    const std::string what = error.what(), option = what.substr(0, what.find(':'));
+    if (what.find(" required ") == std::string::npos) throw;
+    throw Error(ExitCode::usage, "{}: found {}, allowed: one", option,
+                what.ends_with("missing") ? "no value" : "several values");
   }
 }
 

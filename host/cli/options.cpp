@@ -115,11 +115,20 @@ void add_frame_options(CLI::App& command, OptionValues& given) {
   }
 }
 
+CLI::Validator one_of(const std::vector<std::string>& names) {
+  const auto reject = [names](const std::string& given) {
+    return std::ranges::count(names, given) > 0
+               ? std::string()
+               : fmt::format("found '{}', allowed: {}", given, fmt::join(names, "|"));
+  };
+  return {reject, fmt::format("{{{}}}", fmt::join(names, ","))};
+}
+
 CLI::Option* add_format(CLI::App& command, std::string& format,
                         const std::vector<std::string>& formats) {
   format = formats.front();
   return command.add_option("--format", format, "format of the results on stdout")
-      ->check(CLI::IsMember(formats))
+      ->check(one_of(formats))
       ->capture_default_str();
 }
 
@@ -259,9 +268,9 @@ void add_tracing_options(CLI::App& command, TracingOptions& options) {
       ->group(kGroup);
 }
 
-pathtracer::TraceProgress trace_progress(Progress& progress) {
-  return [&progress](double share) {
-    progress.reach(static_cast<std::uint64_t>(share * kTraceSteps));
+pathtracer::TraceProgress trace_progress(Progress& progress, std::uint64_t before) {
+  return [&progress, before](double share) {
+    progress.reach(before + static_cast<std::uint64_t>(share * kTraceSteps));
   };
 }
 

@@ -42,13 +42,16 @@ CLI::Option* add(CLI::App& command, const std::string& name, const char* type, T
   return option;
 }
 
+/// Checks that a value is one of `names`.
+CLI::Validator one_of(const std::vector<std::string>& names);
+
 /// Adds an option that takes one value of an enumeration; the value of `member` is the default.
 template <NamedEnum E>
 CLI::Option* add_choice(CLI::App& command, const std::string& option, E& member,
                         const std::string& help) {
   const auto take = [&member, option](const std::string& name) { member = named<E>(option, name); };
   return command.add_option_function<std::string>(option, take, help)
-      ->check(CLI::IsMember(names_of<E>()))
+      ->check(one_of(names_of<E>()))
       ->default_str(std::string(name_of(member)));
 }
 
@@ -62,7 +65,7 @@ CLI::Option* add_choices(CLI::App& command, const std::string& option, std::vect
   };
   return command.add_option_function<std::vector<std::string>>(option, take, help)
       ->delimiter(',')
-      ->check(CLI::IsMember(names_of<E>()));
+      ->check(one_of(names_of<E>()));
 }
 
 struct NumberRange {
@@ -162,8 +165,8 @@ struct TracingOptions {
 /// Adds --bounces, --spp, --noise, --seed and --threads; `options` must outlive the parse.
 void add_tracing_options(CLI::App& command, TracingOptions& options);
 
-/// Returns a callback that shows the progress of trace_paths on a bar.
-pathtracer::TraceProgress trace_progress(Progress& progress);
+/// Returns a callback that shows the progress of trace_paths on a bar, after `before` steps.
+pathtracer::TraceProgress trace_progress(Progress& progress, std::uint64_t before = 0);
 inline constexpr std::uint64_t kTraceSteps = 10000;  ///< steps of that bar
 
 }  // namespace clpv

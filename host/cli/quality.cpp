@@ -165,7 +165,7 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session,
     cell->variant = group.variant;  // the spelling of the same options may differ
     if (!kept && cell->rejected.empty()) store.keep(key, *cell);  // a rejection may be temporary
     cells[number] = to_json(*cell);
-    progress.advance();
+    kept ? progress.skip() : progress.advance();
   });
   for (const std::string& gathered : ranks.gather(nlohmann::json(cells).dump()))
     cells.merge(nlohmann::json::parse(gathered).get<std::map<std::size_t, nlohmann::json>>());
@@ -215,14 +215,11 @@ void run(const Options& options, Shared& shared) {
   if (!options.asked().empty())
     std::ranges::move(options.addition->outputs(subjects), std::back_inserter(outputs));
   check_outputs(outputs);
-  for (Subject& subject : subjects) {
-    const RenderOptions frame = with(options, {}, subject.scene);
-    trace_truths(subject, frame.width, frame.height, tracing, folder / "references", ranks);
-  }
+  const auto frame = [&](const SceneData& scene) { return with(options, {}, scene); };
+  trace_truths(subjects, frame, tracing, folder / "references", ranks);
   std::vector<QualityCell> cells = measure_all(ranks, session, groups, store, options);
   if (!ranks.is_root()) return;
   if (!options.asked().empty()) {
-    const auto frame = [&](const SceneData& scene) { return with(options, {}, scene); };
     std::ranges::move(options.addition->measure(session, subjects, frame, tracing.bounces,
                                                 options.view, options.frames),
                       std::back_inserter(cells));

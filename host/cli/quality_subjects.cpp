@@ -96,17 +96,25 @@ void require_distinct_names(const std::string& option, const std::vector<Subject
   }
 }
 
-void trace_truths(Subject& subject, int width, int height,
+void trace_truths(std::vector<Subject>& subjects,
+                  const std::function<RenderOptions(const SceneData&)>& frame_of,
                   const pathtracer::PathTracerOptions& options, const std::filesystem::path& folder,
                   Ranks& ranks) {
-  for (const SceneCamera& camera : subject.cameras) {
-    Progress progress(fmt::format("ground truth {} {}", subject.scene.name, camera.name),
-                      kTraceSteps);
-    subject.truths.push_back(cached_ground_truth(folder, subject.scene, camera, width, height,
-                                                 options, trace_progress(progress), ranks));
-    const GroundTruth& truth = subject.truths.back();
-    log_debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples,
-              truth.noise);
+  std::size_t views = 0;
+  for (const Subject& subject : subjects) views += subject.cameras.size();
+  Progress progress("ground truths", views * kTraceSteps);
+  std::uint64_t traced = 0;
+  for (Subject& subject : subjects) {
+    const RenderOptions frame = frame_of(subject.scene);
+    for (const SceneCamera& camera : subject.cameras) {
+      subject.truths.push_back(cached_ground_truth(folder, subject.scene, camera, frame.width,
+                                                   frame.height, options,
+                                                   trace_progress(progress, traced), ranks));
+      const GroundTruth& truth = subject.truths.back();
+      truth.traced ? void(traced += kTraceSteps) : progress.skip(kTraceSteps);
+      log_debug("{}: {} paths per pixel, noise {:.4f}", truth.file.string(), truth.samples,
+                truth.noise);
+    }
   }
 }
 

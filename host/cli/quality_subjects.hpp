@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,10 @@ std::vector<Subject> load_subjects(const QualitySubjects& given);
 /// of the files.
 void require_distinct_names(const std::string& option, const std::vector<Subject>& subjects);
 
-/// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar. Collective
-/// over all ranks.
-void trace_truths(Subject& subject, int width, int height,
+/// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar. `frame_of`:
+/// options of a scene's frames. Collective over all ranks.
+void trace_truths(std::vector<Subject>& subjects,
+                  const std::function<RenderOptions(const SceneData&)>& frame_of,
                   const pathtracer::PathTracerOptions& options, const std::filesystem::path& folder,
                   Ranks& ranks = single_rank());
 

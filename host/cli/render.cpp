@@ -79,7 +79,8 @@ void run(const Options& options, const Shared& shared) {
   const std::vector<NamedFile> outputs = outputs_of(options);
   check_outputs(outputs);
   FrameStats stats;
-  Progress progress("render", 4);
+  const int timed = options.stats.empty() ? 0 : options.frames;
+  Progress progress("render", 4 + static_cast<std::uint64_t>(timed));
   const RenderRequest& request = options.request;
   MovingScene moving = request.open();
   const SceneData& scene = moving.scene();
@@ -109,7 +110,8 @@ void run(const Options& options, const Shared& shared) {
   stop_if_interrupted();
   progress.advance();
   if (!options.stats.empty())
-    stats.set_times(measure_frames(session, frame, camera, options.frames, 0));
+    stats.set_times(
+        measure_frames(session, frame, camera, timed, 0, [&] { progress.advance(); }));
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
   std::map<std::string, std::string> metadata = metadata_of(described);

@@ -255,10 +255,12 @@ nlohmann::json add_views(Session& session, const Options& options, const Drawing
         read_image_of_method(file_of(folder, subject, camera), options);
   check_outputs({{"DIR", page_of(options)}});
   const std::vector<PageVariant> variants = page_variants(options);
+  const auto frame = [&](const SceneData& scene) {
+    return resolve_options(sized(options, {}), scene);
+  };
+  trace_truths(subjects, frame, options.tracing.resolved(),
+               quality_cache(options.cache) / "references");
   for (Subject& subject : subjects) {
-    const RenderOptions size = resolve_options(sized(options, {}), subject.scene);
-    trace_truths(subject, size.width, size.height, options.tracing.resolved(),
-                 quality_cache(options.cache) / "references");
     std::vector<PageView> views = views_of(subject, drawing);
     Progress progress("report", subject.cameras.size() * variants.size());
     for (const PageVariant& variant : variants)

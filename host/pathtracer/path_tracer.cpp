@@ -163,11 +163,12 @@ class ImageTracer {
     return (samples + 1 - half) / 2;
   }
 
-  /// Reports progress, which never falls, though the expected number of paths may rise.
+  /// Reports progress, which never falls, though the expected number of paths may rise. Reports it
+  /// while it rests, too: the time left rises then.
   void report(double share) {
-    if (!progress_ || !ranks_.is_root() || share <= reported_) return;
-    reported_ = share;
-    progress_(share);
+    if (!progress_ || !ranks_.is_root()) return;
+    reported_ = std::max(reported_, share);
+    progress_(reported_);
   }
 
   std::uint32_t columns() const { return (image_.view.width + kTile - 1) / kTile; }

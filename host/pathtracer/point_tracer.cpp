@@ -230,7 +230,7 @@ struct PointTracer::Impl {
     s.clear();
     double reported = 0;
     const auto report = [&](double share) {
-      if (progress && share > reported) progress(reported = share);
+      if (progress) progress(reported = std::max(reported, share));
     };
     const bool fixed = options.samples > 0;
     double goal = fixed ? options.samples : kFirstSamples;

@@ -48,7 +48,7 @@ void fill_errors(QualityCell& cell, const Image& image, const GroundTruth& truth
 VariedOption parse_varied(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos)
-    throw Error(ExitCode::usage, "vary {}: allowed: OPTION=a,b,c", text);
+    throw Error(ExitCode::usage, "vary: found '{}', allowed: OPTION=a,b,c", text);
   VariedOption varied{text.substr(0, equals), {}};
   for (const std::string& value : split(text.substr(equals + 1), ',')) {
     RenderOptions probe;

@@ -99,12 +99,13 @@ void Sequence::render() {
     if (!ranks_.takes(static_cast<std::size_t>(i))) continue;
     try {
       stop_if_interrupted();
-      (render(i) ? rendered : there) += 1;  // a signal may also end it where it compiles kernels
+      const bool fresh = render(i);  // a signal may also end it where it compiles kernels
+      (fresh ? rendered : there) += 1;
+      fresh ? progress.advance() : progress.skip();
     } catch (const Interrupted&) {
       throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes",
                                     rendered + there, mine, options_.folder));
     }
-    progress.advance();
   }
   ranks_.sum(counts);
   if (there > 0) log_info("{} of {} frames existed already", there, options_.frames);

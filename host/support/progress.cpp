@@ -112,11 +112,17 @@ void Progress::reach(std::uint64_t done) {
   show();
 }
 
+void Progress::skip(std::uint64_t amount) {
+  const std::lock_guard lock(mutex_);
+  total_ -= std::min(total_, amount);
+}
+
 void Progress::show() {
   const Clock::time_point now = Clock::now();
   if (style_ == ProgressStyle::none || now < next_draw_) return;
   const double elapsed = std::chrono::duration<double>(now - started_).count();
   if (style_ == ProgressStyle::lines) {
+    if (done_ >= total_) return;
     log_info("{}", progress_words(title_, done_, total_, elapsed));
     next_draw_ = now + kNextLine;
     return;

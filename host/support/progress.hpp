@@ -17,7 +17,7 @@ void set_progress_style(ProgressStyle style);
 
 /// Counts work done out of a known total. Draws no bar during the first second. Logs lines instead
 /// where a bar cannot be drawn, and nothing if the log is quiet (set_log). The destructor
-/// erases the bar. advance() and reach() are thread safe.
+/// erases the bar. advance(), reach() and skip() are thread safe.
 class Progress {
  public:
   /// `title` names the work ("path tracing"); `total` is in the caller's units; a total of 0 counts
@@ -29,6 +29,7 @@ class Progress {
 
   void advance(std::uint64_t amount = 1);  ///< adds to the work done
   void reach(std::uint64_t done);          ///< sets the work done to at least `done`
+  void skip(std::uint64_t amount = 1);     ///< work that took no time, such as cached results
 
  private:
   using Clock = std::chrono::steady_clock;

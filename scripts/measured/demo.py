@@ -4,7 +4,8 @@ sky, and path traced.
 
     PYTHONPATH=scripts python3 -m measured.demo DIR [--width N] [--height N] [RENDER_OPTION...]
 
-DIR: output folder. Other options go to `clpv render`.
+DIR: output folder. Other options go to `clpv render`, and those of camera and light to `clpv
+pathtrace` too.
 """
 import argparse
 import json
@@ -26,6 +27,9 @@ WIDTH, HEIGHT = 384, 216  # three of this width fit a screen
 TRUTH = 0.5  # width of the path-traced picture over that of the others
 NOISE = 0.1  # of the path-traced light; adds little to the error
 DPI = 100
+OWN = "-o", "--output", "--view", "--bounces", "--stats"
+OF_BOTH = ("--camera", "--eye", "--target", "--up", "--fov", "--near-plane", "--sun",
+           "--light-scale", "--medium", "--time", "--model")
 
 
 def displayed(light):
@@ -33,6 +37,11 @@ def displayed(light):
     x = light.clip(0) * 2**EXPOSURE
     x = ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clip(0, 1)
     return numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * x**(1 / 2.4) - 0.055)
+
+
+def of_both(options):
+    return [word for i, option in enumerate(options) if option.split("=")[0] in OF_BOTH
+            for word in options[i:i + 1 + ("=" not in option)]]
 
 
 class Demo:
@@ -77,7 +86,7 @@ class Demo:
         light = self.image("render", day, "light.exr", ("indirect",), self.small, "--bounces=all",
                            *self.options)
         truth = self.image("pathtrace", day, "truth.exr", ("full", "indirect"), self.small,
-                           "--bounces=all", f"--noise={NOISE}")
+                           "--bounces=all", f"--noise={NOISE}", *of_both(self.options))
         errors = json.loads(self.run("compare", light, f"{truth}:indirect"))
         return [("Direct light of the sun", self.shown(sun, "direct")),
                 ("and its first bounce", self.shown(sun, "full")),
@@ -118,11 +127,15 @@ def print_stages(stats):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="scripts/demo", add_help=False, allow_abbrev=False)
-    parser.add_argument("folder", type=pathlib.Path)
+    parser = argparse.ArgumentParser(prog="scripts/demo", usage="scripts/demo [RENDER_OPTION...]",
+                                     add_help=False, allow_abbrev=False)
+    parser.add_argument("folder", type=pathlib.Path, help=argparse.SUPPRESS)
     parser.add_argument("--width", type=int, default=WIDTH)
     parser.add_argument("--height", type=int, default=HEIGHT)
     arguments, options = parser.parse_known_args()
+    for option in options:
+        if option.split("=")[0] in OWN:
+            parser.error(f"found {option}; allowed: options other than {', '.join(OWN)}")
     folder = output.Folder(arguments.folder, "scripts/demo")
     demo = Demo(folder, (arguments.width, arguments.height), options)
     tiles, error = demo.make()

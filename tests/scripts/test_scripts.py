@@ -193,11 +193,12 @@ class OwnFolders(InTree):
         (self.tree / "build/clpv").write_text(DEMO_CLPV.format(planes))
         (self.folder / "caller").mkdir()
         for _ in range(2):
-            found = self.made("demo", "--centres", "mine.json", "--width=40",
+            found = self.made("demo", "--centres", "mine.json", "--eye", "-1,2,3", "--width=40",
                               cwd=self.folder / "caller", CLPV_OUT="made", STUB_LOG="log")
             made = self.folder / "caller/made"
             log = (self.folder / "caller/log").read_text()
             self.assertEqual(log.count("--centres mine.json"), 3, "each render has the options")
+            self.assertEqual(log.count("--eye -1,2,3"), 4, "and the path tracer the camera")
             self.assertEqual(log.count("--width=40 "), 2)
             self.assertEqual(log.count("--width=20 "), 2)
             self.assertIn("40 ms per frame of 40x216; error of indirect light 12 %", found.stdout)
@@ -208,6 +209,7 @@ class OwnFolders(InTree):
         found = bystanders.seen(made)
         self.assertEqual({path: found[path] for path in stays}, stays)
         self.assertFalse((self.tree / "made").exists())
+        self.refused(USAGE, "found --bounces=2", "demo", "--bounces=2", CLPV_OUT=str(made))
 
     def test_tables(self):
         for name in "docs", "lab", "README.md":
@@ -279,12 +281,23 @@ class Arguments(InTree):
             self.assertIn(MISSING, found.stderr)
 
     def test_unknown_arguments(self):
-        for name, argument in (("build", "--fast"), ("test", "gather"), ("fuzz", "none"),
+        for name, argument in (("build", "--fast"), ("test", "gather"), ("test", "--lng"),
+                               ("test", "-R", "a", "--long"), ("fuzz", "none"),
                                ("sanitize", "--fast"), ("check_intel", "x"), ("setup", "x"),
                                ("format", "x"), ("tables", "x"), ("archive", "x"), ("bare", "-x")):
             found = subprocess.run([ROOT / "scripts" / name, argument], capture_output=True,
                                    text=True, check=False)
             self.assertEqual(found.returncode, USAGE, (name, found.stderr))
+
+
+class Modes(unittest.TestCase):
+    def test_files_with_an_interpreter_are_executable_and_no_others(self):
+        for folder in "examples", "lab", "scripts", "tests":
+            for file in sorted((ROOT / folder).rglob("*")):
+                if file.is_file() and "__pycache__" not in file.parts:
+                    with open(file, "rb") as opened:
+                        named = opened.read(2) == b"#!"
+                    self.assertEqual(os.access(file, os.X_OK), named, file)
 
 
 class Leaks(unittest.TestCase):
