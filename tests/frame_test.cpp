@@ -161,6 +161,60 @@ TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
   EXPECT_EQ(session.device_bytes(), 0u);
 }
 
+/// The Cornell box full of fog, which hides 40 walls.
+SceneData foggy() {
+  SceneData scene = load_scene(scene_file("cornell_fog.json"));
+  for (int i = 0; i < 40; ++i)
+    test::add_quad(scene, {9, -9, 9 + 0.1f * static_cast<float>(i)}, {-18, 0, 0}, {0, 18, 0}, 0);
+  return scene;
+}
+
+RenderOptions tiny_options() {
+  RenderOptions options;
+  options.grid = 8, options.cascades = 1, options.rsm_size = options.shadow_size = 16;
+  options.width = 32, options.height = 18;
+  return options;
+}
+
+TEST(Frame, AfterOneThatDidNotFitTheNextIsTheSame) {
+  const SceneData scene = foggy();
+  const RenderOptions options = tiny_options();
+  const auto draw = [&](Frame& frame, int times) {
+    frame.resize(times * options.width, times * options.height);
+    frame.render(scene.cameras.front());
+    return frame.read(Show::full);
+  };
+  Device device = choose_device();
+  Session unlimited(device);
+  Frame whole(unlimited, scene, options);
+  const std::vector<float> expected = draw(whole, 1);
+  const std::size_t small = unlimited.peak_device_bytes();
+  draw(whole, 10);
+  constexpr std::size_t kLimits = 20;  // some fall into each of the large frame's buffers
+  for (std::size_t i = 0; i < kLimits; ++i) {
+    device.memory_bytes = small + (unlimited.device_bytes() - small) * i / kLimits;
+    Session session(device);
+    Frame frame(session, scene, options);
+    EXPECT_EQ(draw(frame, 1), expected);
+    for (int attempt = 0; attempt < 2; ++attempt) EXPECT_THROW(draw(frame, 10), TooLarge) << i;
+    EXPECT_EQ(draw(frame, 1), expected) << i;
+  }
+}
+
+TEST(Frame, FogOfOneSizeDoesNotReachIntoAnother) {
+  const SceneData scene = foggy();
+  const auto draw = [&](Frame& frame, int width, int height) {
+    frame.resize(width, height);
+    frame.render(scene.cameras.front());
+    return frame.read(Show::medium);
+  };
+  Frame alone(test::test_session(), scene, tiny_options());
+  const std::vector<float> expected = draw(alone, 32, 48);
+  Frame after(test::test_session(), scene, tiny_options());
+  draw(after, 48, 36);  // with as many numbers in a plane
+  EXPECT_EQ(draw(after, 32, 48), expected);
+}
+
 TEST(Frame, RejectsOptionsThatDoNotGoTogether) {
   const SceneData scene = load_scene(scene_file("cornell.json"));
   RenderOptions options;

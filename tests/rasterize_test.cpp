@@ -311,6 +311,24 @@ TEST(Rasterize, SeveralLaunchesDrawTheSame) {
   }
 }
 
+TEST(Rasterize, ListsThatNoBufferHoldsAreDrawnInParts) {
+  SceneData scene;
+  for (int i = 0; i < 400; ++i)
+    add_quad(scene, {-20, -20, -9.0f + 0.01f * static_cast<float>(i)}, {40, 0, 0}, {0, 40, 0},
+             add_material(scene, glm::vec3(0.001f * static_cast<float>(i))));
+  const ClpvView view = small_camera(160, 90);
+  const SurfaceImage whole = drawn(scene, view);
+  Device device = choose_device();
+  device.max_alloc_bytes = 1u << 20;  // a fourth of what the entries need
+  Session session(device);
+  Rasterizer rasterizer(session, upload_scene(session, scene));
+  Surface surface = make_surface(session, view, RsmFormat::float32, true);
+  rasterizer.rasterize_camera(surface);
+  const SurfaceImage parts = read_surface(session, surface);
+  EXPECT_EQ(whole.depth, parts.depth);
+  EXPECT_EQ(whole.colour, parts.colour);
+}
+
 /// Heaps of 64 triangles, one cluster each, at different depths, some of them behind a wall over
 /// the left half of the view.
 SceneData heaps() {

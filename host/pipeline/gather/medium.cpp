@@ -35,15 +35,17 @@ MediumLight::MediumLight(Session& session, const Basis& basis, const ClpvMedium&
       add_(session, medium_source(basis, options), "medium_add") {}
 
 void MediumLight::reserve(const ClpvView& view) {
-  const std::size_t plane = pixel_plane_size(medium_pixels(view.width), medium_pixels(view.height));
-  if (plane == plane_) return;
-  plane_ = plane;
+  const std::size_t width = medium_pixels(view.width), height = medium_pixels(view.height),
+                    plane = pixel_plane_size(width, height);
+  if (width == width_ && height == height_) return;
+  width_ = height_ = 0;  // until memory suffices
   session_.reserve(ends_, plane * sizeof(cl_float), "ends of rays in the medium");
   session_.reserve(scattered_, 3 * plane * sizeof(cl_float), "light scattered by the medium");
   session_.reserve(blurred_, 3 * plane * sizeof(cl_float), "blurred light of the medium");
   session_.fill_zero(ends_, plane * sizeof(cl_float));  // borders stay 0
   session_.fill_zero(scattered_, 3 * plane * sizeof(cl_float));
   session_.fill_zero(blurred_, 3 * plane * sizeof(cl_float));
+  width_ = width, height_ = height;
 }
 
 void MediumLight::scatter(const Surface& camera, const Gatherer& gatherer,

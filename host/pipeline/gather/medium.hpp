@@ -39,7 +39,7 @@ class MediumLight {
   MediumOptions options_;
   Kernel light_, volumes_, blur_, add_;
   Buffer ends_, scattered_, blurred_;
-  std::size_t plane_ = 0;  ///< numbers of a plane of the buffers
+  std::size_t width_ = 0, height_ = 0;  ///< pixels that the buffers have
 };
 
 }  // namespace clpv

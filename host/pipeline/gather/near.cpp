@@ -106,23 +106,21 @@ NearField::PixelKernels& NearField::pixel_kernels(bool points) {
   return pixel_kernels_.emplace(points, std::move(made)).first->second;
 }
 
-void NearField::finish() {
-  if (tree_) return;
-  tree_ = building_.get();
-  upload_tree();
-}
-
 void NearField::move() {
   tree_->move(scene_);
-  upload_tree();
+  uploaded_ = false;
+  finish();
 }
 
-void NearField::upload_tree() {
+void NearField::finish() {
+  if (!tree_) tree_ = building_.get();
+  if (uploaded_) return;
   session_.reserve(nodes_, tree_->nodes().size() * sizeof(TreeRow), "tree of triangles");
   session_.reserve(leaves_, tree_->leaves().size() * sizeof(TreeRow),
                    "leaves of the tree of triangles");
   session_.write(nodes_, tree_->nodes());
   session_.write(leaves_, tree_->leaves());
+  uploaded_ = true;
 }
 
 void NearField::reserve(const ClpvView& view) {

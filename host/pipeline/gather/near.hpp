@@ -45,7 +45,6 @@ class NearField {
            const std::vector<ShadowedLight>& lights, Buffer& irradiance);
 
  private:
-  void upload_tree();
   void reserve(const ClpvView& view);
   void light_hits(const Surface& camera, const Gatherer& gatherer,
                   const std::vector<ShadowedLight>& lights);
@@ -63,6 +62,7 @@ class NearField {
   NearOptions options_;
   std::future<TriangleTree> building_;
   std::optional<TriangleTree> tree_;  ///< none until finish()
+  bool uploaded_ = false;
   Kernel trace_, light_, emit_, near_, blur_, widen_;
   ProgramSource points_source_, filter_source_;
   std::map<bool, PixelKernels> pixel_kernels_;  ///< by Surface::points()

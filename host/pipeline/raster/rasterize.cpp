@@ -62,7 +62,8 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
                        unsigned least_hidden)
     : session_(session),
       scene_(scene),
-      max_listed_(max_listed),
+      max_listed_(std::min<std::size_t>(
+          max_listed, session.device().max_alloc_bytes / kEntryBytes * kSpare / (kSpare + 1))),
       least_hidden_(least_hidden),
       set_up_(session, kSetUp, "set_up"),
       set_up_clipped_(session, kSetUp, "set_up_clipped"),
@@ -98,9 +99,10 @@ cl_uint Rasterizer::entry_room() const {
 void Rasterizer::reserve_entries(std::size_t count) {
   if (count <= entry_room()) return;
   count += count / kSpare;
-  session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
+  entries_ = {};  // until memory suffices for all
   session_.reserve(binned_, count * sizeof(cl_uint2), "triangles by tile");
   session_.reserve(wide_, (count / CLPV_FEW_TILES + 1) * sizeof(cl_uint2), "wide triangles");
+  session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
 }
 
 Kernel& Rasterizer::resolve(const Resolving& wanted) {

@@ -28,9 +28,9 @@ struct RasterCounts {
 
 class Rasterizer {
  public:
-  /// Capacity of the triangle lists of all tiles, in entries of 4 bytes. Larger scenes (hundreds of
-  /// screen-filling layers) are drawn in several passes of at least one triangle cluster each; the
-  /// result is the same.
+  /// Capacity of the triangle lists of all tiles, in entries, if a buffer may have as many. Larger
+  /// scenes (hundreds of screen-filling layers) are drawn in several passes of at least one
+  /// triangle cluster each; the result is the same.
   static constexpr std::size_t kMaxListed = std::size_t{1} << 25;
 
   /// Clusters in an orthographic view from which on it is drawn in two parts: the nearest, then

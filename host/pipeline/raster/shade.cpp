@@ -44,10 +44,8 @@ Shader::Shader(Session& session, bool medium)
 void Shader::light(const Surface& camera, const std::vector<ShadowedLight>& lights) {
   if (camera.format != RsmFormat::float32)
     throw Error(ExitCode::run_time, "shade: the camera's view is not float32");
-  if (pixels_of(camera) != pixels_) {
-    pixels_ = pixels_of(camera);
-    session_.reserve(direct_, pixels_ * sizeof(cl_float4), "direct light");
-  }
+  session_.reserve(direct_, pixels_of(camera) * sizeof(cl_float4), "direct light");
+  pixels_ = pixels_of(camera);
   if (lights.empty()) session_.fill_zero(direct_, pixels_ * sizeof(cl_float4));
   for (const ShadowedLight& shadowed : lights) require_fit(shadowed);
   cl_uint fresh = 1;
