@@ -27,8 +27,9 @@ std::optional<std::filesystem::path> driver_cache_folder();
 bool driver_cache_is_full();
 
 /// Marks of programs whose kernels PoCL has compiled, in PoCL's cache folder: they disappear with
-/// it. Only PoCL compiles at the first launch and caches the result for all processes, so other
-/// drivers have no marks.
+/// it. Later runs start no helpers, which would set up the scene and the frame for nothing. Only
+/// PoCL compiles at the first launch and caches the result for all processes, so other drivers have
+/// no marks.
 class CompiledMarks {
  public:
   explicit CompiledMarks(const Device& device);

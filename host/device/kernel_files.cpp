@@ -13,7 +13,6 @@
 #include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
 #include "support/input_record.hpp"
-#include "support/text.hpp"
 
 namespace clpv {
 namespace {
@@ -22,9 +21,14 @@ constexpr std::string_view kOnce = "#pragma once";
 // Deeper than any kernel nests; stops a file that includes itself.
 constexpr int kMaxIncludeDepth = 8;
 
+std::string_view trim(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  return first == std::string_view::npos ? std::string_view{} : text.substr(first);
+}
+
 /// Returns NAME of a line `#include "NAME"`; empty for other lines.
 std::string included_name(std::string_view line) {
-  line = trimmed(line);
+  line = trim(line);
   if (!line.starts_with("#include")) return {};
   const auto open = line.find('"');
   const auto close = line.rfind('"');

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// On-disk cache of compiled programs: later runs compile nothing.
+// On-disk cache of compiled programs: later runs compile nothing. Gain with a driver that keeps
+// none, Intel's for CPUs: 2.5 to 3.0 s for an image in place of 22 to 25 (docs/devices.md, 'Caches
+// of compiled kernels').
 //
 // One file per program. The file holds the full key (device, driver, settings, options, source
 // text), which load() compares: sources whose file names collide never share a program. Files

@@ -3,7 +3,7 @@
 // its siblings.
 //
 // PoCL compiles one kernel at a time in a process, but processes compile side by side and share its
-// cache.
+// cache: with empty caches and two cores a first image takes 17 s in place of 27 (docs/devices.md).
 #pragma once
 
 #include <chrono>

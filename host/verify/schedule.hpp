@@ -35,9 +35,10 @@ using Reached = std::function<void(std::size_t)>;
 /// Runs all cases in this process. Throws Interrupted.
 void run_here(const Cases& cases, Session& session, const Finished& finished);
 
-/// Runs the cases in helper processes, which `arguments` start. A case fails whose helper ends by a
-/// signal or takes more than `limit` seconds; another helper then takes its place. Throws
-/// Interrupted.
+/// Runs the cases in helper processes, which `arguments` start: side by side, as they compile, and
+/// a driver's crash or endless compilation (docs/devices.md) costs one comparison, not all. A case
+/// fails whose helper ends by a signal or takes more than `limit` seconds; another helper then
+/// takes its place. Throws Interrupted.
 void run_in_helpers(
     const Cases& cases, const std::vector<std::string>& arguments, double limit,
     const Finished& finished, const Reached& reached = [](std::size_t) {});

@@ -17,7 +17,7 @@
 // Out:  depths        [m] along the view's forward axis, 0 for empty pixels
 //       normals       unit, towards the viewer: n_s and the number of n_g (shared/normal.h); RSMs:
 //                     n_g
-//       colours       albedo; emissives: radiance [W/m^2/sr]; fluxes: P [W]
+//       colours       albedo; emissives, with CLPV_EMISSIVE: radiance [W/m^2/sr]; fluxes: P [W]
 // A work-item evaluates W pixels of a row. It selects instead of branching: empty pixels evaluate
 // triangle 0, and materials without a texture have a white one. From the host: CLPV_ORTHOGRAPHIC,
 // CLPV_SURFACE_PAPER, CLPV_TEXTURED (the scene has textures), CLPV_COLOURED (vertex colours other
