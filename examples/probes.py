@@ -7,6 +7,7 @@
 import argparse
 import pathlib
 import subprocess
+import sys
 import tempfile
 
 import clpv
@@ -59,7 +60,9 @@ def irradiance(probes, points, normals):
 def bake(program, scene, options):
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "probes.npz"
-        subprocess.run([program, "bake", scene, "-o", file, *options], check=True)
+        done = subprocess.run([program, "bake", scene, "-o", file, *options], check=False)
+        if done.returncode != 0:
+            sys.exit(done.returncode)  # it has said why
         return dict(np.load(file))
 
 

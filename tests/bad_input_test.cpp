@@ -160,7 +160,8 @@ struct BadSceneFileTest : BadInputTest {
 TEST_F(BadSceneFileTest, EachMember) {
   expect_rows("", "",
               {
-                  {R"("exposre": 1)", {"/exposre", "unknown key", "exposure", "metres_per_unit"}},
+                  {R"("exposre": 1)", {"/exposre", "unknown key; allowed: cameras", "metres_per_unit"}},
+                  {R"("": 1)", {"unknown key"}},
                   {R"("cascades": {"size": 3})", {"/cascades/size", "size_metres"}},
                   {R"("metres_per_unit": 0)", {"/metres_per_unit", "found 0"}},
                   {R"("metres_per_unit": -1)", {"/metres_per_unit"}},

@@ -217,7 +217,8 @@ void check_keys(const json& value, const std::string& pattern, const std::string
   std::set<std::string> allowed;
   for (const Rule& rule : rules) {
     const std::size_t slash = rule.place.rfind('/');
-    if (rule.place.substr(0, slash) == pattern) allowed.insert(rule.place.substr(slash + 1));
+    if (slash != std::string::npos && rule.place.substr(0, slash) == pattern)
+      allowed.insert(rule.place.substr(slash + 1));
   }
   for (const auto& [key, member] : value.items()) {
     if (!allowed.contains(key)) {

@@ -231,6 +231,7 @@ def show(scene: "clpv.Scene | str | os.PathLike[str]", *,
     if not isinstance(scene, clpv.Scene):
         load = functools.partial(clpv.Scene, scene, model)
         scene = load()
+    clpv.Renderer(scene, device, width=16, height=16).release()  # no page where none can render
     gate = view_gate.Gate(host)
     server = gate.open(host, port)
     viewer = Viewer(server, gate, scene, device, load)
@@ -273,6 +274,8 @@ def main(arguments=None):
             f"viser=={view_gate.VISER}")
     except (clpv.Error, RuntimeError) as error:
         sys.exit(f"clpv.view: {error}")
+    except KeyboardInterrupt:
+        sys.exit(130)  # before the page was there
 
 
 if __name__ == "__main__":

@@ -14,25 +14,24 @@ file(REMOVE_RECURSE ${WORK})
 if(EXISTS ${BUILD}/clpv.1)
   file(RENAME ${BUILD}/clpv.1 ${BUILD}/clpv.1.kept)
 endif()
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/without_page)
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix "${WORK}/without page"
+                OUTPUT_VARIABLE said ERROR_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
 if(EXISTS ${BUILD}/clpv.1.kept)
   file(RENAME ${BUILD}/clpv.1.kept ${BUILD}/clpv.1)
 endif()
-run(${WORK}/without_page/bin/clpv --version)
+run("${WORK}/without page/bin/clpv" --version)
+# It prints the line by which Python finds the module, also in a folder with a space.
+if(EXISTS ${BUILD}/python/clpv/__init__.py AND said MATCHES "_native")
+  if(NOT said MATCHES "export PYTHONPATH=[^\n]+")
+    message(FATAL_ERROR "cmake --install names no PYTHONPATH: ${said}")
+  endif()
+  run(bash -c "${CMAKE_MATCH_0}; /usr/bin/python3 -B -c \"import clpv; assert clpv.__file__.startswith('${WORK}/without page/'), clpv.__file__; clpv.devices()\"")
+endif()
 # The build folder on PATH is no package.
 file(WRITE ${WORK}/finder/CMakeLists.txt
      "cmake_minimum_required(VERSION 3.22)\nproject(finder CXX)\nfind_package(clpv QUIET)\nif(clpv_DIR)\nmessage(FATAL_ERROR \"found \${clpv_DIR}\")\nendif()\n")
 run(${CMAKE_COMMAND} -E env PATH=${BUILD}:$ENV{PATH} ${CMAKE_COMMAND} -S ${WORK}/finder -B ${WORK}/finder/build -G ${GENERATOR})
-execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix
-                OUTPUT_VARIABLE said ERROR_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
-# It says where Python finds the module.
-if(EXISTS ${BUILD}/python/clpv/__init__.py AND said MATCHES "_native")
-  if(NOT said MATCHES "export PYTHONPATH=([^\n]+)")
-    message(FATAL_ERROR "cmake --install names no PYTHONPATH: ${said}")
-  endif()
-  run(${CMAKE_COMMAND} -E env PYTHONPATH=${CMAKE_MATCH_1} /usr/bin/python3 -B -c
-      "import clpv; assert clpv.__file__.startswith('${WORK}/prefix/'), clpv.__file__; clpv.devices()")
-endif()
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 # The demo explains itself without a build.
 execute_process(COMMAND ${SOURCE}/scripts/demo --help OUTPUT_VARIABLE said ERROR_VARIABLE said COMMAND_ERROR_IS_FATAL ANY)
 if(NOT said MATCHES "RENDER_OPTION")

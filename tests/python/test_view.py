@@ -50,6 +50,12 @@ def test_ports_out_of_range_are_named(port, capsys):
     assert f"found '{port}', allowed: 1..65535" in message and len(message) < 500
 
 
+def test_a_device_that_does_not_exist_ends_it_before_there_is_a_page():
+    pytest.importorskip("viser")
+    with pytest.raises(SystemExit, match="no OpenCL device matches 'none'"):
+        view.main([CORNELL, "--device", "none"])
+
+
 def test_the_camera_of_a_browser():
     def handle(wxyz):
         return types.SimpleNamespace(

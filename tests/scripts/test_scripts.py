@@ -281,11 +281,11 @@ class Arguments(InTree):
             self.assertIn(MISSING, found.stderr)
 
     def test_unknown_arguments(self):
-        for name, argument in (("build", "--fast"), ("test", "gather"), ("test", "--lng"),
+        for name, *arguments in (("build", "--fast"), ("test", "gather"), ("test", "--lng"),
                                ("test", "-R", "a", "--long"), ("fuzz", "none"),
                                ("sanitize", "--fast"), ("check_intel", "x"), ("setup", "x"),
                                ("format", "x"), ("tables", "x"), ("archive", "x"), ("bare", "-x")):
-            found = subprocess.run([ROOT / "scripts" / name, argument], capture_output=True,
+            found = subprocess.run([ROOT / "scripts" / name, *arguments], capture_output=True,
                                    text=True, check=False)
             self.assertEqual(found.returncode, USAGE, (name, found.stderr))
 
