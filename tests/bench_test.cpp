@@ -281,7 +281,7 @@ TEST(BenchSuites, RowsOfScalingNameTheirAxis) {
               ::testing::ContainsRegex("iterations +propagate/sh2 +-?[0-9.]+\n"));
 }
 
-TEST(BenchSuites, Table1HasThePublishedTimes) {
+TEST(LongBenchSuites, Table1HasThePublishedTimes) {
   const std::vector<Row> rows = rows_of(
       table1_suite(), "(inject-|gather).*/sh2/.*(cascade:0|gather/.*soa.*)$|gather/sh2/soa");
   expect_right(rows);
@@ -297,7 +297,7 @@ TEST(BenchSuites, Table1HasThePublishedTimes) {
   EXPECT_THAT(table, ::testing::ContainsRegex("geometry volume, small +- +[0-9.]+"));
 }
 
-TEST(BenchSuites, FactorsHaveSumsAndDifferencesFromThePreset) {
+TEST(LongBenchSuites, FactorsHaveSumsAndDifferencesFromThePreset) {
   const std::vector<Row> rows =
       rows_of(factors_suite(), "/sh2/.*paper/(|rsm-format=float|layout=soa)$");
   std::map<std::string, Row> sums;

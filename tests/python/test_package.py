@@ -24,12 +24,12 @@ def test_the_example_runs_as_written():
     script = (ROOT / "examples/bases.py").read_text(encoding="utf-8")
     small = script.replace("width=240, height=135",
                            "width=32, height=18").replace("noise=0.02", "noise=0.2")
-    small = small.replace("clpv.bases()", "clpv.bases()[:2]")  # others take long to compile
+    small = small.replace("clpv.bases()", "clpv.bases()[:1]")  # others take long to compile
     assert small != script
     ended = run(small)
     assert ended.returncode == 0, ended.stderr
     lines = ended.stdout.splitlines()
-    assert [line.split()[0] for line in lines] == clpv.bases()[:2]
+    assert [line.split()[0] for line in lines] == clpv.bases()[:1]
     assert all(0 < float(line.split()[1]) < 2 and float(line.split()[2]) > 0 for line in lines)
 
 
