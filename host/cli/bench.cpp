@@ -188,7 +188,7 @@ void add_bench(CLI::App& app, Shared& shared) {
     names.push_back(suite.name);
     suites += fmt::format("\n{}: {}", suite.name, suite.help);
   }
-  command->add_option("SUITE", options->suite, suites)->required()->check(one_of(names));
+  command->add_option("SUITE", options->suite, suites)->required()->check(CLI::IsMember(names));
   add(*command, "--scene", "SCENE", options->scene,
       "scene file or model (default: a generated hall; for table1: scenes/atrium.json)");
   add(*command, "--model", "PATH", options->model, "model file instead of the scene file's");

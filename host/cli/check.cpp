@@ -261,7 +261,7 @@ void add_check(CLI::App& app, Shared& shared) {
       ->add_option_function<std::string>(
           "--preset", take_preset,
           "instead: injection, propagation and gathering with the options of this preset together")
-      ->check(one_of(names_of<PresetName>()))
+      ->check(CLI::IsMember(names_of<PresetName>()))
       ->excludes(thorough);
   command
       ->add_option(

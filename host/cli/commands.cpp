@@ -71,23 +71,19 @@ void reject_misspelt_command(const CLI::App& app) {
 
 /// Throws Error(usage) for an unknown option of the command, with the closest one.
 void reject_unknown_option(const CLI::App& app) {
-  const std::vector<const CLI::App*> commands =
-      app.get_subcommands().empty()
-          ? std::vector<const CLI::App*>{&app}
-          : std::vector<const CLI::App*>{app.get_subcommands().front(), &app};
+  const CLI::App& command = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
   std::vector<std::string> names;
-  for (const CLI::App* command : commands) {
-    for (const CLI::Option* option : command->get_options())
+  for (const CLI::App* owner : {&command, &app}) {
+    for (const CLI::Option* option : owner->get_options())
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   for (const std::string& word : app.remaining(true)) {
     const std::string given = word.substr(0, word.find('='));
     if (!word.starts_with('-')) continue;
     const std::string meant = nearest(given, names);
-    const bool bare = app.get_subcommands().empty();
     throw Error(ExitCode::usage, "{}unknown option '{}'; {}",
-                bare ? "" : commands.front()->get_name() + ": ", given,
-                meant.empty() ? "--help-all lists the allowed ones" : "did you mean " + meant + "?");
+                &command == &app ? "" : command.get_name() + ": ", given,
+                meant.empty() ? "--help-all lists those allowed" : "did you mean " + meant + "?");
   }
 }
 
@@ -155,7 +151,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
          "pixels, cells or rays that a work-item processes (default: CLPV_LANES, else auto: 8 on "
          "CPUs, 1 elsewhere)")
       ->type_name("auto|1|8")
-      ->check(one_of({"auto", "1", "8"}))
+      ->check(CLI::IsMember({"auto", "1", "8"}))
       ->group(std::string(kMoreOptions) + "device");
   app.add_flag("-q,--quiet", shared.quiet, "no messages but errors");
   app.add_flag("-v,--verbose", shared.verbose, "more log messages")->disable_flag_override();
@@ -191,6 +187,13 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
     if (what.find(" required ") == std::string::npos) throw;
     throw Error(ExitCode::usage, "{}: found {}, allowed: one", option,
                 what.ends_with("missing") ? "no value" : "several values");
+  } catch (const CLI::ValidationError& error) {  // of CLI::IsMember: "--view: a not in {b,c}"
+    const std::string what = error.what();
+    const std::size_t colon = what.find(": "), found = what.rfind(" not in {");
+    if (found == std::string::npos) throw;
+    throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", what.substr(0, colon),
+                what.substr(colon + 2, found - colon - 2),
+                what.substr(found + 9, what.size() - found - 10));
   }
 }
 

@@ -115,20 +115,11 @@ void add_frame_options(CLI::App& command, OptionValues& given) {
   }
 }
 
-CLI::Validator one_of(const std::vector<std::string>& names) {
-  const auto reject = [names](const std::string& given) {
-    return std::ranges::count(names, given) > 0
-               ? std::string()
-               : fmt::format("found '{}', allowed: {}", given, fmt::join(names, "|"));
-  };
-  return {reject, fmt::format("{{{}}}", fmt::join(names, ","))};
-}
-
 CLI::Option* add_format(CLI::App& command, std::string& format,
                         const std::vector<std::string>& formats) {
   format = formats.front();
   return command.add_option("--format", format, "format of the results on stdout")
-      ->check(one_of(formats))
+      ->check(CLI::IsMember(formats))
       ->capture_default_str();
 }
 

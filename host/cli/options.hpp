@@ -42,16 +42,13 @@ CLI::Option* add(CLI::App& command, const std::string& name, const char* type, T
   return option;
 }
 
-/// Checks that a value is one of `names`.
-CLI::Validator one_of(const std::vector<std::string>& names);
-
 /// Adds an option that takes one value of an enumeration; the value of `member` is the default.
 template <NamedEnum E>
 CLI::Option* add_choice(CLI::App& command, const std::string& option, E& member,
                         const std::string& help) {
   const auto take = [&member, option](const std::string& name) { member = named<E>(option, name); };
   return command.add_option_function<std::string>(option, take, help)
-      ->check(one_of(names_of<E>()))
+      ->check(CLI::IsMember(names_of<E>()))
       ->default_str(std::string(name_of(member)));
 }
 
@@ -65,7 +62,7 @@ CLI::Option* add_choices(CLI::App& command, const std::string& option, std::vect
   };
   return command.add_option_function<std::vector<std::string>>(option, take, help)
       ->delimiter(',')
-      ->check(one_of(names_of<E>()));
+      ->check(CLI::IsMember(names_of<E>()));
 }
 
 struct NumberRange {

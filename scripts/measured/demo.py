@@ -4,8 +4,7 @@ sky, and path traced.
 
     PYTHONPATH=scripts python3 -m measured.demo DIR [--width N] [--height N] [RENDER_OPTION...]
 
-DIR: output folder. Other options go to `clpv render`, and those of camera and light to `clpv
-pathtrace` too.
+DIR: output folder. Other options go to `clpv render`, those OF_BOTH to `clpv pathtrace` too.
 """
 import argparse
 import json
@@ -133,9 +132,8 @@ def main():
     parser.add_argument("--width", type=int, default=WIDTH)
     parser.add_argument("--height", type=int, default=HEIGHT)
     arguments, options = parser.parse_known_args()
-    for option in options:
-        if option.split("=")[0] in OWN:
-            parser.error(f"found {option}; allowed: options other than {', '.join(OWN)}")
+    if own := [option for option in options if option.split("=")[0] in OWN]:
+        parser.error(f"found {own[0]}; allowed: options other than {', '.join(OWN)}")
     folder = output.Folder(arguments.folder, "scripts/demo")
     demo = Demo(folder, (arguments.width, arguments.height), options)
     tiles, error = demo.make()

@@ -295,9 +295,7 @@ class Modes(unittest.TestCase):
         for folder in "examples", "lab", "scripts", "tests":
             for file in sorted((ROOT / folder).rglob("*")):
                 if file.is_file() and "__pycache__" not in file.parts:
-                    with open(file, "rb") as opened:
-                        named = opened.read(2) == b"#!"
-                    self.assertEqual(os.access(file, os.X_OK), named, file)
+                    self.assertEqual(os.access(file, os.X_OK), file.read_bytes()[:2] == b"#!", file)
 
 
 class Leaks(unittest.TestCase):
