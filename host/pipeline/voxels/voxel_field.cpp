@@ -93,12 +93,24 @@ VoxelField::VoxelField(Session& session, const SceneBuffers& scene, VoxelKind ki
 }
 
 void VoxelField::update(std::size_t cascade, const ClpvGrid& grid) {
-  const std::optional<ClpvRegion> region = prepare(cascade, grid);
-  if (!region) return;
+  std::optional<State>& state = states_[slot(cascade)];
+  const ClpvRegion place = place_of(grid);
+  const ClpvRegion region = state ? stale_cells(*state, place) : whole(place);
+  state.reset();  // in case the code below throws
+  if (region.boxes > 0) {
+    clear(cascade, region);
+    list_clusters(region);
+    voxelize(cascade, region);
+  }
+  state = State{place, scene_.clusters->instant()};
+}
+
+/// Sets the masks of the listed clusters' triangles.
+void VoxelField::voxelize(std::size_t cascade, const ClpvRegion& region) {
   const unsigned step = std::max(kind_.max_triangles / CLPV_CLUSTER, 1u);
   for (cl_uint first = 0; first < near_; first += step) {
     const cl_uint count = std::min(near_ - first, step);
-    voxelize_.set(*region, clusters_, first, count, scene_.triangle_count, scene_.vertices,
+    voxelize_.set(region, clusters_, first, count, scene_.triangle_count, scene_.vertices,
                   scene_.triangles, scene_.materials);
     if (kind_.textured) voxelize_.add(scene_.textures, scene_.texels);
     voxelize_.add(masks_);
@@ -118,20 +130,6 @@ void VoxelField::update(std::size_t cascade, const ClpvGrid& grid, Volume& volum
 
 cl_uint VoxelField::slot(std::size_t cascade) const {
   return std::min(cascade, states_.size() - 1);
-}
-
-/// Clears the stale masks and returns their region; none if all masks are current.
-std::optional<ClpvRegion> VoxelField::prepare(std::size_t cascade, const ClpvGrid& grid) {
-  std::optional<State>& state = states_[slot(cascade)];
-  const ClpvRegion place = place_of(grid);
-  const ClpvRegion region = state ? stale_cells(*state, place) : whole(place);
-  state.reset();  // in case the code below throws
-  if (region.boxes > 0) {
-    clear(cascade, region);
-    list_clusters(region);
-  }
-  state = State{place, scene_.clusters->instant()};
-  return region.boxes > 0 ? std::optional(region) : std::nullopt;
 }
 
 ClpvRegion VoxelField::whole(ClpvRegion place) const {

@@ -68,7 +68,7 @@ class VoxelField {
     ClpvRegion place;
     unsigned instant;
   };
-  std::optional<ClpvRegion> prepare(std::size_t cascade, const ClpvGrid& grid);
+  void voxelize(std::size_t cascade, const ClpvRegion& region);
   ClpvRegion stale_cells(const State& state, ClpvRegion place) const;
   void add_new_cells(ClpvRegion& region) const;
   void add_moved(ClpvRegion& region) const;
