@@ -104,8 +104,12 @@ void expect_equal(const std::string& name) {
   const auto basis = make_basis(name);
   expect_equal(*basis, {}, exact_tolerance(*basis));
 }
-TEST_P(BasisKernels, FunctionsIntegralsAndLobesAreThoseInDouble) { expect_equal(GetParam()); }
-TEST_P(LongBasisKernels, FunctionsIntegralsAndLobesAreThoseInDouble) { expect_equal(GetParam()); }
+TEST_P(BasisKernels, FunctionsIntegralsAndLobesAreThoseInDouble) {
+  expect_equal(GetParam());
+}
+TEST_P(LongBasisKernels, FunctionsIntegralsAndLobesAreThoseInDouble) {
+  expect_equal(GetParam());
+}
 
 // Series by Chebyshev polynomials, and of several lengths.
 TEST(RadialKernels, LargeAndUnevenLambdas) {

@@ -62,8 +62,8 @@ TEST_F(SkyReport, IsOnePageWithItsViewsAndLeavesOutWhatHasNoSky) {
   EXPECT_EQ(missing.exit_code, 3);
   EXPECT_THAT(missing.err, HasSubstr("none/sky-front.exr"));
   std::filesystem::create_directory(file("theirs"));
-  ASSERT_EQ(run_here("render" + scene + " --height 27 -o " + file("theirs/sky-front.exr")).exit_code,
-            0);
+  ASSERT_EQ(
+      run_here("render" + scene + " --height 27 -o " + file("theirs/sky-front.exr")).exit_code, 0);
   const test::Outcome larger = run_here(report + " --height 28 --images " + file("theirs"));
   EXPECT_EQ(larger.exit_code, 3);
   EXPECT_THAT(larger.err, HasSubstr("sky-front.exr has 48 x 27 pixels, the page has 48 x 28"));
@@ -87,7 +87,8 @@ TEST_F(LongDrawing, AReportHasThePublishedScheme) {
                " --width 48 --height 27 --spp 4 --cache " + file("cache"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::string html = test::read_file(file("page/index.html"));
-  for (const char* part : {"<td>published scheme (sh2)</td>", "<td>published scheme (srbf8v2)</td>"})
+  for (const char* part :
+       {"<td>published scheme (sh2)</td>", "<td>published scheme (srbf8v2)</td>"})
     EXPECT_TRUE(html.find(part) != std::string::npos) << part;
 }
 

@@ -216,8 +216,9 @@ TEST(UnreachedSurfaces, AreReported) {
   EXPECT_THAT(all.err, ::testing::Not(HasSubstr("outside the cascades")));
   const Outcome few = run_here(render + kSweepOfOne + "--cascade-size 1");
   ASSERT_EQ(few.exit_code, 0) << few.err;
-  EXPECT_THAT(few.err, ::testing::ContainsRegex(
-                           "[0-9.]+ % of the visible surface lies outside the cascades and .* a sky"));
+  EXPECT_THAT(few.err,
+              ::testing::ContainsRegex(
+                  "[0-9.]+ % of the visible surface lies outside the cascades and .* a sky"));
 }
 
 TEST_F(PointsFile, QueryAddsLightToEachPoint) {

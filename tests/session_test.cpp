@@ -72,6 +72,22 @@ TEST(Session, ABufferGrowsWhereThereIsNoRoomForTwo) {
   EXPECT_EQ(buffer.bytes(), 5u << 20);
 }
 
+TEST(Session, CommandsThatTheDriverRefusesAreNamed) {
+  Session session(choose_device());
+  const std::size_t room = 1024, more = 4 * room;
+  Buffer buffer = session.buffer(room, "small"), large = session.buffer(more, "large");
+  const std::vector<char> bytes(more);
+  const auto error = [](const auto& command) {
+    return test::error_of(ExitCode::run_time, command);
+  };
+  EXPECT_THAT(error([&] { session.write(buffer, bytes); }), HasSubstr("clEnqueueWriteBuffer"));
+  EXPECT_THAT(error([&] { session.read<char>(buffer, more); }), HasSubstr("clEnqueueReadBuffer"));
+  EXPECT_THAT(error([&] { session.read_later(buffer, more); }), HasSubstr("clEnqueueReadBuffer"));
+  if (session.device().oclgrind()) return;  // kernels fill and copy there
+  EXPECT_THAT(error([&] { session.fill_zero(buffer, more); }), HasSubstr("clEnqueueFillBuffer"));
+  EXPECT_THAT(error([&] { session.copy(large, buffer, more); }), HasSubstr("clEnqueueCopyBuffer"));
+}
+
 TEST(Session, MemoryMayOutliveItsSession) {
   Buffer buffer;
   {

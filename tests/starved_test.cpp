@@ -125,11 +125,10 @@ TEST_F(Starved, OfASmallDisk) {
   const std::string disk = folder_.path().string(),
                     mount = "mount -t tmpfs -o size=64k none " + disk;
   if (run("unshare -rm " + mount).exit_code != 0) GTEST_SKIP() << "no tmpfs may be mounted here";
-  const Outcome outcome =
-      run("unshare -rm sh -c '" + mount + " && " + usual_kernels() +
-          "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + disk + " " CLPV_PROGRAM + kFrame +
-          "--width 400 --height 300 -o " + disk + "/a.exr; code=$?; ls -A " + disk +
-          " >&2; exit $code'");
+  const Outcome outcome = run("unshare -rm sh -c '" + mount + " && " + usual_kernels() +
+                              "CLPV_PROGRAM_CACHE= XDG_CACHE_HOME=" + disk + " " CLPV_PROGRAM +
+                              kFrame + "--width 400 --height 300 -o " + disk +
+                              "/a.exr; code=$?; ls -A " + disk + " >&2; exit $code'");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("a.exr: cannot be written: No space left on device"));
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));

@@ -2,6 +2,7 @@
 // Implements what clpv/renderer.hpp has for clpv/opencl.hpp.
 #include "api/renderer_state.hpp"
 #include "clpv/opencl.hpp"
+#include "device/cl_error.hpp"
 
 namespace clpv {
 namespace {
@@ -9,8 +10,10 @@ namespace {
 /// Completion of all commands enqueued so far, which start now.
 opencl::Event all_done(cl::CommandQueue& queue) {
   cl::Event done;
-  queue.enqueueMarkerWithWaitList(nullptr, &done);
-  queue.flush();
+  named_errors([&] {
+    queue.enqueueMarkerWithWaitList(nullptr, &done);
+    queue.flush();
+  });
   return opencl::Event(std::exchange(done(), nullptr));
 }
 

@@ -47,8 +47,8 @@ std::vector<Subject> load_subjects(const QualitySubjects& given);
 /// of the files.
 void require_distinct_names(const std::string& option, const std::vector<Subject>& subjects);
 
-/// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar. `frame_of`:
-/// options of a scene's frames. Collective over all ranks.
+/// Sets the ground truths, from the cache in `folder` or by tracing with a progress bar.
+/// `frame_of`: options of a scene's frames. Collective over all ranks.
 void trace_truths(std::vector<Subject>& subjects,
                   const std::function<RenderOptions(const SceneData&)>& frame_of,
                   const pathtracer::PathTracerOptions& options, const std::filesystem::path& folder,

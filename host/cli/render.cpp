@@ -110,8 +110,7 @@ void run(const Options& options, const Shared& shared) {
   stop_if_interrupted();
   progress.advance();
   if (!options.stats.empty())
-    stats.set_times(
-        measure_frames(session, frame, camera, timed, 0, [&] { progress.advance(); }));
+    stats.set_times(measure_frames(session, frame, camera, timed, 0, [&] { progress.advance(); }));
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
   std::map<std::string, std::string> metadata = metadata_of(described);

@@ -34,7 +34,8 @@ void warn_of_unreached(Session& session, const Frame& frame, const std::string& 
   if (share <= kFewUnreached) return;
   log_warning(
       "camera '{}': {:.1f} % of the visible surface lies outside the cascades and has no indirect "
-      "light, and a sky shines in where they end; a larger --cascade-size or more --cascades reach farther",
+      "light, and a sky shines in where they end; a larger --cascade-size or more --cascades reach "
+      "farther",
       camera, 100 * share);
 }
 

@@ -18,4 +18,14 @@ std::string cl_error_name(cl_int code);
 /// device is missing or lacks a feature, else `run_time`.
 Error cl_error(const cl::Error& error, const std::string& doing = {});
 
+/// Calls `command`, which calls OpenCL; its cl::Error becomes an Error.
+template <typename Command>
+auto named_errors(const Command& command) {
+  try {
+    return command();
+  } catch (const cl::Error& error) {
+    throw cl_error(error);
+  }
+}
+
 }  // namespace clpv

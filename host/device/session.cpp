@@ -96,8 +96,10 @@ void Session::write_bytes(const Buffer& buffer, std::span<const std::byte> bytes
     return write.done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE;
   });
   Write write{{bytes.begin(), bytes.end()}, {}};
-  queue_.enqueueWriteBuffer(buffer.handle(), CL_FALSE, at, bytes.size(), write.bytes.data(),
-                            nullptr, &write.done);
+  named_errors([&] {
+    queue_.enqueueWriteBuffer(buffer.handle(), CL_FALSE, at, bytes.size(), write.bytes.data(),
+                              nullptr, &write.done);
+  });
   writes_.push_back(std::move(write));
 }
 
@@ -105,8 +107,10 @@ std::shared_ptr<const Session::Arriving> Session::read_later(const Buffer& buffe
                                                              std::size_t count) {
   std::erase_if(reads_, [](const auto& read) { return read->arrived(); });
   const auto read = std::make_shared<Arriving>(Arriving{std::vector<cl_uint>(count), {}});
-  queue_.enqueueReadBuffer(buffer.handle(), CL_FALSE, 0, count * sizeof(cl_uint),
-                           read->values.data(), nullptr, &read->done);
+  named_errors([&] {
+    queue_.enqueueReadBuffer(buffer.handle(), CL_FALSE, 0, count * sizeof(cl_uint),
+                             read->values.data(), nullptr, &read->done);
+  });
   reads_.push_back(read);
   return read;
 }
@@ -140,14 +144,18 @@ void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t fro
   if (device_.oclgrind()) return run_on_words(*this, "zero", bytes, from, buffer);
   cl::Event event;
   // A pattern of 1 byte makes PoCL call memset: 5x faster than 4-byte patterns or a kernel.
-  queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, from, bytes, nullptr, &event);
+  named_errors([&] {
+    queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, from, bytes, nullptr, &event);
+  });
   timeline_.add(event);
 }
 
 void Session::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte) {
   if (device_.oclgrind()) return run_on_words(*this, "copy", bytes, to_byte, from, to);
   cl::Event event;
-  queue_.enqueueCopyBuffer(from.handle(), to.handle(), 0, to_byte, bytes, nullptr, &event);
+  named_errors([&] {
+    queue_.enqueueCopyBuffer(from.handle(), to.handle(), 0, to_byte, bytes, nullptr, &event);
+  });
   timeline_.add(event);
 }
 

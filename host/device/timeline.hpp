@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "device/cl_error.hpp"
 #include "options/stages.hpp"
 
 namespace clpv {
@@ -61,7 +62,7 @@ class Timeline {
   template <typename Wait>
   void wait(const Wait& wait) {
     const Clock::time_point start = Clock::now();
-    wait();
+    named_errors(wait);
     ++host_.waits;
     host_.waited_ms += since(start);
   }

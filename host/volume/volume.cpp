@@ -57,8 +57,10 @@ void Volume::clear(Session& session) {
     return;
   }
   cl::Event event;
-  session.queue().enqueueFillImage(image_.handle(), cl_float4{{0, 0, 0, 0}}, {0, 0, 0},
-                                   region(shape_), nullptr, &event);
+  named_errors([&] {
+    session.queue().enqueueFillImage(image_.handle(), cl_float4{{0, 0, 0, 0}}, {0, 0, 0},
+                                     region(shape_), nullptr, &event);
+  });
   session.timeline().add(event);
 }
 
@@ -71,8 +73,10 @@ void Volume::copy_from(Session& session, const Volume& from) {
     return;
   }
   cl::Event event;
-  session.queue().enqueueCopyImage(from.image_.handle(), image_.handle(), {0, 0, 0}, {0, 0, 0},
-                                   region(shape_), nullptr, &event);
+  named_errors([&] {
+    session.queue().enqueueCopyImage(from.image_.handle(), image_.handle(), {0, 0, 0}, {0, 0, 0},
+                                     region(shape_), nullptr, &event);
+  });
   session.timeline().add(event);
 }
 
