@@ -53,7 +53,7 @@ def test_ports_out_of_range_are_named(port, capsys):
 def test_a_device_that_does_not_exist_ends_it_before_there_is_a_page():
     pytest.importorskip("viser")
     with pytest.raises(SystemExit, match="no OpenCL device matches 'none'"):
-        view.main([CORNELL, "--device", "none"])
+        view.main([str(CORNELL), "--device", "none"])
 
 
 def test_the_camera_of_a_browser():
