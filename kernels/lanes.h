@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vectors of W lanes: pixels of a row, cells of a row, triangles, rays. First text of every program
-// with generated text.
+// Vectors of W lanes: pixels of a row, cells of a row, triangles, rays. All files that use lanes
+// include it.
 //
 // W 8 is for CPUs; inner loops with it call no function that PoCL does not inline, such as any(),
 // floor() or log2(). W 1 is for GPUs, which run work-items themselves in lanes, and for kernels on

@@ -10,6 +10,7 @@
 #include "shared/grid.h"
 #include "shared/light.h"
 #include "shared/mesh.h"
+#include "shared/raster.h"
 #include "shared/region.h"
 #include "shared/sweep.h"
 #include "shared/view.h"

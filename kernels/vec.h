@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Vectors of three components, W at a time (lanes.h). Functions do not return vec(...): with
+// Vectors of three components, W at a time (lanes.h). Functions here do not return vec(...): with
 // rusticl 25.0 a function that returns another one's struct loses components
 // (results/rusticl-25.0.7-llvmpipe/faults.c).
 #pragma once

@@ -13,6 +13,7 @@
 #include "kernels/shared/grid.h"
 #include "kernels/shared/light.h"
 #include "kernels/shared/mesh.h"
+#include "kernels/shared/raster.h"
 #include "kernels/shared/region.h"
 #include "kernels/shared/sweep.h"
 #include "kernels/shared/view.h"

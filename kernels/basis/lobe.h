@@ -5,10 +5,10 @@
 //
 // A^-1 is two triangular systems: a float A^-1 would have 20x the rounding error for srbf14.
 //
-// From the host (add_lobe_literals, host/pipeline/inject/lobe_literals.hpp): CLPV_FLUX_WEIGHTS,
+// From the host (lobe_literals, host/pipeline/inject/lobe_literals.hpp): CLPV_FLUX_WEIGHTS,
 // CLPV_GRAM_LOWER (L) and CLPV_GRAM_INVERSE_DIAGONAL; CLPV_ROTATED 1: lobes are rotated
-// (rotated_lobe.h), and the table of H is the last argument. CLPV_AND_H ends parameter lists,
-// CLPV_PASS_H calls.
+// (rotated_lobe.h), and the table of H is an argument before that of G. Flux weights: A^-1 Int b.
+// CLPV_AND_H ends parameter lists, CLPV_PASS_H calls.
 #pragma once
 
 #include "basis/basis.h"
@@ -17,7 +17,8 @@ __constant const float flux_weights[CLPV_N] = CLPV_FLUX_WEIGHTS;
 __constant const float gram_lower[CLPV_N][CLPV_N] = CLPV_GRAM_LOWER;
 __constant const float gram_inverse_diagonal[CLPV_N] = CLPV_GRAM_INVERSE_DIAGONAL;
 
-// lobe_integrals(x, y, z): alpha of the lobe about the unit normal (x, y, z).
+// lobe_integrals(x, y, z): alpha of the lobe about the unit normal (x, y, z); rotated ones are
+// of the projected lobe.
 #if CLPV_ROTATED
 #include "basis/rotated_lobe.h"
 #define CLPV_AND_H , CLPV_TABLE singular_table

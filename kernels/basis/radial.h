@@ -7,7 +7,8 @@
 //   alpha_i(n) = slope_i t + even_i(t),   t = n . xi_i
 //
 // alpha_i, the integral of b_i times the clamped cosine about n, depends on t only. Its odd part is
-// linear in t; its even part is a series in t^2. docs/bases.md. The singular integral H, which is
+// linear in t, slope_i = 2 pi lambda_i; its even part is a series in t^2
+// (host/basis/clamped_cosine.hpp). The singular integral H, which is
 // the integral of two functions' product, is 4 pi G(xi_i . xi_j; lambda_i lambda_j): kernels read
 // it from a table (rotated_lobe.h).
 //

@@ -6,8 +6,9 @@
 //   table of H    H_ij(t) = 4 pi G(t; lambda_i lambda_j)          rotated_lobe.h
 //
 // A table has one part of CLPV_TABLE_SIZE entries for each lambda, or each product of two. Rounding
-// decides entries: products and sums are rounded one by one, in the order of x, y, z, as in
-// host/basis/rotated_lobe.hpp.
+// decides entries: rounded_dot() rounds products and sums one by one, in the order of x, y, z, as
+// host/basis/rotated_lobe.hpp does. Rotated centres are of fma() here and of doubles there, so that
+// an entry may differ by one.
 //
 // From the host: CLPV_TABLE_IMAGE 1: a table is a 1-D image of a buffer, else a buffer;
 // CLPV_TABLE_SIZE; CLPV_POISSON_PARTS, the part of G for each function.

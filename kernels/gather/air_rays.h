@@ -33,7 +33,7 @@ CLPV_INLINE void find_air_rays(const ClpvView view, const PixelRow p, const real
 // A point of each ray.
 typedef struct {
   realW at;           // distance from the camera [m]
-  // T, its way through the medium, and dt exp(-sigma t), sigma the mean extinction [m].
+  // t, its way through the medium, and dt exp(-sigma t) [m]; sigma the mean extinction [1/m].
   realW path, step;
   float sigma;
 } AirPoint;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Weights of cascades at W points, and the points in their cells (docs/method.md, 'Gathering').
 //
-// A cascade has the weight min(1, d / CLPV_BLEND), d the distance [cells] of p from the boundary of
-// the cube about the eye; a coarser cascade gets the weight that finer ones leave. Light is
-// therefore continuous, also when a grid moves by a cell, and 0 outside all cascades.
+// A cascade has the weight min(1, d CLPV_INVERSE_BLEND), d the distance [cells] of p from the
+// boundary of the cube about the eye; a coarser cascade gets the weight that finer ones leave.
+// Light is therefore continuous, also when a grid moves by a cell, and 0 outside all cascades.
 //
 // From the host: CLPV_GRID, CLPV_INVERSE_BLEND.
 #pragma once

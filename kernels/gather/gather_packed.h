@@ -146,15 +146,15 @@ CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
 #if CLPV_VISIBLE
 #define CLPV_AND_VOLUMES , __global const float8 *packed, __global const uchar *occluded
 #define CLPV_PASS_VOLUMES , packed, occluded
-#define CLPV_OCCLUDED occluded
+#define CLPV_OCCLUDED_OF(c) (occluded + (size_t)(c) * CLPV_CELLS * 64)
 #else
 #define CLPV_AND_VOLUMES , __global const float8 *packed
 #define CLPV_PASS_VOLUMES , packed
-#define CLPV_OCCLUDED (__global const uchar*)0  // not read
+#define CLPV_OCCLUDED_OF(c) 0  // not read
 #endif
 
 CLPV_INLINE PackedCascade packed_cascade(const uint c CLPV_AND_VOLUMES) {
   const PackedCascade cascade = {packed + (size_t)c * CLPV_CELLS * CLPV_PAIRS,
-                                 CLPV_OCCLUDED + (size_t)c * CLPV_CELLS * 64};
+                                 CLPV_OCCLUDED_OF(c)};
   return cascade;
 }

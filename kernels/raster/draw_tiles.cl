@@ -231,7 +231,7 @@ __kernel void hide_clusters(const ClpvView view, const uint first, const uint co
   if (!may_be_seen(view, cluster, farthest)) clusters[first + i].number = CLPV_HIDDEN;
 }
 
-// Only depths: a shadow map. One work-item a row of a tile.
+// Only depths: a shadow map. A work-item stores W pixels of a row.
 __kernel void resolve_depth(const ClpvView view, __global const realW* keys,
                             __global float* depths) {
   const PixelRow p = find_pixel_row(view);

@@ -113,11 +113,12 @@ static inline realW stored_alpha(void) { return ONE; }
 #if W == 8
 
 // Interleaved numbers, and interleaved pairs of numbers; compilers turn these into shuffles.
+// Element by element: Oclgrind crashes on vectors built from vectors.
 static inline channelW interleave(const SurfaceTexel a, const SurfaceTexel b) {
   return (channelW)(a.x, b.x, a.y, b.y, a.z, b.z, a.w, b.w);
 }
 static inline channelW interleave_pairs(const SurfaceTexel a, const SurfaceTexel b) {
-  return (channelW)(a.lo, b.lo, a.hi, b.hi);
+  return (channelW)(a.x, a.y, b.x, b.y, a.z, a.w, b.z, b.w);
 }
 
 // Stores `count` texels of four numbers from `to` on.

@@ -29,14 +29,22 @@
     FIELD(ClpvView, half_width) FIELD(ClpvView, up) FIELD(ClpvView, half_height)                   \
     FIELD(ClpvView, forward) FIELD(ClpvView, near_depth) FIELD(ClpvView, width)                    \
     FIELD(ClpvView, height) FIELD(ClpvView, far_depth)                                             \
+  FIELD(ClpvRasterTriangle, x) FIELD(ClpvRasterTriangle, y) FIELD(ClpvRasterTriangle, key)         \
+    FIELD(ClpvRasterTriangle, key_x) FIELD(ClpvRasterTriangle, key_y)                              \
+    FIELD(ClpvRasterTriangle, nearest) FIELD(ClpvRasterTriangle, farthest)                         \
+    FIELD(ClpvRasterTriangle, first) FIELD(ClpvRasterTriangle, last)                               \
+    FIELD(ClpvRasterTriangle, triangle)                                                            \
+  FIELD(ClpvViewCluster, number) FIELD(ClpvViewCluster, first) FIELD(ClpvViewCluster, last)        \
+    FIELD(ClpvViewCluster, nearest)                                                                \
   FIELD(ClpvSweepBin, plane_sign) FIELD(ClpvSweepBin, row_sign) FIELD(ClpvSweepBin, column_sign)   \
     FIELD(ClpvSweepBin, plane_axis) FIELD(ClpvSweepBin, row_axis)                                  \
     FIELD(ClpvSweepBin, column_axis) FIELD(ClpvSweepBin, links) FIELD(ClpvSweepBin, transposed)    \
     FIELD(ClpvSweepBin, plane) FIELD(ClpvSweepBin, row)                                            \
   FIELD(ClpvSweepDirection, taps) FIELD(ClpvSweepDirection, share)                                 \
     FIELD(ClpvSweepDirection, from_coarser) FIELD(ClpvSweepDirection, coarser)                     \
-    FIELD(ClpvSweepDirection, attenuation)                                                         \
+    FIELD(ClpvSweepDirection, attenuation) FIELD(ClpvSweepDirection, cosine)                       \
   FIELD(ClpvSweepHalo, first) FIELD(ClpvSweepHalo, side) FIELD(ClpvSweepHalo, layers)              \
+  FIELD(ClpvBox, low) FIELD(ClpvBox, high)                                                         \
   FIELD(ClpvRegion, base) FIELD(ClpvRegion, cell) FIELD(ClpvRegion, first)                         \
     FIELD(ClpvRegion, boxes) FIELD(ClpvRegion, moved) FIELD(ClpvRegion, all)                       \
     FIELD(ClpvRegion, box)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Flux through the faces of a neighbour, from its coefficients.
+// Flux from a neighbour through the faces of a cell that it sees, from its coefficients.
 //
 //   F = Omega_f I(w_f) = sum_i c_i Omega_f b_i(w_f)
 //
@@ -15,8 +15,8 @@ typedef struct {
   realW face[CLPV_SEEN_FACES];
 } SeenFaces;
 
-// Omega_f I(w_f) [W] for the five faces that a cell sees of the neighbour along axis k. One
-// function at a time, so that five sums grow side by side.
+// Omega_f I(w_f) [W] for the five faces of this cell that the neighbour `from` sees, whose light
+// travels along axis k. One function at a time, so that five sums grow side by side.
 CLPV_INLINE SeenFaces fluxes_to(const int k, const Coefficients from) {
   SeenFaces flux;
 #pragma unroll

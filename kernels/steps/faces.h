@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Fluxes through the faces of a cell's neighbours, and transmittances of links: shared by
+// Fluxes from its neighbours through the faces of a cell, and transmittances of links: shared by
 // propagate.cl and propagate_lobes.cl.
 //
-// Face 5 k + f belongs to the neighbour that light reaches along axis k, axes in the order +x, -x,
-// +y, -y, +z, -z.
+// Face 5 k + f is the cell's face f of the five that are seen by the neighbour whose light travels
+// along axis k, axes in the order +x, -x, +y, -y, +z, -z.
 //
 // With CLPV_BLOCKING 1 kernels have two more arguments (CLPV_AND_TRANSMITTANCE): the transmittance
 // of each link into a cell (transmittance.cl), and its lower bound: 1 in the first step, which is
@@ -16,7 +16,7 @@
 
 enum {
   CLPV_AXES = 6,
-  CLPV_SEEN_FACES = 5,  // of a neighbour
+  CLPV_SEEN_FACES = 5,  // by a neighbour
   CLPV_FACES = CLPV_AXES * CLPV_SEEN_FACES,
 };
 

@@ -2,7 +2,7 @@
 // Propagates light by one step, into every cell from its six neighbours, and adds it to the sum of
 // all steps.
 //
-//   F = max(0, Omega_f I(w_f)) T_f      for the five visible faces f of each neighbour
+//   F = max(0, Omega_f I(w_f)) T_f      for the five faces f of the cell that each neighbour sees
 //   I(w) = sum_i c_i b_i(w)
 //   c += (F / pi) c(n_f)
 //

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Completes the harmonics of a cell's light to a clamped cosine (docs/method.md, 'The sweep';
-// host/basis/sweep.hpp).
+// host/basis/sweep.hpp). From the host: CLPV_COSINE_E0, E2, E4, the e_0, e_2, e_4 below.
 #pragma once
 
 #include "sweep/sweep_layout.h"

@@ -21,7 +21,7 @@
 //       sums               L s^2 [W/sr] of 3 channels and 24 bins
 //       halo_light         D [W/sr] in the cells of `halo`: the boundary condition of the next
 //                          finer cascade
-// dark: 1 if no light enters at the border
+// dark: 1 if no light enters at the border. `inside`, `scattered`: with CLPV_MEDIUM (BinSweep).
 #include "prefetch.h"
 #include "shared/sweep.h"
 #include "sweep/sweep_cell.h"

@@ -12,6 +12,7 @@
 // Out:  plane_buffer  D [W/sr] in the plane upstream of the grid, from number `upstream` on
 //       border        D [W/sr] in the rows and columns upstream of each plane
 // A work-item computes W cells of a row of one face, from the cell before the grid on.
+// From the host: CLPV_COARSER_PARTS, directions of a bin in the coarser cascade.
 #include "sweep/coarse_to_fine.h"
 #include "shared/sweep.h"
 #include "sweep/sweep_layout.h"

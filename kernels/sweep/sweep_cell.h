@@ -21,7 +21,8 @@
 // and f J are means of the cell and its neighbour upstream along m.
 //
 // From the host: CLPV_PARTS directions of a bin, CLPV_SOURCES coefficients stored per channel,
-// CLPV_EMITTING that a bin's light depends on, CLPV_BLOCKING, CLPV_MEDIUM, CLPV_COSINE_REST.
+// CLPV_EMITTING that a bin's light depends on, CLPV_BLOCKING, CLPV_MEDIUM, CLPV_COSINE_REST,
+// CLPV_SOURCE_LANES, the W of sweep_source.cl.
 #pragma once
 
 #include "shared/sweep.h"

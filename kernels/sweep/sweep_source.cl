@@ -5,7 +5,7 @@
 // In:   injected  light volume [W/sr], any basis and layout
 // Out:  sources   coefficients [W/sr], CLPV_N volumes of each of 3 channels across z, then the same
 //                 across x. A volume across z has its rows along x, and serves bins across y too.
-//                 Dark tiles are not written.
+//                 With W 8 dark tiles are not written.
 //       lit       1 for each W cells of a row that hold light in any channel, else 0; of a volume
 //                 across z, then of one across x
 // A work-item copies a tile of W x W cells of a slice.

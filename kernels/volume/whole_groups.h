@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Work-items outside a grid: none where whole work-groups fill it. A branch would then prevent
-// vectorisation (lanes.h), so that the test is a constant.
+// vectorisation (lanes.h), so that the test is a constant. From the host:
+// CLPV_LOCAL_X, work-items of a group along x.
 #pragma once
 
 #include "lanes.h"

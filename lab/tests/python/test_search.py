@@ -133,8 +133,8 @@ def test_from_a_scenes_normals_to_a_set(tmp_path):
     normals, file = tmp_path / "normals.json", tmp_path / "mine.json"
     for name in "cornell.json", "cornell.glb":
         shutil.copy(CORNELL.with_name(name), tmp_path)
-    drawn = "normals", tmp_path / "cornell.json", "--grid", 16, "--directions", 24,
-             "--coarser-directions", 24, "--rsm-size", 32, "-o"
+    drawn = ("normals", tmp_path / "cornell.json", "--grid", 16, "--directions", 24,
+             "--coarser-directions", 24, "--rsm-size", 32, "-o")
     program(*drawn, normals)
     with pytest.raises(subprocess.CalledProcessError, match="status 2"):
         program(*drawn, tmp_path / "cornell.json")  # its input
