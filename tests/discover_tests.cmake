@@ -9,7 +9,9 @@
 # needs the modules of Debian's Python. Time-outs have room for a machine five times slower. FIRST are the longest, so that none of
 # them runs alone at the end, in an order in which two that run at once compile different programs.
 cmake_minimum_required(VERSION 3.22)
+# DEVELOPER are left out of `scripts/test` without options.
 set(FIRST check soak helpers bench drawing killed frame_cache starved opencl frame empty_room quality trust sequence programs)
+set(DEVELOPER baseline bystanders capsules killed mpi peers soak starved trust)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${OUTPUT}.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(STRINGS ${OUTPUT}.json lines REGEX "\"(name|file)\":")
 foreach(line IN LISTS lines)
@@ -49,7 +51,11 @@ foreach(stem IN LISTS stems)
     math(EXPR cost "100 - ${place}")
   endif()
   if(usual_${stem})
-    append(${stem} "${usual_${stem}}" "COST ${cost}")
+    set(labels "")
+    if(stem IN_LIST DEVELOPER)
+      set(labels "LABELS developer")
+    endif()
+    append(${stem} "${usual_${stem}}" "COST ${cost} ${labels}")
   endif()
   if(long_${stem})
     string(APPEND text "if(CTEST_CONFIGURATION_TYPE STREQUAL long)\n")

@@ -48,6 +48,14 @@ cp {self.folder}/results "$2"
         stub.chmod(0o755)
         return self.run_script("test", *arguments, HOME=str(self.home), **environment)
 
+    def test_a_user_runs_no_test_for_developers(self):
+        left_out = "--label-exclude developer"
+        self.assertIn(left_out, self.run_tests("chromium", CI="").stdout)
+        for arguments, ci in (((), "true"), (("--long",), ""), (("-R", "x"), "")):
+            found = self.run_tests("chromium", *arguments, CI=ci)
+            self.assertNotIn(left_out, found.stdout)
+            self.assertNotIn("Not run", found.stdout)
+
     def test_skipped_and_slowest_are_named(self):
         found = self.run_tests("chromium", "-R", "x", CI="true")
         self.assertEqual(found.returncode, 0, found.stderr)

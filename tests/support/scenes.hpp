@@ -34,7 +34,7 @@ inline std::filesystem::path sponza() {
   return std::filesystem::exists(path) ? path : std::filesystem::path();
 }
 
-/// A small frame's sweep. All tests share its programs: other numbers would be compiled anew.
+/// A small frame's sweep. All tests share its programs: other numbers need programs of their own.
 inline const std::string kSmallSweep = " --grid 16 --directions 24 --coarser-directions 24 ",
                          kSweepOfOne = " --grid 16 --directions 24 --cascades 1 ";
 
