@@ -254,6 +254,15 @@ class Gates(InTree):
         self.full.mkdir()
         self.refused(1, "found no page", "../tests/docs/check_links", self.full)
 
+class Home(InTree):
+    def test_stays_empty(self):
+        home = self.folder / "home"
+        home.mkdir()
+        self.made("charts", "--help", HOME=str(home), MPLCONFIGDIR="")
+        self.assertEqual(list(home.iterdir()), [])
+        self.assertTrue((self.tree / "build/matplotlib").is_dir())
+
+
 class Arguments(InTree):
     def test_help_is_the_comment_and_changes_nothing(self):
         for name in sorted(file.name for file in (ROOT / "scripts").iterdir()):
