@@ -119,7 +119,13 @@ struct MorphTest : AnimationTest {
 TEST_F(MorphTest, TargetsAddUpByTheWeightsOfTheNodeElseTheMesh) {
   EXPECT_THAT(position(load_scene(model.write(folder)), 0, 2), IsNear(glm::vec3(0, 1, 0), kNear));
   model.document["meshes"][0]["weights"] = {0.5, -1};
+  EXPECT_THAT(load_scene(model.write(folder)).notes, Not(Contains(HasSubstr("not morphed"))));
+  const int deltas = model.accessor<float>("VEC3", std::vector<float>(9, -1));
+  for (const char* name : {"TEXCOORD_0", "COLOR_0", "TANGENT"})
+    primitive()["targets"][1][name] = deltas;
   const SceneData of_mesh = load_scene(model.write(folder));
+  EXPECT_THAT(of_mesh.notes,
+              Contains("/meshes/0/primitives/0/targets: not morphed: COLOR_0, TEXCOORD_0"));
   EXPECT_THAT(position(of_mesh, 0, 2), IsNear(glm::vec3(0, 1, 1), kNear));
   EXPECT_THAT(position(of_mesh, 0, 1), IsNear(glm::vec3(-2, 0, 0), kNear));
   model.document["nodes"][0]["weights"] = {1, 0};
