@@ -5,6 +5,7 @@
 #include "scene/gltf_document.hpp"
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_accessor.hpp"
@@ -167,8 +168,29 @@ void check_transforms(const json& document, const std::string& file) {
   }
 }
 
-/// Gives a document what tinygltf requires and glTF, or common exporters, do not.
+/// Finds the names of the extensions of all objects in the document.
+void find_extensions(const json& value, std::set<std::string>& names) {
+  if (value.is_array()) {
+    for (const json& each : value) find_extensions(each, names);
+  } else if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) {
+      if (key == "extensions" && member.is_object()) {
+        for (const auto& [name, extension] : member.items()) names.insert(name);
+      }
+      if (key != "extras") find_extensions(member, names);
+    }
+  }
+}
+
+/// Gives a document what tinygltf requires and glTF, or common exporters, do not, and extensionsUsed
+/// the extensions that it lacks.
 void complete(json& document) {
+  std::set<std::string> found;
+  find_extensions(document, found);
+  json& used = document["extensionsUsed"];
+  for (const json& listed : used) found.erase(listed.get_ref<const std::string&>());
+  for (const std::string& name : found) used.push_back(name);
+  if (used.is_null()) used = json::array();
   const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
   if (!document.contains(lights)) return;
   for (json& light : document.at(lights)) {
