@@ -41,6 +41,11 @@ endif()
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_library(TINYGLTF_LIBRARY tinygltf REQUIRED)
 find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
+# The program of a project that clpv is a part of links these, too.
+if(NOT PROJECT_IS_TOP_LEVEL)
+  get_property(imported DIRECTORY PROPERTY IMPORTED_TARGETS)
+  set_target_properties(${imported} PROPERTIES IMPORTED_GLOBAL ON)
+endif()
 
 # Settings of sources that include host/: the library itself, program, benchmarks, tests, Python module. A program that links
 # clpv::clpv gets none of them.
