@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads glTF documents by tinygltf 2.7, which trusts indices and sizes, opens files of URIs, knows
+// Reads glTF documents by tinygltf (2.7 and 2.9), which trusts indices and sizes, opens files of URIs, knows
 // six spellings of data URIs, and decodes images. Here it reads only checked JSON, whose buffers
 // come from this file: it neither opens files nor decodes images.
 #include "scene/gltf_document.hpp"
@@ -125,16 +125,27 @@ class BufferReader {
   std::uint64_t bytes_left_ = bounds::kBufferBytes;
 };
 
-tinygltf::FsCallbacks callbacks(BufferReader& reader) {
-  return {[](const std::string&, void* user_data) {
-            return !static_cast<BufferReader*>(user_data)->done();
-          },
-          [](const std::string& path, void*) { return path; },
-          [](Bytes* bytes, std::string*, const std::string&, void* user_data) {
-            *bytes = static_cast<BufferReader*>(user_data)->read_next();
-            return true;
-          },
-          nullptr, &reader};
+/// A template, since tinygltf 2.9 has a callback more, and requires all.
+template <typename Callbacks = tinygltf::FsCallbacks>
+Callbacks callbacks(BufferReader& reader) {
+  Callbacks made{};
+  made.FileExists = [](const std::string&, void* user_data) {
+    return !static_cast<BufferReader*>(user_data)->done();
+  };
+  made.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  made.ReadWholeFile = [](Bytes* bytes, std::string*, const std::string&, void* user_data) {
+    *bytes = static_cast<BufferReader*>(user_data)->read_next();
+    return true;
+  };
+  made.WriteWholeFile = [](auto...) { return false; };
+  if constexpr (requires { made.GetFileSizeInBytes; }) {
+    made.GetFileSizeInBytes = [](std::size_t* bytes, auto...) {
+      *bytes = 0;  // read_next() checks sizes
+      return true;
+    };
+  }
+  made.user_data = &reader;
+  return made;
 }
 
 /// JSON pointer of the entry at which tinygltf failed, in those lists, and in the order, in which
