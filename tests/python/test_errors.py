@@ -10,6 +10,11 @@ import sys
 import numpy
 import pytest
 
+try:
+    import pandas
+except ImportError:  # no package of scripts/setup
+    pandas = None
+
 import clpv
 from conftest import CORNELL, FRONT, SMALL
 
@@ -184,6 +189,38 @@ def test_wrong_calls_are_named(name, objects):
             continue
         with pytest.raises(clpv.UsageError, match=f"{title}: {key}: found none, allowed: "):
             function(**{other: value for other, value in given.items() if other != key})
+
+
+def containers(values, number):
+    """A vector as each type that people have vectors in, whose items may be made on access."""
+    array = numpy.array(values, number)
+    yield from (list(values), tuple(values), array, array.astype(array.dtype.newbyteorder(">")),
+                numpy.repeat(array, 2)[::2], array[::-1].copy()[::-1], tuple(array))
+    if pandas is not None:
+        yield pandas.Series(array, index=range(len(values))[::-1])  # subscripts are labels
+        yield pandas.DataFrame([array], columns=list("xyzw")[:len(values)]).iloc[0]
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_vectors_of_any_type(name, objects):  # under PYTHONMALLOC=debug: items were once freed
+    kinds, given = CALLS[name]
+    given = given | {key: objects["scene"] for key in ("scene", ) if key in given}
+    for argument, kind in kinds.items():
+        values = (16, 32) if kind == "size" else (1, 0, 3)
+        numbers = [int] if kind == "size" else [int, numpy.float32, float]
+        for number in numbers if kind.rstrip("?") in ("vector", "colour", "size") else []:
+            boxes = argument == "box"
+            for one in containers(values, number):
+                value = (one, numpy.add(tuple(one), 1)) if boxes else one
+                try:
+                    made = call_of(name, objects)(**(given | {argument: value}))
+                except clpv.Error as error:  # of the scene or the device
+                    assert f"{argument}: found" not in str(error)
+                    continue
+                found = getattr(made, argument, values)
+                assert tuple(found[0] if boxes else found)[:3] == values, f"{argument}={one!r}"
+    boxes = numpy.array([[0, 0, 0], [1, 2, 3]])
+    assert clpv.Medium(box=boxes).box == ((0, 0, 0), (1, 2, 3))
 
 
 def test_wrong_times_are_named():
