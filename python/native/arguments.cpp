@@ -18,8 +18,13 @@ std::string found(py::handle given) {
   return "an object of " + std::string(py::str(py::type::of(given)));
 }
 
+bool is_masked(py::handle given) {
+  return py::isinstance<py::array>(given) &&
+         py::isinstance(given, py::module_::import("numpy.ma").attr("MaskedArray"));
+}
+
 bool is_real(py::handle given) {
-  if (PyComplex_Check(given.ptr()) || py::hasattr(given, "mask")) return false;
+  if (PyComplex_Check(given.ptr()) || is_masked(given)) return false;
   const py::object type = py::getattr(given, "dtype", py::none());
   if (py::isinstance<py::dtype>(type) && type.cast<py::dtype>().kind() == 'c') return false;
   PyFloat_AsDouble(given.ptr());

@@ -58,6 +58,10 @@ py::object plain(const py::object& given, int levels = 2);
 /// A value for a message: short ones as Python writes them, others by their type.
 std::string found(py::handle given);
 
+/// True for NumPy's masked arrays, whose hidden numbers would count. Tables of pandas have a method
+/// `mask` too.
+bool is_masked(py::handle given);
+
 /// False for complex numbers and NumPy's masked ones, which become floats with a warning. Raises
 /// what the object's __float__ raises.
 bool is_real(py::handle given);

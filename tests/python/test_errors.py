@@ -29,7 +29,8 @@ WRONG = {
     "bool": ["x", (1, ), math.nan, 1j, THING],
     "vector": ["x", None, 3, (1, 2), (1, 2, "x"), numpy.zeros(3, complex), MASKED[0, 0], THING],
     "colour": ["x", None, (1, 2), THING],
-    "array": ["x", [["x"]], THING, [[1j]], MASKED],
+    "array": ["x", [["x"]], THING, [[1j]], MASKED,
+              *(numpy.full((1, 3), wrong, object) for wrong in ("1", None, THING))],
     "camera": [3, (0, 0, 0), THING],
     "path": [3, THING],
     "image": ["x", THING, [3]],
@@ -221,6 +222,20 @@ def test_vectors_of_any_type(name, objects):  # under PYTHONMALLOC=debug: items 
                 assert tuple(found[0] if boxes else found)[:3] == values, f"{argument}={one!r}"
     boxes = numpy.array([[0, 0, 0], [1, 2, 3]])
     assert clpv.Medium(box=boxes).box == ((0, 0, 0), (1, 2, 3))
+
+
+def test_arrays_of_any_type():
+    basis, rows = clpv.Basis("sh2"), numpy.array([[0, 0, 1], [1, 0, 3], [2, 1, 0]])
+    given = [rows.astype(object), numpy.asfortranarray(rows), rows.astype(">f4"),
+             numpy.repeat(rows, 2, 1)[:, ::2]]
+    if pandas is not None:  # whose tables have a method `mask`
+        table = pandas.DataFrame(rows, index=[2, 1, 0])
+        given += [table, table.astype(float), table.astype("Float64"), table.astype(object)]
+        for wrong in table.astype(str), table.astype("Float64").replace(3, pandas.NA):
+            with pytest.raises(clpv.UsageError, match="directions: found an array of"):
+                basis.evaluate(wrong)
+    for one in given:
+        assert (basis.evaluate(one) == basis.evaluate(rows)).all()
 
 
 def test_wrong_times_are_named():
