@@ -120,19 +120,6 @@ class Killed : public ::testing::Test {
 
 const std::string kSmall = " --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 ";
 
-TEST_F(Killed, WhileItRenders) {
-  const fs::path image = folder_ / "a.exr";
-  std::string wanted;
-  kill_at_moments("render " + kTiny + kSmall +
-                      "--basis sh2 --transport sampled --gather all --blockers seen --width 96 "
-                      "--height 72 -o " +
-                      image.string(),
-                  [&] {
-                    if (wanted.empty()) wanted = read_file(image);
-                    EXPECT_TRUE(read_file(image) == wanted) << "half an image, or another";
-                  });
-}
-
 TEST_F(Killed, WhileQualityMeasures) {
   const fs::path json = folder_ / "q.json";
   kill_at_moments("quality " + kTiny + kSmall +
