@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Failing devices and full disks: allocations, enqueues and builds of a frame fail in turn (by a
-// shim of the OpenCL loader, tests/starved/opencl_shim.cpp). Each run ends with a message and exit
+// shim of the OpenCL loader, tests/system/opencl_shim.cpp). Each run ends with a message and exit
 // code 1, and leaves no device memory and no file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

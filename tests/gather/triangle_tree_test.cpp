@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tree of triangles: its boxes cover each triangle, and it follows moving ones.
-// tests/near_test.cpp has rays.
+// tests/gather/near_test.cpp has rays.
 #include "pipeline/gather/triangle_tree.hpp"
 
 #include <gtest/gtest.h>
