@@ -85,8 +85,6 @@ nlohmann::json to_json(const Row& row, int index) {
   json.update({{"suite", row.suite},
                {"coefficients",
                 row.coefficients > 0 ? nlohmann::json(row.coefficients) : nlohmann::json(nullptr)},
-               {"axis", text_or_null(row.axis)},
-               {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
                {"preset", text_or_null(row.preset)},
                {"recompute", text_or_null(row.recompute)},
                {"changed",
