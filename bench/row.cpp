@@ -12,7 +12,8 @@
 namespace clpv {
 namespace verify {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
-                                   triangles, pixels, covered, set_up, listed, entries)
+                                   triangles, pixels, covered, set_up, listed, entries, launches,
+                                   fills, waits, arguments, written)
 }
 
 namespace bench {

@@ -78,6 +78,25 @@ TEST_F(SkinTest, NormalsTurnWithTheirJoints) {
   EXPECT_THAT(normal(scene, 0, 1), IsNear(glm::vec3(1, 0, 0), kNear));
 }
 
+// The first vertex once decided for all triangles of a skin.
+TEST_F(SkinTest, TrianglesTurnOverWhereMostOfTheirJointsMirror) {
+  model.document["skins"][0].erase("inverseBindMatrices");
+  model.document["nodes"][1]["scale"] = {-1, 1, 1};
+  primitive()["attributes"]["WEIGHTS_0"] =
+      model.accessor<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  const auto order = [&](const std::vector<std::uint8_t>& joints) {
+    std::vector<std::uint8_t> first(12);  // the only joint of each vertex
+    for (int i = 0; i < 3; ++i) first[4 * i] = joints[i];
+    primitive()["attributes"]["JOINTS_0"] = model.accessor<std::uint8_t>("VEC4", first);
+    const Triangle& placed = load_scene(model.write(folder)).triangles.at(0);
+    return std::vector<std::uint32_t>(placed.vertex, placed.vertex + 3);
+  };
+  for (const auto& plain : {std::vector<std::uint8_t>{1, 1, 1}, {0, 1, 1}, {1, 1, 0}})
+    EXPECT_THAT(order(plain), ::testing::ElementsAre(0, 1, 2));
+  for (const auto& mirrored : {std::vector<std::uint8_t>{0, 0, 0}, {1, 0, 0}, {0, 0, 1}})
+    EXPECT_THAT(order(mirrored), ::testing::ElementsAre(0, 2, 1));
+}
+
 TEST_F(SkinTest, WeightsAreSharesAndNoneMeansTheFirstJoint) {
   model.document["nodes"][2]["translation"] = {2, 10, 0};
   primitive()["attributes"]["WEIGHTS_0"] =
@@ -100,7 +119,13 @@ struct MorphTest : AnimationTest {
 TEST_F(MorphTest, TargetsAddUpByTheWeightsOfTheNodeElseTheMesh) {
   EXPECT_THAT(position(load_scene(model.write(folder)), 0, 2), IsNear(glm::vec3(0, 1, 0), kNear));
   model.document["meshes"][0]["weights"] = {0.5, -1};
+  EXPECT_THAT(load_scene(model.write(folder)).notes, Not(Contains(HasSubstr("not morphed"))));
+  const int deltas = model.accessor<float>("VEC3", std::vector<float>(9, -1));
+  for (const char* name : {"TEXCOORD_0", "COLOR_0", "TANGENT"})
+    primitive()["targets"][1][name] = deltas;
   const SceneData of_mesh = load_scene(model.write(folder));
+  EXPECT_THAT(of_mesh.notes,
+              Contains("/meshes/0/primitives/0/targets: not morphed: COLOR_0, TEXCOORD_0"));
   EXPECT_THAT(position(of_mesh, 0, 2), IsNear(glm::vec3(0, 1, 1), kNear));
   EXPECT_THAT(position(of_mesh, 0, 1), IsNear(glm::vec3(-2, 0, 0), kNear));
   model.document["nodes"][0]["weights"] = {1, 0};

@@ -20,9 +20,19 @@ TEST_F(GltfMaterialTest, MaterialFactorsAndFlags) {
     {"name": "mask", "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true},
     {"name": "mask by default", "alphaMode": "MASK"},
     {"name": "glass", "alphaMode": "BLEND", "alphaCutoff": 0.9}])");
+  const auto add_glass = [&](json extension, json more) {
+    more["extensions"]["KHR_materials_transmission"] = std::move(extension);
+    model.document["materials"].push_back(more);
+  };
+  const json green = {{"baseColorFactor", {0, 0.6, 0, 0.1}}}, factor = {{"transmissionFactor", 1}};
+  add_glass(factor, {{"pbrMetallicRoughness", green}, {"alphaMode", "BLEND"}});
+  add_glass({{"transmissionFactor", 0.8}}, {{"pbrMetallicRoughness", green}});
+  add_glass(factor, {{"emissiveFactor", {1, 1, 1}}});
+  add_glass({{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}}}}, {});
+  add_glass(json::object(), {});
   model.triangle({{"material", 0}});
   const SceneData scene = load();
-  ASSERT_EQ(scene.materials.size(), 4u);
+  ASSERT_EQ(scene.materials.size(), 9u);
   EXPECT_THAT(scene.materials[0].base_colour, ElementsAre(0.1f, 0.2f, 0.3f, 0.4f))
       << "of a metal too";
   EXPECT_THAT(scene.materials[0].emissive, ElementsAre(4, 2, 8));
@@ -33,6 +43,14 @@ TEST_F(GltfMaterialTest, MaterialFactorsAndFlags) {
   EXPECT_EQ(scene.materials[3].flags, CLPV_MATERIAL_MASKED);
   EXPECT_EQ(scene.materials[3].alpha_cutoff, 0.5f) << "BLEND is MASK at one half";
   EXPECT_THAT(scene.notes, ::testing::Contains(HasSubstr("/materials/3 ('glass') blends")));
+  EXPECT_EQ(scene.materials[4].flags, CLPV_MATERIAL_MASKED);
+  EXPECT_GT(scene.materials[4].alpha_cutoff, 1.f) << "a hole";
+  const std::string notes = fmt::format("{}", fmt::join(scene.notes, "\n"));
+  EXPECT_THAT(notes, AllOf(HasSubstr("/materials/4 ('') transmits 0.6 of light: a hole"),
+                           HasSubstr("/materials/5 ('') transmits 0.48 of light: opaque here"),
+                           HasSubstr("/materials/6 ('') transmits 1 of light: opaque here"),
+                           HasSubstr("/materials/7 ('') transmits 1 of light: opaque here")));
+  for (int i = 5; i < 9; ++i) EXPECT_EQ(scene.materials[i].flags, 0u) << i;
 }
 
 TEST_F(GltfMaterialTest, TexturesKeepTheirBytes) {

@@ -100,6 +100,12 @@ class Folders(InFolder):
 class Tree(InFolder):
     """The tree's own gates."""
 
+    def test_a_home_stays_empty(self):
+        home = self.folder / "home"
+        home.mkdir()
+        self.assertEqual(run("charts", "--help", HOME=str(home), MPLCONFIGDIR="").returncode, 0)
+        self.assertEqual(list(home.iterdir()), [])
+
     def test_help_is_the_comment_and_unknown_arguments_are_rejected(self):
         for name in sorted(file.name for file in (ROOT / "scripts").iterdir() if file.is_file()):
             if not os.access(ROOT / "scripts" / name, os.X_OK) or name == "stubs":  # needs the module

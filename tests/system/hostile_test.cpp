@@ -241,7 +241,7 @@ std::string as_nobody() {
 TEST(HostileSurroundings, Permissions) {
   const std::string nobody = as_nobody();
   if (nobody.empty())
-    GTEST_SKIP() << "root, and no setpriv to become someone else: permissions bind nobody";
+    GTEST_SKIP() << "root, and nobody else can run programs here (setpriv, mode of /)";
   const TemporaryFolder open;  // with umask 077 nobody else may run the program of the build
   const fs::path program = open / "clpv";
   fs::copy_file(CLPV_PROGRAM, program);
