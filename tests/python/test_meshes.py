@@ -178,7 +178,7 @@ def accessor(document, values, normalized=False):
 FACTOR = {"pbrMetallicRoughness": {"baseColorFactor": [0.4, 0.6, 0.8, 1], "metallicFactor": 0}}
 FILES = [
     (None, None), (FACTOR, None), (None, ("f4", [0.5, 0.25, 1])), (None, ("f4", [0.5, 0.25, 1, 1])),
-    (None, ("u1", [128, 64, 255, 255])), (None, ("u2", [32768, 16384, 65535, 65535])),
+    (None, ("u1", [128, 64, 255, 255])), (FACTOR, ("u2", [32768, 16384, 65535, 65535])),
     (FACTOR, ("f4", [0.5, 0.25, 1, 1])), (FACTOR, ("u1", [128, 64, 255, 255])),
     ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.1]}, "alphaMode": "BLEND"}, None),
     ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.9]}, "alphaMode": "BLEND"}, None),
