@@ -3,11 +3,6 @@
 // input.
 #pragma once
 
-// Checks of numbers, here and in all that includes this, need NaN and infinity.
-#if defined(__FAST_MATH__) || __FINITE_MATH_ONLY__
-#error "clpv: found -ffast-math, -Ofast or -ffinite-math-only, allowed: none of them"
-#endif
-
 #include <fmt/format.h>
 
 #include <string>

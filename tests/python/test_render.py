@@ -155,6 +155,8 @@ def test_radiance(scene, renderer):
     steps.render()
     with pytest.raises(clpv.UsageError, match="found transport 'sampled', allowed: sweep"):
         steps.radiance([0, 0, 0], [0, 1, 0])
+    with pytest.raises(clpv.UsageError, match="^lookup_source: found transport 'sampled', allowed:"):
+        steps.lookup_source()
 
 
 @pytest.mark.parametrize("ask", [
