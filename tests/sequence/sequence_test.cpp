@@ -163,7 +163,8 @@ TEST_F(SequenceTest, FilesOfOthersAreNamedBeforeTheWorkAndStay) {
       fs::create_symlink(target, link);
       const Outcome linked = sequence("--frames 3 --fps 10 --stability");
       EXPECT_EQ(linked.exit_code, 1);
-      EXPECT_THAT(linked.err, HasSubstr(link.filename().string() + ": cannot be written: it is a symb"));
+      EXPECT_THAT(linked.err,
+                  HasSubstr(link.filename().string() + ": cannot be written: it is a symb"));
       EXPECT_EQ(read_file(folder / "mine"), "my diary");
       EXPECT_FALSE(fs::exists(folder / "none"));
     }
