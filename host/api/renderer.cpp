@@ -251,8 +251,12 @@ std::vector<LightVolume> Renderer::volumes() {
     volume.n = shape.n;
     volume.coefficients = shape.coefficients;
     volume.basis = state().frame->gathered().name();
-    volume.values = light.accumulated[c]->read(state().session);
-    for (float& value : volume.values) value /= light.scale;
+    std::vector<float> values = light.accumulated[c]->read(state().session);
+    const auto furnace = values.begin() + static_cast<std::ptrdiff_t>(values.size() / shape.channels * 3);
+    volume.furnace.assign(furnace, values.end());
+    values.erase(furnace, values.end());
+    for (float& value : values) value /= light.scale;
+    volume.values = std::move(values);
   }
   return all;
 }

@@ -16,16 +16,6 @@ double cosine(const SweepBin& bin, int side) {
   return std::max(0.0, (side % 2 == 0 ? 1 : -1) * bin.directions.front().w[axis]);
 }
 
-double compute_edge_loss() {
-  double both = 0, one = 0;  // flux through +x and +y, flux through +x
-  for (const SweepBin& bin : sweep_bins(1)) {
-    const double x = cosine(bin, 0), y = cosine(bin, 2), flux = bin.directions.front().flux;
-    one += bin.solid_angle * x;
-    both += bin.solid_angle * x * y / flux;
-  }
-  return both / (2 * one);
-}
-
 }  // namespace
 
 Matrix incident_flux() {
@@ -50,12 +40,6 @@ Matrix reflected_intensity(const Basis& basis) {
     for (int i = 0; i < basis.size(); ++i) light(i, side) = cosine[i] / total;
   }
   return light;
-}
-
-double edge_loss() {
-  // Cached: the CPU reference calls this for every cell.
-  static const double loss = compute_edge_loss();
-  return loss;
 }
 
 }  // namespace clpv

@@ -27,9 +27,11 @@ Matrix incident_flux();
 /// cosine about its normal, divided by its integral. Conserves the flux.
 Matrix reflected_intensity(const Basis& basis);
 
-/// Share of a face's incident flux that incident_flux() counts twice at the edge to one adjacent
-/// face, for isotropic light on two fully covered faces. A sweep carries light through an edge
-/// once; both faces count it.
-double edge_loss();
+/// Least F of a white furnace that swept light is divided by, over that of even light 1. Below it
+/// few surfaces are in sight, and light fades to black instead of growing.
+inline constexpr double kLeastWhite = 0.1;
+
+/// Least share |n_a| / (|n_x| + |n_y| + |n_z|) of the axis nearest to a normal, 1 / sqrt(3), halved.
+inline constexpr double kLeastShare = 0.29;
 
 }  // namespace clpv

@@ -4,8 +4,10 @@
 #include "reference/bounce.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <glm/glm.hpp>
+#include <numbers>
 
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
@@ -17,19 +19,32 @@ namespace {
 /// Incident flux [W] on the six faces of a cell, in a channel.
 using IncidentFlux = std::function<std::vector<double>(int, const glm::ivec3&)>;
 
-/// light += R D: adds the intensity of the reflected flux.
-void inject_reflected(const Basis& basis, const Volume& reflectors, const IncidentFlux& incident,
-                      Volume& light) {
+/// light += `reflected` D: adds the intensity of the reflected flux. `reflectors`: shares of the
+/// faces' triangles.
+void inject_reflected(const Basis& basis, const Volume& reflected, const Volume& reflectors,
+                      const IncidentFlux& incident, Volume& light) {
   const Matrix intensity = reflected_intensity(basis);
   for_each_cell(light.n, [&](const glm::ivec3& p) {
+    const std::vector<double> shares = reflectors.cell(3, p);
     for (int channel = 0; channel < 3; ++channel) {
-      std::vector<double> flux = incident(channel, p);
-      for (int side = 0; side < kCellFaces; ++side)
-        flux[side] *= reflectors.value(channel, side, p.x, p.y, p.z);
-      const std::vector<double> added = intensity * flux;
-      for (int i = 0; i < basis.size(); ++i) light.at(channel, i, p.x, p.y, p.z) += added[i];
+      const std::vector<double> arriving = incident(channel, p);
+      for (int side = 0; side < kCellFaces; ++side) {
+        const double flux = arriving[side] * reflected.value(channel, side, p.x, p.y, p.z);
+        const double per_share = basis.bands() > 0 ? flux / std::max(shares[side], kLeastShare) : flux;
+        for (int i = 0; i < basis.size(); ++i)
+          light.at(channel, i, p.x, p.y, p.z) += intensity(i, side) * (i == 0 ? flux : per_share);
+      }
     }
   });
+}
+
+/// Light of faces that emit `flux` [W].
+Volume emitted(const Basis& basis, const Volume& flux, const Volume& reflectors) {
+  Volume light(flux.n, basis.size());
+  inject_reflected(
+      basis, flux, reflectors,
+      [](int, const glm::ivec3&) { return std::vector<double>(kCellFaces, 1.0); }, light);
+  return light;
 }
 
 /// Sweeps light along 24 directions.
@@ -53,7 +68,7 @@ void add_one_bounce(const Basis& basis, const Transport& transport,
   for (SweptCascade& cascade : cascades) cascade.parts = 1;
   const std::vector<Volume> swept = sweep(basis, transport, cascades);
   for (std::size_t c = 0; c < cascades.size(); ++c)
-    inject_reflected(basis, *reflectors[c], incident_flux_of(swept[c]), light[c]);
+    inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(swept[c]), light[c]);
 }
 
 /// light += R D_1 + S D_2 in every cascade. The coarser cascade's last sweep enters at the border.
@@ -66,12 +81,12 @@ void add_all_bounces(const Basis& basis, const Transport& transport,
     nested[0].parts = 1;
     const Volume first = sweep(basis, transport, nested)[0];
     Volume reflected(first.n, basis.size());
-    inject_reflected(basis, *reflectors[c], incident_flux_of(first), reflected);
+    inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(first), reflected);
     const Volume second = swept_along_24(basis, transport, cascades[c], reflected);
     for (std::size_t i = 0; i < reflected.values.size(); ++i)
       light[c].values[i] += reflected.values[i];
     inject_reflected(basis, bounce_series(basis, transport, cascades[c], *reflectors[c]),
-                     incident_flux_of(second), light[c]);
+                     *reflectors[c], incident_flux_of(second), light[c]);
   }
 }
 
@@ -105,7 +120,7 @@ Sources bounce_in_medium(const Basis& basis, const Transport& transport,
       swept.light[c] = result.light[c], swept.scattered[c] = result.scattered[c];
       const Volume found = sweep(basis, transport, swept.of(along_24, c))[0];
       result.light[c] = *cascades[c].injected;
-      inject_reflected(basis, *reflectors[c], incident_flux_of(found), result.light[c]);
+      inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(found), result.light[c]);
       result.scattered[c] = *cascades[c].scattered;
       add_scattered(*cascades[c].medium, found, result.scattered[c]);
     }
@@ -119,11 +134,8 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
                      const Volume& reflectors) {
   // R X, X the incident flux while each face emits `flux`.
   const auto returned = [&](const Volume& flux) {
-    Volume emitted(flux.n, basis.size());
-    inject_reflected(
-        basis, flux, [](int, const glm::ivec3&) { return std::vector<double>(kCellFaces, 1.0); },
-        emitted);
-    const Volume swept = swept_along_24(basis, transport, cascade, emitted);
+    const Volume swept =
+        swept_along_24(basis, transport, cascade, emitted(basis, flux, reflectors));
     const IncidentFlux incident = incident_flux_of(swept);
     Volume reflected = reflectors;
     for_each_cell(flux.n, [&](const glm::ivec3& p) {
@@ -139,8 +151,11 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
   Volume series = reflectors;
   for_each_cell(series.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < 3; ++channel) {
-      const std::vector<double> reflectance = reflectors.cell(channel, p);
-      const double bound = std::min(std::ranges::max(reflectance), kMaxReturned);
+      double bound = 0;
+      for (int side = 0; side < kCellFaces; ++side)
+        bound = std::max(bound, reflectors.value(channel, side, p.x, p.y, p.z) /
+                                    std::max(reflectors.value(3, side, p.x, p.y, p.z), kLeastShare));
+      bound = std::min(bound, kMaxReturned);
       for (int side = 0; side < kCellFaces; ++side) {
         const double t1 = first.value(channel, side, p.x, p.y, p.z),
                      t2 = second.value(channel, side, p.x, p.y, p.z),
@@ -150,6 +165,53 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
     }
   });
   return series;
+}
+
+std::vector<Volume> furnace(const Basis& basis, const Transport& transport,
+                            std::vector<SweptCascade> cascades,
+                            const std::vector<const Volume*>& white) {
+  Sky even;
+  even.width = even.height = 1, even.texels = {glm::vec3(1)};
+  std::vector<Volume> light;
+  const auto area = [&](std::size_t c) { return std::pow(double{cascades[c].grid.cell}, 2); };
+  for (std::size_t c = 0; c < cascades.size(); ++c) {
+    light.push_back(emitted(basis, *white[c], *white[c]));
+    for (double& value : light[c].values) value *= std::numbers::pi * area(c);
+  }
+  for (std::size_t c = 0; c < cascades.size(); ++c) {
+    cascades[c].injected = &light[c];
+    cascades[c].medium = nullptr, cascades[c].scattered = nullptr;
+  }
+  std::vector<Volume> swept = sweep(basis, transport, cascades, &even);
+  for (std::size_t c = 0; c < cascades.size(); ++c)
+    for (double& value : swept[c].values) value /= area(c);
+  return swept;
+}
+
+std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& transport,
+                                          const std::vector<SweptCascade>& cascades,
+                                          const std::vector<const Volume*>& white,
+                                          const std::vector<const Volume*>& reflectors,
+                                          Bounces bounces) {
+  std::vector<Volume> normalised;
+  for (std::size_t c = 0; c < cascades.size(); ++c) {
+    const auto first = static_cast<std::ptrdiff_t>(c);
+    std::vector<SweptCascade> nested(cascades.begin() + first, cascades.end());
+    const bool all = bounces == Bounces::all && cascades[c].scattered == nullptr;
+    for (std::size_t i = 0; i < nested.size() && (i == 0 || !all); ++i) nested[i].parts = 1;
+    const Volume even =
+        furnace(basis, transport, nested, {white.begin() + first, white.end()})[0];
+    const IncidentFlux incident = incident_flux_of(even);
+    Volume& result = normalised.emplace_back(*reflectors[c]);
+    for_each_cell(result.n, [&](const glm::ivec3& p) {
+      const std::vector<double> arriving = incident(0, p);
+      for (int channel = 0; channel < 3; ++channel)
+        for (int side = 0; side < kCellFaces; ++side)
+          result.at(channel, side, p.x, p.y, p.z) /=
+              std::max(arriving[side] / std::numbers::pi, kLeastWhite);
+    });
+  }
+  return normalised;
 }
 
 std::vector<Volume> bounce(const Basis& basis, const Transport& transport,

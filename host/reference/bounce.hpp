@@ -10,13 +10,26 @@
 
 namespace clpv::reference {
 
+/// Light of the white furnace in bins24, as radiance: the faces of `white` (reflector_masks) and the
+/// border emit radiance 1.
+std::vector<Volume> furnace(const Basis& basis, const Transport& transport,
+                            std::vector<SweptCascade> cascades,
+                            const std::vector<const Volume*>& white);
+
+/// Reflectors over the furnace's incident flux, as sweeps for `bounces` use them.
+std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& transport,
+                                          const std::vector<SweptCascade>& cascades,
+                                          const std::vector<const Volume*>& white,
+                                          const std::vector<const Volume*>& reflectors,
+                                          Bounces bounces);
+
 /// Series S of all further bounces inside one cascade: flux that a face, and the faces that its
 /// light meets, reflect of 1 W of incident flux.
 Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
                      const Volume& reflectors);
 
 /// Sources of the sweep in every cascade, in `basis` [W/sr]: injected light and the light that
-/// `reflectors`, one volume per cascade, reflect.
+/// `reflectors`, normalised and one volume per cascade, reflect.
 std::vector<Volume> bounce(const Basis& basis, const Transport& transport,
                            std::vector<SweptCascade> cascades,
                            const std::vector<const Volume*>& reflectors, Bounces bounces);

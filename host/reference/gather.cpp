@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // E = 4 I(-n) / s^2 for face transports, E = alpha(-n) . c / s^2 for the sweep; c interpolated
-// trilinearly at p + h s n_g.
+// trilinearly at p + h s n_g. Swept E is divided by that of the white furnace, over pi.
 #include "reference/gather.hpp"
 
 #include <algorithm>
+#include <numbers>
 
+#include "basis/bounce.hpp"
 #include "reference/cascade_sample.hpp"
 #include "reference/view.hpp"
 
@@ -24,11 +26,11 @@ std::vector<double> gather_weights(const Basis& basis, TransportKind transport,
   return weights;
 }
 
-/// E s^2 from one volume, clamped at 0.
-glm::dvec3 irradiance(const Volume& volume, const TrilinearSample& sample,
+/// E s^2 from one volume, clamped at 0; of swept light also E of the furnace.
+glm::dvec4 irradiance(const Volume& volume, const TrilinearSample& sample,
                       const std::vector<double>& weights) {
-  glm::dvec3 e(0);
-  for (int channel = 0; channel < 3; ++channel)
+  glm::dvec4 e(0);
+  for (int channel = 0; channel < volume.channels; ++channel)
     e[channel] = std::max(0.0, dot(weights, interpolated(volume, channel, sample)));
   return e;
 }
@@ -39,7 +41,7 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
                   const glm::dvec3& normal, const glm::dvec3& lift) {
   const std::vector<double> weights = gather_weights(basis, transport, options.lobes, normal);
-  glm::dvec3 e(0);
+  glm::dvec4 e(0);
   double rest = 1;  // weight of the coarser cascades
   for (const Cascade& cascade : cascades) {
     const ClpvGrid& grid = cascade.grid;
@@ -51,10 +53,12 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
     TrilinearSample sample = trilinear_sample(point, options.grid);
     if (options.gather == Gathering::visible)
       apply_visibility(sample, point, options.grid, cascade.occluded);
-    e += share * rest / area * irradiance(*cascade.accumulated, sample, weights);
+    e += share * rest / glm::dvec4(area, area, area, 1) *
+         irradiance(*cascade.accumulated, sample, weights);
     rest *= 1 - share;
   }
-  return e;
+  if (has_faces(transport)) return glm::dvec3(e);
+  return glm::dvec3(e) / std::max(e.w / std::numbers::pi + rest, kLeastWhite);
 }
 
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "basis/bounce.hpp"
 #include "basis/near_directions.hpp"
 #include "kernels/shared/near.h"
 #include "kernels/shared/pixel_planes.h"
@@ -43,8 +44,7 @@ struct NearField {
   RadianceField field_at(const glm::dvec3& position, double offset, const glm::dvec3& lift) const {
     return radiance_field(options.gather, scene.cascades, basis.size(), position, offset, lift);
   }
-  double trust(const RadianceField& field, const glm::dvec3& gathered,
-               const glm::dvec3& normal) const;
+  double trust(const RadianceField& field, const glm::dvec3& normal) const;
   glm::dvec3 radiance_of(const NearHit& hit, const NearPoint& point, const glm::dvec3& along,
                          bool& uncertain) const;
   void trace(NearPoint& point, const std::vector<glm::vec3>& directions) const;
@@ -66,9 +66,9 @@ double sum(const glm::dvec3& v) {
 }
 
 /// Weight of the correction for rays that miss.
-double NearField::trust(const RadianceField& field, const glm::dvec3& gathered,
-                        const glm::dvec3& normal) const {
-  const double arriving = sum(gathered), leaving = sum(field_irradiance(basis, field, -normal));
+double NearField::trust(const RadianceField& field, const glm::dvec3& normal) const {
+  const double arriving = sum(glm::dvec3(raw_irradiance(basis, field, normal))),
+               leaving = sum(glm::dvec3(raw_irradiance(basis, field, -normal)));
   return arriving >= kLeastArriving * leaving ? 1 : arriving / (kLeastArriving * leaving);
 }
 
@@ -121,7 +121,10 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
   const double offset = options.gather.gather_offset;
   const RadianceField here = field_at(point.position, offset, point.lift);
   point.gathered = field_irradiance(basis, here, point.normal);
-  const double share = trust(here, point.gathered, point.normal);
+  const double share = trust(here, point.normal);
+  // At the pixel all directions share the denominator of its irradiance.
+  const double white = std::max(
+      raw_irradiance(basis, here, point.normal).w / std::numbers::pi, kLeastWhite);
   const glm::dmat3 frame = frame_about(point.normal);
   for (const glm::vec3& direction : directions) {
     const glm::dvec3 w = frame * glm::dvec3(direction);
@@ -129,7 +132,9 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
                       point.reach};
     const std::optional<NearHit> hit =
         nearest_triangle(scene.scene, scene.materials, ray, point.uncertain);
-    const glm::dvec3 v = radiance(basis, here, -w);
+    std::vector<double> y(static_cast<std::size_t>(basis.size()));
+    basis.evaluate(-w, y);
+    const glm::dvec3 v = glm::dvec3(dot(y, here[0]), dot(y, here[1]), dot(y, here[2])) / white;
     if (hit) {
       point.difference += radiance_of(*hit, point, w, point.uncertain) - v;
     } else {

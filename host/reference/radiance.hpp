@@ -12,11 +12,11 @@
 
 namespace clpv::reference {
 
-/// Coefficients C of the radiance at a point, in the basis of swept light, by channel: L(p, w) =
-/// sum_i Y_i(w) C_i(p).
-using RadianceField = std::array<std::vector<double>, 3>;
+/// Coefficients of the radiance at a point, and of the white furnace's, in the basis of swept light,
+/// by channel.
+using RadianceField = std::array<std::vector<double>, 4>;
 
-/// Returns C at position + offset s lift of each cascade, s its cell, blended by the cascades'
+/// Returns coefficients at position + offset s lift of each cascade, s its cell, blended by the cascades'
 /// shares at `position` [m].
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset = 0,
@@ -24,6 +24,10 @@ RadianceField radiance_field(const GatherOptions& options, const std::vector<Cas
 
 /// Returns L(p, w) [W/m^2/sr], light that travels along the unit vector w. May be negative.
 glm::dvec3 radiance(const Basis& basis, const RadianceField& field, const glm::dvec3& w);
+
+/// Returns the irradiance of a surface with unit `normal`, at least 0, before the furnace's, the
+/// fourth number, divides it.
+glm::dvec4 raw_irradiance(const Basis& basis, const RadianceField& field, const glm::dvec3& normal);
 
 /// Returns the irradiance [W/m^2] of a surface with unit `normal`, at least 0.
 glm::dvec3 field_irradiance(const Basis& basis, const RadianceField& field,

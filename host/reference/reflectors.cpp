@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// R_a: covered share of face a times mean albedo, by 8 x 8 samples per face, half a cell off the
+// R_a: covered share of face a times mean albedo, in channel 3 the mean share of its triangles, by 8 x 8 samples per face, half a cell off the
 // surface. A triangle of normal n counts towards the three axes next to n with weights |n_a| /
 // (|n_x| + |n_y| + |n_z|).
 #include "reference/reflectors.hpp"
@@ -25,7 +25,7 @@ constexpr double kReflectorTolerance = 4e-3;  // [samples], [cells / 8]: roundin
 struct CellFace {
   std::bitset<kSamples * kSamples> covered;
   double samples = 0;
-  glm::dvec3 colour{0};
+  glm::dvec4 colour{0};  ///< albedo, and 1, each times the triangle's share
   /// Uncertain samples, of the coverage and of the mean albedo.
   double uncertain = 0, uncertain_mean = 0;
 };
@@ -39,8 +39,9 @@ struct Row {
 /// Accumulates triangles on the faces of all cells.
 class CellFaces {
  public:
-  CellFaces(const SceneData& scene, const ClpvGrid& grid)
+  CellFaces(const SceneData& scene, const ClpvGrid& grid, bool white)
       : scene_(scene),
+        white_(white),
         materials_(scene),
         grid_(grid),
         n_(static_cast<int>(grid.n)),
@@ -52,7 +53,7 @@ class CellFaces {
     for (int axis = 0; axis < 3; ++axis) {
       for (const bool up : {true, false}) {
         AxisTriangle projected(axis, corners);
-        if (!projected.has_area()) continue;
+        if (!projected.has_area() || (white_ && back(triangle, projected, up))) continue;
         projected.lift(up);
         add(triangle, projected);
       }
@@ -60,24 +61,18 @@ class CellFaces {
   }
 
   ReflectingAreas areas() const {
-    ReflectingAreas result{Volume(n_, kCellFaces), Volume(n_, kCellFaces)};
+    ReflectingAreas result{Volume(n_, kCellFaces, 4), Volume(n_, kCellFaces, 4)};
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const CellFace& side = faces_[i];
       const double count = std::max(side.samples, 1.0), whole = kSamples * kSamples;
       const int number = i % kCellFaces;
       const int cell = i / kCellFaces;
-      double share = static_cast<double>(side.covered.count()) / whole,
-             uncertain = side.uncertain / whole;
-      for (int other = 0; other < kCellFaces; ++other) {
-        if (other / 2 == number / 2) continue;
-        const CellFace& across = faces_[cell * kCellFaces + other];
-        share *= 1 - edge_loss() * static_cast<double>(across.covered.count()) / whole;
-        uncertain += across.uncertain / whole;
-      }
-      for (int channel = 0; channel < 3; ++channel) {
+      const double share = static_cast<double>(side.covered.count()) / whole,
+                   uncertain = side.uncertain / whole;
+      for (int channel = 0; channel < 4; ++channel) {
         const int x = cell % n_, y = cell / n_ % n_, z = cell / n_ / n_;
-        result.areas.at(channel, number, x, y, z) =
-            share * std::min(side.colour[channel] / count, 1.0);
+        const double mean = std::min(side.colour[channel] / count, 1.0);
+        result.areas.at(channel, number, x, y, z) = channel == 3 ? mean : share * mean;
         result.tolerance.at(channel, number, x, y, z) = uncertain + side.uncertain_mean / count;
       }
     }
@@ -144,10 +139,12 @@ class CellFaces {
     }
     const glm::dvec2 at = sample_centre(middle, v);
     const SurfacePoint point{triangle, projected.clamped_weights(at)};
-    const glm::dvec3 albedo(
-        materials_.albedo(point, {step(projected, 1, count), step(projected, 2, 1)}));
+    const glm::dvec3 albedo =
+        white_ ? glm::dvec3(1)
+               : glm::dvec3(materials_.albedo(
+                     point, {step(projected, 1, count), step(projected, 2, 1)}));
     face.samples += count;
-    face.colour += count * projected.weight() * glm::clamp(albedo, 0.0, 1.0);
+    face.colour += count * projected.weight() * glm::dvec4(glm::clamp(albedo, 0.0, 1.0), 1);
   }
 
   /// Offset of `count` samples along u (1) or v (2) on the triangle's plane [m].
@@ -158,7 +155,14 @@ class CellFaces {
     return count * double{grid_.cell} * by;
   }
 
+  /// The side of a one-sided triangle that faces away from its normal.
+  bool back(std::uint32_t triangle, const AxisTriangle& projected, bool up) const {
+    const Triangle& t = scene_.triangles[triangle];
+    return projected.up() != up && !double_sided(scene_.materials[t.material]);
+  }
+
   const SceneData& scene_;
+  bool white_;
   Materials materials_;
   const ClpvGrid& grid_;
   int n_;
@@ -167,8 +171,8 @@ class CellFaces {
 
 }  // namespace
 
-ReflectingAreas voxelize_reflectors(const SceneData& scene, const ClpvGrid& grid) {
-  CellFaces faces(scene, grid);
+ReflectingAreas voxelize_reflectors(const SceneData& scene, const ClpvGrid& grid, bool white) {
+  CellFaces faces(scene, grid, white);
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) faces.add(t);
   return faces.areas();
 }

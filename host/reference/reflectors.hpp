@@ -9,7 +9,8 @@
 
 namespace clpv::reference {
 
-/// Reflecting areas of reflector_masks(): R_a of six faces per cell, three channels.
+/// Reflecting areas of reflector_masks(): R_a of six faces per cell, three channels and the mean
+/// shares of their triangles.
 struct ReflectingAreas {
   Volume areas;
   /// Tolerance of each number: rounding decides whether samples very close to an edge, a cell
@@ -18,6 +19,7 @@ struct ReflectingAreas {
 };
 
 /// Returns R_a for the grid's cells.
-ReflectingAreas voxelize_reflectors(const SceneData& scene, const ClpvGrid& grid);
+ReflectingAreas voxelize_reflectors(const SceneData& scene, const ClpvGrid& grid,
+                                    bool white = false);
 
 }  // namespace clpv::reference

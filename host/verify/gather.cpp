@@ -41,14 +41,14 @@ struct GatherWork {
 };
 
 /// Returns true if the device's image filter interpolates.
-bool filtered_by_device(const GatherOptions& options) {
+bool filtered_by_device(const GatherOptions& options, TransportKind transport) {
   return options.format.layout == Layout::image && options.filtered &&
-         options.gather == Gathering::all;
+         options.gather == Gathering::all && has_faces(transport);
 }
 
-std::string_view compared_as(const GatherOptions& options) {
+std::string_view compared_as(const GatherOptions& options, TransportKind transport) {
   if (options.gather == Gathering::visible) return "gather-visible";
-  return filtered_by_device(options) ? "gather-filter" : "gather";
+  return filtered_by_device(options, transport) ? "gather-filter" : "gather";
 }
 
 /// Expected irradiance of the compared pixels, four numbers each.
@@ -86,7 +86,7 @@ Cost cost_of(const GatherWork& p) {
                                                          : 8 * texels;
   // Per coefficient and channel: 8 multiply-adds of the trilinear interpolation, unless the filter
   // does them, and one of the dot product g(n) . c.
-  cost.flops = pixels * kChannels * n * (filtered_by_device(o) ? 2 : 2 * 8 + 2);
+  cost.flops = pixels * kChannels * n * (filtered_by_device(o, p.problem.transport) ? 2 : 2 * 8 + 2);
   return cost;
 }
 
@@ -101,7 +101,7 @@ Job gather_job(Session& session, const GatherProblem& problem, const Share& shar
   job.compare = [p, &session, share] {
     const GatherProblem& q = p->problem;
     const Values expected = share([&] { return expected_pixels(*p); });
-    const double allowed = tolerance(compared_as(q.options), q.options.format.storage);
+    const double allowed = tolerance(compared_as(q.options, q.transport), q.options.format.storage);
     expect_pixels(session, p->irradiance, *expected, allowed, q.every);
     return compare_pixels(session.read<cl_float4>(p->irradiance, p->pixels()), *expected,
                           q.image->view.width, allowed, q.every);
@@ -123,7 +123,8 @@ GatherProblem random_gathering(Session& session, const std::shared_ptr<const Bas
       basis,
       transport,
       options,
-      random_cascades(*basis, kCascades, kFinestEdge, options.grid, std::move(occluded), random),
+      random_cascades(*basis, kCascades, kFinestEdge, options.grid, !has_faces(transport),
+                      std::move(occluded), random),
       upload_surface(session, image),
       std::make_shared<const SurfaceImage>(image)};
 }

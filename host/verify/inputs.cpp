@@ -156,11 +156,27 @@ std::vector<std::uint8_t> random_occlusion(int cascades, int grid, std::mt19937&
   return occluded;
 }
 
-CascadeLight random_cascades(const Basis& basis, int count, double edge, int grid,
+/// The same light with a white furnace in channel 3 that is 0.3 to 1 in the mean.
+SharedVolume with_furnace(const reference::Volume& light, std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(0.3f, 1);
+  auto volume = std::make_shared<reference::Volume>(light.n, light.coefficients, 4);
+  std::ranges::copy(light.values, volume->values.begin());
+  reference::for_each_cell(light.n, [&](const glm::ivec3& p) {
+    for (int i = 0; i < light.coefficients; ++i)
+      volume->at(3, i, p.x, p.y, p.z) =
+          i == 0 ? 3.5f * uniform(random) : 0.4f * (uniform(random) - 0.65f);
+  });
+  return volume;
+}
+
+CascadeLight random_cascades(const Basis& basis, int count, double edge, int grid, bool furnace,
                              std::vector<std::uint8_t> occluded, std::mt19937& random) {
   CascadeLight result{
       cascade_grids({0.1f, 0.2f, 0.3f}, count, edge, grid), {}, std::move(occluded)};
-  for (int c = 0; c < count; ++c) result.light.push_back(random_light(basis, grid, random));
+  for (int c = 0; c < count; ++c) {
+    result.light.push_back(random_light(basis, grid, random));
+    if (furnace) result.light.back() = with_furnace(*result.light.back(), random);
+  }
   return result;
 }
 

@@ -74,8 +74,8 @@ struct CascadeLight {
 };
 
 /// Returns random light in `count` cascades about a point near the origin. `edge`: of the finest
-/// [m].
-CascadeLight random_cascades(const Basis& basis, int count, double edge, int grid,
+/// [m]. `furnace`: with the furnace of swept light.
+CascadeLight random_cascades(const Basis& basis, int count, double edge, int grid, bool furnace,
                              std::vector<std::uint8_t> occluded, std::mt19937& random);
 
 /// Returns random occlusion: each cell is occluded from half of the points.

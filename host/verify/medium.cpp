@@ -32,7 +32,7 @@ Deviation compare_medium(Session& session, const ClpvMedium& medium) {
   const SurfaceImage image = random_surfaces(random);
   const std::vector<reference::MappedLight> lights = lights_in(medium);
   const CascadeLight cascades =
-      random_cascades(*basis, kMediumCascades, kMediumFinestEdge, kMediumGrid, {}, random);
+      random_cascades(*basis, kMediumCascades, kMediumFinestEdge, kMediumGrid, true, {}, random);
   const CascadesOnDevice light(session, cascades, {});
   const MediumOptions options{.gather = {.grid = kMediumGrid, .packed = true}};
 

@@ -81,7 +81,7 @@ Deviation compare_near(Session& session, const NearCase& variant) {
   std::vector<std::uint8_t> occluded = random_occlusion(kNearCascades, kNearGrid, random);
   if (variant.gather != Gathering::visible) occluded.clear();
   const CascadeLight cascades = random_cascades(*basis, kNearCascades, kNearFinestEdge, kNearGrid,
-                                                std::move(occluded), random);
+                                                true, std::move(occluded), random);
   const CascadesOnDevice light(session, cascades, variant.format);
   const NearOptions options{.gather = {.grid = kNearGrid,
                                        .gather = variant.gather,

@@ -49,7 +49,7 @@ SweepOptions with_sky(const SweepProblem& problem) {
 /// Volumes and kernels of one sweep.
 struct SweepWork {
   SweepProblem problem;
-  std::vector<Volume> light, blockers, reflectors, swept;
+  std::vector<Volume> light, blockers, white, reflectors, swept;
   std::vector<ShadowedLight> lights;
   Buffer occluded;
   Sweeper sweeper;
@@ -66,7 +66,8 @@ struct SweepWork {
       light.push_back(on_device(session, *p.light[i], o.format));
       if (o.blocking) blockers.push_back(on_device(session, *p.blockers[i], o.format));
       if (bounces()) reflectors.push_back(on_device(session, *p.reflectors[i], o.format));
-      swept.emplace_back(session, VolumeShape{o.grid, swept_basis()->size(), 3}, "swept light",
+      white.push_back(on_device(session, *p.white[i], o.format));
+      swept.emplace_back(session, VolumeShape{o.grid, swept_basis()->size(), 4}, "swept light",
                          o.format);
     }
   }
@@ -75,7 +76,8 @@ struct SweepWork {
   void run() {
     for (std::size_t i = problem.grids.size(); i-- > 0;) {
       if (problem.options.blocking) sweeper.set_blockers(i, blockers[i], occluded);
-      if (bounces()) sweeper.set_reflectors(i, problem.grids[i], reflectors[i]);
+      sweeper.set_surfaces(i, problem.grids, white[i], bounces() ? &reflectors[i] : nullptr,
+                           swept[i]);
       sweeper.sweep({i, problem.grids, light[i], problem.sky_scale, lights}, swept[i]);
     }
   }
@@ -86,11 +88,12 @@ std::vector<double> expected_light(const SweepProblem& p) {
   const SweepOptions& o = p.options;
   std::vector<reference::Volume> scattered(p.grids.size());
   std::vector<reference::SweptCascade> cascades;
-  std::vector<const reference::Volume*> reflecting;
+  std::vector<const reference::Volume*> white, reflecting;
   for (std::size_t i = 0; i < p.grids.size(); ++i) {
     cascades.push_back(
         {p.grids[i], p.light[i].get(), o.blocking ? p.blockers[i].get() : nullptr, o.parts[i]});
     if (!p.occluded.empty()) cascades.back().occluded = &p.occluded[i];
+    white.push_back(p.white[i].get());
     if (o.bounces != Bounces::one) reflecting.push_back(p.reflectors[i].get());
     if (!o.medium) continue;
     scattered[i] = reference::scattered_in_cells(*o.medium, p.lights, p.grids[i]);
@@ -100,13 +103,22 @@ std::vector<double> expected_light(const SweepProblem& p) {
   std::optional<Sky> sky = p.sky;
   if (sky)
     for (glm::vec3& texel : sky->texels) texel *= p.sky_scale;
+  std::vector<reference::Volume> normalised;
+  if (o.bounces != Bounces::one)
+    normalised = reference::normalised_reflectors(*p.basis, p.transport, cascades, white,
+                                                  reflecting, o.bounces);
+  for (std::size_t i = 0; i < normalised.size(); ++i) reflecting[i] = &normalised[i];
+  const std::vector<reference::Volume>
+      swept = o.bounces == Bounces::one
+                  ? reference::sweep(*p.basis, p.transport, cascades, sky ? &*sky : nullptr)
+                  : reference::sweep_bounced(*p.basis, p.transport, cascades, reflecting, o.bounces),
+      furnace = reference::furnace(*p.basis, p.transport, cascades, white);
   std::vector<double> values;
-  for (const reference::Volume& swept :
-       o.bounces == Bounces::one
-           ? reference::sweep(*p.basis, p.transport, cascades, sky ? &*sky : nullptr)
-           : reference::sweep_bounced(*p.basis, p.transport, cascades, reflecting, o.bounces)) {
-    const reference::Volume projected = reference::project_bins(swept);
-    values.insert(values.end(), projected.values.begin(), projected.values.end());
+  for (std::size_t i = 0; i < swept.size(); ++i) {
+    const reference::Volume light = reference::project_bins(swept[i]),
+                            even = reference::project_bins(furnace[i]);
+    values.insert(values.end(), light.values.begin(), light.values.end());
+    values.insert(values.end(), even.values.begin(), even.values.begin() + even.values.size() / 3);
   }
   return values;
 }
@@ -194,11 +206,14 @@ SharedVolume sparse_light(const Basis& basis, int n, std::mt19937& random) {
   return light;
 }
 
-/// 1 of 3 faces reflects.
+/// 1 of 3 faces reflects, with a share of 0.6 to 1.
 SharedVolume random_reflectors(int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-2, 1);
-  auto volume = std::make_shared<reference::Volume>(n, kCellFaces);
-  for (double& value : volume->values) value = std::max(0.0f, uniform(random));
+  auto volume = std::make_shared<reference::Volume>(n, kCellFaces, 4);
+  const std::size_t shares = volume->values.size() / 4 * 3;
+  for (std::size_t i = 0; i < volume->values.size(); ++i)
+    volume->values[i] = i < shares ? std::max(0.0f, uniform(random))
+                                   : 0.6f + 0.4f * std::abs(uniform(random)) / 2;
   return volume;
 }
 
@@ -287,13 +302,14 @@ SweepProblem random_sweep(const std::shared_ptr<const Basis>& basis, const Trans
   std::mt19937 random(3);
   const float cell = kEdge / options.grid;
   const int count = options.parts.size();
-  SweepProblem problem{basis, transport, options, {}, {}, {}, {}};
+  SweepProblem problem{basis, transport, options, {}, {}, {}, {}, {}};
   problem.grids = cascade_grids(cell * glm::vec3(0.5f, 1.5f, 2.5f), count, kEdge, options.grid);
   for (int i = 0; i < count; ++i) {
     problem.light.push_back(sparse_light(*basis, options.grid, random));
     problem.blockers.push_back(
         random_blockers(blocking_size(transport.blocking, *basis), options.grid, random));
     problem.reflectors.push_back(random_reflectors(options.grid, random));
+    problem.white.push_back(random_reflectors(options.grid, random));
   }
   if (options.medium)
     problem.lights = lights_in(*options.medium), problem.medium_scale = kMediumScale;

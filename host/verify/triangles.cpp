@@ -68,15 +68,15 @@ Deviation compare_blockers(Session& session, const VolumeFormat& format) {
   return result;
 }
 
-Deviation compare_reflectors(Session& session, const VolumeFormat& format) {
+Deviation compare_reflectors(Session& session, const VolumeFormat& format, bool white) {
   const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
-  Volume reflectors(session, {kTrianglesGrid, kCellFaces, 3}, "check: reflectors", format);
-  VoxelField(session, buffers, reflector_masks(buffers, kTrianglesGrid, format))
+  Volume reflectors(session, {kTrianglesGrid, kCellFaces, kReflectorChannels}, "check: reflectors", format);
+  VoxelField(session, buffers, reflector_masks(buffers, kTrianglesGrid, format, white))
       .update(0, kTrianglesCells, reflectors);
   const std::vector<float> found = reflectors.read(session);
   const reference::ReflectingAreas expected =
-      reference::voxelize_reflectors(scene, kTrianglesCells);
+      reference::voxelize_reflectors(scene, kTrianglesCells, white);
   Deviation result{0, tolerance("reflectors", format.storage)};
   Ranges ranges;
   for (std::size_t at = 0; at < found.size(); ++at) {
@@ -132,7 +132,14 @@ Cases blockers_cases(const CheckScope& scope) {
 }
 
 Cases reflectors_cases(const CheckScope& scope) {
-  return cases_of_formats(Stage::reflectors, scope, compare_reflectors);
+  Cases cases = cases_of_formats(
+      Stage::reflectors, scope, [](Session& session, const VolumeFormat& format) {
+        return compare_reflectors(session, format, false);
+      });
+  cases.push_back(deviation_case(Stage::reflectors, "white", [](Session& session) {
+    return compare_reflectors(session, {}, true);
+  }));
+  return cases;
 }
 
 Cases visibility_cases(const CheckScope&) {

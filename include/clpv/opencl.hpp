@@ -64,7 +64,7 @@ struct Volumes {
   cl_uint cascades = 0;
   cl_float unit = 0;          ///< radiant intensity of a stored 1 [W/sr]
   cl_mem packed = nullptr;    ///< float [cascade][z][y][x][5][2][4]: pair, coefficient of the pair;
-                              ///< red, green, blue, 0
+                              ///< red, green, blue, and the white furnace
   cl_mem occluded = nullptr;  ///< uchar [cascade][z][y][x][4][4][4], bits of occluded cells; null
                               ///< with gather all: no argument
 };

@@ -68,6 +68,9 @@ struct LightVolume {
   int coefficients = 0;       ///< N
   std::string basis;          ///< name of the basis of the coefficients
   std::vector<float> values;  ///< [channel][i][z][y][x]: red, green, blue; N coefficients; cells
+  /// [i][z][y][x]: radiance of the white furnace after a sweep, which irradiance() and radiance()
+  /// divide by; empty after other transports
+  std::vector<float> furnace;
 };
 
 /// Surfaces that the caller's pixels show: a G-buffer, one value per pixel, row 0 first. It has

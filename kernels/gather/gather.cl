@@ -3,7 +3,7 @@
 // cascades, as packed records (pack.cl).
 //
 //   E = 4 I(-n) / s^2           steps
-//   E = alpha(-n) . c / s^2     sweep
+//   E = pi (alpha(-n) . c) / (alpha(-n) . f)     sweep, f the white furnace's coefficients
 //
 // not below 0, with the coefficients c interpolated trilinearly at p + offset s n_g, n_g the normal
 // of the triangle (shared/normal.h). docs/method.md,
@@ -34,5 +34,12 @@ __kernel void gather(const ClpvView view, __global const Place* places,
   begin_gathering(&g CLPV_PASS_G);
   for (uint c = 0; c < cascades; ++c)
     add_cascade(&g, grids + c, packed_cascade(c CLPV_PASS_VOLUMES));
-  for (uint i = 0; i < p.count; ++i) irradiance[g.surfaces.first + i] = unit * g.sums[i];
+  float outside[W];  // outside all cascades the furnace is white
+  store_lanes(g.remaining, outside);
+  for (uint i = 0; i < p.count; ++i) {
+    float4 e = unit * g.sums[i];
+    if (!CLPV_FACE_TRANSPORT)
+      e = over_furnace(e + (float4)(0.0f, 0.0f, 0.0f, M_PI_F * outside[i]), M_PI_F);
+    irradiance[g.surfaces.first + i] = e;
+  }
 }

@@ -6,8 +6,9 @@
 //                                     shares
 //
 // docs/method.md, 'Gathering'.
-// A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b 0)(r g b 0). The eight
-// cells about a point are read as whole vectors.
+// A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b f)(r g b f). The eight
+// cells about a point are read as whole vectors. f is swept light of the white furnace, 0 after
+// other transports.
 //
 // From the host: CLPV_GRID, CLPV_PAIRS; CLPV_VISIBLE 1: occluded cells do not light a surface
 // (visibility.cl).
@@ -139,6 +140,14 @@ CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
     sum = fma(repeat_pair(weights.c[2 * j], odd), sampled.pair[j], sum);
   }
   return sum.lo + sum.hi;
+}
+
+// Divides light by that of the white furnace in its fourth number: where even light of radiance 1
+// would give `white`, this is a mean of radiances of the surfaces in sight. Where little of the
+// furnace is in sight, light fades to black.
+CLPV_INLINE float4 over_furnace(const float4 light, const float white) {
+  const float4 mean = light * (1.0f / fmax(light.w * (1.0f / white), CLPV_LEAST_WHITE));
+  return (float4)(mean.xyz, 0.0f);
 }
 
 // Parameters: packed volumes of all cascades in one buffer, finest first, and with CLPV_VISIBLE

@@ -3,7 +3,7 @@
 //
 //   L = T(eye, x) L_surface(x) + integral of T(eye, p) S(p) dt      [W/m^2/sr]
 //   S(p) = sigma_s [sum_lights p(w_light, w) E_light(p)
-//          + max(0, sum_l g^l sum_m C_lm(p) Y_lm(w))]
+//          + max(0, sum_l g^l sum_m C_lm(p) Y_lm(w)) / sum_l g^l sum_m F_lm(p) Y_lm(w)]
 //
 // medium_light adds the first sum, single scattering with shadow maps, and medium_volumes the
 // second, light of the volumes (radiance.h). The integral is a sum over points t_k; w points to the
@@ -114,7 +114,7 @@ __kernel void medium_volumes(const ClpvView view, __global const float* depths,
       Coefficients y = basis_functions(-w.x[i], -w.y[i], -w.z[i]);
 #pragma unroll
       for (int j = 1; j < CLPV_N; ++j) y.c[j] *= j < 4 ? g : gg;
-      const float4 arriving = max(weigh(y, field.at[i]), 0.0f);
+      const float4 arriving = over_furnace(max(weigh(y, field.at[i]), 0.0f), 1.0f);
       red[i] = arriving.x, green[i] = arriving.y, blue[i] = arriving.z;
     }
     const Vec arriving = vec(load_lanes(red), load_lanes(green), load_lanes(blue));

@@ -4,7 +4,8 @@
 //
 //   D = (pi / K) sum_k d(w_k)                                [W/m^2], w_k cosine-distributed about
 //                                                            the normal n
-//   d(w) = L_hit - L(p', -w)                 if a surface is met along w within R
+//   d(w) = L_hit - L(p', -w)                 if a surface is met along w within R; at p' all
+//                                            directions share the denominator of E
 //   d(w) = q (L(p' + R w, -w) - L(p', -w))   else, q the weight of the correction (miss_weight)
 //   p' = p + h s n_g                         n_g the normal of the triangle (shared/normal.h)
 //
@@ -30,7 +31,7 @@ __constant const float least_arriving = 0.5f;
 // difference of two such errors. (x, y, z) = n.
 CLPV_INLINE float miss_weight(const Sampled* field, const float4 arriving, const float x,
                               const float y, const float z) {
-  const float4 leaving = field_irradiance(field, -x, -y, -z);
+  const float4 leaving = max(weigh(cosine_integrals(x, y, z), *field), 0.0f);
   const float in = arriving.x + arriving.y + arriving.z, out = leaving.x + leaving.y + leaving.z;
   return in >= least_arriving * out ? 1.0f : in / (least_arriving * out);
 }
@@ -53,9 +54,12 @@ __kernel void near(const ClpvView view, __global const float* points,
   const VecLanes n = unpack(lit, p.normal);
   float trusts[W], x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {
-    const float4 arriving = field_irradiance(&here.at[i], n.x[i], n.y[i], n.z[i]);
+    const float4 arriving =
+        max(weigh(cosine_integrals(-n.x[i], -n.y[i], -n.z[i]), here.at[i]), 0.0f);
     trusts[i] = miss_weight(&here.at[i], arriving, n.x[i], n.y[i], n.z[i]);
-    x[i] = arriving.x, y[i] = arriving.y, z[i] = arriving.z;
+    const float mean = 1.0f / fmax(arriving.w * M_1_PI_F, CLPV_LEAST_WHITE);
+    for (int j = 0; j < CLPV_PAIRS; ++j) here.at[i].pair[j] *= mean;
+    x[i] = mean * arriving.x, y[i] = mean * arriving.y, z[i] = mean * arriving.z;
   }
   store_plane_vectors(vec(load_lanes(x), load_lanes(y), load_lanes(z)),
                       light + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at);
@@ -75,9 +79,9 @@ __kernel void near(const ClpvView view, __global const float* points,
     store_lanes(lit ? (hit ? ONE : trust) : ZERO, shares);
     for (int i = 0; i < W; ++i) {
       if (!(shares[i] > 0.0f)) continue;
-      Sampled change = there.at[i];  // 0 where the ray hit
-      for (int j = 0; j < CLPV_PAIRS; ++j) change.pair[j] -= here.at[i].pair[j];
-      volumes[i] += shares[i] * radiance_along(&change, back.x[i], back.y[i], back.z[i]);
+      const Coefficients along = basis_functions(back.x[i], back.y[i], back.z[i]);
+      volumes[i] += shares[i] * (over_furnace(weigh(along, there.at[i]), 1.0f) -  // 0: a hit
+                                 weigh(along, here.at[i]));
     }
     const Vec met = load_plane_vectors(radiances + 3 * k * r.plane, r.plane, r.at);
     sum = vec_add_scaled(sum, ONE, vec_masked(hit & lit, met));

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Radiance from the packed volumes of swept light.
 //
-//   L(p, w) = sum_i Y_i(w) c_i(p) / s^2      [W/m^2/sr], light that travels along w
-//   E(p, n) = max(0, alpha(-n) . C(p))       [W/m^2], C(p) = c(p) / s^2
+//   L(p, w) = Y(w) . C(p) / Y(w) . F(p)                     [W/m^2/sr], light that travels along w
+//   E(p, n) = pi max(0, alpha(-n) . C(p)) / alpha(-n) . F(p)      [W/m^2]
 //
-// c is interpolated trilinearly, cells that p cannot see left out; C is a mean over cascades by
-// their shares.
+// C = c / s^2 and the coefficients F of the white furnace are interpolated trilinearly, cells that p
+// cannot see left out, and means over cascades by their shares. Outside all cascades the furnace is
+// white. over_furnace() has the least denominator.
 //
 // L may be negative: it is the projection of the light on nine harmonics. docs/method.md, 'The
 // sweep', 'Gathering'.
@@ -19,7 +20,10 @@
   __global const ClpvGrid *grids, const uint cascades, const float unit CLPV_AND_VOLUMES
 #define CLPV_PASS_RADIANCE grids, cascades, unit CLPV_PASS_VOLUMES
 
-// C at W points.
+// 2 sqrt(pi): coefficient of band 0 of even light.
+#define CLPV_EVEN_LIGHT 3.5449077018f
+
+// C and, as fourth numbers, F at W points.
 typedef struct {
   Sampled at[W];
 } RadianceField;
@@ -56,16 +60,19 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
     find_sample_points(find_cascade_points(grid, position, offset, lift), &points);
     add_field(packed_cascade(c CLPV_PASS_VOLUMES), &points, weight, field);
   }
+  float outside[W];
+  store_lanes(remaining * (CLPV_EVEN_LIGHT / unit), outside);
+  for (int i = 0; i < W; ++i) field->at[i].pair[0].s3 += outside[i];
 }
 
 // L(p, w) for each channel, and 0; (x, y, z) = w.
 CLPV_INLINE float4 radiance_along(const Sampled* field, const float x, const float y,
                                   const float z) {
-  return weigh(basis_functions(x, y, z), *field);
+  return over_furnace(weigh(basis_functions(x, y, z), *field), 1.0f);
 }
 
 // E(p, n) for each channel, and 0; (x, y, z) = n.
 CLPV_INLINE float4 field_irradiance(const Sampled* field, const float x, const float y,
                                     const float z) {
-  return max(weigh(cosine_integrals(-x, -y, -z), *field), 0.0f);
+  return over_furnace(max(weigh(cosine_integrals(-x, -y, -z), *field), 0.0f), M_PI_F);
 }

@@ -4,12 +4,14 @@
 #pragma once
 
 // Face directions of a light cell: +x, -x, +y, -y, +z, -z. uint32 words of a face: 64 coverage bits
-// (two words), the number of samples, and the sums of red, green and blue albedo.
+// (two words), the number of samples, and the sums of red, green and blue albedo and of shares, all
+// weighted by shares (reflectors.cl).
 enum {
   CLPV_CELL_FACES = 6,
-  CLPV_FACE_WORDS = 6,
+  CLPV_FACE_WORDS = 7,
   CLPV_FACE_SAMPLES = 2,
   CLPV_FACE_ALBEDO = 3,
+  CLPV_FACE_SHARE = 6,
 };
 
 // Fixed-point value of albedo 1 in those sums. 2^14 triangles that each cover the whole face fit

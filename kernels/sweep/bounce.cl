@@ -7,18 +7,22 @@
 //   S = R + T_1 + T_2 / (1 - q),  T_k = R X_k
 //                             reflect_returned   T_1
 //                             sum_series         S
+//   R = R_0 pi / F              normalise_reflectors   F: incident flux of a white furnace
 //
 // docs/method.md, 'More bounces'. D [W] is the incident flux on a face, R in [0, 1] the reflectance
 // of a face per channel, I the injected light, I' the sources of the next sweep. X_k is the flux
 // that other surfaces return of 1 W leaving a face after k reflections. By reciprocity X_1 is the
 // incident flux while every face emits R, X_2 while it emits T_1 (inject_flux). q in [0, the cell's
-// largest R] is T_2 / T_1. S depends only on geometry. A face of normal a that receives D_a
+// largest R / m] is T_2 / T_1. S depends only on geometry. A face of normal a that receives D_a
 // (face_fluxes.h) emits, projected on the basis,
 //   I(w) = Phi_a max(0, w.a) / pi,   Phi_a = R_a D_a
+// With CLPV_HARMONICS, light of all bands but the first is divided by the share m_a of the face's
+// triangles: |n_a| = m_a (|n_x| + |n_y| + |n_z|), so that the faces of a surface emit the clamped
+// cosine about its normal n in bands 0 and 1.
 //
 // In:   swept             L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
 //       reflectors, series  R, S: volumes of six numbers per cell and channel, faces as in
-//                           shared/reflectors.h
+//                           shared/reflectors.h; channel 3 of reflectors: m (face_albedo.cl)
 //       injected          I: light volume [W/sr]
 // Out:  bounced           I': light volume [W/sr]
 // From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_LOBES, the lobe of 1 W about each
@@ -51,12 +55,13 @@ CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
   return sum;
 }
 
-// Sum of a geometric series of fluxes from the second on; `reflectance` bounds its ratio.
+// Sum of a geometric series of fluxes from the second on; R / m bounds its ratio.
 CLPV_INLINE FaceFluxes sum_bounces(const FaceFluxes first, const FaceFluxes second,
-                                   const FaceFluxes reflectance) {
+                                   const FaceFluxes reflectance, const FaceFluxes share) {
   realW largest = 0.0f;
 #pragma unroll
-  for (int a = 0; a < CLPV_CELL_FACES; ++a) largest = fmax(largest, reflectance.c[a]);
+  for (int a = 0; a < CLPV_CELL_FACES; ++a)
+    largest = fmax(largest, reflectance.c[a] / fmax(share.c[a], (realW)(CLPV_LEAST_SHARE)));
   largest = fmin(largest, CLPV_MAX_RETURNED);
   FaceFluxes sum;
 #pragma unroll
@@ -68,11 +73,18 @@ CLPV_INLINE FaceFluxes sum_bounces(const FaceFluxes first, const FaceFluxes seco
   return sum;
 }
 
-// Intensity [W/sr] of light that leaves each face as a lobe.
-CLPV_INLINE Coefficients reflected_intensity(const FaceFluxes flux) {
+// Intensity [W/sr] of light that leaves each face as a lobe. `share`: m.
+CLPV_INLINE Coefficients reflected_intensity(const FaceFluxes flux, const FaceFluxes share) {
   Coefficients c = zero_coefficients();
 #pragma unroll
-  for (int a = 0; a < CLPV_CELL_FACES; ++a) c = add_row(c, flux.c[a], lobes[a]);
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) {
+    const realW per_share =
+        CLPV_HARMONICS ? flux.c[a] / fmax(share.c[a], (realW)(CLPV_LEAST_SHARE)) : flux.c[a];
+    c.c[0] = fma((realW)(lobes[a][0]), flux.c[a], c.c[0]);
+#pragma unroll
+    for (int i = 1; i < CLPV_N; ++i)
+      if (lobes[a][i] != 0.0f) c.c[i] = fma((realW)(lobes[a][i]), per_share, c.c[i]);
+  }
   return c;
 }
 
@@ -107,7 +119,8 @@ __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
   for (int r = 0; r < t.rows; ++r) {
     const Coefficients reflected =
         reflected_intensity(reflect_flux(load_incident_flux(swept, bins, t, r),
-                                         faces_load(reflectors, t.channel, t.x, t.y + r, t.z)));
+                                         faces_load(reflectors, t.channel, t.x, t.y + r, t.z)),
+                            faces_load(reflectors, 3, t.x, t.y + r, t.z));
     light_store(
         bounced, t.channel, t.x, t.y + r, t.z,
         add_scaled(reflected, injected_share, light_load(injected, t.channel, t.x, t.y + r, t.z)));
@@ -130,15 +143,38 @@ __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_sw
                                 faces_load(series, t.channel, t.x, t.y + r, t.z)));
     light_store(bounced, t.channel, t.x, t.y + r, t.z,
                 add_coefficients(light_load(injected, t.channel, t.x, t.y + r, t.z),
-                                 reflected_intensity(flux)));
+                                 reflected_intensity(
+                                     flux, faces_load(reflectors, 3, t.x, t.y + r, t.z))));
   }
 }
 
-__kernel void inject_flux(CLPV_VOLUME_IN flux, CLPV_VOLUME_OUT bounced) {
+// Every face emits `flux` times `factor`.
+__kernel void inject_flux(CLPV_VOLUME_IN flux, CLPV_VOLUME_IN reflectors, const float factor,
+                          CLPV_VOLUME_OUT bounced) {
   const Tile t = find_tile();
   for (int r = 0; r < t.rows; ++r)
     light_store(bounced, t.channel, t.x, t.y + r, t.z,
-                reflected_intensity(faces_load(flux, t.channel, t.x, t.y + r, t.z)));
+                scale_coefficients(
+                    factor, reflected_intensity(faces_load(flux, t.channel, t.x, t.y + r, t.z),
+                                                faces_load(reflectors, 3, t.x, t.y + r, t.z))));
+}
+
+// `swept`: a white furnace in channel 0; `white`: the F of a face that it lights fully.
+__kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
+                                   const float white, CLPV_VOLUME_OUT normalised) {
+  Tile t = find_tile();
+  if (t.rows == 0) return;
+  t.first = 0;
+  SweepTile bins[CLPV_AXIS_BINS];
+  load_x_bins(swept, t.x, t.y, t.z, bins);
+  for (int r = 0; r < t.rows; ++r) {
+    FaceFluxes faces = faces_load(reflectors, t.channel, t.x, t.y + r, t.z);
+    const FaceFluxes furnace = load_incident_flux(swept, bins, t, r);
+#pragma unroll
+    for (int a = 0; a < CLPV_CELL_FACES && t.channel < 3; ++a)
+      faces.c[a] *= white / fmax(furnace.c[a], (realW)(CLPV_LEAST_WHITE * white));
+    faces_store(normalised, t.channel, t.x, t.y + r, t.z, faces);
+  }
 }
 
 __kernel void reflect_returned(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
@@ -162,9 +198,10 @@ __kernel void sum_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_V
   for (int r = 0; r < t.rows; ++r) {
     const FaceFluxes reflectance = faces_load(reflectors, t.channel, t.x, t.y + r, t.z),
                      first = faces_load(returned, t.channel, t.x, t.y + r, t.z),
-                     second = reflect_flux(load_incident_flux(swept, bins, t, r), reflectance);
+                     second = reflect_flux(load_incident_flux(swept, bins, t, r), reflectance),
+                     share = faces_load(reflectors, 3, t.x, t.y + r, t.z);
     faces_store(series, t.channel, t.x, t.y + r, t.z,
                 add_fluxes(reflectance,
-                           add_fluxes(first, sum_bounces(first, second, reflectance))));
+                           add_fluxes(first, sum_bounces(first, second, reflectance, share))));
   }
 }

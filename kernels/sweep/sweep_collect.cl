@@ -7,7 +7,8 @@
 // docs/method.md, 'The sweep'.
 //
 // In:   sums         L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
-// Out:  accumulated  nine coefficients per cell and channel [W/sr], any layout
+// Out:  accumulated  nine coefficients per cell and channel [W/sr], any layout, from channel `first`
+//                    on
 // From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_PROJECTION, P by folded bins
 // (mirrored_bins.h). A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"
@@ -27,7 +28,8 @@ CLPV_INLINE Coefficients project_bins(const Bins bins) {
   return c;
 }
 
-__kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated) {
+__kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated,
+                            const int first) {
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
   const int z = (int)get_global_id(2) % CLPV_GRID, channel = (int)get_global_id(2) / CLPV_GRID;
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
@@ -37,6 +39,6 @@ __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated) {
   for (int r = 0; r < W; ++r) {
     if (y + r >= CLPV_GRID) break;
     const Bins bins = load_bins(volumes, tiles, r, x, y + r, z);
-    light_store(accumulated, channel, x, y + r, z, project_bins(bins));
+    light_store(accumulated, first + channel, x, y + r, z, project_bins(bins));
   }
 }

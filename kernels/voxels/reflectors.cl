@@ -7,7 +7,7 @@
 //                                                                                     bounces')
 //
 // A triangle counts towards the three faces nearest to n, and its back towards the three opposite
-// ones. As virtual point lights do, faces emit and receive half a cell off the surface along its
+// ones. With CLPV_WHITE albedo is 1, and backs count only where the material is double-sided. As virtual point lights do, faces emit and receive half a cell off the surface along its
 // normal; across an axis that is a whole number of samples.
 //
 // Each axis is a raster of 8 x 8 samples per face (voxelize_triangle.h). Albedo is looked up once
@@ -19,7 +19,7 @@
 // Out:  faces  CLPV_CELL_FACES x CLPV_FACE_WORDS uint32 words per cell (shared/reflectors.h),
 //              zeroed before
 // A work-item voxelises a triangle. From the host: CLPV_GRID, CLPV_MASKED, CLPV_TEXTURED,
-// CLPV_COLOURED.
+// CLPV_COLOURED, CLPV_WHITE.
 #include "shared/reflectors.h"
 #include "voxels/face_samples.h"
 
@@ -51,9 +51,11 @@ CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* sur
     middle[row] = of_row > 0 ? (float)columns / (float)of_row : 0.0f;
   }
   if (total == 0) return;
-  uint red = 0, green = 0, blue = 0;
+  uint red = 0, green = 0, blue = 0, shares = 0;
   for (int row = 0; row < CLPV_VOXEL_SAMPLES; row += W) {
     const realW counts = load_lanes(count + row);
+    shares += fixed_sum(weight * counts, (realW)(1.0f));
+    if (CLPV_WHITE) continue;
     Vec albedo;
     find_albedo(t, surface, (float)(CLPV_VOXEL_SAMPLES * i) + 0.5f + load_lanes(middle + row),
                 (float)(CLPV_VOXEL_SAMPLES * j + row) + 0.5f + to_realW(lane_numbers()),
@@ -65,6 +67,8 @@ CLPV_INLINE void add_face(const ProjectedTriangle* t, const TriangleSurface* sur
   if (words[0] != 0) atomic_or(face, words[0]);
   if (words[1] != 0) atomic_or(face + 1, words[1]);
   atomic_add(face + CLPV_FACE_SAMPLES, total);
+  atomic_add(face + CLPV_FACE_SHARE, shares);
+  if (CLPV_WHITE) return;
   atomic_add(face + CLPV_FACE_ALBEDO, red);
   atomic_add(face + CLPV_FACE_ALBEDO + 1, green);
   atomic_add(face + CLPV_FACE_ALBEDO + 2, blue);
@@ -139,7 +143,10 @@ __kernel void voxelize_reflectors(const ClpvRegion region, __global const uint* 
     const float3 normal = (float3)(-slope_u, -slope_v, 1.0f) / length;  // along u, v and the axis
     const float weight = 1.0f / (fabs(normal.x) + fabs(normal.y) + normal.z);
     const ProjectedTriangle up = offset_triangle(&t, normal), down = offset_triangle(&t, -normal);
-    add_triangle(&region, &up, &surface, axis, 0, weight, faces);
-    add_triangle(&region, &down, &surface, axis, 1, weight, faces);
+    const bool both = !CLPV_WHITE || (surface.material->flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0;
+    if (both || t.inverse_area > 0.0f)
+      add_triangle(&region, &up, &surface, axis, 0, weight, faces);
+    if (both || t.inverse_area < 0.0f)
+      add_triangle(&region, &down, &surface, axis, 1, weight, faces);
   }
 }

@@ -60,12 +60,13 @@ struct EvenLight {
     const std::unique_ptr<Basis> basis = swept_basis();
     for (const ClpvGrid& grid : cascade_grids({0, 0, 0}, 4, kGrid * kCell, kGrid)) {
       grids.push_back(grid);
-      volumes.emplace_back(kGrid, basis->size());
+      volumes.emplace_back(kGrid, basis->size(), 4);
       const std::vector<double> c = basis->constant();
       reference::for_each_cell(kGrid, [&](const glm::ivec3& p) {
-        for (int channel = 0; channel < 3; ++channel) {
+        for (int channel = 0; channel < 4; ++channel) {
+          const double unit = channel < 3 ? radiance * grid.cell * grid.cell : 1;
           for (int i = 0; i < basis->size(); ++i)
-            volumes.back().at(channel, i, p.x, p.y, p.z) = radiance * grid.cell * grid.cell * c[i];
+            volumes.back().at(channel, i, p.x, p.y, p.z) = unit * c[i];
         }
       });
     }

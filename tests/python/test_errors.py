@@ -4,6 +4,7 @@ argument, value found and value allowed."""
 import inspect
 import math
 import os
+import pathlib
 import subprocess
 import sys
 
@@ -25,14 +26,14 @@ THING = object()
 WRONG = {
     "number": ["x", None, (1, 2), THING],
     "integer": ["x", None, 1.5, 2**70, True, THING],
-    "text": [3, None, b"full", THING],
+    "text": [3, None, b"full", THING, "\ud800"],
     "bool": ["x", (1, ), math.nan, 1j, THING],
     "vector": ["x", None, 3, (1, 2), (1, 2, "x"), numpy.zeros(3, complex), MASKED[0, 0], THING],
     "colour": ["x", None, (1, 2), THING],
     "array": ["x", [["x"]], THING, [[1j]], MASKED,
               *(numpy.full((1, 3), wrong, object) for wrong in ("1", None, THING))],
     "camera": [3, (0, 0, 0), THING],
-    "path": [3, THING],
+    "path": [3, THING, "\ud800"],
     "image": ["x", THING, [3]],
     "object": [None, 3, "x", THING],
     "buffer": ["x", 1.5, True, 3, -8, 2**40 + 1, 2**70, THING],
@@ -183,6 +184,8 @@ def test_wrong_calls_are_named(name, objects):
         given = {key: only[kind] for key, kind in CALLS[name][0].items()}
     with pytest.raises(clpv.UsageError, match=f"{title}: found argument 'nothing', allowed: "):
         function(**given, nothing=1)
+    with pytest.raises(clpv.UsageError, match=rf"{title}: found argument '.ud800', allowed: "):
+        function(**given, **{"\ud800": 1})
     with pytest.raises(clpv.UsageError, match=f"{title}: found 20 arguments by position, allowed: "):
         function(*range(20))
     for key in set(given) - ({"width", "height", "samples"} if name == "pathtrace" else set()):
@@ -229,6 +232,13 @@ def test_arrays_of_any_type():
                 basis.evaluate(wrong)
     for one in given:
         assert (basis.evaluate(one) == basis.evaluate(rows)).all()
+
+
+def test_lone_surrogates_are_no_options(objects):
+    for options, words in (({"\ud800": 1}, "found argument"), ({"basis": "\ud800"}, "basis: found"),
+                           ({"centres": pathlib.Path("\ud800")}, "centres: found")):
+        with pytest.raises(clpv.UsageError, match=f"Renderer: {words} .*ud800.*allowed: "):
+            clpv.Renderer(objects["scene"], **options)
 
 
 def test_wrong_times_are_named():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Scenes from arrays: a file's bytes, moving meshes, rejected arrays; trimesh where it is
 installed."""
+import base64
 import gc
 import re
 import subprocess
@@ -19,12 +20,12 @@ WALL = numpy.array([[-2, 0, -2], [2, 0, -2], [2, 3, -2], [-2, 3, -2]], dtype=flo
 
 
 def test_arrays_are_those_of_their_file(tmp_path):
-    uvs = numpy.array([[0, 0], [2, 0], [2, 1], [0, 1]])
+    uvs = numpy.array([[0, 0], [2, 0], [2, 1], [0, 1]], dtype=float)
     texture = numpy.random.default_rng(1).integers(0, 256, (4, 8, 4), numpy.uint8)
     look = clpv.Material(base_colour=(0.5, 1, 1), texture=texture, emission=0.25, double_sided=True)
     scene = clpv.Scene.from_arrays(WALL, SQUARE, normals=WALL * 0 + (0, 0.6, 0.8), uvs=uvs,
-                                   material=look, transform=numpy.diag([1, 2, 1, 1]))
-    scene.add_instance(0, numpy.diag([0.5, 1, 2, 1]))
+                                   material=look, transform=numpy.diag([1.0, 2, 1, 1]))
+    scene.add_instance(0, numpy.diag([0.5, 1.0, 2, 1]))
     scene.save(tmp_path / "wall.glb")
     of_file = clpv.Scene(tmp_path / "wall.glb")
     numpy.testing.assert_array_equal(scene.bounds, of_file.bounds)
@@ -149,7 +150,7 @@ def test_colours_of_trimesh():
     given = look(box)
     assert given["positions"].shape == (36, 3) and given["colours"].shape == (36, 4)
     assert numpy.ptp(given["colours"][:3], axis=0).max() == 0 and given["colours"][33, 1] == 1
-    assert given["colours"][33, 0] == pytest.approx(0.1559, abs=1e-3)  # of 110, sRGB-encoded
+    assert given["colours"][33, 0] == pytest.approx(110 / 255)  # linear
     assert "12 triangles" in repr(clpv.Scene.from_trimesh(box))
     pbr = trimesh.visual.material.PBRMaterial(baseColorFactor=[0.5, 1, 0, 1], alphaMode="MASK",
                                               emissiveFactor=[0, 2, 0], doubleSided=True)
@@ -157,6 +158,56 @@ def test_colours_of_trimesh():
     material = look(box)["material"]
     assert material.base_colour == pytest.approx((0.5, 1, 0, 1), abs=0.003)
     assert material.emission == (0, 2, 0) and material.alpha_cutoff == 0.5 and material.double_sided
+
+
+def accessor(document, values, normalized=False):
+    """Adds an accessor with a buffer of its own. Returns its index."""
+    index = len(document["accessors"])
+    data = base64.b64encode(values.tobytes()).decode()
+    document["buffers"].append({"byteLength": values.nbytes,
+                                "uri": f"data:application/octet-stream;base64,{data}"})
+    document["bufferViews"].append({"buffer": index, "byteLength": values.nbytes})
+    document["accessors"].append({
+        "bufferView": index, "count": len(values), "normalized": normalized,
+        "type": "SCALAR" if values.ndim == 1 else f"VEC{values.shape[1]}",
+        "componentType": next(code for code, name in TYPES.items() if values.dtype == name)})
+    return index
+
+
+# Material, and dtype and value of COLOR_0.
+FACTOR = {"pbrMetallicRoughness": {"baseColorFactor": [0.4, 0.6, 0.8, 1], "metallicFactor": 0}}
+FILES = [
+    (None, None), (FACTOR, None), (None, ("f4", [0.5, 0.25, 1])), (None, ("f4", [0.5, 0.25, 1, 1])),
+    (None, ("u1", [128, 64, 255, 255])), (FACTOR, ("u2", [32768, 16384, 65535, 65535])),
+    (FACTOR, ("f4", [0.5, 0.25, 1, 1])), (FACTOR, ("u1", [128, 64, 255, 255])),
+    ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.1]}, "alphaMode": "BLEND"}, None),
+    ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.9]}, "alphaMode": "BLEND"}, None),
+    ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.3]}, "alphaMode": "MASK",
+      "alphaCutoff": 0.2}, None), ({"emissiveFactor": [0.2, 0.4, 0.6], "doubleSided": True}, None)]
+
+
+@pytest.mark.parametrize("material,colour", FILES)
+def test_a_scene_of_trimesh_is_its_file(material, colour, tmp_path):
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
+    document = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+                "nodes": [{"mesh": 0}], "buffers": [], "bufferViews": [], "accessors": []}
+    attributes = {"POSITION": accessor(document, WALL.astype("f4")),
+                  "NORMAL": accessor(document, numpy.float32([[0.6, 0, 0.8]] * len(WALL)))}
+    document["accessors"][0].update(min=WALL.min(0).tolist(), max=WALL.max(0).tolist())
+    primitive = {"attributes": attributes, "indices": accessor(document, SQUARE.ravel().astype("u4"))}
+    if colour:
+        attributes["COLOR_0"] = accessor(document, numpy.array([colour[1]] * len(WALL), colour[0]),
+                                         colour[0] != "f4")
+    if material:
+        document["materials"], primitive["material"] = [material], 0
+    document["meshes"] = [{"primitives": [primitive]}]
+    file = tmp_path / "a.gltf"
+    file.write_text(json.dumps(document))
+    camera = clpv.Camera(eye=(0.2, 1, 3), target=(0, 1.5, -2))
+    for view in "albedo", "normal", "direct":
+        found, expected = (clpv.pathtrace(each, view, camera, width=9, height=9, samples=1).array
+                           for each in (clpv.Scene.from_trimesh(trimesh.load(file)), clpv.Scene(file)))
+        numpy.testing.assert_allclose(found, expected, atol=0.005)  # of 8 bits
 
 
 def test_the_example_of_arrays_runs(tmp_path):

@@ -91,11 +91,12 @@ SceneData room_scene(float albedo, const ClpvGrid& grid) {
 struct Room {
   ClpvGrid grid = cascade_grids(glm::vec3(0.5f), 1, kGrid, kGrid).front();
   SceneData scene;
-  reference::Volume light{kGrid, kSweepBins}, blockers, reflectors;
+  reference::Volume light{kGrid, kSweepBins}, blockers, white, reflectors;
 
   explicit Room(float albedo) : scene(room_scene(albedo, grid)) {
     blockers = reference::voxelize_blockers(scene, grid).lower;
     reflectors = reference::voxelize_reflectors(scene, grid).areas;
+    white = reference::voxelize_reflectors(scene, grid, true).areas;
     const Matrix leaving = reflected_intensity(*make_basis("bins24"));
     reference::for_each_cell(kGrid, [&](const glm::ivec3& p) {
       if (!inside(p)) return;
@@ -112,8 +113,11 @@ struct Room {
   /// All light inside.
   double lit(Bounces bounces, int parts = 1) const {
     const SweptCascade cascade{grid, &light, &blockers, parts};
-    const reference::Volume swept_light = reference::sweep_bounced(
-        *make_basis("bins24"), swept(), {cascade}, {&reflectors}, bounces)[0];
+    const auto bins = make_basis("bins24");
+    const reference::Volume normalised = reference::normalised_reflectors(
+        *bins, swept(), {cascade}, {&white}, {&reflectors}, bounces)[0];
+    const reference::Volume swept_light =
+        reference::sweep_bounced(*bins, swept(), {cascade}, {&normalised}, bounces)[0];
     double sum = 0;
     reference::for_each_cell(kGrid, [&](const glm::ivec3& p) {
       if (!inside(p)) return;

@@ -23,9 +23,8 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
       injected_(volumes(setup.injected_volumes(), setup.injected_shape(), "injected light")),
       accumulated_(volumes(options_.cascades, setup.gathered_shape(), "accumulated light")),
       geometry_(volumes(setup.geometry_volumes(), setup.geometry_shape(), "geometry volume")),
-      reflected_(volumes(options_.bounces == Bounces::one ? 0 : options_.cascades,
-                         {options_.grid, kCellFaces, 3}, "reflectors")),
       links_(options_.cascades),
+      surfaces_(options_.cascades),
       visible_cells_(options_.cascades),
       keys_(options_.cascades) {
   if (setup.sweeps()) {
@@ -39,9 +38,16 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
   if (!geometry_.empty() && !setup.blocked_by_view())
     blockers_.emplace(session, buffers,
                       blocker_masks(buffers, options_.grid, options_.cascades, options_.format()));
-  if (!reflected_.empty())
-    reflectors_.emplace(session, buffers,
-                        reflector_masks(buffers, options_.grid, options_.format()));
+  const auto voxelise = [&](std::optional<VoxelField>& field, std::unique_ptr<Volume>& faces,
+                            bool white) {
+    field.emplace(session, buffers,
+                  reflector_masks(buffers, options_.grid, options_.format(), white));
+    faces = std::make_unique<Volume>(
+        session, VolumeShape{options_.grid, kCellFaces, kReflectorChannels}, "reflectors",
+        options_.format());
+  };
+  if (sweeper_) voxelise(white_, white_faces_, true);
+  if (options_.bounces != Bounces::one) voxelise(reflectors_, reflected_, false);
   if (options_.gather == Gathering::visible)
     visibility_.emplace(session, buffers, visibility_masks(options_.grid, options_.cascades));
 } catch (const TooLarge& error) {
@@ -85,11 +91,14 @@ FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
   if (!geometry_.empty() && !blockers_)
     keys.geometry =
         Fingerprint().add(keys.triangles).add(lights_.rsms_key(cascade)).add(camera_->view).value();
-  // All bounces depend on the blockers.
-  keys.reflected = Fingerprint().add(keys.triangles).add(keys.geometry).value();
+  if (sweeper_) {
+    Fingerprint surfaces;
+    surfaces.add(keys.triangles).add(keys.geometry).add(sweeper_->halo(cascade, grids_));
+    if (cascade + 1 < options_.cascades) surfaces.add(keys_[cascade + 1].surfaces);
+    keys.surfaces = surfaces.value();
+  }
   Fingerprint accumulated;
-  accumulated.add(keys.injected).add(keys.geometry);
-  if (reflectors_) accumulated.add(keys.reflected);
+  accumulated.add(keys.injected).add(keys.geometry).add(keys.surfaces);
   // A sweep reads border light from the next coarser cascade, and stores the halo of the next finer
   // one.
   if (sweeper_)
@@ -146,13 +155,14 @@ Buffer FrameCascades::occluded(int cascade) {
   return visibility_->masks();
 }
 
-void FrameCascades::update_reflectors(int cascade) {
-  if (!reflectors_) return;
-  CachedVolume& reflected = reflected_[cascade];
-  reflected.cached.update(keys_[cascade].reflected, [&] {
+void FrameCascades::update_surfaces(int cascade) {
+  if (!sweeper_) return;
+  surfaces_[cascade].update(keys_[cascade].surfaces, [&] {
     const StageScope scope(session_, {Pass::reflectors, cascade});
-    reflectors_->update(cascade, grids_[cascade], *reflected.volume);
-    sweeper_->set_reflectors(cascade, grids_[cascade], *reflected.volume);
+    white_->update(cascade, grids_[cascade], *white_faces_);
+    if (reflectors_) reflectors_->update(cascade, grids_[cascade], *reflected_);
+    sweeper_->set_surfaces(cascade, grids_, *white_faces_, reflected_.get(),
+                           *accumulated_[cascade].volume);
   });
 }
 
@@ -170,7 +180,7 @@ void FrameCascades::propagate(int cascade) {
     inject(cascade);
     update_blockers(cascade);
     if (sweeper_) update_links(cascade);
-    update_reflectors(cascade);
+    update_surfaces(cascade);
     const Volume& injected = *of_cascade(injected_, cascade).volume;
     const StageScope scope(session_, {Pass::propagate, cascade});
     if (propagator_)
@@ -197,7 +207,7 @@ GatheredLight FrameCascades::light() const {
   if (visibility_) light.occluded = visibility_->masks();
   for (std::size_t c = 0; c < accumulated_.size(); ++c) {
     light.accumulated.push_back(accumulated_[c].volume.get());
-    light.keys.push_back(keys_[c].accumulated);
+    light.keys.push_back(Fingerprint().add(keys_[c].accumulated).add(light.scale).value());
   }
   return light;
 }

@@ -59,7 +59,7 @@ class FrameCascades {
   };
   /// Keys of a cascade's results.
   struct Keys {
-    CacheKey triangles = 0, injected = 0, geometry = 0, reflected = 0, accumulated = 0;
+    CacheKey triangles = 0, injected = 0, geometry = 0, surfaces = 0, accumulated = 0;
   };
   std::vector<CachedVolume> volumes(int count, const VolumeShape& shape, const char* what) const;
   static CachedVolume& of_cascade(std::vector<CachedVolume>& volumes, int cascade);
@@ -71,7 +71,7 @@ class FrameCascades {
   void update_blockers(int cascade);
   void update_links(int cascade);
   Buffer occluded(int cascade);
-  void update_reflectors(int cascade);
+  void update_surfaces(int cascade);
   void propagate(int cascade);
   void update_visibility(int cascade);
   void inject_geometry(int cascade, Volume& geometry);
@@ -83,15 +83,16 @@ class FrameCascades {
   FrameLights& lights_;
   Injector injector_;
   std::optional<VoxelField> blockers_;    ///< none: surfaces in the RSMs and the G-buffer block
+  std::optional<VoxelField> white_;       ///< none without a sweep
   std::optional<VoxelField> reflectors_;  ///< none with one bounce
   std::optional<VoxelField> visibility_;  ///< none: all cells light a surface
   std::optional<Propagator> propagator_;  ///< one of the two
   std::optional<Sweeper> sweeper_;
   std::vector<CachedVolume> injected_, accumulated_;
   std::vector<CachedVolume> geometry_;   ///< none without occlusion
-  std::vector<CachedVolume> reflected_;  ///< face albedos; none with one bounce
+  std::unique_ptr<Volume> white_faces_, reflected_;  ///< of white_ and reflectors_, as surfaces_ uses them
   /// Contents of the sweeper and of visibility_, per cascade.
-  std::vector<Cached> links_, visible_cells_;
+  std::vector<Cached> links_, surfaces_, visible_cells_;
   std::vector<ClpvGrid> grids_;
   std::vector<Keys> keys_;
   const Surface* camera_ = nullptr;

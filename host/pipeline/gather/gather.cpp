@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/gather/gather.hpp"
 
+#include "basis/bounce.hpp"
 #include "pipeline/raster/surface.hpp"
 #include "support/error.hpp"
 
@@ -28,7 +29,8 @@ std::string each_cascade(std::size_t cascades) {
 
 void add_literals(Literals& literals, const Basis& basis, const GatherOptions& options) {
   literals.real("CLPV_GATHER_OFFSET", options.gather_offset)
-      .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells);
+      .real("CLPV_INVERSE_BLEND", 1 / options.blend_cells)
+      .real("CLPV_LEAST_WHITE", kLeastWhite);
   add_coefficient_literals(literals, basis.size(), "float");
   basis.add_literals(literals);
 }
@@ -70,6 +72,7 @@ Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport
     : session_(session),
       options_(options),
       coefficients_(basis.size()),
+      furnace_(!has_faces(transport)),
       pairs_(packed_pairs(basis)),
       table_(session, basis, looked_up(transport, options), options.table, TableUse::functions),
       source_(source_of(basis, transport, options, packs(), table_)),
@@ -77,7 +80,7 @@ Gatherer::Gatherer(Session& session, const Basis& basis, TransportKind transport
   if (!packs()) return;
   ProgramSource pack{"gather/pack.cl", stencil_.literals()};
   add_coefficient_literals(pack.literals, basis.size());
-  pack.literals.integer("CLPV_PAIRS", pairs_);
+  pack.literals.integer("CLPV_PAIRS", pairs_).flag("CLPV_FURNACE", furnace_);
   pack_.emplace(session, pack, "pack");
   gather_kernel(0, false);
 }
@@ -98,7 +101,7 @@ void Gatherer::require_fit(const GatheredLight& light) const {
                 light.grids.size());
   }
   for (const Volume* volume : light.accumulated)
-    clpv::require_fit(*volume, {options_.grid, coefficients_, 3}, options_.format, "gathering");
+    clpv::require_fit(*volume, {options_.grid, coefficients_, furnace_ ? 4 : 3}, options_.format, "gathering");
   if (sees() && !light.occluded.exists())
     throw Error(ExitCode::run_time, "gather: no occluded cells, which gather 'visible' needs");
 }
@@ -118,7 +121,8 @@ void Gatherer::pack(const GatheredLight& light) {
   for (std::size_t c = 0; c < light.grids.size(); ++c) {
     const auto key = light.keys.empty() ? std::nullopt : std::optional(light.keys[c]);
     if (key && packed_keys_[c] == key) continue;
-    pack_->set(light.accumulated[c]->memory(), packed_, static_cast<cl_uint>(c * n * n * n));
+    const float white = light.scale * light.grids[c].cell * light.grids[c].cell;
+    pack_->set(light.accumulated[c]->memory(), packed_, static_cast<cl_uint>(c * n * n * n), white);
     stencil_.launch(*pack_, 1);
     packed_keys_[c] = key;
   }

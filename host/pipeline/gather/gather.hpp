@@ -31,11 +31,12 @@ struct GatheredLight {
   std::vector<const Volume*> accumulated;  ///< one per grid
   float scale = 1;       ///< factor by which the volumes scale the light (light_scale)
   Buffer occluded = {};  ///< of `grids`, for Gathering::visible: VoxelField::masks()
-  std::vector<std::uint64_t> keys = {};  ///< of the volumes' contents; empty: unknown
+  std::vector<std::uint64_t> keys = {};  ///< of the volumes' contents and scale; empty: unknown
 };
 
-/// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces). c is the volume,
-/// sampled trilinearly `gather_offset` cells off the surface. Negative E is clamped to 0.
+/// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces), for swept light over
+/// g(n) . f / pi, f the white furnace in channel 3. c is the volume, sampled trilinearly
+/// `gather_offset` cells off the surface. Negative E is clamped to 0.
 ///
 /// The cascade weights depend only on the surface point. Cascade i takes the share m_i = min(1,
 /// cells to its boundary / blend_cells) of the weight left by finer ones. The boundary is that of a
@@ -64,9 +65,9 @@ class Gatherer {
   float unit() const { return 1 / scale_; }             ///< [W/sr] of a stored 1
 
   /// Returns true if volumes are packed. Images are sampled directly, unless gathering selects
-  /// single cells or another stage needs packed volumes.
+  /// single cells, light has a furnace or another stage needs packed volumes.
   bool packs() const {
-    return options_.format.layout != Layout::image || sees() || options_.packed;
+    return options_.format.layout != Layout::image || sees() || options_.packed || furnace_;
   }
 
   /// Adds the arguments CLPV_RADIANCE (kernels/gather/radiance.h): the packed volumes of the last
@@ -82,7 +83,9 @@ class Gatherer {
 
   Session& session_;
   GatherOptions options_;
-  int coefficients_, pairs_;
+  int coefficients_;
+  bool furnace_;  ///< swept light: channel 3 of the volumes is its white furnace
+  int pairs_;
   LookupTable table_;
   ProgramSource source_;
   Stencil stencil_;  ///< stencil of the packing kernel

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/sweep/bounce.hpp"
 
+#include <numbers>
+
 #include "basis/bounce.hpp"
 #include "pipeline/sweep/sweep_literals.hpp"
+#include "pipeline/voxels/reflectors.hpp"
 
 namespace clpv {
 namespace {
@@ -13,12 +16,17 @@ constexpr int kChannels = 3;
 
 Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& options, bool series)
     : volumes_(session, options.grid, options.format),
-      reflectors_(options.parts.size()),
-      inject_reflected_(session, volumes_.program("sweep/bounce.cl", bounce_literals(basis)),
-                        "inject_reflected") {
-  if (!series) return;
+      inject_flux_(session, volumes_.program("sweep/bounce.cl", bounce_literals(basis)),
+                   "inject_flux") {
+  if (options.bounces == Bounces::one) return;
   const ProgramSource program = volumes_.program("sweep/bounce.cl", bounce_literals(basis));
-  inject_flux_.emplace(session, program, "inject_flux");
+  normalise_reflectors_.emplace(session, program, "normalise_reflectors");
+  inject_reflected_.emplace(session, program, "inject_reflected");
+  for (std::size_t c = 0; c < options.parts.size(); ++c)
+    reflectors_.emplace_back(session,
+                             VolumeShape{options.grid, kCellFaces, kReflectorChannels},
+                             "reflectors of bounces", options.format);
+  if (!series) return;
   reflect_returned_.emplace(session, program, "reflect_returned");
   sum_series_.emplace(session, program, "sum_series");
   inject_series_.emplace(session, program, "inject_series");
@@ -28,37 +36,42 @@ Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& optio
   returned_ = std::make_unique<Volume>(session, shape, "returned flux", options.format);
 }
 
-void Bouncer::set_reflectors(std::size_t cascade, const Volume& reflectors) {
-  reflectors_[cascade] = &reflectors;
+void Bouncer::inject_flux(const Volume& flux, const Volume& reflectors, float factor,
+                          Volume& bounced) {
+  inject_flux_.set(flux.memory(), reflectors.memory(), factor, bounced.memory());
+  volumes_.launch(inject_flux_, kChannels);
 }
 
-void Bouncer::inject_flux(const Volume& flux, Volume& bounced) {
-  inject_flux_->set(flux.memory(), bounced.memory());
-  volumes_.launch(*inject_flux_, kChannels);
+const Volume& Bouncer::set_reflectors(std::size_t cascade, const Buffer& swept,
+                                      const Volume& reflectors) {
+  normalise_reflectors_->set(swept, reflectors.memory(), std::numbers::pi_v<float>,
+                             reflectors_[cascade].memory());
+  volumes_.launch(*normalise_reflectors_, kReflectorChannels);
+  return reflectors_[cascade];
 }
 
 const Volume& Bouncer::reflect_returned(std::size_t cascade, const Buffer& swept) {
-  reflect_returned_->set(swept, reflectors_[cascade]->memory(), returned_->memory());
+  reflect_returned_->set(swept, reflectors_[cascade].memory(), returned_->memory());
   volumes_.launch(*reflect_returned_, kChannels);
   return *returned_;
 }
 
 void Bouncer::sum_series(std::size_t cascade, const Buffer& swept) {
-  sum_series_->set(swept, reflectors_[cascade]->memory(), returned_->memory(),
+  sum_series_->set(swept, reflectors_[cascade].memory(), returned_->memory(),
                    series_[cascade].memory());
   volumes_.launch(*sum_series_, kChannels);
 }
 
 void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, float share,
                                const Volume& injected, Volume& bounced) {
-  inject_reflected_.set(swept, reflectors_[cascade]->memory(), injected.memory(), share,
+  inject_reflected_->set(swept, reflectors_[cascade].memory(), injected.memory(), share,
                         bounced.memory());
-  volumes_.launch(inject_reflected_, kChannels);
+  volumes_.launch(*inject_reflected_, kChannels);
 }
 
 void Bouncer::inject_series(std::size_t cascade, const Buffer& first_swept,
                             const Buffer& second_swept, const Volume& injected, Volume& bounced) {
-  inject_series_->set(first_swept, second_swept, reflectors_[cascade]->memory(),
+  inject_series_->set(first_swept, second_swept, reflectors_[cascade].memory(),
                       series_[cascade].memory(), injected.memory(), bounced.memory());
   volumes_.launch(*inject_series_, kChannels);
 }

@@ -22,14 +22,17 @@ namespace clpv {
 /// bit.
 class Bouncer {
  public:
-  /// `series`: evaluates the series of all bounces in every cascade.
+  /// `series`: evaluates the series of all bounces in every cascade. One bounce allows only
+  /// inject_flux().
   Bouncer(Session& session, const Basis& basis, const SweepOptions& options, bool series);
 
-  /// Sets the reflectors R of a cascade (reflector_masks), which must outlive this object.
-  void set_reflectors(std::size_t cascade, const Volume& reflectors);
+  /// Writes light of which each face emits this flux [W], times `factor`, to `bounced`.
+  /// `reflectors`: reflector_masks().
+  void inject_flux(const Volume& flux, const Volume& reflectors, float factor, Volume& bounced);
 
-  /// Writes light of which each face emits this flux [W] to `bounced`.
-  void inject_flux(const Volume& flux, Volume& bounced);
+  /// Sets the reflectors R of a cascade: reflector_masks() over the incident flux of a white
+  /// furnace, whose sweep is `swept`.
+  const Volume& set_reflectors(std::size_t cascade, const Buffer& swept, const Volume& reflectors);
   /// Returns R X. `swept`: a sweep of inject_flux(R), whose incident flux is X.
   const Volume& reflect_returned(std::size_t cascade, const Buffer& swept);
   /// Sets the series S of a cascade. `swept`: a sweep of inject_flux() of reflect_returned().
@@ -44,11 +47,12 @@ class Bouncer {
 
  private:
   SweepVolumes volumes_;
-  std::vector<const Volume*> reflectors_;
+  std::vector<Volume> reflectors_;    ///< R of each cascade; empty with one bounce
   std::vector<Volume> series_;        ///< S of each cascade; empty without a series
   std::unique_ptr<Volume> returned_;  ///< R X; null without a series
-  Kernel inject_reflected_;
-  std::optional<Kernel> inject_flux_, reflect_returned_, sum_series_, inject_series_;
+  Kernel inject_flux_;
+  std::optional<Kernel> normalise_reflectors_, inject_reflected_;
+  std::optional<Kernel> reflect_returned_, sum_series_, inject_series_;
 };
 
 }  // namespace clpv

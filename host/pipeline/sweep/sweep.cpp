@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <utility>
 
 #include "basis/bounce.hpp"
@@ -15,6 +16,7 @@
 namespace clpv {
 namespace {
 
+constexpr float kCellRatio = 2;   // of a coarser cascade's cell to the next finer one's
 constexpr int kBounceParts = 1;  // parts of a bin, squared, in sweeps for bounces
 
 std::size_t directions_of(int parts) {
@@ -65,7 +67,11 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
       source_(session, volumes_.program("sweep/sweep_source.cl", source_literals(basis)),
               "sweep_source"),
       collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals()),
-               "sweep_collect") {
+               "sweep_collect"),
+      bouncer_(session, basis, options,
+               options.bounces == Bounces::all && !scatters(options.medium)),
+      bounced_(session, VolumeShape{options.grid, basis.size(), 3}, "injected and reflected light",
+               options.format) {
   const std::size_t plane = bordered_plane_size(options.grid) * sizeof(float);
   const std::size_t ordinates =
       3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
@@ -92,12 +98,8 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   if (options.medium)
     medium_.emplace(session, volumes_, *options.medium, options.grid, options.parts.size());
   make_cascades(basis);
-  if (options.bounces == Bounces::one) return;
-  const bool series = options.bounces == Bounces::all && !scatters(options.medium);
-  bouncer_.emplace(session, basis, options, series);
-  bounced_ = std::make_unique<Volume>(session, VolumeShape{options.grid, basis.size(), 3},
-                                      "injected and reflected light", options.format);
-  if (series) last_swept_ = volumes_.make(3 * kSweepBins, "light of the first bounce");
+  if (plan_.back().light == SweptLight::series)
+    last_swept_ = volumes_.make(3 * kSweepBins, "light of the first bounce");
 }
 
 void Sweeper::make_cascades(const Basis& basis) {
@@ -150,10 +152,14 @@ bool Sweeper::whole_bins() const {
 Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int coarser,
                                              bool feeds_finer) const {
   const SweepMeans means = sweep_means(basis, parts);
+  std::vector<ClpvSweepDirection> table = sweep_direction_table(parts, coarser);
+  const Buffer light_table = session_.upload(table, "directions to sweep");
+  for (ClpvSweepDirection& each : table) each.from_coarser *= kCellRatio * kCellRatio;
   Directions made{parts,
                   coarser,
                   feeds_finer,
-                  session_.upload(sweep_direction_table(parts, coarser), "directions to sweep"),
+                  light_table,
+                  session_.upload(table, "directions of the furnace"),
                   session_.upload(means.coefficients, "coefficients of the sweep's bins"),
                   session_.upload(means.means, "means of the basis's functions"),
                   Kernel(session_, sweep_program(basis.size(), means, parts),
@@ -162,13 +168,19 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int 
                                 "boundary light of a finer cascade"),
                   {},
                   {}};
+  made.white_halo =
+      zeroed_buffer(session_, made.halo_light.bytes(), "boundary light of a finer furnace");
   if (coarser > 0) {
     ProgramSource border =
         border_program("sweep/sweep_border.cl", options_, parts, session_.device().lanes);
     border.literals.integer("CLPV_COARSER_PARTS", coarser * coarser);
     made.border.emplace(session_, border, "sweep_border");
-  } else if (options_.sky != nullptr) {
-    made.sky = session_.upload(swept_sky(*options_.sky, parts), "boundary light of the sky");
+  } else {
+    Sky even;
+    even.width = even.height = 1, even.texels = {glm::vec3(1)};
+    made.white_sky = session_.upload(swept_sky(even, parts), "boundary light of the furnace");
+    if (options_.sky != nullptr)
+      made.sky = session_.upload(swept_sky(*options_.sky, parts), "boundary light of the sky");
     made.sky_border.emplace(
         session_, border_program("sweep/sweep_sky.cl", options_, parts, session_.device().lanes),
         "sweep_sky");
@@ -200,26 +212,53 @@ void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry, const Bu
   volumes_.launch(*transmittance_, 1);
 }
 
-void Sweeper::set_reflectors(std::size_t cascade, const ClpvGrid& grid, const Volume& reflectors) {
-  bouncer_.value().set_reflectors(cascade, reflectors);
-  const bool series = plan_.back().light == SweptLight::series;
-  if (!series) return;
-  enter_medium(cascade, grid);
+void Sweeper::set_surfaces(std::size_t cascade, const std::vector<ClpvGrid>& grids,
+                           const Volume& white, const Volume* reflectors, Volume& accumulated) {
+  bouncer_.inject_flux(white, white, std::numbers::pi_v<float>, bounced_);
+  set_sources(bounced_);
+  const Volume* normalised = nullptr;
+  if (reflectors != nullptr) {
+    sweep_white(false, cascade, grids);
+    normalised = &bouncer_.set_reflectors(cascade, swept_, *reflectors);
+  }
+  sweep_white(true, cascade, grids);
+  collect(accumulated, 3, 1);
+  if (plan_.back().light != SweptLight::series) return;
+  enter_medium(cascade, grids[cascade]);
   const auto sweep_reflected = [&](const Volume& flux) {
-    bouncer_->inject_flux(flux, *bounced_);
-    set_sources(*bounced_);
+    bouncer_.inject_flux(flux, *normalised, 1, bounced_);
+    set_sources(bounced_);
     launch(*cascades_[cascade].few, cascade, {}, false);
   };
-  sweep_reflected(reflectors);
-  sweep_reflected(bouncer_->reflect_returned(cascade, swept_));
-  bouncer_->sum_series(cascade, swept_);
+  sweep_reflected(*normalised);
+  sweep_reflected(bouncer_.reflect_returned(cascade, swept_));
+  bouncer_.sum_series(cascade, swept_);
+}
+
+/// Sweeps the sources as those of the white furnace: in open space, with radiance 1 at the border.
+void Sweeper::sweep_white(bool all_directions, std::size_t cascade,
+                          const std::vector<ClpvGrid>& grids) {
+  const auto swap_with_light = [&] {
+    for (Cascade& each : cascades_) {
+      for (Directions* d : {&each.all, each.few ? &*each.few : nullptr}) {
+        if (d == nullptr) continue;
+        std::swap(d->halo_light, d->white_halo);
+        std::swap(d->table, d->white_table);
+      }
+    }
+  };
+  swap_with_light();
+  Directions& directions = all_directions ? cascades_[cascade].all : *cascades_[cascade].few;
+  light_border(all_directions, cascade, grids, directions.white_sky, 1);
+  launch(directions, cascade, prepare_halo(directions, cascade, grids), true);
+  swap_with_light();
 }
 
 void Sweeper::sweep(const SweepInput& input, Volume& accumulated) {
   enter_medium(input.cascade, input.grids[input.cascade]);
   if (medium_) medium_->scatter_lights(input.grids[input.cascade], input.lights);
   for (const SweepStep& step : plan_) run(step, input);
-  collect(accumulated);
+  collect(accumulated, 0, 3);
 }
 
 /// Sweeps the light of a step with its boundary condition, and stores the halo of the next finer
@@ -229,16 +268,24 @@ void Sweeper::run(const SweepStep& step, const SweepInput& input) {
   Directions& directions = step.all_directions ? cascade.all : *cascade.few;
   if (step.scattered) medium_->scatter_swept(swept_);
   set_sources(light_of(step, input));
-  const bool lit = !step.dark_border && light_border(step.all_directions, input);
-  ClpvSweepHalo stored{};
-  if (directions.feeds_finer) {
-    stored = halo(input.cascade, input.grids);
-    // Cells of the halo outside this grid are dark.
-    if (!within(stored, options_.grid))
-      session_.fill_zero(directions.halo_light, directions.halo_light.bytes());
-  }
+  const float cell = input.grids[input.cascade].cell;
+  const bool lit =
+      !step.dark_border && light_border(step.all_directions, input.cascade, input.grids,
+                                        directions.sky, input.sky_scale * (cell * cell));
+  const ClpvSweepHalo stored = prepare_halo(directions, input.cascade, input.grids);
   if (last_swept_.exists()) std::swap(swept_, last_swept_);
   launch(directions, input.cascade, stored, lit, step.scattered);
+}
+
+/// Returns the cells whose light a sweep stores for the next finer cascade.
+ClpvSweepHalo Sweeper::prepare_halo(const Directions& directions, std::size_t cascade,
+                                    const std::vector<ClpvGrid>& grids) {
+  if (!directions.feeds_finer) return {};
+  const ClpvSweepHalo stored = halo(cascade, grids);
+  // Cells of the halo outside this grid are dark.
+  if (!within(stored, options_.grid))
+    session_.fill_zero(directions.halo_light, directions.halo_light.bytes());
+  return stored;
 }
 
 const Volume& Sweeper::light_of(const SweepStep& step, const SweepInput& input) {
@@ -247,16 +294,16 @@ const Volume& Sweeper::light_of(const SweepStep& step, const SweepInput& input) 
     case SweptLight::injected:
       return input.injected;
     case SweptLight::reflected:
-      bouncer_->inject_reflected(c, swept_, 1, input.injected, *bounced_);
+      bouncer_.inject_reflected(c, swept_, 1, input.injected, bounced_);
       break;
     case SweptLight::only_reflected:
-      bouncer_->inject_reflected(c, swept_, 0, input.injected, *bounced_);
+      bouncer_.inject_reflected(c, swept_, 0, input.injected, bounced_);
       break;
     case SweptLight::series:
-      bouncer_->inject_series(c, last_swept_, swept_, input.injected, *bounced_);
+      bouncer_.inject_series(c, last_swept_, swept_, input.injected, bounced_);
       break;
   }
-  return *bounced_;
+  return bounced_;
 }
 
 /// Sets the light that the next sweep injects.
@@ -265,28 +312,27 @@ void Sweeper::set_sources(const Volume& light) {
   volumes_.launch(source_, 1);
 }
 
-/// Sets the boundary condition of a cascade from the next coarser one, or from the sky. Returns
-/// false, and sets nothing, if no light enters.
-bool Sweeper::light_border(bool all_directions, const SweepInput& input) {
-  const std::size_t c = input.cascade;
+/// Sets the boundary condition of a cascade from the next coarser one, or from `sky` times
+/// `sky_scale`. Returns false, and sets nothing, if no light enters.
+bool Sweeper::light_border(bool all_directions, std::size_t c, const std::vector<ClpvGrid>& grids,
+                           const Buffer& sky, float sky_scale) {
   const auto directions_in = [&](std::size_t cascade) -> Directions& {
     return all_directions || (cascade != c && last_light_enters()) ? cascades_[cascade].all
                                                                    : *cascades_[cascade].few;
   };
   Directions& directions = directions_in(c);
-  if (!directions.border && !directions.sky_border) return false;
+  if (!directions.border && !sky.exists()) return false;
   Kernel& kernel = directions.border ? *directions.border : *directions.sky_border;
   // A sweep by planes reads the plane upstream of the grid among the odd ones.
   const cl_int upstream =
       whole_bins() ? 0 : 3 * directions_of(directions.parts) * bordered_plane_size(options_.grid);
   if (directions.border) {
-    const std::array<int, 3> offset = offset_in_coarser(input.grids[c + 1], input.grids[c]);
+    const std::array<int, 3> offset = offset_in_coarser(grids[c + 1], grids[c]);
     kernel.set(bins_, directions.table, directions_in(c + 1).halo_light,
                halo_of(options_.grid, offset), offset[0], offset[1], offset[2], plane_buffer_,
                upstream, border_);
   } else {
-    const float cell = input.grids[c].cell;
-    kernel.set(directions.sky, input.sky_scale * (cell * cell), plane_buffer_, upstream, border_);
+    kernel.set(sky, sky_scale, plane_buffer_, upstream, border_);
   }
   const std::size_t rows = options_.grid + 2, lanes = session_.device().lanes;
   kernel.launch({(rows + lanes - 1) / lanes, rows, 9 * directions_of(directions.parts)},
@@ -332,10 +378,10 @@ void Sweeper::darken_border(const Directions& directions) {
   session_.fill_zero(plane_buffer_, 2 * planes * sizeof(float));
 }
 
-/// Projects swept light on harmonics.
-void Sweeper::collect(Volume& accumulated) {
-  collect_.set(swept_, accumulated.memory());
-  volumes_.launch(collect_, 3);
+/// Projects the first channels of swept light on harmonics, and writes them from channel `first` on.
+void Sweeper::collect(Volume& accumulated, int first, int channels) {
+  collect_.set(swept_, accumulated.memory(), cl_int{first});
+  volumes_.launch(collect_, channels);
 }
 
 }  // namespace clpv

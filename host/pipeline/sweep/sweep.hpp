@@ -48,13 +48,16 @@ class Sweeper {
   /// memory: none.
   void set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded = {});
 
-  /// Sets the reflectors of a cascade at `grid` (VoxelField), for SweepOptions::bounces other than
-  /// one. `reflectors` must outlive the sweeper. With all bounces, computes their series in this
+  /// Sets the surfaces of a cascade after those of the next coarser one and after its blockers.
+  /// `white`, `reflectors`: reflector_masks(), white and, for SweepOptions::bounces other than one,
+  /// coloured. Sweeps the white furnace, writes its light, as radiance, to channel 3 of
+  /// `accumulated`, and normalises the reflectors. With all bounces, computes their series in this
   /// cascade from the reflectors and the links.
-  void set_reflectors(std::size_t cascade, const ClpvGrid& grid, const Volume& reflectors);
+  void set_surfaces(std::size_t cascade, const std::vector<ClpvGrid>& grids, const Volume& white,
+                    const Volume* reflectors, Volume& accumulated);
 
   /// Sweeps a cascade after the next coarser one. Writes light of swept_basis(), as radiance times
-  /// s^2, to `accumulated`. Throws Error(run_time) for grids that are not nested.
+  /// s^2, to channels 0 to 2 of `accumulated`. Throws Error(run_time) for grids that are not nested.
   void sweep(const SweepInput& input, Volume& accumulated);
 
   /// Cells of a cascade whose light a sweep stores for the next finer one; empty for the finest.
@@ -70,12 +73,14 @@ class Sweeper {
     int parts, coarser;  ///< parts of the bins of this cascade and of the next coarser one; 0: none
     bool feeds_finer;    ///< stores border light for the next finer cascade
     Buffer table;        ///< ClpvSweepDirection
+    Buffer white_table;  ///< the same for the white furnace, whose light has the unit s^2
     Buffer coefficients, means;  ///< SweepMeans
     Kernel sweep;
     Buffer halo_light;             ///< border light of the next finer cascade
     std::optional<Kernel> border;  ///< border light from the coarser cascade; none for the coarsest
-    std::optional<Kernel> sky_border;  ///< border light from the sky; for the coarsest under a sky
-    Buffer sky = {};                   ///< swept_sky()
+    std::optional<Kernel> sky_border;  ///< border light from the sky; for the coarsest
+    Buffer sky = {}, white_sky = {};   ///< swept_sky(); of the scene's sky, if any, and of an even one
+    Buffer white_halo = {};            ///< halo_light of the furnace
   };
   struct Cascade {
     Directions all;
@@ -89,11 +94,15 @@ class Sweeper {
   void run(const SweepStep& step, const SweepInput& input);
   const Volume& light_of(const SweepStep& step, const SweepInput& input);
   void set_sources(const Volume& light);
-  bool light_border(bool all_directions, const SweepInput& input);
+  void sweep_white(bool all_directions, std::size_t cascade, const std::vector<ClpvGrid>& grids);
+  bool light_border(bool all_directions, std::size_t cascade, const std::vector<ClpvGrid>& grids,
+                    const Buffer& sky, float sky_scale);
   void darken_border(const Directions& directions);
+  ClpvSweepHalo prepare_halo(const Directions& directions, std::size_t cascade,
+                             const std::vector<ClpvGrid>& grids);
   void launch(Directions& directions, std::size_t cascade, const ClpvSweepHalo& halo, bool lit,
               bool scattered = false);
-  void collect(Volume& accumulated);
+  void collect(Volume& accumulated, int first, int channels);
   bool last_light_enters() const;
 
   Session& session_;
@@ -109,8 +118,8 @@ class Sweeper {
   std::optional<SweepMedium> medium_;
   std::vector<SweepStep> plan_;
   std::vector<Cascade> cascades_;
-  std::optional<Bouncer> bouncer_;   ///< none with one bounce
-  std::unique_ptr<Volume> bounced_;  ///< injected and reflected light; null with one bounce
+  Bouncer bouncer_;
+  Volume bounced_;  ///< injected and reflected light
 };
 
 }  // namespace clpv

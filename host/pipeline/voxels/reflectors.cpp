@@ -8,7 +8,8 @@ namespace clpv {
 
 static_assert(kCellFaces == CLPV_CELL_FACES);
 
-VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeFormat& format) {
+VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeFormat& format,
+                          bool white) {
   VoxelKind kind{.what = "sides of triangles that reflect",
                  .shape = {grid, grid, CLPV_CELL_FACES * CLPV_FACE_WORDS, 1},
                  .max_triangles = 1u << 18,
@@ -20,8 +21,9 @@ VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeForma
   kind.program.literals.integer("CLPV_GRID", grid)
       .flag("CLPV_MASKED", scene.masked)
       .flag("CLPV_TEXTURED", scene.textured)
-      .flag("CLPV_COLOURED", scene.coloured);
-  kind.volume_program.literals.real("CLPV_EDGE_LOSS", edge_loss());
+      .flag("CLPV_COLOURED", scene.coloured)
+      .flag("CLPV_WHITE", white);
+  kind.volume_program.literals.flag("CLPV_WHITE", white);
   add_volume_literals(kind.volume_program.literals, grid, format);
   add_coefficient_literals(kind.volume_program.literals, kCellFaces);
   return kind;
