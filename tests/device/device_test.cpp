@@ -73,11 +73,11 @@ TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
   ASSERT_EQ(json.at("devices").size(), 1u);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json["devices"][0].items()) keys.push_back(key);
-  EXPECT_THAT(keys, ::testing::UnorderedElementsAre("index", "platform_index", "device_index",
-                                                    "platform", "name", "driver", "version", "type",
-                                                    "compute_units", "max_alloc_bytes", "images",
-                                                    "image3d_writes", "int64_atomics", "fp64",
-                                                    "profiling_valid", "supported", "missing"));
+  EXPECT_THAT(keys, ::testing::UnorderedElementsAre(
+                        "index", "platform_index", "device_index", "platform", "name", "driver",
+                        "version", "type", "compute_units", "max_work_group_size",
+                        "max_alloc_bytes", "images", "image3d_writes", "int64_atomics", "fp64",
+                        "profiling_valid", "supported", "missing"));
 }
 
 TEST(DevicesCommand, WithoutDriversIsAnEmptyListAndAMessage) {

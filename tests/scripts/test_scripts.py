@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Files and folders that scripts and modules write, arguments of scripts, and gates of the tree."""
+import hashlib
 import os
 import pathlib
 import re
@@ -121,6 +122,15 @@ class Tree(InFolder):
         found = run("lines", "--check", root=self.folder)
         self.assertEqual(found.returncode, 1)
         self.assertIn(f"host/a.py: {LAB}, which belongs to the lab", found.stderr)
+
+    def test_the_key_of_ground_truths_has_the_tracers_sources(self):
+        subprocess.run(["cmake", f"-DROOT={ROOT}", f"-DOUTPUT={self.file}", "-P",
+                        ROOT / "cmake/ground_truth_sources.cmake"], check=True)
+        for name, has in (("host/pathtracer/path_sampler.cpp", True), ("kernels/shared/light.h", True),
+                          ("host/reference/lighting.cpp", True), ("host/scene/load.cpp", False),
+                          ("host/pipeline/gather/gather.cpp", False)):
+            digest = hashlib.sha256((ROOT / name).read_bytes()).hexdigest()
+            self.assertEqual(f"// {name} {digest}\n" in self.file.read_text(), has, name)
 
     def test_each_member_of_a_shared_struct_is_compared(self):
         found, listed = set(), set()
