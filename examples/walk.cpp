@@ -25,7 +25,7 @@ int main(int argc, char** argv) try {
                      .intensity = {0.5, 0.45, 0.4}}});
   const clpv::Image image = renderer.render(clpv::View::full, "front");
   if (argc > 2) clpv::save_image(argv[2], image, scene.exposure());
-  const auto [red, green, blue] = renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0});
+  const auto [red, green, blue] = renderer.irradiance({0.28, 0.27, 0.2}, {0, 1, 0});
   std::cout << "indirect light on an upward surface: " << red << ' ' << green << ' ' << blue
             << " W/m^2\n";
   for (const clpv::LightVolume& volume : renderer.volumes())

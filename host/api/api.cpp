@@ -21,15 +21,16 @@ std::vector<DeviceDescription> all_devices() {
   return all;
 }
 
-void save_image(const std::filesystem::path& path, const Image& image, float exposure) {
+void save_image(const std::filesystem::path& path, const Image& image, std::optional<float> given) {
   check_image("image", image);
+  const float exposure = given ? *given : automatic_exposure(image);
   check_exposure(exposure);
   const std::string extension = lower_extension(path);
   if (extension == ".exr") {
     require_linear("image", image);
     return write_exr(path, image);
   }
-  if (extension == ".png") return write_png(path, display_image(image, exposure, ToneMap::aces));
+  if (extension == ".png") return write_png(path, display_image(image, exposure, kDisplayCurve));
   throw Error(ExitCode::usage, "{}: found extension '{}', allowed: .exr, .png", path.string(),
               path.extension().string());
 }

@@ -164,6 +164,7 @@ struct Renderer::State {
   Image image(View view) {
     Image made = view_image(*frame, view);
     made.metadata = metadata;
+    made.metadata["view"] = name_of(view);
     return made;
   }
 };

@@ -176,7 +176,7 @@ std::array<Vec3, 2> Scene::bounds() const {
   return {{{lower.x, lower.y, lower.z}, {upper.x, upper.y, upper.z}}};
 }
 
-double Scene::exposure() const {
+std::optional<float> Scene::exposure() const {
   const std::shared_lock lock(contents_->mutex);
   return contents_->moving.scene().exposure;
 }

@@ -28,7 +28,7 @@ struct Options {
   RenderRequest request;
   TracingOptions tracing;
   BakeSource from = BakeSource::sweep;
-  std::string output, points, bounds, probes, format = "ambient-cube";
+  std::string output, points, bounds, probes, format = "ambient-cube-mean";
   double spacing = 0, time = 0;
   bool direct = false, no_dilate = false;
   std::size_t check = 0;

@@ -136,7 +136,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.set_version_flag("--version", "clpv " + version(), "version of the program");
   app.set_help_flag("-h,--help", "this help");
   app.set_help_all_flag("--help-all", "help of all commands");
-  add(app, "--device", "DEVICE", shared.device,
+  add(app, "-d,--device", "DEVICE", shared.device,
       "OpenCL device: index, PLATFORM:DEVICE or part of a name (default: CLPV_DEVICE, else the "
       "first supported)");
   app.add_option_function<std::string>(
@@ -156,7 +156,9 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.parse_complete_callback([&] { set_log(shared); });
   for (const Command& command : commands) {
     command.add(app, shared);
-    app.get_subcommand(command.name)->group(command.group);
+    CLI::App* added = app.get_subcommand(command.name);
+    added->group(command.group);
+    group_options(*added);
   }
   if (shared.additions.command != nullptr) shared.additions.command(app, shared);
   add_prepare(app, shared);

@@ -2,31 +2,34 @@
 // clpv compare: error metrics of an image against a ground truth, or changes between two reports.
 #include "image/compare.hpp"
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "bench/compare_runs.hpp"
 #include "cli/commands.hpp"
+#include "cli/drawing.hpp"
 #include "cli/image_layer.hpp"
 #include "cli/options.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
+#include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
+#include "support/log.hpp"
 #include "support/output_file.hpp"
 #include "support/print.hpp"
+#include "support/text.hpp"
 
 namespace clpv {
 namespace {
 
 struct CompareOptions {
   std::string a, b, layer, output;
-  float amplify = 15, exposure = 0;
+  float amplify = 15;
+  std::optional<float> exposure;
   double fail_above = 0;  ///< 0: not given
 };
-
-bool is_png(const std::filesystem::path& path) {
-  return path.extension() == ".png";
-}
 
 /// Returns the file and the layer in "FILE:LAYER", or the layer `usual` of "FILE". A file may have
 /// a colon in its name.
@@ -44,14 +47,39 @@ void check_output(const CompareOptions& options) {
                                                  {"B", file_and_layer(options.b, "").first}});
 }
 
-void write_difference(const std::string& output, const Image& difference) {
-  if (!is_png(output)) {
-    write_exr(output, difference);
-  } else if (difference.encoding == Encoding::srgb) {
-    write_png(output, difference);  // of display values, byte-identical to the paper's method
-  } else {
-    write_png(output, display_image(difference, 0, ToneMap::none));
-  }
+/// Writes both images and their absolute difference side by side, with a scale. The exposure is
+/// the ground truth's automatic one, unless it is given.
+void write_sheet(const CompareOptions& options, const Drawing& drawing, const Image& a,
+                 const Image& b, const Comparison& comparison) {
+  const float exposure = options.exposure ? *options.exposure : automatic_exposure(b);
+  const std::array<std::size_t, 2> size{static_cast<std::size_t>(a.height),
+                                        static_cast<std::size_t>(a.width)};
+  const auto add = [&](const char* file, const Image& image) {
+    write_npy(drawing.folder() / file, image.pixels,
+              std::array<std::size_t, 3>{size[0], size[1], 3});
+  };
+  const auto add_shown = [&](const char* file, const Image& image) {
+    Image black = image;
+    std::ranges::fill(black.pixels, 0.0f);
+    const Image colours = difference_image(image, black, 1);
+    add(file, colours.encoding == Encoding::srgb ? colours
+                                                 : display_image(colours, exposure, kDisplayCurve));
+  };
+  add_shown("a.npy", a);
+  add_shown("b.npy", b);
+  add("error.npy", difference_image(a, b, 1));
+  drawing.add("compare.json", {{"a", printable(options.a)},
+                               {"b", printable(options.b)},
+                               {"nrmse", to_json(comparison)["nrmse_valid"]}});
+  drawing.draw(options.output);
+}
+
+/// Warns if the files were rendered and traced with different numbers of bounces.
+void warn_of_bounces(const CompareOptions& options, const Image& a, const Image& b) {
+  const auto in_a = a.metadata.find("bounces"), in_b = b.metadata.find("bounces");
+  if (in_a == a.metadata.end() || in_b == b.metadata.end() || in_a->second == in_b->second) return;
+  log_warning("{} has bounces {}, {} has bounces {}: they differ by more than their error",
+              options.a, in_a->second, options.b, in_b->second);
 }
 
 Image read_layer(const std::string& text, const std::string& usual) {
@@ -78,11 +106,16 @@ void run(const CompareOptions& options) {
                 "--fail-above {}: found {} and {}, allowed with two reports (.json)",
                 options.fail_above, options.a, options.b);
   check_output(options);
+  std::optional<Drawing> sheet;
+  if (std::filesystem::path(options.output).extension() == ".png")
+    sheet.emplace("compare", "--output " + options.output);
   const Image a = read_layer(options.a, options.layer);
   const Image b = read_layer(options.b, options.layer);
-  const Comparison comparison = compare(a, options.a, b, options.b, options.exposure);
-  if (!options.output.empty())
-    write_difference(options.output, difference_image(a, b, options.amplify));
+  warn_of_bounces(options, a, b);
+  const Comparison comparison = compare(a, options.a, b, options.b, options.exposure.value_or(0));
+  if (sheet) write_sheet(options, *sheet, a, b, comparison);
+  if (!sheet && !options.output.empty())
+    write_exr(options.output, difference_image(a, b, options.amplify));
   print_json(to_json(comparison).dump(2) + "\n");
   require_valid_pixels(comparison, options.a, options.b);
 }
@@ -104,12 +137,12 @@ void add_compare(CLI::App& app, Shared&) {
                    "the same command")
       ->required();
   add(*command, "-o,--output", "FILE", options->output,
-      "difference image |A-B| x amplify, .png or .exr");
-  add_number(*command, "--amplify", "X", options->amplify, "factor of the difference image",
+      "A, B and their difference side by side with a scale (.png), or |A-B| x amplify (.exr)");
+  add_number(*command, "--amplify", "X", options->amplify, "factor of the difference in an EXR",
              {0, 1e6});
   add_number(*command, "--exposure", "EV", options->exposure,
-             "exposure of linear images for flip [EV]", {-30, 30})
-      ->default_str("0");
+             "exposure of linear images [EV] (default: 0 for flip, automatic by B for a PNG)",
+             {-30, 30});
   add(*command, "--layer", "NAME", options->layer,
       "layer to compare in both EXR files (default: the unnamed one)");
   add_fail_above(*command, options->fail_above)->excludes("--output");

@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -55,14 +56,15 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, E& member,
 /// Adds an option that takes several values of an enumeration, separated by commas.
 template <NamedEnum E>
 CLI::Option* add_choices(CLI::App& command, const std::string& option, std::vector<E>& members,
-                         const std::string& help) {
+                         const std::string& help,
+                         const std::vector<std::string>& allowed = names_of<E>()) {
   const auto take = [&members, option](const std::vector<std::string>& all) {
     members.clear();
     for (const std::string& name : all) members.push_back(named<E>(option, name));
   };
   return command.add_option_function<std::vector<std::string>>(option, take, help)
       ->delimiter(',')
-      ->check(CLI::IsMember(names_of<E>()));
+      ->check(CLI::IsMember(allowed));
 }
 
 struct NumberRange {
@@ -118,6 +120,12 @@ inline constexpr std::string_view kMoreOptions = "More: ";
 /// Adds all frame options as text options, except those that `command` already has.
 void add_frame_options(CLI::App& command, OptionValues& given);
 
+/// Adds --size, in place of --width and --height, which `command` already has.
+void add_size(CLI::App& command, const std::function<void(int, int)>& take);
+
+/// Moves the options of a command to the groups of its help: Input, Camera, Light, ...
+void group_options(CLI::App& command);
+
 /// Adds --format, for the results on stdout; the first of `formats` is the default.
 CLI::Option* add_format(CLI::App& command, std::string& format,
                         const std::vector<std::string>& formats = {"table", "json"});
@@ -137,16 +145,20 @@ struct SceneChanges {
   std::optional<Vec3> eye, target;  ///< both or none
   Camera camera;                    ///< its other numbers
   std::optional<Light> sun;
+  bool no_sun = false;               ///< no lights but a sky and emissive surfaces
+  std::string sky;                   ///< a radiance, or a file; empty: the scene's
   double light_scale = 0;            ///< 0: the scene's
   std::optional<ClpvMedium> medium;  ///< fills the scene's bounding box
 
   /// Throws Error(usage) for numbers that no camera or light has.
   void apply(MovingScene& scene) const;
-  /// Adds sun, light scale and medium to the inputs of an image; the camera's name has its numbers.
+  /// Adds sun, sky, light scale and medium to the inputs of an image; the camera's name has its
+  /// numbers.
   void describe(nlohmann::json& inputs) const;
 };
 
-/// Adds --eye, --target, --up, --fov, --near-plane, --sun, --light-scale and --medium. `camera`:
+/// Adds --eye, --target, --up, --fov, --near-plane, --sun, --sky, --light-scale and
+/// --medium. `camera`:
 /// the option that excludes --eye.
 void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& camera);
 

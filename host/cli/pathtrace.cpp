@@ -31,6 +31,7 @@ struct Options : SceneRequest {
   std::vector<Show> views = {Show::full};
   int width = 960, height = 540;
   double time = 0;
+  DisplayRequest display;
   TracingOptions tracing;
 };
 
@@ -52,30 +53,28 @@ nlohmann::json resolved(const Options& options, const SceneCamera& camera) {
   return json;
 }
 
-Image compose(const pathtracer::TracedImage& traced, const std::vector<Show>& views) {
-  if (views.size() == 1) return traced_view(traced, views[0]);
-  Image image;
-  for (const Show view : views)
-    append_layer(image, traced_view(traced, view), std::string(name_of(view)));
-  return image;
-}
-
 void write_outputs(const Options& options, const SceneData& scene, const SceneCamera& camera,
                    const pathtracer::TracedImage& traced, double seconds) {
+  DisplayRequest display = options.display;
+  display.resolve(scene, are_exposed(options.output, options.views),
+                  [&] { return traced_view(traced, Show::full); });
   const nlohmann::json asked = resolved(options, camera);
   const nlohmann::json noise =
       std::isnan(traced.noise) ? nlohmann::json() : nlohmann::json(traced.noise);
-  Image image = compose(traced, options.views);
   std::vector<std::string_view> views;
   for (const Show view : options.views) views.push_back(name_of(view));
-  image.metadata = metadata_of(asked);
-  image.metadata["command"] = "pathtrace";
-  image.metadata["version"] = version();
-  image.metadata["view"] = fmt::format("{}", fmt::join(views, ","));
-  image.metadata["spp_traced"] = std::to_string(traced.samples);
-  image.metadata["noise_reached"] = noise.dump();
-  image.metadata[kViewHash] = view_hash(scene, camera, options.width, options.height);
-  write_exr(options.output, image);
+  nlohmann::json inputs = asked;
+  if (are_exposed(options.output, options.views)) display.describe(inputs);
+  std::map<std::string, std::string> metadata = metadata_of(inputs);
+  metadata["command"] = "pathtrace";
+  metadata["version"] = version();
+  metadata["view"] = fmt::format("{}", fmt::join(views, ","));
+  metadata["spp_traced"] = std::to_string(traced.samples);
+  metadata["noise_reached"] = noise.dump();
+  metadata[kViewHash] = view_hash(scene, camera, options.width, options.height);
+  write_views(
+      options.output, options.views, [&](Show view) { return traced_view(traced, view); }, display,
+      metadata);
   if (options.stats.empty()) return;
   const nlohmann::json stats = {{"schema", 1},    {"options", asked},    {"spp", traced.samples},
                                 {"noise", noise}, {"rays", traced.rays}, {"seconds", seconds}};
@@ -87,8 +86,8 @@ void run(const Options& options, Shared& shared) {
   pathtracer::PathTracerOptions tracing = options.tracing.resolved();
   for (const Show view : options.views) require_traceable(view);
   if (std::ranges::none_of(options.views, needs_paths)) tracing.samples = 1;
-  require_extension("--output", options.output, {".exr"});
-  const std::vector<NamedFile> outputs{{"--output", options.output}, {"--stats", options.stats}};
+  std::vector<NamedFile> outputs = view_files(options.output, options.views);
+  outputs.push_back({"--stats", options.stats});
   check_outputs(outputs);
   MovingScene moving = options.open();
   check_outputs(outputs);
@@ -115,15 +114,23 @@ void run(const Options& options, Shared& shared) {
 }
 
 void add_options(CLI::App& command, Options& options) {
-  add(command, "-o,--output", "FILE.exr", options.output,
-      "output image, linear EXR; one layer per view if several")
+  add(command, "-o,--output", "FILE", options.output,
+      "output image: .exr (linear) or .png (tone-mapped, sRGB)")
       ->required();
   add_scene_request(command, options);
   add_seconds(command, "--time", options.time, "time in the scene's animation [s]");
-  add_choices(command, "--view", options.views, "views to write; several become layers of the EXR")
+  std::vector<std::string> traceable = names_of<Show>();
+  std::erase(traceable, name_of(Show::cells));
+  add_choices(command, "--view", options.views,
+              "views to write; several become layers of one EXR, or FILE.VIEW.png", traceable)
       ->default_str("full");
   add_number(command, "--width", "N", options.width, "image width [pixels]", {1, kMaxPixels});
   add_number(command, "--height", "N", options.height, "image height [pixels]", {1, kMaxPixels});
+  add_size(command, [&options](int width, int height) {
+    options.width = width;
+    options.height = height;
+  });
+  add_display_options(command, options.display);
   add_tracing_options(command, options.tracing);
   add(command, "--stats", "FILE.json", options.stats,
       "output file for paths, noise, rays and time [s], as JSON");

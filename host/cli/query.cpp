@@ -61,7 +61,8 @@ std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
 RenderRequest of_volumes(RenderRequest request) {
   const auto [near, added] = request.frame.emplace("near", "off");
   if (!added && near->second == name_of(Near::traced)) {
-    throw Error(ExitCode::usage, "--near {} has no effect on points; allowed: off, or clpv render",
+    throw Error(ExitCode::usage,
+                "--near-field {} has no effect on points; allowed: off, or clpv render",
                 near->second);
   }
   if (near->second == name_of(Near::automatic)) near->second = name_of(Near::off);
@@ -198,7 +199,8 @@ void add_query(CLI::App& app, Shared& shared) {
   add_render_request(*command, options->request);
   command->footer(
       "Adds red,green,blue to each point: the irradiance of indirect light on a surface there "
-      "[W/m^2], like --view\nirradiance with --near off. Outside the cascades, which surround the "
+      "[W/m^2], like --view\nirradiance with --near-field off. Outside the cascades, which "
+      "surround the "
       "camera, it is 0. The surface need not be part of\nthe scene: it can be a moving object or "
       "mist. --truth traces paths, wherever the points lie, and also adds\n"
       "direct_red... and error_red...; with --basis also c0_red..., the projection of the radiance "

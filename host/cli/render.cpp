@@ -37,42 +37,10 @@ struct Options {
   std::vector<Show> views = {Show::full};
 };
 
-/// Returns FILE.png, or FILE.VIEW.png if there are several views.
-fs::path png_path(const fs::path& output, Show view, bool several) {
-  if (!several) return output;
-  fs::path path = output;
-  return path.replace_extension(fmt::format(".{}{}", name_of(view), output.extension().string()));
-}
-
 std::vector<NamedFile> outputs_of(const Options& options) {
-  require_extension("--output", options.output, {".exr", ".png"});
-  const bool several = options.views.size() > 1 && fs::path(options.output).extension() == ".png";
-  std::vector<NamedFile> outputs;
-  for (const Show view : options.views)
-    outputs.push_back({"--output", png_path(options.output, view, several)});
-  if (!several) outputs.resize(1);
+  std::vector<NamedFile> outputs = view_files(options.output, options.views);
   if (options.stats != "-") outputs.push_back({"--stats", options.stats});
   return outputs;
-}
-
-void write_images(Frame& frame, const Options& options, float exposure,
-                  const std::map<std::string, std::string>& metadata) {
-  const fs::path output = options.output;
-  const std::vector<Show>& views = options.views;
-  if (output.extension() == ".exr") {
-    Image all;
-    for (const Show view : views) {
-      append_layer(all, view_image(frame, view),
-                   views.size() == 1 ? std::string() : std::string(name_of(view)));
-    }
-    all.metadata = metadata;
-    return write_exr(output, all);
-  }
-  for (const Show view : views) {
-    Image shown = options.request.displayed(view_image(frame, view), exposure);
-    shown.metadata = metadata;
-    write_png(png_path(output, view, views.size() > 1), shown);
-  }
 }
 
 void run(const Options& options, const Shared& shared) {
@@ -81,7 +49,7 @@ void run(const Options& options, const Shared& shared) {
   FrameStats stats;
   const int timed = options.stats.empty() ? 0 : options.frames;
   Progress progress("render", 4 + static_cast<std::uint64_t>(timed));
-  const RenderRequest& request = options.request;
+  RenderRequest request = options.request;
   MovingScene moving = request.open();
   const SceneData& scene = moving.scene();
   moving.pose(options.time);
@@ -116,11 +84,14 @@ void run(const Options& options, const Shared& shared) {
     stats.set_times(std::move(times));
   }
 
-  const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
+  const auto image_of = [&](Show view) { return view_image(frame, view); };
+  request.display.resolve(scene, are_exposed(options.output, options.views),
+                          [&] { return image_of(Show::full); });
+  const nlohmann::json described = describe(request, resolved, camera, options.time);
   std::map<std::string, std::string> metadata = metadata_of(described);
   if (std::ranges::count(options.views, Show::indirect) > 0)  // as of its ground truth
     metadata[kViewHash] = view_hash(scene, camera, resolved.width, resolved.height);
-  write_images(frame, options, request.exposure_of(scene), metadata);
+  write_views(options.output, options.views, image_of, request.display, metadata);
   if (!options.stats.empty()) {
     const std::string text = stats.to_json(session, described).dump(2) + "\n";
     if (options.stats == "-")
@@ -140,7 +111,7 @@ void add_render(CLI::App& app, Shared& shared) {
       "render", "Render a scene with indirect light from light propagation volumes");
   auto options = std::make_shared<render_command::Options>();
   add_render_request(*command, options->request);
-  add_shown_options(*command, options->request);
+  add_display_options(*command, options->request.display);
   add(*command, "-o,--output", "FILE", options->output,
       "output image: .exr (linear) or .png (tone-mapped, sRGB); its metadata holds the options")
       ->required();

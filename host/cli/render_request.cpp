@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/render_request.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/options.hpp"
+#include "image/image_io.hpp"
 #include "options/validate.hpp"
 #include "parallel/ranks.hpp"
 #include "pipeline/frame/cascade.hpp"
@@ -43,13 +45,81 @@ void add_render_request(CLI::App& command, RenderRequest& request) {
   add_frame_options(command, request.frame);
 }
 
-void add_shown_options(CLI::App& command, RenderRequest& request) {
-  add_number(command, "--exposure", "EV", request.exposure,
-             "exposure of a PNG [EV] (default: the scene's)", {-kMaxExposure, kMaxExposure});
-  add_choice(command, "--tonemap", request.tonemap, "tone curve of a PNG");
+void add_display_options(CLI::App& command, DisplayRequest& display) {
+  add_number(command, "--exposure", "EV", display.exposure,
+             "exposure of a PNG [EV] (default: the scene's, or automatic, by the logarithmic mean "
+             "of lit pixels)",
+             {-kMaxExposure, kMaxExposure});
+  add_choice(command, "--tonemap", display.tonemap, "tone curve of a PNG");
   command.add_flag_callback(
-      "--alpha", [&request] { request.background = Background::transparent; },
+      "--alpha", [&display] { display.background = Background::transparent; },
       "transparent background of a PNG (default: black)");
+}
+
+void DisplayRequest::resolve(const SceneData& scene, bool shown,
+                             const std::function<Image()>& full) {
+  if (!exposure) exposure = scene.exposure;
+  if (exposure || !shown) return;
+  automatic = true;
+  exposure = automatic_exposure(full());
+  log_info("exposure {:.2f} EV (automatic; --exposure sets another)", *exposure);
+}
+
+Image DisplayRequest::displayed(const Image& image, Show view) const {
+  const bool exposed = exposure && (!automatic || shows_light(view));
+  return display_image(image, exposed ? *exposure : 0, tonemap, background);
+}
+
+void DisplayRequest::describe(nlohmann::json& inputs) const {
+  inputs["exposure"] = exposure ? nlohmann::json(*exposure) : nlohmann::json("automatic");
+  inputs["tonemap"] = name_of(tonemap);
+  inputs["alpha"] = background == Background::transparent;
+}
+
+namespace {
+
+bool is_png(const std::filesystem::path& output) {
+  return output.extension() == ".png";
+}
+
+std::filesystem::path view_file(std::filesystem::path output, Show view, bool several) {
+  if (!several) return output;
+  return output.replace_extension(fmt::format(".{}{}", name_of(view), output.extension().string()));
+}
+
+}  // namespace
+
+std::vector<NamedFile> view_files(const std::string& output, const std::vector<Show>& views) {
+  require_extension("--output", output, {".exr", ".png"});
+  const bool several = views.size() > 1 && is_png(output);
+  std::vector<NamedFile> files;
+  for (const Show view : views) files.push_back({"--output", view_file(output, view, several)});
+  if (!several) files.resize(1);
+  return files;
+}
+
+bool are_exposed(const std::string& output, const std::vector<Show>& views) {
+  return is_png(output) && std::ranges::any_of(views, shows_light);
+}
+
+void write_views(const std::string& output, const std::vector<Show>& views,
+                 const std::function<Image(Show)>& image_of, const DisplayRequest& display,
+                 const std::map<std::string, std::string>& metadata) {
+  const bool several = views.size() > 1;
+  Image all;
+  for (const Show view : views) {
+    Image image = image_of(view);
+    if (!is_png(output)) {
+      append_layer(all, image, several ? std::string(name_of(view)) : std::string());
+      continue;
+    }
+    image = display.displayed(image, view);
+    image.metadata = metadata;
+    write_png(view_file(output, view, several), image);
+  }
+  if (is_png(output)) return;
+  all.metadata = metadata;
+  write_exr(output, all);
 }
 
 FrameSetup setup_of(const RenderRequest& request, const SceneData& scene) {
@@ -67,12 +137,12 @@ Compilation compilation_of(const SceneRequest& request, const RenderOptions& opt
   if (launcher_rank()) return {};
   std::vector<std::string> arguments = {"prepare", request.scene};
   const auto add = [&arguments](const std::string& name, const std::string& value) {
-    if (!value.empty()) arguments.push_back(fmt::format("--{}={}", name, value));
+    if (!value.empty()) arguments.push_back(fmt::format("{}={}", flag_of(name), value));
   };
   add("model", request.model);
   nlohmann::json changes = nlohmann::json::object();
   request.changes.describe(changes);
-  for (const char* name : {"sun", "medium"})  // a camera's numbers change no kernel
+  for (const char* name : {"sun", "sky", "medium"})  // a camera's numbers change no kernel
     if (changes.contains(name)) add(name, changes[name].get<std::string>());
   add("device", device);
   for (const OptionDescription& option : list_options(options)) {
@@ -97,15 +167,13 @@ void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOp
 }
 
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options,
-                        const SceneData& shown, const SceneCamera& camera, double seconds) {
+                        const SceneCamera& camera, double seconds) {
   nlohmann::json all = to_json(options);
   all.update({{"scene", printable(request.scene)},
               {"model", printable(request.model)},
               {"camera", camera.name},
-              {"time", seconds},
-              {"exposure", request.exposure_of(shown)},
-              {"tonemap", name_of(request.tonemap)},
-              {"alpha", request.background == Background::transparent}});
+              {"time", seconds}});
+  request.display.describe(all);
   request.changes.describe(all);
   return all;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -12,8 +13,10 @@
 #include "cli/options.hpp"
 #include "image/image.hpp"
 #include "image/tone_map.hpp"
+#include "options/show.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
+#include "support/output_file.hpp"
 
 namespace clpv {
 
@@ -30,23 +33,43 @@ struct SceneRequest {
 /// the parse, as below.
 void add_scene_request(CLI::App& command, SceneRequest& request);
 
-struct RenderRequest : SceneRequest {
-  ToneMap tonemap = ToneMap::aces;
+/// Display of linear images as PNG.
+struct DisplayRequest {
+  ToneMap tonemap = kDisplayCurve;
   Background background = Background::black;
-  std::optional<float> exposure;
-  OptionValues frame;
+  std::optional<float> exposure;  ///< [EV]; empty: the scene's, or automatic
+  bool automatic = false;
 
-  float exposure_of(const SceneData& shown) const { return exposure.value_or(shown.exposure); }
-  Image displayed(const Image& image, float ev) const {
-    return display_image(image, ev, tonemap, background);
-  }
+  /// Sets an exposure that is not given: to the scene's, or else, if `shown`, to
+  /// automatic_exposure() of view full, which it logs.
+  void resolve(const SceneData& scene, bool shown, const std::function<Image()>& full);
+  Image displayed(const Image& image, Show view) const;
+  /// Adds exposure, tone curve and background to the inputs of an image.
+  void describe(nlohmann::json& inputs) const;
 };
+
+struct RenderRequest : SceneRequest {
+  DisplayRequest display;
+  OptionValues frame;
+};
+
+/// Files that --output names: one, or FILE.VIEW.png for each of several views. Throws Error(usage)
+/// for another extension.
+std::vector<NamedFile> view_files(const std::string& output, const std::vector<Show>& views);
+
+/// Returns true if these files are PNG and show light.
+bool are_exposed(const std::string& output, const std::vector<Show>& views);
+
+/// Writes views to these files: linear layers of an EXR, or PNG. `display` must be resolved.
+void write_views(const std::string& output, const std::vector<Show>& views,
+                 const std::function<Image(Show)>& image_of, const DisplayRequest& display,
+                 const std::map<std::string, std::string>& metadata);
 
 /// Adds the options for scene, camera and frames.
 void add_render_request(CLI::App& command, RenderRequest& request);
 
-/// Adds the options for image display.
-void add_shown_options(CLI::App& command, RenderRequest& request);
+/// Adds the options for PNG files.
+void add_display_options(CLI::App& command, DisplayRequest& display);
 
 /// Returns the setup of the request's frames of `scene`. Throws Error(usage) if a given option
 /// would have no effect with the others; it names both.
@@ -60,8 +83,8 @@ Compilation compilation_of(const SceneRequest& request, const RenderOptions& opt
 /// Logs the scene's notes, the automatic choice of cascades and its consequences.
 void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOptions& options);
 
-/// Returns all inputs of an image of `shown` at a time [s], by name.
+/// Returns all inputs of an image at a time [s], by name.
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options,
-                        const SceneData& shown, const SceneCamera& camera, double seconds);
+                        const SceneCamera& camera, double seconds);
 
 }  // namespace clpv

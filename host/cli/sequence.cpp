@@ -85,7 +85,7 @@ void run(const Options& options, Shared& shared) {
   std::optional<Video> video;
   if (!options.video.empty() && ranks.is_root())
     video.emplace(options.video, options.frames_per_second);
-  const RenderRequest& request = options.request;
+  RenderRequest request = options.request;
   MovingScene moving = request.open();
   const FrameSetup setup = setup_of(request, moving.scene());
   check_outputs(outputs);
@@ -99,11 +99,23 @@ void run(const Options& options, Shared& shared) {
   if (!moving.moves()) log_warning("{}: nothing moves: all frames are equal", request.scene);
 
   SequenceSubject subject{request.camera, {}, {}, {}};
-  subject.displayed = [&, exposure = request.exposure_of(moving.scene())](const Image& image) {
-    return request.displayed(image, exposure);
+  request.display.resolve(moving.scene(), false, {});
+  RenderRequest described = request;  // without the exposure of a film, which EXR files do not have
+  const bool shown = options.format == FrameFormat::png || !options.video.empty();
+  request.display.resolve(moving.scene(), shown && shows_light(options.view), [&] {
+    Session session(device, ProgramCache::of_user(device),
+                    compilation_of(request, setup.options, shared.device));
+    moving.pose(options.from);
+    Frame first(session, moving.scene(), setup);
+    first.render(camera(moving.scene()));
+    return view_image(first, Show::full);
+  });
+  if (options.format == FrameFormat::png) described.display = request.display;
+  subject.displayed = [&](const Image& image) {
+    return request.display.displayed(image, options.view);
   };
   subject.describe = [&](const SceneData& posed, double seconds) {
-    return describe(request, setup.options, posed, camera(posed), seconds);
+    return describe(described, setup.options, camera(posed), seconds);
   };
   subject.first_frame = [&](Session& session, Frame& frame) {
     warn_of_unreached(session, frame, camera(moving.scene()).name);
@@ -145,10 +157,11 @@ void add_sequence(CLI::App& app, Shared& shared) {
   add_number(*command, "--traced", "SPP", options->traced,
              "paths per pixel for the path-traced noise of --stability",
              {1, pathtracer::PathTracerOptions::kMaxSamples});
-  add_shown_options(*command, options->request);
+  add_display_options(*command, options->request.display);
   add_render_request(*command, options->request);
   command->footer(
       "Frame i shows FROM + i / RATE seconds, identical to `clpv render --time` of that time.\n"
+      "Automatic exposure is that of the first frame.\n"
       "An interrupted run resumes: frames whose file is whole and has the same inputs are not "
       "rendered again.\n"
       "times.jsonl has the times of each frame, one line each, and a last line with n, min, "

@@ -131,7 +131,8 @@ bool matches(const Device& device, std::string_view choice) {
     if (platform && in_platform)
       return device.platform_index == *platform && device.device_index == *in_platform;
   }
-  const std::string wanted = lower(choice);
+  std::string wanted = lower(choice);
+  if (wanted == "pocl") wanted = "portable computing language";  // its platform's name
   return lower(device.name).find(wanted) != std::string::npos ||
          lower(device.platform).find(wanted) != std::string::npos;
 }

@@ -86,7 +86,8 @@ void Programs::compile_with_helpers() {
     kernels += program->kernels.size();
   }
   if (programs < 2) return;
-  log_info("compiling {} kernels for {}: on the first run only", kernels, device_.name);
+  log_info("compiling {} kernels for {}, which keeps them: the first run with this size and scene",
+           kernels, device_.name);
   const auto start = std::chrono::steady_clock::now();
   Progress progress("compiling kernels", kernels);
   helped_ = true;

@@ -5,12 +5,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <string_view>
 
 #include "support/error.hpp"
 
 namespace clpv {
+namespace {
+constexpr float kWhite = 6;  // smallest value that curve photographic shows as white
+// Log-mean luminance of an automatically exposed image: just below middle grey, 0.18, since the few
+// sunlit pixels of an interior are far brighter than its mean.
+constexpr double kLogMean = 0.14;
+constexpr std::array<std::string_view, 3> kNoLight{"albedo", "normal", "depth"};  // views
+}  // namespace
 
 float luminance(const glm::vec3& linear) {
   return 0.2126f * linear.r + 0.7152f * linear.g + 0.0722f * linear.b;
@@ -25,6 +34,9 @@ glm::vec3 tone_curve(ToneMap curve, const glm::vec3& linear) {
       break;
     case ToneMap::reinhard:
       mapped = x / (1.0f + luminance(x));
+      break;
+    case ToneMap::photographic:
+      mapped = x * (1.0f + x / (kWhite * kWhite)) / (1.0f + x);
       break;
     case ToneMap::aces:
       mapped = (x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f);
@@ -49,6 +61,24 @@ void require_linear(const char* name, const Image& image) {
 void check_exposure(float exposure) {
   if (!std::isfinite(exposure))
     throw Error(ExitCode::usage, "exposure: found {}, allowed: a finite number", exposure);
+}
+
+float automatic_exposure(const Image& image) {
+  check_image("image", image);
+  const auto view = image.metadata.find("view");
+  if (view != image.metadata.end() && std::ranges::count(kNoLight, view->second) > 0) return 0;
+  const auto r = image.channel("R"), g = image.channel("G"), b = image.channel("B"),
+             a = image.channel("A");
+  if (!r || !g || !b || image.encoding != Encoding::linear) return 0;
+  double sum = 0, lit = 0;
+  for (std::size_t p = 0; p < image.pixel_count(); ++p) {
+    const float* in = &image.pixels[p * image.channels.size()];
+    const float light = luminance({in[*r], in[*g], in[*b]});
+    if ((a && !(in[*a] > 0)) || !(light > 0) || !std::isfinite(light)) continue;
+    sum += std::log2(static_cast<double>(light));
+    lit += 1;
+  }
+  return lit > 0 ? static_cast<float>(std::log2(kLogMean) - sum / lit) : 0;
 }
 
 Image display_image(const Image& image, float exposure, ToneMap curve, Background background) {

@@ -9,14 +9,18 @@
 
 namespace clpv {
 
-enum class ToneMap { none, reinhard, aces };
+enum class ToneMap { none, reinhard, aces, photographic };
 
 template <>
-inline constexpr auto kNames<ToneMap> = name_list("none", "reinhard", "aces");
+inline constexpr auto kNames<ToneMap> = name_list("none", "reinhard", "aces", "photographic");
+
+/// Curve of PNG files unless another is given: dark colours keep their ratios.
+inline constexpr ToneMap kDisplayCurve = ToneMap::photographic;
 
 /// Applies a tone curve to a linear colour; the result is clamped to [0, 1]. none: identity.
 /// reinhard: L / (1 + L) on the luminance (Reinhard et al. 2002, eq. 3). aces: fit of the ACES RRT
 /// and ODT per channel, (x (2.51 x + 0.03)) / (x (2.43 x + 0.59) + 0.14) (Narkowicz 2015).
+/// photographic: x (1 + x / 36) / (1 + x) per channel, 1 at x = 6 (Reinhard et al. 2002, eq. 4).
 glm::vec3 tone_curve(ToneMap curve, const glm::vec3& linear);
 
 /// sRGB transfer function (IEC 61966-2-1) and its inverse, for values in [0, 1].

@@ -80,11 +80,11 @@ std::string preset_help() {
   const auto add = [&](PresetName preset, const char* what) {
     text += fmt::format("\n{}: {}:", name_of(preset), what);
     for (const auto& [name, value] : options_of(preset))
-      text += fmt::format(" --{} {}", name, value);
+      text += fmt::format(" {} {}", flag_of(name), value);
   };
   add(PresetName::fast, "less time");
-  add(PresetName::fine, "less error, more time");
-  add(PresetName::paper, "the published scheme");
+  add(PresetName::fine, "less noise of the near field, more time");
+  text += "\npaper: the published scheme with its sizes (docs/paper/open_choices.md)";
   return text;
 }
 
@@ -154,10 +154,11 @@ void for_each_option(Options& o, Visit&& visit) {
         "light from surfaces nearer than a cell: from the volumes (off), or by rays (traced), "
         "which needs --transport sweep; auto: traced with a sweep, else off",
         Named{});
-  visit("near-size", o.near_size,
-        "pixels that have rays of --near: all, or one of 2 x 2, 4 x 4 or 8 x 8; auto: about as "
-        "many as 240 x 135",
-        Named{});
+  visit(
+      "near-size", o.near_size,
+      "pixels that have rays of --near-field: all, or one of 2 x 2, 4 x 4 or 8 x 8; auto: about as "
+      "many as 240 x 135",
+      Named{});
   visit("near-rays", o.near_rays, "rays of each of these pixels", Named{});
   visit("width", o.width, "image width [pixels]", Range{1, kMaxPixels});
   visit("height", o.height, "image height [pixels]", Range{1, kMaxPixels});
@@ -217,6 +218,10 @@ bool parse(std::string_view text, const Range& range, Number& out) {
 }
 
 }  // namespace
+
+std::string flag_of(std::string_view name) {
+  return fmt::format("--{}", name == "near" ? "near-field" : name);
+}
 
 std::unique_ptr<Basis> make_basis(const RenderOptions& options) {
   return options.centres.empty() ? make_basis(options.basis, options.lambda)

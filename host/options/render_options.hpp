@@ -19,6 +19,9 @@
 
 namespace clpv {
 
+/// Name of an option on the command line: "--near-field" of `near`, "--NAME" of all others.
+std::string flag_of(std::string_view name);
+
 inline constexpr int kMaxPixels = 16384;     ///< along a side of an image
 inline constexpr int kMaxTableSize = 65536;  ///< minimum of CL_DEVICE_IMAGE_MAX_BUFFER_SIZE
 

@@ -22,6 +22,11 @@ constexpr bool shows_sky(Show show) {
   return show == Show::full || show == Show::direct;
 }
 
+/// Returns true if the view shows light, which a display exposes.
+constexpr bool shows_light(Show show) {
+  return show != Show::albedo && show != Show::normal && show != Show::depth;
+}
+
 /// Returns true if the view has the light that a medium scatters towards the camera.
 constexpr bool shows_medium(Show show) {
   return show == Show::full || show == Show::medium;

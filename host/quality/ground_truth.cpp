@@ -135,13 +135,13 @@ GroundTruth cached_ground_truth(const std::filesystem::path& folder, const Scene
   });
   if (!found.empty()) {
     GroundTruth kept = decode(folder / name, found, scene);
-    kept.exposure = scene.exposure;
+    kept.exposure = scene.exposure.value_or(0);
     return kept;
   }
   const pathtracer::TracedImage traced =
       pathtracer::trace_paths(scene, scene.lights_for(camera), view, options, progress, ranks);
   GroundTruth truth{all_views(traced), folder / name, true,
-                    traced.samples,    traced.noise,  scene.exposure};
+                    traced.samples,    traced.noise,  scene.exposure.value_or(0)};
   describe(truth.image, scene, camera, traced, options);
   if (cached) {  // at rank 0
     truth.image.metadata[kCacheFingerprint] = fingerprint_of(truth.image);

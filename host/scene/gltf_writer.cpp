@@ -233,7 +233,7 @@ void write_glb(const std::filesystem::path& path, const SceneData& scene) {
   lost(std::ranges::any_of(scene.cameras, [](const auto& c) { return !c.light.empty(); }),
        "the only light of a camera");
   lost(scene.cascades || scene.cascade_size, "number and size of the cascades");
-  lost(scene.exposure != 0, "the exposure");
+  lost(scene.exposure.has_value(), "the exposure");
   if (scene.lights.empty() && !scene.sky)
     log_warning("{}: no lights: clpv adds a sun where it reads a model without lights",
                 path.string());

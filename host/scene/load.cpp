@@ -175,11 +175,11 @@ void MovingScene::load_scene_file(const std::filesystem::path& path,
   InputRecord::add({path.string() + " /model", description_.model});
   const std::filesystem::path model = replacement.empty() ? description_.model : replacement;
   if (model.empty())
-    reject(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model");
+    reject(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model (--model PATH)");
   std::error_code unknown;
   if (replacement.empty() && !std::filesystem::exists(model, unknown)) {
     reject(path.string(), "/model", "no file '" + model.string() + "'",
-           "an existing file, or option model with the path of one");
+           "an existing file, or option model (--model PATH) with the path of one");
   }
   scene_ = load_gltf(model, description_.metres_per_unit, motion_, notes,
                      {!views.cameras, !views.lights});
@@ -275,7 +275,10 @@ MovingScene::MovingScene(const std::filesystem::path& path,
   if (scene_.medium) set_medium(*scene_.medium);
   scene_.notes = notes.take();
   if (description_.light_scale) std::erase(scene_.notes, kBlenderUnits);
-  add_defaults(description_.lights.has_value() || scene_.sky);
+  const bool emits = std::ranges::any_of(scene_.materials, [](const ClpvMaterial& material) {
+    return std::ranges::any_of(material.emissive, [](float value) { return value > 0; });
+  });
+  add_defaults(description_.lights.has_value() || scene_.sky || emits);
   check_camera_lights(scene_);
   if (moves()) scene_.start_reach = scene_.reach();
   scene_.name = printable(path.stem().string());  // JSON and metadata have UTF-8 only

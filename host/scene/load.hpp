@@ -51,6 +51,7 @@ class MovingScene {
   /// Replaces the medium or removes it. One without a box, `lower` equal to `upper`, fills the
   /// scene's bounding box, which follows added, removed and moved meshes.
   void set_medium(std::optional<ClpvMedium> medium);
+  void set_sky(std::shared_ptr<const Sky> sky) { scene_.sky = std::move(sky); }
   bool medium_fills_scene() const { return medium_fills_scene_; }
 
   /// Changes meshes in memory, and updates what depends on them. `change` returns true if

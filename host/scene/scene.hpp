@@ -77,7 +77,7 @@ struct SceneData {
   std::optional<ClpvMedium> medium;   ///< fog or dust
   glm::vec3 lower{0}, upper{0};       ///< bounding box [m]
   std::optional<double> start_reach;  ///< reach() at 0 s, for animated scenes
-  float exposure = 0;                 ///< [EV]: display values are radiance x 2^exposure
+  std::optional<float> exposure;      ///< [EV]: display values are radiance x 2^exposure
   std::optional<float> cascade_size;  ///< edge of the finest cascade from the scene file [m]
   std::optional<int> cascades;        ///< number of cascades from the scene file
   std::vector<std::string> notes;     ///< notes of the loader to the user ("no light: added a sun")

@@ -300,7 +300,7 @@ SceneDescription read_scene_file(const std::filesystem::path& path) {
     scene.model = path.parent_path() / model;
   }
   scene.metres_per_unit = parsed.value("metres_per_unit", 1.0);
-  scene.exposure = parsed.value("exposure", 0.0f);
+  if (parsed.contains("exposure")) scene.exposure = parsed["exposure"].get<float>();
   if (parsed.contains("light_scale")) scene.light_scale = parsed["light_scale"].get<float>();
   if (parsed.contains("cascades")) {
     const json& cascades = parsed["cascades"];

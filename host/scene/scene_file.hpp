@@ -17,7 +17,7 @@ struct SceneDescription {
   std::string file;             ///< path from the user, for messages
   std::filesystem::path model;  ///< resolved against the file's folder; empty if absent
   double metres_per_unit = 1;
-  float exposure = 0;
+  std::optional<float> exposure;  ///< [EV]
   std::optional<float> light_scale;
   std::optional<float> cascade_size;  ///< [m]
   std::optional<int> cascades;

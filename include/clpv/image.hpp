@@ -55,10 +55,16 @@ struct Image {
 };
 
 /// Writes a linear image with channels R, G, B and optionally A. .exr: 32-bit floats, with
-/// metadata. .png: values times 2^exposure [EV], through the ACES tone curve, sRGB-encoded, on a
-/// black background. The file is complete or absent. Throws Error: usage (another extension, an
-/// exposure that is not finite), bad_input (other values or channels, fields that disagree),
-/// run_time (the file cannot be written).
-void save_image(const std::filesystem::path& path, const Image& image, float exposure = 0);
+/// metadata. .png: values times 2^exposure [EV] (by default automatic_exposure()), through the tone
+/// curve photographic, sRGB-encoded, on a black background. The file is complete or absent. Throws
+/// Error: usage (another extension, an exposure that is not finite), bad_input (other values or
+/// channels, fields that disagree), run_time (the file cannot be written).
+void save_image(const std::filesystem::path& path, const Image& image,
+                std::optional<float> exposure = {});
+
+/// Exposure [EV] that brings the logarithmic mean of the luminance of the lit pixels (alpha and
+/// luminance above 0) of a linear image to 0.14; 0 for an image without such pixels, and for the
+/// views albedo, normal and depth.
+float automatic_exposure(const Image& image);
 
 }  // namespace clpv

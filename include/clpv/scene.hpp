@@ -117,8 +117,8 @@ class Scene {
   bool moves() const;  ///< returns true if anything in it is animated
   std::vector<std::string> notes()
       const;  ///< one sentence for each thing skipped or added by the loader and not replaced
-  std::array<Vec3, 2> bounds() const;  ///< lower and upper corner of the bounding box at 0 s [m]
-  double exposure() const;             ///< [EV], for save_image()
+  std::array<Vec3, 2> bounds() const;     ///< lower and upper corner of the bounding box at 0 s [m]
+  std::optional<float> exposure() const;  ///< the scene file's [EV], for save_image()
 
   // Copies, also where a move would do: no Scene is ever empty.
   Scene(const Scene&) = default;

@@ -152,9 +152,10 @@ class Viewer:
     def send(self, client, image, view, right=None):
         """Shows an image, in its right half `right` of half the size."""
         diagonal = math.dist(*self.scene.bounds)
-        shown = view_controls.displayed(image, view, self.controls.exposure.value, diagonal)
+        exposure = self.controls.exposure_of(image)
+        shown = view_controls.displayed(image, view, exposure, diagonal)
         if right:
-            other = view_controls.displayed(right, view, self.controls.exposure.value, diagonal)
+            other = view_controls.displayed(right, view, exposure, diagonal)
             half = shown.shape[1] // 2
             shown[:, half:] = other.repeat(2, axis=0).repeat(2, axis=1)[:, half:]
         client.handle.scene.set_background_image(shown, format="jpeg", jpeg_quality=85)

@@ -98,7 +98,9 @@ class Controls:
         self.bounces = choice("bounces", ("1", "2", "all"), defaults["bounces"])
         self.near = checkbox("near field", True)
         self.traced = checkbox("path tracing beside")
-        self.exposure = slider("exposure [EV]", -10, 10, 0.25, max(-10, min(10, scene.exposure)))
+        self.automatic = scene.exposure is None  # until the first image sets the exposure
+        self.exposure = slider("exposure [EV]", -10, 10, 0.25,
+                               max(-10, min(10, scene.exposure or 0)))
         self.time = slider("time [s]", 0, 20, 0.05, 0, visible=scene.moves)
         with gui.add_folder("sun", visible=has_sun, expand_by_default=False):
             self.sun = checkbox("in place of lights")
@@ -122,6 +124,13 @@ class Controls:
             near = {"near_rays": rays} if self.near.value else {"near": "off"}
             sweep = {"bounces": self.bounces.value, **near}
         return {"basis": self.basis.value, "transport": self.transport.value, **sweep}
+
+    def exposure_of(self, image):
+        """Exposure [EV] of the slider, which a first image sets where the scene has none."""
+        if self.automatic:
+            self.automatic = False
+            self.exposure.value = round(4 * max(-10, min(10, image.automatic_exposure()))) / 4
+        return self.exposure.value
 
     def sun_light(self):
         """The sun, or None."""

@@ -155,17 +155,24 @@ void add_image(py::module_& module) {
       "'linear' in light, or 'srgb'.");
   define(
       type, "save",
-      [](const Image& image, const std::filesystem::path& path, float exposure) {
+      [](const Image& image, const std::filesystem::path& path, std::optional<float> exposure) {
         without_gil([&] { save_image(path, image, exposure); });
       },
-      py::arg("path"), py::arg("exposure") = 0.0f,
+      py::arg("path"), py::arg("exposure") = py::none(),
       "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with "
       "metadata, .png tone-mapped\n"
-      "(ACES) after multiplication by 2^exposure [EV], on a black background.");
+      "(photographic) after multiplication by 2^exposure [EV], on a black background. "
+      "exposure=None: "
+      "automatic_exposure().");
+  type.def(
+      "automatic_exposure", &automatic_exposure,
+      "automatic_exposure() -> exposure [EV] that brings the logarithmic mean of the luminance of "
+      "lit pixels to 0.14.");
   define(
       type, "display",
-      [](const Image& image, float exposure) {
-        Image shown = display_image(image, exposure, ToneMap::aces, Background::transparent);
+      [](const Image& image, std::optional<float> exposure) {
+        Image shown = display_image(image, exposure ? *exposure : automatic_exposure(image),
+                                    kDisplayCurve, Background::transparent);
         const auto shape = shape_of(shown);
         py::array_t<std::uint8_t> bytes(shape);
         std::uint8_t* out = bytes.mutable_data();
@@ -173,15 +180,17 @@ void add_image(py::module_& module) {
           out[i] = static_cast<std::uint8_t>(std::clamp(shown.pixels[i], 0.0f, 1.0f) * 255 + 0.5f);
         return bytes;
       },
-      py::arg("exposure") = 0.0f,
+      py::arg("exposure") = py::none(),
       "uint8 array (height, width, channels), tone-mapped and sRGB-encoded as save() does for "
       ".png, with A.");
   type.def(
       "_repr_png_",
       [](const Image& image) -> py::object {
         if (!shows_colour(image)) return py::none();
-        const auto bytes = png_bytes(
-            image.encoding == Encoding::srgb ? image : display_image(image, 0, ToneMap::aces));
+        const auto bytes =
+            png_bytes(image.encoding == Encoding::srgb
+                          ? image
+                          : display_image(image, automatic_exposure(image), kDisplayCurve));
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
       },
       "_repr_png_() -> bytes: how notebooks show it, as save() does; None without R, G, B.");

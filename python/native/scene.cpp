@@ -236,7 +236,8 @@ void add_scene(py::module_& module) {
         return py::make_tuple(tuple_of(bounds[0]), tuple_of(bounds[1]));
       },
       "Lower and upper corner of the bounding box [m], at 0 s.");
-  type.def_property_readonly("exposure", &Scene::exposure, "Exposure of a display [EV].");
+  type.def_property_readonly("exposure", &Scene::exposure,
+                             "Exposure of the scene file [EV], or None.");
 }
 
 }  // namespace clpv::python

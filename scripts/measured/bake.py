@@ -21,8 +21,8 @@ BOXES = {
 }
 SPACINGS = {"cornell": (0.1, 0.05), "atrium": (2, 1), "sponza": (2, 1)}  # [m] coarse and fine
 # Scenes, with the camera whose sun lights them.
-SCENES = ("cornell", "cornell_lamp", "atrium", "atrium_overcast", "sponza:curtains",
-          "sponza:atrium", "sponza:columns", "sponza_overcast")
+SCENES = ("cornell", "cornell_lamp", "atrium", "atrium_overcast", "sponza_suns:curtains",
+          "sponza_suns:atrium", "sponza_suns:columns", "sponza_overcast")
 # Part of a scene, with probes as dense as limits and time allow.
 PART, PART_BOX, PART_SPACINGS = "atrium", "-4,0.3,-4,4,4.3,4", (2, 1, 0.5)
 SOURCES = "pathtrace", "sweep"

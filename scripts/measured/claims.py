@@ -160,7 +160,7 @@ class Views:
     """The scene of claims about light, its images and its ground truth."""
 
     def __init__(self, arguments):
-        self.scene = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
+        self.scene = clpv.Scene(ROOT / "scenes/sponza_suns.json", arguments.model)
         self.noise = NOISE_OF_QUICK if arguments.quick else NOISE
         self.out = arguments.out
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The picture of scripts/demo: the atrium by direct light, with a bounce, with all bounces under a
-sky, and path traced.
+"""The picture of scripts/demo: the atrium under sun and sky by direct light, with all bounces, and
+path traced.
 
     PYTHONPATH=scripts python3 -m measured.demo DIR [--width N] [--height N] [RENDER_OPTION...]
 
@@ -23,7 +23,6 @@ SCENE = ROOT / "scenes/atrium.json"
 EXPOSURE = -0.7  # [EV]
 SKY = {"radiance": [1.2, 1.6, 2.4], "ground": [0, 0, 0]}  # [W/m^2/sr]
 WIDTH, HEIGHT = 384, 216  # three of this width fit a screen
-TRUTH = 0.5  # width of the path-traced picture over that of the others
 NOISE = 0.1  # of the path-traced light; adds little to the error
 DPI = 100
 OWN = "-o", "--output", "--view", "--bounces", "--stats"
@@ -32,9 +31,9 @@ OF_BOTH = ("--camera", "--eye", "--target", "--up", "--fov", "--near-plane", "--
 
 
 def displayed(light):
-    """sRGB values of linear ones: exposure and curve `aces`, as a PNG of clpv has them."""
+    """sRGB values of linear ones: exposure and curve `photographic`, as a PNG of clpv has them."""
     x = light.clip(0) * 2**EXPOSURE
-    x = ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clip(0, 1)
+    x = (x * (1 + x / 36) / (1 + x)).clip(0, 1)
     return numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * x**(1 / 2.4) - 0.055)
 
 
@@ -49,7 +48,6 @@ class Demo:
     def __init__(self, folder, size, options):
         self.folder, self.options, self.size = folder, options, size
         self.stats = folder.file("frame.json")
-        self.small = [max(1, round(TRUTH * length)) for length in size]
 
     def run(self, *arguments):
         """Returns what clpv prints. Its own message and exit code end the demo."""
@@ -59,10 +57,10 @@ class Demo:
         except subprocess.CalledProcessError as error:
             sys.exit(error.returncode if error.returncode > 0 else 1)
 
-    def image(self, command, scene, name, views, size, *options):
+    def image(self, command, scene, name, views, *options):
         file = self.folder.file(name)
-        self.run(command, scene, "-o", file, "--view", *views, f"--width={size[0]}",
-                 f"--height={size[1]}", *options)
+        self.run(command, scene, "-o", file, "--view", *views, f"--width={self.size[0]}",
+                 f"--height={self.size[1]}", "--bounces=all", *options)
         return file
 
     def shown(self, file, layer):
@@ -79,17 +77,13 @@ class Demo:
         scene.update(model=str(SCENE.parent / scene["model"]), sky=SKY)
         self.folder.write("day.json", json.dumps(scene, indent=2).encode())
         day = self.folder.path / "day.json"
-        sun = self.image("render", SCENE, "sun.exr", ("direct", "full"), self.size, *self.options)
-        whole = self.image("render", day, "day.exr", ("full", "direct"), self.size, "--bounces=all",
-                           "--stats", self.stats, *self.options)
-        light = self.image("render", day, "light.exr", ("indirect",), self.small, "--bounces=all",
-                           *self.options)
-        truth = self.image("pathtrace", day, "truth.exr", ("full", "indirect"), self.small,
-                           "--bounces=all", f"--noise={NOISE}", *of_both(self.options))
-        errors = json.loads(self.run("compare", light, f"{truth}:indirect"))
-        return [("Direct light of the sun", self.shown(sun, "direct")),
-                ("and its first bounce", self.shown(sun, "full")),
-                ("and all bounces, of sun and sky", self.shown(whole, "full")),
+        ours = self.image("render", day, "clpv.exr", ("full", "direct", "indirect"), "--stats",
+                          self.stats, *self.options)
+        truth = self.image("pathtrace", day, "truth.exr", ("full", "indirect"),
+                           f"--noise={NOISE}", *of_both(self.options))
+        errors = json.loads(self.run("compare", f"{ours}:indirect", f"{truth}:indirect"))
+        return [("Direct light", self.shown(ours, "direct")),
+                ("Global illumination by clpv", self.shown(ours, "full")),
                 ("Path traced", self.shown(truth, "full"))
                ], errors["nrmse_valid"]
 
@@ -143,7 +137,7 @@ def main():
     milliseconds = ms_of(stats["times"], "frame")
     print(f"All bounces: {milliseconds:.0f} ms per frame of {arguments.width}x{arguments.height}; "
           f"error of indirect light {100 * error:.0f} % (NRMSE against path tracing at "
-          f"{demo.small[0]}x{demo.small[1]})")
+          f"{arguments.width}x{arguments.height})")
     print(f"Picture: {folder.path}/demo.png")
     return 0
 

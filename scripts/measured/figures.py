@@ -190,9 +190,9 @@ def paper(arguments):
     lobe_files = basis_figures(out)
     if not arguments.model:
         return {"sheets": [], "lobes": lobe_files, "rows": []}
-    scene = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
+    scene = clpv.Scene(ROOT / "scenes/sponza_suns.json", arguments.model)
     frames, along = (Frames(scene, arguments, camera) for camera in ("curtains", "atrium"))
-    nave = clpv.Scene(ROOT / "scenes/sponza.json", arguments.model)
+    nave = clpv.Scene(ROOT / "scenes/sponza_suns.json", arguments.model)
     nave.lights, nave.cameras = [claims.ALONG_THE_NAVE], [claims.OF_ARCADE]
     shadowed = Frames(nave, arguments, "arcade")
     if arguments.quick:  # the light of run-time lobes within 2e-4, five times as fast

@@ -103,7 +103,7 @@ def measure_docs(folder, model, parts):
         frames = []
         for varied in rows.FRAMES.values():
             options = [f"--{name}={value}" for name, value in varied.items()]
-            stats = run("render", "scenes/sponza.json", *sponza, *options,
+            stats = run("render", "scenes/sponza_suns.json", *sponza, *options,
                         f"--frames={FRAME_COUNT}", "--output=FOLDER/frame.png", "--stats")
             frames.append({"given": varied, "times": stats["times"]})
         write(folder, "frames", {"measured": measured, "frames": frames})
@@ -111,7 +111,7 @@ def measure_docs(folder, model, parts):
         if suite not in parts:
             continue
         if options[:1] == ["sponza"]:
-            options = ["--scene=scenes/sponza.json", *sponza, *options[1:]]
+            options = ["--scene=scenes/sponza_suns.json", *sponza, *options[1:]]
         document = run("bench", suite, *options, "--plot=FOLDER", "--output",
                        charts_of=rows.CHARTS.get(suite, ()), program=program_of(suite))
         write(folder, suite, {"measured": measured, **document})
@@ -143,7 +143,7 @@ def program_of(name):
 
 def search_centres(sponza):
     (ROOT / "out").mkdir(exist_ok=True)
-    subprocess.run([str(LAB), "normals", "scenes/sponza.json", *sponza, "-o", "out/normals.json"],
+    subprocess.run([str(LAB), "normals", "scenes/sponza_suns.json", *sponza, "-o", "out/normals.json"],
                    stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
     lab("clpv_lab.search", "8", "-o", rows.SEARCHED)
     lab("clpv_lab.search", "8", "-o", rows.SEARCHED_NORMALS, "--weights=out/normals.json")

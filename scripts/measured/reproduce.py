@@ -36,7 +36,7 @@ FACTORS_OF_QUICK = "--filter=/paper/(layout=soa.*|evaluate=[a-z]*)?$"
 def of_bench(suite, options, arguments):
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "rows.json"
-        subprocess.run([str(CLPV), "bench", suite, "--scene=scenes/sponza.json",
+        subprocess.run([str(CLPV), "bench", suite, "--scene=scenes/sponza_suns.json",
                         f"--model={arguments.model}", "--camera=curtains", *options,
                         f"--output={file}"], stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
         document = json.loads(file.read_text(encoding="utf-8"))

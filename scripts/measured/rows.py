@@ -82,7 +82,7 @@ CASCADE_METHODS = ("ddgi-first", "ddgi-converged", "paths-filtered", "vpl-interl
 
 # Files of results/docs by `clpv quality`: scenes and options of all runs, and what each run sets.
 VIEWS = [
-    "sponza", "cornell", "--camera=curtains", "--camera=atrium", "--camera=columns",
+    "sponza_suns", "cornell", "--camera=curtains", "--camera=atrium", "--camera=columns",
     "--camera=front"
 ]
 QUALITY_FILES = {
@@ -97,7 +97,7 @@ QUALITY_FILES = {
                         "--noise=0.03"], list(SUNS.values())),
     "quality-bounces": ([*VIEWS, "--noise=0.05", "--bounces=all"], list(BOUNCES.values())),
     "quality-cascades": ([
-        "sponza", "cornell", "atrium", *(f"--camera={name}" for name in CASCADE_CAMERAS),
+        "sponza_suns", "cornell", "atrium", *(f"--camera={name}" for name in CASCADE_CAMERAS),
         "--noise=0.03", "--frames=3", f"--baseline={','.join(CASCADE_METHODS)}",
         "--baseline-time=21.9"
     ], [{}]),
@@ -105,7 +105,7 @@ QUALITY_FILES = {
     "quality-lamp-bounces": (["cornell_lamp", "--noise=0.02",
                               "--bounces=all"], [{**FAST, "bounces": n}
                                                  for n in ("1", "2", "all")]),
-    "quality-steps": (["sponza", "--camera=atrium", "--noise=0.03"], [
+    "quality-steps": (["sponza_suns", "--camera=atrium", "--noise=0.03"], [
         *({**row, **setting} for row, setting in itertools.product(STEPS.values(), SETTINGS)),
         {**FAST, "cascade-size": "12.5"}, {**FAST, "cascade-size": "50"}
     ]),
@@ -119,10 +119,10 @@ QUALITY_FILES = {
 # `clpv quality` of scenes in a medium: sigma_s, sigma_a [1/m], options, numbers of bounces, views.
 MEDIA = [
     ("0.002, 0.02", [
-        "sponza", "--medium=0.002,0.02,0.3", "--camera=curtains", "--camera=atrium",
+        "sponza_suns", "--medium=0.002,0.02,0.3", "--camera=curtains", "--camera=atrium",
         "--camera=columns", "--width=480", "--height=270"
     ], ["1"], ["medium"]),
-    ("0.02, 0", ["sponza", "--medium=0.02,0,0.3",
+    ("0.02, 0", ["sponza_suns", "--medium=0.02,0,0.3",
                  "--camera=atrium"], ["1", "all"], ["medium", "indirect"]),
     ("0.02, 0", ["atrium", "--medium=0.02,0,0.3",
                  "--camera=nave"], ["1", "all"], ["medium", "indirect"]),

@@ -108,7 +108,7 @@ TEST(Frame, CornellBoxEqualsItsGoldenImage) {
 
 TEST(Frame, SponzaEqualsItsGoldenImage) {
   if (sponza().empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA names it";
-  const SceneData scene = load_scene(scene_file("sponza.json"), sponza());
+  const SceneData scene = load_scene(scene_file("sponza_suns.json"), sponza());
   expect_golden(render(scene, small_options(scene), Show::indirect, "curtains"), "sponza");
 }
 

@@ -169,7 +169,7 @@ TEST_F(CompareCommand, ComparesALayerAndWritesTheDifference) {
   EXPECT_NEAR(output()["max_error"].get<double>(), 0.01, 1e-6);
   EXPECT_NEAR(read_image(file("d.exr")).at(0, 0, 0), 0.1f, 1e-5);
   ASSERT_EQ(run(file("a.exr") + " " + file("b.exr") + " --layer indirect -o " + file("d.png")), 0);
-  EXPECT_NEAR(read_image(file("d.png")).at(0, 0, 0), srgb_encode(0.15f), 0.5 / 255);
+  EXPECT_GT(read_image(file("d.png")).width, 3 * 6) << "both images, their difference, a scale";
   EXPECT_EQ(run(file("a.exr") + " " + file("b.exr") + " --layer direct"), 3);
   write_exr(file("c.exr"), plain(6, 4, 0.2f, 0.2f, 0.2f));
   ASSERT_EQ(run(file("a.exr") + ":indirect " + file("c.exr")), 0);

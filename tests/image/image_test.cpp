@@ -269,8 +269,29 @@ TEST(ToneCurve, AcesFit) {
   EXPECT_EQ(tone_curve(ToneMap::aces, glm::vec3(white * 1.01f)).r, 1.0f);
 }
 
+TEST(ToneCurve, PhotographicKeepsRatiosOfDarkColours) {
+  const glm::vec3 dark = tone_curve(ToneMap::photographic, glm::vec3(1e-3f, 2e-3f, 0));
+  EXPECT_NEAR(dark.g / dark.r, 2, 0.01);
+  EXPECT_NEAR(tone_curve(ToneMap::photographic, glm::vec3(6)).r, 1, 1e-6);
+}
+
+TEST(Exposure, IsAutomaticByTheLogMeanOfLitPixels) {
+  Image image = make_image(2, 2, {"R", "G", "B", "A"});
+  const float values[] = {0.07f, 0.28f, 0, 5};  // the mean is 0.14: the third is black, the last
+  for (int p = 0; p < 4; ++p) {                 // no surface
+    for (int c = 0; c < 3; ++c) image.at(p % 2, p / 2, c) = values[p];
+    image.at(p % 2, p / 2, 3) = p < 3 ? 1.0f : 0.0f;
+  }
+  EXPECT_NEAR(automatic_exposure(image), 0, 1e-5);
+  for (float& value : image.pixels) value *= 8;
+  EXPECT_NEAR(automatic_exposure(image), -3, 1e-5);
+  image.metadata["view"] = "albedo";
+  EXPECT_EQ(automatic_exposure(image), 0);
+  EXPECT_EQ(automatic_exposure(make_image(1, 1, {"R", "G", "B"})), 0) << "nothing is lit";
+}
+
 TEST(ToneCurve, RisesAndStaysInRange) {
-  for (const ToneMap curve : {ToneMap::none, ToneMap::reinhard, ToneMap::aces}) {
+  for (const ToneMap curve : values_of<ToneMap>()) {
     float before = 0;
     for (float x = 1e-4f; x < 1e30f; x *= 1.5f) {
       const float shown = tone_curve(curve, glm::vec3(x)).g;

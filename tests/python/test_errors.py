@@ -82,8 +82,8 @@ CALLS = {
     "Scene.set_transform": ({"mesh": "integer", "transform": "array"},
                             {"mesh": 0, "transform": numpy.eye(4)}),
     "Image": ({"array": "array", "channels": "names", "encoding": "text"}, {"array": NUMBERS}),
-    "Image.save": ({"path": "path", "exposure": "number"}, {"path": "x.png"}),
-    "Image.display": ({"exposure": "number"}, {}),
+    "Image.save": ({"path": "path", "exposure": "number?"}, {"path": "x.png"}),
+    "Image.display": ({"exposure": "number?"}, {}),
     "Renderer": ({"scene": "object", "device": "text", "context": "buffer", "queue": "buffer"},
                  {"scene": None}),
     "Renderer.render": ({"view": "view", "camera": "camera", "time": "number", "size": "size"}, {}),
@@ -118,7 +118,7 @@ CALLS = {
 WITHOUT = {"ms_of", "Basis.directions", "Renderer.volumes", "Renderer.device_volumes", "Renderer.release",
            "Renderer.lookup_source", "DeviceFrame.wait", "DeviceEvent.wait",
            "DeviceVolumes.arguments", "bases", "devices", "options", "Camera.replace",
-           "Light.replace", "Medium.replace", "Material.replace"}
+           "Light.replace", "Medium.replace", "Material.replace", "Image.automatic_exposure"}
 # Functions whose only argument is required.
 ONE = {"Scene.from_trimesh", "Scene.remove_mesh", "Renderer.show", "Basis.evaluate",
        "Basis.project", "read_image"}

@@ -209,7 +209,7 @@ TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
 TEST(SponzaTest, IsWhatItsReadmeSays) {
   const auto model = sponza();
   if (model.empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA names it";
-  const SceneData scene = load_scene(scene_file("sponza.json"), model);
+  const SceneData scene = load_scene(scene_file("sponza_suns.json"), model);
   EXPECT_EQ(scene.triangles.size(), 262267u);
   EXPECT_EQ(scene.vertices.size(), 192870u);
   EXPECT_EQ(scene.materials.size(), 25u);

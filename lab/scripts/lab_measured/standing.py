@@ -22,11 +22,11 @@ FOLDER = ROOT / "lab/results/quality"
 STANDING_COUNT = 5
 # Scenes and their cameras by run, then what each run measures.
 STANDING = [[
-    "sponza", "cornell", "atrium", "--camera=curtains", "--camera=atrium", "--camera=columns",
+    "sponza_suns", "cornell", "atrium", "--camera=curtains", "--camera=atrium", "--camera=columns",
     "--camera=front", "--camera=nave", "--camera=gallery"
 ], ["atrium_living", "--time=4"]]
 STANDING_LARGE = [[
-    "sponza", "cornell", "atrium", "--camera=curtains", "--camera=front", "--camera=nave"
+    "sponza_suns", "cornell", "atrium", "--camera=curtains", "--camera=front", "--camera=nave"
 ]]
 STANDING_FRAMES = [["--preset=best", "--vary=near=traced,off"], ["--preset=paper", "--basis=sh2"]]
 METHODS = ("paths", "paths-filtered", "vpl", "vpl-interleaved", "ddgi-first", "ddgi-converged",
@@ -57,7 +57,7 @@ def method_of(cell, options):
 def measure_standing(folder, model):
     """Three groups of cells: 240x135 and 960x540, each with its frame's time, and 240x135 with the
     time of 960x540."""
-    stats = run("render", "scenes/sponza.json", f"--model={model}", "--camera=curtains",
+    stats = run("render", "scenes/sponza_suns.json", f"--model={model}", "--camera=curtains",
                 f"--frames={FRAME_COUNT}", "--output=FOLDER/frame.png", "--stats")
     time = sum(stage["median"] for stage in stats["times"]
                if stage["stage"] not in ("frame", "host", *SHARED))

@@ -27,6 +27,7 @@ SCENES = {
     "sponza": ["curtains", "atrium", "columns"], "cornell": ["front"],
     "atrium": ["nave", "curtains", "gallery"], "atrium_living": ["walk"], "sponza_other_suns": []
 }  # cameras; none: all
+FILES = {"sponza": "sponza_suns"}  # of scenes whose files have other names
 TIMES = {"atrium_living": 4}  # [s]
 LAYERS = "indirect", "direct", "irradiance", "depth", "normal", "albedo"
 LARGEST = 64 * 2**20  # bytes of the tar
@@ -144,7 +145,7 @@ def ground_truths(name, cameras, model, cache):
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
         subprocess.run([
-            str(CLPV), "quality", f"scenes/{name}.json", *(f"--camera={camera}"
+            str(CLPV), "quality", f"scenes/{FILES.get(name, name)}.json", *(f"--camera={camera}"
                                                            for camera in cameras),
             *([f"--model={model}"] if model else []), *([f"--cache={cache}"] if cache else []),
             f"--time={TIMES.get(name, 0)}", f"--width={SIZE[0]}", f"--height={SIZE[1]}",
@@ -168,7 +169,7 @@ def in_halves(source):
 
 def add_scene(folder, name, sponza, cache):
     """Writes a scene's files into an output.Folder. Returns its entry and those of its views."""
-    scene = json.loads((ROOT / f"scenes/{name}.json").read_text())
+    scene = json.loads((ROOT / f"scenes/{FILES.get(name, name)}.json").read_text())
     ours = scene["model"] != "Sponza.gltf"
     model = ROOT / "scenes" / scene["model"] if ours else sponza
     if ours:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""python3 -m clpv.draw bench|basis|report [IN OUT]
+"""python3 -m clpv.draw bench|basis|compare|report [IN OUT]
 
-    bench  IN OUT   draws charts of IN/bench.json into the folder OUT
-    basis  IN OUT   draws figures 2, 3 and 6 from IN/figures.json and IN/surfaces.npy into the
+    bench   IN OUT  draws charts of IN/bench.json into the folder OUT
+    basis   IN OUT  draws figures 2, 3 and 6 from IN/figures.json and IN/surfaces.npy into the
                     folder OUT
-    report IN OUT   writes the page of IN/report.json and its images into the file OUT
+    compare IN OUT  draws the images and differences of IN/compare.json and IN/*.npy into the file OUT
+    report  IN OUT  writes the page of IN/report.json and its images into the file OUT
 
 Without IN and OUT: checks that the required modules are installed. Exit codes are clpv's: 1 missing
 module or no output, 2 usage, 3 invalid document.
@@ -15,7 +16,7 @@ import sys
 
 from clpv import output
 
-KINDS = "bench", "basis", "report"
+KINDS = "bench", "basis", "compare", "report"
 
 
 def fail(code, words):

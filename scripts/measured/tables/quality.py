@@ -1,10 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Tables of docs/quality.md and README.md: NRMSE of indirect light in %, and energy over the ground
 truth's."""
-from .. import rows as known
-from ..rows import PAPER
-from .cells import found, load, percent, shown, table
+import json
 
+from clpv import ms_of
+
+from .. import ROOT, rows as known
+from ..rows import PAPER
+from .cells import found, load, number, percent, shown, table
+
+# Methods of README.md, and stages whose time other methods do not get.
+PEERS = {
+    "clpv": "**clpv, the defaults**", "ddgi-converged": "DDGI, converged",
+    "clpv, near off": "clpv, `--preset fast`", "paths-filtered": "path tracing, filtered",
+    "vpl-interleaved": "virtual point lights, interleaved",
+    "published scheme": "CLPV as published, four harmonics"
+}
+SHARED = "rasterize-camera", "rasterize-shadow", "shade"
 
 VIEWS = {
     "curtains": "curtains", "atrium": "atrium", "columns": "columns", "front": "Cornell, front"
@@ -184,3 +196,20 @@ def readme():
     }, [{**found(load("quality")["variants"], options=options), "name": name}
         for name, options in (("the defaults", known.BEST), ("`--preset fast`", known.FAST),
                               ("published scheme, sh2", PAPER))])
+
+
+@table
+def readme_peers():
+    """Mean errors of clpv and other methods with the same time, over the views of the first device
+    that has them."""
+    path = sorted((ROOT / "lab/results/quality").glob("*.json"))[0]
+    cells = json.loads(path.read_text(encoding="utf-8"))["small"]
+    lines = [["method", "error", "in Sponza, `columns`", "time of light"]]
+    for method, title in PEERS.items():
+        rows = [cell for cell in cells if cell["method"] == method]
+        light = sum(ms_of(row["times"], "frame") - sum(ms_of(row["times"], stage)
+                                                       for stage in SHARED) for row in rows)
+        columns = found(rows, scene="sponza", camera="columns")
+        lines.append([title, f"{100 * sum(row['nrmse'] for row in rows) / len(rows):.1f} %",
+                      f"{100 * columns['nrmse']:.0f} %", f"{number(light / len(rows))} ms"])
+    return lines

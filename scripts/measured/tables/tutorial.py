@@ -46,7 +46,7 @@ def tutorial_bench():
 def demo_caption():
     found = load("tutorial")["demo"]
     return textwrap.fill(
-        "*The atrium by direct light of the sun alone, with its first bounce, with all bounces of sun and sky, "
-        f"and path traced: made by `scripts/demo`. All bounces take {found['frame_ms']} ms per frame of "
+        "*The atrium under sun and sky: direct light, global illumination by clpv, and path tracing, all at one "
+        f"exposure. `scripts/demo` makes it. All bounces take {found['frame_ms']} ms per frame of "
         f"{found['width']}x{found['height']} on two CPU cores. The error of their indirect light (normalised "
         f"root mean square, NRMSE) is {100 * found['error']:.0f} %.*", LINE) + "\n"
