@@ -55,7 +55,8 @@ class ImageCodec {
 /// The codecs, linked or loaded. Throws Error(run_time) if they cannot be loaded.
 const ImageCodec& image_codec();
 
-/// Codecs that write without compression and decode nothing, for a build without OpenImageIO.
+/// Codecs of a build without OpenImageIO: they write without compression (plain_decoder.hpp says
+/// what they read).
 const ImageCodec& plain_codec();
 
 /// Name and type of the function that makes the codecs, in the library and in the module.
