@@ -12,7 +12,8 @@
 namespace clpv {
 namespace verify {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
-                                   triangles, pixels, covered, set_up, listed, entries)
+                                   triangles, pixels, covered, set_up, listed, entries, launches,
+                                   fills, waits, arguments, written)
 }
 
 namespace bench {
@@ -84,8 +85,6 @@ nlohmann::json to_json(const Row& row, int index) {
   json.update({{"suite", row.suite},
                {"coefficients",
                 row.coefficients > 0 ? nlohmann::json(row.coefficients) : nlohmann::json(nullptr)},
-               {"axis", text_or_null(row.axis)},
-               {"value", row.axis.empty() ? nlohmann::json(nullptr) : nlohmann::json(row.value)},
                {"preset", text_or_null(row.preset)},
                {"recompute", text_or_null(row.recompute)},
                {"changed",

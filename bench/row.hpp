@@ -42,8 +42,6 @@ struct Row {
   std::optional<Problem> problem;  ///< empty for rows without volumes: rasterising and ceilings
   Status status = Status::ok;
   std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`
-  std::string axis;    ///< suite scaling: the varied quantity ("grid"), and its `value`
-  double value = 0;
   std::string preset;   ///< suite frame
   std::string changed;  ///< suite factors: options that differ from the preset, "layout=soa
                         ///< evaluate=buffer"

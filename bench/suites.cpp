@@ -13,8 +13,8 @@ namespace clpv::bench {
 
 const std::vector<Suite>& suites() {
   static const std::vector<Suite> all = {
-      table1_suite(), layouts_suite(), bases_suite(),     scaling_suite(),    ceilings_suite(),
-      frame_suite(),  factors_suite(), rasterize_suite(), regression_suite(), probes_suite()};
+      table1_suite(), layouts_suite(), bases_suite(),    ceilings_suite(),
+      frame_suite(),  factors_suite(), rasterize_suite()};
   return all;
 }
 

@@ -43,18 +43,15 @@ const std::vector<Suite>& suites();
 Suite table1_suite();
 Suite layouts_suite();
 Suite bases_suite();
-Suite scaling_suite();
 Suite ceilings_suite();
 Suite frame_suite();
 Suite factors_suite();
-Suite probes_suite();
 /// Suite `rasterize`. With the job of a peer, which draws the same: `rasterize-PEER` with both.
 struct RasterPeer {
   std::string name;
   Job (*job)(RasterTask task) = nullptr;
 };
 Suite rasterize_suite(const RasterPeer& peer = {});
-Suite regression_suite();
 
 /// The suite's settings with `basis`.
 Problem basis_problem(const SuiteOptions& options, const std::string& basis);

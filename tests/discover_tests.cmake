@@ -39,7 +39,7 @@ set(text "")
 function(append name tests properties)
   list(JOIN tests ":" filter)
   string(APPEND text "add_test([[${name}]] [[${PROGRAM}]] [[--gtest_filter=${filter}]])\n"
-    "set_tests_properties([[${name}]] PROPERTIES TIMEOUT 3000 ${properties} ENVIRONMENT [[XDG_CACHE_HOME=${CACHE}]]\n"
+    "set_tests_properties([[${name}]] PROPERTIES TIMEOUT 3000 ${properties} ENVIRONMENT [[XDG_CACHE_HOME=${CACHE};MPLCONFIGDIR=${CACHE}/matplotlib]]\n"
     "  ENVIRONMENT_MODIFICATION PATH=path_list_prepend:/usr/bin)\n")
   set(text "${text}" PARENT_SCOPE)
 endfunction()

@@ -117,6 +117,11 @@ Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions
   job.run = [sequence] { sequence->frame.render(sequence->camera(sequence->next++)); };
   job.after_run = [sequence](const std::vector<StageTime>& times) { sequence->add(times); };
   job.more_rows = [sequence](const Row& row) { return pass_rows(sequence->times.passes(), row); };
+  job.count = [&session](Cost& cost) {
+    const HostWork& host = session.timeline().host();
+    cost.launches = host.launches, cost.fills = host.fills, cost.waits = host.waits,
+    cost.arguments = host.arguments, cost.written = static_cast<double>(host.written);
+  };
   job.compare = [sequence, &session] { return compare_uncached(*sequence, session); };
   return job;
 }

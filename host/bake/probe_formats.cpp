@@ -8,7 +8,6 @@
 //   sh3-windowed      Sloan, 'Stupid Spherical Harmonics (SH) Tricks' (GDC 2008)
 //   zh3               Roughton, Sloan, Silvennoinen, Iwanicki and Shirley, 'ZH3: Quadratic Zonal
 //                     Harmonics' (I3D 2024)
-//   dice, dice-srbf   Iwanicki and Sloan, 'Ambient Dice' (EGSR 2017)
 #include "bake/probe_formats.hpp"
 
 #include <fmt/ranges.h>
@@ -111,49 +110,6 @@ ProbeFormat cube_of_means() {
   return format;
 }
 
-// Vertices of an icosahedron.
-std::vector<glm::dvec3> dice_vertices() {
-  std::vector<glm::dvec3> vertices;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double a : {1.0, -1.0}) {
-      for (const double b : {1.0, -1.0}) {
-        glm::dvec3 v(0);
-        v[axis] = a * std::numbers::phi, v[(axis + 1) % 3] = b;
-        vertices.push_back(glm::normalize(v));
-      }
-    }
-  }
-  return vertices;
-}
-
-/// Two lobes about each vertex, whose sums over all vertices are 1.
-Weights dice_lobes(const glm::dvec3& n) {
-  static const std::vector<glm::dvec3> kVertices = dice_vertices();
-  Weights weights;
-  for (const glm::dvec3& v : kVertices) {
-    const double t = std::max(0.0, glm::dot(v, n)), square = t * t;
-    weights.push_back(0.7 * square / 2 + 0.3 * square * square * 5 / 6);
-  }
-  return weights;
-}
-
-/// Linear on the faces of the icosahedron: of its three nearest vertices, as these are the face's.
-Weights dice_triangles(const glm::dvec3& n) {
-  static const std::vector<glm::dvec3> kVertices = dice_vertices();
-  std::array<std::size_t, 12> order{};
-  for (std::size_t i = 0; i < 12; ++i) order[i] = i;
-  std::ranges::partial_sort(order, order.begin() + 3, [&](std::size_t a, std::size_t b) {
-    return glm::dot(kVertices[a], n) > glm::dot(kVertices[b], n);
-  });
-  const glm::dvec3 &a = kVertices[order[0]], &b = kVertices[order[1]], &c = kVertices[order[2]];
-  glm::dvec3 share(glm::dot(n, glm::cross(b, c)), glm::dot(n, glm::cross(c, a)),
-                   glm::dot(n, glm::cross(a, b)));
-  share /= share.x + share.y + share.z;
-  Weights weights(12, 0.0);
-  for (int i = 0; i < 3; ++i) weights[order[static_cast<std::size_t>(i)]] = share[i];
-  return weights;
-}
-
 /// Mean radiance, and the vector (1 / 4 pi) Int L w dw, of two bands.
 struct Bands {
   glm::dvec3 mean;
@@ -218,21 +174,6 @@ std::vector<glm::dvec3> solve_zonal(Vectors nine) {
   return five;
 }
 
-/// The coefficient that the ratio of two bands suggests, by the authors' fit.
-glm::dvec3 hallucinated_zonal(Vectors four) {
-  const glm::dvec3 axis = zonal_axis(four);
-  glm::dvec3 zonal(0);
-  for (int channel = 0; channel < 3; ++channel) {
-    const double mean = four[0][channel];
-    if (!(mean > 0)) continue;
-    const double ratio = std::abs(four[3][channel] * axis.x + four[1][channel] * axis.y +
-                                  four[2][channel] * axis.z) /
-                         mean;
-    zonal[channel] = mean * (0.08 * ratio + 0.6 * ratio * ratio);
-  }
-  return zonal;
-}
-
 /// Nine coefficients times 1 / (1 + lambda l^2 (l + 1)^2).
 std::vector<glm::dvec3> windowed(Vectors nine, double lambda) {
   std::vector<glm::dvec3> c(nine.begin(), nine.end());
@@ -285,14 +226,6 @@ ProbeFormat zh3_format() {
   return format;
 }
 
-ProbeFormat hallucinated_format() {
-  ProbeFormat format = of_basis("zh3-hallucinated", "sh2");
-  format.irradiance = [](Vectors c, const glm::dvec3& n) {
-    return with_zonal(c, hallucinated_zonal(c), n);
-  };
-  return format;
-}
-
 struct Entry {
   const char* name;
   ProbeFormat (*make)();
@@ -301,7 +234,6 @@ struct Entry {
 constexpr Entry kFormats[] = {
     {"sh2", [] { return of_basis("sh2", "sh2"); }},
     {"sh2-geomerics", geomerics_format},
-    {"zh3-hallucinated", hallucinated_format},
     {"zh3", zh3_format},
     {"ambient-cube", [] { return fitted("ambient-cube", 6, cube_weights); }},
     {"ambient-cube-mean", cube_of_means},
@@ -309,8 +241,6 @@ constexpr Entry kFormats[] = {
     {"srbf8v2", [] { return of_basis("srbf8v2", "srbf8v2"); }},
     {"sh3", [] { return of_basis("sh3", "sh3"); }},
     {"sh3-windowed", windowed_format},
-    {"dice", [] { return fitted("dice", 12, dice_triangles); }},
-    {"dice-srbf", [] { return fitted("dice-srbf", 12, dice_lobes); }},
     {"srbf14", [] { return of_basis("srbf14", "srbf14"); }},
     {"bins24", [] { return of_basis("bins24", "bins24"); }},
 };

@@ -87,7 +87,7 @@ nlohmann::json earlier_run(const Options& options) {
 std::vector<NamedFile> outputs_of(const Options& options) {
   std::vector<NamedFile> outputs{{"--output", options.output}, {"--log", options.log}};
   if (options.plot.empty()) return outputs;
-  for (const char* chart : {"layouts", "roofline", "scaling", "bases", "frame"})
+  for (const char* chart : {"layouts", "roofline", "bases", "frame"})
     for (const char* suffix : {"svg", "png"})
       outputs.push_back(
           {"--plot", std::filesystem::path(options.plot) / fmt::format("{}.{}", chart, suffix)});
@@ -145,7 +145,7 @@ void run(Options options, const Shared& shared) {
   const Device device = choose_device(shared.device);
   // Cached programs have no build time.
   Session session(device,
-                  suite.name == "regression" ? std::nullopt : ProgramCache::of_user(device));
+                  ProgramCache::of_user(device));
   log_info("{} ({}), driver {}", session.device().name, session.device().platform,
            session.device().driver);
   const bench::Results results = bench::run_suite(session, suite, options.bench);

@@ -17,7 +17,6 @@
 #include "support/helpers.hpp"
 #include "support/input_record.hpp"
 #include "support/interrupt.hpp"
-#include "support/limits.hpp"
 #include "support/log.hpp"
 #include "support/print.hpp"
 #include "support/process.hpp"
@@ -104,12 +103,9 @@ std::string rank_prefix(const Shared& shared) {
   return shared.started && !shared.started->alone() ? shared.started->name() + ": " : "";
 }
 
-/// Logs the error, with limits that may explain it, and aborts the other ranks.
+/// Logs the error and aborts the other ranks.
 int report_failure(const Shared& shared, ExitCode code, const std::string& message) {
-  const bool limited = (code == ExitCode::run_time || code == ExitCode::device) &&
-                       message.find("ulimit") == std::string::npos;
-  print_message(
-      fmt::format("clpv: {}{}{}\n", rank_prefix(shared), message, limited ? limits_note() : ""));
+  print_message(fmt::format("clpv: {}{}\n", rank_prefix(shared), message));
   if (shared.started && !shared.started->alone()) shared.started->abort(code);
   return static_cast<int>(code);
 }

@@ -95,7 +95,7 @@ void run(const Options& options, const Shared& shared) {
   stats.begin_startup();
   const Device device = choose_device(shared.device);
   Session session(device, ProgramCache::of_user(device),
-                  compilation_of(request, resolved, shared.device));
+                  compilation_of(request, resolved, shared.device), timed > 0);
   Frame frame(session, scene, setup);
   stats.end_startup();
   log_debug("device: {} ({}), driver {}", session.device().name, session.device().platform,
@@ -109,8 +109,12 @@ void run(const Options& options, const Shared& shared) {
   warn_of_unreached(session, frame, camera.name);
   stop_if_interrupted();
   progress.advance();
-  if (!options.stats.empty())
-    stats.set_times(measure_frames(session, frame, camera, timed, 0, [&] { progress.advance(); }));
+  if (!options.stats.empty()) {
+    FrameTimes times =
+        measure_frames(session, frame, camera, timed, 0, [&] { progress.advance(); });
+    count_chains(session, frame, camera, times);
+    stats.set_times(std::move(times));
+  }
 
   const nlohmann::json described = describe(request, resolved, scene, camera, options.time);
   std::map<std::string, std::string> metadata = metadata_of(described);

@@ -9,7 +9,6 @@
 
 #include "device/cl_error.hpp"
 #include "device/driver_cache.hpp"
-#include "support/limits.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
@@ -77,11 +76,6 @@ void describe(Device& device) {
   device.compute_units = handle.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   device.max_alloc_bytes = handle.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   device.memory_bytes = handle.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
-  if (device.type == "cpu") {
-    // PoCL allocates a buffer when a kernel first uses it, and aborts if it cannot.
-    device.memory_bytes = std::min(device.memory_bytes, address_space_left());
-    device.max_alloc_bytes = std::min(device.max_alloc_bytes, address_space_left());
-  }
   device.images = handle.getInfo<CL_DEVICE_IMAGE_SUPPORT>() == CL_TRUE;
   const std::string extensions = handle.getInfo<CL_DEVICE_EXTENSIONS>();
   const auto has = [&](const char* name) { return extensions.find(name) != std::string::npos; };
@@ -182,7 +176,6 @@ std::vector<Device> found_devices() {
 }  // namespace
 
 DeviceList list_devices() {
-  require_limits();
   choose_driver_cache();
   return ask_platforms();
 }

@@ -41,8 +41,7 @@ struct DeviceList {
 };
 
 /// Lists every device of every platform. Without OpenCL the list is empty; that is no error. Throws
-/// Error(usage) if CLPV_LANES is neither auto, 1 nor 8, and as require_limits() and
-/// choose_driver_cache().
+/// Error(usage) if CLPV_LANES is neither auto, 1 nor 8, and as choose_driver_cache().
 DeviceList list_devices();
 
 /// Returns the device that matches `choice`: an index "N", "PLATFORM:DEVICE", or a substring of its

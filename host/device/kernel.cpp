@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "device/kernel.hpp"
 
+#include <algorithm>
+
 #include "device/session.hpp"
 #include "support/error.hpp"
 
@@ -23,6 +25,18 @@ cl::Kernel& Kernel::built() {
   return kernel_;
 }
 
+bool Kernel::changes(std::span<const std::byte> value) {
+  if (values_.size() <= argument_count_) values_.resize(argument_count_ + 1);
+  std::vector<std::byte>& last = values_[argument_count_];
+  if (std::ranges::equal(last, value)) return false;
+  last.assign(value.begin(), value.end());
+  return true;
+}
+
+HostWork& Kernel::host() const {
+  return session_->timeline().host();
+}
+
 void Kernel::record(const cl::Memory& memory) {
   if (Recorder* recorder = session_->recorder())
     recorder->set_argument(kernel_, argument_count_, memory);
@@ -33,13 +47,13 @@ void Kernel::record(std::span<const std::byte> value) {
     recorder->set_argument(kernel_, argument_count_, value);
 }
 
-void Kernel::launch(const cl::NDRange& global, const cl::NDRange& local) {
+void Kernel::launch(const cl::NDRange& global, const cl::NDRange& local, Chain chain) {
   if (!claimed()) return;
   if (argument_count_ != parameter_count_) {
     throw Error(ExitCode::run_time, "kernel '{}' was given {} of its {} arguments", name_,
                 argument_count_, parameter_count_);
   }
-  session_->launch(built(), global, local);
+  session_->launch(built(), global, local, chain);
   session_->programs().finish_first_launch(*program_, name_, [this] { session_->finish(); });
 }
 

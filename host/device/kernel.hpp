@@ -8,9 +8,11 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "device/memory.hpp"
 #include "device/program.hpp"
+#include "device/timeline.hpp"
 
 namespace clpv {
 
@@ -38,6 +40,8 @@ class Kernel {
   /// Describes the kernel `name`. Programs::build_described() or the first set() builds its
   /// program.
   Kernel(Session& session, const ProgramSource& source, std::string name);
+  Kernel(Kernel&&) = default;  // a copy would set arguments unknown to the other one
+  Kernel& operator=(Kernel&&) = default;
 
   /// Sets arguments from the first parameter on.
   template <KernelArgument... Arguments>
@@ -49,32 +53,45 @@ class Kernel {
   template <KernelArgument... Arguments>
   Kernel& add(const Arguments&... arguments) {
     if (!claimed()) return *this;
-    (set_next(as_cl(arguments)), ...);
+    const HostPart part(host().arguments_ms);
+    (set_next(arguments), ...);
     return *this;
   }
 
   /// Session::launch() with the arguments set so far. Throws Error(run_time) if arguments are
   /// missing. Waits for the first launch, which compiles on some drivers.
-  void launch(const cl::NDRange& global, const cl::NDRange& local);
+  void launch(const cl::NDRange& global, const cl::NDRange& local, Chain chain = {});
 
  private:
-  template <typename T>
-  static const T& as_cl(const T& argument) {
-    return argument;
-  }
-  template <typename Handle>
-  static const Handle& as_cl(const DeviceMemory<Handle>& memory) {
-    return memory.handle();
-  }
+  /// Drivers copy all arguments of a kernel at each launch, and calls that set them are slow on
+  /// some: those that did not change are left.
   template <typename T>
   void set_next(const T& argument) {
+    if constexpr (std::derived_from<T, cl::Memory>) {  // another one may have the same handle
+      set_changed(argument);
+    } else if (const auto bytes = std::as_bytes(std::span(&argument, 1)); changes(bytes)) {
+      set_changed(argument);
+    }
+    ++argument_count_;
+  }
+  template <typename Handle>
+  void set_next(const DeviceMemory<Handle>& memory) {
+    const std::uint64_t number = memory.number();
+    if (changes(std::as_bytes(std::span(&number, 1)))) set_changed(memory.handle());
+    ++argument_count_;
+  }
+  template <typename T>
+  void set_changed(const T& argument) {
     built().setArg(argument_count_, argument);
+    ++host().arguments;
     if constexpr (std::derived_from<T, cl::Memory>)
       record(argument);
     else
       record(std::as_bytes(std::span(&argument, 1)));
-    ++argument_count_;
   }
+  /// Notes the next argument's value, and returns true if it was another.
+  bool changes(std::span<const std::byte> value);
+  HostWork& host() const;
   /// Adds the argument to the session's recording.
   void record(const cl::Memory& memory);
   void record(std::span<const std::byte> value);
@@ -86,6 +103,7 @@ class Kernel {
   std::string name_;
   cl::Kernel kernel_;
   cl_uint parameter_count_ = 0, argument_count_ = 0;
+  std::vector<std::vector<std::byte>> values_;  ///< of the arguments set last
 };
 
 }  // namespace clpv

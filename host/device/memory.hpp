@@ -4,7 +4,9 @@
 
 #include <CL/opencl.hpp>
 #include <array>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -35,10 +37,16 @@ class MemoryShare {
   MemoryShare& operator=(const MemoryShare&) = delete;
 
   std::size_t bytes() const { return bytes_; }
+  std::uint64_t number() const { return number_; }  ///< which no other has
 
  private:
+  static std::uint64_t next() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+  }
   std::shared_ptr<MemoryUse> use_;
   std::size_t bytes_;
+  std::uint64_t number_ = next();
 };
 
 /// A buffer, an image, or empty. Copies share the memory; the last copy releases it. The device
@@ -52,6 +60,7 @@ class DeviceMemory {
 
   bool exists() const { return share_ != nullptr; }
   std::size_t bytes() const { return share_ ? share_->bytes() : 0; }
+  std::uint64_t number() const { return share_ ? share_->number() : 0; }
   const Handle& handle() const { return handle_; }
 
  private:

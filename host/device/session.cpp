@@ -29,11 +29,13 @@ std::size_t round_up(std::size_t value, std::size_t step) {
 
 }  // namespace
 
-Session::Session(Device device, std::optional<ProgramCache> cache, Compilation compilation)
+Session::Session(Device device, std::optional<ProgramCache> cache, Compilation compilation,
+                 bool times)
     : device_(std::move(device)),
       context_(shared_context(device_.handle)),
-      queue_(context_, device_.handle, device_.profiling_valid ? CL_QUEUE_PROFILING_ENABLE : 0),
-      timeline_(device_.profiling_valid),
+      queue_(context_, device_.handle,
+             times && device_.profiling_valid ? CL_QUEUE_PROFILING_ENABLE : 0),
+      timeline_(times && device_.profiling_valid, times),
       memory_(device_, context_, queue_, compilation.claims.has_value()),
       programs_(device_, context_, std::move(cache), std::move(compilation)) {}
 
@@ -86,6 +88,7 @@ const cl::Image1DBuffer& Session::table_image(const std::vector<float>& values,
 
 void Session::write_bytes(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t at) {
   if (bytes.empty()) return;
+  timeline_.host().written += bytes.size();
   if (bytes.size() > kCopiedBytes) {
     timeline_.wait([&] {
       queue_.enqueueWriteBuffer(buffer.handle(), CL_TRUE, at, bytes.size(), bytes.data());
@@ -115,8 +118,8 @@ std::shared_ptr<const Session::Arriving> Session::read_later(const Buffer& buffe
   return read;
 }
 
-void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global,
-                     const cl::NDRange& local) {
+void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,
+                     Chain chain) {
   const std::size_t* g = global.get();
   const std::size_t* l = local.get();
   cl::NDRange rounded = global;
@@ -126,15 +129,19 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global,
     rounded = cl::NDRange(round_up(g[0], l[0]), round_up(g[1], l[1]), round_up(g[2], l[2]));
   }
   if (recorder_) recorder_->begin_launch(kernel, rounded, local);
-  cl::Event event;
+  std::size_t items = 1;
+  for (std::size_t i = 0; i < rounded.dimensions(); ++i) items *= rounded.get()[i];
   try {
-    queue_.enqueueNDRangeKernel(kernel, cl::NullRange, rounded, local, nullptr, &event);
+    timeline_.enqueue(
+        [&](cl::Event* event) {
+          queue_.enqueueNDRangeKernel(kernel, cl::NullRange, rounded, local, nullptr, event);
+        },
+        kernel, items, chain);
   } catch (const cl::Error& error) {
     throw cl_error(error, fmt::format("kernel '{}' on {}",
                                       kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(), device_.name));
   }
   if (recorder_) recorder_->end_launch();
-  timeline_.add(event, kernel);
 }
 
 // Oclgrind 21.10's memory checker does not count a fill as initialisation. After a write or copy to
@@ -142,21 +149,21 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global,
 // kernels fill and copy there.
 void Session::fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from) {
   if (device_.oclgrind()) return run_on_words(*this, "zero", bytes, from, buffer);
-  cl::Event event;
   // A pattern of 1 byte makes PoCL call memset: 5x faster than 4-byte patterns or a kernel.
-  named_errors([&] {
-    queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, from, bytes, nullptr, &event);
+  timeline_.enqueue([&](cl::Event* event) {
+    named_errors([&] {
+      queue_.enqueueFillBuffer(buffer.handle(), cl_uchar{0}, from, bytes, nullptr, event);
+    });
   });
-  timeline_.add(event);
 }
 
 void Session::copy(const Buffer& from, const Buffer& to, std::size_t bytes, std::size_t to_byte) {
   if (device_.oclgrind()) return run_on_words(*this, "copy", bytes, to_byte, from, to);
-  cl::Event event;
-  named_errors([&] {
-    queue_.enqueueCopyBuffer(from.handle(), to.handle(), 0, to_byte, bytes, nullptr, &event);
+  timeline_.enqueue([&](cl::Event* event) {
+    named_errors([&] {
+      queue_.enqueueCopyBuffer(from.handle(), to.handle(), 0, to_byte, bytes, nullptr, event);
+    });
   });
-  timeline_.add(event);
 }
 
 }  // namespace clpv

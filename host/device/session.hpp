@@ -28,9 +28,9 @@ namespace clpv {
 class Session {
  public:
   /// `cache`: source of compiled programs and target of Programs::store(). Without one every
-  /// program is compiled.
+  /// program is compiled. `times`: if false, stages have no times, and commands no events.
   explicit Session(Device device, std::optional<ProgramCache> cache = std::nullopt,
-                   Compilation compilation = {});
+                   Compilation compilation = {}, bool times = true);
   /// In a caller's context and queue. Stages have times only if the queue has profiling.
   explicit Session(GivenQueue given, std::optional<ProgramCache> cache = std::nullopt);
   /// Waits for all enqueued commands.
@@ -78,7 +78,8 @@ class Session {
   /// Runs `kernel` over `global` work-items, rounded up to whole work-groups of `local` in each
   /// dimension (OpenCL 1.2 has no non-uniform work-groups; kernels guard their range). Timed under
   /// the current stage.
-  void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local);
+  void launch(const cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,
+              Chain chain = {});
   /// Zeroes `bytes` bytes from byte `from` on; both are multiples of 4.
   void fill_zero(const Buffer& buffer, std::size_t bytes, std::size_t from = 0);
   /// Copies the first `bytes` bytes of `from` to byte `to_byte` of `to`; both are multiples of 4.

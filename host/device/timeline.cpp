@@ -25,9 +25,10 @@ void Timeline::abandon() {
   current_ = -1;
 }
 
-void Timeline::add(const cl::Event& event, const cl::Kernel& kernel) {
+void Timeline::add(Launch launch) {
   ++host_.launches;
-  if (current_ >= 0 && events_valid_) entries_[current_].launches.push_back({event, kernel});
+  if (launch.kernel() == nullptr) ++host_.fills;
+  if (current_ >= 0 && events_valid_) entries_[current_].launches.push_back(std::move(launch));
 }
 
 double Timeline::Launch::ms() const {
@@ -59,6 +60,8 @@ std::vector<KernelTime> Timeline::kernel_times() const {
                                 [&](const KernelTime& time) { return time.kernel == name; });
       if (found == result.end()) found = result.insert(found, {entry.mark, name});
       ++found->launches;
+      found->items = std::max(found->items, launch.items);
+      found->chain = std::max(found->chain, static_cast<std::size_t>(launch.chain));
       found->ms += launch.ms();
     }
   }

@@ -34,15 +34,43 @@ struct KernelTime {
   StageMark mark;
   std::string kernel;  ///< its function, or "fill and copy"
   unsigned launches = 0;
-  double ms = 0;  ///< sum of the launches [ms]
+  std::size_t items = 0;  ///< work-items of the largest launch
+  std::size_t chain = 0;  ///< longest Chain of a launch
+  double ms = 0;          ///< sum of the launches [ms]
 };
+
+/// Largest number of elements that a work-item of a launch takes one after the other, such as
+/// triangles of a tile, texels, rays or planes; 0 where the host does not know it.
+enum class Chain : std::size_t {};
 
 /// Work of the host for a frame.
 struct HostWork {
-  unsigned launches = 0;  ///< kernels, fills and copies
-  unsigned waits = 0;     ///< times that the host waited for the device
-  double waited_ms = 0;   ///< sum of the waits [ms]
-  double host_ms = 0;     ///< from clear() to enqueued(), waits not included [ms]
+  unsigned launches = 0;    ///< kernels, fills and copies
+  unsigned fills = 0;       ///< of them fills and copies
+  unsigned waits = 0;       ///< times that the host waited for the device
+  unsigned arguments = 0;   ///< of kernels, set because they had changed
+  std::size_t written = 0;  ///< to buffers [bytes]
+  double waited_ms = 0;     ///< sum of the waits [ms]
+  double host_ms = 0;       ///< from clear() to enqueued(), waits not included [ms]
+  /// Parts of host_ms [ms]: finding the triangle clusters of views, setting arguments, and OpenCL's
+  /// calls that enqueue a launch.
+  double culling_ms = 0, arguments_ms = 0, enqueueing_ms = 0;
+};
+
+/// Adds the time of its scope to a part of HostWork.
+class HostPart {
+ public:
+  explicit HostPart(double& ms) : ms_(ms), start_(std::chrono::steady_clock::now()) {}
+  ~HostPart() {
+    ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
+               .count();
+  }
+  HostPart(const HostPart&) = delete;
+  HostPart& operator=(const HostPart&) = delete;
+
+ private:
+  double& ms_;
+  std::chrono::steady_clock::time_point start_;
 };
 
 /// Collects the events of launches, by stage, and counts launches and waits.
@@ -56,8 +84,21 @@ class Timeline {
   void begin(StageMark mark);  ///< starts a stage; times of repeated stages add up
   void end(cl::CommandQueue& queue);
   void abandon();  ///< ends a stage that failed, without its time
-  /// Counts a launch, whose event it adds to the current stage. No kernel: a fill or a copy.
-  void add(const cl::Event& event, const cl::Kernel& kernel = {});
+  /// Counts a launch and calls `enqueue` with a pointer to its event, which it adds to the current
+  /// stage, or null if it needs none. No kernel: a fill or a copy.
+  template <typename Enqueue>
+  void enqueue(const Enqueue& enqueue, const cl::Kernel& kernel = {}, std::size_t items = 0,
+               Chain chain = {}) {
+    Launch launch{{}, kernel, items, chain};
+    {
+      const HostPart part(host_.enqueueing_ms);
+      enqueue(events_valid_ ? &launch.event : nullptr);
+    }
+    add(std::move(launch));
+  }
+  /// If true, launches find their Chain even if they have to wait for it.
+  bool counts_chains() const { return counts_chains_; }
+  void count_chains(bool counts) { counts_chains_ = counts; }
   /// Calls `wait`, which waits for the device, and counts it.
   template <typename Wait>
   void wait(const Wait& wait) {
@@ -74,6 +115,7 @@ class Timeline {
   void clear();                                   ///< begins a frame
   void enqueued();                                ///< ends the host's part of a frame
   const HostWork& host() const { return host_; }  ///< since clear()
+  HostWork& host() { return host_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -83,14 +125,17 @@ class Timeline {
   struct Launch {
     cl::Event event;
     cl::Kernel kernel;
+    std::size_t items;
+    Chain chain;
     double ms() const;  ///< waits for the event
   };
+  void add(Launch launch);
   struct Entry {
     StageMark mark;
     std::vector<Launch> launches;
     double wall_ms = 0;
   };
-  bool events_valid_, waits_;
+  bool events_valid_, waits_, counts_chains_ = false;
   HostWork host_;
   int current_ = -1;
   std::vector<Entry> entries_;

@@ -15,6 +15,9 @@ namespace clpv {
 namespace {
 
 constexpr float kBlendCutoff = 0.5f;  // alphaMode BLEND is rendered as MASK with this cutoff
+constexpr float kHoleCutoff = 2;      // above any alpha: light passes everywhere
+constexpr double kGlass = 0.5;        // minimum transmittance of a material that light passes
+constexpr const char* kTransmission = "KHR_materials_transmission";
 
 using tinygltf::Value;
 
@@ -120,6 +123,10 @@ BaseColour base_colour_of(const tinygltf::Material& source) {
   return made;
 }
 
+bool emits(const ClpvMaterial& material) {
+  return material.emissive[0] + material.emissive[1] + material.emissive[2] > 0;
+}
+
 void read_alpha(const tinygltf::Material& source, const std::string& place, ClpvMaterial& made,
                 Notes& notes) {
   if (source.alphaMode == "MASK") {
@@ -128,10 +135,30 @@ void read_alpha(const tinygltf::Material& source, const std::string& place, Clpv
   } else if (source.alphaMode == "BLEND") {
     made.flags |= CLPV_MATERIAL_MASKED;
     made.alpha_cutoff = kBlendCutoff;
-    notes.add(fmt::format("{} ('{}') blends: masked at alpha {} instead", place, source.name,
-                          kBlendCutoff));
+    notes.add(fmt::format("{} ('{}') blends: opaque where alpha reaches {}, a hole elsewhere",
+                          place, source.name, kBlendCutoff));
   }
   if (source.doubleSided) made.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
+}
+
+/// A pane of glass is a hole, as alpha below the cutoff is: light passes whole and straight. What
+/// emits or transmits by a texture stays opaque.
+void read_transmission(const tinygltf::Material& source, const std::string& place,
+                       ClpvMaterial& made, Notes& notes) {
+  const auto found = source.extensions.find(kTransmission);
+  if (found == source.extensions.end()) return;
+  const double factor = number_in(found->second, "transmissionFactor", 0);
+  if (factor == 0) return;
+  const double transmittance = factor * *std::max_element(made.base_colour, made.base_colour + 3);
+  const std::string glass = fmt::format("{} ('{}') transmits {:.2g} of light", place, source.name,
+                                        transmittance);
+  if (transmittance < kGlass || found->second.Has("transmissionTexture") || emits(made)) {
+    notes.add(glass + ": opaque here");
+    return;
+  }
+  made.flags |= CLPV_MATERIAL_MASKED;
+  made.alpha_cutoff = kHoleCutoff;
+  notes.add(glass + ": a hole here, through which all light passes");
 }
 
 void read_material(const GltfDocument& document, std::size_t index, MaterialSet& set,
@@ -149,12 +176,12 @@ void read_material(const GltfDocument& document, std::size_t index, MaterialSet&
   for (std::size_t i = 0; i < 3; ++i)
     made.emissive[i] = static_cast<float>(source.emissiveFactor[i] * strength);
   read_alpha(source, place, made, notes);
+  read_transmission(source, place, made, notes);
 
   UvMapping mapping;
   if (colour.texture >= 0) made.texture = request(colour.texture, document, set, notes);
   if (made.texture != CLPV_NO_TEXTURE) mapping = colour.mapping;
-  const bool emits = made.emissive[0] + made.emissive[1] + made.emissive[2] > 0;
-  if (source.emissiveTexture.index >= 0 && emits) {
+  if (source.emissiveTexture.index >= 0 && emits(made)) {
     made.emissive_texture = request(source.emissiveTexture.index, document, set, notes);
     const UvMapping own =
         mapping_of(source.emissiveTexture.texCoord, source.emissiveTexture.extensions);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Reads the attributes, triangles, joints and morph targets of a mesh primitive.
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_accessor.hpp"
@@ -92,8 +95,15 @@ class PrimitiveReader {
     }
   }
 
-  void read_targets(const Attributes& from, GeometryBudget& budget, LocalPrimitive& to) const {
+  /// Morphs positions and normals; notes other attributes of the targets, such as COLOR_0. Nothing
+  /// here uses tangents.
+  void read_targets(const Attributes& from, GeometryBudget& budget, LocalPrimitive& to,
+                    Notes& notes) const {
+    std::set<std::string> others;
     for (std::size_t t = 0; t < source_.targets.size(); ++t) {
+      for (const auto& [name, accessor] : source_.targets[t]) {
+        if (name != "POSITION" && name != "NORMAL" && name != "TANGENT") others.insert(name);
+      }
       const std::string place = fmt::format("/targets/{}", t);
       const auto read = [&](const char* name) {
         std::vector<glm::vec3> made;
@@ -116,6 +126,8 @@ class PrimitiveReader {
       if (to.normals == Normals::stored) target.normals = read("NORMAL");
       to.targets.push_back(std::move(target));
     }
+    if (!others.empty())
+      notes.add(fmt::format("{}/targets: not morphed: {}", place_, fmt::join(others, ", ")));
   }
 
  private:
@@ -168,7 +180,7 @@ LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_
                       order_of(source.mode), mapping.transform},
                      document.file, place, number, budget, slots);
   reader.read_influences(attributes, made);
-  reader.read_targets(attributes, budget, made);
+  reader.read_targets(attributes, budget, made, notes);
   if (source.attributes.contains("JOINTS_1"))
     notes.add(fmt::format("{}: more than four joints per vertex: only JOINTS_0 is read", place));
   return made;

@@ -37,6 +37,7 @@ constexpr std::array kExtensions = {"KHR_lights_punctual",
                                     "KHR_mesh_quantization",
                                     "KHR_materials_emissive_strength",
                                     "KHR_materials_pbrSpecularGlossiness",
+                                    "KHR_materials_transmission",
                                     "EXT_texture_webp",
                                     "EXT_mesh_gpu_instancing"};
 
@@ -154,6 +155,7 @@ Rules material_rules() {
   using namespace rule;
   const std::string strength = "/materials/*/extensions/KHR_materials_emissive_strength",
                     diffuse = "/materials/*/extensions/KHR_materials_pbrSpecularGlossiness",
+                    transmission = "/materials/*/extensions/KHR_materials_transmission",
                     webp = "/textures/*/extensions/EXT_texture_webp";
   Rules rules = {object("/materials/*/pbrMetallicRoughness"),
                  vector("/materials/*/pbrMetallicRoughness/baseColorFactor", 4, 0, 1),
@@ -166,6 +168,8 @@ Rules material_rules() {
                  number(strength + "/emissiveStrength", 0, bounds::kEmission),
                  object(diffuse),
                  vector(diffuse + "/diffuseFactor", 4, 0, 1),
+                 object(transmission),
+                 number(transmission + "/transmissionFactor", 0, 1),
                  index("/textures/*/source", "/images"),
                  object("/textures/*/extensions"),
                  object(webp),

@@ -79,9 +79,7 @@ Placement placement_of(const Instance& instance, PosedTree& posed) {
     return {instance.to_node ? posed.to_world(instance.node) * *instance.to_node
                              : posed.to_world(instance.node),
             {}};
-  Placement made{glm::dmat4(1.0), posed.joints(*instance.skin)};
-  made.to_world = made.of(*instance.primitive, 0);  // for its determinant's sign
-  return made;
+  return {glm::dmat4(1.0), posed.joints(*instance.skin)};
 }
 
 /// Weights of the instance's morph targets at the time of the pose.
@@ -113,26 +111,33 @@ Vertex placed(const LocalVertex& local, const glm::dmat4& to_world, const glm::d
           {local.colour.x, local.colour.y, local.colour.z, local.colour.w}};
 }
 
-void place_vertices(const Instance& instance, const std::vector<LocalVertex>& vertices,
-                    const Placement& placement, const NodeTree& tree, SceneData& scene) {
+/// Returns for each vertex whether its transform mirrors.
+std::vector<bool> place_vertices(const Instance& instance, const std::vector<LocalVertex>& vertices,
+                                 const Placement& placement, const NodeTree& tree,
+                                 SceneData& scene) {
   glm::dmat4 to_world = placement.to_world;
   glm::dmat3 to_normal = normal_matrix(glm::dmat3(to_world));
+  std::vector<bool> mirrored(vertices.size(), glm::determinant(glm::dmat3(to_world)) < 0);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (!placement.joints.empty()) {
       to_world = placement.of(*instance.primitive, i);
       to_normal = normal_matrix(glm::dmat3(to_world));
+      mirrored[i] = glm::determinant(glm::dmat3(to_world)) < 0;
     }
     scene.vertices[instance.first_vertex + i] =
         placed(vertices[i], to_world, to_normal, instance, tree);
   }
+  return mirrored;
 }
 
-void place_triangles(const Instance& instance, bool mirrored, SceneData& scene) {
+/// Turns triangles over of which most vertices are mirrored, so that their fronts stay outside.
+void place_triangles(const Instance& instance, const std::vector<bool>& mirrored,
+                     SceneData& scene) {
   const std::uint32_t base = instance.first_vertex;
   Triangle* triangle = scene.triangles.data() + instance.first_triangle;
   for (const glm::uvec3& t : instance.primitive->triangles) {
-    const std::uint32_t second = base + (mirrored ? t.z : t.y),
-                        third = base + (mirrored ? t.y : t.z);
+    const bool turned = mirrored[t.x] + mirrored[t.y] + mirrored[t.z] >= 2;
+    const std::uint32_t second = base + (turned ? t.z : t.y), third = base + (turned ? t.y : t.z);
     *triangle++ = {{base + t.x, second, third}, instance.primitive->material};
   }
 }
@@ -225,13 +230,14 @@ void append(Instance& instance, PosedTree& posed, SceneData& scene) {
 void place(const Instance& instance, PosedTree& posed, SceneData& scene) {
   const Placement placement = placement_of(instance, posed);
   const LocalPrimitive& primitive = *instance.primitive;
-  if (primitive.targets.empty()) {
-    place_vertices(instance, primitive.vertices, placement, posed.tree(), scene);
-  } else {
-    place_vertices(instance, morphed(primitive, weights_of(instance, posed)), placement,
-                   posed.tree(), scene);
-  }
-  place_triangles(instance, glm::determinant(glm::dmat3(placement.to_world)) < 0, scene);
+  const auto place_all = [&](const std::vector<LocalVertex>& vertices) {
+    place_triangles(instance,
+                    place_vertices(instance, vertices, placement, posed.tree(), scene), scene);
+  };
+  if (primitive.targets.empty())
+    place_all(primitive.vertices);
+  else
+    place_all(morphed(primitive, weights_of(instance, posed)));
 }
 
 void place_camera(SceneCamera& camera, const glm::dmat4& to_world, const std::string& file,

@@ -57,35 +57,6 @@ fs::path resolve(const fs::path& path) {
   return target;
 }
 
-/// Returns why a file in the target's folder could not be renamed to it, or the temporary file not
-/// be removed, else "".
-std::string obstacle(const fs::path& target) {
-  struct statx folder {};
-  struct statx old {};
-  const fs::path above = target.has_parent_path() ? target.parent_path() : ".";
-  if (::statx(AT_FDCWD, above.c_str(), 0, 0, &folder) == 0 &&
-      (folder.stx_attributes & STATX_ATTR_APPEND) != 0)
-    return fmt::format("its folder {} is append-only", above.string());
-  if (::statx(AT_FDCWD, target.c_str(), AT_SYMLINK_NOFOLLOW, 0, &old) != 0) return {};
-  if ((old.stx_attributes & STATX_ATTR_APPEND) != 0) return "it is append-only";
-  return (old.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0 ? "it is a mount point" : "";
-}
-
-/// Gives a new file owner, group and mode of the file that it will replace. Throws Error(run_time)
-/// if owner or group would change. In a sticky folder only the owner may replace a file, so that
-/// this finds those of others.
-void keep_owner_and_mode(const fs::path& target, int descriptor, const struct stat& replaced) {
-  struct stat made {};
-  if (::fstat(descriptor, &made) != 0) reject_output(target, reason(errno));
-  if ((made.st_uid != replaced.st_uid || made.st_gid != replaced.st_gid) &&
-      ::fchown(descriptor, replaced.st_uid, replaced.st_gid) != 0) {
-    reject_output(target, fmt::format("its owner {}:{} would become {}:{}: {}", replaced.st_uid,
-                                      replaced.st_gid, made.st_uid, made.st_gid, reason(errno)));
-  }
-  // Some file systems have no modes.
-  static_cast<void>(::fchmod(descriptor, replaced.st_mode & kPermissions));
-}
-
 /// Throws Error(usage) if the target is an input.
 void spare_input(const fs::path& target) {
   if (const auto input = InputRecord::find(identity_of(target)))
@@ -123,16 +94,11 @@ void remove_unfinished_outputs() {
 OutputFile::OutputFile(const fs::path& path, Kind kind)
     : target_(kind == Kind::result ? resolve(path) : path), kind_(kind) {
   spare_input(target_);
-  if (const std::string why = obstacle(target_); !why.empty()) reject_output(target_, why);
   struct stat replaced {};
   const bool replaces = kind == Kind::result && ::lstat(target_.c_str(), &replaced) == 0;
   create(replaces ? 0600 : 0666);
-  try {
-    if (replaces) keep_owner_and_mode(target_, descriptor_, replaced);
-  } catch (...) {
-    discard();
-    throw;
-  }
+  // Some file systems have no modes.
+  if (replaces) static_cast<void>(::fchmod(descriptor_, replaced.st_mode & kPermissions));
 }
 
 OutputFile::~OutputFile() {

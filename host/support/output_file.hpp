@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Atomic file output: a temporary file in the same folder, renamed into place. The only way to an
-// output: it spares inputs, owners and modes.
+// output: it spares inputs and keeps modes.
 #pragma once
 
 #include <cstddef>
@@ -23,10 +23,9 @@ class OutputFile {
     entry    ///< of a cache or temporary folder: whatever has the name is replaced
   };
 
-  /// Creates the temporary file. A result keeps mode, owner and group of the file that it replaces;
-  /// a new file has them from umask and user. Throws Error(run_time) with the path and the reason
-  /// if there is no folder, if no file can be written or renamed there, if owner or group would
-  /// change, or if anything but a regular file exists there; Error(usage) for a file of the
+  /// Creates the temporary file. A result keeps the mode of the file that it replaces. Throws
+  /// Error(run_time) with the path and the reason if there is no folder, if no file can be written
+  /// there, or if anything but a regular file exists there; Error(usage) for a file of the
   /// InputRecord.
   explicit OutputFile(const std::filesystem::path& path, Kind kind = Kind::result);
   ~OutputFile();  ///< removes the temporary file unless commit() renamed it

@@ -6,13 +6,10 @@
 
 namespace clpv {
 
-/// A new folder run-XXXXXX in $TMPDIR/.clpv-scratch-UID, or below /tmp, that only this user can
-/// read. Its file `clpv-scratch`, locked until the process ends, marks it as clpv's.
+/// A new folder .clpv-run-XXXXXX in $TMPDIR, or in /tmp, that only this user can read.
 class ScratchFolder {
  public:
-  /// Also removes the marked folders of killed runs, and nothing else: if anyone but this user may
-  /// have written .clpv-scratch-UID, warns and makes the folder beside it. Throws Error(run_time)
-  /// that names TMPDIR if the folder cannot be made.
+  /// Throws Error(run_time) that names TMPDIR if the folder cannot be made.
   ScratchFolder();
   ~ScratchFolder();  ///< removes it with all it holds
   ScratchFolder(const ScratchFolder&) = delete;
@@ -22,7 +19,6 @@ class ScratchFolder {
 
  private:
   std::filesystem::path path_;
-  int lock_ = -1;  ///< of the mark
 };
 
 }  // namespace clpv

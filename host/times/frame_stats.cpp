@@ -57,11 +57,16 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
   std::vector<TimeRecord> times = {
       time_record("frame", samples([](const FrameCost& cost) { return cost.wall_ms; })),
       time_record("host", samples([](const FrameCost& cost) { return cost.host.host_ms; }))};
+  const auto of_host = [&](auto HostWork::*part) {
+    return median(samples([&](const FrameCost& cost) { return cost.host.*part; }));
+  };
   nlohmann::json kernels = nlohmann::json::array();
   for (const KernelTime& time : times_.kernels()) {
     kernels.push_back({{"stage", name_of(time_record(time.mark, {time.ms}))},
                        {"kernel", time.kernel},
                        {"launches", time.launches},
+                       {"items", time.items},
+                       {"chain", time.chain},
                        {"ms", time.ms}});
   }
   const double frame_ms = times[0].median;
@@ -72,8 +77,16 @@ nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json&
           {"times", times},
           {"kernels", kernels},
           {"timer", times_.from_events() ? "event" : "wall"},
-          {"launches", median(samples([](const FrameCost& cost) { return cost.host.launches; }))},
-          {"waits", median(samples([](const FrameCost& cost) { return cost.host.waits; }))},
+          {"launches", of_host(&HostWork::launches)},
+          {"fills", of_host(&HostWork::fills)},
+          {"waits", of_host(&HostWork::waits)},
+          {"arguments", of_host(&HostWork::arguments)},
+          {"written_bytes", of_host(&HostWork::written)},
+          {"host_ms",
+           {{"culling", of_host(&HostWork::culling_ms)},
+            {"arguments", of_host(&HostWork::arguments_ms)},
+            {"enqueueing", of_host(&HostWork::enqueueing_ms)},
+            {"waiting", of_host(&HostWork::waited_ms)}}},
           {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
           {"build_ms", session.programs().build_ms()},
           {"startup_ms", startup_ms_},

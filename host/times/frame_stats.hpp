@@ -24,9 +24,8 @@ class FrameStats {
   void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes);
 
   /// Returns JSON of schema 2: device, options, times (`frame` on the host's clock, `host`: its
-  /// work without waits, and the stages), kernels of the last frame, timer of the stages, launches
-  /// and waits of a frame,
-  /// first_launch_ms, build_ms, startup_ms, device_bytes, energy.
+  /// work without waits, and the stages), kernels of one frame, timer of the stages, numbers of
+  /// HostWork, first_launch_ms, build_ms, startup_ms, device_bytes, energy.
   nlohmann::json to_json(const Session& session, const nlohmann::json& options) const;
 
  private:

@@ -70,4 +70,12 @@ FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& cam
   return times;
 }
 
+void count_chains(Session& session, Frame& frame, const SceneCamera& camera, FrameTimes& times) {
+  session.timeline().count_chains(true);
+  frame.invalidate_light();
+  frame.render(camera);
+  session.timeline().count_chains(false);
+  times.set_kernels(session.timeline().kernel_times());
+}
+
 }  // namespace clpv

@@ -24,7 +24,7 @@ class FrameTimes {
  public:
   void add(const std::vector<StageTime>& stages, const FrameCost& cost = {});
   void set_kernels(std::vector<KernelTime> times) { kernels_ = std::move(times); }
-  const std::vector<KernelTime>& kernels() const { return kernels_; }  ///< of the last frame
+  const std::vector<KernelTime>& kernels() const { return kernels_; }  ///< of one frame
   std::size_t count() const { return costs_.size(); }
 
   const std::vector<FrameCost>& costs() const { return costs_; }
@@ -55,5 +55,9 @@ class FrameTimes {
 /// count.
 FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& camera, int frames,
                           int warm_up, const std::function<void()>& after = {});
+
+/// Renders one more of those frames, whose kernels become those of `times`. It waits for numbers
+/// that only the device knows: KernelTime::chain.
+void count_chains(Session& session, Frame& frame, const SceneCamera& camera, FrameTimes& times);
 
 }  // namespace clpv

@@ -56,12 +56,12 @@ void Volume::clear(Session& session) {
     session.fill_zero(buffer_, bytes_);
     return;
   }
-  cl::Event event;
-  named_errors([&] {
-    session.queue().enqueueFillImage(image_.handle(), cl_float4{{0, 0, 0, 0}}, {0, 0, 0},
-                                     region(shape_), nullptr, &event);
+  session.timeline().enqueue([&](cl::Event* event) {
+    named_errors([&] {
+      session.queue().enqueueFillImage(image_.handle(), cl_float4{{0, 0, 0, 0}}, {0, 0, 0},
+                                       region(shape_), nullptr, event);
+    });
   });
-  session.timeline().add(event);
 }
 
 void Volume::copy_from(Session& session, const Volume& from) {
@@ -72,12 +72,12 @@ void Volume::copy_from(Session& session, const Volume& from) {
     session.copy(from.buffer_, buffer_, bytes_);
     return;
   }
-  cl::Event event;
-  named_errors([&] {
-    session.queue().enqueueCopyImage(from.image_.handle(), image_.handle(), {0, 0, 0}, {0, 0, 0},
-                                     region(shape_), nullptr, &event);
+  session.timeline().enqueue([&](cl::Event* event) {
+    named_errors([&] {
+      session.queue().enqueueCopyImage(from.image_.handle(), image_.handle(), {0, 0, 0}, {0, 0, 0},
+                                       region(shape_), nullptr, event);
+    });
   });
-  session.timeline().add(event);
 }
 
 void Volume::read_stored(Session& session, void* numbers) const {

@@ -18,8 +18,13 @@ std::string found(py::handle given) {
   return "an object of " + std::string(py::str(py::type::of(given)));
 }
 
+bool is_masked(py::handle given) {
+  return py::isinstance<py::array>(given) &&
+         py::isinstance(given, py::module_::import("numpy.ma").attr("MaskedArray"));
+}
+
 bool is_real(py::handle given) {
-  if (PyComplex_Check(given.ptr()) || py::hasattr(given, "mask")) return false;
+  if (PyComplex_Check(given.ptr()) || is_masked(given)) return false;
   const py::object type = py::getattr(given, "dtype", py::none());
   if (py::isinstance<py::dtype>(type) && type.cast<py::dtype>().kind() == 'c') return false;
   PyFloat_AsDouble(given.ptr());
@@ -27,8 +32,18 @@ bool is_real(py::handle given) {
   return true;
 }
 
+py::object plain(const py::object& given, int levels) {
+  if (levels == 0 || !PySequence_Check(given.ptr())) return given;
+  if (py::hasattr(given, "tolist")) return given.attr("tolist")();
+  if (!py::isinstance<py::list>(given) && !py::isinstance<py::tuple>(given)) return given;
+  py::list all;
+  for (const py::object item : py::reinterpret_borrow<py::sequence>(given))
+    all.append(plain(item, levels - 1));
+  return all;
+}
+
 void check_call(const std::string& function, const std::vector<Parameter>& parameters, bool open,
-                const py::args& args, const py::kwargs& kwargs) {
+                py::list& args, py::dict& kwargs) {
   const auto positional =
       static_cast<std::size_t>(std::ranges::count(parameters, false, &Parameter::keyword));
   if (args.size() > positional) {
@@ -51,7 +66,12 @@ void check_call(const std::string& function, const std::vector<Parameter>& param
                   parameter.allowed());
     if (!placed && !by_name) continue;
     const py::object given = placed ? py::object(args[i]) : py::object(kwargs[parameter.name]);
-    if (!parameter.takes(given))
+    const py::object values = parameter.any ? given : plain(given);
+    if (placed)
+      args[i] = values;
+    else
+      kwargs[parameter.name] = values;
+    if (!parameter.takes(values))
       throw Error(ExitCode::usage, "{}: {}: found {}, allowed: {}", function, parameter.name,
                   found(given), parameter.allowed());
   }
@@ -69,8 +89,10 @@ void check_arguments(const py::object& scope, const char* name, Self self,
   const std::string label =
       self == Self::untyped ? scope.attr("__name__").cast<std::string>() : name;
   const std::string doc = py::str(function.attr("__doc__"));
-  const auto call = [=](const py::args& args, const py::kwargs& kwargs) {
+  const auto call = [=](const py::args& given, const py::kwargs& named) {
     const CallInProgress in_progress;
+    py::list args(given);
+    py::dict kwargs(**named);
     check_call(label, parameters.first, parameters.second, args, kwargs);
     try {
       return py::object(function(*args, **kwargs));

@@ -42,14 +42,25 @@ struct Parameter {
   bool required, keyword;           ///< keyword: by name only
   std::string (*allowed)();         ///< "a number or None"
   bool (*takes)(py::handle given);  ///< true if it converts to the parameter's type
+  bool any = true;                  ///< any object, which the function converts itself
 };
 
-/// Throws Error(usage) unless the function takes these arguments. `open`: it takes any keywords.
+/// Throws Error(usage) unless the function takes these arguments, which become plain(). `open`: it
+/// takes any keywords.
 void check_call(const std::string& function, const std::vector<Parameter>& parameters, bool open,
-                const py::args& args, const py::kwargs& kwargs);
+                py::list& args, py::dict& kwargs);
+
+/// Arrays and columns of tables as lists in the order of their items, since subscripts of a column
+/// of pandas are labels; lists and tuples of them too, so that a box has two levels. Other objects
+/// as they are.
+py::object plain(const py::object& given, int levels = 2);
 
 /// A value for a message: short ones as Python writes them, others by their type.
 std::string found(py::handle given);
+
+/// True for NumPy's masked arrays, whose hidden numbers would count. Tables of pandas have a method
+/// `mask` too.
+bool is_masked(py::handle given);
 
 /// False for complex numbers and NumPy's masked ones, which become floats with a warning. Raises
 /// what the object's __float__ raises.
@@ -126,7 +137,7 @@ template <typename T>
 struct StrictItems {
   static bool is(py::handle given) {
     if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given)) return false;
-    for (const py::handle item : py::reinterpret_borrow<py::sequence>(given))
+    for (const py::object item : py::reinterpret_borrow<py::sequence>(given))  // may exist only here
       if (!takes<T>(item)) return false;
     return true;
   }
@@ -155,7 +166,7 @@ bool takes(py::handle given) {
 /// The argument of a property, converted. Throws Error(usage).
 template <typename T>
 T argument(const char* name, const py::object& given) {
-  if (takes<T>(given)) return given.cast<T>();
+  if (const py::object values = plain(given); takes<T>(values)) return values.cast<T>();
   throw Error(ExitCode::usage, "{}: found {}, allowed: {}", name, found(given), Kind<T>::text());
 }
 
@@ -192,6 +203,7 @@ std::pair<std::vector<Parameter>, bool> parameters_of(Self self, const Extra&...
     if constexpr (std::is_same_v<Bare, py::kwargs>) {
       open = true;
     } else {
+      all.at(i).any = std::is_same_v<Bare, py::object>;
       all.at(i).allowed = &Kind<Bare>::text;
       all.at(i++).takes = &takes<T>;
     }

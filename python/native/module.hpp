@@ -50,12 +50,14 @@ Array converted(const py::array& array) {
   return Array(static_cast<const py::object&>(array));
 }
 
-/// Converts anything that NumPy accepts as an array of real numbers; copies only if it must. Throws
-/// Error(usage) otherwise.
+/// Converts anything that NumPy accepts as an array of real numbers, also numbers that are objects;
+/// copies only if it must. Throws Error(usage) otherwise.
 template <typename Array>
 Array real_array(const py::object& given, const char* what) {
-  const bool masked = py::hasattr(given, "mask");  // whose hidden numbers would count
-  const py::array any = masked ? py::array() : py::array::ensure(given);
+  const bool masked = is_masked(given);
+  py::array any = masked ? py::array() : py::array::ensure(given);
+  if (any && any.dtype().kind() == 'O' && any.size() > 0)
+    any = py::array::ensure(any.attr("tolist")());  // by the types of its items; text is none
   if (masked || !any ||
       std::string_view("fiub").find(any.dtype().kind()) == std::string_view::npos) {
     throw Error(ExitCode::usage, "{}: found {}, allowed: an array of real numbers", what,

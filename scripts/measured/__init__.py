@@ -17,6 +17,7 @@ BUILD = ROOT / os.environ.get("CLPV_BUILD_DIR", "build")
 CLPV = BUILD / "clpv"
 LAB = BUILD / "clpv-lab"  # has other methods and peers too
 RESULTS = ROOT / "results"
+os.environ["MPLCONFIGDIR"] = os.environ.get("MPLCONFIGDIR") or str(BUILD / "matplotlib")  # not in HOME
 sys.path.insert(0, str(ROOT / "python"))
 from clpv import output  # noqa: E402
 output.name_missing_modules()

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Charts of what clpv wrote.
 
-    scripts/charts errors [LABEL=]FILE.json ... -o FILE.png     error over frame time, from files of
-                                                                `clpv quality -o FILE.json` or of
-                                                                lab/results/quality; a point a variant
     scripts/charts lambda -o FILE.png                           condition, error and energy of SRBF
                                                                 bases over the bandwidth; lambdas
                                                                 that clpv rejects are missing. Needs
@@ -16,8 +13,7 @@
     scripts/charts stability [LABEL=]DIR ... -o FILE.png        stability.json of `clpv sequence
                                                                 --stability`
 
-The error is the mean NRMSE of indirect light over all views of a file. Needs Debian's Python and
-the packages of scripts/setup. """
+Needs Debian's Python and the packages of scripts/setup."""
 import argparse
 import json
 import pathlib
@@ -28,12 +24,8 @@ import numpy
 from . import bake, native, output
 
 clpv = native()
-from clpv.draw import documents, style  # noqa: E402
+from clpv.draw import style  # noqa: E402
 
-HIGHEST = 120  # [%] errors above are worse than a black image
-VARIANT = {
-    "options": dict, "rejected": int, "nrmse": documents.NUMBER, "frame_ms": documents.NUMBER
-}
 MINIMUM = 1e-5  # smaller changes show as this on the logarithmic axis
 BASES = ("srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 LAMBDAS = [round(0.05 * i, 2) for i in range(1, 15)]
@@ -43,46 +35,6 @@ def save(figure, target, dpi):
     figure.tight_layout()
     output.write(target, style.rendered(figure, "png", dpi=dpi))
     print(target)
-
-
-def points(path, label):
-    """Returns by series, or else by `label`: (ms, NRMSE in %, varied options) of each measured
-    variant, sorted by time."""
-    document = documents.read(path)
-    measured = [
-        row for row in documents.checked(document, path, "variants", {"rejected": int})
-        if row["rejected"] == 0
-    ]
-    rows = documents.checked({"variants": measured}, path, "variants", VARIANT)
-    lines = {}
-    for row in rows:
-        options = row["options"]
-        name = options.get("grid", "") if "series" in row else " ".join(map(str, options.values()))
-        lines.setdefault(row.get("series", label), []).append(
-            (row["frame_ms"], 100 * row["nrmse"], name))
-    return [(name, sorted(line)) for name, line in lines.items()]
-
-
-def draw_errors(files, target):
-    """`files`: (label, path)."""
-    series = [
-        line for label, path in files
-        for line in points(pathlib.Path(path), label or pathlib.Path(path).stem)
-    ]
-    if not series:
-        raise documents.BadDocument(
-            f"{', '.join(str(path) for _, path in files)}: no variant was measured")
-    figure, (axis,) = style.panels(1, 1, (8, 4.5))
-    for i, (label, places) in enumerate(series):
-        axis.plot([p[0] for p in places], [p[1] for p in places], "o-", color=style.colour(i),
-                  label=label)
-        for x, y, name in places:
-            axis.annotate(name, (x, y), textcoords="offset points", xytext=(5, 5), fontsize="small")
-    axis.set(ylim=(0, min(HIGHEST, 1.08 * max(p[1] for _, places in series for p in places))),
-             xlabel="frame [ms]", ylabel="mean NRMSE [%]")
-    style.logarithmic(axis.xaxis)
-    axis.legend()
-    save(figure, target, 110)
 
 
 def described(name, bandwidth):
@@ -221,7 +173,7 @@ def labelled(given):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("chart", choices=("errors", "lambda", "times", "probes", "stability"))
+    parser.add_argument("chart", choices=("lambda", "times", "probes", "stability"))
     parser.add_argument("files", nargs="*", metavar="[LABEL=]FILE")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="FILE.png")
     arguments = parser.parse_args()
@@ -233,9 +185,7 @@ def main():
             f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
     read = {"times": "/times.jsonl", "stability": "/stability.json"}.get(arguments.chart, "")
     output.Output(arguments.output, [path + read for _, path in files])
-    if arguments.chart == "errors":
-        draw_errors(files, arguments.output)
-    elif arguments.chart == "lambda":
+    if arguments.chart == "lambda":
         draw_lambda(arguments.output)
     elif arguments.chart == "probes":
         draw_probes(files[0][1], arguments.output)

@@ -93,7 +93,7 @@ def earlier(out, name, key):
     if name not in out.names or not (out.path / name).exists():
         return None
     try:
-        found = json.loads(output.read_regular(out.path / name))
+        found = json.loads((out.path / name).read_bytes())
         whole = all((out.path / file).is_file() for file in found["files"])
         if found["key"] == key and whole:
             return {**found, "result": found["result"], "minutes": float(found["minutes"])}

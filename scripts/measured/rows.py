@@ -149,7 +149,6 @@ LEAKS = {
 # Suites of `clpv bench` and their options. "sponza" is replaced by the scene, its model and the
 # camera `curtains`.
 DEVICE_SUITES = {
-    "regression": ["--repetitions=7"],
     "table1": ["--repetitions=7"],
     "layouts": ["--repetitions=7"],
     "frame": ["--repetitions=5", "--basis=sh2,srbf8v2"],
@@ -157,11 +156,9 @@ DEVICE_SUITES = {
 DOCS_SUITES = {
     "layouts": [],
     "bases": [],
-    "probes": [],
-    "scaling": [],
     "native": ["--repetitions=41"],
     "frame": ["sponza", "--repetitions=9", "--basis=sh2", "--filter=best"],
     "rasterize-opengl": ["sponza"],
 }
 OF_LAB = "native", "rasterize-opengl", "quality-cascades", "quality-centres"  # need a built lab
-CHARTS = {"layouts": ("layouts", "roofline"), "scaling": ("scaling",)}  # those in docs/images
+CHARTS = {"layouts": ("layouts", "roofline")}  # those in docs/images

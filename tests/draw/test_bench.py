@@ -16,15 +16,6 @@ class Charts(unittest.TestCase):
     def tearDown(self):
         pyplot.close("all")
 
-    def test_scaling_takes_axis_and_value_from_the_row(self):
-        rows = [
-            row("scaling", "propagate", axis="grid", value=v, median=v / 10.0) for v in (64, 16, 32)
-        ]
-        axis, = bench.scaling(rows + [row("scaling", "inject", axis="grid", value=16)]).axes
-        self.assertEqual(axis.get_xlabel(), "grid")
-        self.assertEqual(axis.lines[0].get_xdata().tolist(), [16, 32, 64])
-        self.assertEqual([t.get_text() for t in axis.get_xticklabels()], ["16", "32", "64"])
-
     def test_layouts_distinguish_texels_and_occlusion(self):
         rows = [row("layouts", "gather", layout="image", storage="half", filtered=f, median=m)
                 for f, m in ((True, 2.0), (False, 1.0))]

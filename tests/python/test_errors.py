@@ -10,6 +10,11 @@ import sys
 import numpy
 import pytest
 
+try:
+    import pandas
+except ImportError:  # no package of scripts/setup
+    pandas = None
+
 import clpv
 from conftest import CORNELL, FRONT, SMALL
 
@@ -24,7 +29,8 @@ WRONG = {
     "bool": ["x", (1, ), math.nan, 1j, THING],
     "vector": ["x", None, 3, (1, 2), (1, 2, "x"), numpy.zeros(3, complex), MASKED[0, 0], THING],
     "colour": ["x", None, (1, 2), THING],
-    "array": ["x", [["x"]], THING, [[1j]], MASKED],
+    "array": ["x", [["x"]], THING, [[1j]], MASKED,
+              *(numpy.full((1, 3), wrong, object) for wrong in ("1", None, THING))],
     "camera": [3, (0, 0, 0), THING],
     "path": [3, THING],
     "image": ["x", THING, [3]],
@@ -184,6 +190,52 @@ def test_wrong_calls_are_named(name, objects):
             continue
         with pytest.raises(clpv.UsageError, match=f"{title}: {key}: found none, allowed: "):
             function(**{other: value for other, value in given.items() if other != key})
+
+
+def containers(values, number):
+    """A vector as each type that people have vectors in, whose items may be made on access."""
+    array = numpy.array(values, number)
+    yield from (list(values), tuple(values), array, array.astype(array.dtype.newbyteorder(">")),
+                numpy.repeat(array, 2)[::2], array[::-1].copy()[::-1], tuple(array))
+    if pandas is not None:
+        yield pandas.Series(array, index=range(len(values))[::-1])  # subscripts are labels
+        yield pandas.DataFrame([array], columns=list("xyzw")[:len(values)]).iloc[0]
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_vectors_of_any_type(name, objects):  # under PYTHONMALLOC=debug: items were once freed
+    kinds, given = CALLS[name]
+    given = given | {key: objects["scene"] for key in ("scene", ) if key in given}
+    for argument, kind in kinds.items():
+        values = (16, 32) if kind == "size" else (1, 0, 3)
+        numbers = [int] if kind == "size" else [int, numpy.float32, float]
+        for number in numbers if kind.rstrip("?") in ("vector", "colour", "size") else []:
+            boxes = argument == "box"
+            for one in containers(values, number):
+                value = (one, numpy.add(tuple(one), 1)) if boxes else one
+                try:
+                    made = call_of(name, objects)(**(given | {argument: value}))
+                except clpv.Error as error:  # of the scene or the device
+                    assert f"{argument}: found" not in str(error)
+                    continue
+                found = getattr(made, argument, values)
+                assert tuple(found[0] if boxes else found)[:3] == values, f"{argument}={one!r}"
+    boxes = numpy.array([[0, 0, 0], [1, 2, 3]])
+    assert clpv.Medium(box=boxes).box == ((0, 0, 0), (1, 2, 3))
+
+
+def test_arrays_of_any_type():
+    basis, rows = clpv.Basis("sh2"), numpy.array([[0, 0, 1], [1, 0, 3], [2, 1, 0]])
+    given = [rows.astype(object), numpy.asfortranarray(rows), rows.astype(">f4"),
+             numpy.repeat(rows, 2, 1)[:, ::2]]
+    if pandas is not None:  # whose tables have a method `mask`
+        table = pandas.DataFrame(rows, index=[2, 1, 0])
+        given += [table, table.astype(float), table.astype("Float64"), table.astype(object)]
+        for wrong in table.astype(str), table.astype("Float64").replace(3, pandas.NA):
+            with pytest.raises(clpv.UsageError, match="directions: found an array of"):
+                basis.evaluate(wrong)
+    for one in given:
+        assert (basis.evaluate(one) == basis.evaluate(rows)).all()
 
 
 def test_wrong_times_are_named():

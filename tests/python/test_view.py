@@ -1,23 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""The viewer: its arithmetic and errors; with viser and Chromium, a page that opens, shows an image
-and follows a drag."""
-import base64
+"""The viewer: its arithmetic and errors; with viser, a page that is served."""
 import contextlib
 import http.client
-import io
-import itertools
 import json
 import math
 import os
-import pathlib
-import shutil
 import socket
 import subprocess
 import sys
 import threading
 import time
 import types
-import urllib.request
 
 import numpy as np
 import pytest
@@ -25,8 +18,6 @@ import pytest
 import clpv
 from clpv import view, view_controls, view_frames, view_gate
 from conftest import CORNELL, ROOT
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 def free_port():
@@ -493,61 +484,6 @@ def test_the_lights_move_again_without_the_sun():
     assert made.scene.lights == made.lights and made.scene.moves
 
 
-class Tab:
-    """A page of a headless Chromium, over its debugging protocol."""
-
-    def __init__(self, port, address):
-        from websockets.sync.client import connect
-        request = urllib.request.Request(f"http://127.0.0.1:{port}/json/new?{address}",
-                                         method="PUT")
-        with urllib.request.urlopen(request, timeout=30) as answer:
-            page = json.load(answer)
-        self.socket, self.numbers = connect(page["webSocketDebuggerUrl"],
-                                            max_size=None), itertools.count()
-        self.ask("Page.enable")
-        self.ask("Emulation.setDeviceMetricsOverride", width=960, height=600, deviceScaleFactor=1,
-                 mobile=False)
-
-    def ask(self, method, **parameters):
-        number = next(self.numbers)
-        self.socket.send(json.dumps({"id": number, "method": method, "params": parameters}))
-        while True:
-            answer = json.loads(self.socket.recv(timeout=120))
-            if answer.get("id") == number:
-                return answer["result"]
-
-    def screenshot(self):
-        from PIL import Image
-        shot = base64.b64decode(self.ask("Page.captureScreenshot")["data"])
-        pixels = np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"))
-        return shot, pixels[150:450, 100:550].astype(float)  # the scene, left of the panel
-
-    def wait(self, condition, seconds=90):
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            shot, pixels = self.screenshot()
-            if condition(pixels):
-                return shot, pixels
-            time.sleep(0.5)
-        raise AssertionError(f"mean {pixels.mean()}, deviation {pixels.std()}")
-
-    def mouse(self, kind, x, y, buttons=1):
-        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=buttons,
-                 clickCount=1)
-
-    def press(self, letter):
-        for kind in ("keyDown", "keyUp"):
-            self.ask("Input.dispatchKeyEvent", type=kind, key=letter.lower(), code=f"Key{letter}",
-                     text=letter.lower(), windowsVirtualKeyCode=ord(letter))
-
-    def drag(self, x, y, to_x, to_y):
-        self.mouse("mouseMoved", x, y, 0)
-        self.mouse("mousePressed", x, y)
-        for i in range(1, 9):
-            self.mouse("mouseMoved", x + (to_x - x) * i / 8, y + (to_y - y) * i / 8)
-        self.mouse("mouseReleased", to_x, to_y)
-
-
 @contextlib.contextmanager
 def started(words, **more):
     with subprocess.Popen([str(word) for word in words], stderr=subprocess.STDOUT, text=True,
@@ -556,14 +492,6 @@ def started(words, **more):
             yield process
         finally:
             process.terminate()
-
-
-def wait_for(port):
-    for _ in range(300):
-        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
-            return
-        time.sleep(0.2)
-    raise AssertionError(f"nothing listens on port {port}")
 
 
 @pytest.mark.skipif(not has_ipv6(), reason="no IPv6")
@@ -578,46 +506,3 @@ def test_the_address_of_ipv6_is_printed_and_served():
             connection.request("GET", "/", headers={"Host": host})
             assert connection.getresponse().status == status
             connection.close()
-
-
-@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium (Debian: apt install chromium)")
-def test_a_page_shows_the_scene_and_follows_a_drag(tmp_path):
-    pytest.importorskip("viser", reason="viser is not installed (pip install viser)")
-    pytest.importorskip("PIL", reason="Pillow is not installed (pip install pillow)")
-    keep = os.environ.get("CLPV_SCREENSHOTS")  # folder for the screenshots
-    scene = os.environ.get("CLPV_VIEW_SCENE", str(CORNELL)).split()
-    port, debug = free_port(), free_port()
-    chromium = [
-        CHROMIUM, "--headless=new", "--no-sandbox", "--disable-dev-shm-usage",
-        "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-        f"--remote-debugging-port={debug}", "--remote-allow-origins=*",
-        f"--user-data-dir={tmp_path / 'profile'}", "about:blank"
-    ]
-    with open(tmp_path / "log", "w", encoding="utf-8") as log, \
-            started([sys.executable, "-m", "clpv.view", *scene, "--port", port], stdout=log, cwd=ROOT) as viewer, \
-            started(chromium, stdout=subprocess.DEVNULL):
-        wait_for(port)
-        wait_for(debug)
-        tab = Tab(debug, f"http://127.0.0.1:{port}")
-        shot, before = tab.wait(lambda pixels: pixels.std() > 10)
-        time.sleep(2)  # the sharp image
-        shot, before = tab.screenshot()
-        if keep:
-            (pathlib.Path(keep) / "viewer.png").write_bytes(shot)
-        tab.drag(300, 300, 380, 320)
-        shot, after = tab.wait(lambda pixels: np.abs(pixels - before).mean() > 3, 60)
-        if keep:
-            (pathlib.Path(keep) / "viewer-dragged.png").write_bytes(shot)
-        tab.press("R")
-        tab.wait(lambda pixels: np.abs(pixels - before).mean() < 3, 60)
-        tab.drag(300, 300, 380, 320)
-        shot, after = tab.wait(lambda pixels: np.abs(pixels - before).mean() > 3, 60)
-        # A second browser comes and goes.
-        other = Tab(debug, f"http://127.0.0.1:{port}")
-        other.wait(lambda pixels: pixels.std() > 10)
-        other.drag(300, 300, 330, 300)
-        other.ask("Page.close")
-        time.sleep(1)
-        tab.drag(380, 320, 300, 300)
-        tab.wait(lambda pixels: np.abs(pixels - after).mean() > 3, 60)
-        assert viewer.poll() is None, (tmp_path / "log").read_text(encoding="utf-8")

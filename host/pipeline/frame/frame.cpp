@@ -57,6 +57,7 @@ Frame::Frame(Session& session, const SceneData& scene, FrameSetup setup)
   if (options().traces_near())
     near_.emplace(session, gathered(), scene, buffers_, near_options(options()));
   if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options()));
+  draw_ahead(false);
   make_images();
   session.programs().build_described();
   if (near_) near_->finish();

@@ -69,8 +69,9 @@ class Frame {
   /// G-buffer of the last render's camera. Undefined before the first render.
   const Surface& seen() const { return *camera_surface_; }
 
-  /// Rasterizer::draw_ahead() of the next frames.
-  void draw_ahead(bool ahead) { rasterizer_.draw_ahead(ahead); }
+  /// Rasterizer::draw_ahead() of the next frames. With one lane they always are: a GPU would wait
+  /// for the host's next launch after each of its waits.
+  void draw_ahead(bool ahead) { rasterizer_.draw_ahead(ahead || session_.device().lanes == 1); }
 
   /// Irradiance [W/m^2] from the last render's light on arbitrary surfaces, in the format of
   /// Gatherer, without the near field.

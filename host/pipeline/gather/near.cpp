@@ -202,7 +202,8 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
   trace_
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
            buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
-      .launch(cl::NDRange(items_along(session_, width), tiles_down(height)), group);
+      .launch(cl::NDRange(items_along(session_, width), tiles_down(height)), group,
+              Chain(options_.rays * CLPV_PLANE_TILE));
 }
 
 void NearField::add(const Surface& camera, const Gatherer& gatherer,

@@ -129,7 +129,7 @@ void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& g
   }
   kernel.sum_segments.add(volume.memory(), partials_, firsts_);
   if (looks_up(kind)) table_.add_to(kernel.sum_segments);
-  kernel.sum_segments.launch(cl::NDRange(blocks), kSegments);
+  kernel.sum_segments.launch(cl::NDRange(blocks), kSegments, Chain{length});
   kernel.join_segments
       .set(sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(), partials_, firsts_)
       .launch(cl::NDRange(blocks), kSegments);

@@ -139,6 +139,7 @@ void Rasterizer::find_visible(const Drawing& drawing) {
 
 /// Lists the triangle clusters that may be visible: all of them, or the nearest and the others.
 std::vector<Rasterizer::Range> Rasterizer::list_clusters(const ClpvView& view) {
+  const HostPart part(session_.timeline().host().culling_ms);
   const std::vector<Bounds>& bounds = scene_.clusters->bounds();
   std::vector<ClpvViewCluster> visible;
   for (unsigned i = 0; i < bounds.size(); ++i) {
@@ -254,6 +255,16 @@ void Rasterizer::draw(const Drawing& drawing, unsigned first, unsigned count, bo
   draw(drawing, first + count / 2, count - count / 2, false);
 }
 
+/// Entries of the fullest tile, if the timeline counts chains.
+Chain Rasterizer::longest_list(const ClpvView& view) {
+  if (!session_.timeline().counts_chains()) return {};
+  const auto starts = session_.read<cl_uint>(slice_counts_, slice_count(view) + 1);
+  std::size_t longest = 0;
+  for (std::size_t i = 0; i + CLPV_SLICES < starts.size(); i += CLPV_SLICES)
+    longest = std::max<std::size_t>(longest, starts[i + CLPV_SLICES] - starts[i]);
+  return Chain{longest};
+}
+
 void Rasterizer::draw_tiles(const Drawing& drawing, bool fresh) {
   const ClpvView& view = drawing.view;
   const bool only_depth = drawing.kind == Kind::shadow;
@@ -265,7 +276,7 @@ void Rasterizer::draw_tiles(const Drawing& drawing, bool fresh) {
                   ? cl::NDRange(tiles_along(view.width) * CLPV_TILE,
                                 tiles_along(view.height) * CLPV_TILE)
                   : cl::NDRange(tiles_along(view.width), tiles_along(view.height)),
-              pixel_group(session_));
+              pixel_group(session_), longest_list(view));
   if (counted_ == nullptr) return;
   const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
   counted_->listed += counts[CLPV_LISTED];

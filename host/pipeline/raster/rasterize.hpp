@@ -102,6 +102,7 @@ class Rasterizer {
   void take_counts();
   void set_up(const Drawing& drawing, unsigned first, unsigned count);
   void bin(const ClpvView& view);
+  Chain longest_list(const ClpvView& view);
   void draw_tiles(const Drawing& drawing, bool fresh);
 
   Session& session_;

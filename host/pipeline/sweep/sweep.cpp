@@ -311,16 +311,16 @@ void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSwee
     else
       directions.sweep.add(directions.table, sources_);  // not read
   };
+  const std::size_t n = options_.grid;
   if (whole_bins()) {
     set(lit ? 0 : 1);
-    directions.sweep.launch({kSweepBins}, {1});
+    directions.sweep.launch({kSweepBins}, {1}, Chain{n});
     return;
   }
   if (!lit) darken_border(directions);
-  const std::size_t n = options_.grid;
   for (int plane = 0; plane < options_.grid; ++plane) {
     set(plane);
-    directions.sweep.launch({n, n, kSweepBins}, {std::min(n, kRowGroup), 1, 1});
+    directions.sweep.launch({n, n, kSweepBins}, {std::min(n, kRowGroup), 1, 1}, Chain{1});
   }
 }
 

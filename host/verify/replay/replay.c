@@ -4,7 +4,7 @@
  *   replay [FOLDER [DEVICE [OPTIONS]]]
  *
  * FOLDER: the capsule, by default the current folder. DEVICE: a part of "PLATFORM: DEVICE"; by default the first device.
- * OPTIONS: added to the build options. REPLAY_OUTPUTS=1 writes each compared memory to FILE.output; REPLAY_SECONDS: in place of 60.
+ * OPTIONS: added to the build options. REPLAY_SECONDS: in place of 60.
  * Prints "ok", "wrong" with the first wrong place, "failed" or "unsupported". Exit code: 0 ok, 1 wrong or failed, 77 unsupported.
  * The comment at the top of capsule.txt explains its commands. */
 #define _POSIX_C_SOURCE 200112L
@@ -203,11 +203,6 @@ static int expect(void) {
   unsigned char *bytes = calloc(memories[at].bytes + 1, 1);
   if (!bytes || size % 8) end(1, "%s: found %zu bytes, allowed: pairs of floats", name, size);
   transfer(at, bytes, 1);
-  if (getenv("REPLAY_OUTPUTS")) {
-    char path[300] = "";
-    FILE *file = fopen(strcat(strncat(path, name, 280), ".output"), "wb");
-    if (!file || fwrite(bytes, 1, memories[at].bytes, file) != memories[at].bytes || fclose(file)) end(1, "%s: not written", path);
-  }
   for (size_t i = 0; i < size / 8; ++i) {
     const double value = value_of(bytes, kind[0], i), low = ranges[2 * i], high = ranges[2 * i + 1];
     const int fits = bits == 8 ? !(((int)low & ~(int)value) | ((int)value & ~(int)high)) : value >= low && value <= high;

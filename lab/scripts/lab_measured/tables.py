@@ -186,8 +186,7 @@ RESOLVED = 0.5  # [points of %] smaller differences are none
 PLACES = [(source, place) for source in probes.SOURCES for place in ("surface", "air")]
 NAMES = {"pathtrace": "traced", "sweep": "swept", "surface": "surfaces", "air": "air"}
 # (a, b): does a have a smaller error than b at equal bytes?
-PAIRS = (("dice", "srbf8v2"), ("dice-srbf", "srbf8v2"), ("zh3", "srbf8v2"), ("zh3", "sh3"),
-         ("zh3-hallucinated", "sh2"), ("srbf8v2", "sh2"), ("srbf14", "sh3"),
+PAIRS = (("zh3", "srbf8v2"), ("zh3", "sh3"), ("srbf8v2", "sh2"), ("srbf14", "sh3"),
          ("ambient-cube-mean", "ambient-cube"), ("sh2", "ambient-cube"))
 
 

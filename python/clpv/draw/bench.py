@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Charts of `clpv bench`: layouts, roofline, scaling, bases and frame.
+"""Charts of `clpv bench`: layouts, roofline, bases and frame.
 
 Each function turns rows into a figure, or returns None if no row belongs to its chart. It reads
 fields of rows, not names. """
@@ -111,28 +111,6 @@ def roofline(rows, ceilings):
     return figure
 
 
-def scaling(rows):
-    rows = [r for r in of_suite(rows, "scaling") if r.get("axis")]
-    names = distinct(r["axis"] for r in rows)
-    if not names:
-        return None
-    figure, axes = style.panels(len(names), 3, (3.4, 3))
-    for axis, name in zip(axes, names):
-        members = sorted((r for r in rows if r["axis"] == name), key=lambda r: r["value"])
-        for i, stage in enumerate(distinct(r["stage"] for r in members)):
-            series = [r for r in members if r["stage"] == stage]
-            axis.errorbar([r["value"] for r in series], [r["median"] for r in series],
-                          yerr=error_bars(series), marker="o", ms=3, lw=1, color=style.colour(i),
-                          label=stage)
-        axis.set(xscale="log", xlabel=name, ylabel="ms")
-        style.logarithmic(axis.yaxis)
-        values = distinct(r["value"] for r in members)
-        axis.set_xticks(values, [f"{v:g}" for v in values])
-        axis.minorticks_off()
-        axis.legend(fontsize=7)
-    return figure
-
-
 def bases(rows):
     rows = [
         r for r in of_suite(rows, "bases") if r["stage"] == "propagate" and r["lobe"] == "exact"
@@ -201,7 +179,7 @@ def draw(source: pathlib.Path, folder: pathlib.Path) -> None:
                                       ROW), document["context"]
     charts = {
         "layouts": layouts(rows), "roofline": roofline(rows, context["ceilings"]),
-        "scaling": scaling(rows), "bases": bases(rows), "frame": frame(rows)
+        "bases": bases(rows), "frame": frame(rows)
     }
     for name, figure in charts.items():
         if figure:

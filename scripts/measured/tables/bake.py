@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Tables of docs/bake.md: errors of formats of light probes, and leaks."""
 from .. import bake as probes
-from .cells import found, load, number, table
+from .cells import load, number, table
 
 
 @table
 def bake():
-    rows, times = load("bake")["rows"], load("probes")["benchmarks"]
+    rows = load("bake")["rows"]
     lines = [[
         "format", "numbers", "bytes", "traced, coarse", "traced, fine", "swept, coarse",
-        "swept, fine", "negative [%]", "look-up [ns]"
+        "swept, fine", "negative [%]"
     ]]
     for name in dict.fromkeys(row["format"] for row in rows):
         one = next(row for row in rows if row["format"] == name)
@@ -17,14 +17,8 @@ def bake():
             ", ".join(f"{probes.mean(rows, name, source, place, fine):.1f}"
                       for place in ("surface", "air"))
             for source in probes.SOURCES for fine in (0, 1)
-        ] + [f"{probes.mean(rows, name, 'pathtrace', 'negative', 1):.1f}",
-             number(look_up_ns(found(times, name=f"probe/{name}")))])
+        ] + [f"{probes.mean(rows, name, 'pathtrace', 'negative', 1):.1f}"])
     return lines
-
-
-def look_up_ns(row):
-    """Of one point."""
-    return row["median"] * 1e6 / row["pixels"] if row and row["status"] == "ok" else None
 
 
 @table

@@ -123,45 +123,6 @@ def bases():
     return lines
 
 
-def scaling(axis, stages, title):
-    rows = [row for row in bench("scaling") if row["axis"] == axis]
-    values = sorted({row["value"] for row in rows})
-    lines = [[title, *(f"{value:.0f}" for value in values)]]
-    for stage in stages:
-        lines.append([f"{stage} [ms]"] + [
-            number((found(rows, stage=stage, value=value) or {}).get("median")) for value in values
-        ])
-    return lines
-
-
-@table
-def scaling_grid():
-    lines = scaling("grid", ["propagate"], "cells along each axis")
-    rows = [
-        found(bench("scaling"), axis="grid", stage="propagate", value=int(value))
-        for value in lines[0][1:]
-    ]
-    return lines + [
-        ["per cell and step [ns]"] +
-        [number(row["median"] * 1e6 / (row["value"]**3 * row["iterations"])) for row in rows]
-    ]
-
-
-@table
-def scaling_steps():
-    return scaling("iterations", ["propagate"], "steps")
-
-
-@table
-def scaling_rsm():
-    return scaling("rsm", ["rasterize-rsm", "inject"], "RSM, texels along each side")
-
-
-@table
-def scaling_triangles():
-    return scaling("triangles", ["rasterize-rsm", "rasterize-camera"], "triangles")
-
-
 @table
 def ceilings():
     measured = load("layouts")["context"]["ceilings"]

@@ -71,13 +71,6 @@ def with_shadows(read):
                **ratio(*(cost(read, file, basis, "image", shadows) for shadows in (True, False)))}
 
 
-def of_units(read):
-    one, two = ((each["median"], each["mad"]) for each in (
-        row(read("docs/scaling")["benchmarks"], name=f"propagate/sh2/soa/float/units:{units}")
-        for units in (1, 2)))
-    return [{"place": "propagate", **ratio(one, two)}]
-
-
 claim("cost", "8v2 takes approximately three times as long as SH (published: 2.95x with, 2.61x "
       "without shadows)", "ratio of the sums of Table 1 between 2 and 4.5", "driver", BENCH,
       over_sh("srbf8v2"), "place", about(3), "{value:.3g}x +- {spread:.2g}")
@@ -92,11 +85,6 @@ claim("cost", "shadows cost little (published: 1.07x, 1.18x, 1.21x)",
       "sum with shadows at most 1.25 of that without; not resolved within the spread, or below 1, "
       "since shadows only add work", "driver, basis", BENCH, with_shadows, "place",
       lambda each: each["value"] <= 1.25 if outside(each, 1.25) and each["value"] >= 1 else None,
-      "{value:.2f}x +- {spread:.2g}")
-claim("cost", "the method is highly parallelizable",
-      "steps of sh2 are at least 1.6 times as fast by two compute units as by one, beyond the "
-      "spread", "stage", "clpv bench scaling", of_units, "place",
-      lambda each: each["value"] >= 1.6 if outside(each, 1.6) else None,
       "{value:.2f}x +- {spread:.2g}")
 
 

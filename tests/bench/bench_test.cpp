@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: MIT
+// Benchmarks: statistics, reports, comparison of runs, suites, and the command `clpv bench`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "bench/compare_runs.hpp"
+#include "bench/published.hpp"
+#include "bench/report.hpp"
+#include "support/error.hpp"
+#include "tests/support/bench_rows.hpp"
+#include "tests/support/run_here.hpp"
+#include "times/time_record.hpp"
+
+namespace clpv::bench::bench_test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(BenchStatistics, MedianSpreadAndQuantilesOfAKnownSeries) {
+  const Statistics s = statistics_of({5, 1, 4, 2, 103});
+  EXPECT_EQ(s.min, 1);
+  EXPECT_EQ(s.median, 4);
+  EXPECT_EQ(s.max, 103);
+  EXPECT_EQ(s.mad, 2);                     // of 3 2 0 1 99
+  EXPECT_NEAR(s.p95, 5 + 0.8 * 98, 1e-9);  // between the 4th and the 5th, at 3.8
+  EXPECT_EQ(statistics_of({}).median, 0);
+}
+
+TEST(BenchCeilings, TheLongestMinimumTimeIsTheCeiling) {
+  Ceilings ceilings{100, {{1e6, 50}, {1e9, 10}}, 0.001};
+  Row row;
+  row.times.median = 4;
+  row.cost = {.flops = 1e8, .bytes = 5e6, .working_set = 5e5};  // 1 ms, 0.1 ms in cache
+  set_ceiling(ceilings, row);
+  EXPECT_EQ(row.ceiling, "fma");
+  EXPECT_NEAR(row.ceiling_share, 0.25, 1e-9);
+  row.cost.working_set = 2e6, row.cost.bytes = 2e7;  // out of the cache: 2 ms
+  set_ceiling(ceilings, row);
+  EXPECT_EQ(row.ceiling, "bandwidth");
+  EXPECT_NEAR(row.ceiling_share, 0.5, 1e-9);
+  EXPECT_EQ(ceilings.gbps(1e12), 10);
+}
+
+nlohmann::json report(const std::vector<std::tuple<std::string, double, double>>& rows) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [name, median, mad] : rows) {
+    nlohmann::json row = TimeRecord{"gather", {}, {}, 5, median, median, mad, median};
+    row.update({{"name", name}, {"status", "ok"}});
+    list.push_back(row);
+  }
+  return {{"context", {{"schema", 2}}}, {"benchmarks", list}};
+}
+
+TEST(BenchCompare, DistinguishesAChangeFromTheSpread) {
+  const auto before = report(
+      {{"same", 10, 0.1}, {"slow", 10, 0.1}, {"noisy", 10, 2}, {"fast", 10, 0}, {"gone", 1, 0}});
+  const auto after = report(
+      {{"same", 10.05, 0.1}, {"slow", 13, 0.1}, {"noisy", 13, 2}, {"fast", 5, 0}, {"new", 1, 0}});
+  const ReportChanges found = compare_runs(before, after, "old.json");
+  ASSERT_EQ(found.changes.size(), 4u);
+  EXPECT_FALSE(found.changes[0].significant);
+  EXPECT_TRUE(found.changes[1].significant);
+  EXPECT_NEAR(found.changes[1].ratio(), 1.3, 1e-12);
+  EXPECT_FALSE(found.changes[2].significant);
+  EXPECT_TRUE(found.changes[3].significant);
+  ASSERT_EQ(found.lost.size(), 1u);
+  EXPECT_EQ(found.lost[0].name, "gone");
+  EXPECT_EQ(found.added, std::vector<std::string>{"new"});
+  const std::string table = changes_table(found);
+  EXPECT_THAT(table, HasSubstr("13.0000 +- 0.1000    1.300 HIGHER"));
+  EXPECT_THAT(table, HasSubstr("0.500 lower"));
+}
+
+TEST(BenchCompare, OneRepetitionHasNoSpread) {
+  nlohmann::json once = report({{"row", 10, 0}});
+  once["benchmarks"][0]["n"] = 1;
+  const ReportChanges found = compare_runs(once, report({{"row", 12, 0}}), "old.json");
+  EXPECT_FALSE(found.changes.at(0).significant);
+  EXPECT_THAT(changes_table(found), HasSubstr("spread unknown"));
+  EXPECT_THROW(require_ratios(found, 1.1), Error);
+  EXPECT_NO_THROW(require_ratios(found, 1.3));
+}
+
+TEST(BenchCompare, RatiosAboveALimitFail) {
+  const ReportChanges found = compare_runs(report({{"noisy", 10, 5}, {"fast", 10, 0.1}}),
+                                           report({{"noisy", 15, 5}, {"fast", 5, 0.1}}), "o");
+  EXPECT_NO_THROW(require_ratios(found, 1.2)) << "a change within the spread is none";
+  const ReportChanges slow =
+      compare_runs(report({{"slow", 10, 0.1}}), report({{"slow", 15, 0.1}}), "o");
+  EXPECT_NO_THROW(require_ratios(slow, 1.6));
+  try {
+    require_ratios(slow, 1.2);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::validation);
+    EXPECT_THAT(error.what(), HasSubstr("slow (1.500)"));
+  }
+  const test::Outcome alone = test::run_here("bench ceilings --fail-above 1.2");
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_THAT(alone.err, HasSubstr("--compare"));
+}
+
+/// Runs `clpv compare NEW OLD` on these reports.
+test::Outcome compare_files(const nlohmann::json& before, const nlohmann::json& after,
+                            const std::string& options = " --fail-above 1.2") {
+  const test::TemporaryFolder folder;
+  const std::string old = folder.write("old.json", before.dump()).string(),
+                    now = folder.write("new.json", after.dump()).string();
+  return test::run_here("compare " + now + " " + old + options);
+}
+
+TEST(BenchCompare, ReportsOfQualityAndStats) {
+  const auto quality = [](double nrmse, double ms) {
+    return nlohmann::json{{"cells",
+                           {{{"scene", "cornell"},
+                             {"camera", "front"},
+                             {"rejected", ""},
+                             {"options", {{"basis", "sh2"}}},
+                             {"nrmse", nrmse},
+                             {"times", {time_record("frame", {ms})}}}}}};
+  };
+  const auto stats = [](double ms) {
+    return nlohmann::json{
+        {"times", {time_record("frame", {2 * ms}), time_record({Pass::gather, 1}, {ms})}}};
+  };
+  EXPECT_EQ(compare_files(quality(0.2, 10), quality(0.21, 11)).exit_code, 0);
+  const test::Outcome worse = compare_files(quality(0.2, 10), quality(0.3, 10));
+  EXPECT_EQ(worse.exit_code, 5);
+  EXPECT_THAT(worse.out, HasSubstr("1.500 HIGHER"));
+  EXPECT_THAT(worse.err, HasSubstr("cornell:front basis=sh2 nrmse (1.500)"));
+  const test::Outcome slow = compare_files(stats(10), stats(13));
+  EXPECT_EQ(slow.exit_code, 5);
+  EXPECT_THAT(slow.out, HasSubstr("spread unknown"));
+  EXPECT_THAT(slow.err, HasSubstr("gather/cascade:1 (1.300)"));
+  EXPECT_EQ(compare_files(stats(10), stats(11)).exit_code, 0);
+  const test::Outcome mixed = compare_files(stats(10), quality(0.2, 10));
+  EXPECT_EQ(mixed.exit_code, 3);
+  EXPECT_THAT(mixed.err, HasSubstr("two reports of one command"));
+}
+
+/// A report of quality: a lit view, and a dark one without error relative to its ground truth.
+nlohmann::json two_cells() {
+  const auto cell = [](const char* camera, const nlohmann::json& nrmse) {
+    return nlohmann::json{{"scene", "s"},   {"camera", camera},
+                          {"rejected", ""}, {"options", nlohmann::json::object()},
+                          {"nrmse", nrmse}, {"times", {time_record("frame", {10})}}};
+  };
+  return {{"cells", {cell("lit", 0.2), cell("dark", nullptr)}}};
+}
+
+// `--fail-above` once passed each of these.
+TEST(BenchCompare, AGateWithoutAComparisonFails) {
+  const nlohmann::json bench = report({{"a", 10, 0.1}, {"b", 10, 0.1}}), quality = two_cells();
+  const auto changed = [](nlohmann::json report, const char* place, const nlohmann::json& value) {
+    report[nlohmann::json::json_pointer(place)] = value;
+    return report;
+  };
+  const nlohmann::json none = nlohmann::json::array();
+  struct Gate {
+    nlohmann::json before, after;
+    int code;
+    const char* word;
+  };
+  for (const Gate& gate : std::vector<Gate>{
+           {bench, report({}), 5, "2 rows have lost their value: a (not in this run)"},
+           {report({}), report({}), 5, "no row has a value in both"},
+           {report({}), bench, 5, "no row has a value in both"},
+           {bench, report({{"a", 10, 0.1}}), 5, "b (not in this run)"},
+           {bench, report({{"a", 10, 0.1}, {"B", 10, 0.1}}), 5, "b (not in this run)"},
+           {bench, changed(bench, "/benchmarks/1/status", "unsupported"), 5, "b (unsupported)"},
+           {bench, changed(bench, "/benchmarks/1/status", "wrong"), 5, "b (wrong)"},
+           {bench, changed(bench, "/benchmarks/1/median", nullptr), 3, "/benchmarks/1/median"},
+           {bench, changed(bench, "/benchmarks/1/median", "10"), 3, "/benchmarks/1/median"},
+           {report({{"a", 0, 0}}), report({{"a", 1, 0}}), 5, "a (inf)"},
+           {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 10, 0}}), 5, "a (2)"},
+           {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 20, 0}, {"a", 10, 0}}), 5,
+            "a (2.000)"},
+           {report({{"a", 10, 0}, {"a", 10, 0}}), report({{"a", 10, 0}, {"a", 10, 0}}), 0,
+            "several rows 'a': compared in their order"},
+           {quality, changed(quality, "/cells", none), 5, "s:lit nrmse (not in this run)"},
+           {quality, changed(quality, "/cells/0/rejected", "why"), 5, "s:lit nrmse (rejected)"},
+           {quality, changed(quality, "/cells/0/nrmse", nullptr), 5, "s:lit nrmse (undefined)"},
+           {quality, changed(quality, "/cells/0/nrmse", "0.2"), 3, "/cells/0/nrmse"},
+           {quality, changed(quality, "/cells/0/nrmse", -1), 3, "/cells/0/nrmse"},
+           {quality, changed(quality, "/cells/0/camera", "other"), 5, "s:lit nrmse"},
+           {bench, bench, 0, ""},
+           {report({{"a", 0, 0}}), report({{"a", 0, 0}}), 0, ""},
+           {changed(bench, "/benchmarks/1/status", "unsupported"),
+            changed(bench, "/benchmarks/1/status", "unsupported"), 0, ""},
+           {quality, quality, 0, ""},
+       }) {
+    const test::Outcome outcome = compare_files(gate.before, gate.after);
+    EXPECT_EQ(outcome.exit_code, gate.code) << gate.word << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(gate.word));
+  }
+  EXPECT_THAT(compare_files(quality, quality).out,
+              HasSubstr("s:dark nrmse: - (undefined in both)"));
+}
+
+// `clpv compare` without a limit once printed an empty table and passed.
+TEST(BenchCompare, ReportsWithoutACommonRowFail) {
+  const nlohmann::json one = report({{"a", 10, 0.1}}), other = report({{"b", 10, 0.1}});
+  const test::Outcome outcome = compare_files(one, other, "");
+  EXPECT_EQ(outcome.exit_code, 5);
+  EXPECT_THAT(outcome.out, HasSubstr("a: LOST: not in this run\nb: only in this run"));
+  EXPECT_THAT(outcome.err, HasSubstr("no row has a value in both reports"));
+  EXPECT_EQ(compare_files(report({{"a", 10, 0.1}, {"b", 10, 0.1}}), other, "").exit_code, 0)
+      << "a lost row is reported, and fails only with a limit";
+  const test::TemporaryFolder folder;
+  const std::string old = folder.write("old.json", one.dump()).string();
+  EXPECT_EQ(test::run_here("bench ceilings --filter launch --compare " + old).exit_code, 5);
+}
+
+TEST(BenchCompare, LimitsAreNumbers) {
+  for (const char* limit : {"nan", "inf", "-inf", "0.5", "", "1.2x", "1e400"}) {
+    const test::Outcome outcome =
+        test::run_here(std::string("compare a.json b.json --fail-above '") + limit + "'");
+    EXPECT_EQ(outcome.exit_code, 2) << limit;
+    EXPECT_THAT(outcome.err, HasSubstr("--fail-above")) << limit;
+  }
+  for (const char* option :
+       {"compare a.exr b.exr --amplify nan", "compare a.exr b.exr --exposure nan",
+        "pathtrace x.json -o a.exr --noise nan"}) {
+    const test::Outcome outcome = test::run_here(option);
+    EXPECT_EQ(outcome.exit_code, 2) << option;
+    EXPECT_THAT(outcome.err, HasSubstr("found 'nan'")) << option;
+  }
+}
+
+TEST(BenchPublished, CellsAreThoseOfTheTable) {
+  EXPECT_EQ(published_ms(Pass::inject_light, "sh2", true, 1), 2.292);
+  EXPECT_EQ(published_ms(Pass::propagate, "srbf8v2", false, 2), 7.019);
+  EXPECT_EQ(published_ms(Pass::gather, "srbf4", true, std::nullopt), 1.214);
+  EXPECT_FALSE(published_ms(Pass::inject_geometry, "sh2", true, 0));
+  EXPECT_FALSE(published_ms(Pass::propagate, "sh2", true, 3));
+  EXPECT_FALSE(published_ms(Pass::propagate, "sh3", true, 0));
+}
+
+/// The keys of docs/benchmarks.md: of the context, of a row.
+const std::vector<std::string> kContext = test::words_of(
+    "date host_name device driver platform build_options kernel_hash git_describe host_cpu "
+    "clpv_version executable library_build_type");
+const std::vector<std::string> kRow = test::words_of(
+    "name run_name suite stage basis layout storage lobe transport run_type status time_unit "
+    "ceiling occlusion filtered samples_ms coefficients n grid iterations repetitions threads "
+    "family_index min "
+    "median p95 max mad real_time cpu_time wall_ms first_launch_ms build_ms device_bytes "
+    "host_bytes flops bytes reads_per_cell writes_per_cell covered set_up listed entries gflops "
+    "gbps "
+    "max_rel_error tolerance ceiling_share");
+
+TEST(BenchSuites, ActionsGetMedians) {
+  SuiteOptions options = small();
+  options.bases = {"sh2"};
+  const std::vector<Row> rows = rows_of(layouts_suite(), "^sweep.*half$", options);
+  expect_right(rows);
+  EXPECT_EQ(to_json(rows[0], 0)["transport"], "sweep");
+  const nlohmann::json actions = nlohmann::json::parse(report_github_action(rows));
+  ASSERT_EQ(actions.size(), rows.size());
+  EXPECT_EQ(actions[0]["name"], "sweep/sh2/soa/half");
+  EXPECT_EQ(actions[0]["unit"], "ms");
+  EXPECT_GT(actions[0]["value"], 0);
+}
+
+TEST(LongBenchSuites, Table1HasThePublishedTimes) {
+  const std::vector<Row> rows = rows_of(
+      table1_suite(), "(inject-|gather).*/sh2/.*(cascade:0|gather/.*soa.*)$|gather/sh2/soa");
+  expect_right(rows);
+  const std::vector<std::string> names = names_of(rows);
+  ASSERT_THAT(names, ::testing::IsSupersetOf(
+                         {"inject-light/sh2/image/half/rotate-kernel/occlusion/cascade:0",
+                          "inject-geometry/sh2/image/half/rotate-kernel/occlusion/cascade:0",
+                          "gather/sh2/soa/float"}));
+  EXPECT_EQ(rows[0].published_ms, 2.028);
+  EXPECT_FALSE(rows[1].published_ms);
+  const std::string table = table1_suite().table(rows);
+  EXPECT_THAT(table, ::testing::ContainsRegex("injection, small +2\\.028 +[0-9.]+"));
+  EXPECT_THAT(table, ::testing::ContainsRegex("geometry volume, small +- +[0-9.]+"));
+}
+
+TEST(LongBenchSuites, FactorsHaveSumsAndDifferencesFromThePreset) {
+  const std::vector<Row> rows =
+      rows_of(factors_suite(), "/sh2/.*paper/(|rsm-format=float|layout=soa)$");
+  std::map<std::string, Row> sums;
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.status, Status::ok) << row.name << ": " << row.reason;
+    if (row.stage == "sum") sums[row.changed] = row;
+  }
+  ASSERT_EQ(sums.size(), 3u);
+  EXPECT_EQ(sums[""].difference, 0.0);
+  EXPECT_GT(sums["rsm-format=float"].difference, 0.0) << "8-bit normals were rounded";
+  EXPECT_LT(sums["rsm-format=float"].difference, 0.1);
+  EXPECT_LT(sums["layout=soa"].difference, 0.01) << "the same numbers in another order";
+  const double halves = 16 * 16 * 16 * 4 * 3 * 2;
+  EXPECT_GE(sums[""].volume_bytes, halves);
+  EXPECT_LT(sums[""].volume_bytes, 1.1 * halves) << "a border between channels";
+  double parts = 0;
+  for (const Row& row : rows) {
+    if (row.changed.empty() &&
+        (row.stage == "inject-light" || row.stage == "propagate" || row.stage == "gather"))
+      parts += row.times.median;
+  }
+  EXPECT_NEAR(sums[""].times.median, parts, 1e-9);
+  EXPECT_THAT(factors_suite().table(rows), HasSubstr("0.0000  -\n"));
+}
+
+TEST(BenchSuites, EveryPassOfRasterizingIsRight) {
+  const std::vector<Row> rows = rows_of(rasterize_suite(), "");
+  expect_right(rows);
+  EXPECT_THAT(names_of(rows), ElementsAre("rasterize-camera", "rasterize-shadow", "rasterize-rsm"));
+  EXPECT_EQ(rows[0].cost.pixels, 96 * 54);
+  EXPECT_EQ(rows[1].cost.pixels, 128 * 128);
+  EXPECT_EQ(rows[2].cost.pixels, 3 * 64 * 64);
+  EXPECT_THAT(rasterize_suite().table(rows), HasSubstr("ns/triangle"));
+}
+
+const std::string kOneRow = "bases --basis sh2 --filter 'propagate/sh2/soa/float$' --repetitions 3";
+
+TEST(BenchProgram, JsonHasEveryKeyComparesAndIsDrawn) {
+  const test::TemporaryFolder folder;
+  const std::string
+      old =
+          folder.write("old.json", report({{"propagate/sh2/soa/float", 1e-6, 0}}).dump()).string(),
+      now = (folder / "new.json").string();
+  const auto out = test::run_here("bench " + kOneRow + " --output " + now + " --compare " + old +
+                                  " --plot " + (folder / "plots").string());
+  ASSERT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_THAT(out.out, ::testing::ContainsRegex(
+                           "propagate/sh2/soa/float +0.0000 .*(HIGHER|within the spread)"))
+      << "three repetitions on a busy machine may have any spread";
+  const nlohmann::json document = nlohmann::json::parse(test::read_file(now));
+  const nlohmann::json& row = document["benchmarks"][0];
+  EXPECT_EQ(document["context"]["schema"], 2);
+  EXPECT_GT(document["context"]["ceilings"]["gflops"], 0);
+  for (const std::string& key : kContext) EXPECT_TRUE(document["context"].contains(key)) << key;
+  for (const std::string& key : kRow) EXPECT_TRUE(row.contains(key) && !row[key].is_null()) << key;
+  EXPECT_EQ(row["samples_ms"].size(), 3u);
+  EXPECT_EQ(row["name"], "propagate/sh2/soa/float");
+  EXPECT_EQ(row["status"], "ok");
+  EXPECT_LE(row["max_rel_error"].get<double>(), row["tolerance"]);
+  EXPECT_GT(row["flops"],
+            32.0 * 32 * 32 * 3 * 8 * 36);  // at least 36 multiply-adds per cell, channel and step
+  EXPECT_THAT(test::read_file(folder / "plots/roofline.svg"), HasSubstr("<svg"));
+  EXPECT_THAT(test::read_file(folder / "plots/roofline.png"), HasSubstr("PNG"));
+}
+
+TEST(BenchProgram, AnAlteredLiteralIsCaught) {
+  const test::TemporaryFolder folder;
+  std::string text = test::read_file(std::string(CLPV_SOURCE_DIR) + "/kernels/steps/face_flux.h");
+  const std::string half = "return 0.5f *";
+  const auto at = text.find(half);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, half.size(), "return 0.50005f *");
+  folder.write("steps/face_flux.h", text);
+  const auto out = test::run("CLPV_KERNEL_DIR=" + folder.path().string() +
+                             " CLPV_PROGRAM_CACHE=off " CLPV_PROGRAM " " + "bench " + kOneRow);
+  EXPECT_EQ(out.exit_code, static_cast<int>(ExitCode::validation)) << out.out << out.err;
+  EXPECT_THAT(out.out, HasSubstr("WRONG"));
+  EXPECT_THAT(out.err, HasSubstr("propagate/sh2/soa/float"));
+}
+
+}  // namespace
+}  // namespace clpv::bench::bench_test

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: MIT
+// Output files are complete or absent; headers of .npy files.
+#include "support/output_file.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <future>
+#include <iterator>
+
+#include "support/array_files.hpp"
+#include "support/input_file.hpp"
+#include "support/interrupt.hpp"
+#include "support/log.hpp"
+#include "support/progress.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace clpv::output_file_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutputFile : public testing::Test {
+ protected:
+  std::size_t entries() const {
+    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  }
+
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
+};
+
+using test::error_of;
+using test::read_file;
+using ::testing::HasSubstr;
+
+TEST_F(OutputFile, ReplacesWholeFilesAndLeavesNothingBeside) {
+  const fs::path path = folder_ / "out.txt";
+  write_file(path, std::string_view("a longer first content"));
+  write_file(path, std::string_view("second"));
+  EXPECT_EQ(read_file(path), "second");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(OutputFile, CheckLeavesNothingAndKeepsWhatIsThere) {
+  check_writable(folder_ / "new.txt");
+  EXPECT_EQ(entries(), 0u);
+  write_file(folder_ / "old.txt", std::string_view("old"));
+  check_writable(folder_ / "old.txt");
+  EXPECT_EQ(read_file(folder_ / "old.txt"), "old");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(OutputFile, RejectsPathsThatCannotBeFiles) {
+  write_file(folder_ / "file", std::string_view("x"));
+  for (const fs::path& path : {folder_ / "none/a.exr", folder_, fs::path(), folder_ / "",
+                               folder_ / "file/a.exr", fs::path("/dev/null")}) {
+    const std::string message = error_of(ExitCode::run_time, [&] { check_writable(path); });
+    EXPECT_NE(message.find(path.string()), std::string::npos) << message;
+  }
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+// A link to a missing file was once replaced by the file.
+TEST_F(OutputFile, FollowsASymbolicLinkToAFileOrToNone) {
+  fs::create_symlink("target", folder_ / "link");
+  for (const std::string_view text : {"first", "second"}) {
+    write_file(folder_ / "link", text);
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+    EXPECT_EQ(read_file(folder_ / "target"), text);
+  }
+}
+
+mode_t mode_of(const fs::path& path) {
+  struct stat found {};
+  EXPECT_EQ(::stat(path.c_str(), &found), 0);
+  return found.st_mode & 07777;
+}
+
+// Overwriting a private file once made it readable for all.
+TEST_F(OutputFile, KeepsTheModeOfTheFileThatItReplaces) {
+  const mode_t before = ::umask(027);
+  write_file(folder_ / "new", std::string_view("x"));
+  EXPECT_EQ(mode_of(folder_ / "new"), 0640u) << "as umask says";
+  for (const mode_t mode : {0600u, 0644u, 0666u, 0755u}) {
+    ::chmod((folder_ / "new").c_str(), mode);
+    write_file(folder_ / "new", std::string_view("y"));
+    EXPECT_EQ(mode_of(folder_ / "new"), mode);
+  }
+  ::umask(before);
+}
+
+TEST_F(OutputFile, ARenameThatFailsKeepsWhatIsThereAndSaysSo) {
+  clpv::OutputFile output(folder_ / "a");
+  fs::create_directories(folder_ / "a/b");
+  EXPECT_THAT(error_of(ExitCode::run_time, [&] { output.commit(); }),
+              HasSubstr("a: cannot be written: "));
+  EXPECT_TRUE(fs::exists(folder_ / "a/b"));
+}
+
+TEST_F(OutputFile, SignalsLeaveNoTemporaryFile) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      std::signal(signal, SIG_DFL);
+      catch_interrupts();
+      clpv::OutputFile first(folder_ / "a"), second(folder_ / "b");
+      { clpv::OutputFile third(folder_ / "c"); }
+      ::raise(signal);
+      const bool both = entries() == 2;  // they end with the work
+      ::raise(signal);                   // this one ends the process
+      ::_exit(both ? 1 : 2);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status)) << WEXITSTATUS(status);
+    EXPECT_EQ(WTERMSIG(status), signal);
+    EXPECT_EQ(entries(), 0u);
+  }
+}
+
+// An input that was not known when the work began was once replaced at its end.
+TEST_F(OutputFile, NoInputIsReplacedEvenIfItIsReadDuringTheWork) {
+  const fs::path input = folder_ / "input", late = folder_ / "late", linked = folder_ / "linked";
+  for (const fs::path& path : {input, late}) write_file(path, std::string_view("x"));
+  fs::create_hard_link(late, linked);
+  {
+    const InputRecord record;
+    clpv::OutputFile output(linked);
+    for (const fs::path& path : {input, late}) clpv::read_file(path, 10, "scene.json", "/model");
+    const std::string message = error_of(ExitCode::usage, [&] { output.commit(); });
+    EXPECT_THAT(message, HasSubstr("linked: found the file of scene.json /model"));
+    for (const fs::path& path : {input, late}) {
+      error_of(ExitCode::usage, [&] { check_writable(path); });
+      error_of(ExitCode::usage, [&] { write_file(path, std::string_view("y")); });
+      EXPECT_EQ(read_file(path), "x");
+    }
+    InputRecord::close();
+    write_file(folder_ / "frame", std::string_view("1"));
+    clpv::read_file(folder_ / "frame", 10, "frame");
+    write_file(folder_ / "frame", std::string_view("2"));
+    error_of(ExitCode::usage, [&] { check_writable(input); });
+  }
+  write_file(input, std::string_view("y"));
+  EXPECT_EQ(entries(), 4u);
+}
+
+// The temporary file's name was once longer than a name may be.
+TEST_F(OutputFile, NamesMayHaveTheirWholeLength) {
+  for (const std::size_t length : {240u, 242u, 254u, 255u}) {
+    const fs::path path = folder_ / std::string(length, 'a');
+    check_writable(path);
+    write_file(path, std::string_view("x"));
+    EXPECT_EQ(read_file(path), "x");
+  }
+  const std::string message =
+      error_of(ExitCode::run_time, [&] { check_writable(folder_ / std::string(256, 'a')); });
+  EXPECT_NE(message.find("File name too long"), std::string::npos) << message;
+}
+
+TEST_F(OutputFile, OneFileHasOneUse) {
+  write_file(folder_ / "scene.json", std::string_view("{}"));
+  fs::create_symlink("scene.json", folder_ / "link.json");
+  fs::create_hard_link(folder_ / "scene.json", folder_ / "hard.json");
+  fs::create_symlink("new.exr", folder_ / "link.exr");
+  fs::create_directory(folder_ / "below");
+  const std::vector<NamedFile> inputs{{"SCENE", folder_ / "scene.json"}, {"--model", ""}};
+  check_outputs(
+      {{"--output", folder_ / "new.exr"}, {"--stats", folder_ / "new.json"}, {"--log", ""}},
+      inputs);
+  for (const char* same : {"scene.json", "below/../scene.json", "link.json", "hard.json"}) {
+    const std::string message = error_of(ExitCode::usage, [&] {
+      check_outputs({{"--stats", folder_ / same}}, inputs);
+    });
+    EXPECT_NE(message.find("--stats"), std::string::npos) << message;
+    EXPECT_NE(message.find("SCENE"), std::string::npos) << message;
+  }
+  for (const char* same : {"new.exr", "./new.exr", "link.exr"}) {
+    error_of(ExitCode::usage, [&] {
+      check_outputs({{"--output", folder_ / "new.exr"}, {"--stats", folder_ / same}}, {});
+    });
+  }
+}
+
+TEST_F(OutputFile, OneOfSeveralWritersWinsWhole) {
+  const fs::path path = folder_ / "shared";
+  std::vector<pid_t> writers;
+  for (char letter = 'a'; letter < 'e'; ++letter) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      for (int i = 0; i < 50; ++i) write_file(path, std::string(200000, letter));
+      ::_exit(0);
+    }
+    writers.push_back(child);
+  }
+  for (bool running = true; running;) {
+    running =
+        std::ranges::any_of(writers, [](pid_t id) { return ::waitpid(id, nullptr, WNOHANG) == 0; });
+    const std::string found = read_file(path);
+    if (found.empty()) continue;  // before the first
+    ASSERT_EQ(found, std::string(200000, found.front()));
+  }
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(OutputFile, NpyHasNumPysHeaderAndTheValues) {
+  const std::vector<float> values{1, -2, 3.5f, 4, 5, 1e-30f};
+  const std::size_t shape[] = {3, 1, 2}, line[] = {6};
+  write_npy(folder_ / "a.npy", values, shape);
+  const std::string file = read_file(folder_ / "a.npy");
+  const std::size_t header = file.size() - values.size() * 4;
+  EXPECT_EQ(header % 64, 0u);
+  EXPECT_EQ(std::memcmp(file.data() + header, values.data(), values.size() * 4), 0);
+  EXPECT_TRUE(file.starts_with(std::string("\x93NUMPY\x01\x00", 8)));
+  EXPECT_EQ(file.find("{'descr': '<f4', 'fortran_order': False, 'shape': (3, 1, 2), }"), 10u);
+  EXPECT_EQ(static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]),
+            header - 10);
+  write_npy(folder_ / "b.npy", values, line);
+  EXPECT_NE(read_file(folder_ / "b.npy").find("'shape': (6,), }"), std::string::npos);
+}
+
+TEST(ProgressLine, ShowsShareAndTimeLeft) {
+  EXPECT_EQ(progress_line("tracing", 0, 10, 1, 200),
+            "tracing [..............................]   0 % ");
+  EXPECT_EQ(progress_line("tracing", 5, 10, 90, 200),
+            "tracing [###############...............]  50 % 1:30 left");
+  EXPECT_NE(progress_line("tracing", 1, 101, 60, 200).find("1:40:00 left"), std::string::npos);
+  EXPECT_NE(progress_line("tracing", 12, 10, 60, 200).find("100 % 0:00 left"), std::string::npos);
+  EXPECT_EQ(progress_line("tracing", 5, 10, 90, 10).size(), 10u);
+  EXPECT_EQ(progress_line("a\x1b[2Jb", 5, 10, 90, 8), "a?[2Jb [");
+}
+
+/// What a process with this TERM and NO_COLOR draws on a terminal in 1.2 s.
+std::string drawn_with(const char* terminal, const char* no_color) {
+  int master = -1;
+  const pid_t child = ::forkpty(&master, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    log_to_stderr(LogLevel::info);
+    ::setenv("TERM", terminal, 1);
+    ::setenv("NO_COLOR", no_color, 1);
+    {
+      Progress progress("tracing", 10);
+      ::usleep(1100000);
+      progress.skip(8);
+      progress.advance();
+    }
+    ::_exit(0);
+  }
+  std::string text;
+  char bytes[256];
+  for (ssize_t count; (count = ::read(master, bytes, sizeof bytes)) > 0;)
+    text.append(bytes, static_cast<std::size_t>(count));
+  ::close(master);
+  ::waitpid(child, nullptr, 0);
+  return text;
+}
+
+TEST(ProgressLine, EscapeCodesNeedATerminalThatTakesThem) {
+  if (const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY); terminal >= 0)
+    ::close(terminal);
+  else
+    GTEST_SKIP() << "no pseudo-terminal: /dev/ptmx cannot be opened";
+  const auto draw = [](const char* terminal, const char* no_color) {
+    return std::async(std::launch::async, drawn_with, terminal, no_color);
+  };
+  auto usual = draw("xterm", ""), dumb = draw("dumb", ""), unset = draw("", ""),
+       plain = draw("xterm", "1");
+  EXPECT_THAT(usual.get(), ::testing::AllOf(::testing::HasSubstr("\x1b[K"),
+                                            ::testing::HasSubstr(" 50 % 0:01 left")))
+      << "1 of the 2 that were not skipped";
+  for (auto* quiet : {&dumb, &unset, &plain})
+    EXPECT_EQ(quiet->get(), "") << "a first line comes after 10 s";
+}
+
+TEST(ProgressWords, ShowCountsShareAndTimeLeft) {
+  EXPECT_EQ(progress_words("quality", 118, 360, 65), "quality: 118 of 360, 33 %, 2:13 left");
+}
+
+TEST(ProgressLine, NothingIsDrawnWhereStderrIsNoTerminal) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("tracing", 2);
+    progress.advance();
+    progress.advance();
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace clpv::output_file_test

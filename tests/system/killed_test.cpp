@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+// Runs ended from outside. Killed at random moments (fixed seed), they leave complete files or
+// none, and the next run is right. Interrupted, they report which results exist.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "image/image_io.hpp"
+#include "support/interrupt.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace clpv::test::killed_test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+
+/// Moments a command is killed at; more by CLPV_KILLED_MOMENTS.
+int moments() {
+  const char* wish = std::getenv("CLPV_KILLED_MOMENTS");
+  return wish != nullptr ? std::atoi(wish) : 2;
+}
+
+/// A process in a separate group, so that a signal reaches it and its children.
+class Child {
+ public:
+  Child(const std::string& command, const fs::path& said) {
+    pid_ = ::fork();
+    if (pid_ != 0) return;
+    ::setpgid(0, 0);
+    // A shell ignores SIGINT for tests that it starts in the background.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
+    ::execl("/bin/sh", "sh", "-c", ("exec " + command + " >/dev/null 2>" + said.string()).c_str(),
+            nullptr);
+    ::_exit(127);
+  }
+  ~Child() {
+    if (pid_ > 0) end(SIGKILL);
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  bool running() const { return ::waitpid(pid_, &status_, WNOHANG) == 0; }
+  /// True once exec() has run and the program handles SIGINT; before that, SIGINT ends it without a
+  /// message.
+  bool listens() const {
+    std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+    std::string word, name;
+    std::uint64_t caught = 0;
+    while (status >> word) {
+      if (word == "Name:") status >> name;
+      if (word == "SigCgt:") status >> std::hex >> caught;
+    }
+    return name == "clpv" && (caught >> (SIGINT - 1) & 1) != 0;
+  }
+  /// The exit code, or 128 + the signal that ended it.
+  int end(int signal) {
+    ::kill(pid_, signal);
+    ::waitpid(pid_, &status_, 0);
+    pid_ = -1;
+    return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+  }
+
+ private:
+  pid_t pid_ = -1;
+  mutable int status_ = 0;
+};
+
+class Killed : public ::testing::Test {
+ protected:
+  /// Runs `arguments` to their end and measures the time; then kills them at moments within that
+  /// time, and calls `look` after each. A whole run must go well then.
+  template <typename Look>
+  void kill_at_moments(const std::string& arguments, const Look& look) {
+    const auto started = Clock::now();
+    const Outcome whole = run(CLPV_PROGRAM " " + arguments);
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    const double span = std::chrono::duration<double>(Clock::now() - started).count();
+    std::mt19937 random(20261122);
+    std::uniform_real_distribution<double> moment(0, span);
+    for (int i = 0; i < moments(); ++i) {
+      Child child(CLPV_PROGRAM " " + arguments, folder_ / "said");
+      std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
+      child.end(SIGKILL);
+      look();
+    }
+    const Outcome again = run(CLPV_PROGRAM " " + arguments);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    look();
+  }
+
+  /// Each .json below that folder can be read.
+  static void expect_whole_json(const fs::path& folder) {
+    if (!fs::exists(folder)) return;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with(".") || !name.ends_with(".json")) continue;
+      EXPECT_TRUE(nlohmann::json::accept(read_file(entry.path()))) << entry.path();
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+const std::string kSmall = " --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 ";
+
+TEST_F(Killed, WhileQualityMeasures) {
+  const fs::path json = folder_ / "q.json";
+  kill_at_moments("quality " + kTiny + kSmall +
+                      "--basis sh2 --gather all --blockers seen --transport sampled --vary "
+                      "iterations=1,2 --width 24 --height 18 --spp 4 --frames 1 --cache " +
+                      (folder_ / "kept").string() + " --output " + json.string(),
+                  [&] {
+                    expect_whole_json(folder_ / "kept");
+                    EXPECT_TRUE(nlohmann::json::accept(read_file(json)));
+                    for (const auto& entry : fs::directory_iterator(folder_ / "kept/references")) {
+                      if (entry.path().extension() == ".exr") {
+                        EXPECT_NO_THROW(read_image(entry.path()));
+                      }
+                    }
+                  });
+}
+
+/// Long enough to be met at work: frames without end.
+std::string sequence(const fs::path& folder, int frames = 1000) {
+  return "sequence " CLPV_SOURCE_DIR "/scenes/atrium_living.json --frames " +
+         std::to_string(frames) + " --fps 24 --width 16 --height 9" + kSmall +
+         "--basis sh2 --transport sampled --gather all --blockers seen -o " + folder.string();
+}
+
+/// Numbers of the frames in a folder, and of those with a line in its times.jsonl.
+std::set<int> frames_in(const fs::path& folder) {
+  std::set<int> found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (const std::string name = entry.path().filename().string(); name.starts_with("frame-"))
+      found.insert(std::stoi(name.substr(6)));
+  return found;
+}
+std::set<int> frames_with_times(const fs::path& folder) {
+  std::set<int> found;
+  std::ifstream in(folder / "times.jsonl");
+  for (std::string line; std::getline(in, line);)
+    if (const auto json = nlohmann::json::parse(line, nullptr, false);
+        json.is_object() && json.contains("frame"))
+      found.insert(json["frame"].get<int>());
+  return found;
+}
+
+TEST_F(Killed, EachFrameOfAKilledSequenceHasItsTimes) {
+  const fs::path film = folder_ / "film";
+  int frames = 0;
+  {
+    Child child(CLPV_PROGRAM " " + sequence(film), folder_ / "said");
+    for (int i = 0; i < 6000 && !fs::exists(film / "frame-0007.exr"); ++i)
+      std::this_thread::sleep_for(10ms);
+    ASSERT_EQ(child.end(SIGKILL), 128 + SIGKILL) << read_file(folder_ / "said");
+    EXPECT_THAT(frames_with_times(film), IsSupersetOf(frames_in(film)));
+    frames = static_cast<int>(frames_in(film).size()) + 2;
+  }
+  // Two processes resume it at once.
+  const std::string command = CLPV_PROGRAM " " + sequence(film, frames);
+  const Outcome both = run("( " + command + " ) & " + command + "; code=$?; wait $! && exit $code");
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  std::ifstream in(film / "times.jsonl");
+  nlohmann::json last;
+  for (std::string line; std::getline(in, line);) last = nlohmann::json::parse(line);
+  EXPECT_EQ(last["summary"]["frames"], frames);
+}
+
+TEST_F(Killed, AnInterruptIsReported) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const fs::path film = folder_ / ("film" + std::to_string(signal)), said = folder_ / "said";
+    Child child(CLPV_PROGRAM " " + sequence(film), said);
+    for (int i = 0; i < 600 && !fs::exists(film / "frame-0001.exr"); ++i)
+      std::this_thread::sleep_for(100ms);
+    ASSERT_TRUE(child.running()) << read_file(said);
+    EXPECT_EQ(child.end(signal), 128 + signal);
+    EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; "));
+    EXPECT_THAT(read_file(said), HasSubstr(" of 1000 frames are in " + film.string() +
+                                           "; the same command resumes"));
+    EXPECT_THAT(frames_with_times(film), IsSupersetOf(frames_in(film)));
+    for (const auto& entry : fs::directory_iterator(film)) {
+      EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+      if (entry.path().extension() == ".exr") {
+        EXPECT_NO_THROW(read_image(entry.path()));
+      }
+    }
+  }
+}
+
+TEST_F(Killed, AnInterruptedTruthIsNotWritten) {
+  const fs::path image = folder_ / "truth.exr", said = folder_ / "said";
+  Child child(CLPV_PROGRAM " pathtrace " CLPV_SOURCE_DIR "/scenes/cornell.json --spp 65536 -o " +
+                  image.string(),
+              said);
+  for (int i = 0; i < 600 && !child.listens(); ++i) std::this_thread::sleep_for(100ms);
+  std::this_thread::sleep_for(500ms);
+  ASSERT_TRUE(child.running()) << read_file(said);
+  EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
+  EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; nothing was written"));
+  EXPECT_FALSE(fs::exists(image));
+}
+
+/// Empty caches, so that a render compiles for seconds.
+std::string compiling(const fs::path& cache, const fs::path& image) {
+  fs::create_directories(cache / "pocl");
+  return "env XDG_CACHE_HOME=" + cache.string() + " POCL_CACHE_DIR=" + (cache / "pocl").string() +
+         " " CLPV_PROGRAM " -v render " + kTiny + kSmall + "-o " + image.string();
+}
+
+/// Waits until `text` is in the file.
+bool wait_for(const fs::path& said, const std::string& text) {
+  for (int i = 0; i < 1200; ++i, std::this_thread::sleep_for(50ms))
+    if (read_file(said).find(text) != std::string::npos) return true;
+  return false;
+}
+
+TEST_F(Killed, AnInterruptEndsHelpers) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "helpers need a second core";
+  const fs::path said = folder_ / "said";
+  Child child(compiling(folder_ / "cache", folder_ / "a.exr"), said);
+  ASSERT_TRUE(wait_for(said, "compiling ")) << read_file(said);
+  std::this_thread::sleep_for(1s);  // into a compilation
+  const Clock::time_point asked = Clock::now();
+  EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
+  EXPECT_LT(Clock::now() - asked, 10s) << "a whole compilation takes longer";
+  EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; kernels were being compiled"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+}
+
+TEST_F(Killed, AnInterruptWhileCompilingIsAnsweredAtOnce) {
+  const fs::path said = folder_ / "said";
+  Child child("taskset -c 0 " + compiling(folder_ / "cache", folder_ / "a.exr"),
+              said);  // one core: no helpers
+  ASSERT_TRUE(wait_for(said, "compiled in")) << read_file(said);
+  EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
+  EXPECT_THAT(read_file(said),
+              HasSubstr("clpv: stopping after this kernel; once more to stop now"));
+  EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; kernels were being compiled"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+}
+
+// Ctrl-C also reaches the linker of a driver, whose compiler then wrote "1 error generated." after
+// clpv's message.
+TEST(Interrupt, ACompilersWordsAfterItAreLost) {
+  const auto interrupted_work = [] {
+    ::signal(SIGINT, SIG_DFL);
+    catch_interrupts();
+    const auto say = [](const std::string& words) { fmt::print(stderr, "{}", words); };
+    {
+      const Uninterruptible work("this test");
+      say("before, ");
+      ::raise(SIGINT);
+      say("1 error generated.");
+    }
+    say("after");
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(interrupted_work(), ::testing::ExitedWithCode(0),
+              ::testing::AllOf(HasSubstr("before"), HasSubstr("stopping after this test"),
+                               HasSubstr("after"), ::testing::Not(HasSubstr("generated"))));
+}
+
+}  // namespace
+}  // namespace clpv::test::killed_test

@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: MIT
+// Promises of docs/security.md: caches trust only what this user wrote and never end a run; outputs
+// spare inputs; images tell nothing about the machine; clpv opens no connections.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "device/driver_cache.hpp"
+#include "device/program_cache.hpp"
+#include "image/image.hpp"
+#include "image/image_io.hpp"
+#include "quality/quality.hpp"
+#include "scene/load.hpp"
+#include "support/cache_folder.hpp"
+#include "support/log.hpp"
+#include "support/scratch_folder.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/gltf_builder.hpp"
+#include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/variable.hpp"
+#include "times/time_record.hpp"
+
+namespace clpv::trust_test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::kSmallSteps;
+using test::kTiny;
+using test::read_file;
+using test::run_here;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// ---------------------------------------------------------------------------------------------------
+// caches
+
+/// Mode bits of a file.
+mode_t mode_of(const fs::path& path) {
+  struct stat found {};
+  EXPECT_EQ(::lstat(path.c_str(), &found), 0) << path;
+  return found.st_mode & 07777;
+}
+
+struct CacheTest : ::testing::Test {
+  test::TemporaryFolder folder;
+  const CacheFolder cache{folder / "made/on demand"};
+  const fs::path entry = cache.path() / "entry", other = folder / "other";
+
+  void SetUp() override { folder.write("other", "of others"); }
+};
+
+TEST_F(CacheTest, FoldersAreForTheirOwnerOnly) {
+  const mode_t before = ::umask(002);
+  EXPECT_EQ(cache.write("entry", std::string_view("text")), "");
+  ::umask(before);
+  EXPECT_EQ(mode_of(cache.path()), 0700u);
+  EXPECT_EQ(mode_of(cache.path().parent_path()), 0700u);
+  EXPECT_EQ(cache.read("entry"), "text");
+  EXPECT_EQ(cache.read("entry", 3), std::nullopt) << "longer than allowed";
+  EXPECT_EQ(cache.read("absent"), std::nullopt);
+}
+
+TEST_F(CacheTest, LinksAndFifosAreNeitherReadNorWrittenThrough) {
+  ASSERT_EQ(cache.problem(), "");
+  const std::function<void()> plant[] = {[&] { fs::create_symlink(other, entry); },
+                                         [&] { fs::create_symlink(folder / "missing", entry); },
+                                         [&] { ASSERT_EQ(::mkfifo(entry.c_str(), 0666), 0); }};
+  for (const auto& make : plant) {
+    fs::remove(entry);
+    make();
+    EXPECT_EQ(cache.read("entry"), std::nullopt);
+    EXPECT_EQ(cache.write("entry", std::string_view("mine")), "");
+    EXPECT_EQ(cache.read("entry"), "mine");
+    EXPECT_EQ(read_file(other), "of others");
+    EXPECT_FALSE(fs::exists(folder / "missing"));
+  }
+  fs::remove(entry);
+  fs::create_directory(entry);
+  EXPECT_EQ(cache.read("entry"), std::nullopt);
+  EXPECT_THAT(cache.write("entry", std::string_view("mine")), HasSubstr("cannot be written"));
+}
+
+TEST_F(CacheTest, WhatOthersMayHaveWrittenIsNotUsed) {
+  ASSERT_EQ(cache.write("entry", std::string_view("mine")), "");
+  for (const mode_t mode : {0770u, 0707u, 0777u, 01777u}) {
+    ::chmod(cache.path().c_str(), mode);
+    EXPECT_EQ(cache.read("entry"), std::nullopt);
+    EXPECT_THAT(cache.write("second", std::string_view("x")), HasSubstr("chmod go-w"));
+    EXPECT_FALSE(fs::exists(cache.path() / "second"));
+  }
+  ::chmod(cache.path().c_str(), 0755);
+  EXPECT_EQ(cache.read("entry"), "mine");
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give files away";
+  ASSERT_EQ(::lchown(entry.c_str(), 65534, 65534), 0);
+  EXPECT_EQ(cache.read("entry"), std::nullopt) << "an entry of another user";
+  EXPECT_EQ(cache.write("entry", std::string_view("mine")), "");
+  EXPECT_EQ(cache.read("entry"), "mine");
+  ASSERT_EQ(::lchown(cache.path().c_str(), 65534, 65534), 0);
+  EXPECT_EQ(cache.read("entry"), std::nullopt) << "a folder of another user";
+  EXPECT_THAT(cache.write("entry", std::string_view("x")), HasSubstr("another user"));
+}
+
+TEST_F(CacheTest, AFolderThatCannotBeMadeIsAReason) {
+  EXPECT_THAT(CacheFolder(other / "below").write("entry", std::string_view("x")),
+              HasSubstr("Not a directory"));
+  EXPECT_EQ(CacheFolder(other / "below").read("entry"), std::nullopt);
+}
+
+TEST_F(CacheTest, ProgramsAndMarksAreEntries) {
+  const ProgramCache programs(cache.path());
+  const ProgramCache::Binary binary(10, 7);
+  ASSERT_TRUE(programs.store("key", binary));
+  fs::rename(programs.file_of("key"), folder / "moved");
+  fs::create_symlink(folder / "moved", programs.file_of("key"));
+  EXPECT_FALSE(programs.load("key"));
+  EXPECT_TRUE(programs.store("key", {1}));
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(programs.file_of("key"))));
+
+  const test::Variable variable("POCL_CACHE_DIR", (folder / "pocl").string());
+  Device device;
+  device.platform = "Portable Computing Language";
+  const CompiledMarks marks(device);
+  EXPECT_FALSE(marks.has("key"));
+  marks.add("key");
+  EXPECT_TRUE(marks.has("key"));
+  const fs::path mark = *fs::directory_iterator(folder / "pocl/clpv");
+  fs::remove(mark);
+  fs::create_symlink(other, mark);
+  EXPECT_FALSE(marks.has("key"));
+  marks.add("key");
+  EXPECT_TRUE(marks.has("key"));
+  EXPECT_EQ(read_file(other), "of others");
+}
+
+TEST_F(CacheTest, ADamagedCellIsMeasuredAgain) {
+  log_to_stderr(LogLevel::error);
+  QualityStore store(cache.path());
+  QualityCell cell;
+  cell.scene = "room", cell.nrmse = 0.25;
+  cell.times = {time_record("gather", {1.5})};
+  store.keep("k", cell);
+  ASSERT_TRUE(store.find("k"));
+  const std::string whole = read_file(cache.path() / "k.json");
+  for (std::size_t i = 0; i + 1 < whole.size(); ++i) {  // the last byte is the end of the line
+    std::string flipped = whole;
+    flipped[i] ^= 1;
+    for (const std::string& damaged : {flipped, whole.substr(0, i)}) {
+      fs::remove(cache.path() / "k.json");
+      CacheFolder(cache.path()).write("k.json", damaged);
+      const auto found = store.find("k");
+      EXPECT_TRUE(!found || to_json(*found) == to_json(cell)) << damaged;
+    }
+  }
+}
+
+TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
+  log_to_stderr(LogLevel::error);
+  const SceneData scene = load_scene(kTiny);
+  const auto traced = [&] {
+    return cached_ground_truth(cache.path(), scene, scene.cameras[0], 8, 6, {.samples = 1});
+  };
+  const GroundTruth first = traced();
+  ASSERT_TRUE(first.traced);
+  ASSERT_FALSE(traced().traced);
+  const std::string whole = read_file(first.file);
+  for (std::size_t i = 0; i < whole.size(); i += 97) {
+    std::string flipped = whole;
+    flipped[i] ^= 0x10;
+    for (const std::string& damaged : {flipped, whole.substr(0, i)}) {
+      CacheFolder(cache.path()).write(first.file.filename(), damaged);
+      const GroundTruth again = traced();
+      EXPECT_TRUE(extract_layer(again.image, "indirect", "again").pixels ==
+                  extract_layer(first.image, "indirect", "first").pixels)
+          << i;
+    }
+  }
+  EXPECT_EQ(read_file(first.file), whole) << "and replaced";
+}
+
+/// `clpv quality` of one cell.
+std::string quality(const fs::path& cache) {
+  return " quality " + kTiny + kSmallSteps + "--spp 1 --frames 1 --format json --cache " +
+         cache.string();
+}
+
+TEST_F(CacheTest, AFifoInPlaceOfACellOrTruthDoesNotEndQuality) {
+  const fs::path kept = folder / "kept";
+  ASSERT_EQ(run_here(quality(kept)).exit_code, 0);
+  for (const char* below : {"cells", "references"}) {
+    const fs::path file = *fs::directory_iterator(kept / below);
+    fs::remove(file);
+    ASSERT_EQ(::mkfifo(file.c_str(), 0666), 0);
+    const test::Outcome outcome = run_here(quality(kept));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("tiny"));
+    EXPECT_TRUE(fs::is_regular_file(file)) << below;
+  }
+}
+
+TEST_F(CacheTest, TwoProcessesShareOneQualityCacheAndOutput) {
+  const std::string command = CLPV_PROGRAM + quality(folder / "kept") +
+                              " --vary iterations=1,2 -o " + (folder / "a.json").string();
+  const test::Outcome both =
+      test::run("( " + command + " ) & " + command + "; code=$?; wait $! && exit $code");
+  EXPECT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_THAT(both.err, Not(HasSubstr("again")));
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder / "a.json")).at("cells").size(), 2u);
+  const test::Outcome third = run_here(quality(folder / "kept") + " --vary iterations=1,2");
+  EXPECT_THAT(third.err, Not(HasSubstr("again")));
+}
+
+// -------------------------------------------------------------------------------------- temporary
+// folders
+
+/// Paths below a folder and the contents of its files.
+std::map<std::string, std::string> contents_of(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    all[entry.path().string()] = entry.is_regular_file() ? read_file(entry.path()) : "";
+  return all;
+}
+
+/// A folder as TMPDIR.
+struct ScratchFolders : ::testing::Test {
+  test::TemporaryFolder folder;
+  const test::Variable variable{"TMPDIR", folder.path().string()};
+};
+
+TEST_F(ScratchFolders, AreForThisUserAloneAndDisappear) {
+  folder.write("clpv-output/a", "of the user");
+  const auto before = contents_of(folder.path());
+  {
+    const ScratchFolder scratch;
+    EXPECT_EQ(scratch.path().parent_path(), folder.path());
+    EXPECT_EQ(mode_of(scratch.path()), 0700u);
+  }
+  EXPECT_EQ(contents_of(folder.path()), before);
+}
+
+TEST_F(ScratchFolders, AMissingTmpdirIsNamed) {
+  const std::string absent = (folder / "absent").string();
+  const test::Outcome drawing = test::run(
+      "TMPDIR=" + absent + " " CLPV_PROGRAM " basis sh2 --figures " + (folder / "out").string());
+  // The usual kernels, of which nothing knows that they are compiled.
+  fs::create_directory(folder / "pocl");
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(test::usual_kernels_folder(), none))
+    if (entry.path().filename() != "clpv")
+      fs::create_symlink(entry.path(), folder / "pocl" / entry.path().filename());
+  const test::Outcome cold =
+      test::run("TMPDIR=" + absent + " POCL_CACHE_DIR=" + (folder / "pocl").string() +
+                " XDG_CACHE_HOME=" + folder.path().string() + " " CLPV_PROGRAM " render " + kTiny +
+                kSmallSteps + "-o " + (folder / "a.exr").string());
+  EXPECT_EQ(drawing.exit_code, 1);
+  EXPECT_THAT(drawing.err, HasSubstr("TMPDIR: found '" + absent + "'"));
+  EXPECT_EQ(cold.exit_code, 0) << "a frame that is compiled needs no such folder either\n"
+                               << cold.err;
+  const bool helped = std::thread::hardware_concurrency() > 1;
+  EXPECT_THAT(cold.err, HasSubstr(helped ? "TMPDIR: found '" + absent + "'" : ""));
+}
+
+/// What choose_driver_cache() sets with these variables; its message in `err`.
+fs::path chosen_cache(const fs::path& home, const std::string& cache, std::string& err) {
+  ::unsetenv("POCL_CACHE_DIR");
+  home.empty() ? ::unsetenv("HOME") : ::setenv("HOME", home.c_str(), 1);
+  cache.empty() ? ::unsetenv("XDG_CACHE_HOME") : ::setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+  log_to_stderr(LogLevel::info);
+  ::testing::internal::CaptureStderr();
+  choose_driver_cache();
+  err = ::testing::internal::GetCapturedStderr();
+  return driver_cache_folder().value_or("");
+}
+
+// Without HOME, PoCL loads code from /tmp/pocl, whoever made it.
+TEST(DriverCache, IsAFolderThatNobodyElseCanWrite) {
+  const test::TemporaryFolder folder;
+  const test::Variable pocl("POCL_CACHE_DIR"), home("HOME"), cache("XDG_CACHE_HOME");
+  std::string err;
+  EXPECT_EQ(chosen_cache("/none", folder.path(), err), folder / "clpv/pocl");
+  EXPECT_EQ(mode_of(folder / "clpv/pocl"), 0700u);
+  EXPECT_EQ(chosen_cache(folder.path(), "relative", err), folder / ".cache/clpv/pocl");
+  EXPECT_EQ(err, "");
+  const fs::path scratch = chosen_cache("", "", err);
+  EXPECT_EQ(mode_of(scratch), 0700u);
+  EXPECT_THAT(err, AllOf(HasSubstr("absolute path"), HasSubstr("compiles its kernels again")));
+  EXPECT_EQ(chosen_cache("relative", "relative", err), scratch);
+  ::chmod((folder / "clpv/pocl").c_str(), 0777);
+  EXPECT_EQ(chosen_cache("", folder.path(), err), scratch);
+  EXPECT_THAT(err, HasSubstr("others can write it"));
+  if (::geteuid() == 0) {
+    ::chmod((folder / "clpv/pocl").c_str(), 0700);
+    ASSERT_EQ(::chown((folder / "clpv/pocl").c_str(), 65534, 65534), 0);
+    EXPECT_EQ(chosen_cache("", folder.path(), err), scratch);
+    EXPECT_THAT(err, HasSubstr("another user"));
+  }
+}
+
+// --------------------------------------------------------------------------------------------------
+// outputs
+
+/// A folder with a scene whose model has a texture of each kind of name, a sky, and centres.
+struct Inputs : ::testing::Test {
+  test::TemporaryFolder folder;
+
+  void SetUp() override {
+    test::GltfBuilder model;
+    json material = {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}};
+    model.square(2)["material"] = model.add("materials", material);
+    material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
+    model.square(1)["material"] = model.add("materials", material);
+    for (const char* uri : {"a%20b.png", "frame-0001.png", "un%75sed.png"})
+      model.add("textures", {{"source", model.add("images", {{"uri", uri}})}});
+    for (const char* name : {"a b.png", "frame-0001.png", "unused.png"})
+      folder.write(name, test::decode_base64(test::kPngRgba2x2));
+    model.write(folder);
+    Image sky = make_image(2, 1, {"R", "G", "B"});
+    write_exr(folder / "my sky.exr", sky);
+    folder.write("my.json", R"({"model": "model.gltf", "sky": {"map": "my%20sky.exr"}})");
+    for (const char* name : {"centres.json", "stability.json", "frame-0002.png", "figure3.png"})
+      folder.write(name, R"({"centres": [[1,0,0],[-1,0,0],[0,1,0],[0,-1,0],[0,0,1],[0,0,-1]]})");
+    folder.write("points.csv", "0,0,0,0,1,0\n");
+    folder.write("index.html", R"({"variants": []})");
+    fs::create_hard_link(folder / "model.gltf", folder / "hard.json");
+    fs::create_symlink("model.bin", folder / "link.json");
+    folder.write("gather/gather.cl", "a kernel file");
+  }
+};
+
+TEST_F(Inputs, AreReplacedByNoOutput) {
+  const test::TemporaryFolder cache;
+  const auto before = contents_of(folder.path());
+  std::string steps = kSmallSteps;  // --centres replaces --basis
+  steps.erase(steps.find("--basis sh2 "), std::string_view("--basis sh2 ").size());
+  // A scene with a sky is swept.
+  const std::string scene = " my.json" + steps.substr(0, steps.find("--transport")),
+                    film = "sequence" + scene + "--frames 3 --fps 1 --format png -o . ",
+                    cached = " --spp 1 --frames 1 --cache " + cache.path().string();
+  const test::Outcome kernel = [&] {
+    const test::Variable kernels("CLPV_KERNEL_DIR", folder.path().string());
+    return run_here("check --list --junit gather/gather.cl", folder.path());
+  }();
+  EXPECT_EQ(kernel.exit_code, 2) << kernel.err;
+  const std::string rendered = "render" + scene;
+  const std::vector<std::string> commands{
+      rendered + "-o o.exr --stats o.exr",
+      rendered + "-o o.exr --stats my.json",
+      rendered + "-o o.exr --stats model.gltf",
+      rendered + "-o o.exr --stats hard.json",
+      rendered + "-o o.exr --stats link.json",
+      rendered + "-o 'a b.png'",
+      rendered + "-o unused.png",
+      rendered + "-o 'my sky.exr'",
+      rendered + "-o o.exr --centres centres.json --stats centres.json",
+      "pathtrace my.json -o 'my sky.exr'",
+      "pathtrace my.json -o o.exr --stats my.json",
+      "query" + scene + "--points points.csv -o points.csv",
+      "query" + scene + "--points points.csv -o model.bin",
+      film,
+      "sequence" + scene + "--frames 3 --fps 1 --stability -o . --centres stability.json",
+      "quality" + scene + cached + " -o my.json",
+      "quality" + scene + cached + " -o hard.json",
+      "quality" + scene + cached + " -o link.json",
+      "quality" + scene + cached + " --centres centres.json -o centres.json",
+      "quality" + scene + cached + " --vary centres=stability.json,centres.json -o centres.json",
+      "bench bases --scene my.json -o hard.json",
+      "bench bases --scene my.json -o o.json --log model.gltf",
+      "bench bases --scene my.json --log frame-0001.png",
+      "basis --centres figure3.png --figures .",
+      "report . --quality index.html"};
+  for (const std::string& command : commands) {
+    const test::Outcome outcome = run_here(command, folder.path());
+    EXPECT_EQ(outcome.exit_code, 2) << command << "\n" << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("allowed: another file")) << command;
+    EXPECT_TRUE(contents_of(folder.path()) == before) << command;
+  }
+  const std::string centres = "--frames 3 --fps 1 --format png --centres frame-0002.png -o .";
+  fs::remove(folder / "frame-0001.png");
+  const test::Outcome outcome = run_here("sequence " + kTiny + steps + centres, folder.path());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("frame-0002.png; allowed: another file"));
+}
+
+TEST_F(Inputs, AreNoneWhereOutputsOfEarlierRunsAreReplaced) {
+  const std::string scene = " my.json" + kSmallSteps;
+  for (const char* lux : {"1", "2"}) {
+    folder.write("my.json", R"({"model": "model.gltf", "lights": [{"kind": "directional",
+        "direction": [0, -1, 0.1], "illuminance_lux": )" +
+                                std::string(lux) + "}]}");
+    for (const std::string& command : {"render" + scene + "-o o.exr --stats s.json",
+                                       "sequence" + scene + "--frames 2 --fps 1 -o film"}) {
+      const test::Outcome outcome = run_here(command, folder.path());
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      EXPECT_THAT(outcome.err, Not(HasSubstr("existed"))) << outcome.err;
+    }
+  }
+  EXPECT_EQ(run_here("compare o.exr o.exr -o o.exr", folder.path()).exit_code, 2);
+}
+
+// Paths of scene and model, as given, were once in each image.
+TEST(Outputs, MetadataHoldsNoFolderUserOrHost) {
+  const test::TemporaryFolder folder;
+  folder.write("secret/my.json", "{\"model\": \"" + kTiny + "\"}");
+  const std::string scene = (folder / "secret/my.json").string();
+  char host[256] = "";
+  ::gethostname(host, sizeof host - 1);
+  for (const std::string& command :
+       {"render " + scene + " --model " + kTiny + kSmallSteps + "-o a.exr",
+        "render " + scene + " --model " + kTiny + kSmallSteps + "-o a.png",
+        "pathtrace " + scene + " --model " + kTiny + " --width 8 --height 6 --spp 1 -o a.exr"}) {
+    const test::Outcome outcome = run_here(command, folder.path());
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string file = command.substr(command.rfind(' ') + 1),
+                      bytes = read_file(folder / file);
+    EXPECT_EQ(read_metadata(folder / file).at("scene"), "my.json");
+    EXPECT_EQ(read_metadata(folder / file).at("model"), "tiny.gltf");
+    for (const std::string& told :
+         {folder.path().string(), std::string(CLPV_SOURCE_DIR), std::string(host)})
+      EXPECT_EQ(bytes.find(told), std::string::npos) << told << " in " << file;
+  }
+}
+
+// -------------------------------------------------------------------------------------------------
+// network
+
+/// The kernel ends this process, and those that it starts, at a call of socket().
+bool end_at_a_socket() {
+  sock_filter filter[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, __NR_socket, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+  };
+  sock_fprog program{std::size(filter), filter};
+  return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+/// Exit code of `action` in a child that ends at a socket; 128 + signal where one ended it, nothing
+/// where the system has no such filter.
+std::optional<int> without_sockets(const std::function<int()>& action) {
+  constexpr int kNoFilter = 99;
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(end_at_a_socket() ? action() : kNoFilter);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (WIFSIGNALED(status)) return 128 + WTERMSIG(status);
+  return WEXITSTATUS(status) == kNoFilter ? std::nullopt : std::optional(WEXITSTATUS(status));
+}
+
+TEST(Network, ClpvOpensNoConnections) {
+  const std::optional<int> control =
+      without_sockets([] { return ::socket(AF_INET, SOCK_STREAM, 0); });
+  if (!control) GTEST_SKIP() << "no seccomp filters here";
+  ASSERT_EQ(*control, 128 + SIGSYS);
+  const test::TemporaryFolder folder;
+  const std::string out = (folder / "a.exr").string();
+  for (const std::string& arguments :
+       {"render " + kTiny + kSmallSteps + "-o " + out,
+        "pathtrace " + kTiny + " --width 8 --height 6 --spp 1 -o " + out, std::string("basis sh2"),
+        std::string("devices")}) {
+    const std::string command = CLPV_PROGRAM " " + arguments + " >/dev/null 2>&1";
+    EXPECT_EQ(without_sockets([&] { return WEXITSTATUS(std::system(command.c_str())); }), 0)
+        << arguments;
+  }
+}
+
+}  // namespace
+}  // namespace clpv::trust_test
