@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Writes EXR without compression and PNG, for a build without OpenImageIO (CLPV_IMAGES=OFF), and
-// reads what plain_decoder.hpp names.
+// reads what open_plain() names.
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
 #include <string_view>
 
-#include "image/plain_decoder.hpp"
+#include "image/codec.hpp"
 #include "support/bytes.hpp"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION

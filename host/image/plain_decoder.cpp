@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "image/plain_decoder.hpp"
-
+// Decoders of a build without OpenImageIO (CLPV_IMAGES=OFF).
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
+#include "image/codec.hpp"
 #include "support/bytes.hpp"
 
 #define STB_IMAGE_IMPLEMENTATION
@@ -38,8 +38,17 @@ void read_texts(CodedImage& image, std::span<const std::uint8_t> png) {
   }
 }
 
+class PlainDecoder : public ImageDecoder {
+ public:
+  std::string select(int) override { return {}; }
+  const CodedImage& described() const override { return image_; }
+
+ protected:
+  CodedImage image_;
+};
+
 /// A PNG or JPEG, decoded when it is opened.
-class BytePixels : public ImageDecoder {
+class BytePixels : public PlainDecoder {
  public:
   std::string open(const std::string& format, std::span<const std::uint8_t> bytes) {
     if (bytes.size() > std::size_t{std::numeric_limits<int>::max()}) return "over 2 GiB";
@@ -60,8 +69,6 @@ class BytePixels : public ImageDecoder {
     if (format == "png") read_texts(image_, bytes);
     return {};
   }
-  std::string select(int) override { return {}; }
-  const CodedImage& described() const override { return image_; }
   std::string read(float* pixels) override {
     constexpr float kUnit = 1.0f / 255;
     std::ranges::transform(pixels_, pixels, [](std::uint8_t value) { return kUnit * value; });
@@ -73,12 +80,11 @@ class BytePixels : public ImageDecoder {
   }
 
  private:
-  CodedImage image_;
   std::vector<std::uint8_t> pixels_;
 };
 
 /// EXR (OpenEXR's documentation, "File Layout").
-class PlainExr : public ImageDecoder {
+class PlainExr : public PlainDecoder {
  public:
   explicit PlainExr(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
@@ -113,8 +119,6 @@ class PlainExr : public ImageDecoder {
     }
     return {};
   }
-  std::string select(int) override { return {}; }
-  const CodedImage& described() const override { return image_; }
   std::string read(float* pixels) override {
     const auto width = static_cast<std::size_t>(image_.width), channels = image_.channels.size(),
                row = width * channels * sizeof(float), head = std::size_t{8};
@@ -147,7 +151,6 @@ class PlainExr : public ImageDecoder {
 
   std::span<const std::uint8_t> bytes_;
   std::size_t at_ = 0;  ///< after open(): the table of offsets of rows
-  CodedImage image_;
 };
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "image/codec.hpp"
 #include "image/image_io.hpp"
-#include "image/plain_decoder.hpp"
 
 namespace clpv::plain_codec_test {
 namespace {
