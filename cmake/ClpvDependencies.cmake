@@ -52,8 +52,16 @@ if(CLPV_PATHTRACER)
   set(CLPV_PATHTRACER ${embree_FOUND})
 endif()
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
-find_library(TINYGLTF_LIBRARY tinygltf REQUIRED)
+find_library(TINYGLTF_LIBRARY tinygltf)
+if(NOT TINYGLTF_LIBRARY)
+  message(STATUS "tinygltf without a library: clpv compiles its header")
+endif()
 find_path(EIGEN_INCLUDE_DIR Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
+# The program of a project that clpv is a part of links these, too.
+if(NOT PROJECT_IS_TOP_LEVEL)
+  get_property(imported DIRECTORY PROPERTY IMPORTED_TARGETS)
+  set_target_properties(${imported} PROPERTIES IMPORTED_GLOBAL ON)
+endif()
 
 # Settings of sources that include host/: the library itself, program, benchmarks, tests, Python module. A program that links
 # clpv::clpv gets none of them.
@@ -66,13 +74,22 @@ target_include_directories(clpv_internal INTERFACE
 target_link_libraries(clpv_internal INTERFACE
   OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
 
+# Of a tinygltf without a library: clpv decodes images by OpenImageIO.
+if(NOT TINYGLTF_LIBRARY)
+  target_compile_definitions(clpv_internal INTERFACE TINYGLTF_NO_STB_IMAGE TINYGLTF_NO_STB_IMAGE_WRITE)
+  set(tinygltf_source ${CMAKE_CURRENT_BINARY_DIR}/tinygltf.cpp)
+  file(CONFIGURE OUTPUT ${tinygltf_source} CONTENT
+       "#include <nlohmann/json.hpp>\n#define TINYGLTF_NO_INCLUDE_JSON\n#define TINYGLTF_IMPLEMENTATION\n#include <tiny_gltf.h>\n")
+endif()
+
 # Public headers include CL/cl.h; what else the library links, its users link but do not compile with.
 function(clpv_link_dependencies target)
   target_link_libraries(${target}
     PUBLIC OpenCL::OpenCL
     PRIVATE $<BUILD_INTERFACE:clpv_internal> fmt::fmt Threads::Threads
             $<$<BOOL:${CLPV_IMAGES}>:OpenImageIO::OpenImageIO> $<$<BOOL:${CLPV_PATHTRACER}>:embree>
-            $<BUILD_INTERFACE:${TINYGLTF_LIBRARY}> $<INSTALL_INTERFACE:tinygltf>)
+            $<$<BOOL:${TINYGLTF_LIBRARY}>:$<BUILD_INTERFACE:${TINYGLTF_LIBRARY}>$<INSTALL_INTERFACE:tinygltf>>)
+  target_sources(${target} PRIVATE ${tinygltf_source})
   target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR})
   target_include_directories(${target} SYSTEM PRIVATE ${EIGEN_INCLUDE_DIR})
 endfunction()

@@ -31,7 +31,7 @@ std::string descriptor() {
   return block;
 }
 
-Texture3d cubes(const ProbeFormat& format, const BakedProbes& baked, float factor) {
+Texture3d cubes(const ProbeFormat& format, const BakedProbes& baked, double factor) {
   const ProbeGrid& grid = baked.grid;
   Texture3d texture{texture_size(format, grid), {}};
   const glm::uvec3 count(grid.count);
@@ -41,13 +41,13 @@ Texture3d cubes(const ProbeFormat& format, const BakedProbes& baked, float facto
     for (unsigned face = 0; face < 6; ++face) {
       const std::size_t y = at.y + face % 2 * count.y, z = at.z + face / 2 * count.z;
       texture.texels[(z * texture.size.y + y) * texture.size.x + at.x] =
-          glm::vec4(factor * baked.coefficients[6 * probe + face], baked.valid[probe]);
+          glm::vec4(factor * glm::dvec3(baked.coefficients[6 * probe + face]), baked.valid[probe]);
     }
   }
   return texture;
 }
 
-Texture3d harmonics_atlas(const ProbeFormat& format, const BakedProbes& baked, float factor) {
+Texture3d harmonics_atlas(const ProbeFormat& format, const BakedProbes& baked, double factor) {
   const ProbeGrid& grid = baked.grid;
   Texture3d texture{texture_size(format, grid), {}};
   const int depth = grid.count.z + 2;
@@ -61,9 +61,9 @@ Texture3d harmonics_atlas(const ProbeFormat& format, const BakedProbes& baked, f
         for (int i = 0; i < 4; ++i) {
           const int number = 4 * (z / depth) + i;
           if (number < 27)
-            texel[i] =
+            texel[i] = static_cast<float>(
                 factor *
-                baked.coefficients[9 * probe + static_cast<std::size_t>(number / 3)][number % 3];
+                baked.coefficients[9 * probe + static_cast<std::size_t>(number / 3)][number % 3]);
         }
         texture.texels.push_back(texel);
       }
@@ -117,12 +117,13 @@ double intensity_of(const BakedProbes& baked) {
 }
 
 Texture3d texture_of(const ProbeFormat& format, const BakedProbes& baked, double intensity) {
-  const auto factor = static_cast<float>(1 / intensity);
+  const double factor = 1 / intensity;  // a float of it is infinite for the dimmest light
   return format.size == 6 ? cubes(format, baked, factor) : harmonics_atlas(format, baked, factor);
 }
 
 std::string ktx2_bytes(const Texture3d& texture, const std::string& writer) {
   constexpr std::size_t kHeader = 80, kLevelIndex = 24, kTexel = 8;
+  constexpr std::uint16_t kInfinite = 0x7c00;  // exponent of a half that is infinite or NaN
   const std::string description = descriptor();
   const std::string pair = std::string("KTXwriter") + '\0' + writer + '\0';
   const std::size_t pair_size = 4 + (pair.size() + 3) / 4 * 4, first = kHeader + kLevelIndex,
@@ -143,8 +144,14 @@ std::string ktx2_bytes(const Texture3d& texture, const std::string& writer) {
   add(pair.size());
   file += pair;
   file.resize(texels_at, '\0');
-  for (const glm::vec4& texel : texture.texels)
-    for (int channel = 0; channel < 4; ++channel) append_little(file, half_of(texel[channel]));
+  for (const glm::vec4& texel : texture.texels) {
+    for (int channel = 0; channel < 4; ++channel) {
+      const std::uint16_t half = half_of(texel[channel]);
+      if ((half & kInfinite) == kInfinite)
+        throw Error(ExitCode::run_time, ".ktx2: found {}, allowed: below 65520", texel[channel]);
+      append_little(file, half);
+    }
+  }
   return file;
 }
 

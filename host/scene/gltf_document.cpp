@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Reads glTF documents by tinygltf 2.7, which trusts indices and sizes, opens files of URIs, knows
+// Reads glTF documents by tinygltf (2.7 and 2.9), which trusts indices and sizes, opens files of URIs, knows
 // six spellings of data URIs, and decodes images. Here it reads only checked JSON, whose buffers
 // come from this file: it neither opens files nor decodes images.
 #include "scene/gltf_document.hpp"
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_accessor.hpp"
@@ -124,16 +125,27 @@ class BufferReader {
   std::uint64_t bytes_left_ = bounds::kBufferBytes;
 };
 
-tinygltf::FsCallbacks callbacks(BufferReader& reader) {
-  return {[](const std::string&, void* user_data) {
-            return !static_cast<BufferReader*>(user_data)->done();
-          },
-          [](const std::string& path, void*) { return path; },
-          [](Bytes* bytes, std::string*, const std::string&, void* user_data) {
-            *bytes = static_cast<BufferReader*>(user_data)->read_next();
-            return true;
-          },
-          nullptr, &reader};
+/// A template, since tinygltf 2.9 has a callback more, and requires all.
+template <typename Callbacks = tinygltf::FsCallbacks>
+Callbacks callbacks(BufferReader& reader) {
+  Callbacks made{};
+  made.FileExists = [](const std::string&, void* user_data) {
+    return !static_cast<BufferReader*>(user_data)->done();
+  };
+  made.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  made.ReadWholeFile = [](Bytes* bytes, std::string*, const std::string&, void* user_data) {
+    *bytes = static_cast<BufferReader*>(user_data)->read_next();
+    return true;
+  };
+  made.WriteWholeFile = [](auto...) { return false; };
+  if constexpr (requires { made.GetFileSizeInBytes; }) {
+    made.GetFileSizeInBytes = [](std::size_t* bytes, auto...) {
+      *bytes = 0;  // read_next() checks sizes
+      return true;
+    };
+  }
+  made.user_data = &reader;
+  return made;
 }
 
 /// JSON pointer of the entry at which tinygltf failed, in those lists, and in the order, in which
@@ -167,8 +179,29 @@ void check_transforms(const json& document, const std::string& file) {
   }
 }
 
-/// Gives a document what tinygltf requires and glTF, or common exporters, do not.
+/// Finds the names of the extensions of all objects in the document.
+void find_extensions(const json& value, std::set<std::string>& names) {
+  if (value.is_array()) {
+    for (const json& each : value) find_extensions(each, names);
+  } else if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) {
+      if (key == "extensions" && member.is_object()) {
+        for (const auto& [name, extension] : member.items()) names.insert(name);
+      }
+      if (key != "extras") find_extensions(member, names);
+    }
+  }
+}
+
+/// Gives a document what tinygltf requires and glTF, or common exporters, do not, and extensionsUsed
+/// the extensions that it lacks.
 void complete(json& document) {
+  std::set<std::string> found;
+  find_extensions(document, found);
+  json& used = document["extensionsUsed"];
+  for (const json& listed : used) found.erase(listed.get_ref<const std::string&>());
+  for (const std::string& name : found) used.push_back(name);
+  if (used.is_null()) used = json::array();
   const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
   if (!document.contains(lights)) return;
   for (json& light : document.at(lights)) {

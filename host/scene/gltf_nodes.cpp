@@ -74,9 +74,14 @@ TreeNode make_node(const GltfDocument& document, int index,
   return made;
 }
 
-std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>& parents) {
+std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>& parents,
+                            Notes& notes) {
   std::vector<int> roots;
-  if (document.model.scenes.empty()) {
+  const std::size_t scenes = document.model.scenes.size();
+  if (scenes == 0 && !parents.empty()) notes.add("/scenes: none: all root nodes are shown");
+  if (scenes > 1 && document.model.defaultScene < 0)
+    notes.add(fmt::format("/scene: none of {} scenes: /scenes/0 is shown", scenes));
+  if (scenes == 0) {
     for (std::size_t i = 0; i < parents.size(); ++i) {
       if (parents[i] == kNone) roots.push_back(static_cast<int>(i));
     }
@@ -115,7 +120,7 @@ std::vector<glm::dmat4> read_inverse_binds(const GltfDocument& document, int acc
 }  // namespace
 
 NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
-                    const glm::dmat4& root) {
+                    const glm::dmat4& root, Notes& notes) {
   NodeTree tree;
   tree.file = document.file;
   tree.root = root;
@@ -129,7 +134,7 @@ NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves
     for (auto node = nodes.rbegin(); node != nodes.rend(); ++node)
       pending.push_back({*node, depth, parent});
   };
-  push(root_nodes(document, find_parents(document)), 1, std::nullopt);
+  push(root_nodes(document, find_parents(document), notes), 1, std::nullopt);
   while (!pending.empty()) {
     const Pending next = pending.back();
     pending.pop_back();

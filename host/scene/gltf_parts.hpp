@@ -56,10 +56,10 @@ std::vector<Texture> load_textures(const GltfDocument& document,
 std::map<int, NodeCurves> read_animations(const GltfDocument& document, Notes& notes);
 
 /// Nodes of the default scene, parents first: else of the first scene, or below all root nodes
-/// without scenes. `curves` are by node index; `root` transforms the model to world space. Throws
+/// without scenes, with a note. `curves` are by node index; `root` transforms the model to world space. Throws
 /// Error(bad_input) for cycles, several parents and excessive depth.
 NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
-                    const glm::dmat4& root);
+                    const glm::dmat4& root, Notes& notes);
 
 /// Transforms of the instances of a node's mesh to the node's space, by EXT_mesh_gpu_instancing;
 /// else one without a transform. Subtracts from `budget`, the instances that the model may still

@@ -54,7 +54,7 @@ SceneData load_gltf(const std::filesystem::path& path, double metres_per_unit, M
     notes.add(fmt::format("extensions that are not read: {}", fmt::join(ignored, ", ")));
   SceneData scene;
   motion.tree = read_nodes(document, read_animations(document, notes),
-                           glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)));
+                           glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit)), notes);
   PosedTree posed(motion.tree, 0);
   const MaterialSet materials = read_materials(document, notes);
   auto textures =

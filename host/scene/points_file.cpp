@@ -58,6 +58,7 @@ std::vector<SurfacePoint> read_points(const std::filesystem::path& path) {
   const std::string file = path.string();
   const Bytes bytes = read_file(path, kMaxBytes, file);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark
   std::vector<SurfacePoint> points;
   bool first = true;
   for (std::size_t number = 1; !text.empty(); ++number) {

@@ -3,6 +3,11 @@
 
 #include "support/text.hpp"
 
+// Checks of numbers, everywhere, need NaN and infinity.
+#if defined(__FAST_MATH__) || __FINITE_MATH_ONLY__
+#error "clpv: found -ffast-math, -Ofast or -ffinite-math-only, allowed: none of them"
+#endif
+
 namespace clpv {
 
 // Every message passes here. Many quote names and keys of untrusted files, hence printable().

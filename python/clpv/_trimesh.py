@@ -7,34 +7,29 @@ import numpy
 import clpv
 
 
-def _linear(encoded):
-    """Decodes sRGB (IEC 61966-2-1)."""
-    return numpy.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-
-
 def _colours(values):
-    """Linear RGBA of trimesh's colours, which are uint8 and sRGB-encoded."""
-    made = numpy.asarray(values, dtype=numpy.float64) / 255
-    made[..., :3] = _linear(made[..., :3])
-    return made
+    """Colours of trimesh as fractions. They are linear, as in the glTF that it reads and writes."""
+    given = numpy.asarray(values)
+    largest = numpy.iinfo(given.dtype).max if given.dtype.kind in "iu" else 1
+    return numpy.clip(given / largest, 0, 1)
 
 
 def _material(given):
-    """Arguments of clpv.Material of a PBRMaterial, whose factors are linear as in glTF, or another
-    material of trimesh."""
+    """Arguments of clpv.Material of a PBRMaterial or another material of trimesh."""
     if not hasattr(given, "baseColorFactor"):
         if given.image is None:
             return {"base_colour": _colours(given.main_color)}
         return {"texture": numpy.asarray(given.image.convert("RGBA"))}
     look = {"double_sided": bool(given.doubleSided)}
     if given.baseColorFactor is not None:
-        look["base_colour"] = numpy.asarray(given.baseColorFactor) / 255
+        look["base_colour"] = _colours(given.baseColorFactor)
     if given.baseColorTexture is not None:
         look["texture"] = numpy.asarray(given.baseColorTexture.convert("RGBA"))
     if given.emissiveFactor is not None and given.emissiveTexture is None:
         look["emission"] = given.emissiveFactor
-    if given.alphaMode == "MASK":
-        look["alpha_cutoff"] = 0.5 if given.alphaCutoff is None else given.alphaCutoff
+    if given.alphaMode in ("MASK", "BLEND"):  # BLEND is MASK at 0.5, as in a file
+        blends = given.alphaMode == "BLEND" or given.alphaCutoff is None
+        look["alpha_cutoff"] = 0.5 if blends else given.alphaCutoff
     return look
 
 
@@ -46,10 +41,14 @@ def _arguments(mesh):
                 "triangles": numpy.arange(3 * len(mesh.faces)).reshape(-1, 3),
                 "colours": numpy.repeat(_colours(visual.face_colors), 3, axis=0)}  # yapf: disable
     made = {"positions": mesh.vertices, "triangles": mesh.faces}
+    if "vertex_normals" in mesh._cache:  # of the file: computed ones would be smooth everywhere
+        made["normals"] = mesh.vertex_normals
     if visual.kind == "vertex":
         return made | {"colours": _colours(visual.vertex_colors)}
     if visual.kind != "texture":
         return made | {"material": clpv.Material(base_colour=_colours(visual.main_color))}
+    if "color" in visual.vertex_attributes:
+        made["colours"] = _colours(visual.vertex_attributes["color"])
     look = _material(visual.material)
     if visual.uv is None:
         look.pop("texture", None)

@@ -13,6 +13,7 @@ std::string found(py::handle given) {
   try {
     text = py::repr(given).cast<std::string>();
   } catch (const py::error_already_set&) {  // of the object's __repr__
+  } catch (const py::cast_error&) {         // lone surrogates
   }
   if (!text.empty() && text.size() <= kLongest && text.find('\n') == std::string::npos) return text;
   return "an object of " + std::string(py::str(py::type::of(given)));
@@ -75,9 +76,11 @@ void check_call(const std::string& function, const std::vector<Parameter>& param
       throw Error(ExitCode::usage, "{}: {}: found {}, allowed: {}", function, parameter.name,
                   found(given), parameter.allowed());
   }
-  if (open) return;
   for (const auto& [key, value] : kwargs) {
-    if (std::ranges::count(names, key.cast<std::string>()) == 0)
+    if (!takes<std::string>(key))  // lone surrogates
+      throw Error(ExitCode::usage, "{}: found argument {}, allowed: a name in UTF-8", function,
+                  found(key));
+    if (!open && std::ranges::count(names, key.cast<std::string>()) == 0)
       throw Error(ExitCode::usage, "{}: found argument '{}', allowed: {}", function,
                   key.cast<std::string>(), fmt::join(names, ", "));
   }
@@ -99,7 +102,10 @@ void check_arguments(const py::object& scope, const char* name, Self self,
     } catch (const py::error_already_set& error) {
       const std::string message = usage_message(error);
       if (message.empty() || message.starts_with(label + ":")) throw;
-      throw Error(ExitCode::usage, "{}: {}", label, message);
+      std::string spoken = label + ": ";  // as C++ may begin: "lookup source: "
+      std::ranges::replace(spoken, '_', ' ');
+      const std::size_t begin = message.starts_with(spoken) ? spoken.size() : 0;
+      throw Error(ExitCode::usage, "{}: {}", label, message.substr(begin));
     }
   };
   py::options options;

@@ -137,7 +137,8 @@ template <typename T>
 struct StrictItems {
   static bool is(py::handle given) {
     if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given)) return false;
-    for (const py::object item : py::reinterpret_borrow<py::sequence>(given))  // may exist only here
+    for (const py::object item :
+         py::reinterpret_borrow<py::sequence>(given))  // may exist only here
       if (!takes<T>(item)) return false;
     return true;
   }

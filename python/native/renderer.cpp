@@ -30,10 +30,12 @@ struct ReleaseUnlessForked {
 
 std::string option_text(const std::string& name, const py::handle& value) {
   if (takes<bool>(value)) return value.cast<bool>() ? "on" : "off";
-  const bool path = py::hasattr(value, "__fspath__");
-  if (path || py::isinstance<py::str>(value) || py::isinstance<py::int_>(value) ||
-      takes<double>(value))
+  if (py::hasattr(value, "__fspath__")) {
+    if (takes<std::filesystem::path>(value)) return value.cast<std::filesystem::path>().string();
+  } else if (takes<std::string>(value) || py::isinstance<py::int_>(value) ||
+             (!py::isinstance<py::str>(value) && takes<double>(value))) {
     return py::str(value);
+  }
   throw Error(ExitCode::usage, "Renderer: {}: found {}, allowed: a text, a number, True or False",
               name, found(value));
 }

@@ -179,7 +179,7 @@ struct PointsFile : ::testing::Test {
 
 TEST_F(PointsFile, LinesOfSixNumbers) {
   const auto points =
-      read("x,y,z,nx,ny,nz\r\n1,2,3,0,0,2\r\n\n# a remark\n -1.5e1 , .5 ,0,\t-1,0,0");
+      read("\xEF\xBB\xBFx,y,z,nx,ny,nz\r\n1,2,3,0,0,2\r\n\n# a remark\n -1.5e1 , .5 ,0,\t-1,0,0");
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[0].position, glm::dvec3(1, 2, 3));
   EXPECT_EQ(points[0].normal, glm::dvec3(0, 0, 1)) << "made unit";

@@ -111,6 +111,38 @@ execute_process(COMMAND ${WORK}/prefix/bin/clpv basis sh2 --figures ${WORK}/figu
 if(NOT EXISTS ${package}/draw/page.html OR NOT said MATCHES "installed")
   message(FATAL_ERROR "the installed program does not use its own clpv.draw: ${said}")
 endif()
+# As a part of another project, whose build type, package, tests and installation stay its own.
+file(WRITE ${WORK}/parent/CMakeLists.txt "cmake_minimum_required(VERSION 3.22)
+project(parent VERSION 9.9 LANGUAGES C CXX)
+set(CPACK_PACKAGE_NAME parent)
+set(CPACK_PACKAGE_CONTACT p@localhost)
+enable_testing()
+add_subdirectory(${SOURCE} clpv)
+add_executable(app ${SOURCE}/examples/render_cornell.cpp)
+target_link_libraries(app PRIVATE clpv::clpv)
+add_test(NAME app COMMAND app ${SOURCE}/scenes/cornell.json app.png)
+install(TARGETS app)
+include(CPack)\n")
+run(${CMAKE_COMMAND} -S ${WORK}/parent -B ${WORK}/parent/build -G ${GENERATOR} -DCLPV_PREBUILT=${BUILD}/libclpv.a)
+run(${CMAKE_COMMAND} --build ${WORK}/parent/build)
+run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/parent/build --no-tests=error)
+run(${CMAKE_COMMAND} --install ${WORK}/parent/build --prefix ${WORK}/parent/prefix)
+file(GLOB_RECURSE installed RELATIVE ${WORK}/parent/prefix ${WORK}/parent/prefix/*)
+file(STRINGS ${WORK}/parent/build/CMakeCache.txt type REGEX "^CMAKE_BUILD_TYPE:STRING=.")
+file(STRINGS ${WORK}/parent/build/CPackConfig.cmake name REGEX "CPACK_PACKAGE_NAME \"parent\"")
+if(NOT installed STREQUAL "bin/app" OR type OR NOT name)
+  message(FATAL_ERROR "a project with clpv installs ${installed}; its build type: ${type}; its package: ${name}")
+endif()
+# Flags that remove checks of NaN end configuration, and compilation, by name.
+foreach(flag -ffast-math -ffinite-math-only)
+  foreach(command "${CMAKE_COMMAND};-S;${SOURCE};-B;${WORK}/fast;-G;${GENERATOR};-DCMAKE_CXX_FLAGS=${flag}"
+          "${COMPILER};-std=c++20;${flag};-fsyntax-only;-I${SOURCE}/host;-I${SOURCE}/include;${SOURCE}/host/support/error.cpp")
+    execute_process(COMMAND ${command} RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE said)
+    if(status EQUAL 0 OR NOT said MATCHES "found [^\n]*${flag}")
+      message(FATAL_ERROR "${command}: ${status}: ${said}")
+    endif()
+  endforeach()
+endforeach()
 # The library without the program.
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/library -G ${GENERATOR} -DCLPV_BUILD_PROGRAM=OFF
     -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON -DCMAKE_DISABLE_FIND_PACKAGE_benchmark=ON

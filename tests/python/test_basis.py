@@ -25,14 +25,6 @@ def test_harmonics_have_their_closed_form():
                        math.sqrt(3 / (4 * math.pi)) * np.abs(w[:, 2]))
 
 
-def test_projection_reproduces_functions_of_the_basis():
-    for name in clpv.bases():
-        basis = clpv.Basis(name)
-        c = np.random.default_rng(3).normal(size=len(basis))
-        assert np.allclose(basis.project(basis.evaluate(basis.directions()) @ c), c,
-                           atol=1e-6 * basis.condition), name
-
-
 def test_lobes():
     basis = clpv.Basis("sh3")
     lobe = basis.lobe((0, 0, 2))

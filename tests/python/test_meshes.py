@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Scenes from arrays: a file's bytes, moving meshes, rejected arrays; trimesh where it is
 installed."""
+import base64
 import gc
 import re
 import subprocess
@@ -149,7 +150,7 @@ def test_colours_of_trimesh():
     given = look(box)
     assert given["positions"].shape == (36, 3) and given["colours"].shape == (36, 4)
     assert numpy.ptp(given["colours"][:3], axis=0).max() == 0 and given["colours"][33, 1] == 1
-    assert given["colours"][33, 0] == pytest.approx(0.1559, abs=1e-3)  # of 110, sRGB-encoded
+    assert given["colours"][33, 0] == pytest.approx(110 / 255)  # linear
     assert "12 triangles" in repr(clpv.Scene.from_trimesh(box))
     pbr = trimesh.visual.material.PBRMaterial(baseColorFactor=[0.5, 1, 0, 1], alphaMode="MASK",
                                               emissiveFactor=[0, 2, 0], doubleSided=True)
@@ -157,6 +158,63 @@ def test_colours_of_trimesh():
     material = look(box)["material"]
     assert material.base_colour == pytest.approx((0.5, 1, 0, 1), abs=0.003)
     assert material.emission == (0, 2, 0) and material.alpha_cutoff == 0.5 and material.double_sided
+
+
+def accessor(document, values, kind, normalized=False):
+    """Adds an accessor with a buffer of its own. Returns its index."""
+    data = base64.b64encode(values.tobytes()).decode()
+    for name, entry in (("buffers", {"byteLength": values.nbytes,
+                                     "uri": f"data:application/octet-stream;base64,{data}"}),
+                        ("bufferViews", {"buffer": len(document["buffers"]),
+                                         "byteLength": values.nbytes}),
+                        ("accessors", {"bufferView": len(document["bufferViews"]), "type": kind,
+                                       "componentType": {"f": 5126, "B": 5121, "H": 5123,
+                                                         "I": 5125}[values.dtype.char],
+                                       "count": len(values), "normalized": normalized})):
+        document[name].append(entry)
+    return len(document["accessors"]) - 1
+
+
+# Material and COLOR_0 of a square; a list holds its dtype, and 3 or 4 components follow from it.
+FACTOR = {"baseColorFactor": [0.4, 0.6, 0.8, 1], "metallicFactor": 0}
+FILES = {
+    "plain": (None, None), "factor": ({"pbrMetallicRoughness": FACTOR}, None),
+    "floats": (None, ("f", [0.5, 0.25, 1])), "rgba": (None, ("f", [0.5, 0.25, 1, 1])),
+    "bytes": (None, ("B", [128, 64, 255, 255])), "shorts": (None, ("H", [32768, 16384, 65535, 65535])),
+    "floats and factor": ({"pbrMetallicRoughness": FACTOR}, ("f", [0.5, 0.25, 1, 1])),
+    "bytes and factor": ({"pbrMetallicRoughness": FACTOR}, ("B", [128, 64, 255, 255])),
+    "blends": ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.1]}, "alphaMode": "BLEND"}, None),
+    "blends little": ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.9]}, "alphaMode": "BLEND"}, None),
+    "masked": ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.3]}, "alphaMode": "MASK",
+                "alphaCutoff": 0.2}, None),
+    "emits": ({"emissiveFactor": [0.2, 0.4, 0.6], "doubleSided": True}, None)}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_scene_of_trimesh_is_its_file(name, tmp_path):
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
+    material, colour = FILES[name]
+    document = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+                "nodes": [{"mesh": 0}], "buffers": [], "bufferViews": [], "accessors": []}
+    attributes = {"POSITION": accessor(document, WALL.astype("f"), "VEC3"),
+                  "NORMAL": accessor(document, numpy.float32([[0.6, 0, 0.8]] * len(WALL)), "VEC3")}
+    document["accessors"][0].update(min=WALL.min(0).tolist(), max=WALL.max(0).tolist())
+    primitive = {"attributes": attributes,
+                 "indices": accessor(document, numpy.ravel(SQUARE).astype("I"), "SCALAR")}
+    if colour:
+        values = numpy.array([colour[1]] * len(WALL), colour[0])
+        attributes["COLOR_0"] = accessor(document, values, f"VEC{len(colour[1])}", colour[0] != "f")
+    if material:
+        document["materials"], primitive["material"] = [material], 0
+    document["meshes"] = [{"primitives": [primitive]}]
+    (tmp_path / "a.gltf").write_text(json.dumps(document))
+    of_file = clpv.Scene(tmp_path / "a.gltf")
+    of_trimesh = clpv.Scene.from_trimesh(trimesh.load(tmp_path / "a.gltf"))
+    camera = clpv.Camera(eye=(0.2, 0.1, 3), target=(0, 0, 0))
+    for view in "albedo", "normal", "direct":
+        found, expected = (clpv.pathtrace(each, view, camera, width=9, height=9, samples=1).array
+                           for each in (of_trimesh, of_file))
+        numpy.testing.assert_allclose(found, expected, atol=0.005)  # of 8 bits
 
 
 def test_the_example_of_arrays_runs(tmp_path):

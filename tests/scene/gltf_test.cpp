@@ -45,9 +45,12 @@ TEST_F(GltfTest, OnlyTheDefaultSceneIsShown) {
   model.triangle();
   model.document["nodes"].push_back({{"mesh", 0}, {"translation", {5, 0, 0}}});
   model.document["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
-  EXPECT_THAT(position(load(), 0, 0), IsNear(glm::vec3(0), kClose));
+  const SceneData first = load();
+  EXPECT_THAT(position(first, 0, 0), IsNear(glm::vec3(0), kClose));
+  EXPECT_THAT(first.notes, ::testing::Contains("/scene: none of 2 scenes: /scenes/0 is shown"));
   model.document["scene"] = 1;
   const SceneData second = load();
+  EXPECT_THAT(second.notes, ::testing::Not(::testing::Contains(HasSubstr("/scene"))));
   ASSERT_EQ(second.triangles.size(), 1u);
   EXPECT_THAT(position(second, 0, 0), IsNear(glm::vec3(5, 0, 0), kClose));
 }
@@ -484,10 +487,14 @@ TEST_F(GltfTest, LightsByBlenderThatLookPhotometricGetANote) {
 
 TEST_F(GltfTest, ExtensionsThatAreNotReadGetANote) {
   model.triangle();
+  const auto note = ::testing::Contains("extensions that are not read: KHR_materials_unlit");
   model.document["extensionsUsed"] = {"KHR_materials_unlit", "KHR_mesh_quantization"};
-  const SceneData scene = load();
-  EXPECT_THAT(scene.notes,
-              ::testing::Contains("extensions that are not read: KHR_materials_unlit"));
+  EXPECT_THAT(load().notes, note);
+  model.document.erase("extensionsUsed");
+  model.document["nodes"][0]["extras"]["extensions"]["a"] = 1;
+  EXPECT_THAT(load().notes, ::testing::Not(::testing::Contains(HasSubstr("extensions"))));
+  model.document["nodes"][0]["extensions"]["KHR_materials_unlit"] = json::object();
+  EXPECT_THAT(load().notes, note) << "which extensionsUsed does not list";
 }
 
 }  // namespace

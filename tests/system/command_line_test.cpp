@@ -5,11 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "tests/support/run_here.hpp"
-#include "tests/support/scenes.hpp"
-#include "times/time_record.hpp"
 
 namespace clpv::command_line_test {
 namespace {
@@ -103,66 +100,6 @@ TEST(CommandLine, WriteErrorsOfStdoutAreReported) {
     EXPECT_EQ(closed.exit_code, 1) << arguments;
     EXPECT_THAT(closed.err, HasSubstr("stdout: cannot be written: Bad file descriptor"));
   }
-}
-
-/// Characters that a terminal obeys: colours and the bell in names would repaint its window.
-bool obeyed(const std::string& text) {
-  return text.find_first_of("\x1b\a\x7f") != std::string::npos ||
-         text.find("\xc2\x9b") != std::string::npos;
-}
-
-// Tables once passed names on as they are.
-TEST(CommandLine, NamesOfOthersDoNotReachTheTerminal) {
-  const test::TemporaryFolder folder;
-  const nlohmann::json name = "red\x1b[31m\a\x7f\u009b5m";
-  const nlohmann::json cell{{"scene", name},  {"camera", name},
-                            {"rejected", ""}, {"times", nlohmann::json::array()},
-                            {"nrmse", 0.1},   {"options", {{name, name}}}};
-  const auto row_of = [](const nlohmann::json& named, const nlohmann::json& status) {
-    nlohmann::json row = time_record("gather", {1});
-    row.update({{"name", named}, {"status", status}});
-    return row;
-  };
-  const nlohmann::json row = row_of(name, "ok"), lost = row_of("lost", name);
-  const auto bench = [](const nlohmann::json& rows) {
-    return nlohmann::json{{"context", {{"schema", 2}}}, {"benchmarks", rows}}.dump();
-  };
-  folder.write("quality.json", nlohmann::json{{"cells", {cell}}}.dump());
-  folder.write("stats.json",
-               nlohmann::json{{"times", {time_record(name.get<std::string>(), {1})}}}.dump());
-  folder.write("old.json", bench({row, row_of("lost", "ok")}));
-  folder.write("new.json", bench({row, lost}));
-  folder.write(
-      "centres.json",
-      nlohmann::json{
-          {"name", name},
-          {"centres", {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}}}
-          .dump());
-  folder.write("room.json",
-               nlohmann::json{
-                   {"model", test::kTiny},
-                   {"cameras", {{{"name", name}, {"eye", {0, 1, 3}}, {"target", {0, 0, 0}}}}},
-                   {"lights",
-                    {{{"kind", "directional"}, {"direction", {0, -1, 0}}, {"illuminance_lux", 5}}}}}
-                   .dump());
-  const std::string small = test::kSmallSteps + "--spp 1 --frames 1 --cache cache ";
-  for (const std::string& arguments :
-       {std::string("compare quality.json quality.json"),
-        std::string("compare stats.json stats.json"), std::string("compare new.json old.json"),
-        std::string("basis --centres centres.json"),
-        std::string("basis --centres centres.json --format json"),
-        "quality room.json" + small + "-v", "quality room.json" + small + "--format json",
-        std::string("bench ceilings --repetitions 1 --scene room.json"),
-        "render room.json" + test::kSmallSteps + "-o a.exr --stats - -v"}) {
-    const test::Outcome outcome = test::run_here(arguments, folder.path());
-    EXPECT_EQ(outcome.exit_code, 0) << arguments << outcome.err;
-    EXPECT_FALSE(obeyed(outcome.out)) << arguments;
-    EXPECT_FALSE(obeyed(outcome.err)) << arguments;
-    EXPECT_THAT(outcome.out + outcome.err, HasSubstr("31m")) << arguments << ": names are printed";
-  }
-  const test::Outcome unknown = test::run_here("\x1b[31m --\a", folder.path());
-  EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_FALSE(obeyed(unknown.err));
 }
 
 // Every other way to stdout or stderr passes control characters on.
