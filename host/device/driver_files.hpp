@@ -13,8 +13,8 @@ struct FaultyDriver {
   std::string file, reason;
 };
 
-/// Returns the .icd files of OCL_ICD_VENDORS (a file or a folder), by default of
-/// /etc/OpenCL/vendors, in the order of their names.
+/// Returns the .icd files of OCL_ICD_VENDORS (a file, a folder, or a driver's library in their
+/// place), by default of /etc/OpenCL/vendors, in the order of their names.
 std::vector<std::filesystem::path> driver_files();
 
 /// Loads each driver in a child process first. Without set_helper_program() none is loaded, and
