@@ -7,8 +7,9 @@
 //                                                                                     bounces')
 //
 // A triangle counts towards the three faces nearest to n, and its back towards the three opposite
-// ones. With CLPV_WHITE albedo is 1, and backs count only where the material is double-sided. As virtual point lights do, faces emit and receive half a cell off the surface along its
-// normal; across an axis that is a whole number of samples.
+// ones. With CLPV_WHITE albedo is not summed, and backs count only where the material is
+// double-sided. As virtual point lights do, faces emit and receive half a cell off the surface
+// along its normal; across an axis that is a whole number of samples.
 //
 // Each axis is a raster of 8 x 8 samples per face (voxelize_triangle.h). Albedo is looked up once
 // per row of samples, at the centre of the covered ones. Sums are integers, by atomic_add and
