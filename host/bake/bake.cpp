@@ -4,15 +4,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <regex>
 
+#include "parallel/ranks.hpp"
+#include "pathtracer/threads.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/interrupt.hpp"
 #include "support/log.hpp"
+#include "support/progress.hpp"
 
 namespace clpv::bake {
 namespace {
@@ -56,17 +60,39 @@ bool fill(const ProbeGrid& grid, std::size_t probe, std::size_t n,
   return true;
 }
 
+/// Calls action(i) for i below `count`, on threads (0: one per processor). Throws Interrupted.
+void for_all(std::size_t count, int threads, const char* title,
+             const std::function<void(std::size_t)>& action) {
+  constexpr std::size_t kBatch = 256;
+  Progress progress(title, count);
+  std::atomic<std::size_t> next{0};
+  pathtracer::on_threads(threads > 0 ? threads : single_rank().processors(),
+                         [&, stop = current_stop()](const std::atomic<bool>& failed) {
+                           const StopScope scope(stop);
+                           for (std::size_t first; !failed && !interrupted() &&
+                                                   (first = next.fetch_add(kBatch)) < count;) {
+                             const std::size_t end = std::min(first + kBatch, count);
+                             for (std::size_t i = first; i < end; ++i) action(i);
+                             progress.advance(end - first);
+                           }
+                         });
+  stop_if_interrupted();
+}
+
 /// Fills unknown probes from known ones, layer by layer.
 void dilate_into(const ProbeGrid& grid, std::size_t n, std::vector<std::uint8_t> known,
-                 std::vector<glm::vec3>& coefficients) {
-  for (bool changed = true; changed;) {
-    changed = false;
+                 std::vector<glm::vec3>& coefficients, int threads) {
+  std::vector<std::size_t> unknown;
+  for (std::size_t probe = 0; probe < grid.size(); ++probe)
+    if (!known[probe]) unknown.push_back(probe);
+  for (std::size_t before = 0; unknown.size() != before;) {
+    before = unknown.size();
     std::vector<std::uint8_t> next = known;
-    for (std::size_t probe = 0; probe < grid.size(); ++probe) {
-      if (known[probe] || !fill(grid, probe, n, known, coefficients)) continue;
-      next[probe] = 1, changed = true;
-    }
+    for_all(before, threads, "filling probes", [&](std::size_t i) {
+      if (fill(grid, unknown[i], n, known, coefficients)) next[unknown[i]] = 1;
+    });
     known = std::move(next);
+    std::erase_if(unknown, [&](std::size_t probe) { return known[probe] != 0; });
   }
 }
 
@@ -102,8 +128,8 @@ std::optional<BlockLight> BlockCache::read(std::size_t block, std::size_t number
   return light;
 }
 
-bool BlockCache::write(std::size_t block, const BlockLight& light) {
-  if (!folder_) return false;
+void BlockCache::write(std::size_t block, const BlockLight& light) {
+  if (!folder_) return;
   std::string bytes;
   const auto add = [&](const void* from, std::size_t size) {
     bytes.append(static_cast<const char*>(from), size);
@@ -112,10 +138,9 @@ bool BlockCache::write(std::size_t block, const BlockLight& light) {
   add(light.integrals.data(), light.integrals.size() * sizeof(glm::vec3));
   const std::string problem =
       folder_->write(name_of(block), Fingerprint().add(bytes).hex() + bytes);
-  if (problem.empty()) return true;
+  if (problem.empty()) return;
   log_warning("{}: an interrupted bake will begin again", problem);
   folder_.reset();
-  return false;
 }
 
 void BlockCache::clear(std::size_t count) {
@@ -132,16 +157,15 @@ GridLight light_of(ProbeSource& source, const ProbeGrid& grid, std::size_t count
   all.count = count;
   all.integrals.resize(grid.size() * count);
   double squares = 0;
-  bool kept = true;
   const auto& blocks = source.blocks();
   for (std::size_t block = 0; block < blocks.size(); ++block) {
-    stop_if_interrupted(kept ? "the same command goes on where it was" : "nothing was written");
+    stop_if_interrupted();
     std::optional<BlockLight> light = cache.read(block, blocks[block].size() * count);
     if (!light) {
       light = source.light(block);
       for (std::size_t i = 0; i < light->integrals.size(); ++i)
         require_finite(light->integrals[i], grid, blocks[block][i / count]);
-      kept = cache.write(block, *light);
+      cache.write(block, *light);
     }
     for (std::size_t i = 0; i < blocks[block].size(); ++i)
       std::copy_n(light->integrals.begin() + static_cast<std::ptrdiff_t>(i * count), count,
@@ -163,26 +187,29 @@ std::vector<std::uint8_t> validity(pathtracer::PointTracer& tracer,
 }
 
 BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,
-                    const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate) {
+                    const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate,
+                    int threads) {
   BakedProbes baked{.grid = grid, .coefficients = {}, .valid = std::move(valid)};
   baked.filled = dilate && std::ranges::count(baked.valid, 1) > 0;
-  baked.coefficients.reserve(grid.size() * format.size);
-  for (std::size_t probe = 0; probe < grid.size(); ++probe) {
+  baked.coefficients.resize(grid.size() * format.size);
+  for_all(grid.size(), threads, "encoding", [&](std::size_t probe) {
     std::vector<glm::dvec3> integrals(format.moments.count);
     for (std::size_t i = 0; i < integrals.size(); ++i)
       integrals[i] = glm::dvec3(light.integrals[probe * light.count + first + i]);
-    for (const glm::dvec3& c : format.encoded(integrals)) {
-      baked.coefficients.emplace_back(c);
-      require_finite(baked.coefficients.back(), grid, probe);
+    const std::vector<glm::dvec3> made = format.encoded(integrals);
+    for (std::size_t i = 0; i < format.size; ++i) {
+      const glm::vec3 coefficient(made[i]);
+      require_finite(coefficient, grid, probe);
+      baked.coefficients[probe * format.size + i] = coefficient;
     }
-  }
-  if (dilate) dilate_into(grid, format.size, baked.valid, baked.coefficients);
-  std::vector<glm::dvec3> c(format.size);
-  for (std::size_t probe = 0; probe < grid.size(); ++probe) {
-    for (std::size_t i = 0; i < c.size(); ++i)
-      c[i] = glm::dvec3(baked.coefficients[probe * c.size() + i]);
-    baked.negative += negative_share(format, c) / static_cast<double>(grid.size());
-  }
+  });
+  if (dilate) dilate_into(grid, format.size, baked.valid, baked.coefficients, threads);
+  std::vector<double> negative(grid.size());
+  for_all(grid.size(), threads, "checking normals", [&](std::size_t probe) {
+    const auto of = std::span(baked.coefficients).subspan(probe * format.size, format.size);
+    negative[probe] = negative_share(format, std::vector<glm::dvec3>(of.begin(), of.end()));
+  });
+  for (const double share : negative) baked.negative += share / static_cast<double>(grid.size());
   return baked;
 }
 

@@ -31,8 +31,9 @@ class BlockCache {
   /// No folder: nothing is kept.
   BlockCache(const std::optional<std::filesystem::path>& folder, std::string key);
   std::optional<BlockLight> read(std::size_t block, std::size_t numbers) const;
-  /// Returns false, after a warning, if the block cannot be kept.
-  bool write(std::size_t block, const BlockLight& light);
+  /// Warns if the block cannot be kept; nothing is kept from then on.
+  void write(std::size_t block, const BlockLight& light);
+  bool keeps() const { return folder_.has_value(); }
   /// Removes the blocks of this bake below `count`.
   void clear(std::size_t count);
 
@@ -63,8 +64,10 @@ std::vector<std::uint8_t> validity(pathtracer::PointTracer& tracer,
                                    std::span<const glm::dvec3> positions);
 
 /// Encodes `format`'s integrals, which begin at `first` of each probe. Throws as light_of().
-/// `dilate`: fills probes that are not valid.
+/// `dilate`: fills probes that are not valid. `threads`: 0 for one per processor; the result is the
+/// same with any number.
 BakedProbes encoded(const ProbeFormat& format, const GridLight& light, std::size_t first,
-                    const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate);
+                    const ProbeGrid& grid, std::vector<std::uint8_t> valid, bool dilate,
+                    int threads = 0);
 
 }  // namespace clpv::bake

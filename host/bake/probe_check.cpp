@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "basis/sampling.hpp"
+#include "support/interrupt.hpp"
 
 namespace clpv::bake {
 namespace {
@@ -79,6 +80,7 @@ ProbeError error_of(const ProbeFormat& format, const BakedProbes& baked, const C
   double squares = 0, all = 0, sum = 0, wanted = 0;
   std::size_t negative = 0;
   for (std::size_t i = 0; i < points.points.size(); ++i) {
+    stop_if_interrupted();
     const auto& [position, normal] = points.points[i];
     const glm::dvec3 at = position + lift * baked.grid.spacing() * normal;
     const glm::dvec3 found =

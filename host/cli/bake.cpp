@@ -25,6 +25,7 @@
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 #include "support/print.hpp"
@@ -152,7 +153,8 @@ void check(const Options& options, const SceneData& scene, const SceneCamera& ca
   std::string text = check.header();
   std::size_t first = 0;
   for (const ProbeFormat& format : formats) {
-    text += check.row(format, encoded(format, all, first, grid, valid, !options.no_dilate));
+    text += check.row(format, encoded(format, all, first, grid, valid, !options.no_dilate,
+                                      options.tracing.values.threads));
     first += format.moments.count;
   }
   print_text(text);
@@ -167,12 +169,17 @@ void bake_file(const Options& options, const SceneData& scene, const SceneCamera
   if (suffix_of(options) == ".ktx2") texture_size(format, grid);  // throws
   Light light = light_from(options, scene, camera, grid, formats, shared);
   BlockCache cache(user_cache_folder(), key_of(options, scene, camera, grid, light));
-  const GridLight all = computed(options, light, grid, formats, cache);
-  const BakedProbes baked = encoded(
-      format, all, 0, grid, validity(*light.tracer, positions_of(grid)), !options.no_dilate);
+  BakedProbes baked;
   std::optional<Check> check;
-  if (options.check > 0) check.emplace(options, *light.tracer, grid);
-  write_probes(options, scene, format, baked, all, check ? check->error(format, baked) : nullptr);
+  try {
+    const GridLight all = computed(options, light, grid, formats, cache);
+    baked = encoded(format, all, 0, grid, validity(*light.tracer, positions_of(grid)),
+                    !options.no_dilate, options.tracing.values.threads);
+    if (options.check > 0) check.emplace(options, *light.tracer, grid);
+    write_probes(options, scene, format, baked, all, check ? check->error(format, baked) : nullptr);
+  } catch (const Interrupted& interrupted) {
+    throw Interrupted(cache.keeps() ? "the same command goes on where it was" : interrupted.what());
+  }
   cache.clear(light.source->blocks().size());
   if (check) {
     print_text(check->header() + check->row(format, baked));
@@ -217,7 +224,7 @@ void run(const Options& options, const Shared& shared) {
   reject_without_effect(options);
   probe_format(options.format);  // throws
   const std::vector<NamedFile> outputs{{"--output", options.output},
-                                       {"--output", description_file(options)}};
+                                       {"--output", description_file(options), true}};
   check_outputs(outputs);
   MovingScene moving = options.request.open();
   moving.pose(options.time);

@@ -6,6 +6,7 @@
 #include "cli/bake_parts.hpp"
 #include "clpv/version.hpp"
 #include "support/array_files.hpp"
+#include "support/interrupt.hpp"
 #include "support/output_file.hpp"
 #include "support/text.hpp"
 
@@ -104,9 +105,10 @@ void write_probes(const Options& options, const SceneData& scene, const ProbeFor
            : npz_of(format, baked);
   const std::string json =
       described(options, scene, format, baked, light, intensity, error).dump(2) + "\n";
-  OutputFile data(options.output), text(description_file(options));
+  OutputFile data(options.output), text(description_file(options), OutputFile::Kind::derived);
   data.write(std::as_bytes(std::span(bytes)));
   text.write(std::as_bytes(std::span(json)));
+  stop_if_interrupted();
   data.commit();
   text.commit();
 }

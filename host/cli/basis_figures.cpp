@@ -98,7 +98,7 @@ std::vector<fs::path> write_basis_figures(BasisFigures figures, const fs::path& 
   create_folder("--figures", folder);
   const std::vector<fs::path> files{folder / "figure2.png", folder / "figure3.png",
                                     folder / "figure6.png"};
-  check_outputs({{"--figures", files[0]}, {"--figures", files[1]}, {"--figures", files[2]}});
+  for (const fs::path& file : files) check_outputs({{"--figures", file, true}});
   Surfaces surfaces;
   nlohmann::json document{{"lambda", figures.lambda},
                           {"lobe", figures.lobes.kind == LobeKind::exact ? "exact" : "rotate"}};

@@ -154,28 +154,36 @@ std::vector<std::size_t> recorded_cases(const verify::Cases& cases, const Option
   return numbers;
 }
 
-/// Runs the cases again, recorded, each in a session of its own, and writes their capsules.
-void write_capsules(verify::Capsules& capsules, const verify::Cases& cases, const Options& options,
-                    const Shared& shared, const Device& device, const Results& results) {
+/// Runs the cases again, recorded, each in a session of its own, and writes their capsules. Warns
+/// of those that cannot be written, and returns their number.
+std::size_t write_capsules(verify::Capsules& capsules, const verify::Cases& cases,
+                           const Options& options, const Shared& shared, const Device& device,
+                           const Results& results) {
   verify::CheckChoice choice = options.choice;
   choice.only = recorded_cases(cases, options, results.by_case());
-  if (choice.only.empty()) return;
+  if (choice.only.empty()) return 0;
   const verify::Cases recorded = choice.cases();
   for (const verify::Case& c : recorded) capsules.begin(c);
-  std::size_t done = 0;
+  std::size_t done = 0, lost = 0;
   const auto finish = [&](const CheckResults& found) {
     const verify::Case& c = recorded[done];
-    const std::filesystem::path folder =
-        capsules.finish(c, device, results.by_case()[choice.only[done++]], found);
-    log_info("capsule of {}: {}", title_of(c), folder.string());
+    const CheckResults& checked = results.by_case()[choice.only[done++]];
+    try {
+      log_info("capsule of {}: {}", title_of(c),
+               capsules.finish(c, device, checked, found).string());
+    } catch (const Error& error) {
+      log_warning("no capsule of {}: {}", title_of(c), error.what());
+      ++lost;
+    }
   };
   if (!has_helper_program()) {
     for (const verify::Case& c : recorded) finish(run_recorded(c, device, options.capsules));
-    return;
+    return lost;
   }
   std::vector<std::string> arguments = helper_arguments(choice, shared);
   arguments.push_back("--record=" + options.capsules);
   verify::run_in_helpers(recorded, arguments, options.limit, finish);
+  return lost;
 }
 
 /// Work of a helper process.
@@ -234,11 +242,15 @@ void run(const Options& options, const Shared& shared) {
     print_data("{} comparisons, {} results: {}\n", cases.size(), results.size(),
                counts_of(results));
   if (!options.junit.empty()) write_file(options.junit, verify::junit(results, device.name));
-  if (capsules) write_capsules(*capsules, cases, options, shared, device, found);
-  if (verify::passed(results)) return;
-  throw Error(ExitCode::validation,
-              "results on {}: {}; allowed: none wrong or failed, at least one ok", device.name,
-              counts_of(results));
+  const std::size_t lost =
+      capsules ? write_capsules(*capsules, cases, options, shared, device, found) : 0;
+  if (!verify::passed(results))
+    throw Error(ExitCode::validation,
+                "results on {}: {}; allowed: none wrong or failed, at least one ok", device.name,
+                counts_of(results));
+  if (lost > 0)
+    throw Error(ExitCode::run_time, "--capsules {}: {} could not be written", options.capsules,
+                lost);
 }
 
 }  // namespace check_command

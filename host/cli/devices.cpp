@@ -20,6 +20,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Device, index, platform_index, device_index, 
 
 namespace {
 
+/// The most work-items of a work-group, 0 if the driver fails to answer; a kernel that needs many
+/// registers may have fewer.
+std::size_t work_group_of(const Device& device) {
+  std::size_t most = 0;
+  static_cast<void>(
+      clGetDeviceInfo(device.handle(), CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof most, &most, nullptr));
+  return most;
+}
+
 nlohmann::json to_json(const DeviceList& list, const std::vector<FaultyDriver>& faulty) {
   nlohmann::json drivers = nlohmann::json::array();
   for (const FaultyDriver& driver : faulty)
@@ -27,6 +36,7 @@ nlohmann::json to_json(const DeviceList& list, const std::vector<FaultyDriver>& 
   nlohmann::json devices = nlohmann::json::array();
   for (const Device& d : list.devices) {
     devices.push_back(nlohmann::json(d));
+    devices.back()["max_work_group_size"] = work_group_of(d);
     devices.back()["supported"] = d.supported();
   }
   return {{"schema", 1},
@@ -42,9 +52,11 @@ const char* yes_no(bool value) {
 void print(const DeviceList& list) {
   for (const Device& d : list.devices) {
     print_data("{}  {}\n   {}, {}, driver {}\n", d.index, d.name, d.platform, d.version, d.driver);
-    print_data("   {}, {} compute units, {} MiB a buffer; images {}, 3-D image writes {}\n", d.type,
-               d.compute_units, d.max_alloc_bytes >> 20, yes_no(d.images),
-               yes_no(d.image3d_writes));
+    print_data(
+        "   {}, {} compute units, work-groups of {}, {} MiB a buffer; images {}, 3-D image writes "
+        "{}\n",
+        d.type, d.compute_units, work_group_of(d), d.max_alloc_bytes >> 20, yes_no(d.images),
+        yes_no(d.image3d_writes));
     print_data("   64-bit atomics {}, fp64 {}, events {}\n", yes_no(d.int64_atomics),
                yes_no(d.fp64), d.profiling_valid ? "valid" : "implausible: wall time instead");
     if (!d.supported()) print_data("   unsupported, lacks: {}\n", fmt::join(d.missing, ", "));

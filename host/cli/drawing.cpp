@@ -113,7 +113,8 @@ void Drawing::draw(const fs::path& output) const {
   const Process::Result ended = run(python_, {folder().string(), target.string()});
   if (ended.code == 0) {
     for (const fs::directory_entry& file : fs::directory_iterator(drawn))
-      write_file(folder_of_output / file.path().filename(), read_whole(file.path()));
+      write_file(folder_of_output / file.path().filename(), read_whole(file.path()),
+                 one ? OutputFile::Kind::result : OutputFile::Kind::derived);
     return;
   }
   if (ended.code == static_cast<int>(ExitCode::bad_input))

@@ -253,7 +253,7 @@ nlohmann::json add_views(Session& session, const Options& options, const Drawing
     for (const SceneCamera& camera : subject.cameras)
       for (const std::string& folder : options.images)
         read_image_of_method(file_of(folder, subject, camera), options);
-  check_outputs({{"DIR", page_of(options)}});
+  check_outputs({{"DIR", page_of(options), true}});
   const std::vector<PageVariant> variants = page_variants(options);
   const auto frame = [&](const SceneData& scene) {
     return resolve_options(sized(options, {}), scene);
@@ -285,7 +285,7 @@ void run(const Options& options, const Shared& shared) {
     throw Error(ExitCode::usage, "--images: needs a scene");
   nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},
                         {"benchmarks", read_documents(options.benchmarks, "benchmarks", "bench")}};
-  check_outputs({{"DIR", page_of(options)}});
+  check_outputs({{"DIR", page_of(options), true}});
   require_own_page(page_of(options));
   const Drawing drawing("report", "clpv report");
   const Device device = choose_device(shared.device);

@@ -44,13 +44,14 @@ std::vector<NamedFile> prepare_outputs(const Options& options) {
   if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
     throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.folder);
   create_folder("--output", folder);
-  std::vector<NamedFile> outputs{{"--output", options.file(0)},
-                                 {"--output", folder / "times.jsonl"},
+  std::vector<NamedFile> outputs{{"--output", options.file(0), true},
+                                 {"--output", folder / "times.jsonl", true},
                                  {"--video", options.video}};
   std::error_code unknown;
   for (int i = 1; i < options.frames; ++i)  // file(0) tells whether new files are possible
-    if (fs::exists(options.file(i), unknown)) outputs.push_back({"--output", options.file(i)});
-  if (options.stability) outputs.push_back({"--stability", folder / "stability.json"});
+    if (fs::exists(fs::symlink_status(options.file(i), unknown)))
+      outputs.push_back({"--output", options.file(i), true});
+  if (options.stability) outputs.push_back({"--stability", folder / "stability.json", true});
   check_outputs(outputs);
   return outputs;
 }

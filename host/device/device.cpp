@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cstdlib>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "device/cl_error.hpp"
 #include "device/driver_cache.hpp"
+#include "device/timeline.hpp"
 #include "support/text.hpp"
 
 namespace clpv {
@@ -36,19 +39,35 @@ std::string type_name(cl_device_type type) {
   return "other";
 }
 
-/// Fills 1 MiB and returns true if the event's start and end times are plausible.
+/// Returns true if two events have plausible times: each takes some, and the device's clock says
+/// that between them the host waited.
 bool profiling_is_plausible(const cl::Device& handle) {
+  using Clock = std::chrono::steady_clock;
+  using Ns = std::chrono::duration<double, std::nano>;
+  constexpr std::chrono::milliseconds kWait{1};  // far above the resolution of clocks
+  constexpr std::size_t kBytes = 1 << 20;
+  constexpr cl_ulong kLeast = 100;  // [ns]: 1 MiB would be filled at 10 TB/s
   try {
     cl::Context context(handle);
     cl::CommandQueue queue(context, handle, CL_QUEUE_PROFILING_ENABLE);
-    const std::size_t bytes = 1 << 20;
-    cl::Buffer buffer(context, CL_MEM_READ_WRITE, bytes);
-    cl::Event event;
-    queue.enqueueFillBuffer(buffer, cl_uchar{0}, 0, bytes, nullptr, &event);
-    queue.finish();
-    const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
-    const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
-    return end > start && end - start >= 100;  // 1 MiB in under 100 ns would be 10 TB/s
+    cl::Buffer buffer(context, CL_MEM_READ_WRITE, kBytes);
+    const auto filled = [&] {
+      cl::Event event;
+      queue.enqueueFillBuffer(buffer, cl_uchar{0}, 0, kBytes, nullptr, &event);
+      queue.finish();
+      const EventTimes times = times_of(event);
+      return times.end - times.start >= kLeast ? times : EventTimes();
+    };
+    const Clock::time_point begun = Clock::now();
+    const EventTimes first = filled();
+    const Clock::time_point waited = Clock::now();
+    std::this_thread::sleep_for(kWait);
+    const Ns least = Clock::now() - waited;
+    const EventTimes second = filled();
+    const Ns most = Clock::now() - begun;
+    const double between = static_cast<double>(second.start) - static_cast<double>(first.end);
+    return first.valid && second.valid && between >= least.count() * (1 - kClockTolerance) &&
+           between <= most.count() * (1 + kClockTolerance);
   } catch (const cl::Error&) {
     return false;
   }

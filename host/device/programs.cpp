@@ -35,7 +35,7 @@ void dump(const ProgramSource& source, const std::string& text) {
   const std::filesystem::path file =
       std::filesystem::path(folder) / fmt::format("{}.{}", Fingerprint().add(text).hex(), name);
   try {
-    write_file(file, text);
+    write_file(file, text, OutputFile::Kind::derived);
   } catch (const Error& error) {
     throw Error(ExitCode::run_time, "CLPV_PROGRAM_DUMP: {}", error.what());
   }

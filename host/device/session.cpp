@@ -128,6 +128,12 @@ void Session::launch(const cl::Kernel& kernel, const cl::NDRange& global, const 
   if (global.dimensions() == 3) {
     rounded = cl::NDRange(round_up(g[0], l[0]), round_up(g[1], l[1]), round_up(g[2], l[2]));
   }
+  std::size_t group = 1;
+  for (std::size_t i = 0; i < local.dimensions(); ++i) group *= l[i];
+  if (const std::size_t most = kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_.handle);
+      group > most)
+    throw Error(ExitCode::device, "kernel '{}' on {}: found work-groups of at most {}; allowed: {}",
+                kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(), device_.name, most, group);
   if (recorder_) recorder_->begin_launch(kernel, rounded, local);
   std::size_t items = 1;
   for (std::size_t i = 0; i < rounded.dimensions(); ++i) items *= rounded.get()[i];

@@ -3,7 +3,19 @@
 
 #include <algorithm>
 
+#include "support/log.hpp"
+
 namespace clpv {
+
+EventTimes times_of(const cl::Event& event) {
+  EventTimes times;
+  const auto get = [&](cl_profiling_info what, cl_ulong& value) {
+    return clGetEventProfilingInfo(event(), what, sizeof value, &value, nullptr) == CL_SUCCESS;
+  };
+  times.valid = get(CL_PROFILING_COMMAND_START, times.start) &&
+                get(CL_PROFILING_COMMAND_END, times.end) && times.start <= times.end;
+  return times;
+}
 
 void Timeline::begin(StageMark mark) {
   const auto found = std::ranges::find(entries_, mark, &Entry::mark);
@@ -31,24 +43,31 @@ void Timeline::add(Launch launch) {
   if (current_ >= 0 && events_valid_) entries_[current_].launches.push_back(std::move(launch));
 }
 
-double Timeline::Launch::ms() const {
-  event.wait();
-  const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
-  const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
-  return static_cast<double>(end - start) * 1e-6;
-}
-
-std::vector<StageTime> Timeline::times() const {
+std::vector<StageTime> Timeline::times() {
   std::vector<StageTime> result;
+  double sum = 0;
+  bool plausible = true;
   for (const Entry& entry : entries_) {
     StageTime time{entry.mark, entry.wall_ms, events_valid_};
-    for (const Launch& launch : entry.launches) time.ms += launch.ms();
+    for (const Launch& launch : entry.launches) {
+      launch.event.wait();
+      const EventTimes found = times_of(launch.event);
+      plausible = plausible && found.valid;
+      time.ms += found.ms(), sum += found.ms();
+    }
     result.push_back(std::move(time));
   }
-  return result;
+  if (!events_valid_ || (plausible && sum <= since(cleared_) * (1 + kClockTolerance)))
+    return result;
+  log_warning("the device's events {}: times of stages are the host's from here on",
+              plausible ? "take longer than the host waits for them" : "end before they start");
+  events_valid_ = false;
+  entries_.clear();
+  return {};
 }
 
-std::vector<KernelTime> Timeline::kernel_times() const {
+std::vector<KernelTime> Timeline::kernel_times() {
+  static_cast<void>(times());  // drops events that are not plausible
   std::vector<KernelTime> result;
   for (const Entry& entry : entries_) {
     const auto stage = static_cast<std::ptrdiff_t>(result.size());
@@ -62,7 +81,7 @@ std::vector<KernelTime> Timeline::kernel_times() const {
       ++found->launches;
       found->items = std::max(found->items, launch.items);
       found->chain = std::max(found->chain, static_cast<std::size_t>(launch.chain));
-      found->ms += launch.ms();
+      found->ms += times_of(launch.event).ms();
     }
   }
   return result;

@@ -73,6 +73,18 @@ class HostPart {
   std::chrono::steady_clock::time_point start_;
 };
 
+/// Start and end of an event that is complete, on the device's clock [ns]. `valid`: the device
+/// says them, and the end is not before the start.
+struct EventTimes {
+  cl_ulong start = 0, end = 0;
+  bool valid = false;
+  double ms() const { return static_cast<double>(end - start) * 1e-6; }
+};
+EventTimes times_of(const cl::Event& event);
+
+/// Clocks of device and host differ by less: resolution of the device's, adjustment of the host's.
+inline constexpr double kClockTolerance = 0.1;
+
 /// Collects the events of launches, by stage, and counts launches and waits.
 class Timeline {
  public:
@@ -107,11 +119,14 @@ class Timeline {
     ++host_.waits;
     host_.waited_ms += since(start);
   }
-  std::vector<StageTime> times()
-      const;  ///< waits for the events; one entry per stage, in order of first begin
-  /// Waits for the events. One entry per stage and kernel, in order of first launch; none without
-  /// valid events.
-  std::vector<KernelTime> kernel_times() const;
+  /// Waits for the events; one entry per stage, in order of first begin. Events that end before
+  /// they start, or that take longer together than the host's clock says, are a warning: there are
+  /// no entries then, and stages have wall times from the next clear() on.
+  std::vector<StageTime> times();
+  bool events_valid() const { return events_valid_; }
+  /// As times(). One entry per stage and kernel, in order of first launch; none without valid
+  /// events.
+  std::vector<KernelTime> kernel_times();
   void clear();                                   ///< begins a frame
   void enqueued();                                ///< ends the host's part of a frame
   const HostWork& host() const { return host_; }  ///< since clear()
@@ -127,7 +142,6 @@ class Timeline {
     cl::Kernel kernel;
     std::size_t items;
     Chain chain;
-    double ms() const;  ///< waits for the event
   };
   void add(Launch launch);
   struct Entry {

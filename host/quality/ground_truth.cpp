@@ -18,15 +18,16 @@
 #include "support/text.hpp"
 
 namespace clpv {
+namespace detail {
+/// Hash of all sources that make a ground truth (cmake/ground_truth_sources.cmake).
+const char* ground_truth_sources();
+}  // namespace detail
 namespace {
-
-// Increment when the tracer's results change; this invalidates cached references.
-constexpr int kTracerRevision = 1;
 
 std::string key(const SceneData& scene, const SceneCamera& camera, const ClpvView& view,
                 const pathtracer::PathTracerOptions& options) {
   Fingerprint print;
-  print.add(version()).add(kTracerRevision).add(scene_fingerprint(scene));
+  print.add(std::string_view(detail::ground_truth_sources())).add(scene_fingerprint(scene));
   for (const SceneLight& light : scene.lights_for(camera)) print.add(std::vector{light.data});
   print.add(std::vector{view}).add(options.bounces).add(options.seed).add(emits(scene));
   print.add(options.samples).add(options.samples > 0 ? 0.0 : options.noise);

@@ -28,8 +28,8 @@ inline constexpr const char* kViewHash = "view_hash";
 std::string view_hash(const SceneData& scene, const SceneCamera& camera, int width, int height);
 
 /// Returns the ground truth of `camera` from the cache in `folder`; traces and stores it if it is
-/// missing. The file name contains a key over scene content, camera, size, options and program
-/// version, but no file paths. A damaged file is traced again, with a warning; one that CacheFolder
+/// missing. The file name contains a key over scene content, camera, size, options and the tracer's
+/// sources, but no file paths. A damaged file is traced again, with a warning; one that CacheFolder
 /// does not trust is ignored. Collective over all `ranks`; each rank receives the result. Only rank
 /// 0 reads and writes the cache, whose folder other hosts need not share. A folder that cannot be
 /// written is a warning before tracing, and a failure to write one after it. Throws like

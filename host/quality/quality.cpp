@@ -18,8 +18,6 @@
 namespace clpv {
 namespace {
 
-constexpr int kCellSchema = 2;  // of cached cells
-
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
@@ -104,8 +102,9 @@ QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
 std::string quality_key(const GroundTruth& truth, const Device& device,
                         const RenderOptions& options, Show show, int frames, int processors) {
   Fingerprint print;
-  print.add(kCellSchema).add(times_key(device, options, processors));
-  print.add(truth.file.filename().string());
+  print.add(times_key(device, options, processors));
+  print.add(truth.file.filename().string());  // of scene, lights and camera
+  add_pixels(print, truth.image);
   return print.add(name_of(show)).add(frames).add(truth.exposure).hex();
 }
 

@@ -66,8 +66,8 @@ QualityCell measure(Session& session, Frame& frame, const SceneCamera& camera,
 /// Sets the errors of an image of the view `show`. Throws the errors of compare.
 void fill_errors(QualityCell& cell, const Image& image, const GroundTruth& truth, Show show);
 
-/// Cache key over all inputs of a cell, errors and times: times_key(), ground truth, view and
-/// number of timed frames.
+/// Cache key over all inputs of a cell, errors and times: times_key(), name and pixels of the
+/// ground truth, view and number of timed frames.
 std::string quality_key(const GroundTruth& truth, const Device& device,
                         const RenderOptions& options, Show show, int frames, int processors);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reads glTF documents by tinygltf (2.7 and 2.9), which trusts indices and sizes, opens files of URIs, knows
-// six spellings of data URIs, and decodes images. Here it reads only checked JSON, whose buffers
-// come from this file: it neither opens files nor decodes images.
+// Reads glTF documents by tinygltf (2.7 and 2.9), which trusts indices and sizes, opens files of
+// URIs, knows six spellings of data URIs, and decodes images. Here it reads only checked JSON,
+// whose buffers come from this file: it neither opens files nor decodes images.
 #include "scene/gltf_document.hpp"
 
 #include <nlohmann/json.hpp>
@@ -193,8 +193,8 @@ void find_extensions(const json& value, std::set<std::string>& names) {
   }
 }
 
-/// Gives a document what tinygltf requires and glTF, or common exporters, do not, and extensionsUsed
-/// the extensions that it lacks.
+/// Gives a document what tinygltf requires and glTF, or common exporters, do not, and
+/// extensionsUsed the extensions that it lacks.
 void complete(json& document) {
   std::set<std::string> found;
   find_extensions(document, found);

@@ -150,8 +150,8 @@ void read_transmission(const tinygltf::Material& source, const std::string& plac
   const double factor = number_in(found->second, "transmissionFactor", 0);
   if (factor == 0) return;
   const double transmittance = factor * *std::max_element(made.base_colour, made.base_colour + 3);
-  const std::string glass = fmt::format("{} ('{}') transmits {:.2g} of light", place, source.name,
-                                        transmittance);
+  const std::string glass =
+      fmt::format("{} ('{}') transmits {:.2g} of light", place, source.name, transmittance);
   if (transmittance < kGlass || found->second.Has("transmissionTexture") || emits(made)) {
     notes.add(glass + ": opaque here");
     return;

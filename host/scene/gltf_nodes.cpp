@@ -78,7 +78,6 @@ std::vector<int> root_nodes(const GltfDocument& document, const std::vector<int>
                             Notes& notes) {
   std::vector<int> roots;
   const std::size_t scenes = document.model.scenes.size();
-  if (scenes == 0 && !parents.empty()) notes.add("/scenes: none: all root nodes are shown");
   if (scenes > 1 && document.model.defaultScene < 0)
     notes.add(fmt::format("/scene: none of {} scenes: /scenes/0 is shown", scenes));
   if (scenes == 0) {

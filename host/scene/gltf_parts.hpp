@@ -56,8 +56,9 @@ std::vector<Texture> load_textures(const GltfDocument& document,
 std::map<int, NodeCurves> read_animations(const GltfDocument& document, Notes& notes);
 
 /// Nodes of the default scene, parents first: else of the first scene, or below all root nodes
-/// without scenes, with a note. `curves` are by node index; `root` transforms the model to world space. Throws
-/// Error(bad_input) for cycles, several parents and excessive depth.
+/// without scenes. Notes a first scene among several. `curves` are by node index; `root` transforms
+/// the model to world space. Throws Error(bad_input) for cycles, several parents and excessive
+/// depth.
 NodeTree read_nodes(const GltfDocument& document, const std::map<int, NodeCurves>& curves,
                     const glm::dmat4& root, Notes& notes);
 

@@ -231,8 +231,8 @@ void place(const Instance& instance, PosedTree& posed, SceneData& scene) {
   const Placement placement = placement_of(instance, posed);
   const LocalPrimitive& primitive = *instance.primitive;
   const auto place_all = [&](const std::vector<LocalVertex>& vertices) {
-    place_triangles(instance,
-                    place_vertices(instance, vertices, placement, posed.tree(), scene), scene);
+    place_triangles(instance, place_vertices(instance, vertices, placement, posed.tree(), scene),
+                    scene);
   };
   if (primitive.targets.empty())
     place_all(primitive.vertices);

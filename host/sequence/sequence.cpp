@@ -137,7 +137,7 @@ void Sequence::measure_stability() {
   nlohmann::json all = header_json();
   all["traced_spp"] = options_.traced;
   write_file(fs::path(options_.folder) / "stability.json",
-             stability_json(all, stability.steps()).dump(1) + "\n");
+             stability_json(all, stability.steps()).dump(1) + "\n", OutputFile::Kind::derived);
 }
 
 void Sequence::for_all_images(const std::function<void(const Image&)>& action) {
@@ -204,7 +204,7 @@ void Sequence::write(FrameLine line, Frame& frame, const nlohmann::json& descrip
   shown.metadata[kPixels] = pixels_hash(shown);
   const std::vector<unsigned char> bytes =
       options_.format == FrameFormat::exr ? exr_bytes(shown) : png_bytes(shown);
-  OutputFile file(options_.file(line.frame));
+  OutputFile file(options_.file(line.frame), OutputFile::Kind::derived);
   file.write(std::as_bytes(std::span(bytes)));
   line.write_ms = milliseconds_since(started);
   times_.append(to_json(line));

@@ -138,7 +138,8 @@ std::optional<FrameLine> frame_line(const std::string& text) {
 
 TimesFile::TimesFile(fs::path path) : path_(std::move(path)) {
   // O_NONBLOCK: opening a FIFO would wait for its other end.
-  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0666);
+  descriptor_ = ::open(path_.c_str(),
+                       O_RDWR | O_CREAT | O_APPEND | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(path_, reason());
   try {
     begin();

@@ -12,10 +12,12 @@
 namespace clpv {
 
 /// A file and what names it, for errors: an option, or a document and the place in it. An empty
-/// path means that the option is not given.
+/// path means that the option is not given. `derived`: an output whose name clpv makes, in a folder
+/// or beside a file that the option names.
 struct NamedFile {
   std::string option;
   std::filesystem::path path;
+  bool derived = false;
 };
 
 /// Device and inode of a file, so that links and hard links are the file itself. For a file that

@@ -15,6 +15,8 @@
 namespace clpv {
 namespace {
 
+constexpr unsigned kPatience = 10;  // [s]: far above a step of work, below what a user waits for
+
 std::atomic<int> pending_signal{0};
 std::atomic<const char*> uninterruptible{nullptr};
 thread_local const StopRequest* thread_stop = nullptr;
@@ -59,12 +61,21 @@ void end_by(int signal) {
 extern "C" {
 static void on_signal(int signal) {
   if (pending_signal.exchange(signal) == signal) return end_by(signal);  // once more
+  ::alarm(kPatience);
   if (const char* what = uninterruptible) {
     say("\nclpv: stopping after ");
     say(what);
     say("; once more to stop now\n");
     mute_stderr();
   }
+}
+
+/// For loops that never ask.
+static void on_alarm(int) {
+  if (pending_signal == 0) return;
+  if (uninterruptible != nullptr) return static_cast<void>(::alarm(kPatience));
+  say("\nclpv: interrupted within a long step, which did not end\n");
+  end_by(pending_signal);
 }
 }
 
@@ -75,6 +86,7 @@ void catch_interrupts() {
     // A shell ignores SIGINT for background processes, nohup SIGHUP; keep that.
     if (std::signal(signal, on_signal) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
+  std::signal(SIGALRM, on_alarm);
 }
 
 Uninterruptible::Uninterruptible(const char* what) : outer_(uninterruptible.exchange(what)) {}

@@ -14,8 +14,8 @@ class Interrupted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Installs the handler: the first of these signals sets interrupted(); the same once more ends
-/// the process at once, without its unfinished outputs.
+/// Installs the handler: the first of these signals sets interrupted(); the same once more, or 10 s
+/// of work that does not ask for it, end the process at once, without its unfinished outputs.
 void catch_interrupts();
 
 /// Work that cannot be interrupted, during its lifetime: a signal then logs "stopping after

@@ -39,9 +39,11 @@ std::string temporary_name(const std::string& target) {
 }
 
 /// Returns follow_links(). Throws Error(run_time) if no file can be written there.
-fs::path resolve(const fs::path& path) {
+fs::path resolve(const fs::path& path, OutputFile::Kind kind) {
   if (path.filename().empty()) reject_output(path, "the path names no file");
   std::error_code error;
+  if (kind == OutputFile::Kind::derived && fs::is_symlink(fs::symlink_status(path, error)))
+    reject_output(path, "it is a symbolic link; allowed: none, or a regular file");
   const fs::path target = follow_links(path, error);
   if (error) reject_output(path, error.message());
   if (!fs::is_directory(target.parent_path(), error)) {
@@ -92,10 +94,10 @@ void remove_unfinished_outputs() {
 }
 
 OutputFile::OutputFile(const fs::path& path, Kind kind)
-    : target_(kind == Kind::result ? resolve(path) : path), kind_(kind) {
+    : target_(kind == Kind::entry ? path : resolve(path, kind)), kind_(kind) {
   spare_input(target_);
   struct stat replaced {};
-  const bool replaces = kind == Kind::result && ::lstat(target_.c_str(), &replaced) == 0;
+  const bool replaces = kind != Kind::entry && ::lstat(target_.c_str(), &replaced) == 0;
   create(replaces ? 0600 : 0666);
   // Some file systems have no modes.
   if (replaces) static_cast<void>(::fchmod(descriptor_, replaced.st_mode & kPermissions));
@@ -139,7 +141,7 @@ void OutputFile::write(std::span<const std::byte> bytes) {
 }
 
 void OutputFile::commit() {
-  const bool lasts = kind_ == Kind::result;
+  const bool lasts = kind_ != Kind::entry;
   const int file = std::exchange(descriptor_, -1);
   const int error = lasts ? sync_and_close(file) : ::close(file) != 0 ? errno : 0;
   if (error != 0) reject_output(target_, reason(error));
@@ -154,8 +156,8 @@ void OutputFile::commit() {
     reject_output(target_, reason(unsafe));
 }
 
-void check_writable(const fs::path& path) {
-  OutputFile probe(path);
+void check_writable(const fs::path& path, OutputFile::Kind kind) {
+  OutputFile probe(path, kind);
 }
 
 void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
@@ -170,7 +172,8 @@ void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<Name
       throw Error(ExitCode::usage, "{} {}: found the file of {} {}; allowed: another file",
                   output.option, output.path.string(), same->option, same->path.string());
     }
-    check_writable(output.path);
+    check_writable(output.path,
+                   output.derived ? OutputFile::Kind::derived : OutputFile::Kind::result);
     others.emplace(file, output);
   }
 }

@@ -19,8 +19,9 @@ namespace clpv {
 class OutputFile {
  public:
   enum class Kind {
-    result,  ///< a symbolic link is kept, and its target replaced; survives a crash of the machine
-    entry    ///< of a cache or temporary folder: whatever has the name is replaced
+    result,   ///< a symbolic link is kept, and its target replaced; survives a crash of the machine
+    derived,  ///< a result of a name that clpv makes: a symbolic link is rejected
+    entry     ///< of a cache or temporary folder: whatever has the name is replaced
   };
 
   /// Creates the temporary file. A result keeps the mode of the file that it replaces. Throws
@@ -54,7 +55,8 @@ void remove_unfinished_outputs();
 
 /// Checks before long work that `path` can be written, as OutputFile and its commit() will. Leaves
 /// no file behind. Throws as OutputFile.
-void check_writable(const std::filesystem::path& path);
+void check_writable(const std::filesystem::path& path,
+                    OutputFile::Kind kind = OutputFile::Kind::result);
 
 /// check_writable() of all outputs. Throws Error(usage) if two outputs, or an output and an input
 /// of `inputs` or the InputRecord, are one file. Commands call it before they read anything, and

@@ -64,7 +64,14 @@ FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& cam
     session.queue().finish();
     const std::chrono::duration<double, std::milli> wall = Clock::now() - start;
     if (after) after();
-    if (i >= 0) times.add(session.timeline().times(), {wall.count(), host});
+    if (i < 0) continue;
+    const bool events = session.timeline().events_valid();
+    const std::vector<StageTime> stages = session.timeline().times();
+    if (events == session.timeline().events_valid()) {
+      times.add(stages, {wall.count(), host});
+    } else {
+      times = {}, i = -warm_up - 1;  // all again, by one clock
+    }
   }
   times.set_kernels(session.timeline().kernel_times());
   return times;

@@ -46,7 +46,7 @@ std::vector<NamedFile> QualityBaselines::outputs(const std::vector<Subject>& sub
     create_folder("--images", std::filesystem::path(images_) / name_of(baseline));
     for (const Subject& subject : subjects)
       for (const SceneCamera& camera : subject.cameras)
-        files.push_back({"--images", image_file(images_, baseline, subject, camera)});
+        files.push_back({"--images", image_file(images_, baseline, subject, camera), true});
   }
   return files;
 }

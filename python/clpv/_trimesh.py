@@ -45,8 +45,8 @@ def _arguments(mesh):
         made["normals"] = mesh.vertex_normals
     if visual.kind == "vertex":
         return made | {"colours": _colours(visual.vertex_colors)}
-    if visual.kind != "texture":
-        return made | {"material": clpv.Material(base_colour=_colours(visual.main_color))}
+    if visual.kind != "texture":  # without colours: white, as in a file without a material
+        return made
     if "color" in visual.vertex_attributes:
         made["colours"] = _colours(visual.vertex_attributes["color"])
     look = _material(visual.material)

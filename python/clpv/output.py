@@ -9,7 +9,7 @@ import tarfile
 import tempfile
 
 RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3  # exit codes
-MARKER = ".clpv-output"  # of a script's output folder: the script, then its files, a line each
+MARKER = ".clpv-output"  # of an output folder: the script that wrote it
 
 
 class Failure(Exception):
@@ -106,23 +106,22 @@ def name_missing_modules():
 
 
 class Folder:
-    """Output folder of a script: new, empty, or one that this script wrote before. Its marker lists
-    the files of the script, which alone are packed."""
+    """Output folder of a script: new, empty, or one that this script wrote before. `written`: its
+    files of this run."""
 
     def __init__(self, path, script):
         """Raises BadOutput."""
         self.path, self.written = pathlib.Path(path), []
-        self.marker = self.path / MARKER
+        marker = self.path / MARKER
         try:
-            if not os.path.lexists(self.marker):
-                self.path.mkdir(parents=True, exist_ok=True)
-                if not any(self.path.iterdir()):
-                    self.marker.write_text(f"{script}\n", encoding="utf-8")
-            found = self.marker.is_file() and not self.marker.is_symlink()
-            first, *self.names = self.marker.read_text("utf-8").splitlines() if found else [""]
+            self.path.mkdir(parents=True, exist_ok=True)
+            if not any(self.path.iterdir()):
+                marker.write_text(f"{script}\n", encoding="utf-8")
+            found = marker.is_file() and not marker.is_symlink()
+            lines = marker.read_text("utf-8").splitlines() if found else []
         except OSError as error:
             raise BadOutput(f"{path}: cannot be written: {error.strerror}") from None
-        if first != script:
+        if lines[:1] != [script]:
             raise BadOutput(f"{path}: found files, and no {MARKER} of {script}; allowed: a new or "
                             f"empty folder, or one that {script} wrote", USAGE)
 
@@ -130,10 +129,6 @@ class Folder:
         """Path for a file of that name, which may have folders."""
         place = self.path / name
         place.parent.mkdir(parents=True, exist_ok=True)
-        if name not in self.names:
-            with self.marker.open("a", encoding="utf-8") as marker:
-                marker.write(f"{name}\n")
-            self.names.append(name)
         self.written.append(name)
         return place
 

@@ -90,7 +90,7 @@ def key_of(arguments):
 def earlier(out, name, key):
     """The part of an earlier run with this key; None if there is none, or if it lacks one of its
     files. Reports a damaged one."""
-    if name not in out.names or not (out.path / name).exists():
+    if not (out.path / name).exists():
         return None
     try:
         found = json.loads((out.path / name).read_bytes())

@@ -56,6 +56,26 @@ TEST(Bake, InvalidProbesAreFilledFromTheirNeighbours) {
   EXPECT_THAT(first(false), ::testing::ElementsAre(0, 1, 2, 3, 4));
 }
 
+TEST(Bake, EncodingIsTheSameOnAnyThreadsAndEndsByAnInterrupt) {
+  const ProbeFormat format = probe_format("zh3");
+  const ProbeGrid grid{{20, 15, 2}, {0, 0, 0}, {4, 1, 1}};
+  std::vector<std::uint8_t> valid(grid.size(), 0);
+  for (std::size_t i = 0; i < valid.size(); i += 37) valid[i] = 1;
+  GridLight light;
+  light.count = format.moments.count;
+  for (std::size_t i = 0; i < grid.size() * light.count; ++i)
+    light.integrals.emplace_back(std::sin(i), 1, 2);
+  const auto of = [&](int threads) {
+    return encoded(format, light, 0, grid, valid, true, threads);
+  };
+  const BakedProbes one = of(1), several = of(3);
+  EXPECT_EQ(one.coefficients, several.coefficients);
+  EXPECT_EQ(one.negative, several.negative);
+  const StopRequest stop{true};
+  const StopScope scope(&stop);
+  EXPECT_THROW(of(2), Interrupted);
+}
+
 // A block inside a room: probes in it see its faces' backs.
 TEST(Bake, ProbesInsideWallsAreInvalid) {
   SceneData scene;
@@ -113,6 +133,8 @@ TEST(Bake, AnInterruptedBakeGoesOn) {
   };
   Counted stopped(2), resumed(9), other(9), again(9);
   EXPECT_THROW(bake(stopped), Interrupted);
+  EXPECT_TRUE(BlockCache(folder.path(), "key").keeps());
+  EXPECT_FALSE(BlockCache(std::nullopt, "key").keeps());
   const GridLight all = bake(resumed);
   EXPECT_EQ(resumed.calls, 1) << "two blocks were kept";
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(all.integrals[i].x, i);

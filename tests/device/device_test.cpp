@@ -10,6 +10,7 @@
 #include "device/cl_error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::device_test {
 namespace {
@@ -73,11 +74,11 @@ TEST(DevicesCommand, JsonHasTheDocumentedKeys) {
   ASSERT_EQ(json.at("devices").size(), 1u);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json["devices"][0].items()) keys.push_back(key);
-  EXPECT_THAT(keys, ::testing::UnorderedElementsAre("index", "platform_index", "device_index",
-                                                    "platform", "name", "driver", "version", "type",
-                                                    "compute_units", "max_alloc_bytes", "images",
-                                                    "image3d_writes", "int64_atomics", "fp64",
-                                                    "profiling_valid", "supported", "missing"));
+  EXPECT_THAT(keys, ::testing::UnorderedElementsAre(
+                        "index", "platform_index", "device_index", "platform", "name", "driver",
+                        "version", "type", "compute_units", "max_work_group_size",
+                        "max_alloc_bytes", "images", "image3d_writes", "int64_atomics", "fp64",
+                        "profiling_valid", "supported", "missing"));
 }
 
 TEST(DevicesCommand, WithoutDriversIsAnEmptyListAndAMessage) {
@@ -90,6 +91,28 @@ TEST(DevicesCommand, WithoutDriversIsAnEmptyListAndAMessage) {
   const auto asked = test::run(none + CLPV_PROGRAM " devices --device 0");
   EXPECT_EQ(asked.exit_code, static_cast<int>(ExitCode::device));
   EXPECT_EQ(asked.out, "");
+}
+
+TEST(DeviceClock, AtFaultGivesWayToTheHosts) {
+  const test::TemporaryFolder folder;
+  const std::pair<std::string, std::string> faults[] = {
+      {"ticks", ""}, {"swap", "events end before they start: times of stages are the host's"}};
+  for (const auto& [fault, said] : faults) {
+    const auto outcome = test::run(
+        "LD_PRELOAD=" CLPV_OPENCL_SHIM " CLPV_SHIM_CLOCK=" + fault +
+        " " CLPV_PROGRAM " render " CLPV_SOURCE_DIR
+        "/scenes/cornell.json --width 32 --height 18 --frames 2 --stats - -o " +
+        (folder / "a.exr").string() + test::kSweepOfOne);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(said));
+    const auto stats = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(stats["timer"], "wall") << fault;
+    double sum = 0;
+    for (const auto& time : stats["times"])
+      if (time["stage"] != "frame" && time["stage"] != "host") sum += time["min"].get<double>();
+    EXPECT_LE(sum, stats["times"][0]["max"].get<double>()) << fault;
+    EXPECT_GT(sum, 0) << fault;
+  }
 }
 
 TEST(ClError, NamesCodeCallAndAdvice) {

@@ -20,12 +20,12 @@ WALL = numpy.array([[-2, 0, -2], [2, 0, -2], [2, 3, -2], [-2, 3, -2]], dtype=flo
 
 
 def test_arrays_are_those_of_their_file(tmp_path):
-    uvs = numpy.array([[0, 0], [2, 0], [2, 1], [0, 1]])
+    uvs = numpy.array([[0, 0], [2, 0], [2, 1], [0, 1]], dtype=float)
     texture = numpy.random.default_rng(1).integers(0, 256, (4, 8, 4), numpy.uint8)
     look = clpv.Material(base_colour=(0.5, 1, 1), texture=texture, emission=0.25, double_sided=True)
     scene = clpv.Scene.from_arrays(WALL, SQUARE, normals=WALL * 0 + (0, 0.6, 0.8), uvs=uvs,
-                                   material=look, transform=numpy.diag([1, 2, 1, 1]))
-    scene.add_instance(0, numpy.diag([0.5, 1, 2, 1]))
+                                   material=look, transform=numpy.diag([1.0, 2, 1, 1]))
+    scene.add_instance(0, numpy.diag([0.5, 1.0, 2, 1]))
     scene.save(tmp_path / "wall.glb")
     of_file = clpv.Scene(tmp_path / "wall.glb")
     numpy.testing.assert_array_equal(scene.bounds, of_file.bounds)
@@ -178,7 +178,7 @@ def accessor(document, values, normalized=False):
 FACTOR = {"pbrMetallicRoughness": {"baseColorFactor": [0.4, 0.6, 0.8, 1], "metallicFactor": 0}}
 FILES = [
     (None, None), (FACTOR, None), (None, ("f4", [0.5, 0.25, 1])), (None, ("f4", [0.5, 0.25, 1, 1])),
-    (None, ("u1", [128, 64, 255, 255])), (None, ("u2", [32768, 16384, 65535, 65535])),
+    (None, ("u1", [128, 64, 255, 255])), (FACTOR, ("u2", [32768, 16384, 65535, 65535])),
     (FACTOR, ("f4", [0.5, 0.25, 1, 1])), (FACTOR, ("u1", [128, 64, 255, 255])),
     ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.1]}, "alphaMode": "BLEND"}, None),
     ({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.9]}, "alphaMode": "BLEND"}, None),

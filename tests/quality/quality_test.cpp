@@ -50,6 +50,16 @@ TEST(QualityMatrix, RejectsOptionsThatCannotVary) {
   EXPECT_THROW(combinations({parse_varied("basis=sh2"), parse_varied("basis=sh3")}), Error);
 }
 
+TEST(QualityMatrix, ACellsKeyDependsOnNameAndPixelsOfItsTruth) {
+  GroundTruth truth{make_image(2, 1, {"indirect.R"}), "room-front-0.exr"};
+  std::set<std::string> keys;
+  const auto add = [&] { keys.insert(quality_key(truth, {}, {}, Show::indirect, 1, 1)); };
+  add();
+  truth.image.pixels[1] = 0.5f, add();
+  truth.file = "room-back-0.exr", add();
+  EXPECT_EQ(keys.size(), 3u);
+}
+
 QualityCell cell(const std::string& basis, const std::string& camera, double nrmse, double ms) {
   QualityCell c;
   c.scene = "room";

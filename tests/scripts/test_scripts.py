@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Files and folders that scripts and modules write, arguments of scripts, and gates of the tree."""
-import io
+import hashlib
 import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
-import tarfile
 import tempfile
 import unittest
 from unittest import mock
@@ -77,18 +76,14 @@ class Files(InFolder):
 
 
 class Folders(InFolder):
-    def test_are_new_empty_or_marked_and_pack_what_they_list(self):
+    def test_are_new_empty_or_marked(self):
         made = output.Folder(self.folder / "new/folder", "scripts/a")
         made.write("b/c", "1")
-        (made.path / "private.txt").write_text("of the user")
-        again = output.Folder(made.path, "scripts/a")
-        self.assertEqual(again.names, ["b/c"])
+        self.assertEqual((made.path / "b/c").read_text(), "1")
+        self.assertEqual(output.Folder(made.path, "scripts/a").written, [])
         for other in made.path, self.folder:
             self.rejected("one that scripts/b wrote", output.USAGE, output.Folder, other,
                           "scripts/b")
-        packed = output.tar_of("root", {name: b"1" for name in again.names})
-        with tarfile.open(fileobj=io.BytesIO(packed)) as archive:
-            self.assertEqual(archive.getnames(), ["root/b/c"])
 
     def test_of_bash_scripts_are_checked_as_well(self):
         found = run("demo", CLPV_OUT=str(self.folder))
@@ -127,6 +122,15 @@ class Tree(InFolder):
         found = run("lines", "--check", root=self.folder)
         self.assertEqual(found.returncode, 1)
         self.assertIn(f"host/a.py: {LAB}, which belongs to the lab", found.stderr)
+
+    def test_the_key_of_ground_truths_has_the_tracers_sources(self):
+        subprocess.run(["cmake", f"-DROOT={ROOT}", f"-DOUTPUT={self.file}", "-P",
+                        ROOT / "cmake/ground_truth_sources.cmake"], check=True)
+        for name, has in (("host/pathtracer/path_sampler.cpp", True), ("kernels/shared/light.h", True),
+                          ("host/reference/lighting.cpp", True), ("host/scene/load.cpp", False),
+                          ("host/pipeline/gather/gather.cpp", False)):
+            digest = hashlib.sha256((ROOT / name).read_bytes()).hexdigest()
+            self.assertEqual(f"// {name} {digest}\n" in self.file.read_text(), has, name)
 
     def test_each_member_of_a_shared_struct_is_compared(self):
         found, listed = set(), set()

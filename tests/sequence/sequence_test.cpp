@@ -155,6 +155,21 @@ TEST_F(SequenceTest, FilesOfOthersAreNamedBeforeTheWorkAndStay) {
   EXPECT_THAT(outcome.err, HasSubstr("frame-0002.exr: cannot be written: it is a folder"));
   EXPECT_FALSE(fs::exists(frame(0)));
   fs::remove(frame(2));
+  folder.write("mine", "my diary");
+  for (const fs::path& link : {frame(1), times, folder / "out/stability.json"}) {
+    for (const char* target :
+         {"../mine", "../none"}) {  // beside times.jsonl a frame's was replaced
+      fs::remove(link);
+      fs::create_symlink(target, link);
+      const Outcome linked = sequence("--frames 3 --fps 10 --stability");
+      EXPECT_EQ(linked.exit_code, 1);
+      EXPECT_THAT(linked.err,
+                  HasSubstr(link.filename().string() + ": cannot be written: it is a symb"));
+      EXPECT_EQ(read_file(folder / "mine"), "my diary");
+      EXPECT_FALSE(fs::exists(folder / "none"));
+    }
+    fs::remove(link);
+  }
   fs::remove(times);
   folder.write("out/frame-0001.exr", "my diary");
   const Outcome foreign = sequence("--frames 3 --fps 10");

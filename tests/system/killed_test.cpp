@@ -256,6 +256,22 @@ TEST_F(Killed, AnInterruptWhileCompilingIsAnsweredAtOnce) {
   EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
 }
 
+// `bake` once worked on for minutes.
+TEST(Interrupt, WorkThatNeverAsksIsEnded) {
+  const auto work = [] {
+    ::signal(SIGINT, SIG_DFL);
+    catch_interrupts();
+    ::raise(SIGALRM);  // without an interrupt: nothing
+    ::raise(SIGINT);
+    {
+      const Uninterruptible compilation("this test");
+      ::raise(SIGALRM);
+    }
+    if (::alarm(0) > 0) ::raise(SIGALRM);  // as the kernel does in a while
+  };
+  EXPECT_EXIT(work(), ::testing::KilledBySignal(SIGINT), HasSubstr("within a long step"));
+}
+
 // Ctrl-C also reaches the linker of a driver, whose compiler then wrote "1 error generated." after
 // clpv's message.
 TEST(Interrupt, ACompilersWordsAfterItAreLost) {
