@@ -114,7 +114,7 @@ void Drawing::draw(const fs::path& output) const {
   if (ended.code == 0) {
     for (const fs::directory_entry& file : fs::directory_iterator(drawn))
       write_file(folder_of_output / file.path().filename(), read_whole(file.path()),
-                 OutputFile::Kind::derived);
+                 one ? OutputFile::Kind::result : OutputFile::Kind::derived);
     return;
   }
   if (ended.code == static_cast<int>(ExitCode::bad_input))
