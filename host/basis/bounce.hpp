@@ -16,8 +16,8 @@ inline constexpr int kCellFaces = 6;
 /// Sweeps for all bounces in a medium that scatters, along 24 directions.
 inline constexpr int kScatteredSweeps = 8;
 
-/// Largest share of a bounce's flux that the next one has in the series of `--bounces all`: white
-/// closed rooms have no finite light.
+/// Limit of the ratio of successive bounces in the series of `--bounces all`, which diverges in
+/// closed white rooms.
 inline constexpr double kMaxReturned = 0.98;
 
 /// 6 x 24: incident flux [W] on each face of a cell from a sweep's bins (radiance times s^2):

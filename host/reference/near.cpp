@@ -253,8 +253,8 @@ struct NearPixels {
     return point;
   }
 
-  /// Light at a pixel of the camera from near pixels on its surface: by bilinear weights, or else
-  /// of the blocks around, there on any surface if none is on this one.
+  /// Light at a pixel of the camera from near pixels on its surface: bilinear; if there is none, a
+  /// mean over the blocks around, on its surface or, failing that, on any.
   Mean interpolated(const NearImage& image, int x, int y) const {
     const NearPoint here = point_at(x, y);
     const double across = x % step / double(step), down = y % step / double(step);
