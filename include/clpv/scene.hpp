@@ -119,7 +119,7 @@ class Scene {
   bool moves() const;                      ///< returns true if anything in it is animated
   std::vector<std::string> notes() const;  ///< one sentence for each thing that the loader skipped
                                            ///< or added and the caller has not replaced
-  std::array<Vec3, 2> bounds() const;  ///< lower and upper corner of the bounding box at 0 s [m]
+  std::array<Vec3, 2> bounds() const;     ///< lower and upper corner of the bounding box at 0 s [m]
   std::optional<float> exposure() const;  ///< the scene file's [EV], for save_image()
 
   // Copies, also where a move would do: no Scene is ever empty.
