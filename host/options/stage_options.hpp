@@ -36,8 +36,11 @@ struct PropagateOptions {
 enum class SweepForm {
   suited,  ///< chosen by device type
   bins,    ///< one work-item per bin: CPUs
-  planes,  ///< one launch per plane: devices with thousands of work-items
+  groups,  ///< one work-group per bin and channel: devices with thousands of work-items
+  planes,  ///< one launch per plane: those of them whose local memory is too small, and media
 };
+template <>
+inline constexpr auto kNames<SweepForm> = name_list("suited", "bins", "groups", "planes");
 
 struct SweepOptions {
   int grid = 32;                   ///< cells along each axis

@@ -144,8 +144,8 @@ Cost cost_of(const SweepWork& p) {
                                                        bytes_per_cell(format, harmonics));
   // With a launch per plane, each launch reads one plane of every direction and writes the next;
   // the dark border is read.
-  const double planes = p.sweeper.whole_bins() ? 1 : 1 + 2 * n,
-               dark = p.sweeper.whole_bins() ? 0 : 2 * sides;
+  const bool by_planes = p.sweeper.form() == SweepForm::planes;
+  const double planes = by_planes ? 1 + 2 * n : 1, dark = by_planes ? 2 * sides : 0;
   Cost cost;
   cost.bytes = cells * (light + (2 * bins + links) * number) + dark * number +
                swept * n * n * sizeof(float) * planes;
@@ -186,7 +186,7 @@ struct SweepCase {
     return fmt::format("{}/{}^3/{}{}{}{}{}{}{}{}/{}", basis, grid, directions,
                        bounces == Bounces::one ? "" : fmt::format("/{} bounces", name_of(bounces)),
                        blocking ? "" : "/free", blocked_by == Blocking::areas ? "" : "/one-sided",
-                       form == SweepForm::planes ? "/planes" : "", sky ? "/sky" : "",
+                       form == SweepForm::bins ? "" : fmt::format("/{}", name_of(form)), sky ? "/sky" : "",
                        medium ? "/medium" : "", closed ? "/closed" : "", format_name(format));
   }
 };
@@ -327,7 +327,7 @@ Cases sweep_cases(const CheckScope& scope) {
   // Cases of one grid size and basis share kernels.
   std::vector<SweepCase> cases = {
       {.basis = "sh3", .grid = 9, .parts = {2, 1, 1}, .closed = true},
-      {.basis = "sh3", .grid = 9, .parts = {1, 3}, .form = SweepForm::planes, .sky = true},
+      {.basis = "sh3", .grid = 9, .parts = {1, 3}, .form = SweepForm::groups, .sky = true},
       {.basis = "bins24", .grid = 9, .parts = {1, 2}, .sky = true},
       {.basis = "sh2", .grid = 8, .parts = {1, 1}, .blocked_by = Blocking::one_sided},
       {.basis = "sh2", .grid = 9, .parts = {3, 2}, .blocking = false},

@@ -122,7 +122,8 @@ __kernel void hide_clusters(const ClpvView view, const uint first, const uint co
 
 // Only depths: a shadow map. A work-item stores W pixels of a row.
 __kernel void resolve_depth(const ClpvView view, __global const realW* keys,
-                            __global float* depths) {
+                            __global float* depths CLPV_AND_COUNTERS) {
+  CLPV_CLEAR_COUNTERS;
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   store_depth(view, p, keys[p.row], depths);

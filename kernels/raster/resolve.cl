@@ -106,7 +106,9 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
                              __global const float4* triangles, __global const float4* materials,
                              __global const float4* textures, __global const uint* texels,
                              __global float* depths, __global SurfaceTexel* normals,
-                             __global SurfaceTexel* colours, __global float4* emissives) {
+                             __global SurfaceTexel* colours,
+                             __global float4* emissives CLPV_AND_COUNTERS) {
+  CLPV_CLEAR_COUNTERS;
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
@@ -139,7 +141,9 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global c
                           __global const float4* triangles, __global const float4* materials,
                           __global const float4* textures, __global const uint* texels,
                           __global float* depths, __global SurfaceTexel* normals,
-                          __global SurfaceTexel* fluxes, const float colour_scale) {
+                          __global SurfaceTexel* fluxes,
+                          const float colour_scale CLPV_AND_COUNTERS) {
+  CLPV_CLEAR_COUNTERS;
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "kernels/shared/raster.h"
@@ -59,12 +60,14 @@ unsigned move_nearest_first(std::vector<ClpvViewCluster>& clusters) {
 }  // namespace
 
 Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed,
-                       unsigned least_hidden)
+                       std::optional<unsigned> least_hidden)
     : session_(session),
       scene_(scene),
       max_listed_(std::min<std::size_t>(
           max_listed, session.device().max_alloc_bytes / kEntryBytes * kSpare / (kSpare + 1))),
-      least_hidden_(least_hidden),
+      least_hidden_(least_hidden.value_or(session.device().lanes == 1
+                                              ? std::numeric_limits<unsigned>::max()
+                                              : kLeastHidden)),
       set_up_(session, kSetUp, "set_up"),
       set_up_clipped_(session, kSetUp, "set_up_clipped"),
       enter_wide_(session, kSetUp, "enter_wide"),
@@ -127,7 +130,9 @@ void Rasterizer::find_visible(const Drawing& drawing) {
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
   session_.reserve(farthest_, tile_count(drawing.view) * sizeof(cl_float),
                    "farthest keys of tiles");
+  const std::uint64_t before = slice_counts_.number();
   session_.reserve(slice_counts_, (std::size_t{slices} + 1) * sizeof(cl_uint), "slices of tiles");
+  cleared_ = cleared_ && slice_counts_.number() == before;
   const std::vector<Range> ranges = list_clusters(drawing.view);
   draw_range(drawing, ranges[0], true);
   if (ranges.size() > 1) {
@@ -183,8 +188,13 @@ void Rasterizer::hide_clusters(const ClpvView& view, const Range& range) {
 /// their tiles.
 void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) {
   const cl_uint cull = drawing.culls_back_faces() ? 1 : 0;
-  session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
-  session_.fill_zero(slice_counts_, slice_count(drawing.view) * sizeof(cl_uint));
+  if (!cleared_) {
+    session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
+    session_.fill_zero(slice_counts_, session_.device().lanes == 1
+                                          ? slice_counts_.bytes()
+                                          : slice_count(drawing.view) * sizeof(cl_uint));
+  }
+  cleared_ = false;
   if (count == 0) return;
   set_up_
       .set(drawing.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices,
@@ -200,6 +210,13 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
       .set(drawing.view, counts_, list_room(), entry_room(), listed_, wide_, entries_,
            slice_counts_)
       .launch(session_.device().compute_units * kWideGroupsPerUnit * kRasterGroup, kRasterGroup);
+}
+
+/// Adds the counters to a kernel that zeroes them for the next set_up(), with one lane.
+Kernel& Rasterizer::add_counters(Kernel& kernel) {
+  if (session_.device().lanes != 1) return kernel;
+  cleared_ = true;
+  return kernel.add(counts_, slice_counts_);
 }
 
 /// Sorts the entries of set_up() by tile.
@@ -304,14 +321,14 @@ void Rasterizer::rasterize_camera(Surface& surface) {
   if (scene_.triangle_count == 0) return clear(surface);
   find_visible({view, Kind::camera});
   const bool emissive = has_emissive && scene_.emissive;
-  resolve({.orthographic = view.orthographic != 0,
-           .from_light = false,
-           .paper = surface.format == RsmFormat::paper,
-           .emissive = emissive})
-      .set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
-           scene_.texels, surface.depth, surface.normal, surface.colour,
-           emissive ? surface.emissive : surface.colour)
-      .launch(items_of(session_, view), pixel_group(session_));
+  Kernel& kernel = resolve({.orthographic = view.orthographic != 0,
+                            .from_light = false,
+                            .paper = surface.format == RsmFormat::paper,
+                            .emissive = emissive});
+  kernel.set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
+             scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
+             emissive ? surface.emissive : surface.colour);
+  add_counters(kernel).launch(items_of(session_, view), pixel_group(session_));
 }
 
 void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
@@ -319,19 +336,20 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
   if (surface.format == RsmFormat::paper) surface.colour_scale = largest_flux(light, view);
   if (scene_.triangle_count == 0) return clear(surface);
   find_visible({view, Kind::rsm});
-  resolve({.orthographic = view.orthographic != 0,
-           .from_light = true,
-           .paper = surface.format == RsmFormat::paper,
-           .emissive = false})
-      .set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
-           scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
-           surface.colour_scale)
-      .launch(items_of(session_, view), pixel_group(session_));
+  Kernel& kernel = resolve({.orthographic = view.orthographic != 0,
+                            .from_light = true,
+                            .paper = surface.format == RsmFormat::paper,
+                            .emissive = false});
+  kernel.set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
+             scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
+             surface.colour_scale);
+  add_counters(kernel).launch(items_of(session_, view), pixel_group(session_));
 }
 
 void Rasterizer::rasterize_shadow(const ClpvView& view, Buffer& depth) {
   find_visible({view, Kind::shadow});
-  resolve_depth_.set(view, keys_, depth).launch(items_of(session_, view), pixel_group(session_));
+  resolve_depth_.set(view, keys_, depth);
+  add_counters(resolve_depth_).launch(items_of(session_, view), pixel_group(session_));
 }
 
 }  // namespace clpv

@@ -10,6 +10,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "device/kernel.hpp"
@@ -34,12 +35,13 @@ class Rasterizer {
   static constexpr std::size_t kMaxListed = std::size_t{1} << 25;
 
   /// Clusters in an orthographic view from which on it is drawn in two parts: the nearest, then
-  /// those that they do not hide. Below, a second launch takes more time than it saves.
+  /// those that they do not hide. Below, and with one lane, whose tiles leave out 64 hidden
+  /// triangles at once, further launches take more time than they save.
   static constexpr unsigned kLeastHidden = 512;
 
   /// `scene` must not change while the rasteriser exists. Its handles are copied, not its contents.
   Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed = kMaxListed,
-             unsigned least_hidden = kLeastHidden);
+             std::optional<unsigned> least_hidden = {});
 
   /// Renders the camera's G-buffer from `surface.view`: depth, normal, albedo and, if the surface
   /// has it, emission. Culls back faces unless their material is double-sided. Filters textures
@@ -101,6 +103,7 @@ class Rasterizer {
   bool list_ahead(const Drawing& drawing, const Range& range);
   void take_counts();
   void set_up(const Drawing& drawing, unsigned first, unsigned count);
+  Kernel& add_counters(Kernel& kernel);
   void bin(const ClpvView& view);
   Chain longest_list(const ClpvView& view);
   void draw_tiles(const Drawing& drawing, bool fresh);
@@ -113,7 +116,7 @@ class Rasterizer {
   std::map<Resolving, Kernel> resolve_;
   PrefixSum prefix_sum_;
   Kernel bin_entries_, draw_tiles_, hide_clusters_, resolve_depth_;
-  bool ahead_ = false;
+  bool ahead_ = false, cleared_ = false;  ///< counts_, slice_counts_ are zero
   RasterCounts* counted_ = nullptr;
   std::set<Kind> drawn_;     ///< kinds of views drawn so far
   std::size_t entered_ = 0;  ///< largest number of entries so far

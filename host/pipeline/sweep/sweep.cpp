@@ -79,7 +79,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   lit_ = zeroed_buffer(session, 2 * sweep_volume_size(options.grid) / volumes_.lanes(),
                        "lit rows of the sweep");
   swept_ = volumes_.make(3 * kSweepBins, "sums of the sweep");
-  plane_buffer_ = zeroed_buffer(session, (whole_bins() ? 1 : 2) * ordinates * plane,
+  plane_buffer_ = zeroed_buffer(session, (form() == SweepForm::planes ? 2 : 1) * ordinates * plane,
                                 "plane buffer of the sweep");
   border_ = zeroed_buffer(
       session,
@@ -127,14 +127,16 @@ bool Sweeper::last_light_enters() const {
 
 /// Program of sweep_bins.cl or sweep_planes.cl, for light of `coefficients`.
 ProgramSource Sweeper::sweep_program(int coefficients, const SweepMeans& means, int parts) const {
-  ProgramSource source{whole_bins() ? "sweep/sweep_bins.cl" : "sweep/sweep_planes.cl"};
+  ProgramSource source{fmt::format("sweep/sweep_{}.cl", name_of(form()))};
   source.literals.integer("CLPV_PARTS", parts * parts)
       .integer("CLPV_SOURCES", coefficients)
       .integer("CLPV_EMITTING", means.emitting)
       .integer("CLPV_SOURCE_LANES", volumes_.lanes())
       .flag("CLPV_BLOCKING", options_.blocking)
       .flag("CLPV_MEDIUM", options_.medium.has_value());
-  add_volume_literals(source.literals, options_.grid, options_.format, whole_bins() ? 8 : 1);
+  add_volume_literals(source.literals, options_.grid, options_.format,
+                      form() == SweepForm::bins ? 8 : 1);
+  if (form() == SweepForm::groups) source.literals.number("CLPV_ITEMS", group());
   source.literals.flag("CLPV_COSINE_REST", means.rest.has_value());
   if (means.rest) {
     for (std::size_t i = 0; i < means.rest->even.size(); ++i)
@@ -143,9 +145,25 @@ ProgramSource Sweeper::sweep_program(int coefficients, const SweepMeans& means, 
   return source;
 }
 
-bool Sweeper::whole_bins() const {
-  return options_.form == SweepForm::bins ||
-         (options_.form == SweepForm::suited && session_.device().lanes == 8);
+/// Groups need local memory for a plane of all parts of a bin, and know no media.
+SweepForm Sweeper::form() const {
+  if (options_.form != SweepForm::suited) return options_.form;
+  if (session_.device().lanes == 8) return SweepForm::bins;
+  const std::size_t side = options_.grid + 2,
+                    parts = *std::max_element(options_.parts.begin(), options_.parts.end());
+  const auto local = session_.device().handle.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  const bool fits = parts * parts * side * side * sizeof(float) <= local;
+  return fits && group() > 0 && !options_.medium ? SweepForm::groups : SweepForm::planes;
+}
+
+/// Work-items that sweep a channel of a bin: each takes one cell of a plane, or a few; 0 on devices
+/// with smaller groups than other kernels need.
+std::size_t Sweeper::group() const {
+  constexpr std::size_t kLeast = 64, kMost = 512;
+  const std::size_t cells = std::size_t(options_.grid) * options_.grid,
+                    most = session_.device().handle.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+  return std::min(std::min(most, kMost) / kLeast * kLeast,
+                  (cells + kLeast - 1) / kLeast * kLeast);
 }
 
 Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int coarser,
@@ -162,7 +180,9 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int 
                   session_.upload(means.coefficients, "coefficients of the sweep's bins"),
                   session_.upload(means.means, "means of the basis's functions"),
                   Kernel(session_, sweep_program(basis.size(), means, parts),
-                         whole_bins() ? "sweep_bin" : "sweep_plane"),
+                         form() == SweepForm::bins     ? "sweep_bin"
+                         : form() == SweepForm::groups ? "sweep_group"
+                                                      : "sweep_plane"),
                   zeroed_buffer(session_, feeds_finer ? halo_bytes(options_, parts) : sizeof(float),
                                 "boundary light of a finer cascade"),
                   {},
@@ -328,7 +348,9 @@ bool Sweeper::light_border(bool all_directions, std::size_t c, const std::vector
   Kernel& kernel = directions.border ? *directions.border : *directions.sky_border;
   // A sweep by planes reads the plane upstream of the grid among the odd ones.
   const cl_int upstream =
-      whole_bins() ? 0 : 3 * directions_of(directions.parts) * bordered_plane_size(options_.grid);
+      form() == SweepForm::planes
+          ? 3 * directions_of(directions.parts) * bordered_plane_size(options_.grid)
+          : 0;
   if (directions.border) {
     const std::array<int, 3> offset = offset_in_coarser(grids[c + 1], grids[c]);
     kernel.set(bins_, directions.table, directions_in(c + 1).halo_light,
@@ -361,9 +383,11 @@ void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSwee
       directions.sweep.add(directions.table, sources_);  // not read
   };
   const std::size_t n = options_.grid;
-  if (whole_bins()) {
+  if (form() != SweepForm::planes) {
     set(lit ? 0 : 1);
-    directions.sweep.launch({kSweepBins}, {1}, Chain{n});
+    const std::size_t items = form() == SweepForm::bins ? 1 : group();
+    directions.sweep.launch({(form() == SweepForm::bins ? 1 : 3) * kSweepBins * items}, {items},
+                            Chain{n});
     return;
   }
   if (!lit) darken_border(directions);

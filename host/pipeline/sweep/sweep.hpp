@@ -64,9 +64,8 @@ class Sweeper {
   /// Cells of a cascade whose light a sweep stores for the next finer one; empty for the finest.
   ClpvSweepHalo halo(std::size_t cascade, const std::vector<ClpvGrid>& grids) const;
 
-  /// Returns true if a launch sweeps whole bins (kernels/sweep/sweep_bins.cl), false if it sweeps a
-  /// plane (kernels/sweep/sweep_planes.cl).
-  bool whole_bins() const;
+  /// How a cascade is swept: never SweepForm::suited.
+  SweepForm form() const;
 
  private:
   /// Directions of one cascade, their kernels and light at its border.
@@ -106,6 +105,7 @@ class Sweeper {
               bool scattered = false);
   void collect(Volume& accumulated, int first, int channels);
   bool last_light_enters() const;
+  std::size_t group() const;
 
   Session& session_;
   SweepOptions options_;
