@@ -41,7 +41,7 @@ struct Row {
   int coefficients = 0;            ///< of the basis
   std::optional<Problem> problem;  ///< empty for rows without volumes: rasterising and ceilings
   Status status = Status::ok;
-  std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`
+  std::string reason;   ///< reason for `unsupported`, or place of the error for `wrong`
   std::string preset;   ///< suite frame
   std::string changed;  ///< suite factors: options that differ from the preset, "layout=soa
                         ///< evaluate=buffer"

@@ -2,7 +2,12 @@
 # Installs bin/clpv, the Python package that it draws with, the library, its headers, and a CMake package (find_package(clpv), link
 # clpv::clpv).
 include(CMakePackageConfigHelpers)
-if(CLPV_BUILD_PROGRAM)
+if(CLPV_BUILD_PROGRAM AND SKBUILD)  # in the wheel's package, where python/clpv/__main__.py finds them
+  install(TARGETS clpv RUNTIME DESTINATION clpv/bin COMPONENT python)
+  set_target_properties(clpv PROPERTIES INSTALL_RPATH "$ORIGIN/..")
+  install(FILES scenes/atrium.json scenes/atrium.glb scenes/cornell.json scenes/cornell.glb
+          DESTINATION clpv/scenes COMPONENT python)
+elseif(CLPV_BUILD_PROGRAM)
   install(TARGETS clpv RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   find_program(HELP2MAN help2man)
   if(HELP2MAN)
@@ -14,7 +19,7 @@ if(CLPV_BUILD_PROGRAM)
     add_custom_target(clpv_pages ALL DEPENDS ${page})
     install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)  # a build of the target clpv alone has none
   else()
-    message(STATUS "help2man not found: no man page")
+    list(APPEND CLPV_ABSENT "help2man")
   endif()
 endif()
 install(TARGETS clpv_library EXPORT clpvTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -3,9 +3,9 @@
 // include it.
 //
 // W 8 is for CPUs; inner loops with it call no function that PoCL does not inline, such as any(),
-// floor() or log2(). W 1 is for GPUs, which run work-items themselves in lanes, and for kernels on
-// images. There, PoCL vectorises work-items only in short kernels of straight-line code, without
-// branches (volume/whole_groups.h).
+// floor() or log2(). W 1 is for GPUs, whose hardware runs work-items in lanes, and for kernels on
+// images. On CPUs, PoCL vectorises the work-items of a W 1 kernel only in short kernels of
+// straight-line code, without branches (volume/whole_groups.h).
 #pragma once
 
 #ifndef CLPV_W
@@ -16,8 +16,8 @@
 // Large functions need the attribute: PoCL leaves them out of line.
 #define CLPV_INLINE static inline __attribute__((always_inline))
 
-// Rare code, which would take registers from all other if it were inlined. GPUs keep the stack of
-// calls in scratch memory.
+// For functions that seldom run. CPUs: not inlined, to leave registers to the common path. GPUs:
+// inlined, since calls keep their stack in scratch memory.
 #if W == 1
 #define CLPV_RARE CLPV_INLINE
 #else
@@ -26,8 +26,8 @@
 
 // Vectors of W numbers, conversions between them, and load and store of W numbers that follow one
 // another. A comparison of vectors is a mask: an intW, -1 where it holds and 0 elsewhere. With one
-// lane it is 1 or 0: write `mask == 0` in place of ~mask, and all_bits(mask) where its bits are
-// numbers.
+// lane it is 1 or 0. Negate masks by `mask == 0`, not ~mask, and call all_bits(mask) before
+// combining it with other integers.
 #if W == 8
 #define CLPV_VECTOR(name) name##8
 #define to_intW_rte convert_int8_rte
@@ -67,9 +67,9 @@ typedef CLPV_VECTOR(uchar) bytesW;
 #define ZERO ((realW)(0.0f))
 #define ONE ((realW)(1.0f))
 
-// A float4 per lane, read by columns: one load per lane instead of four. Functions that read
-// buffers return structs through pointers: Oclgrind does not know the annotations that compilers
-// give to functions that return one.
+// One float4 per lane, loaded whole: one load per lane instead of four. CLPV_COLUMN takes one
+// component of all lanes. Functions that read buffers return structs through pointers: Oclgrind
+// does not know the annotations that compilers give to functions that return one.
 typedef struct {
   float4 row[W];
 } Rows;

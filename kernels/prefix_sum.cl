@@ -4,7 +4,7 @@
 //   sum_blocks     totals = sum of each block
 //   place_blocks   the prefix sums; values[count] and total[0]: the sum of all
 //
-// A work-group sums a block. On CPUs one work-item does so alone, since it runs through memory.
+// A work-group sums a block. On CPUs the group is one work-item, which sums its block sequentially.
 #include "lanes.h"
 #if W == 1
 #define CLPV_GROUP 64

@@ -252,7 +252,8 @@ std::vector<LightVolume> Renderer::volumes() {
     volume.coefficients = shape.coefficients;
     volume.basis = state().frame->gathered().name();
     std::vector<float> values = light.accumulated[c]->read(state().session);
-    const auto furnace = values.begin() + static_cast<std::ptrdiff_t>(values.size() / shape.channels * 3);
+    const auto furnace =
+        values.begin() + static_cast<std::ptrdiff_t>(values.size() / shape.channels * 3);
     volume.furnace.assign(furnace, values.end());
     values.erase(furnace, values.end());
     for (float& value : values) value /= light.scale;

@@ -2,6 +2,9 @@
 #include "basis/bounce.hpp"
 
 #include <algorithm>
+#include <numbers>
+#include <numeric>
+#include <span>
 
 #include "basis/sweep.hpp"
 #include "basis/transport.hpp"
@@ -28,6 +31,9 @@ Matrix incident_flux() {
       const SweepBin& bin = bins[b];
       flux(side, b) = bin.solid_angle * cosine(bin, opposite);
     }
+    const std::span<double> row = flux.row(side);
+    const double even = std::accumulate(row.begin(), row.end(), 0.0);
+    for (double& each : row) each *= std::numbers::pi / even;
   }
   return flux;
 }

@@ -3,6 +3,8 @@
 // bounces'). In double, without OpenCL.
 #pragma once
 
+#include <algorithm>
+
 #include "basis/basis.hpp"
 #include "basis/matrix.hpp"
 
@@ -14,24 +16,30 @@ inline constexpr int kCellFaces = 6;
 /// Sweeps for all bounces in a medium that scatters, along 24 directions.
 inline constexpr int kScatteredSweeps = 8;
 
-/// Largest share of a bounce's flux that the next one has in the series of `--bounces all`: white
-/// closed rooms have no finite light.
+/// Limit of the ratio of successive bounces in the series of `--bounces all`, which diverges in
+/// closed white rooms.
 inline constexpr double kMaxReturned = 0.98;
 
 /// 6 x 24: incident flux [W] on each face of a cell from a sweep's bins (radiance times s^2):
-/// Omega_b max(0, -w_b . a). It equals the flux that a sweep along 24 directions carries between
-/// planes.
+/// Omega_b max(0, -w_b . a), scaled so that even light of radiance 1 has pi.
 Matrix incident_flux();
 
 /// N x 6: coefficients [W/sr] of the light that a face emits per flux [W]: the projected clamped
 /// cosine about its normal, divided by its integral. Conserves the flux.
 Matrix reflected_intensity(const Basis& basis);
 
-/// Least F of a white furnace that swept light is divided by, over that of even light 1. Below it
-/// few surfaces are in sight, and light fades to black instead of growing.
-inline constexpr double kLeastWhite = 0.1;
+/// Light F of a white furnace, over that of even light 1, below which few of its surfaces are in
+/// sight, so that it says little.
+inline constexpr double kLeastWhite = 0.02;
 
-/// Least share |n_a| / (|n_x| + |n_y| + |n_z|) of the axis nearest to a normal, 1 / sqrt(3), halved.
+/// Number that swept light is divided by: F, below kLeastWhite a number that rises to 1, so that
+/// light where the furnace is dark stays as it is.
+inline double over_furnace(double f) {
+  return f >= kLeastWhite ? f : 1 - (1 / kLeastWhite - 1) * std::max(f, 0.0);
+}
+
+/// Least share |n_a| / (|n_x| + |n_y| + |n_z|) of the axis nearest to a normal, 1 / sqrt(3),
+/// halved.
 inline constexpr double kLeastShare = 0.29;
 
 }  // namespace clpv

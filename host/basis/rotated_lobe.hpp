@@ -36,7 +36,8 @@ float dot_in_float(const glm::dvec3& a, const glm::dvec3& b);
 
 /// Table of a function of t in [-1, 1]. The first entry is for t = -1, the last for t = 1. Reads
 /// without interpolation, as the paper's Appendix 2: entry int((t + 1) * 0.5 * (size - 1)) in
-/// float. Rounding decides where t lies on an entry (the cube's 1/3).
+/// float. Where t falls on an entry, as 1/3 of the cube's corners does, rounding decides which
+/// entry is read.
 class ZonalTable {
  public:
   /// Throws Error(usage) for fewer than 2 or more than 2^20 entries.

@@ -55,8 +55,8 @@ std::vector<glm::dvec3> joined(std::vector<glm::dvec3> a, const std::vector<glm:
   return a;
 }
 
-/// For each centre the number of an earlier one that is its antipode and has its lambda, or its
-/// own.
+/// For each centre, the index of an earlier centre that is its antipode with equal lambda, else its
+/// own index.
 std::vector<int> opposites_of(const Basis& basis) {
   std::vector<int> opposites;
   for (std::size_t i = 0; i < basis.centres().size(); ++i) {

@@ -54,8 +54,9 @@ SubBin sub_bin_along(const glm::dvec3& w, int parts);
 int coarser_part(int part, int parts, int coarser_parts);
 
 /// (24 parts^2) x N: mean of each basis function over each part of a bin, in the order of
-/// sweep_bins(). Light that a cell injects along a direction is this row times its coefficients,
-/// negative values included: the sum over all directions is then the exact energy.
+/// sweep_bins(). A row times a cell's coefficients is the light that the cell injects along the
+/// part's direction, negative values included: the sum over all directions is then the exact
+/// energy.
 Matrix part_means(const Basis& basis, int parts);
 
 /// Difference between a clamped cosine about n and its bands of spherical harmonics, by z = w . n:
@@ -77,9 +78,9 @@ std::unique_ptr<Basis> swept_basis();
 /// 9 x 24: projection of light that is constant in each bin on swept_basis().
 Matrix swept_projection();
 
-/// 24 x 24: radiance in each bin, by radiance in each bin, of light that a medium scatters once:
-/// means of the phase function of Henyey and Greenstein (1941). Rows and columns sum to 1: uniform
-/// light stays uniform, and no energy is lost. `anisotropy`: g in (-1, 1).
+/// 24 x 24: from radiance per bin to radiance per bin after one scattering in a medium: means of
+/// the phase function of Henyey and Greenstein (1941). Rows and columns sum to 1: uniform light
+/// stays uniform, and no energy is lost. `anisotropy`: g in (-1, 1).
 Matrix scattering_matrix(double anisotropy);
 
 /// Multiplies the blocking weights of each link by the length of its offset to the power `power`.

@@ -144,8 +144,7 @@ void run(Options options, const Shared& shared) {
   check_outputs(outputs_of(options));
   const Device device = choose_device(shared.device);
   // Cached programs have no build time.
-  Session session(device,
-                  ProgramCache::of_user(device));
+  Session session(device, ProgramCache::of_user(device));
   log_info("{} ({}), driver {}", session.device().name, session.device().platform,
            session.device().driver);
   const bench::Results results = bench::run_suite(session, suite, options.bench);

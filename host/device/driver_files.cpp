@@ -29,6 +29,7 @@ constexpr int kSignalled = 128;                     // exit code after a signal,
 constexpr const char* kLoaded = "driver loaded\n";  // since a driver may end the child with code 0
 
 std::string library_of(const fs::path& icd_file) {
+  if (icd_file.extension() != ".icd") return icd_file;
   const std::string text = file_bytes(icd_file, kMostBytes).value_or("");
   const std::string line = text.substr(0, text.find_first_of("\r\n"));
   return line.substr(0, line.find_last_not_of(" \t") + 1);
@@ -90,9 +91,9 @@ std::string fault_when_loaded(const fs::path& icd_file) {
 std::vector<fs::path> driver_files() {
   const char* set = std::getenv("OCL_ICD_VENDORS");
   const fs::path where = set != nullptr && *set != '\0' ? set : kVendors;
-  if (where.extension() == ".icd") return {where};
-  std::vector<fs::path> files;
   std::error_code ignored;
+  if (where.extension() == ".icd" || fs::is_regular_file(where, ignored)) return {where};
+  std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(where, ignored))
     if (entry.path().extension() == ".icd") files.push_back(entry.path());
   std::ranges::sort(files);

@@ -27,9 +27,9 @@ struct ProgramSource {
 /// Error(run_time) for an unknown file.
 std::string program_text(const ProgramSource& source);
 
-/// Compiles `text` = program_text(source) for the device, without -cl-std=CL1.2 where it fails with
-/// it and the driver has images only so. Throws Error(run_time) with the options and the compiler's
-/// log, which numbers lines by the #line directives.
+/// Compiles `text` = program_text(source) for the device, and again without -cl-std=CL1.2 if that
+/// fails and the driver supports images only without it. Throws Error(run_time) with the options
+/// and the compiler's log, which numbers lines by the #line directives.
 cl::Program build_program(const cl::Context& context, const Device& device,
                           const ProgramSource& source, const std::string& text);
 

@@ -68,8 +68,8 @@ class Programs {
   /// true.
   bool claims(Program& program);
 
-  /// Calls `finish`, which waits for the queue, after the first launch of a kernel, which compiles
-  /// it on some drivers, so that a signal can end the process there. Logs (debug) the time.
+  /// After a kernel's first launch, which on some drivers compiles it, calls `finish` to wait for
+  /// the queue. There a signal can end the process. Logs (debug) the time.
   void finish_first_launch(Program& program, const std::string& name,
                            const std::function<void()>& finish);
 

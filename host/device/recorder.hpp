@@ -44,7 +44,7 @@ class Recorder {
   void end_launch();
 
   /// Compares the memory's numbers here: one range each, from the first on. `kind`: float, half,
-  /// uint or bits, bytes with at least the bits of `low` and at most those of `high`.
+  /// uint or bits, where each byte must have all bits of `low` and none outside `high`.
   void expect(const cl::Memory& memory, std::string_view kind, const Ranges& ranges);
 
  private:

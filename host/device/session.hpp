@@ -112,7 +112,7 @@ class Session {
     return values;
   }
 
-  /// Numbers on their way from the device.
+  /// An asynchronous read: `values` are valid once arrived() is true.
   struct Arriving {
     std::vector<cl_uint> values;
     cl::Event done;

@@ -89,7 +89,8 @@ inline constexpr double kClockTolerance = 0.1;
 class Timeline {
  public:
   /// `events_valid`: true if profiling events report plausible times (Device::profiling_valid).
-  /// `waits`: without them, end() waits for the queue to measure wall time; else times are 0.
+  /// `waits`: if events are invalid, end() waits for the queue and measures wall time; false: those
+  /// times are 0.
   explicit Timeline(bool events_valid, bool waits = true)
       : events_valid_(events_valid), waits_(waits) {}
 

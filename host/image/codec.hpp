@@ -55,8 +55,15 @@ class ImageCodec {
 /// The codecs, linked or loaded. Throws Error(run_time) if they cannot be loaded.
 const ImageCodec& image_codec();
 
-/// Codecs that write without compression and decode nothing, for a build without OpenImageIO.
+/// Codecs of a build without OpenImageIO: they write without compression (open_plain() says
+/// what they read).
 const ImageCodec& plain_codec();
+
+/// Opens a PNG of 8 bits or a JPEG (stb_image), or an EXR as plain_codec() writes it: rows of
+/// floats without compression, whose header read_exr_header() accepted. Returns null and sets
+/// `error` for others.
+std::unique_ptr<ImageDecoder> open_plain(const std::string& format,
+                                         std::span<const std::uint8_t> bytes, std::string& error);
 
 /// Name and type of the function that makes the codecs, in the library and in the module.
 inline constexpr const char* kGetImageCodec = "clpv_image_codec";

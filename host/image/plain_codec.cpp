@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Writes EXR and PNG without compression, for a build without OpenImageIO (CLPV_IMAGES=OFF), which
-// reads no images but Radiance HDR.
+// Writes EXR without compression and PNG, for a build without OpenImageIO (CLPV_IMAGES=OFF), and
+// reads what open_plain() names.
 #include <algorithm>
-#include <array>
+#include <cstdlib>
 #include <numeric>
 #include <string_view>
 
 #include "image/codec.hpp"
 #include "support/bytes.hpp"
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image_write.h>
 
 namespace clpv {
 namespace {
@@ -107,14 +112,7 @@ EncodedBytes plain_exr(const CodedImage& image, const float* pixels) {
   return bytes;
 }
 
-// PNG (W3C, "Portable Network Graphics", third edition), with stored blocks of zlib (RFC 1950,
-// RFC 1951).
-
-std::uint32_t adler_of(const EncodedBytes& bytes) {
-  std::uint32_t a = 1, b = 0;
-  for (const unsigned char byte : bytes) a = (a + byte) % 65521, b = (b + a) % 65521;
-  return b << 16 | a;
-}
+// PNG by stb_image_write, with further chunks (W3C, "Portable Network Graphics", third edition).
 
 void append_chunk(EncodedBytes& to, std::string_view type, const EncodedBytes& data) {
   append_big(to, static_cast<std::uint32_t>(data.size()));
@@ -124,30 +122,16 @@ void append_chunk(EncodedBytes& to, std::string_view type, const EncodedBytes& d
   append_big(to, crc32(std::as_bytes(std::span(to).subspan(start))));
 }
 
-EncodedBytes stored(const EncodedBytes& rows) {
-  constexpr std::size_t kBlock = 65535;
-  EncodedBytes data{0x78, 0x01};
-  for (std::size_t at = 0; at < rows.size(); at += kBlock) {
-    const std::size_t size = std::min(kBlock, rows.size() - at);
-    data.push_back(at + size == rows.size() ? 1 : 0);
-    append_little(data, static_cast<std::uint16_t>(size), static_cast<std::uint16_t>(~size));
-    const auto from = rows.begin() + static_cast<std::ptrdiff_t>(at);
-    data.insert(data.end(), from, from + static_cast<std::ptrdiff_t>(size));
-  }
-  append_big(data, adler_of(rows));
-  return data;
-}
-
+/// Empty if memory is short.
 EncodedBytes plain_png(const CodedImage& image, const std::uint8_t* pixels) {
-  constexpr unsigned char kBits = 8, kColours = 2, kColoursAndAlpha = 6;
-  EncodedBytes bytes{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, header, rows;
-  append_big(header, static_cast<std::uint32_t>(image.width));
-  append_big(header, static_cast<std::uint32_t>(image.height));
-  const std::size_t row = static_cast<std::size_t>(image.width) * image.channels.size();
-  header.push_back(kBits);
-  header.push_back(image.channels.size() == 4 ? kColoursAndAlpha : kColours);
-  header.insert(header.end(), 3, 0);  // deflate, filters of each row, no interlacing
-  append_chunk(bytes, "IHDR", header);
+  constexpr std::ptrdiff_t kHeader = 33;  // bytes of the signature and of IHDR
+  int size = 0;
+  const std::unique_ptr<unsigned char, void (*)(void*)> png(
+      stbi_write_png_to_mem(pixels, 0, image.width, image.height,
+                            static_cast<int>(image.channels.size()), &size),
+      std::free);
+  if (!png) return {};
+  EncodedBytes bytes(png.get(), png.get() + kHeader);
   append_chunk(bytes, "sRGB", {0});
   for (const auto& [name, value] : image.metadata) {
     EncodedBytes text;
@@ -155,23 +139,16 @@ EncodedBytes plain_png(const CodedImage& image, const std::uint8_t* pixels) {
     append_text(text, value);
     append_chunk(bytes, "tEXt", text);
   }
-  for (int y = 0; y < image.height; ++y) {
-    rows.push_back(0);  // no filter
-    rows.insert(rows.end(), pixels + static_cast<std::size_t>(y) * row,
-                pixels + static_cast<std::size_t>(y + 1) * row);
-  }
-  append_chunk(bytes, "IDAT", stored(rows));
-  append_chunk(bytes, "IEND", {});
+  bytes.insert(bytes.end(), png.get() + kHeader, png.get() + size);
   return bytes;
 }
 
 class PlainCodec : public ImageCodec {
  public:
   std::unique_ptr<ImageDecoder> open(const std::string& format, const std::string&,
-                                     std::span<const std::uint8_t>,
+                                     std::span<const std::uint8_t> bytes,
                                      std::string& error) const override {
-    error = "this clpv was built without OpenImageIO (CLPV_IMAGES=OFF); it decodes no " + format;
-    return nullptr;
+    return open_plain(format, bytes, error);
   }
 
   std::string encode_exr(const CodedImage& image, const float* pixels,
@@ -183,7 +160,7 @@ class PlainCodec : public ImageCodec {
   std::string encode_png(const CodedImage& image, const std::uint8_t* pixels,
                          EncodedBytes& bytes) const override {
     bytes = plain_png(image, pixels);
-    return {};
+    return bytes.empty() ? "out of memory" : "";
   }
 };
 

@@ -43,7 +43,7 @@ struct SweepOptions {
   int grid = 32;                   ///< cells along each axis
   std::vector<int> parts;          ///< of each bin (sweep_bins), per cascade, finest first
   bool blocking = true;            ///< light is blocked by geometry volumes
-  Bounces bounces = Bounces::one;  ///< more than one needs Sweeper::set_reflectors()
+  Bounces bounces = Bounces::one;  ///< more than one needs reflectors in set_surfaces()
   VolumeFormat format = {};        ///< of all volumes; internal buffers use its storage
   SweepForm form = SweepForm::suited;
   std::optional<ClpvMedium> medium = {};

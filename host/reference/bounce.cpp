@@ -11,6 +11,7 @@
 
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
+#include "kernels/shared/reflectors.h"
 #include "reference/medium.hpp"
 
 namespace clpv::reference {
@@ -25,12 +26,13 @@ void inject_reflected(const Basis& basis, const Volume& reflected, const Volume&
                       const IncidentFlux& incident, Volume& light) {
   const Matrix intensity = reflected_intensity(basis);
   for_each_cell(light.n, [&](const glm::ivec3& p) {
-    const std::vector<double> shares = reflectors.cell(3, p);
+    const std::vector<double> shares = reflectors.cell(CLPV_REFLECTOR_SHARE, p);
     for (int channel = 0; channel < 3; ++channel) {
       const std::vector<double> arriving = incident(channel, p);
       for (int side = 0; side < kCellFaces; ++side) {
         const double flux = arriving[side] * reflected.value(channel, side, p.x, p.y, p.z);
-        const double per_share = basis.bands() > 0 ? flux / std::max(shares[side], kLeastShare) : flux;
+        const double per_share =
+            basis.bands() > 0 ? flux / std::max(shares[side], kLeastShare) : flux;
         for (int i = 0; i < basis.size(); ++i)
           light.at(channel, i, p.x, p.y, p.z) += intensity(i, side) * (i == 0 ? flux : per_share);
       }
@@ -120,7 +122,8 @@ Sources bounce_in_medium(const Basis& basis, const Transport& transport,
       swept.light[c] = result.light[c], swept.scattered[c] = result.scattered[c];
       const Volume found = sweep(basis, transport, swept.of(along_24, c))[0];
       result.light[c] = *cascades[c].injected;
-      inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(found), result.light[c]);
+      inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(found),
+                       result.light[c]);
       result.scattered[c] = *cascades[c].scattered;
       add_scattered(*cascades[c].medium, found, result.scattered[c]);
     }
@@ -153,8 +156,10 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
     for (int channel = 0; channel < 3; ++channel) {
       double bound = 0;
       for (int side = 0; side < kCellFaces; ++side)
-        bound = std::max(bound, reflectors.value(channel, side, p.x, p.y, p.z) /
-                                    std::max(reflectors.value(3, side, p.x, p.y, p.z), kLeastShare));
+        bound = std::max(
+            bound,
+            reflectors.value(channel, side, p.x, p.y, p.z) /
+                std::max(reflectors.value(CLPV_REFLECTOR_SHARE, side, p.x, p.y, p.z), kLeastShare));
       bound = std::min(bound, kMaxReturned);
       for (int side = 0; side < kCellFaces; ++side) {
         const double t1 = first.value(channel, side, p.x, p.y, p.z),
@@ -175,8 +180,13 @@ std::vector<Volume> furnace(const Basis& basis, const Transport& transport,
   std::vector<Volume> light;
   const auto area = [&](std::size_t c) { return std::pow(double{cascades[c].grid.cell}, 2); };
   for (std::size_t c = 0; c < cascades.size(); ++c) {
-    light.push_back(emitted(basis, *white[c], *white[c]));
-    for (double& value : light[c].values) value *= std::numbers::pi * area(c);
+    Volume flux(white[c]->n, kCellFaces);
+    for_each_cell(flux.n, [&](const glm::ivec3& p) {
+      std::vector<double> covered = white[c]->cell(CLPV_REFLECTOR_WHITE, p);
+      for (double& each : covered) each *= std::numbers::pi * area(c);
+      for (int channel = 0; channel < 3; ++channel) flux.set_cell(channel, p, covered);
+    });
+    light.push_back(emitted(basis, flux, *white[c]));
   }
   for (std::size_t c = 0; c < cascades.size(); ++c) {
     cascades[c].injected = &light[c];
@@ -198,9 +208,10 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
     const auto first = static_cast<std::ptrdiff_t>(c);
     std::vector<SweptCascade> nested(cascades.begin() + first, cascades.end());
     const bool all = bounces == Bounces::all && cascades[c].scattered == nullptr;
-    for (std::size_t i = 0; i < nested.size() && (i == 0 || !all); ++i) nested[i].parts = 1;
-    const Volume even =
-        furnace(basis, transport, nested, {white.begin() + first, white.end()})[0];
+    std::vector<const Volume*> emitting(white.begin() + first, white.end());
+    for (std::size_t i = 0; i < nested.size() && (i == 0 || !all); ++i)
+      nested[i].parts = 1, emitting[i] = reflectors[c + i];
+    const Volume even = furnace(basis, transport, nested, emitting)[0];
     const IncidentFlux incident = incident_flux_of(even);
     Volume& result = normalised.emplace_back(*reflectors[c]);
     for_each_cell(result.n, [&](const glm::ivec3& p) {
@@ -208,7 +219,7 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
       for (int channel = 0; channel < 3; ++channel)
         for (int side = 0; side < kCellFaces; ++side)
           result.at(channel, side, p.x, p.y, p.z) /=
-              std::max(arriving[side] / std::numbers::pi, kLeastWhite);
+              over_furnace(arriving[side] / std::numbers::pi);
     });
   }
   return normalised;

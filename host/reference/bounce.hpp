@@ -10,13 +10,14 @@
 
 namespace clpv::reference {
 
-/// Light of the white furnace in bins24, as radiance: the faces of `white` (reflector_masks) and the
-/// border emit radiance 1.
+/// Light of the white furnace in bins24, as radiance: the faces of `white` (reflector_masks), one
+/// volume per cascade, and the border emit radiance 1.
 std::vector<Volume> furnace(const Basis& basis, const Transport& transport,
                             std::vector<SweptCascade> cascades,
                             const std::vector<const Volume*>& white);
 
-/// Reflectors over the furnace's incident flux, as sweeps for `bounces` use them.
+/// Reflectors over their own furnace's incident flux, as sweeps for `bounces` use them; coarser
+/// cascades have `white` where their last sweep enters.
 std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& transport,
                                           const std::vector<SweptCascade>& cascades,
                                           const std::vector<const Volume*>& white,

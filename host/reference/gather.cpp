@@ -58,7 +58,7 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
     rest *= 1 - share;
   }
   if (has_faces(transport)) return glm::dvec3(e);
-  return glm::dvec3(e) / std::max(e.w / std::numbers::pi + rest, kLeastWhite);
+  return glm::dvec3(e) / over_furnace(e.w / std::numbers::pi + rest);
 }
 
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,

@@ -68,7 +68,8 @@ bool reaches(const MappedLight& light, const glm::dvec3& position) {
   return !(nearest > 0 && nearest < at.depth);
 }
 
-/// Light scattered towards a pixel's ray whose points have the place `x` in their intervals.
+/// Light scattered along a pixel's ray towards the camera. `place` in (0, 1): position of each
+/// point in its interval.
 glm::dvec3 scattered_along(const Basis& basis, const MediumOptions& options,
                            const MediumScene& scene, const AirRay& ray, double place) {
   glm::dvec3 sum(0);

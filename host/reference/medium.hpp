@@ -31,7 +31,7 @@ std::vector<glm::dvec3> scattered_light(const Basis& basis, const MediumOptions&
 /// (kernels/sweep/sweep_medium.cl).
 Volume scattered_in_cells(const ClpvMedium& medium, const std::vector<MappedLight>& lights,
                           const ClpvGrid& grid);
-/// Adds that of `swept` light, the result of sweep().
+/// Adds the source function of `swept`, a result of sweep().
 void add_scattered(const ClpvMedium& medium, const Volume& swept, Volume& scattered);
 
 }  // namespace clpv::reference

@@ -123,8 +123,7 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
   point.gathered = field_irradiance(basis, here, point.normal);
   const double share = trust(here, point.normal);
   // At the pixel all directions share the denominator of its irradiance.
-  const double white = std::max(
-      raw_irradiance(basis, here, point.normal).w / std::numbers::pi, kLeastWhite);
+  const double white = over_furnace(raw_irradiance(basis, here, point.normal).w / std::numbers::pi);
   const glm::dmat3 frame = frame_about(point.normal);
   for (const glm::vec3& direction : directions) {
     const glm::dvec3 w = frame * glm::dvec3(direction);
@@ -254,8 +253,8 @@ struct NearPixels {
     return point;
   }
 
-  /// Light at a pixel of the camera from near pixels on its surface: by bilinear weights, or else
-  /// of the blocks around, there on any surface if none is on this one.
+  /// Light at a pixel of the camera from near pixels on its surface: bilinear; if there is none, a
+  /// mean over the blocks around, on its surface or, failing that, on any.
   Mean interpolated(const NearImage& image, int x, int y) const {
     const NearPoint here = point_at(x, y);
     const double across = x % step / double(step), down = y % step / double(step);

@@ -48,7 +48,7 @@ glm::dvec3 radiance(const Basis& basis, const RadianceField& field, const glm::d
   std::vector<double> y(static_cast<std::size_t>(basis.size()));
   basis.evaluate(w, y);
   const glm::dvec4 light = weighed(y, field);
-  return glm::dvec3(light) / std::max(light.w, kLeastWhite);
+  return glm::dvec3(light) / over_furnace(light.w);
 }
 
 glm::dvec4 raw_irradiance(const Basis& basis, const RadianceField& field,
@@ -61,7 +61,7 @@ glm::dvec4 raw_irradiance(const Basis& basis, const RadianceField& field,
 glm::dvec3 field_irradiance(const Basis& basis, const RadianceField& field,
                             const glm::dvec3& normal) {
   const glm::dvec4 light = raw_irradiance(basis, field, normal);
-  return glm::dvec3(light) / std::max(light.w / std::numbers::pi, kLeastWhite);
+  return glm::dvec3(light) / over_furnace(light.w / std::numbers::pi);
 }
 
 }  // namespace clpv::reference

@@ -12,12 +12,12 @@
 
 namespace clpv::reference {
 
-/// Coefficients of the radiance at a point, and of the white furnace's, in the basis of swept light,
-/// by channel.
+/// Coefficients of the radiance at a point, and of the white furnace's, in the basis of swept
+/// light, by channel.
 using RadianceField = std::array<std::vector<double>, 4>;
 
-/// Returns coefficients at position + offset s lift of each cascade, s its cell, blended by the cascades'
-/// shares at `position` [m].
+/// Returns coefficients at position + offset s lift of each cascade, s its cell, blended by the
+/// cascades' shares at `position` [m].
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset = 0,
                              const glm::dvec3& lift = glm::dvec3(0));

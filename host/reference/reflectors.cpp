@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// R_a: covered share of face a times mean albedo, in channel 3 the mean share of its triangles, by 8 x 8 samples per face, half a cell off the
+// R_a: covered share of face a times mean albedo; channel 3: the mean share m of its triangles,
+// channel 4: R of albedo 1; by 8 x 8 samples per face, half a cell off the
 // surface. A triangle of normal n counts towards the three axes next to n with weights |n_a| /
 // (|n_x| + |n_y| + |n_z|).
 #include "reference/reflectors.hpp"
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "basis/bounce.hpp"
+#include "kernels/shared/reflectors.h"
 #include "reference/axis_triangle.hpp"
 #include "reference/materials.hpp"
 
@@ -61,7 +63,8 @@ class CellFaces {
   }
 
   ReflectingAreas areas() const {
-    ReflectingAreas result{Volume(n_, kCellFaces, 4), Volume(n_, kCellFaces, 4)};
+    ReflectingAreas result{Volume(n_, kCellFaces, CLPV_REFLECTOR_CHANNELS),
+                           Volume(n_, kCellFaces, CLPV_REFLECTOR_CHANNELS)};
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       const CellFace& side = faces_[i];
       const double count = std::max(side.samples, 1.0), whole = kSamples * kSamples;
@@ -69,10 +72,12 @@ class CellFaces {
       const int cell = i / kCellFaces;
       const double share = static_cast<double>(side.covered.count()) / whole,
                    uncertain = side.uncertain / whole;
-      for (int channel = 0; channel < 4; ++channel) {
+      for (int channel = 0; channel < CLPV_REFLECTOR_CHANNELS; ++channel) {
         const int x = cell % n_, y = cell / n_ % n_, z = cell / n_ / n_;
-        const double mean = std::min(side.colour[channel] / count, 1.0);
-        result.areas.at(channel, number, x, y, z) = channel == 3 ? mean : share * mean;
+        const double mean =
+            std::min(side.colour[std::min<int>(channel, CLPV_REFLECTOR_SHARE)] / count, 1.0);
+        result.areas.at(channel, number, x, y, z) =
+            channel == CLPV_REFLECTOR_SHARE ? mean : share * mean;
         result.tolerance.at(channel, number, x, y, z) = uncertain + side.uncertain_mean / count;
       }
     }
@@ -139,10 +144,10 @@ class CellFaces {
     }
     const glm::dvec2 at = sample_centre(middle, v);
     const SurfacePoint point{triangle, projected.clamped_weights(at)};
-    const glm::dvec3 albedo =
-        white_ ? glm::dvec3(1)
-               : glm::dvec3(materials_.albedo(
-                     point, {step(projected, 1, count), step(projected, 2, 1)}));
+    const glm::dvec3 albedo = white_
+                                  ? glm::dvec3(0)
+                                  : glm::dvec3(materials_.albedo(
+                                        point, {step(projected, 1, count), step(projected, 2, 1)}));
     face.samples += count;
     face.colour += count * projected.weight() * glm::dvec4(glm::clamp(albedo, 0.0, 1.0), 1);
   }

@@ -9,8 +9,8 @@
 
 namespace clpv::reference {
 
-/// Reflecting areas of reflector_masks(): R_a of six faces per cell, three channels and the mean
-/// shares of their triangles.
+/// Reflecting areas of reflector_masks(): R_a of six faces per cell, in the channels of
+/// kernels/voxels/face_albedo.cl.
 struct ReflectingAreas {
   Volume areas;
   /// Tolerance of each number: rounding decides whether samples very close to an edge, a cell

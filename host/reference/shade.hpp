@@ -29,8 +29,8 @@ struct MappedLight {
 const ShadowMap& map_towards(const std::vector<ShadowMap>& maps, const glm::dvec3& offset);
 
 /// Returns the share [0, 1] of the light that reaches a surface at `position` [m] whose triangle
-/// has the unit `normal`, on the lit side. `cosine`: between it and the direction to the light;
-/// `flat`: the shading normal is the triangle's.
+/// has the unit `normal`, on the lit side. `cosine`: of the angle between `normal` and the
+/// direction to the light; `flat`: the shading normal is the triangle's.
 double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::dvec3& normal,
                   double cosine, bool flat = true);
 

@@ -31,7 +31,7 @@ inline glm::vec4 colour(const Vertex& v) {
 }
 
 /// Interpolates get(vertex); `weights` are barycentric coordinates of the second and third vertex.
-/// A constant stays that constant.
+/// Equal values at all three vertices are returned exactly.
 template <typename Get>
 auto interpolate(const SceneData& scene, const Triangle& triangle, const glm::vec2& weights,
                  Get get) {

@@ -175,7 +175,8 @@ void MovingScene::load_scene_file(const std::filesystem::path& path,
   InputRecord::add({path.string() + " /model", description_.model});
   const std::filesystem::path model = replacement.empty() ? description_.model : replacement;
   if (model.empty())
-    reject(path.string(), "/model", "nothing", "a path to a .gltf or .glb, or option model (--model PATH)");
+    reject(path.string(), "/model", "nothing",
+           "a path to a .gltf or .glb, or option model (--model PATH)");
   std::error_code unknown;
   if (replacement.empty() && !std::filesystem::exists(model, unknown)) {
     reject(path.string(), "/model", "no file '" + model.string() + "'",

@@ -25,9 +25,9 @@ void expect(Session& session, const Volume& volume, const Ranges& ranges);
 void expect_pixels(Session& session, const Buffer& pixels, std::span<const double> expected,
                    double allowed, std::size_t every = 1);
 
-/// As compare_functions(): coefficients that differ by more make functions differ by more than
-/// allowed in one of its directions. Coefficients that the directions do not determine may have any
-/// value.
+/// As compare_functions(): a coefficient outside its range makes the function differ by more than
+/// allowed in one of the compared directions. Coefficients that the directions do not determine may
+/// have any value.
 void expect_functions(Session& session, const Volume& volume, std::span<const double> expected,
                       std::span<const double> other,
                       const std::function<std::vector<double>(const glm::dvec3&)>& weights,

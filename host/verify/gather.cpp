@@ -86,7 +86,8 @@ Cost cost_of(const GatherWork& p) {
                                                          : 8 * texels;
   // Per coefficient and channel: 8 multiply-adds of the trilinear interpolation, unless the filter
   // does them, and one of the dot product g(n) . c.
-  cost.flops = pixels * kChannels * n * (filtered_by_device(o, p.problem.transport) ? 2 : 2 * 8 + 2);
+  cost.flops =
+      pixels * kChannels * n * (filtered_by_device(o, p.problem.transport) ? 2 : 2 * 8 + 2);
   return cost;
 }
 
@@ -119,14 +120,13 @@ GatherProblem random_gathering(Session& session, const std::shared_ptr<const Bas
   }
   std::vector<std::uint8_t> occluded = random_occlusion(kCascades, options.grid, random);
   if (options.gather != Gathering::visible) occluded.clear();
-  return {
-      basis,
-      transport,
-      options,
-      random_cascades(*basis, kCascades, kFinestEdge, options.grid, !has_faces(transport),
-                      std::move(occluded), random),
-      upload_surface(session, image),
-      std::make_shared<const SurfaceImage>(image)};
+  return {basis,
+          transport,
+          options,
+          random_cascades(*basis, kCascades, kFinestEdge, options.grid, !has_faces(transport),
+                          std::move(occluded), random),
+          upload_surface(session, image),
+          std::make_shared<const SurfaceImage>(image)};
 }
 
 Cases gather_cases(const CheckScope& scope) {

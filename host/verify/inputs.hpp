@@ -30,8 +30,8 @@ namespace clpv::verify {
 SurfaceImage random_surfaces(std::mt19937& random);
 
 /// Compares red, green, blue and alpha of every `every`-th pixel with the CPU reference: `expected`
-/// has four numbers for each. Errors are relative to its largest value. `width`: image width, for
-/// places.
+/// has four numbers for each. Errors are relative to the largest expected value. `width`: image
+/// width, to report an error's pixel.
 Deviation compare_pixels(const std::vector<cl_float4>& device, std::span<const double> expected,
                          unsigned width, double allowed, std::size_t every = 1);
 

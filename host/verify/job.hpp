@@ -79,7 +79,8 @@ using SharedVolume = std::shared_ptr<const reference::Volume>;
 
 /// Result of a CPU reference, in Volume's host order.
 using Values = std::shared_ptr<const std::vector<double>>;
-/// Returns the values that `compute` gives. Jobs that should agree share them.
+/// Returns the values that `compute` gives. Jobs with the same expected result share one
+/// computation.
 using Share = std::function<Values(const std::function<std::vector<double>()>& compute)>;
 
 /// Computes the values.

@@ -29,15 +29,15 @@ struct CheckChoice {
 
 /// Receives the results of each case, in order.
 using Finished = std::function<void(const CheckResults&)>;
-/// Receives how many cases are finished; with helpers, the last ones are so first.
+/// Receives how many cases are finished; helpers finish the last cases first.
 using Reached = std::function<void(std::size_t)>;
 
 /// Runs all cases in this process. Throws Interrupted.
 void run_here(const Cases& cases, Session& session, const Finished& finished);
 
-/// Runs the cases in helper processes, which `arguments` start: side by side, as they compile, and
-/// a driver's crash or endless compilation (docs/devices.md) costs one comparison, not all. A case
-/// fails whose helper ends by a signal or takes more than `limit` seconds; another helper then
+/// Runs the cases in helper processes, which `arguments` start and which compile side by side. A
+/// driver's crash or endless compilation (docs/devices.md) then costs one comparison, not all. A
+/// case fails whose helper ends by a signal or takes more than `limit` seconds; another helper then
 /// takes its place. Throws Interrupted.
 void run_in_helpers(
     const Cases& cases, const std::vector<std::string>& arguments, double limit,

@@ -14,6 +14,7 @@
 
 #include "basis/bounce.hpp"
 #include "basis/sweep.hpp"
+#include "kernels/shared/reflectors.h"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/raster/shadow_maps.hpp"
 #include "pipeline/steps/transmittance.hpp"
@@ -108,11 +109,15 @@ std::vector<double> expected_light(const SweepProblem& p) {
     normalised = reference::normalised_reflectors(*p.basis, p.transport, cascades, white,
                                                   reflecting, o.bounces);
   for (std::size_t i = 0; i < normalised.size(); ++i) reflecting[i] = &normalised[i];
-  const std::vector<reference::Volume>
-      swept = o.bounces == Bounces::one
-                  ? reference::sweep(*p.basis, p.transport, cascades, sky ? &*sky : nullptr)
-                  : reference::sweep_bounced(*p.basis, p.transport, cascades, reflecting, o.bounces),
-      furnace = reference::furnace(*p.basis, p.transport, cascades, white);
+  const std::vector<reference::Volume> swept =
+                                           o.bounces == Bounces::one
+                                               ? reference::sweep(*p.basis, p.transport, cascades,
+                                                                  sky ? &*sky : nullptr)
+                                               : reference::sweep_bounced(*p.basis, p.transport,
+                                                                          cascades, reflecting,
+                                                                          o.bounces),
+                                       furnace = reference::furnace(*p.basis, p.transport, cascades,
+                                                                    white);
   std::vector<double> values;
   for (std::size_t i = 0; i < swept.size(); ++i) {
     const reference::Volume light = reference::project_bins(swept[i]),
@@ -209,11 +214,13 @@ SharedVolume sparse_light(const Basis& basis, int n, std::mt19937& random) {
 /// 1 of 3 faces reflects, with a share of 0.6 to 1.
 SharedVolume random_reflectors(int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-2, 1);
-  auto volume = std::make_shared<reference::Volume>(n, kCellFaces, 4);
-  const std::size_t shares = volume->values.size() / 4 * 3;
-  for (std::size_t i = 0; i < volume->values.size(); ++i)
-    volume->values[i] = i < shares ? std::max(0.0f, uniform(random))
-                                   : 0.6f + 0.4f * std::abs(uniform(random)) / 2;
+  auto volume = std::make_shared<reference::Volume>(n, kCellFaces, CLPV_REFLECTOR_CHANNELS);
+  for (double& value : volume->values) value = std::max(0.0f, uniform(random));
+  reference::for_each_cell(n, [&](const glm::ivec3& p) {
+    for (int side = 0; side < kCellFaces; ++side)
+      volume->at(CLPV_REFLECTOR_SHARE, side, p.x, p.y, p.z) =
+          0.6f + 0.2f * std::abs(uniform(random));
+  });
   return volume;
 }
 

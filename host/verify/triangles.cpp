@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "basis/bounce.hpp"
+#include "kernels/shared/reflectors.h"
 #include "pipeline/voxels/blockers.hpp"
 #include "pipeline/voxels/reflectors.hpp"
 #include "pipeline/voxels/visibility.hpp"
@@ -71,7 +72,8 @@ Deviation compare_blockers(Session& session, const VolumeFormat& format) {
 Deviation compare_reflectors(Session& session, const VolumeFormat& format, bool white) {
   const SceneData scene = triangle_soup();
   const SceneBuffers buffers = upload_scene(session, scene);
-  Volume reflectors(session, {kTrianglesGrid, kCellFaces, kReflectorChannels}, "check: reflectors", format);
+  Volume reflectors(session, {kTrianglesGrid, kCellFaces, CLPV_REFLECTOR_CHANNELS},
+                    "check: reflectors", format);
   VoxelField(session, buffers, reflector_masks(buffers, kTrianglesGrid, format, white))
       .update(0, kTrianglesCells, reflectors);
   const std::vector<float> found = reflectors.read(session);
@@ -132,8 +134,8 @@ Cases blockers_cases(const CheckScope& scope) {
 }
 
 Cases reflectors_cases(const CheckScope& scope) {
-  Cases cases = cases_of_formats(
-      Stage::reflectors, scope, [](Session& session, const VolumeFormat& format) {
+  Cases cases =
+      cases_of_formats(Stage::reflectors, scope, [](Session& session, const VolumeFormat& format) {
         return compare_reflectors(session, format, false);
       });
   cases.push_back(deviation_case(Stage::reflectors, "white", [](Session& session) {

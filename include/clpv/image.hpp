@@ -15,7 +15,7 @@ namespace clpv {
 /// Meaning of the values: linear in light, or sRGB-encoded for a display (0 to 1).
 enum class Encoding { linear, srgb };
 
-/// Rectangle of pixels, from its left top pixel to before `right` and `bottom`.
+/// Rectangle of pixels, columns left to right - 1, rows top to bottom - 1.
 struct PixelWindow {
   int left = 0, top = 0, right = 0, bottom = 0;
   bool operator==(const PixelWindow&) const = default;
@@ -32,7 +32,7 @@ struct Image {
   /// Options that the image was rendered with, by name.
   std::map<std::string, std::string> metadata;
   Encoding encoding = Encoding::linear;
-  /// By layer, the pixels that the file has, where it lacks some; the absent ones are 0.
+  /// For layers that the file holds only in part: the rectangle that it holds. Other pixels are 0.
   std::map<std::string, PixelWindow> windows;
   /// Names of the parts of an EXR file that has several. Their channels are layers of these names.
   std::vector<std::string> parts;

@@ -15,7 +15,7 @@ namespace clpv {
 /// Diffuse surface, as glTF describes it.
 struct Material {
   /// Rows of RGBA with 8 bits each, sRGB-encoded colour and linear alpha; the first row has v = 0.
-  /// Repeats.
+  /// Texture coordinates outside 0..1 repeat it.
   struct Texture {
     std::uint32_t width = 0, height = 0;  ///< 1 to 16384
     std::vector<std::uint8_t> rgba;       ///< 4 * width * height

@@ -11,10 +11,10 @@
 
 namespace clpv::opencl {
 
-/// Where a Renderer works. It retains both while it lives. The queue is in-order; it may be shared
-/// with the caller's commands, which then run in the order of the calls. Without a queue the
-/// renderer makes one for the context's only device. Without a context it is the queue's. Stage
-/// times need a queue with profiling; else Stats has zeros.
+/// Where a Renderer works. The renderer retains context and queue while it lives. The queue is
+/// in-order; it may be shared with the caller's commands, which then run in the order of the calls.
+/// Without a queue the renderer makes one for the context's only device. Without a context it is
+/// the queue's. Stage times need a queue with profiling; else Stats has zeros.
 struct Queue {
   cl_context context = nullptr;
   cl_command_queue queue = nullptr;
@@ -42,16 +42,16 @@ class Event {
 };
 
 /// Buffers of a frame, of width x height pixels, row 0 at the top. They belong to the renderer:
-/// valid until its next call that renders, or retained by the caller (clRetainMemObject), who then
-/// sees what later calls write.
+/// they stay valid until its next call that renders. A caller may retain them (clRetainMemObject)
+/// for longer, but later calls overwrite their contents.
 struct Frame {
   int width = 0, height = 0;
   /// Float4 R, G, B, A of the view that was asked for, linear; without a sky.
   cl_mem image = nullptr;
   cl_mem irradiance = nullptr;  ///< float4 E of red, green, blue [W/m^2], and 0, of indirect light
   cl_mem depth = nullptr;       ///< float [m] along the viewing direction; 0 without a surface
-  /// Float4 unit normal, and the number of the triangle's (kernels/shared/normal.h); 0 without a
-  /// surface.
+  /// Float4 x, y, z: unit shading normal; w: the triangle's normal, encoded
+  /// (kernels/shared/normal.h); 0 without a surface.
   cl_mem normals = nullptr;
   Event done;  ///< of the whole frame
 };

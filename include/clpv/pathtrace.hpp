@@ -33,8 +33,9 @@ struct TraceOptions {
 /// range), bad_input (a scene without surface or light). Thread-safe.
 Image pathtrace(const Scene& scene, View view, const CameraChoice& camera = {},
                 const TraceOptions& options = {});
-/// Several views of the same paths as layers: channel "indirect.R", as of `clpv pathtrace`. One
-/// view has no layer. Throws Error(usage) also for no view and for one given twice.
+/// Several views of the same paths as layers: channel "indirect.R", as of `clpv pathtrace`. A
+/// single view gets no layer name. Also throws Error(usage) if `views` is empty or lists a view
+/// twice.
 Image pathtrace(const Scene& scene, const std::vector<View>& views, const CameraChoice& camera = {},
                 const TraceOptions& options = {});
 

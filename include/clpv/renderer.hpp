@@ -35,8 +35,9 @@ class Event;
 /// Quantity that an image shows: radiance [W/m^2/sr] (full = direct + indirect), irradiance of
 /// indirect light [W/m^2], albedo, unit normal, or depth [m]. Lux and candela of a scene count 1:1
 /// as W/m^2 and W/sr. medium: radiance that the scene's medium scatters towards the camera, which
-/// full includes. cells: irradiance, with the cells of the finest cascade as small spheres that
-/// show the irradiance on surfaces of every direction there; pathtrace() has no such view.
+/// full includes. cells: the view irradiance with a small sphere in the cells of the finest
+/// cascade. Each point of a sphere shows the irradiance on a surface with its normal at the cell's
+/// centre; pathtrace() has no such view.
 enum class View { full, direct, indirect, irradiance, albedo, normal, depth, medium, cells };
 
 /// Width and height of an image, 1 to 16384; none: options width and height.
@@ -44,9 +45,10 @@ using ImageSize = std::optional<std::array<int, 2>>;
 
 /// Cost of the last frame.
 struct Stats {
-  /// "frame": wall time of render(), the read-back of the image included; "host": of it the host's
-  /// work to enqueue the frame, without waits. Then the stages that ran, on the device, by cascade
-  /// and light; a stage whose result was cached, or which the options do not need, is missing.
+  /// "frame": wall time of render(), the read-back of the image included; "host": the part of
+  /// "frame" in which the host enqueues commands, waits excluded. Then the stages that ran, on the
+  /// device, by cascade and light; a stage whose result was cached, or which the options do not
+  /// need, is missing.
   std::vector<TimeRecord> times;
   unsigned launches = 0;  ///< kernels, fills and copies of the device
   unsigned waits = 0;     ///< times that the host waited for the device, the read-back included
@@ -96,37 +98,38 @@ class Renderer {
   /// would fit).
   explicit Renderer(const Scene& scene, const Options& options = {},
                     const std::string& device = {});
-  /// The same in a context and queue of the caller. Throws Error: usage (no or another context, an
-  /// out-of-order queue, several devices without a queue), device (a device that lacks a
-  /// capability).
+  /// The same in a context and queue of the caller. Throws Error: usage (neither context nor queue;
+  /// a queue of another context, an out-of-order queue, several devices without a queue), device (a
+  /// device that lacks a capability).
   Renderer(const Scene& scene, const Options& options, const opencl::Queue& queue);
   ~Renderer();  ///< waits for its commands; stores compiled programs in the user's cache
   /// Calls of a Renderer that was moved from throw Error(usage).
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Renders one frame at time `seconds` [s] through a camera of the scene, by name, or any other.
-  /// Cascades surround its eye; for a model without a scene file their size is that for the scene's
-  /// cameras unless option cascade-size is set. Returns a linear image of `size` with channels R,
-  /// G, B, A, all options in its metadata. A frame does not depend on earlier frames; one of
-  /// another size than the last allocates its images again. Throws Error: usage (no such camera, a
-  /// bad one, seconds or size out of range), bad_input (animation leads out of bounds), run_time
-  /// (memory).
+  /// Renders one frame at time `seconds` [s] through `camera`: the name of one of the scene's
+  /// cameras, or any Camera. Cascades surround its eye; for a model without a scene file their size
+  /// is that for the scene's cameras unless option cascade-size is set. Returns a linear image of
+  /// `size` with channels R, G, B, A, all options in its metadata. A frame does not depend on
+  /// earlier frames; a change of `size` allocates the images again. Throws Error: usage (no such
+  /// camera, a bad one, seconds or size out of range), bad_input (animation leads out of bounds),
+  /// run_time (memory).
   Image render(View view = View::full, const CameraChoice& camera = {}, double seconds = 0,
                const ImageSize& size = {});
 
-  /// Another view of the last frame, without rendering it again. View::cells after light() or
-  /// update() lights its cascades again, and then those of that call. Throws Error(usage) before
-  /// the first frame, and for cells then if the scene changed.
+  /// Another view of the last frame, without rendering it again. After light() or update(),
+  /// View::cells first lights the rendered frame's cascades again, and at the end those of that
+  /// call. Throws Error(usage) before the first frame, and for View::cells in this case if the
+  /// scene has changed since the render.
   Image show(View view);
 
   /// Returns the irradiance of indirect light [W/m^2], red, green and blue, on each pixel of
   /// `surfaces` at time `seconds` [s], with the near field, as View::irradiance has it: a frame for
-  /// a G-buffer of another renderer. Makes no image; show() keeps the last frame's. Cascades
-  /// surround the camera's eye; depths are those of its view of width x height square pixels. The
-  /// near field interpolates between a pixel and its neighbours in the image that lie on its
-  /// surface (docs/api.md). Throws Error: usage (sizes, camera, seconds; option blockers seen),
-  /// run_time (memory).
+  /// a G-buffer of another renderer. Leaves the last frame's images as they are, for show().
+  /// Cascades surround the camera's eye; GBuffer::depths are measured in that camera's view of
+  /// width x height square pixels. The near field interpolates between a pixel and its neighbours
+  /// in the image that lie on its surface (docs/api.md). Throws Error: usage (sizes, camera,
+  /// seconds; option blockers seen), run_time (memory).
   std::vector<std::array<float, 3>> light(const GBuffer& surfaces, const CameraChoice& camera,
                                           double seconds = 0);
   /// The same for positions, with cascades about `eye` [m] and all lights of the scene.
@@ -148,27 +151,28 @@ class Renderer {
   /// normal of length 0.
   std::array<double, 3> irradiance(const Vec3& position, const Vec3& normal);
 
-  /// The same for many points, with a normal for each or one for all. Throws Error(usage) also for
-  /// other numbers of normals, with the first bad index.
+  /// The same for many points, with a normal for each or one for all. Also throws Error(usage) if
+  /// `normals` has neither one element nor one per position. An error for a bad vector names its
+  /// index.
   std::vector<std::array<float, 3>> irradiance(std::span<const std::array<float, 3>> positions,
                                                std::span<const std::array<float, 3>> normals);
 
   /// Returns the radiance of indirect light [W/m^2/sr], red, green and blue, at each of `positions`
-  /// [m], of light that travels along the direction (of any length) of the same index, or the only
-  /// one: what an eye
-  /// there sees that looks the other way. Interpolates the volumes of the last frame, without
-  /// option near; 0 outside of its cascades. Negative where nine harmonics undershoot. Computed on
-  /// the device. Throws Error(usage) before the first frame, without transport sweep, for layout
-  /// image with gather all, and for vectors as irradiance() does.
+  /// [m], of light that travels along directions[i], or along the only direction: what an eye at
+  /// the position sees when it looks against that direction. Interpolates the volumes of the last
+  /// frame, without option near; 0 outside of its cascades. Negative where nine harmonics
+  /// undershoot. Computed on the device. Throws Error(usage) before the first frame, without
+  /// transport sweep, for layout image with gather all, and for vectors as irradiance() does.
   std::vector<std::array<float, 3>> radiance(std::span<const std::array<float, 3>> positions,
                                              std::span<const std::array<float, 3>> directions);
 
-  /// Reads back the light of the last frame or light(), finest cascade first. Throws Error(usage)
-  /// before the first frame.
+  /// Reads back the volumes of the last render(), light() or update(), finest cascade first. Throws
+  /// Error(usage) before the first frame.
   std::vector<LightVolume> volumes();
 
-  /// Like render(), but enqueues the frame and returns its device memory without waiting for all of
-  /// it (docs/api.md says for what it waits). Throws Error(usage) also for View::cells.
+  /// Like render(), but enqueues the frame and returns its device memory before the device has
+  /// finished it (docs/api.md lists the waits that remain). Throws Error(usage) also for
+  /// View::cells.
   opencl::Frame enqueue(View view = View::full, const CameraChoice& camera = {}, double seconds = 0,
                         const ImageSize& size = {});
   /// Like light(), from and to device memory. Throws Error(usage) also for an object that is no

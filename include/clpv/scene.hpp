@@ -44,8 +44,8 @@ struct Light {
   Vec3 intensity{1, 1, 1};   ///< directional: irradiance across the direction [W/m^2]; others:
                              ///< radiant intensity [W/sr]
   double range = 0;          ///< [m], no light beyond it; 0: unlimited
-  /// Spot: full light up to one angle, none from the other; inner <= outer <= 90, 0 < outer. Equal
-  /// ones give a hard edge.
+  /// Spot: full light inside the inner angle, none outside the outer one; inner <= outer <= 90, 0 <
+  /// outer. Equal angles give a hard edge.
   double inner_cone_degrees = 0, outer_cone_degrees = 45;
   std::string name{};
 };
@@ -80,8 +80,9 @@ class Scene {
 
   /// Replace all cameras or all lights; they are then no longer animated. To change or add one,
   /// change the list of cameras() or lights(). Frames recompute only what depends on a changed
-  /// light. A camera whose only light the scene has not got has all lights. Throw Error(usage): see
-  /// Camera and Light; no camera, more than 1024 cameras or 64 lights, two of one name.
+  /// light. If the scene lacks the light that Camera::light names, all lights light that camera.
+  /// Throw Error(usage): see Camera and Light; no camera, more than 1024 cameras or 64 lights, two
+  /// of one name.
   void set_cameras(const std::vector<Camera>& cameras);
   void set_lights(const std::vector<Light>& lights);
 
@@ -93,17 +94,18 @@ class Scene {
   /// Adds a mesh at a place in the world, and returns a number for it that is not used again.
   /// Throws Error(bad_input) that names array, index, value found and value allowed, for indices
   /// out of range, numbers that are not finite or out of bounds, arrays of vertices that differ in
-  /// length, and more than 2^24 vertices or triangles in the scene; Error(usage) for numbers of no
-  /// mesh.
+  /// length, and more than 2^24 vertices or triangles in the scene; Error(usage) if `mesh` is not
+  /// the number of a mesh.
   int add_mesh(const Mesh& mesh, const Transform& transform = kIdentity);
   /// Adds the same mesh at another place; its vertices are shared.
   int add_instance(int mesh, const Transform& transform);
   void remove_mesh(int mesh);
 
-  /// Moves the vertices of a mesh, at all of its places, or one of its places. Normals that the
-  /// mesh was given stay without `normals`. The next frame of each renderer recomputes what
-  /// animation recomputes; at the first move of a mesh without Mesh::moves, and after an addition
-  /// or removal, also its memory and what it caches. Throw as add_mesh().
+  /// set_positions() moves the vertices of a mesh in all its instances; set_transform() moves one
+  /// instance. Without `normals`, the mesh keeps the normals it was added with. The next frame of
+  /// each renderer recomputes what animation recomputes; at the first move of a mesh without
+  /// Mesh::moves, and after an addition or removal, also its memory and what it caches. Throw as
+  /// add_mesh().
   void set_positions(int mesh, std::span<const std::array<float, 3>> positions,
                      std::span<const std::array<float, 3>> normals = {});
   void set_transform(int mesh, const Transform& transform);
@@ -114,9 +116,9 @@ class Scene {
   /// (another extension), run_time (the file cannot be written).
   void save(const std::filesystem::path& path) const;
 
-  bool moves() const;  ///< returns true if anything in it is animated
-  std::vector<std::string> notes()
-      const;  ///< one sentence for each thing skipped or added by the loader and not replaced
+  bool moves() const;                      ///< returns true if anything in it is animated
+  std::vector<std::string> notes() const;  ///< one sentence for each thing that the loader skipped
+                                           ///< or added and the caller has not replaced
   std::array<Vec3, 2> bounds() const;     ///< lower and upper corner of the bounding box at 0 s [m]
   std::optional<float> exposure() const;  ///< the scene file's [EV], for save_image()
 

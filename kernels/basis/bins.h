@@ -25,7 +25,7 @@ __constant const float patch_per_width[CLPV_BIN_PATCHES][CLPV_N] = CLPV_PATCH_PE
 // 1 for s > 0, 0 for s < 0, 1/2 on the boundary.
 CLPV_INLINE float unit_step(const float s) { return fma(0.5f, sign(s), 0.5f); }
 
-// Share of region i between the lines along t of a face, n along its normal.
+// Share of region i at coordinate t along u or v of a face; n: coordinate along its normal.
 CLPV_INLINE float region_share(const int i, const float n, const float t) {
   const float above = i == 0 ? 1.0f : unit_step(fma(-lines[max(i - 1, 0)], n, t));
   return i + 1 == CLPV_SIDE ? above
@@ -34,7 +34,7 @@ CLPV_INLINE float region_share(const int i, const float n, const float t) {
 
 CLPV_INLINE Coefficients basis_functions(const float x, const float y, const float z) {
   const float w[3] = {x, y, z};
-  float of_face[6], sum = 0.0f;  // 1, or 3/4 in a corner of the cube
+  float of_face[6], sum = 0.0f;  // sum of the six faces: 1, or 3/4 towards a corner of the cube
 #pragma unroll
   for (int face = 0; face < 6; ++face) {
     const int k = face / 2;

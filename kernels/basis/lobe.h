@@ -17,8 +17,8 @@ __constant const float flux_weights[CLPV_N] = CLPV_FLUX_WEIGHTS;
 __constant const float gram_lower[CLPV_N][CLPV_N] = CLPV_GRAM_LOWER;
 __constant const float gram_inverse_diagonal[CLPV_N] = CLPV_GRAM_INVERSE_DIAGONAL;
 
-// lobe_integrals(x, y, z): alpha of the lobe about the unit normal (x, y, z); rotated ones are
-// of the projected lobe.
+// lobe_integrals(x, y, z): alpha of the lobe about the unit normal (x, y, z); with CLPV_ROTATED,
+// alpha of the rotated projection.
 #if CLPV_ROTATED
 #include "basis/rotated_lobe.h"
 #define CLPV_AND_H , CLPV_TABLE singular_table

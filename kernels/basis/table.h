@@ -7,8 +7,8 @@
 //
 // A table has one part of CLPV_TABLE_SIZE entries for each lambda, or each product of two. Rounding
 // decides entries: rounded_dot() rounds products and sums one by one, in the order of x, y, z, as
-// host/basis/rotated_lobe.hpp does. Rotated centres are of fma() here and of doubles there, so that
-// an entry may differ by one.
+// host/basis/rotated_lobe.hpp does. Kernels rotate centres with fma(), the host in double, so they
+// may still read neighbouring entries.
 //
 // From the host: CLPV_TABLE_IMAGE 1: a table is a 1-D image of a buffer, else a buffer;
 // CLPV_TABLE_SIZE; CLPV_POISSON_PARTS, the part of G for each function.

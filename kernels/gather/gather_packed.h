@@ -142,11 +142,17 @@ CLPV_INLINE float4 weigh(const Coefficients weights, const Sampled sampled) {
   return sum.lo + sum.hi;
 }
 
+// Number that light is divided by where the white furnace has f, 1 of even light. Below
+// CLPV_LEAST_WHITE few of its surfaces are in sight: the number rises to 1, so that light where the
+// furnace is dark stays as it is.
+CLPV_INLINE float furnace_divisor(const float f) {
+  return f >= CLPV_LEAST_WHITE ? f : 1.0f - (1.0f / CLPV_LEAST_WHITE - 1.0f) * fmax(f, 0.0f);
+}
+
 // Divides light by that of the white furnace in its fourth number: where even light of radiance 1
-// would give `white`, this is a mean of radiances of the surfaces in sight. Where little of the
-// furnace is in sight, light fades to black.
+// would give `white`, this is a mean of radiances of the surfaces in sight.
 CLPV_INLINE float4 over_furnace(const float4 light, const float white) {
-  const float4 mean = light * (1.0f / fmax(light.w * (1.0f / white), CLPV_LEAST_WHITE));
+  const float4 mean = light * (1.0f / furnace_divisor(light.w * (1.0f / white)));
   return (float4)(mean.xyz, 0.0f);
 }
 

@@ -57,7 +57,7 @@ __kernel void near(const ClpvView view, __global const float* points,
     const float4 arriving =
         max(weigh(cosine_integrals(-n.x[i], -n.y[i], -n.z[i]), here.at[i]), 0.0f);
     trusts[i] = miss_weight(&here.at[i], arriving, n.x[i], n.y[i], n.z[i]);
-    const float mean = 1.0f / fmax(arriving.w * M_1_PI_F, CLPV_LEAST_WHITE);
+    const float mean = 1.0f / furnace_divisor(arriving.w * M_1_PI_F);
     for (int j = 0; j < CLPV_PAIRS; ++j) here.at[i].pair[j] *= mean;
     x[i] = mean * arriving.x, y[i] = mean * arriving.y, z[i] = mean * arriving.z;
   }

@@ -4,9 +4,9 @@
 //   L(p, w) = Y(w) . C(p) / Y(w) . F(p)                     [W/m^2/sr], light that travels along w
 //   E(p, n) = pi max(0, alpha(-n) . C(p)) / alpha(-n) . F(p)      [W/m^2]
 //
-// C = c / s^2 and the coefficients F of the white furnace are interpolated trilinearly, cells that p
-// cannot see left out, and means over cascades by their shares. Outside all cascades the furnace is
-// white. over_furnace() has the least denominator.
+// C = c / s^2 and the coefficients F of the white furnace are interpolated trilinearly, cells that
+// p cannot see left out, and means over cascades by their shares. Outside all cascades the furnace
+// is white. over_furnace() divides.
 //
 // L may be negative: it is the projection of the light on nine harmonics. docs/method.md, 'The
 // sweep', 'Gathering'.

@@ -115,22 +115,67 @@ static inline uint take_entries(volatile __global uint* counts, const uint wante
   return at;
 }
 
-// Appends the triangles of the lanes in `mask`, with their entries, or leaves those of wide ones to
-// enter_wide. Beyond a capacity it only counts them.
-CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const intW mask,
-                            volatile __global uint* counts, const Capacity capacity,
-                            __global ClpvRasterTriangle* list, const Entries entries) {
+// Triangles to list and room for their entries; then the first of both.
+typedef struct {
+  uint triangles, entries;
+} Places;
+
+// Room that the triangles of the lanes in `mask` need.
+static inline Places needed(const RasterWords* words, const intW mask) {
   int listed[W];
   store_lanes(mask, listed);
-  uint triangles = 0, room = 0;
+  Places room = {0, 0};
   for (int lane = 0; lane < W; ++lane) {
     if (!listed[lane]) continue;
-    ++triangles;
-    room += tile_count(tiles_of(words, lane));
+    ++room.triangles;
+    room.entries += tile_count(tiles_of(words, lane));
   }
-  uint index = atomic_add(counts + CLPV_LISTED, triangles), at = take_entries(counts, room);
-  const uint end = at + room;
-  if (index + triangles > capacity.list) return;
+  return room;
+}
+
+static inline Places reserve(volatile __global uint* counts, const Places room) {
+  const Places first = {atomic_add(counts + CLPV_LISTED, room.triangles),
+                        take_entries(counts, room.entries)};
+  return first;
+}
+
+#if W == 1
+// Reserves room of all work-items of a group at once: counters of all groups are few, and each
+// takes one work-item after the other. `sums`, `base`: of the group.
+static inline Places reserve_by_group(volatile __global uint* counts, const Places room,
+                                      __local uint* sums, __local uint* base) {
+  const bool leads = get_local_id(0) == 0;
+  if (leads) sums[0] = 0, sums[1] = 0;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  Places first = {0, 0};
+  if (room.triangles > 0) {
+    first.triangles = atomic_add(sums, room.triangles);
+    first.entries = atomic_add(sums + 1, room.entries);
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (leads) {
+    const Places all = {sums[0], sums[1]};
+    Places at = {0, 0};
+    if (all.triangles > 0) at = reserve(counts, all);
+    base[0] = at.triangles, base[1] = at.entries;
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  first.triangles += base[0], first.entries += base[1];
+  return first;
+}
+#endif
+
+// Lists the triangles of the lanes in `mask` at `first`, with their entries, or leaves those of
+// wide ones to enter_wide. Beyond a capacity it does nothing.
+CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const intW mask,
+                            const Places room, const Places first, volatile __global uint* counts,
+                            const Capacity capacity, __global ClpvRasterTriangle* list,
+                            const Entries entries) {
+  int listed[W];
+  store_lanes(mask, listed);
+  uint index = first.triangles, at = first.entries;
+  const uint end = at + room.entries;
+  if (index + room.triangles > capacity.list) return;
   const bool room_for_entries = end <= capacity.entries && end >= at;
   for (int lane = 0; lane < W; ++lane) {
     if (!listed[lane]) continue;

@@ -59,6 +59,9 @@ static inline void defer(const intW lanes, const uintW triangle, volatile __glob
   }
 }
 
+#if W == 1
+__attribute__((reqd_work_group_size(CLPV_CLUSTER, 1, 1)))
+#endif
 __kernel void set_up(const ClpvView view, __global const ClpvViewCluster* clusters,
                      const uint first, const uint count, const uint last, const uint cull,
                      __global const float4* vertices, __global const float4* triangles,
@@ -83,7 +86,7 @@ __kernel void set_up(const ClpvView view, __global const ClpvViewCluster* cluste
                   r = view_point(view, at.c);
   const intW p_is = where_is(view, p), q_is = where_is(view, q), r_is = where_is(view, r);
   const intW visible = (number < last) & ((p_is & q_is & r_is & CLPV_OUT_OF_SIGHT) == 0);
-  if (no_lane(visible)) return;
+  if (W > 1 && no_lane(visible)) return;
   const intW clipped = visible & (((p_is | q_is | r_is) & CLPV_NEEDS_CLIPPING) != 0);
   if (!no_lane(clipped)) defer(clipped, triangle, counts, to_clip);
   const uintW material = as_uintW(CLPV_COLUMN(rows, w));
@@ -93,7 +96,17 @@ __kernel void set_up(const ClpvView view, __global const ClpvViewCluster* cluste
                              triangle,         flags};
   const Capacity capacity = {most_listed, most_entered};
   const Entries to = {entries, slice_counts, wide};
+#if W == 1
+  __local uint sums[2], base[2];
+  RasterWords words;
+  const int listed = visible && !clipped && find_words(view, t, 1, cull, &words);
+  Places room = {0, 0};
+  if (listed) room = needed(&words, 1);
+  const Places first_place = reserve_by_group(counts, room, sums, base);
+  if (listed) list_lanes(view, &words, 1, room, first_place, counts, capacity, list, to);
+#else
   append(view, t, visible & (clipped == 0), cull, counts, capacity, list, to);
+#endif
 }
 
 // Clips the deferred triangles. The clipped polygon becomes a fan about its first corner.

@@ -111,23 +111,31 @@ CLPV_INLINE void write_words(const ClpvView view, const ScreenTriangles t, const
   store_lanes(as_intW(t.triangle | kinds), words->word[CLPV_TRIANGLE_WORD]);
 }
 
-// Appends the triangles of the lanes in `mask`, except those that cover no pixel's centre and
-// culled back faces.
-CLPV_INLINE void append(const ClpvView view, ScreenTriangles t, intW mask, const uint cull,
-                        volatile __global uint* counts, const Capacity capacity,
-                        __global ClpvRasterTriangle* list, const Entries entries) {
+// Returns the lanes of `mask` but for triangles that cover no pixel's centre and culled back faces,
+// and converts those that remain.
+CLPV_INLINE intW find_words(const ClpvView view, ScreenTriangles t, intW mask, const uint cull,
+                            RasterWords* words) {
   const intW wound = winding(t);
   const intW one_sided = (t.flags & CLPV_MATERIAL_DOUBLE_SIDED) == 0u;
   mask &= (wound < 0) | ((wound > 0) & ((cull ? 0 : -1) | (one_sided == 0)));
   const Box box = box_of(view, t);
   mask &= (box.left <= box.right) & (box.top <= box.bottom);
-  if (no_lane(mask)) return;
+  if (no_lane(mask)) return mask;
   const ScreenCorner b = t.b, c = t.c;
   t.b.x = wound < 0 ? c.x : b.x, t.b.y = wound < 0 ? c.y : b.y;
   t.c.x = wound < 0 ? b.x : c.x, t.c.y = wound < 0 ? b.y : c.y;
   mask &= misses(t, box) == 0;
-  if (no_lane(mask)) return;
+  if (!no_lane(mask)) write_words(view, t, box, words);
+  return mask;
+}
+
+// Appends the triangles of find_words().
+CLPV_INLINE void append(const ClpvView view, const ScreenTriangles t, intW mask, const uint cull,
+                        volatile __global uint* counts, const Capacity capacity,
+                        __global ClpvRasterTriangle* list, const Entries entries) {
   RasterWords words;
-  write_words(view, t, box, &words);
-  list_lanes(view, &words, mask, counts, capacity, list, entries);
+  mask = find_words(view, t, mask, cull, &words);
+  if (no_lane(mask)) return;
+  const Places room = needed(&words, mask);
+  list_lanes(view, &words, mask, room, reserve(counts, room), counts, capacity, list, entries);
 }

@@ -4,7 +4,7 @@
 #pragma once
 
 enum {
-  CLPV_PLANE_TILE = 4,  // pixels along each side of a square, each of which has its own directions
+  CLPV_PLANE_TILE = 4,  // side of a tile [pixels]; its 4 x 4 pixels have different ray directions
   CLPV_PLANE_COLUMNS =
       8,  // empty columns before and at least as many after each row, for the filter's window
   CLPV_PLANE_ROWS = 3,  // empty rows above and below

@@ -14,6 +14,9 @@ enum {
   CLPV_FACE_SHARE = 6,
 };
 
+// Channels of reflectors after red, green and blue (face_albedo.cl).
+enum { CLPV_REFLECTOR_SHARE = 3, CLPV_REFLECTOR_WHITE = 4, CLPV_REFLECTOR_CHANNELS = 5 };
+
 // Fixed-point value of albedo 1 in those sums. 2^14 triangles that each cover the whole face fit
 // into 32 bits.
 #define CLPV_ALBEDO_UNIT 4096.0f

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Quantities that an image can show, and the shadow filter, shared by host and kernels. Images are
-// RGBA with alpha 1 on surfaces and all 0 elsewhere; the first two show a sky, with alpha 1, and
-// the first a medium.
+// RGBA with alpha 1 on surfaces and all 0 elsewhere; CLPV_SHOW_FULL and CLPV_SHOW_DIRECT show a
+// sky, with alpha 1; CLPV_SHOW_FULL also a medium.
 #pragma once
 
 enum {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flux from a neighbour through the faces of a cell that it sees, from its coefficients.
+// Flux that a neighbour sends through the faces of a cell that it sees, from the neighbour's
+// coefficients.
 //
 //   F = Omega_f I(w_f) = sum_i c_i Omega_f b_i(w_f)
 //

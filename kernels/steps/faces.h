@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Fluxes from its neighbours through the faces of a cell, and transmittances of links: shared by
-// propagate.cl and propagate_lobes.cl.
+// What a step loads and stores: neighbours of a cell, transmittances of links, light gained; shared
+// by propagate.cl and propagate_lobes.cl.
 //
 // Face 5 k + f is the cell's face f of the five that are seen by the neighbour whose light travels
 // along axis k, axes in the order +x, -x, +y, -y, +z, -z.
 //
 // With CLPV_BLOCKING 1 kernels have two more arguments (CLPV_AND_TRANSMITTANCE): the transmittance
-// of each link into a cell (transmittance.cl), and its lower bound: 1 in the first step, which is
-// not blocked, else 0. From the host: CLPV_LINKS, the number of faces.
+// of each link into a cell (transmittance.cl), and `least`, a minimum for it: 1 in the first step,
+// so that nothing blocks, else 0. From the host: CLPV_LINKS, the number of faces.
 #pragma once
 
 #include "volume/coefficients.h"

@@ -22,7 +22,7 @@
 //
 // In:   swept             L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
 //       reflectors, series  R, S: volumes of six numbers per cell and channel, faces as in
-//                           shared/reflectors.h; channel 3 of reflectors: m (face_albedo.cl)
+//                           shared/reflectors.h; further channels: face_albedo.cl
 //       injected          I: light volume [W/sr]
 // Out:  bounced           I': light volume [W/sr]
 // From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_LOBES, the lobe of 1 W about each
@@ -46,6 +46,12 @@ CLPV_INLINE FaceFluxes reflect_flux(const FaceFluxes incident, const FaceFluxes 
 #pragma unroll
   for (int a = 0; a < CLPV_CELL_FACES; ++a) flux.c[a] = incident.c[a] * reflectance.c[a];
   return flux;
+}
+
+// m of the faces of a cell.
+CLPV_INLINE FaceFluxes load_share(CLPV_VOLUME_IN reflectors, const int x, const int y,
+                                  const int z) {
+  return faces_load(reflectors, CLPV_REFLECTOR_SHARE, x, y, z);
 }
 
 CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
@@ -120,7 +126,7 @@ __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
     const Coefficients reflected =
         reflected_intensity(reflect_flux(load_incident_flux(swept, bins, t, r),
                                          faces_load(reflectors, t.channel, t.x, t.y + r, t.z)),
-                            faces_load(reflectors, 3, t.x, t.y + r, t.z));
+                            load_share(reflectors, t.x, t.y + r, t.z));
     light_store(
         bounced, t.channel, t.x, t.y + r, t.z,
         add_scaled(reflected, injected_share, light_load(injected, t.channel, t.x, t.y + r, t.z)));
@@ -144,19 +150,27 @@ __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_sw
     light_store(bounced, t.channel, t.x, t.y + r, t.z,
                 add_coefficients(light_load(injected, t.channel, t.x, t.y + r, t.z),
                                  reflected_intensity(
-                                     flux, faces_load(reflectors, 3, t.x, t.y + r, t.z))));
+                                     flux, load_share(reflectors, t.x, t.y + r, t.z))));
   }
 }
 
-// Every face emits `flux` times `factor`.
-__kernel void inject_flux(CLPV_VOLUME_IN flux, CLPV_VOLUME_IN reflectors, const float factor,
-                          CLPV_VOLUME_OUT bounced) {
+// Every face emits the channels from `first` on of `flux` times `factor`; with `step` 0 all
+// channels emit the first.
+__kernel void inject_flux(CLPV_VOLUME_IN flux, CLPV_VOLUME_IN reflectors, const int first,
+                          const int step, const float factor, CLPV_VOLUME_OUT bounced) {
   const Tile t = find_tile();
+  const int channel = first + step * t.channel;
   for (int r = 0; r < t.rows; ++r)
     light_store(bounced, t.channel, t.x, t.y + r, t.z,
                 scale_coefficients(
-                    factor, reflected_intensity(faces_load(flux, t.channel, t.x, t.y + r, t.z),
-                                                faces_load(reflectors, 3, t.x, t.y + r, t.z))));
+                    factor, reflected_intensity(faces_load(flux, channel, t.x, t.y + r, t.z),
+                                                load_share(reflectors, t.x, t.y + r, t.z))));
+}
+
+// As furnace_divisor() of gather/gather_packed.h.
+CLPV_INLINE realW furnace_divisor(const realW f) {
+  const realW rest = 1.0f - (1.0f / CLPV_LEAST_WHITE - 1.0f) * fmax(f, ZERO);
+  return f >= (realW)(CLPV_LEAST_WHITE) ? f : rest;
 }
 
 // `swept`: a white furnace in channel 0; `white`: the F of a face that it lights fully.
@@ -171,8 +185,8 @@ __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflecto
     FaceFluxes faces = faces_load(reflectors, t.channel, t.x, t.y + r, t.z);
     const FaceFluxes furnace = load_incident_flux(swept, bins, t, r);
 #pragma unroll
-    for (int a = 0; a < CLPV_CELL_FACES && t.channel < 3; ++a)
-      faces.c[a] *= white / fmax(furnace.c[a], (realW)(CLPV_LEAST_WHITE * white));
+    for (int a = 0; a < CLPV_CELL_FACES && t.channel < CLPV_REFLECTOR_SHARE; ++a)
+      faces.c[a] = faces.c[a] / furnace_divisor(furnace.c[a] * (1.0f / white));
     faces_store(normalised, t.channel, t.x, t.y + r, t.z, faces);
   }
 }
@@ -199,7 +213,7 @@ __kernel void sum_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_V
     const FaceFluxes reflectance = faces_load(reflectors, t.channel, t.x, t.y + r, t.z),
                      first = faces_load(returned, t.channel, t.x, t.y + r, t.z),
                      second = reflect_flux(load_incident_flux(swept, bins, t, r), reflectance),
-                     share = faces_load(reflectors, 3, t.x, t.y + r, t.z);
+                     share = load_share(reflectors, t.x, t.y + r, t.z);
     faces_store(series, t.channel, t.x, t.y + r, t.z,
                 add_fluxes(reflectance,
                            add_fluxes(first, sum_bounces(first, second, reflectance, share))));

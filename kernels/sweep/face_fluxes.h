@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Fluxes [W] on the six faces of W cells, in the order of shared/reflectors.h.
 //
-//   D_a = sum_b Omega_b max(0, -w_b.a) L_b s^2      (docs/method.md, 'More bounces')
+//   D_a = 0.956 sum_b Omega_b max(0, -w_b.a) L_b s^2, pi of even light 1
+//                                                   (docs/method.md, 'More bounces')
 //
-// From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_INCIDENT, Omega_b max(0, -w_b.a) for
+// From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_INCIDENT, the weights of D_a for
 // each face and bin.
 #pragma once
 

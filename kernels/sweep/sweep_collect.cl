@@ -7,8 +7,8 @@
 // docs/method.md, 'The sweep'.
 //
 // In:   sums         L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
-// Out:  accumulated  nine coefficients per cell and channel [W/sr], any layout, from channel `first`
-//                    on
+// Out:  accumulated  nine coefficients per cell and channel [W/sr], any layout, from channel
+//                    `first` on
 // From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_PROJECTION, P by folded bins
 // (mirrored_bins.h). A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"

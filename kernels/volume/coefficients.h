@@ -3,8 +3,8 @@
 // a blocker, of six faces, or nine harmonics. Loops over them are unrolled, so that they stay in
 // registers.
 //
-// From the host (add_coefficient_literals): CLPV_N; CLPV_COEFFICIENT, the type of one of them:
-// realW, those of W cells, or float where one cell is read at a time.
+// From the host (add_coefficient_literals): CLPV_N; CLPV_COEFFICIENT, the type of a coefficient:
+// realW (W cells at once) or float (one cell).
 #pragma once
 
 #include "lanes.h"

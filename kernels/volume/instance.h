@@ -2,7 +2,7 @@
 // Template of the volume types: load and store in the layout and storage that the host chooses
 // (layouts.h).
 //
-// Parameters: define before each inclusion, which undefines them
+// Define these parameters before each inclusion; this file undefines them at its end
 //   CLPV_VOLUME         prefix of the functions below (light, geometry, ...)
 //   CLPV_VOLUME_N       samples along each axis, a literal
 //   CLPV_VOLUME_CELL    struct with an array c of the numbers of a sample and channel, and

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Work-items outside a grid: none where whole work-groups fill it. A branch would then prevent
-// vectorisation (lanes.h), so that the test is a constant. From the host:
+// Tests whether a work-item is outside the grid. Where whole work-groups fill the grid, none is,
+// and the test is constant: a branch would prevent vectorisation (lanes.h). From the host:
 // CLPV_LOCAL_X, work-items of a group along x.
 #pragma once
 

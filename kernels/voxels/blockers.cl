@@ -19,7 +19,7 @@
 #include "voxels/voxelize_triangle.h"
 #include "shared/blockers.h"
 
-// Sets the bits of W samples from (u, v) on along a row, one word for each corner that they lie at.
+// Sets the bits of W samples from (u, v) on along a row, in one word per corner.
 CLPV_INLINE void set_row(const ClpvRegion* region, __global volatile uint* masks, const uint axis,
                          const int u, const int v, const intW covered, const realW w) {
   const int2 cells = cells_along(region, axis);

@@ -9,9 +9,9 @@
 //
 // In:   faces       sums per face (shared/reflectors.h)
 // Out:  reflectors  R in [0, 1], six numbers per cell and channel, in the order of
-//                   shared/reflectors.h, and in a fourth channel the mean share of each face's
-//                   triangles, 0 on faces without one
-// From the host: CLPV_WHITE 1: A is the mean share. A work-item computes a cell.
+//                   shared/reflectors.h. Channel 3: mean share of each face's triangles, 0 on
+//                   faces without one; channel 4: R of albedo 1
+// A work-item computes a cell.
 #include "volume/coefficients.h"
 #include "shared/reflectors.h"
 #include "volume/light.h"
@@ -25,15 +25,15 @@ __kernel void face_albedo(__global const uint* faces, CLPV_VOLUME_OUT reflectors
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   __global const uint* cell =
       faces + (size_t)((z * CLPV_GRID + y) * CLPV_GRID + x) * (CLPV_CELL_FACES * CLPV_FACE_WORDS);
-  for (int channel = 0; channel < 4; ++channel) {
-    const int sum = channel == 3 || CLPV_WHITE ? CLPV_FACE_SHARE : CLPV_FACE_ALBEDO + channel;
+  for (int channel = 0; channel < CLPV_REFLECTOR_CHANNELS; ++channel) {
+    const int sum = channel >= CLPV_REFLECTOR_SHARE ? CLPV_FACE_SHARE : CLPV_FACE_ALBEDO + channel;
     Coefficients c;
 #pragma unroll
     for (int i = 0; i < CLPV_CELL_FACES; ++i) {
       __global const uint* face = cell + i * CLPV_FACE_WORDS;
       const float per_sample = 1.0f / (CLPV_ALBEDO_UNIT * (float)max(face[CLPV_FACE_SAMPLES], 1u)),
                   mean = fmin(per_sample * (float)face[sum], 1.0f);
-      c.c[i] = channel == 3 ? mean : face_coverage(face) * mean;
+      c.c[i] = channel == CLPV_REFLECTOR_SHARE ? mean : face_coverage(face) * mean;
     }
     light_store(reflectors, channel, x, y, z, c);
   }

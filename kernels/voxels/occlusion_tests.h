@@ -69,8 +69,8 @@ CLPV_INLINE Linear edge_determinant(const float3 a, const float3 b, const int fi
   return f;
 }
 
-// The plane's function and the three determinants, for each centre: a triangle occludes a centre
-// from a point where none is negative.
+// Per centre four linear functions: the plane and three determinants. The triangle hides the centre
+// from points where none of the four is negative.
 enum { CLPV_TESTS = 4 };
 typedef struct {
   float x[CLPV_TESTS][W], y[CLPV_TESTS][W];

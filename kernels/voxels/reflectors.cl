@@ -7,8 +7,9 @@
 //                                                                                     bounces')
 //
 // A triangle counts towards the three faces nearest to n, and its back towards the three opposite
-// ones. With CLPV_WHITE albedo is 1, and backs count only where the material is double-sided. As virtual point lights do, faces emit and receive half a cell off the surface along its
-// normal; across an axis that is a whole number of samples.
+// ones. With CLPV_WHITE albedo is not summed, and backs count only where the material is
+// double-sided. As virtual point lights do, faces emit and receive half a cell off the surface
+// along its normal; along u and v, this offset is rounded to whole samples.
 //
 // Each axis is a raster of 8 x 8 samples per face (voxelize_triangle.h). Albedo is looked up once
 // per row of samples, at the centre of the covered ones. Sums are integers, by atomic_add and
@@ -100,8 +101,8 @@ CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle*
   }
 }
 
-// Moves a triangle half a cell along `normal`, and from the corners' cells of voxelize_triangle.h
-// to light cells.
+// Moves a triangle half a cell along `normal`, and from cells about corners, which
+// voxelize_triangle.h counts, to light cells.
 static inline ProjectedTriangle offset_triangle(const ProjectedTriangle* from,
                                                 const float3 normal) {
   ProjectedTriangle t = *from;

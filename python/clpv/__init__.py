@@ -53,6 +53,7 @@ def ms_of(times, stage):
 def __getattr__(name):
     """Loads the native module on first use, so that clpv.draw works without it."""
     if name in __all__ or name == "__version__":
+        importlib.import_module("clpv._pocl").use()
         return getattr(importlib.import_module("clpv._native"), name)
     if name in ("draw", "view"):
         return importlib.import_module(f"clpv.{name}")

@@ -1,40 +1,78 @@
 # SPDX-License-Identifier: MIT
 """The picture of scripts/demo: the atrium under sun and sky by direct light, with all bounces, and
-path traced.
+path traced. Only the standard library.
 
     PYTHONPATH=scripts python3 -m measured.demo DIR [--width N] [--height N] [RENDER_OPTION...]
 
 DIR: output folder. Other options go to `clpv render`, those OF_BOTH to `clpv pathtrace` too.
 """
 import argparse
+import array
+import itertools
 import json
 import pathlib
+import struct
 import subprocess
 import sys
-
-import numpy
-import PIL.Image
+import zlib
 
 from . import CLPV, ROOT, output
 from clpv import ms_of
-from clpv.draw import style
 
 SCENE = ROOT / "scenes/atrium.json"
 EXPOSURE = -0.7  # [EV]
 SKY = {"radiance": [1.2, 1.6, 2.4], "ground": [0, 0, 0]}  # [W/m^2/sr]
 WIDTH, HEIGHT = 384, 216  # three of this width fit a screen
 NOISE = 0.1  # of the path-traced light; adds little to the error
-DPI = 100
+GAP = 4  # between the pictures [pixels]
 OWN = "-o", "--output", "--view", "--bounces", "--stats"
 OF_BOTH = ("--camera", "--eye", "--target", "--up", "--fov", "--near-plane", "--sun",
            "--light-scale", "--medium", "--time", "--model")
 
 
-def displayed(light):
-    """sRGB values of linear ones: exposure and curve `photographic`, as a PNG of clpv has them."""
-    x = light.clip(0) * 2**EXPOSURE
-    x = (x * (1 + x / 36) / (1 + x)).clip(0, 1)
-    return numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * x**(1 / 2.4) - 0.055)
+def unpacked(block):
+    """Bytes of a compressed EXR block: deflate, differences of bytes, two halves interleaved."""
+    block = bytearray(zlib.decompress(block))
+    block[:] = itertools.accumulate(block, lambda value, step: value + step - 128 & 255)
+    even = (len(block) + 1) // 2
+    block[::2], block[1::2] = block[:even], block[even:]
+    return block
+
+
+def read_exr(file):
+    """(width, height, {channel: floats}) of an EXR that clpv wrote."""
+    data = file.read_bytes()
+    at, header = 8, {}
+    while data[at]:
+        name, _, rest = data[at:].split(b"\0", 2)
+        at = len(data) - len(rest) + 4
+        size = int.from_bytes(rest[:4], "little")
+        header[name], at = data[at:at + size], at + size
+    left, top, right, bottom = struct.unpack("<4i", header[b"dataWindow"])
+    width, height = right - left + 1, bottom - top + 1
+    planes, names = {}, header[b"channels"]
+    while names[0]:
+        name, rest = names.split(b"\0", 1)
+        planes[name.decode()], names = array.array("f"), rest[16:]
+    rows = 16 if header[b"compression"][0] else 1  # of a block
+    for i in range(-(-height // rows)):
+        start, = struct.unpack_from("<Q", data, at + 1 + 8 * i)
+        first, size = struct.unpack_from("<2i", data, start)
+        block = data[start + 8:start + 8 + size]
+        count = min(rows, top + height - first)
+        if size < 4 * width * count * len(planes):
+            block = unpacked(block)
+        for row, (name, plane) in itertools.product(range(count), enumerate(planes.values())):
+            begin = 4 * width * (row * len(planes) + name)
+            plane.frombytes(block[begin:begin + 4 * width])
+    return width, height, planes
+
+
+def displayed(x):
+    """Byte of a linear value: exposure, curve `photographic` and sRGB, as a PNG of clpv has it."""
+    x = max(x, 0) * 2**EXPOSURE
+    x = min(1, x * (1 + x / 36) / (1 + x))
+    return round(255 * (12.92 * x if x <= 0.0031308 else 1.055 * x**(1 / 2.4) - 0.055))
 
 
 def of_both(options):
@@ -64,15 +102,16 @@ class Demo:
         return file
 
     def shown(self, file, layer):
-        planes = self.folder.file(f"{file.stem}-{layer}.tif")
-        each = [word for colour in "RGB" for word in (file, "--ch", f"{layer}.{colour}")]
-        subprocess.run(["oiiotool", *each, "--mosaic", "1x3", "-d", "float", "-o", planes],
-                       check=True)
-        rows = numpy.asarray(PIL.Image.open(planes))
-        return displayed(numpy.moveaxis(rows.reshape(3, -1, rows.shape[1]), 0, -1))
+        """Rows of sRGB bytes at the size of the demo."""
+        width, height, planes = read_exr(file)
+        pixels = [bytes(pixel) for pixel in
+                  zip(*(map(displayed, planes[f"{layer}.{colour}"]) for colour in "RGB"))]
+        columns, rows = self.size
+        return [b"".join(pixels[y * height // rows * width + x * width // columns]
+                         for x in range(columns)) for y in range(rows)]
 
     def make(self):
-        """Returns [(caption, sRGB image)], and the error of a frame with all bounces."""
+        """Returns the pictures from left to right, and the error of a frame with all bounces."""
         scene = json.loads(SCENE.read_text())
         scene.update(model=str(SCENE.parent / scene["model"]), sky=SKY)
         self.folder.write("day.json", json.dumps(scene, indent=2).encode())
@@ -82,25 +121,20 @@ class Demo:
         truth = self.image("pathtrace", day, "truth.exr", ("full", "indirect"),
                            f"--noise={NOISE}", *of_both(self.options))
         errors = json.loads(self.run("compare", f"{ours}:indirect", f"{truth}:indirect"))
-        return [("Direct light", self.shown(ours, "direct")),
-                ("Global illumination by clpv", self.shown(ours, "full")),
-                ("Path traced", self.shown(truth, "full"))
+        return [self.shown(ours, "direct"), self.shown(ours, "full"), self.shown(truth, "full")
                ], errors["nrmse_valid"]
 
 
-def picture(tiles):
-    """Bytes of a PNG: the tiles side by side at their sizes, with captions below."""
-    gap, line = 4, 22  # [pixels]
-    width = sum(image.shape[1] + gap for _, image in tiles) + gap
-    height = max(image.shape[0] for _, image in tiles) + line + 2 * gap
-    figure = style.pyplot.figure(figsize=(width / DPI, height / DPI), facecolor="white", dpi=DPI)
-    left = gap
-    for caption, image in tiles:
-        figure.figimage(image, left, line + gap, resize=False)
-        figure.text((left + image.shape[1] / 2) / width, line / height, caption, ha="center",
-                    va="top", fontsize=9)
-        left += image.shape[1] + gap
-    return style.rendered(figure, "png", dpi=DPI)
+def picture(pictures):
+    """Bytes of a PNG with the pictures side by side."""
+    rows = [(b"\xff" * 3 * GAP).join(row) for row in zip(*pictures)]
+
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    header = struct.pack(">2I5B", len(rows[0]) // 3, len(rows), 8, 2, 0, 0, 0)
+    pixels = zlib.compress(b"".join(b"\0" + row for row in rows), 9)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", pixels) + chunk(b"IEND", b"")
 
 
 def print_stages(stats):
@@ -130,15 +164,15 @@ def main():
         parser.error(f"found {own[0]}; allowed: options other than {', '.join(OWN)}")
     folder = output.Folder(arguments.folder, "scripts/demo")
     demo = Demo(folder, (arguments.width, arguments.height), options)
-    tiles, error = demo.make()
-    folder.write("demo.png", picture(tiles))
+    pictures, error = demo.make()
+    folder.write("demo.png", picture(pictures))
     stats = json.loads(demo.stats.read_text())
     print_stages(stats)
     milliseconds = ms_of(stats["times"], "frame")
     print(f"All bounces: {milliseconds:.0f} ms per frame of {arguments.width}x{arguments.height}; "
           f"error of indirect light {100 * error:.0f} % (NRMSE against path tracing at "
           f"{arguments.width}x{arguments.height})")
-    print(f"Picture: {folder.path}/demo.png")
+    print(f"Picture: {folder.path}/demo.png: direct light, global illumination by clpv, path traced")
     return 0
 
 

@@ -71,11 +71,10 @@ TEST(ProbeFormats, Furnace) {
 
 // Irradiance on surfaces across one direction and away from it.
 TEST(ProbeFormats, OneDirection) {
-  const std::map<std::string, std::pair<double, double>> wanted{
-      {"sh2", {0.75, -0.25}},
-      {"sh2-geomerics", {1, 0}},
-      {"zh3", {1.0625, 0.0625}},
-      {"sh3", {1.0625, 0.0625}}};
+  const std::map<std::string, std::pair<double, double>> wanted{{"sh2", {0.75, -0.25}},
+                                                                {"sh2-geomerics", {1, 0}},
+                                                                {"zh3", {1.0625, 0.0625}},
+                                                                {"sh3", {1.0625, 0.0625}}};
   for (const auto& [name, towards] : wanted) {
     const ProbeFormat format = probe_format(name);
     const auto c = of_direction(format, kTilted);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// EXR and PNG of a build without OpenImageIO, read by OpenImageIO.
+// EXR and PNG of a build without OpenImageIO, read by OpenImageIO and by that build.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -12,6 +12,19 @@ namespace {
 
 std::string_view text_of(const std::vector<unsigned char>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The image as a build without OpenImageIO decodes it. Fails the test with the reason.
+Image plain(const std::string& format, std::span<const std::uint8_t> bytes) {
+  std::string error;
+  const auto decoder = open_plain(format, bytes, error);
+  EXPECT_EQ(error, "");
+  if (!decoder) return {};
+  const CodedImage& coded = decoder->described();
+  Image image = make_image(coded.width, coded.height, coded.channels);
+  image.metadata = coded.metadata;
+  EXPECT_EQ(decoder->read(image.pixels.data()), "");
+  return image;
 }
 
 CodedImage described(int width, int height, std::vector<std::string> channels) {
@@ -39,6 +52,14 @@ TEST(PlainCodec, WritesExrThatOthersRead) {
         ASSERT_EQ(read.pixels[i * channels.size() + at], pixels[i * channels.size() + c]);
     }
     EXPECT_EQ(read.metadata, coded.metadata);
+    const Image own = plain("openexr", bytes);
+    EXPECT_EQ(own.metadata, coded.metadata);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const auto at = own.channel(read.channels[c]);
+      ASSERT_TRUE(at) << read.channels[c];
+      for (std::size_t p = 0; p < own.pixel_count(); ++p)
+        ASSERT_EQ(own.pixels[p * channels.size() + *at], read.pixels[p * channels.size() + c]);
+    }
   }
 }
 
@@ -54,13 +75,25 @@ TEST(PlainCodec, WritesPngThatOthersRead) {
     ASSERT_EQ(read.pixels.size(), pixels.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) ASSERT_EQ(byte_of(read.pixels[i]), pixels[i]);
     EXPECT_EQ(read.metadata, coded.metadata);
+    const Image own = plain("png", bytes), compressed = plain("png", png_bytes(read));
+    EXPECT_EQ(own.metadata, coded.metadata);
+    EXPECT_EQ(own.channels, channels);
+    EXPECT_EQ(own.pixels, read.pixels);
+    EXPECT_EQ(compressed.pixels, read.pixels);
   }
 }
 
 TEST(PlainCodec, NamesWhatItLacks) {
-  std::string error;
-  EXPECT_EQ(plain_codec().open("jpeg", "a.jpg", {}, error), nullptr);
-  EXPECT_NE(error.find("without OpenImageIO (CLPV_IMAGES=OFF)"), std::string::npos) << error;
+  const Image image = make_image(4, 3, {"R", "G", "B"});
+  const std::vector<std::uint8_t> damaged{0x89, 'P', 'N', 'G'};
+  for (const auto& [format, bytes, reason] :
+       {std::tuple{"webp", damaged, "without OpenImageIO (CLPV_IMAGES=OFF)"},
+        {"openexr", exr_bytes(image), "without OpenImageIO (CLPV_IMAGES=OFF)"},
+        {"png", damaged, "unknown image type"}}) {
+    std::string error;
+    EXPECT_EQ(plain_codec().open(format, "a", bytes, error), nullptr);
+    EXPECT_NE(error.find(reason), std::string::npos) << format << ": " << error;
+  }
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ def test_pip_install(tmp_path):
     run(sys.executable, "-m", "pip", "install", "-q", "--no-build-isolation", "--no-index",
         "--no-deps", "--target", tmp_path / "site",
         f"--config-settings=build-dir={tmp_path / 'build'}",
+        "--config-settings=cmake.define.CLPV_BUILD_PROGRAM=OFF",
+        "--config-settings=build.targets=clpv_python",
         f"--config-settings=cmake.define.CLPV_PREBUILT={BUILD / 'libclpv.a'}", ROOT)
     said = run("env", f"PYTHONPATH={tmp_path / 'site'}", sys.executable, "-c",
                "import clpv, clpv.draw; s = clpv.Scene('%s/scenes/cornell.json')\n"

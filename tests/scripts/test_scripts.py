@@ -108,7 +108,8 @@ class Tree(InFolder):
             self.assertIn(f"  scripts/{name}", run(name, "--help").stdout)
         for name, *arguments in (("build", "--fast"), ("test", "gather"), ("test", "--lng"),
                                  ("fuzz", "none"), ("sanitize", "--fast"), ("check_intel", "x"),
-                                 ("setup", "x"), ("format", "x"), ("tables", "x"), ("bare", "-x")):
+                                 ("gpu", "x"), ("setup", "x"), ("format", "x"), ("tables", "x"),
+                                 ("bare", "-x")):
             self.assertEqual(run(name, *arguments).returncode, output.USAGE, name)
 
     @unittest.skipUnless(shutil.which("git"), "git is not installed")

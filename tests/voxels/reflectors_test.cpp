@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "basis/bounce.hpp"
+#include "kernels/shared/reflectors.h"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "verify/check.hpp"
@@ -39,7 +40,8 @@ struct Areas {
 
 Areas reflected(const SceneData& scene, bool white = false) {
   const SceneBuffers buffers = upload_scene(test_session(), scene);
-  Volume reflectors(test_session(), {kGrid, kCellFaces, kReflectorChannels}, "test: reflectors");
+  Volume reflectors(test_session(), {kGrid, kCellFaces, CLPV_REFLECTOR_CHANNELS},
+                    "test: reflectors");
   VoxelField(test_session(), buffers, reflector_masks(buffers, kGrid, {}, white))
       .update(0, kGridCells, reflectors);
   return {reflectors.read(test_session())};

@@ -134,12 +134,6 @@ void Frame::require_lookups(const char* what) const {
     throw Error(ExitCode::usage, "{}: found transport '{}', allowed: sweep", what,
                 name_of(options().transport));
   }
-  if (!gatherer_.packs()) {
-    throw Error(
-        ExitCode::usage,
-        "{}: found layout 'image' with gather 'all', allowed: gather 'visible', or another layout",
-        what);
-  }
 }
 
 std::string Frame::lookup_source() const {

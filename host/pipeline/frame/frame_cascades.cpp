@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "basis/bounce.hpp"
+#include "kernels/shared/reflectors.h"
 #include "pipeline/voxels/blockers.hpp"
 #include "pipeline/voxels/reflectors.hpp"
 #include "pipeline/voxels/visibility.hpp"
@@ -43,7 +44,7 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
     field.emplace(session, buffers,
                   reflector_masks(buffers, options_.grid, options_.format(), white));
     faces = std::make_unique<Volume>(
-        session, VolumeShape{options_.grid, kCellFaces, kReflectorChannels}, "reflectors",
+        session, VolumeShape{options_.grid, kCellFaces, CLPV_REFLECTOR_CHANNELS}, "reflectors",
         options_.format());
   };
   if (sweeper_) voxelise(white_, white_faces_, true);

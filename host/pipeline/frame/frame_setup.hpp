@@ -29,9 +29,7 @@ struct FrameSetup {
   /// Shapes of volumes of injected and gathered light, and of blockers.
   VolumeShape injected_shape() const { return {options.grid, basis->size(), 3}; }
   /// A sweep adds a channel: its white furnace (Sweeper::set_surfaces).
-  VolumeShape gathered_shape() const {
-    return {options.grid, gathered->size(), sweeps() ? 4 : 3};
-  }
+  VolumeShape gathered_shape() const { return {options.grid, gathered->size(), sweeps() ? 4 : 3}; }
   VolumeShape geometry_shape() const {
     return {options.grid + 1, blocking_size(options.blocking, *basis), 1};
   }

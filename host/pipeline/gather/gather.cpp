@@ -101,7 +101,8 @@ void Gatherer::require_fit(const GatheredLight& light) const {
                 light.grids.size());
   }
   for (const Volume* volume : light.accumulated)
-    clpv::require_fit(*volume, {options_.grid, coefficients_, furnace_ ? 4 : 3}, options_.format, "gathering");
+    clpv::require_fit(*volume, {options_.grid, coefficients_, furnace_ ? 4 : 3}, options_.format,
+                      "gathering");
   if (sees() && !light.occluded.exists())
     throw Error(ExitCode::run_time, "gather: no occluded cells, which gather 'visible' needs");
 }

@@ -34,8 +34,8 @@ struct GatheredLight {
   std::vector<std::uint64_t> keys = {};  ///< of the volumes' contents and scale; empty: unknown
 };
 
-/// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces), for swept light over
-/// g(n) . f / pi, f the white furnace in channel 3. c is the volume, sampled trilinearly
+/// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces), for swept light
+/// over g(n) . f / pi, f the white furnace in channel 3. c is the volume, sampled trilinearly
 /// `gather_offset` cells off the surface. Negative E is clamped to 0.
 ///
 /// The cascade weights depend only on the surface point. Cascade i takes the share m_i = min(1,

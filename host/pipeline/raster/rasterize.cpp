@@ -141,9 +141,12 @@ void Rasterizer::find_visible(const Drawing& drawing) {
 std::vector<Rasterizer::Range> Rasterizer::list_clusters(const ClpvView& view) {
   const HostPart part(session_.timeline().host().culling_ms);
   const std::vector<Bounds>& bounds = scene_.clusters->bounds();
+  const std::vector<BoxPlace> places = places_of(view, scene_.clusters->boxes());
+  const ClusterPlacer place(view);
   std::vector<ClpvViewCluster> visible;
+  visible.reserve(bounds.size());
   for (unsigned i = 0; i < bounds.size(); ++i) {
-    if (may_be_visible(view, bounds[i])) visible.push_back(place_cluster(view, bounds[i], i));
+    if (places[i] != BoxPlace::outside) visible.push_back(place(bounds[i], i));
   }
   const unsigned count = visible.size();
   const bool hides = view.orthographic != 0 && count >= least_hidden_;
@@ -153,7 +156,7 @@ std::vector<Rasterizer::Range> Rasterizer::list_clusters(const ClpvView& view) {
   if (nearest < count) ranges.push_back({nearest, count - nearest});
   for (Range& range : ranges) {
     for (unsigned i = 0; i < range.count; ++i)
-      range.clipped += may_be_clipped(view, bounds[visible[range.first + i].number]) ? 1 : 0;
+      range.clipped += places[visible[range.first + i].number] == BoxPlace::clipped ? 1 : 0;
   }
   return ranges;
 }

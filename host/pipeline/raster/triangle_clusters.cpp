@@ -44,6 +44,8 @@ Bounds bounds_of(const std::vector<Vertex>& vertices, std::span<const Triangle> 
 TriangleClusters::TriangleClusters(const SceneData& scene)
     : triangles_(static_cast<unsigned>(scene.triangles.size())) {
   bounds_.resize((scene.triangles.size() + CLPV_CLUSTER - 1) / CLPV_CLUSTER);
+  for (auto* side : {&boxes_.centre, &boxes_.half})
+    for (std::vector<float>& along : *side) along.resize(bounds_.size());
   bound_runs(scene, 0, scene.triangles.size());
   for (const MeshRange& part : scene.moving)
     moving_.push_back({part_bounds(scene, part), print_of(scene, part)});
@@ -57,6 +59,12 @@ void TriangleClusters::bound_runs(const SceneData& scene, std::size_t first, std
     const std::size_t from = run * CLPV_CLUSTER;
     const std::size_t size = std::min<std::size_t>(CLPV_CLUSTER, scene.triangles.size() - from);
     bounds_[run] = bounds_of(scene.vertices, std::span(scene.triangles).subspan(from, size));
+    for (int axis = 0; axis < 3; ++axis) {
+      const float lower = bounds_[run].lower[axis], upper = bounds_[run].upper[axis];
+      const float centre = 0.5f * lower + 0.5f * upper;
+      boxes_.centre[axis][run] = centre;
+      boxes_.half[axis][run] = std::max(upper - centre, centre - lower);
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 // a region.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,6 +16,11 @@ namespace clpv {
 /// origin without any.
 Bounds bounds_of(const std::vector<Vertex>& vertices, std::span<const Triangle> triangles);
 
+/// Centres and half edges of boxes along x, y and z, for loops that compilers vectorise.
+struct Boxes {
+  std::array<std::vector<float>, 3> centre, half;
+};
+
 /// Triangle clusters: CLPV_CLUSTER consecutive triangles of a scene each; the last cluster is
 /// shorter.
 class TriangleClusters {
@@ -26,6 +32,7 @@ class TriangleClusters {
   std::vector<MeshRange> move(const SceneData& scene);
 
   const std::vector<Bounds>& bounds() const { return bounds_; }
+  const Boxes& boxes() const { return boxes_; }  ///< the same
   unsigned triangles() const { return triangles_; }
 
   /// Version of the positions, and the boxes in which triangles moved last.
@@ -56,6 +63,7 @@ class TriangleClusters {
   std::vector<Moving> moving_;  ///< one per entry of SceneData::moving
   std::vector<Bounds> moved_;
   unsigned triangles_ = 0, instant_ = 0;
+  Boxes boxes_;
 };
 
 }  // namespace clpv

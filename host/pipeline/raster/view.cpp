@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "kernels/shared/raster.h"
@@ -113,6 +114,68 @@ ClpvView directional_shadow_view(const ClpvLight& light, const Bounds& bounds, i
                            size);
 }
 
+/// Half-space of the points p, relative to a view's eye, with along . p + offset >= 0.
+struct Plane {
+  glm::dvec3 along;
+  double offset;
+};
+
+/// Half-spaces that contain all that a view shows.
+std::vector<Plane> borders(const ClpvView& view) {
+  const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
+  const bool parallel = view.orthographic != 0;
+  const double width = view.half_width, height = view.half_height;
+  const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
+                   higher = parallel ? glm::dvec3(0) : height * forward;
+  const double beside = parallel ? width : 0, above = parallel ? height : 0;
+  std::vector<Plane> planes{{wider + right, beside},
+                            {wider - right, beside},
+                            {higher + up, above},
+                            {higher - up, above},
+                            {-forward, view.far_depth}};
+  if (!parallel) planes.push_back({forward, -double{view.near_depth}});
+  return planes;
+}
+
+/// Half-spaces outside the rasteriser's guard band, or beyond the near plane.
+std::vector<Plane> beyond_guards(const ClpvView& view) {
+  const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
+  const bool parallel = view.orthographic != 0;
+  const double guard = 2.0 * double{CLPV_GUARD_PIXELS},
+               width = guard * view.half_width / view.width,
+               height = guard * view.half_height / view.height;
+  const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
+                   higher = parallel ? glm::dvec3(0) : height * forward;
+  const double beside = parallel ? width : 0, above = parallel ? height : 0;
+  std::vector<Plane> planes{{right - wider, -beside},
+                            {-right - wider, -beside},
+                            {up - higher, -above},
+                            {-up - higher, -above}};
+  if (!parallel) planes.push_back({-forward, view.near_depth});
+  return planes;
+}
+
+/// Calls visit(i, true) if some point of box i may lie in the half-space, else visit(i, false).
+template <typename Visit>
+void for_each_reach(const ClpvView& view, const Boxes& boxes, const Plane& plane, Visit visit) {
+  constexpr float kMargin = 4 * static_cast<float>(kRounding);  // sums here round, too
+  const float x = plane.along.x, y = plane.along.y, z = plane.along.z, offset = plane.offset,
+              margin = kMargin * static_cast<float>(glm::length(plane.along));
+  const float *cx = boxes.centre[0].data(), *cy = boxes.centre[1].data(),
+              *cz = boxes.centre[2].data(), *hx = boxes.half[0].data(), *hy = boxes.half[1].data(),
+              *hz = boxes.half[2].data();
+  const float ex = view.eye[0], ey = view.eye[1], ez = view.eye[2];
+  const float wide_x = std::abs(x) + margin, wide_y = std::abs(y) + margin,
+              wide_z = std::abs(z) + margin;
+  const std::size_t count = boxes.centre[0].size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const float dx = cx[i] - ex, dy = cy[i] - ey, dz = cz[i] - ez;
+    const float nearest =
+        x * dx + y * dy + z * dz + margin * (std::abs(dx) + std::abs(dy) + std::abs(dz));
+    visit(i, nearest + (wide_x * hx[i] + wide_y * hy[i] + wide_z * hz[i]) + offset >= 0);
+  }
+}
+
 /// A box relative to a view's eye.
 class BoxOfView {
  public:
@@ -121,11 +184,10 @@ class BoxOfView {
         centre_(0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper)) - vector(view.eye)),
         margin_(kRounding * (glm::length(centre_) + glm::length(half_))) {}
 
-  /// Returns true if some point p of the box, relative to the eye, may have along . p + offset >=
-  /// 0.
-  bool operator()(const glm::dvec3& along, double offset) const {
-    return glm::dot(along, centre_) + glm::dot(glm::abs(along), half_) + offset >=
-           -margin_ * glm::length(along);
+  /// Returns true if some point of the box may lie in the half-space.
+  bool operator()(const Plane& plane) const {
+    return glm::dot(plane.along, centre_) + glm::dot(glm::abs(plane.along), half_) + plane.offset >=
+           -margin_ * glm::length(plane.along);
   }
 
  private:
@@ -192,37 +254,39 @@ std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds
 
 bool may_be_visible(const ClpvView& view, const Bounds& bounds) {
   const BoxOfView reaches(view, bounds);
-  const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
-  const bool parallel = view.orthographic != 0;
-  const double width = view.half_width, height = view.half_height;
-  const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
-                   higher = parallel ? glm::dvec3(0) : height * forward;
-  const double beside = parallel ? width : 0, above = parallel ? height : 0;
-  return reaches(wider + right, beside) && reaches(wider - right, beside) &&
-         reaches(higher + up, above) && reaches(higher - up, above) &&
-         reaches(-forward, view.far_depth) &&
-         (parallel || reaches(forward, -double{view.near_depth}));
+  return std::ranges::all_of(borders(view), reaches);
 }
 
 bool may_be_clipped(const ClpvView& view, const Bounds& bounds) {
   const BoxOfView reaches(view, bounds);
-  const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
-  const bool parallel = view.orthographic != 0;
-  const double guard = 2.0 * double{CLPV_GUARD_PIXELS},
-               width = guard * view.half_width / view.width,
-               height = guard * view.half_height / view.height;
-  const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
-                   higher = parallel ? glm::dvec3(0) : height * forward;
-  const double beside = parallel ? width : 0, above = parallel ? height : 0;
-  return reaches(right - wider, -beside) || reaches(-right - wider, -beside) ||
-         reaches(up - higher, -above) || reaches(-up - higher, -above) ||
-         (!parallel && reaches(-forward, view.near_depth));
+  return std::ranges::any_of(beyond_guards(view), reaches);
 }
 
-ClpvViewCluster place_cluster(const ClpvView& view, const Bounds& bounds, unsigned number) {
-  const glm::dvec3 eye = vector(view.eye);
+std::vector<BoxPlace> places_of(const ClpvView& view, const Boxes& boxes) {
+  const std::size_t count = boxes.centre[0].size();
+  std::vector<std::uint8_t> visible(count, 1), clipped(count, 0);
+  for (const Plane& plane : borders(view))
+    for_each_reach(view, boxes, plane, [&](std::size_t i, bool reaches) { visible[i] &= reaches; });
+  for (const Plane& plane : beyond_guards(view))
+    for_each_reach(view, boxes, plane, [&](std::size_t i, bool reaches) { clipped[i] |= reaches; });
+  std::vector<BoxPlace> places(count);
+  for (std::size_t i = 0; i < count; ++i)
+    places[i] = visible[i] == 0   ? BoxPlace::outside
+                : clipped[i] == 0 ? BoxPlace::inside
+                                  : BoxPlace::clipped;
+  return places;
+}
+
+ClusterPlacer::ClusterPlacer(const ClpvView& view)
+    : view_(view),
+      eye_(vector(view.eye)),
+      right_(vector(view.right)),
+      down_(-vector(view.up)),
+      forward_(vector(view.forward)) {}
+
+ClpvViewCluster ClusterPlacer::operator()(const Bounds& bounds, unsigned number) const {
   const glm::dvec3 half = 0.5 * (glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower)),
-                   centre = 0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper)) - eye;
+                   centre = 0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper)) - eye_;
   const double margin = kRounding * (glm::length(centre) + glm::length(half));
   const auto least = [&](const glm::dvec3& axis) {
     return glm::dot(axis, centre) - glm::dot(glm::abs(axis), half) - margin;
@@ -232,14 +296,13 @@ ClpvViewCluster place_cluster(const ClpvView& view, const Bounds& bounds, unsign
     const double pixel = (across / half_extent + 1) * 0.5 * pixels + beside;
     return static_cast<unsigned>(std::clamp(pixel, 0.0, pixels - 1.0)) / CLPV_TILE;
   };
-  const glm::dvec3 right = vector(view.right), down = -vector(view.up);
-  const int width = view.width, height = view.height;
+  const int width = view_.width, height = view_.height;
   return {number,
-          tile(least(right), view.half_width, width, -1) +
-              (tile(least(down), view.half_height, height, -1) << 16),
-          tile(-least(-right), view.half_width, width, 1) +
-              (tile(-least(-down), view.half_height, height, 1) << 16),
-          static_cast<float>(least(vector(view.forward)))};
+          tile(least(right_), view_.half_width, width, -1) +
+              (tile(least(down_), view_.half_height, height, -1) << 16),
+          tile(-least(-right_), view_.half_width, width, 1) +
+              (tile(-least(-down_), view_.half_height, height, 1) << 16),
+          static_cast<float>(least(forward_))};
 }
 
 LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,

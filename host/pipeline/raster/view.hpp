@@ -9,6 +9,7 @@
 #include "kernels/shared/light.h"
 #include "kernels/shared/raster.h"
 #include "kernels/shared/view.h"
+#include "pipeline/raster/triangle_clusters.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {
@@ -27,8 +28,22 @@ bool may_be_visible(const ClpvView& view, const Bounds& bounds);
 /// guard band, by a margin for rounding.
 bool may_be_clipped(const ClpvView& view, const Bounds& bounds);
 
-/// Returns a triangle cluster of `bounds` in an orthographic view, with margins for rounding.
-ClpvViewCluster place_cluster(const ClpvView& view, const Bounds& bounds, unsigned number);
+/// Where a box lies in a view: if `outside`, may_be_visible() is false, and if not `clipped`,
+/// may_be_clipped() is.
+enum class BoxPlace : unsigned char { outside, inside, clipped };
+/// Returns the places of all boxes, found in floats with a wider margin.
+std::vector<BoxPlace> places_of(const ClpvView& view, const Boxes& boxes);
+
+/// Places triangle clusters in an orthographic view, with margins for rounding.
+class ClusterPlacer {
+ public:
+  explicit ClusterPlacer(const ClpvView& view);
+  ClpvViewCluster operator()(const Bounds& bounds, unsigned number) const;
+
+ private:
+  ClpvView view_;
+  glm::dvec3 eye_, right_, down_, forward_;
+};
 
 /// Returns a directional light's orthographic view of a cascade, with `size` texels along each
 /// side. It covers the cascade's cube plus half a cell, since virtual point lights move by as much,

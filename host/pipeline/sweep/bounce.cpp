@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "basis/bounce.hpp"
+#include "kernels/shared/reflectors.h"
 #include "pipeline/sweep/sweep_literals.hpp"
 #include "pipeline/voxels/reflectors.hpp"
 
@@ -24,7 +25,7 @@ Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& optio
   inject_reflected_.emplace(session, program, "inject_reflected");
   for (std::size_t c = 0; c < options.parts.size(); ++c)
     reflectors_.emplace_back(session,
-                             VolumeShape{options.grid, kCellFaces, kReflectorChannels},
+                             VolumeShape{options.grid, kCellFaces, CLPV_REFLECTOR_CHANNELS},
                              "reflectors of bounces", options.format);
   if (!series) return;
   reflect_returned_.emplace(session, program, "reflect_returned");
@@ -36,9 +37,15 @@ Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& optio
   returned_ = std::make_unique<Volume>(session, shape, "returned flux", options.format);
 }
 
-void Bouncer::inject_flux(const Volume& flux, const Volume& reflectors, float factor,
-                          Volume& bounced) {
-  inject_flux_.set(flux.memory(), reflectors.memory(), factor, bounced.memory());
+void Bouncer::inject_flux(const Volume& flux, const Volume& reflectors, Volume& bounced) {
+  inject_flux_.set(flux.memory(), reflectors.memory(), cl_int{0}, cl_int{1}, 1.0f,
+                   bounced.memory());
+  volumes_.launch(inject_flux_, kChannels);
+}
+
+void Bouncer::inject_white(const Volume& reflectors, Volume& bounced) {
+  inject_flux_.set(reflectors.memory(), reflectors.memory(), cl_int{CLPV_REFLECTOR_WHITE},
+                   cl_int{0}, std::numbers::pi_v<float>, bounced.memory());
   volumes_.launch(inject_flux_, kChannels);
 }
 
@@ -46,7 +53,7 @@ const Volume& Bouncer::set_reflectors(std::size_t cascade, const Buffer& swept,
                                       const Volume& reflectors) {
   normalise_reflectors_->set(swept, reflectors.memory(), std::numbers::pi_v<float>,
                              reflectors_[cascade].memory());
-  volumes_.launch(*normalise_reflectors_, kReflectorChannels);
+  volumes_.launch(*normalise_reflectors_, CLPV_REFLECTOR_CHANNELS);
   return reflectors_[cascade];
 }
 
@@ -65,7 +72,7 @@ void Bouncer::sum_series(std::size_t cascade, const Buffer& swept) {
 void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, float share,
                                const Volume& injected, Volume& bounced) {
   inject_reflected_->set(swept, reflectors_[cascade].memory(), injected.memory(), share,
-                        bounced.memory());
+                         bounced.memory());
   volumes_.launch(*inject_reflected_, kChannels);
 }
 

@@ -26,9 +26,11 @@ class Bouncer {
   /// inject_flux().
   Bouncer(Session& session, const Basis& basis, const SweepOptions& options, bool series);
 
-  /// Writes light of which each face emits this flux [W], times `factor`, to `bounced`.
-  /// `reflectors`: reflector_masks().
-  void inject_flux(const Volume& flux, const Volume& reflectors, float factor, Volume& bounced);
+  /// Writes light of which each face emits this flux [W] to `bounced`. `reflectors`:
+  /// reflector_masks().
+  void inject_flux(const Volume& flux, const Volume& reflectors, Volume& bounced);
+  /// Writes light of faces that emit radiance 1, of cells of 1 m^2.
+  void inject_white(const Volume& reflectors, Volume& bounced);
 
   /// Sets the reflectors R of a cascade: reflector_masks() over the incident flux of a white
   /// furnace, whose sweep is `swept`.

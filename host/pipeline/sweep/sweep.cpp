@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <utility>
 
 #include "basis/bounce.hpp"
@@ -16,7 +15,7 @@
 namespace clpv {
 namespace {
 
-constexpr float kCellRatio = 2;   // of a coarser cascade's cell to the next finer one's
+constexpr float kCellRatio = 2;  // of a coarser cascade's cell to the next finer one's
 constexpr int kBounceParts = 1;  // parts of a bin, squared, in sweeps for bounces
 
 std::size_t directions_of(int parts) {
@@ -214,19 +213,23 @@ void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry, const Bu
 
 void Sweeper::set_surfaces(std::size_t cascade, const std::vector<ClpvGrid>& grids,
                            const Volume& white, const Volume* reflectors, Volume& accumulated) {
-  bouncer_.inject_flux(white, white, std::numbers::pi_v<float>, bounced_);
-  set_sources(bounced_);
+  const auto sweep_faces = [&](const Volume& faces, bool all_directions) {
+    bouncer_.inject_white(faces, bounced_);
+    set_sources(bounced_);
+    sweep_white(all_directions, cascade, grids);
+  };
+  // Backs reflect, too: in their own furnace no light grows from bounce to bounce.
   const Volume* normalised = nullptr;
   if (reflectors != nullptr) {
-    sweep_white(false, cascade, grids);
+    sweep_faces(*reflectors, false);
     normalised = &bouncer_.set_reflectors(cascade, swept_, *reflectors);
   }
-  sweep_white(true, cascade, grids);
+  sweep_faces(white, true);
   collect(accumulated, 3, 1);
   if (plan_.back().light != SweptLight::series) return;
   enter_medium(cascade, grids[cascade]);
   const auto sweep_reflected = [&](const Volume& flux) {
-    bouncer_.inject_flux(flux, *normalised, 1, bounced_);
+    bouncer_.inject_flux(flux, *normalised, bounced_);
     set_sources(bounced_);
     launch(*cascades_[cascade].few, cascade, {}, false);
   };
@@ -378,7 +381,8 @@ void Sweeper::darken_border(const Directions& directions) {
   session_.fill_zero(plane_buffer_, 2 * planes * sizeof(float));
 }
 
-/// Projects the first channels of swept light on harmonics, and writes them from channel `first` on.
+/// Projects the first channels of swept light on harmonics, and writes them from channel `first`
+/// on.
 void Sweeper::collect(Volume& accumulated, int first, int channels) {
   collect_.set(swept_, accumulated.memory(), cl_int{first});
   volumes_.launch(collect_, channels);

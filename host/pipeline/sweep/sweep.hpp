@@ -57,7 +57,8 @@ class Sweeper {
                     const Volume* reflectors, Volume& accumulated);
 
   /// Sweeps a cascade after the next coarser one. Writes light of swept_basis(), as radiance times
-  /// s^2, to channels 0 to 2 of `accumulated`. Throws Error(run_time) for grids that are not nested.
+  /// s^2, to channels 0 to 2 of `accumulated`. Throws Error(run_time) for grids that are not
+  /// nested.
   void sweep(const SweepInput& input, Volume& accumulated);
 
   /// Cells of a cascade whose light a sweep stores for the next finer one; empty for the finest.
@@ -79,8 +80,9 @@ class Sweeper {
     Buffer halo_light;             ///< border light of the next finer cascade
     std::optional<Kernel> border;  ///< border light from the coarser cascade; none for the coarsest
     std::optional<Kernel> sky_border;  ///< border light from the sky; for the coarsest
-    Buffer sky = {}, white_sky = {};   ///< swept_sky(); of the scene's sky, if any, and of an even one
-    Buffer white_halo = {};            ///< halo_light of the furnace
+    Buffer sky = {},
+           white_sky = {};   ///< swept_sky(); of the scene's sky, if any, and of an even one
+    Buffer white_halo = {};  ///< halo_light of the furnace
   };
   struct Cascade {
     Directions all;

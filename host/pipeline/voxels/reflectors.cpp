@@ -23,7 +23,6 @@ VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeForma
       .flag("CLPV_TEXTURED", scene.textured)
       .flag("CLPV_COLOURED", scene.coloured)
       .flag("CLPV_WHITE", white);
-  kind.volume_program.literals.flag("CLPV_WHITE", white);
   add_volume_literals(kind.volume_program.literals, grid, format);
   add_coefficient_literals(kind.volume_program.literals, kCellFaces);
   return kind;
