@@ -186,8 +186,9 @@ struct SweepCase {
     return fmt::format("{}/{}^3/{}{}{}{}{}{}{}{}/{}", basis, grid, directions,
                        bounces == Bounces::one ? "" : fmt::format("/{} bounces", name_of(bounces)),
                        blocking ? "" : "/free", blocked_by == Blocking::areas ? "" : "/one-sided",
-                       form == SweepForm::bins ? "" : fmt::format("/{}", name_of(form)), sky ? "/sky" : "",
-                       medium ? "/medium" : "", closed ? "/closed" : "", format_name(format));
+                       form == SweepForm::bins ? "" : fmt::format("/{}", name_of(form)),
+                       sky ? "/sky" : "", medium ? "/medium" : "", closed ? "/closed" : "",
+                       format_name(format));
   }
 };
 

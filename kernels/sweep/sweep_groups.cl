@@ -105,7 +105,8 @@ __kernel __attribute__((reqd_work_group_size(CLPV_ITEMS, 1, 1))) void sweep_grou
     CLPV_BUFFER_OUT halo_light, const int dark, __global const float* inside,
     CLPV_BUFFER_IN scattered) {
   __local float d[CLPV_PARTS * CLPV_SIDE * CLPV_SIDE];
-  const int item = get_local_id(0), b = (int)get_group_id(0) / 3, channel = (int)get_group_id(0) % 3;
+  const int item = get_local_id(0);
+  const int b = (int)get_group_id(0) / 3, channel = (int)get_group_id(0) % 3;
   const ClpvSweepBin bin = bins[b];
   BinSweep s = {b, bin, directions, coefficients, means, sources, lit, links, border, sums,
                 halo_light, inside, scattered};

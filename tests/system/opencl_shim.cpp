@@ -7,8 +7,9 @@
 //   CLPV_SHIM_COMPILER=no    devices have no compiler
 //   CLPV_SHIM_CLOCK=ticks    events have ticks of 42 ns
 //   CLPV_SHIM_CLOCK=swap     events end before they start, from the 41st call on
-//   CLPV_SHIM_KERNELS=no     kernels do not run, for the host's time alone: markers take their place
-//   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that
+//   CLPV_SHIM_KERNELS=no     kernels do not run, for the host's time alone: markers take their
+//   place CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory
+//   objects that
 //                            were not released
 //
 // "memory" is a call's name for all that allocate, "enqueue" for all that put work on the queue.

@@ -65,9 +65,8 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
       scene_(scene),
       max_listed_(std::min<std::size_t>(
           max_listed, session.device().max_alloc_bytes / kEntryBytes * kSpare / (kSpare + 1))),
-      least_hidden_(least_hidden.value_or(session.device().lanes == 1
-                                              ? std::numeric_limits<unsigned>::max()
-                                              : kLeastHidden)),
+      least_hidden_(least_hidden.value_or(
+          session.device().lanes == 1 ? std::numeric_limits<unsigned>::max() : kLeastHidden)),
       set_up_(session, kSetUp, "set_up"),
       set_up_clipped_(session, kSetUp, "set_up_clipped"),
       enter_wide_(session, kSetUp, "enter_wide"),

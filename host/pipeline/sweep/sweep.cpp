@@ -162,8 +162,7 @@ std::size_t Sweeper::group() const {
   constexpr std::size_t kLeast = 64, kMost = 512;
   const std::size_t cells = std::size_t(options_.grid) * options_.grid,
                     most = session_.device().handle.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
-  return std::min(std::min(most, kMost) / kLeast * kLeast,
-                  (cells + kLeast - 1) / kLeast * kLeast);
+  return std::min(std::min(most, kMost) / kLeast * kLeast, (cells + kLeast - 1) / kLeast * kLeast);
 }
 
 Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int coarser,
@@ -182,7 +181,7 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int 
                   Kernel(session_, sweep_program(basis.size(), means, parts),
                          form() == SweepForm::bins     ? "sweep_bin"
                          : form() == SweepForm::groups ? "sweep_group"
-                                                      : "sweep_plane"),
+                                                       : "sweep_plane"),
                   zeroed_buffer(session_, feeds_finer ? halo_bytes(options_, parts) : sizeof(float),
                                 "boundary light of a finer cascade"),
                   {},
@@ -347,10 +346,9 @@ bool Sweeper::light_border(bool all_directions, std::size_t c, const std::vector
   if (!directions.border && !sky.exists()) return false;
   Kernel& kernel = directions.border ? *directions.border : *directions.sky_border;
   // A sweep by planes reads the plane upstream of the grid among the odd ones.
-  const cl_int upstream =
-      form() == SweepForm::planes
-          ? 3 * directions_of(directions.parts) * bordered_plane_size(options_.grid)
-          : 0;
+  const cl_int upstream = form() == SweepForm::planes ? 3 * directions_of(directions.parts) *
+                                                            bordered_plane_size(options_.grid)
+                                                      : 0;
   if (directions.border) {
     const std::array<int, 3> offset = offset_in_coarser(grids[c + 1], grids[c]);
     kernel.set(bins_, directions.table, directions_in(c + 1).halo_light,
