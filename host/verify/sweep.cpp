@@ -67,9 +67,10 @@ struct SweepWork {
       light.push_back(on_device(session, *p.light[i], o.format));
       if (o.blocking) blockers.push_back(on_device(session, *p.blockers[i], o.format));
       if (bounces()) reflectors.push_back(on_device(session, *p.reflectors[i], o.format));
-      white.push_back(on_device(session, *p.white[i], o.format));
-      swept.emplace_back(session, VolumeShape{o.grid, swept_basis()->size(), 4}, "swept light",
-                         o.format);
+      if (!p.white.empty()) white.push_back(on_device(session, *p.white[i], o.format));
+      const int channels = p.white.empty() ? 3 : 4;
+      swept.emplace_back(session, VolumeShape{o.grid, swept_basis()->size(), channels},
+                         "swept light", o.format);
     }
   }
   bool bounces() const { return problem.options.bounces != Bounces::one; }
@@ -77,8 +78,9 @@ struct SweepWork {
   void run() {
     for (std::size_t i = problem.grids.size(); i-- > 0;) {
       if (problem.options.blocking) sweeper.set_blockers(i, blockers[i], occluded);
-      sweeper.set_surfaces(i, problem.grids, white[i], bounces() ? &reflectors[i] : nullptr,
-                           swept[i]);
+      if (!white.empty())
+        sweeper.set_surfaces(i, problem.grids, white[i], bounces() ? &reflectors[i] : nullptr,
+                             swept[i]);
       sweeper.sweep({i, problem.grids, light[i], problem.sky_scale, lights}, swept[i]);
     }
   }
@@ -94,7 +96,7 @@ std::vector<double> expected_light(const SweepProblem& p) {
     cascades.push_back(
         {p.grids[i], p.light[i].get(), o.blocking ? p.blockers[i].get() : nullptr, o.parts[i]});
     if (!p.occluded.empty()) cascades.back().occluded = &p.occluded[i];
-    white.push_back(p.white[i].get());
+    if (!p.white.empty()) white.push_back(p.white[i].get());
     if (o.bounces != Bounces::one) reflecting.push_back(p.reflectors[i].get());
     if (!o.medium) continue;
     scattered[i] = reference::scattered_in_cells(*o.medium, p.lights, p.grids[i]);
@@ -110,19 +112,17 @@ std::vector<double> expected_light(const SweepProblem& p) {
                                                   reflecting, o.bounces);
   for (std::size_t i = 0; i < normalised.size(); ++i) reflecting[i] = &normalised[i];
   const std::vector<reference::Volume> swept =
-                                           o.bounces == Bounces::one
-                                               ? reference::sweep(*p.basis, p.transport, cascades,
-                                                                  sky ? &*sky : nullptr)
-                                               : reference::sweep_bounced(*p.basis, p.transport,
-                                                                          cascades, reflecting,
-                                                                          o.bounces),
-                                       furnace = reference::furnace(*p.basis, p.transport, cascades,
-                                                                    white);
+      o.bounces == Bounces::one
+          ? reference::sweep(*p.basis, p.transport, cascades, sky ? &*sky : nullptr)
+          : reference::sweep_bounced(*p.basis, p.transport, cascades, reflecting, o.bounces);
+  std::vector<reference::Volume> furnace;
+  if (!white.empty()) furnace = reference::furnace(*p.basis, p.transport, cascades, white);
   std::vector<double> values;
   for (std::size_t i = 0; i < swept.size(); ++i) {
-    const reference::Volume light = reference::project_bins(swept[i]),
-                            even = reference::project_bins(furnace[i]);
+    const reference::Volume light = reference::project_bins(swept[i]);
     values.insert(values.end(), light.values.begin(), light.values.end());
+    if (furnace.empty()) continue;
+    const reference::Volume even = reference::project_bins(furnace[i]);
     values.insert(values.end(), even.values.begin(), even.values.begin() + even.values.size() / 3);
   }
   return values;

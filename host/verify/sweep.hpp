@@ -27,7 +27,8 @@ struct SweepProblem {
   std::vector<SharedVolume> light;
   std::vector<SharedVolume> blockers;    ///< read with SweepOptions::blocking
   std::vector<SharedVolume> reflectors;  ///< read with several bounces
-  std::vector<SharedVolume> white;       ///< faces of the white furnace
+  /// Faces of the white furnace; empty: no furnace is swept, as while geometry stands still.
+  std::vector<SharedVolume> white = {};
   std::optional<Sky> sky = {};
   float sky_scale = 1;
   std::vector<reference::MappedLight> lights = {};  ///< in SweepOptions::medium
