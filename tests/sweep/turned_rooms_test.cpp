@@ -108,7 +108,9 @@ void expect_furnace(const Room& room, float albedo) {
                     room.skew ? ", skew" : "", room.sheet ? ", one sheet" : "", name_of(bounces));
     EXPECT_NEAR(mean(light) / std::numbers::pi / exact, 1, 0.05) << name;
     // Beyond one sheet the furnace is white, so edges of such rooms still have lines.
-    if (!room.sheet) EXPECT_LE(lines(light), 0.05) << name;
+    if (!room.sheet) {
+      EXPECT_LE(lines(light), 0.05) << name;
+    }
   }
 }
 
