@@ -54,8 +54,8 @@ double leak(const SceneData& scene, const glm::vec3& eye, Bounces bounces) {
   return sum / (static_cast<double>(pixels.size()) / 4) * glm::length(kSun);
 }
 
-// Without closed links these rooms have 0.048 to 0.067 of the ground's light by one bounce, and
-// 0.17 to 0.32 by all.
+// Without closed links and white furnace these rooms have 0.048 to 0.067 of the ground's light by
+// one bounce, and 0.17 to 0.32 by all. The furnace divides what leaks too: 0.023 by all bounces.
 TEST(Leaks, ASealedRoomOfSheetsIsDark) {
   for (const float degrees : {0.0f, 20.0f}) {
     for (const float shift : {0.0f, 0.19f}) {
@@ -63,7 +63,7 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
       const SceneData scene = sealed_room(degrees, offset);
       const glm::vec3 eye = offset + glm::vec3(-1, 1.6f, -1.2f);
       EXPECT_LT(leak(scene, eye, Bounces::one), 0.01) << degrees << ' ' << shift;
-      EXPECT_LT(leak(scene, eye, Bounces::all), 0.02) << degrees << ' ' << shift;
+      EXPECT_LT(leak(scene, eye, Bounces::all), 0.025) << degrees << ' ' << shift;
     }
   }
 }

@@ -111,10 +111,11 @@ TEST(Reflectors, OnlyFrontsOfTheFurnaceEmit) {
   const Areas one = reflected(scene, true);
   scene.materials[dark].flags |= CLPV_MATERIAL_DOUBLE_SIDED;
   const Areas both = reflected(scene, true);
-  EXPECT_NEAR(one.at(0, 2, 1, 1), 1, kColour);
-  EXPECT_EQ(one.sum(1), 0);
-  EXPECT_NEAR(both.at(0, 2, 1, 1), 1, kColour);
-  EXPECT_NEAR(both.at(1, 1, 1, 1), 1, kColour);
+  constexpr int kWhite = CLPV_REFLECTOR_WHITE;
+  EXPECT_NEAR(one.at(0, 2, 1, 1, kWhite), 1, kColour);
+  EXPECT_EQ(one.sum(1, kWhite), 0);
+  EXPECT_NEAR(both.at(0, 2, 1, 1, kWhite), 1, kColour);
+  EXPECT_NEAR(both.at(1, 1, 1, 1, kWhite), 1, kColour);
 }
 
 TEST(Reflectors, AlbedoIsAtMostOne) {

@@ -85,7 +85,8 @@ class Stages {
  private:
   VoxelField visibility_, blockers_, reflectors_;
   Volume geometry_{test_session(), {kGrid + 1, 3, 1}, "test: geometry"};
-  Volume reflected_{test_session(), {kGrid, kCellFaces, 3}, "test: reflectors"};
+  Volume reflected_{
+      test_session(), {kGrid, kCellFaces, CLPV_REFLECTOR_CHANNELS}, "test: reflectors"};
 };
 
 Left from_nothing(const SceneData& scene, const ClpvGrid& grid) {
