@@ -184,7 +184,7 @@ TEST(HostileCommandLines, OfCommands) {
                    {truth + "-o @/out.exr --view fog", {"--view", "irradiance"}},
                    {truth + "-o @/out.exr --camera none", {"none"}},
                    {truth + "-o @/out.exr --time noon", {"--time"}},
-                   {truth + "-o @/out.png", {"--output", ".exr"}},
+                   {truth + "-o @/out.gif", {"--output", ".exr"}},
                });
 }
 
