@@ -90,8 +90,10 @@ function(clpv_link_dependencies target)
   target_link_libraries(${target}
     PUBLIC OpenCL::OpenCL
     PRIVATE $<BUILD_INTERFACE:clpv_internal> fmt::fmt Threads::Threads
-            $<$<BOOL:${CLPV_IMAGES}>:OpenImageIO::OpenImageIO> $<$<BOOL:${CLPV_PATHTRACER}>:embree>
-            $<$<BOOL:${TINYGLTF_LIBRARY}>:$<BUILD_INTERFACE:${TINYGLTF_LIBRARY}>$<INSTALL_INTERFACE:tinygltf>>)
+            $<$<BOOL:${CLPV_IMAGES}>:OpenImageIO::OpenImageIO> $<$<BOOL:${CLPV_PATHTRACER}>:embree>)
+  if(TINYGLTF_LIBRARY)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:${TINYGLTF_LIBRARY}> $<INSTALL_INTERFACE:tinygltf>)
+  endif()
   target_sources(${target} PRIVATE ${tinygltf_source})
   target_include_directories(${target} PRIVATE ${TINYGLTF_INCLUDE_DIR})
   target_include_directories(${target} SYSTEM PRIVATE ${EIGEN_INCLUDE_DIR})
