@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "basis/bounce.hpp"
+#include "kernels/shared/reflectors.h"
 #include "pipeline/voxels/blockers.hpp"
 #include "pipeline/voxels/reflectors.hpp"
 #include "pipeline/voxels/visibility.hpp"
