@@ -135,7 +135,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.name("clpv");
   app.set_version_flag("--version", "clpv " + version(), "version of the program");
   app.set_help_flag("-h,--help", "this help");
-  app.set_help_all_flag("--help-all", "help of all commands");
+  app.set_help_all_flag("--help-all", "also show rarer options");
   add(app, "-d,--device", "DEVICE", shared.device,
       "OpenCL device: index, PLATFORM:DEVICE or part of a name (default: CLPV_DEVICE, else the "
       "first supported)");
