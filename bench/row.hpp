@@ -70,7 +70,7 @@ struct Row {
   double gbps() const;
 };
 
-/// JSON with Google Benchmark's keys and clpv's (docs/benchmarks.md lists them). `iterations` is
+/// JSON with Google Benchmark's keys and clpv's (bench/README.md lists them). `iterations` is
 /// the number of propagation steps; Google Benchmark's key of that name would always be 1.
 nlohmann::json to_json(const Row& row, int index);
 

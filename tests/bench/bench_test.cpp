@@ -244,7 +244,7 @@ TEST(BenchPublished, CellsAreThoseOfTheTable) {
   EXPECT_FALSE(published_ms(Pass::propagate, "sh3", true, 0));
 }
 
-/// The keys of docs/benchmarks.md: of the context, of a row.
+/// The keys of bench/README.md: of the context, of a row.
 const std::vector<std::string> kContext = test::words_of(
     "date host_name device driver platform build_options kernel_hash git_describe host_cpu "
     "clpv_version executable library_build_type");

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tables of docs/benchmarks.md, docs/gpu.md and docs/paper/table1.md, by `clpv bench` and `clpv
+"""Tables of docs/benchmark_results.md, docs/gpu.md and docs/paper/table1.md, by `clpv bench` and `clpv
 render --stats`."""
 import math
 import textwrap
