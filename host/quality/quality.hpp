@@ -47,7 +47,7 @@ struct QualityCell {
   std::optional<double> best_gain, nrmse_best_gain;
   std::optional<double> energy_ratio;  ///< sum of the frame / sum of the ground truth
   std::optional<double> flip;          ///< mean FLIP of the valid pixels, at the scene's exposure
-  /// Of "frame", the sum of all stages, and of each pass over all cascades and lights.
+  /// Times of "frame", the sum of all stages, and of each pass over all cascades and lights.
   std::vector<TimeRecord> times;
   bool from_events = true;     ///< times from device events; false: wall time
   unsigned compute_units = 0;  ///< of the device or sub-device that was timed

@@ -61,7 +61,7 @@ struct Cost {
   // RasterCounts.
   double triangles = 0, pixels = 0, covered = 0;
   double set_up = 0, listed = 0, entries = 0;
-  /// Of a frame: HostWork.
+  /// For a frame: HostWork.
   double launches = 0, fills = 0, waits = 0, arguments = 0, written = 0;
 };
 

@@ -66,7 +66,7 @@ struct Volumes {
   cl_mem packed = nullptr;    ///< float [cascade][z][y][x][5][2][4]: pair, coefficient of the pair;
                               ///< red, green, blue, and the white furnace
   cl_mem occluded = nullptr;  ///< uchar [cascade][z][y][x][4][4][4], bits of occluded cells; null
-                              ///< with gather all: no argument
+                              ///< with gather `all`, whose kernels have no such parameter
 };
 
 /// A G-buffer of the caller (clpv::GBuffer) in buffers of the renderer's context. Larger buffers

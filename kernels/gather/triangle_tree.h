@@ -38,7 +38,7 @@ CLPV_INLINE void set_ray_axis(const int axis, const realW from, const realW alon
               rays->near_row[axis]);
 }
 
-// Rays without hits; those of reach 0 have none.
+// Initialises W rays without hits. A ray of reach 0 never gets one.
 CLPV_INLINE void set_rays(const Vec from, const Vec along, const realW reach, Rays* rays) {
   set_ray_axis(0, from.x, along.x, rays);
   set_ray_axis(1, from.y, along.y, rays);
@@ -108,7 +108,8 @@ CLPV_RARE intW find_holes(const uintW triangle, const realW u, const realW v, CL
   return alpha < CLPV_COLUMN(factors, w);
 }
 
-// Hits on masked materials, which count unless there is a hole. W are looked up together.
+// Possible hits on masked materials. take_masked() looks up W alphas at once and drops hits in
+// holes.
 typedef struct {
   float distance[W], u[W], v[W];
   uint triangle[W], ray[W];

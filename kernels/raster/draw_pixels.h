@@ -24,7 +24,7 @@ typedef struct {
   uint index;      // in the list
 } Candidate;
 
-// What a work-group shares.
+// Data that a work-group shares.
 typedef struct {
   __local Candidate* candidates;  // CLPV_TILE_PIXELS
   __local uint* count;            // of candidates

@@ -208,7 +208,7 @@ FOURTH = clpv.Camera((7.4, 1.6, -0.3), (-6.0, 2.2, -0.3), name="back")
 
 
 def views(arguments):
-    """Of each setting: both errors in every view, and mean, standard error and signs of their
+    """For each setting: both errors in every view, and mean, standard error and signs of their
     paired differences."""
     views_of = Views(arguments)
     cameras = [*views_of.scene.cameras[:3], FOURTH]
@@ -285,7 +285,7 @@ OTHER_WAY = 0.5  # cosine of the angle beyond which two normals differ
 
 
 def texels(arguments):
-    """Of neighbouring texels: mean difference of their flux over its mean, and share of pairs with
+    """For neighbouring texels: mean difference of their flux over its mean, and share of pairs with
     other normals."""
     views_of = Views(arguments)
     camera = views_of.scene.cameras[0]
@@ -329,7 +329,7 @@ ACROSS, SAMPLES = 180, 2048
 
 
 def arcade(arguments):
-    """Of the wall's irradiance, over four columns: twice its mean product with -cos(2 pi (x -
+    """For the wall's irradiance, over four columns: twice its mean product with -cos(2 pi (x -
     x_column) / spacing), over its mean. Above 0: darker behind columns than behind curtains."""
     views_of = Views(arguments)
     views_of.scene.lights = [ALONG_THE_NAVE]

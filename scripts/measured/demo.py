@@ -138,7 +138,7 @@ def picture(pictures):
 
 
 def print_stages(stats):
-    """Of `clpv render --stats`; sums over cascades and lights."""
+    """Stage times of `clpv render --stats`, summed over cascades and lights."""
     rows = [[stage, ms_of(stats["times"], stage)]
             for stage in dict.fromkeys(time["stage"] for time in stats["times"])]
     rows.sort(key=lambda row: row[0] in ("frame", "host"))

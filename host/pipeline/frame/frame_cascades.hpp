@@ -86,7 +86,7 @@ class FrameCascades {
   std::optional<VoxelField> white_;       ///< none without a sweep
   std::optional<VoxelField> reflectors_;  ///< none with one bounce
   std::optional<VoxelField> visibility_;  ///< none: all cells light a surface
-  std::optional<Propagator> propagator_;  ///< one of the two
+  std::optional<Propagator> propagator_;  ///< either propagator_ or sweeper_ is set
   std::optional<Sweeper> sweeper_;
   std::vector<CachedVolume> injected_, accumulated_;
   std::vector<CachedVolume> geometry_;  ///< none without occlusion

@@ -52,7 +52,8 @@ class Gatherer {
   /// Throws Error(run_time) if counts or shapes do not match, or device memory does not suffice.
   void gather(const Surface& camera, const GatheredLight& light, Buffer& irradiance);
 
-  /// Takes the light without gathering it: for what follows below. Throws as gather().
+  /// Packs the light for grids(), packed() and add_radiance(), without gathering. Throws as
+  /// gather().
   void take(const GatheredLight& light);
 
   /// Grids and packed volumes (kernels/gather/gather_packed.h) of the last gather() or take() on

@@ -44,8 +44,8 @@ class Sweeper {
           const SweepOptions& options);
 
   /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3
-  /// samples. `occluded`: bits of visibility_masks() for all cascades, which close links; without
-  /// memory: none.
+  /// samples. `occluded`: bits of visibility_masks() for all cascades, from which closed links are
+  /// found; an empty Buffer closes none.
   void set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded = {});
 
   /// Sets the surfaces of a cascade after those of the next coarser one and after its blockers.
