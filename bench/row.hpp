@@ -38,7 +38,7 @@ std::string lobes_of(const RenderOptions& options);
 
 struct Row {
   std::string suite, stage, name;
-  int coefficients = 0;            ///< of the basis
+  int coefficients = 0;            ///< functions of the basis
   std::optional<Problem> problem;  ///< empty for rows without volumes: rasterising and ceilings
   Status status = Status::ok;
   std::string reason;   ///< reason for `unsupported`, or place of the error for `wrong`
@@ -49,7 +49,7 @@ struct Row {
   std::string recompute;
 
   std::vector<double> samples_ms;
-  Statistics times;    ///< of samples_ms
+  Statistics times;    ///< statistics of samples_ms
   double cpu_ms = 0;   ///< processor time of all threads, mean of the samples
   double wall_ms = 0;  ///< median
   bool from_events = true;

@@ -67,7 +67,7 @@ RenderOptions frame_options(const Options& options, const SceneData& scene, cons
 struct Light {
   std::unique_ptr<pathtracer::PointTracer> tracer;
   std::unique_ptr<Session> session;
-  RenderOptions frame;  ///< of a sweep
+  RenderOptions frame;  ///< options of a sweep
   std::unique_ptr<ProbeSource> source;
 };
 

@@ -185,7 +185,7 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
     if (what.find(" required ") == std::string::npos) throw;
     throw Error(ExitCode::usage, "{}: found {}, allowed: one", option,
                 what.ends_with("missing") ? "no value" : "several values");
-  } catch (const CLI::ValidationError& error) {  // of CLI::IsMember: "--view: a not in {b,c}"
+  } catch (const CLI::ValidationError& error) {  // by CLI::IsMember: "--view: a not in {b,c}"
     const std::string what = error.what();
     const std::size_t colon = what.find(": "), found = what.rfind(" not in {");
     if (found == std::string::npos) throw;

@@ -32,7 +32,8 @@ struct Options {
   std::vector<CLI::Option*> of_truth = {};  ///< without effect on volumes
 };
 
-constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 22;  // of --basis, all points
+constexpr std::uint64_t kMaxNumbers = std::uint64_t{1}
+                                      << 22;  // coefficients of --basis, all points
 
 std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
   std::vector<glm::vec4> positions, normals;

@@ -50,7 +50,7 @@ struct QualityCell {
   /// Times of "frame", the sum of all stages, and of each pass over all cascades and lights.
   std::vector<TimeRecord> times;
   bool from_events = true;     ///< times from device events; false: wall time
-  unsigned compute_units = 0;  ///< of the device or sub-device that was timed
+  unsigned compute_units = 0;  ///< units of the device or sub-device that was timed
   /// Settings of a baseline: samples, threads and times (quality/baseline.hpp).
   std::map<std::string, double> settings;
   double setup_s = 0;     ///< time to create the frame; 0 if reused from another view

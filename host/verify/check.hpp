@@ -21,7 +21,7 @@ namespace clpv::verify {
 struct CheckResult {
   std::string stage;         ///< "propagate"
   std::string variant;       ///< name of the case, and of the result where a case has several
-  Deviation deviation = {};  ///< of status `ok` and `wrong`
+  Deviation deviation = {};  ///< with status `ok` and `wrong`
   Status status = Status::ok;
   /// With status `failed` and `unsupported`: the driver's words, or the exceeded limit.
   std::string reason = {};

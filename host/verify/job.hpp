@@ -35,7 +35,7 @@ namespace verify {
 /// stage.
 struct Deviation {
   double worst = 0, allowed = 0;
-  std::string place = {};  ///< of the largest error, with both values; empty without an error
+  std::string place = {};  ///< place of the largest error, with both values; empty without an error
 
   bool passed() const { return worst <= allowed; }  // false for NaN
   /// Records an error if it is the largest so far, with its place from `where`. A NaN exceeds any

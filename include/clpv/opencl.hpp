@@ -53,7 +53,7 @@ struct Frame {
   /// Float4 x, y, z: unit shading normal; w: the triangle's normal, encoded
   /// (kernels/shared/normal.h); 0 without a surface.
   cl_mem normals = nullptr;
-  Event done;  ///< of the whole frame
+  Event done;  ///< end of the whole frame
 };
 
 /// Light of all cascades for a caller's kernel: the arguments CLPV_RADIANCE of

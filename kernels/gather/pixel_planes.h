@@ -15,7 +15,7 @@
 
 // W pixels of a row.
 typedef struct {
-  uint width, height;  // of all layers [pixels]
+  uint width, height;  // size of all layers [pixels]
   uint pitch, plane;   // floats per row and per plane
   int x, y;                          // first pixel; may be in the border
   uint at;                           // its index in a plane

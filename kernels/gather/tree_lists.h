@@ -92,7 +92,7 @@ CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Ray
   uint visited = 0, node_count = 0, leaf_count = 0, masked_count = 0;
   MaskedHits masked;
   store_lanes((uintW)(0u), masked.triangle);
-  store_lanes(ZERO, masked.u), store_lanes(ZERO, masked.v);  // of unused lanes, too
+  store_lanes(ZERO, masked.u), store_lanes(ZERO, masked.v);  // unused lanes, too
   for (uint i = 0; i < W; ++i) {
     const uint bits = rays->distance[i] > 0.0f ? entry_hit(entry->rows, rays, i) : 0u;
     CLPV_ADD_CHILDREN(, entry->rows, bits, i)

@@ -15,14 +15,14 @@ typedef struct {
 } Tree;
 
 enum {
-  CLPV_TREE_VECTORS = CLPV_TREE_WIDTH / W,  // of W numbers in a row of a node or a leaf
+  CLPV_TREE_VECTORS = CLPV_TREE_WIDTH / W,  // vectors in a row of a node or a leaf
 };
 
 // W rays and their nearest hits.
 typedef struct {
   float from[3][W], along[3][W], inverse[3][W];  // [m]; unit; 1 / along
   uint near_row[3][W];  // row of a node that holds the nearer planes
-  float distance[W];   // of the hit [m], or reach of the ray
+  float distance[W];   // distance of the hit [m], or reach of the ray
   float u[W], v[W];  // weights of the second and third vertex
   uint triangle[W];
 } Rays;

@@ -11,7 +11,7 @@ typedef struct {
   ScreenCorner a, b, c;
   Face face;
   uintW triangle;  // index in the scene
-  uintW flags;     // of the material
+  uintW flags;     // flags of the material
 } ScreenTriangles;
 
 // Box of pixels whose centres lie between the corners of a triangle.

@@ -153,7 +153,7 @@ CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, co
   const float8 lower_d = side_by_side(vload4(0, row + 2 * width), vload4(0, row + 3 * width));
   const float8 upper = texel_heights(r, upper_d, r.dy.lo),
                lower = texel_heights(r, lower_d, r.dy.hi);
-  const float depth = (r.b + r.lift) / r.a;  // of the lifted receiver
+  const float depth = (r.b + r.lift) / r.a;  // depth of the lifted receiver
   const float8 blocked = select(none, upper_w, (upper > r.lift) & (upper_d < depth)) +
                          select(none, lower_w, (lower > r.lift) & (lower_d < depth));
   const float sum = dot(blocked.lo + blocked.hi, one);

@@ -32,11 +32,11 @@
 
 // The bin that a work-item sweeps, and its buffers.
 typedef struct {
-  int number;  // of the bin, 0 to CLPV_SWEEP_BINS - 1
+  int number;  // index of the bin, 0 to CLPV_SWEEP_BINS - 1
   ClpvSweepBin bin;
   __constant const ClpvSweepDirection* directions;  // CLPV_PARTS of them
   __constant const int* coefficients;  // those that the bin's light depends on, CLPV_EMITTING
-  __constant const float* means;       // of their functions, CLPV_EMITTING for each direction
+  __constant const float* means;       // means of their functions, CLPV_EMITTING for each direction
   CLPV_BUFFER_IN sources;      // c of 3 channels and CLPV_SOURCES coefficients (sweep_source.cl)
   __global const uchar* lit;   // 1 for each CLPV_SOURCE_LANES cells that hold sources
   CLPV_BUFFER_IN links;        // T, a volume for each axis and link

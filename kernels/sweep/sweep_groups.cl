@@ -16,7 +16,7 @@
 #include "sweep/sweep_cell.h"
 
 enum {
-  CLPV_SIDE = CLPV_GRID + 2,  // of a plane in local memory, with a border of one cell
+  CLPV_SIDE = CLPV_GRID + 2,  // side of a plane in local memory, with a border of one cell
   CLPV_CELLS = CLPV_GRID * CLPV_GRID,
   CLPV_EACH = (CLPV_CELLS + CLPV_ITEMS - 1) / CLPV_ITEMS,  // cells of a work-item
 };

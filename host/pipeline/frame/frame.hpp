@@ -137,15 +137,15 @@ class Frame {
   Gatherer gatherer_;
   Shader shader_;
   std::optional<NearField> near_;      ///< none: off
-  int near_step_, light_step_;         ///< of near_; of light()
+  int near_step_, light_step_;         ///< step of near_; step of light()
   std::optional<MediumLight> medium_;  ///< none: no medium
   FrameLights lights_;
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;
-  std::optional<Kernel> radiance_;     ///< of radiance_at(), built when it is first called
-  std::optional<GivenSurface> given_;  ///< of light(), built when it is first called
+  std::optional<Kernel> radiance_;     ///< kernel of radiance_at(), built when it is first called
+  std::optional<GivenSurface> given_;  ///< surface of light(), built when it is first called
   Buffer given_irradiance_;
-  Cached near_hits_;   ///< of near_
+  Cached near_hits_;   ///< hits of near_
   Buffer irradiance_;  ///< float4 per pixel, like image_
   Buffer image_;
   Show shown_ = Show::full;

@@ -91,7 +91,7 @@ class FrameCascades {
   std::vector<CachedVolume> injected_, accumulated_;
   std::vector<CachedVolume> geometry_;  ///< none without occlusion
   std::unique_ptr<Volume> white_faces_,
-      reflected_;  ///< of white_ and reflectors_, as surfaces_ uses them
+      reflected_;  ///< faces of white_ and reflectors_, as surfaces_ uses them
   /// Contents of the sweeper and of visibility_, per cascade.
   std::vector<Cached> links_, surfaces_, visible_cells_;
   std::vector<ClpvGrid> grids_;

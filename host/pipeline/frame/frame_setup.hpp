@@ -21,8 +21,9 @@ struct FrameSetup {
   FrameSetup(const OptionValues& given, const SceneData& scene);
 
   RenderOptions options;
-  std::shared_ptr<const Basis> basis;     ///< of injected light
-  std::shared_ptr<const Basis> gathered;  ///< of gathered light: that of a sweep, else `basis`
+  std::shared_ptr<const Basis> basis;  ///< basis of injected light
+  std::shared_ptr<const Basis>
+      gathered;  ///< basis of gathered light: swept_basis() after a sweep, else `basis`
   Transport transport;
 
   bool sweeps() const { return options.transport == TransportKind::sweep; }

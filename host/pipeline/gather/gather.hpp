@@ -30,8 +30,9 @@ struct GatheredLight {
   std::vector<ClpvGrid> grids;
   std::vector<const Volume*> accumulated;  ///< one per grid
   float scale = 1;       ///< factor by which the volumes scale the light (light_scale)
-  Buffer occluded = {};  ///< of `grids`, for Gathering::visible: VoxelField::masks()
-  std::vector<std::uint64_t> keys = {};  ///< of the volumes' contents and scale; empty: unknown
+  Buffer occluded = {};  ///< VoxelField::masks() of `grids`, for Gathering::visible
+  std::vector<std::uint64_t> keys =
+      {};  ///< keys of the volumes' contents and scale; empty: unknown
 };
 
 /// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces), for swept light
@@ -94,7 +95,7 @@ class Gatherer {
   /// By number of cascades, 0 for packed volumes, and whether surfaces are points without a view.
   std::map<std::pair<std::size_t, bool>, Kernel> gather_;
   Buffer packed_, grids_, occluded_;
-  std::vector<std::optional<std::uint64_t>> packed_keys_;  ///< of the volumes in packed_
+  std::vector<std::optional<std::uint64_t>> packed_keys_;  ///< keys of the volumes in packed_
   cl_uint cascades_ = 0;
   float scale_ = 1;
 };

@@ -18,7 +18,7 @@ constexpr double kLightNear = 0.01;       // [m]; a lamp's own glass may be this
 constexpr double kSmallestMargin = 0.01;  // [m] between an orthographic eye and the nearest surface
 constexpr double kRelativeMargin = 1e-3;  // the same, relative to the scene's depth
 constexpr double kRounding = 1e-5;        // relative rounding of distances from the eye in kernels
-constexpr int kMaxCubes = 64;             // of light_bounds()
+constexpr int kMaxCubes = 64;             // cubes of light_bounds()
 constexpr int kGapCubes = 3;              // empty ones that are a gap
 
 struct Axes {

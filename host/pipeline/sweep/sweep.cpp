@@ -15,7 +15,7 @@
 namespace clpv {
 namespace {
 
-constexpr float kCellRatio = 2;  // of a coarser cascade's cell to the next finer one's
+constexpr float kCellRatio = 2;  // ratio of a coarser cascade's cell to the next finer one's
 constexpr int kBounceParts = 1;  // parts of a bin, squared, in sweeps for bounces
 
 std::size_t directions_of(int parts) {

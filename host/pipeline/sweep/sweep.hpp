@@ -27,7 +27,7 @@ namespace clpv {
 /// Light that a sweep of a cascade transports.
 struct SweepInput {
   std::size_t cascade;
-  const std::vector<ClpvGrid>& grids;  ///< of all cascades, finest first
+  const std::vector<ClpvGrid>& grids;  ///< grids of all cascades, finest first
   const Volume& injected;
   float sky_scale = 1;  ///< number that volumes store for 1 W/sr
   std::vector<ShadowedLight> lights =
