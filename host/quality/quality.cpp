@@ -110,8 +110,7 @@ std::string quality_key(const GroundTruth& truth, const Device& device,
 
 namespace {
 
-constexpr const char* kFingerprint =
-    "fingerprint";  // key: hash of the other values of a cached cell
+constexpr const char* kFingerprint = "fingerprint";  // hash of a cached cell's other values
 
 std::string fingerprint_of(const nlohmann::json& cell) {
   return Fingerprint().add(cell.dump()).hex();

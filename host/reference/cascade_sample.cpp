@@ -20,9 +20,8 @@ LinearSample linear_sample(double at, int n) {
   return {lower, std::min(lower + 1, n - 1), p - lower};
 }
 
-constexpr int kPoints = 4;  // visibility points per cube along each axis
-constexpr double kMinVisibleShare =
-    1.0 / 64.0;  // share of the total weight; below it, all cells count
+constexpr int kPoints = 4;                       // visibility points per cube along each axis
+constexpr double kMinVisibleShare = 1.0 / 64.0;  // by weight; below it, all cells count
 
 /// Visible share of each of eight cells from a point `t` in their cube: visibility bits,
 /// interpolated trilinearly.

@@ -40,8 +40,7 @@ enum class TriangleOrder { list, strip, fan };
 struct PrimitiveArrays {
   const NumberArray* positions = nullptr;
   const NumberArray *normals = nullptr, *uvs = nullptr, *colours = nullptr;
-  const NumberArray* indices =
-      nullptr;  ///< indices of corners, one component; absent: 0, 1, 2, ...
+  const NumberArray* indices = nullptr;  ///< corners, one component; absent: 0, 1, 2, ...
   TriangleOrder order = TriangleOrder::list;
   glm::dmat3 uv_transform{1.0};
   bool smooth = false;  ///< without normals: means of the triangles' normals, weighted by angle, in

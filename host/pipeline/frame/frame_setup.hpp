@@ -21,9 +21,8 @@ struct FrameSetup {
   FrameSetup(const OptionValues& given, const SceneData& scene);
 
   RenderOptions options;
-  std::shared_ptr<const Basis> basis;  ///< basis of injected light
-  std::shared_ptr<const Basis>
-      gathered;  ///< basis of gathered light: swept_basis() after a sweep, else `basis`
+  std::shared_ptr<const Basis> basis;     ///< basis of injected light
+  std::shared_ptr<const Basis> gathered;  ///< swept_basis() after a sweep, else `basis`
   Transport transport;
 
   bool sweeps() const { return options.transport == TransportKind::sweep; }

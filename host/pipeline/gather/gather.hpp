@@ -31,8 +31,7 @@ struct GatheredLight {
   std::vector<const Volume*> accumulated;  ///< one per grid
   float scale = 1;       ///< factor by which the volumes scale the light (light_scale)
   Buffer occluded = {};  ///< VoxelField::masks() of `grids`, for Gathering::visible
-  std::vector<std::uint64_t> keys =
-      {};  ///< keys of the volumes' contents and scale; empty: unknown
+  std::vector<std::uint64_t> keys = {};  ///< the volumes' contents and scale; empty: unknown
 };
 
 /// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces), for swept light
