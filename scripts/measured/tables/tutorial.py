@@ -37,12 +37,6 @@ def tutorial_transport():
 
 
 @table
-def tutorial_bench():
-    return shown({"row": "`{name}`", "median ms": "{median:#}", "mad": "{mad:#}"},
-                 [{**row, "name": name} for name, row in load("tutorial")["bench"].items()])
-
-
-@table
 def demo_caption():
     found = load("tutorial")["demo"]
     return textwrap.fill(
