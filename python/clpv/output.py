@@ -9,7 +9,7 @@ import tarfile
 import tempfile
 
 RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3  # exit codes
-MARKER = ".clpv-output"  # of an output folder: the script that wrote it
+MARKER = ".clpv-output"  # marks an output folder: the script that wrote it
 
 
 class Failure(Exception):

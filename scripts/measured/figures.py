@@ -41,7 +41,7 @@ SETTINGS = {
     "both exact": {**EXACT, "transport": "exact"},
 }
 AMPLIFY = 15  # factor of difference images, as in the paper
-EXPOSURE = 4  # of all images [EV]
+EXPOSURE = 4  # exposure of all images [EV]
 WIDTH, DPI = 12.7, 85  # sheets: inches, pixels per inch
 # A pixel counts as darker if it lost more than this share of the view's mean; smaller changes are
 # rounding.

@@ -29,7 +29,7 @@ TEST(BenchStatistics, MedianSpreadAndQuantilesOfAKnownSeries) {
   EXPECT_EQ(s.min, 1);
   EXPECT_EQ(s.median, 4);
   EXPECT_EQ(s.max, 103);
-  EXPECT_EQ(s.mad, 2);                     // of 3 2 0 1 99
+  EXPECT_EQ(s.mad, 2);                     // median of 3 2 0 1 99
   EXPECT_NEAR(s.p95, 5 + 0.8 * 98, 1e-9);  // between the 4th and the 5th, at 3.8
   EXPECT_EQ(statistics_of({}).median, 0);
 }

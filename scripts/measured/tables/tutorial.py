@@ -5,7 +5,7 @@ import textwrap
 
 from .cells import load, shown, table
 
-LINE = 130  # of the docs
+LINE = 130  # width of the docs
 MEANINGS = {
     "nrmse_valid": "root mean square error divided by the root mean square of the truth",
     "energy_ratio": "mean of the image divided by the mean of the truth",
