@@ -29,7 +29,7 @@ struct Range {
 };
 
 struct Path {
-  const char* content;  ///< of the file
+  const char* content;  ///< content of the file
 };
 
 struct OneOf {

@@ -22,8 +22,8 @@ struct TraceOptions {
   std::uint64_t seed = 1;  ///< the same seed gives the same image
   int threads = 0;         ///< up to 1024; 0: one per processor
   double seconds = 0;      ///< time in the scene's animation [s]
-  /// Receives the estimated progress in [0, 1], from one thread at a time. What it throws ends the
-  /// work and reaches the caller.
+  /// Receives the estimated progress in [0, 1], from one thread at a time. An exception from it
+  /// ends the work and reaches the caller.
   std::function<void(double)> progress{};
 };
 

@@ -11,10 +11,10 @@
 //
 // docs/method.md, 'More bounces'. D [W] is the incident flux on a face, R in [0, 1] the reflectance
 // of a face per channel, I the injected light, I' the sources of the next sweep. X_k is the flux
-// that other surfaces return of 1 W leaving a face after k reflections. By reciprocity X_1 is the
-// incident flux while every face emits R, X_2 while it emits T_1 (inject_flux). q in [0, the cell's
-// largest albedo] is T_2 / T_1. S depends only on geometry. A face of normal a that receives D_a
-// (face_fluxes.h) emits, projected on the basis,
+// that comes back to a face after k reflections elsewhere, per 1 W that left it. By reciprocity X_1
+// is the incident flux while every face emits R, X_2 while it emits T_1 (inject_flux). q in [0, the
+// cell's largest albedo] is T_2 / T_1. S depends on the surfaces, not on light. A face of normal a
+// that receives D_a (face_fluxes.h) emits, projected on the basis,
 //   I(w) = Phi_a max(0, w.a) / pi,   Phi_a = R_a D_a
 // With CLPV_HARMONICS, light of all bands but the first is divided by the share m_a of the face's
 // triangles: |n_a| = m_a (|n_x| + |n_y| + |n_z|), so that the faces of a surface emit the clamped
@@ -26,7 +26,7 @@
 //       injected          I: light volume [W/sr]
 // Out:  bounced           I': light volume [W/sr]
 // From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_LOBES, the lobe of 1 W about each
-// face's normal, CLPV_MAX_RETURNED, the largest q, and those of face_fluxes.h.
+// face's normal, CLPV_MAX_RETURNED, the largest q, and the literals of face_fluxes.h.
 // A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"
 #include "sweep/face_fluxes.h"

@@ -9,14 +9,14 @@
 // are added in the order of sweep_planes.cl, with the same result, in one launch in place of one
 // per plane.
 //
-// In, out: those of sweep_bin (sweep_bins.cl), without a medium. plane_buffer is only read.
-// From the host: CLPV_ITEMS, work-items of a group; those of sweep_cell.h.
+// In, out: as sweep_bin (sweep_bins.cl), without a medium. plane_buffer is only read.
+// From the host: CLPV_ITEMS, work-items of a group; the literals of sweep_cell.h.
 #include "shared/sweep.h"
 #include "sweep/halo_cells.h"
 #include "sweep/sweep_cell.h"
 
 enum {
-  CLPV_SIDE = CLPV_GRID + 2,  // of a plane in local memory, with a border of one cell
+  CLPV_SIDE = CLPV_GRID + 2,  // side of a plane in local memory, with a border of one cell
   CLPV_CELLS = CLPV_GRID * CLPV_GRID,
   CLPV_EACH = (CLPV_CELLS + CLPV_ITEMS - 1) / CLPV_ITEMS,  // cells of a work-item
 };

@@ -221,9 +221,9 @@ void add_renderer(py::module_& module) {
       py::arg("size") = py::none(),
       "render(view='full', camera=None, time=0.0, size=None) -> Image (height, width, 4), linear "
       "R, G, B, A.\n\n"
-      "view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or "
-      "cells: irradiance with\n"
-      "the finest cascade's cells as spheres;\n"
+      "view: full, direct, indirect, medium [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth "
+      "[m], or cells: irradiance\n"
+      "with the finest cascade's cells as spheres;\n"
       "camera: a Camera, or the name of one of the scene (None: its first); time [s] of an "
       "animated scene;\n"
       "size: (width, height), None for options width and height.");

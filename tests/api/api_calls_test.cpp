@@ -222,7 +222,7 @@ TEST(ApiCalls, HelpersCompileTheProgramsOfTheMedium) {
   EXPECT_THAT(compilation_of(request, {}, "").helpers, Contains("--medium=0,0.25,0.5"));
 }
 
-// Those of a bake are not the ones that its user gave.
+// Options of a bake's frames are not the ones that its user gave.
 TEST(ApiCalls, HelpersHaveTheOptionsOfTheFrames) {
   RenderOptions options;
   for (const PresetName preset : values_of<PresetName>()) {

@@ -213,7 +213,7 @@ def test_vectors_of_any_type(name, objects):  # under PYTHONMALLOC=debug: items 
             value = (one, [2, 2, 4]) if argument == "box" else one
             try:
                 made = call_of(name, objects)(**(given | {argument: value}))
-            except clpv.Error as error:  # of the scene or the device
+            except clpv.Error as error:  # by the scene or the device
                 assert f"{argument}: found" not in str(error)
                 continue
             found = getattr(made, argument, [1, 0, 3])

@@ -138,7 +138,7 @@ def test_addresses_of_both_versions_of_ip():
     if has_ipv6():
         view.require_free("::1", port)
     with pytest.raises(RuntimeError, match="another --port or --host"):
-        view.require_free("203.0.113.1", port)  # of no interface
+        view.require_free("203.0.113.1", port)  # an address of no interface
 
 
 def run(*arguments, **environment):

@@ -241,7 +241,7 @@ TEST(ProgressLine, ShowsShareAndTimeLeft) {
   EXPECT_EQ(progress_line("a\x1b[2Jb", 5, 10, 90, 8), "a?[2Jb [");
 }
 
-/// What a process with this TERM and NO_COLOR draws on a terminal in 1.2 s.
+/// Output that a process with this TERM and NO_COLOR draws on a terminal in 1.2 s.
 std::string drawn_with(const char* terminal, const char* no_color) {
   int master = -1;
   const pid_t child = ::forkpty(&master, nullptr, nullptr, nullptr);

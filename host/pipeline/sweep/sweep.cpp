@@ -15,7 +15,7 @@
 namespace clpv {
 namespace {
 
-constexpr float kCellRatio = 2;  // of a coarser cascade's cell to the next finer one's
+constexpr float kCellRatio = 2;  // ratio of a coarser cascade's cell to the next finer one's
 constexpr int kBounceParts = 1;  // parts of a bin, squared, in sweeps for bounces
 
 std::size_t directions_of(int parts) {
@@ -121,8 +121,8 @@ void Sweeper::make_cascades(const Basis& basis) {
   }
 }
 
-/// Returns true if all sweeps of a cascade let in the light of the coarser one's last sweep; false
-/// if light of the same number of bounces enters.
+/// Light that enters at a cascade's border. True: in every sweep, the coarser cascade's final
+/// light; false: the coarser cascade's light after the same number of bounces.
 bool Sweeper::last_light_enters() const {
   return options_.bounces == Bounces::all && !scatters(options_.medium);
 }

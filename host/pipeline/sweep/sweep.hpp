@@ -27,7 +27,7 @@ namespace clpv {
 /// Light that a sweep of a cascade transports.
 struct SweepInput {
   std::size_t cascade;
-  const std::vector<ClpvGrid>& grids;  ///< of all cascades, finest first
+  const std::vector<ClpvGrid>& grids;  ///< grids of all cascades, finest first
   const Volume& injected;
   float sky_scale = 1;  ///< number that volumes store for 1 W/sr
   std::vector<ShadowedLight> lights =
@@ -44,8 +44,8 @@ class Sweeper {
           const SweepOptions& options);
 
   /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3
-  /// samples. `occluded`: bits of visibility_masks() for all cascades, which close links; without
-  /// memory: none.
+  /// samples. `occluded`: bits of visibility_masks() for all cascades, from which closed links are
+  /// found; an empty Buffer closes none.
   void set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded = {});
 
   /// Sets the surfaces of a cascade after those of the next coarser one and after its blockers.
