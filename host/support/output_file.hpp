@@ -65,7 +65,7 @@ void check_outputs(const std::vector<NamedFile>& outputs,
                    const std::vector<NamedFile>& inputs = {});
 
 /// Writes `bytes` to `path` as an OutputFile. On failure (for example a full disk) leaves `path`
-/// unchanged and throws Error(run_time) with the reason. Throws Interrupted, but for an entry.
+/// unchanged and throws Error(run_time) with the reason.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes,
                 OutputFile::Kind kind = OutputFile::Kind::result);
 void write_file(const std::filesystem::path& path, std::string_view text,
