@@ -22,12 +22,6 @@ struct Attributes {
   std::optional<GltfAccessor> normal, uv, colour, indices;
 };
 
-/// Light passes everywhere: neither a texture nor a vertex raises alpha to the cutoff.
-bool is_hole(const ClpvMaterial& material) {
-  return (material.flags & CLPV_MATERIAL_MASKED) != 0 &&
-         material.base_colour[3] < material.alpha_cutoff;
-}
-
 TriangleOrder order_of(int mode) {
   switch (mode) {
     case TINYGLTF_MODE_TRIANGLE_STRIP:
@@ -187,7 +181,6 @@ LocalPrimitive read_primitive(const GltfDocument& document, int mesh, std::size_
                      document.file, place, number, budget, slots);
   reader.read_influences(attributes, made);
   reader.read_targets(attributes, budget, made, notes);
-  if (is_hole(material)) return {};
   if (source.attributes.contains("JOINTS_1"))
     notes.add(fmt::format("{}: more than four joints per vertex: only JOINTS_0 is read", place));
   return made;

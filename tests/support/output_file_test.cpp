@@ -123,9 +123,9 @@ TEST_F(OutputFile, SignalsLeaveNoTemporaryFile) {
       } catch (const Interrupted&) {
         refused = true;
       }
-      const bool both = refused && entries() == 2;  // they end with the work
-      ::raise(signal);                              // this one ends the process
-      ::_exit(both ? 1 : 2);
+      if (!refused || entries() != 2) ::_exit(1);  // they end with the work
+      ::raise(signal);                             // this one ends the process
+      ::_exit(2);
     }
     int status = 0;
     ::waitpid(child, &status, 0);
