@@ -70,6 +70,10 @@ CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
 // Adds I to D in cells with sources, and to `sum`. `planes`: D of the bin's first ordinate there.
 CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float* planes,
                              realW* sum) {
+#if CLPV_COSINE_REST
+  realW lacking[CLPV_PARTS];
+  find_cosine_rest(s->means, s->sources, source, lacking);
+#endif
   for (int channel = 0; channel < 3; ++channel) {
     realW injected[CLPV_PARTS];
 #pragma unroll
@@ -82,8 +86,11 @@ CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float
         injected[part] = fma((realW)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
     }
 #if CLPV_COSINE_REST
-    add_cosine_rest(s->means, s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME, source,
-                    injected);
+    const realW uniform =
+        read_numbers(s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME, source);
+#pragma unroll
+    for (int part = 0; part < CLPV_PARTS; ++part)
+      injected[part] = fma(uniform, lacking[part], injected[part]);
 #endif
 #pragma unroll
     for (int part = 0; part < CLPV_PARTS; ++part) {

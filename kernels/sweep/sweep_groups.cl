@@ -47,7 +47,11 @@ static inline void add_light(const BinSweep* s, const int channel, const int sou
       injected[part] = fma(s->means[part * CLPV_EMITTING + j], c, injected[part]);
   }
 #if CLPV_COSINE_REST
-  add_cosine_rest(s->means, of_channel, source, injected);
+  float lacking[CLPV_PARTS];
+  find_cosine_rest(s->means, s->sources, source, lacking);
+  const float uniform = read_numbers(of_channel, source);
+  for (int part = 0; part < CLPV_PARTS; ++part)
+    injected[part] = fma(uniform, lacking[part], injected[part]);
 #endif
   for (int part = 0; part < CLPV_PARTS; ++part) {
     d[part] += injected[part];

@@ -325,7 +325,7 @@ void add_renderer(py::module_& module) {
             [&] { return pathtrace(scene, views, camera_choice(camera), options); }, tell);
       },
       py::arg("scene"), py::arg("view") = "full", py::arg("camera") = py::none(),
-      py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = 1,
+      py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = "all",
       py::arg("samples") = 0, py::arg("noise") = 0.02, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("time") = 0.0, py::arg("progress") = py::none(),
       "pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.\n\n"

@@ -228,6 +228,7 @@ TEST(ApiCalls, HelpersHaveTheOptionsOfTheFrames) {
   for (const PresetName preset : values_of<PresetName>()) {
     apply_preset(options, preset);
     options.cascades = 5, options.cascade_size = 1.0 / 3, options.near = Near::off;
+    options.bounces = Bounces::one;
     OptionValues given;
     for (const std::string& argument : compilation_of({}, options, "").helpers) {
       const auto equals = argument.find('=');

@@ -48,7 +48,7 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
         options_.format());
   };
   if (sweeper_) voxelise(white_, white_faces_, true);
-  if (options_.bounces != Bounces::one) voxelise(reflectors_, reflected_, false);
+  if (options_.reflects()) voxelise(reflectors_, reflected_, false);
   if (options_.gather == Gathering::visible)
     visibility_.emplace(session, buffers, visibility_masks(options_.grid, options_.cascades));
 } catch (const TooLarge& error) {
