@@ -204,9 +204,8 @@ void add_scene(py::module_& module) {
         const auto lights = argument<std::vector<Light>>("lights", given);
         without_gil([&] { scene.set_lights(lights); });
       },
-      "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame "
-      "of every renderer\n"
-      "of this scene recomputes what depends on them.");
+      "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame\n"
+      "of every renderer of this scene recomputes what depends on them.");
   type.def_property(
       "medium", &Scene::medium,
       [](Scene& scene, const py::object& given) {
@@ -221,10 +220,9 @@ void add_scene(py::module_& module) {
         interruptible([&] { scene.save(path); });
       },
       py::arg("path"),
-      "save(path): writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning "
-      "for a sky, a medium, a\n"
-      "camera's only light, number and size of cascades, and an exposure, which glTF has not, and "
-      "for a scene without lights.");
+      "save(path): writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning\n"
+      "for a sky, a medium, a camera's only light, number and size of cascades, and an exposure,\n"
+      "which glTF has not, and for a scene without lights.");
   type.def_property_readonly("moves", &Scene::moves, "True if anything is animated.");
   type.def_property_readonly(
       "notes", [](const Scene& scene) { return py::tuple(py::cast(scene.notes())); },

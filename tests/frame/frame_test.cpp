@@ -57,15 +57,6 @@ Image render(const SceneData& scene, const RenderOptions& options, Show view,
   return image;
 }
 
-/// Mean of a channel over a box of pixels.
-double mean(const Image& image, int x0, int y0, int x1, int y1, std::size_t channel) {
-  double sum = 0;
-  for (int y = y0; y < y1; ++y) {
-    for (int x = x0; x < x1; ++x) sum += image.at(x, y, channel);
-  }
-  return sum / ((x1 - x0) * (y1 - y0));
-}
-
 /// Holds a frame against tests/golden/NAME.exr; with CLPV_WRITE_GOLDEN set, writes it instead.
 void expect_golden(const Image& image, const std::string& name) {
   const fs::path path = fs::path(CLPV_SOURCE_DIR) / "tests/golden" / (name + ".exr");
@@ -215,38 +206,6 @@ TEST(Frame, SponzaEqualsItsGoldenImage) {
   expect_golden(render(scene, small_options(scene), Show::indirect, "curtains"), "sponza");
 }
 
-TEST(Frame, TheBackWallIsRedNearTheRedWall) {
-  const SceneData scene = load_scene(scene_file("cornell.json"));
-  for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep}) {
-    RenderOptions options = small_options(scene);
-    options.transport = transport;
-    const Image light = render(scene, options, Show::irradiance);
-    // The back wall beside the red wall (left) and beside the green one (right). Path tracing finds
-    // a ratio of 1.34.
-    constexpr int kLeft = 37, kSide = 6, kTop = 18, kLow = 30;
-    const auto red_over_green = [&](int left) {
-      return mean(light, left, kTop, left + kSide, kLow, 0) /
-             mean(light, left, kTop, left + kSide, kLow, 1);
-    };
-    EXPECT_GT(red_over_green(kLeft), 1.2 * red_over_green(kWidth - kLeft - kSide))
-        << name_of(transport);
-  }
-}
-
-TEST(Frame, VolumesOf16BitsServeLuxAndCandleLight) {
-  SceneData scene = load_scene(scene_file("cornell.json"));
-  RenderOptions options = small_options(scene);
-  const Image usual = render(scene, options, Show::indirect);
-  for (const float brightness : {1e-5f, 1e6f}) {
-    SceneData other = scene;
-    for (SceneLight& light : other.lights) light.data = scaled(light.data, brightness);
-    Image image = render(other, options, Show::indirect);
-    for (std::size_t at = 0; at < image.pixels.size(); ++at)
-      if (at % 4 != 3) image.pixels[at] /= brightness;
-    EXPECT_LT(compare(image, "other", usual, "usual").nrmse.value(), 1e-3) << brightness;
-  }
-}
-
 TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
   const SceneData scene = load_scene(scene_file("cornell.json"));
   RenderOptions options = small_options(scene);
@@ -316,13 +275,6 @@ TEST(Frame, FogOfOneSizeDoesNotReachIntoAnother) {
   Frame after(test::test_session(), scene, tiny_options());
   draw(after, 48, 36);  // with as many numbers in a plane
   EXPECT_EQ(draw(after, 32, 48), expected);
-}
-
-TEST(Frame, RejectsOptionsThatDoNotGoTogether) {
-  const SceneData scene = load_scene(scene_file("cornell.json"));
-  RenderOptions options;
-  options.lobe_time = LobeTime::kernel;  // the transport is a sweep, which has no lobes
-  test::error_of(ExitCode::usage, [&] { Frame(test::test_session(), scene, options); });
 }
 
 /// Accumulated light of the finest cascade, seen from `eye`.
