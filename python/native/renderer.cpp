@@ -218,10 +218,9 @@ void add_renderer(py::module_& module) {
       "render(view='full', camera=None, time=0.0, size=None) -> Image (height, width, 4),\n"
       "linear R, G, B, A.\n\n"
       "view: full, direct, indirect, medium [W/m^2/sr], irradiance [W/m^2], albedo, normal,\n"
-      "depth [m], or "
-      "cells: irradiance with the finest cascade's cells as spheres; camera: a Camera, or the\n"
-      "name of one of the scene (None: its first); time [s] of an animated scene; size: (width,\n"
-      "height), None for options width and height.");
+      "depth [m], or cells: irradiance with the finest cascade's cells as spheres; camera: a\n"
+      "Camera, or the name of one of the scene (None: its first); time [s] of an animated scene;\n"
+      "size: (width, height), None for options width and height.");
   define(
       type, "update",
       [](Renderer& renderer, const Vec3& eye, double time) {
