@@ -147,10 +147,9 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session,
   std::set<std::pair<std::string, std::string>> warned;  // scenes and cameras
   std::map<std::size_t, nlohmann::json> cells;           // cells of this rank, by number
   Progress progress("quality", mine);
-  each([&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera,
-           std::size_t number) {
-    stop_if_interrupted(
-        fmt::format("{} of {} cells are finished; the same command resumes", cells.size(), mine));
+  const auto add = [&](std::unique_ptr<Frame>& frame, const Group& group, std::size_t camera,
+                       std::size_t number) {
+    stop_if_interrupted();
     const std::string key =
         quality_key(group.subject.truths[camera], session.device(), group.options, options.view,
                     options.frames, ranks.processors());
@@ -164,10 +163,16 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session,
     }
     cell->variant = group.variant;  // the spelling of the same options may differ
     if (!kept && cell->rejected.empty()) store.keep(key, *cell);  // a rejection may be temporary
-    cell->cached = kept;
     cells[number] = to_json(*cell);
     kept ? progress.skip() : progress.advance();
-  });
+  };
+  try {
+    each(add);
+  } catch (const Interrupted&) {
+    const bool resumes = store.writable() && !options.fresh;
+    throw Interrupted(fmt::format("{} of {} cells are finished{}", cells.size(), mine,
+                                  resumes ? "; the same command resumes" : ""));
+  }
   for (const std::string& gathered : ranks.gather(nlohmann::json(cells).dump()))
     cells.merge(nlohmann::json::parse(gathered).get<std::map<std::size_t, nlohmann::json>>());
   std::vector<QualityCell> all;

@@ -82,6 +82,7 @@ class QualityStore {
   std::optional<QualityCell> find(const std::string& key) const;
   /// Stores a cell. The first failure is a warning, and nothing is stored after it.
   void keep(const std::string& key, const QualityCell& cell);
+  bool writable() const { return writable_; }
 
  private:
   void warn_of(const std::string& problem);
