@@ -46,21 +46,24 @@ void Timeline::add(Launch launch) {
 std::vector<StageTime> Timeline::times() {
   std::vector<StageTime> result;
   double sum = 0;
-  bool plausible = true;
+  bool plausible = true, launched = false;
   for (const Entry& entry : entries_) {
     StageTime time{entry.mark, entry.wall_ms, events_valid_};
     for (const Launch& launch : entry.launches) {
       launch.event.wait();
       const EventTimes found = times_of(launch.event);
-      plausible = plausible && found.valid;
+      plausible = plausible && found.valid, launched = true;
       time.ms += found.ms(), sum += found.ms();
     }
     result.push_back(std::move(time));
   }
-  if (!events_valid_ || (plausible && sum <= since(cleared_) * (1 + kClockTolerance)))
+  const bool still = launched && sum == 0;
+  if (!events_valid_ || (plausible && !still && sum <= since(cleared_) * (1 + kClockTolerance)))
     return result;
   log_warning("the device's events {}: times of stages are the host's from here on",
-              plausible ? "take longer than the host waits for them" : "end before they start");
+              !plausible ? "end before they start"
+              : still    ? "take no time"
+                         : "take longer than the host waits for them");
   events_valid_ = false;
   entries_.clear();
   return {};

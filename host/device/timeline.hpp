@@ -121,7 +121,7 @@ class Timeline {
     host_.waited_ms += since(start);
   }
   /// Waits for the events; one entry per stage, in order of first begin. Events that end before
-  /// they start, or that take longer together than the host's clock says, are a warning: there are
+  /// they start, or together take no time or longer than the host waits, are a warning: there are
   /// no entries then, and stages have wall times from the next clear() on.
   std::vector<StageTime> times();
   bool events_valid() const { return events_valid_; }

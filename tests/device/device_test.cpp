@@ -97,7 +97,8 @@ TEST(DeviceClock, AtFaultGivesWayToTheHosts) {
   const test::TemporaryFolder folder;
   const std::pair<std::string, std::string> faults[] = {
       {"ticks", "events have no plausible times: those of stages are the host's"},
-      {"swap", "events end before they start: times of stages are the host's"}};
+      {"swap", "events end before they start: times of stages are the host's"},
+      {"still", "events take no time: times of stages are the host's"}};
   for (const auto& [fault, said] : faults) {
     const auto outcome =
         test::run("LD_PRELOAD=" CLPV_OPENCL_SHIM " CLPV_SHIM_CLOCK=" + fault +

@@ -7,6 +7,7 @@
 //   CLPV_SHIM_COMPILER=no    devices have no compiler
 //   CLPV_SHIM_CLOCK=ticks    events have ticks of 42 ns
 //   CLPV_SHIM_CLOCK=swap     events end before they start, from the 41st call on
+//   CLPV_SHIM_CLOCK=still    events end when they start, from the 41st call on
 //   CLPV_SHIM_KERNELS=no     kernels do not run, for the host's time alone: markers take their
 //   place CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory
 //   objects that
@@ -96,9 +97,10 @@ cl_int clGetEventProfilingInfo(cl_event event, cl_profiling_info info, size_t si
   static std::atomic<int> calls_of_clock{0};
   const char* wish = std::getenv("CLPV_SHIM_CLOCK");
   const std::string fault = wish == nullptr ? "" : wish;
-  if (fault == "swap" && ++calls_of_clock > 40)
-    info =
-        info == CL_PROFILING_COMMAND_START ? CL_PROFILING_COMMAND_END : CL_PROFILING_COMMAND_START;
+  const bool still = fault == "still";
+  if ((still || fault == "swap") && ++calls_of_clock > 40)
+    info = !still && info == CL_PROFILING_COMMAND_START ? CL_PROFILING_COMMAND_END
+                                                        : CL_PROFILING_COMMAND_START;
   const cl_int code = call(event, info, size, value, needed);
   if (fault == "ticks" && code == CL_SUCCESS && value != nullptr)
     *static_cast<cl_ulong*>(value) /= 42;
