@@ -13,6 +13,7 @@
 #include "device/device.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
+#include "support/interrupt.hpp"
 #include "support/print.hpp"
 #include "support/process.hpp"
 #include "support/this_program.hpp"
@@ -71,6 +72,7 @@ std::string fault_when_loaded(const fs::path& icd_file) {
   const bool late = child.running();
   if (late) child.kill();
   Process::Result result = child.end();
+  stop_if_interrupted();  // the child's end says nothing then
   if (late) return fmt::format("does not load within {} s", kLoading.count());
   if (result.code == 0 && result.output.find(kLoaded) != std::string::npos) return {};
   const bool ours = result.code == static_cast<int>(ExitCode::usage) ||

@@ -11,16 +11,22 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
+#include <thread>
 #include <utility>
+
+#include "support/interrupt.hpp"
 
 extern char** environ;
 
 namespace clpv {
 namespace {
+
+constexpr std::chrono::milliseconds kPollOfEnd{5};
 
 std::vector<char*> argument_pointers(std::string& program, std::vector<std::string>& arguments) {
   std::vector<char*> words{program.data()};
@@ -165,21 +171,17 @@ bool Process::feed(std::span<const std::byte> bytes) {
   return true;
 }
 
-bool Process::running() {
-  return !wait(WNOHANG);
-}
-
-/// Returns true once the process has ended, or its status is lost: the kernel reaps children of a
+/// Returns false once the process has ended, or its status is lost: the kernel reaps children of a
 /// process that ignores SIGCHLD, and another thread may wait for all children.
-bool Process::wait(int flags) {
-  if (child_ < 0 || exited_) return true;
+bool Process::running() {
+  if (child_ < 0 || exited_) return false;
   pid_t waited = -1;
   do {
-    waited = ::waitpid(child_, &status_, flags);
+    waited = ::waitpid(child_, &status_, WNOHANG);
   } while (waited < 0 && errno == EINTR);
   if (waited < 0) lost_ = errno;
   exited_ = waited != 0;
-  return exited_;
+  return !exited_;
 }
 
 void Process::kill() {
@@ -189,7 +191,8 @@ void Process::kill() {
 Process::Result Process::end() {
   if (input_ >= 0) ::close(std::exchange(input_, -1));
   if (child_ < 0) return {-1, std::strerror(start_error_)};
-  wait(0);
+  for (; running(); std::this_thread::sleep_for(kPollOfEnd))
+    if (interrupted()) kill();
   child_ = -1;
   if (lost_ != 0) {
     return {-1, fmt::format("its exit status is lost ({}): this process ignores SIGCHLD, or "

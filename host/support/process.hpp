@@ -53,11 +53,10 @@ class Process {
   /// Ends the process at once, with SIGKILL.
   void kill();
 
-  /// Closes its stdin and waits for it to exit.
+  /// Closes its stdin and waits for it to exit; an interrupt kills it.
   Result end();
 
  private:
-  bool wait(int flags);
 
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }

@@ -15,6 +15,7 @@
 #include "clpv/version.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
+#include "support/interrupt.hpp"
 #include "support/process.hpp"
 #include "support/text.hpp"
 #include "tests/support/run_program.hpp"
@@ -146,6 +147,12 @@ TEST(Process, OneThatReadsNoMoreIsNoSignal) {
   const Process::Result ended = gone.end();
   EXPECT_EQ(ended.code, 3);
   EXPECT_EQ(ended.output, "enough\n");
+}
+
+TEST(Process, AnInterruptEndsIt) {
+  const StopRequest stop = true;
+  const StopScope scope(&stop);
+  EXPECT_EQ(Process("/bin/sleep", {"60"}).end().code, 128 + SIGKILL);
 }
 
 TEST(Process, OneThatIsNotThere) {
