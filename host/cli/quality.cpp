@@ -43,7 +43,7 @@ struct Options {
   Show view = Show::indirect;
   int frames = 3;
   bool fresh = false;
-  TracingOptions tracing;
+  TracingOptions tracing{.bounces = "1", .values = {}};
   OptionValues given;
 
   /// The option that asks for cells of the addition; empty: none.

@@ -47,10 +47,10 @@ struct QualityCell {
   std::optional<double> best_gain, nrmse_best_gain;
   std::optional<double> energy_ratio;  ///< sum of the frame / sum of the ground truth
   std::optional<double> flip;          ///< mean FLIP of the valid pixels, at the scene's exposure
-  /// Of "frame", the sum of all stages, and of each pass over all cascades and lights.
+  /// Times of "frame", the sum of all stages, and of each pass over all cascades and lights.
   std::vector<TimeRecord> times;
   bool from_events = true;     ///< times from device events; false: wall time
-  unsigned compute_units = 0;  ///< of the device or sub-device that was timed
+  unsigned compute_units = 0;  ///< units of the device or sub-device that was timed
   /// Settings of a baseline: samples, threads and times (quality/baseline.hpp).
   std::map<std::string, double> settings;
   double setup_s = 0;     ///< time to create the frame; 0 if reused from another view

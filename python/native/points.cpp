@@ -37,7 +37,7 @@ py::dict pathtrace_points_of(const Scene& scene, const py::object& given_positio
 
 void add_points(py::class_<Scene>& type) {
   define(type, "pathtrace_points", pathtrace_points_of, py::arg("positions"), py::arg("normals"),
-         py::kw_only(), py::arg("bounces") = 1, py::arg("samples") = 0, py::arg("noise") = 0.02,
+         py::kw_only(), py::arg("bounces") = "all", py::arg("samples") = 0, py::arg("noise") = 0.02,
          py::arg("seed") = 1, py::arg("threads") = 0, py::arg("time") = 0.0,
          "pathtrace_points(positions, normals, *, ...) -> dict: path-traced irradiance [W/m^2],\n"
          "red, green, blue, the truth of Renderer.irradiance().\n\n"

@@ -217,10 +217,10 @@ void add_renderer(py::module_& module) {
       py::arg("size") = py::none(),
       "render(view='full', camera=None, time=0.0, size=None) -> Image (height, width, 4),\n"
       "linear R, G, B, A.\n\n"
-      "view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or\n"
-      "cells: irradiance with the finest cascade's cells as spheres; camera: a Camera, or the\n"
-      "name of one of the scene (None: its first); time [s] of an animated scene; size: (width,\n"
-      "height), None for options width and height.");
+      "view: full, direct, indirect, medium [W/m^2/sr], irradiance [W/m^2], albedo, normal,\n"
+      "depth [m], or cells: irradiance with the finest cascade's cells as spheres; camera: a\n"
+      "Camera, or the name of one of the scene (None: its first); time [s] of an animated scene;\n"
+      "size: (width, height), None for options width and height.");
   define(
       type, "update",
       [](Renderer& renderer, const Vec3& eye, double time) {
@@ -314,7 +314,7 @@ void add_renderer(py::module_& module) {
             [&] { return pathtrace(scene, views, camera_choice(camera), options); }, tell);
       },
       py::arg("scene"), py::arg("view") = "full", py::arg("camera") = py::none(),
-      py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = 1,
+      py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = "all",
       py::arg("samples") = 0, py::arg("noise") = 0.02, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("time") = 0.0, py::arg("progress") = py::none(),
       "pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.\n\n"

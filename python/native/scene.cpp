@@ -44,8 +44,8 @@ void add_value_methods(py::class_<T>& type, const std::vector<const char*>& memb
 void add_camera(py::module_& module) {
   py::class_<Camera> type(
       module, "Camera",
-      "Perspective camera. Immutable; replace() makes another. Values are checked where it is "
-      "used.\n\n"
+      "Perspective camera. Immutable; replace() makes another. Values are validated on "
+      "use.\n\n"
       "eye, target, up: x, y, z [m]; fov: vertical field of view [degrees];\n"
       "near: nearest visible depth [m]; light: name of its only light, empty for all.");
   define_init(
@@ -69,8 +69,8 @@ void add_camera(py::module_& module) {
 void add_light(py::module_& module) {
   py::class_<Light> type(
       module, "Light",
-      "Light without extent. Immutable; replace() makes another. Values are checked where it is "
-      "used.\n\n"
+      "Light without extent. Immutable; replace() makes another. Values are validated on "
+      "use.\n\n"
       "kind: 'directional', 'spot' or 'point'; position [m]; direction in which light travels;\n"
       "intensity: red, green, blue, or one number: illuminance [lx = W/m^2] if directional, else "
       "[cd = W/sr];\n"
@@ -107,7 +107,7 @@ void add_light(py::module_& module) {
 void add_medium(py::module_& module) {
   py::class_<Medium> type(module, "Medium",
                           "Homogeneous fog or dust in a box. Immutable; replace() makes another. "
-                          "Values are checked where it is used.\n\n"
+                          "Values are validated on use.\n\n"
                           "scattering, absorption: red, green, blue, or one number [1/m]; "
                           "anisotropy: -0.9 to 0.9, above 0 forwards;\n"
                           "box: lower and upper corner [m], None for the scene's bounding box.");

@@ -210,12 +210,13 @@ TEST(ApiCalls, HelpersCompileTheProgramsOfTheMedium) {
   EXPECT_THAT(compilation_of(request, {}, "").helpers, Contains("--medium=0,0.25,0.5"));
 }
 
-// Those of a bake are not the ones that its user gave.
+// Options of a bake's frames are not the ones that its user gave.
 TEST(ApiCalls, HelpersHaveTheOptionsOfTheFrames) {
   RenderOptions options;
   for (const PresetName preset : values_of<PresetName>()) {
     apply_preset(options, preset);
     options.cascades = 5, options.cascade_size = 1.0 / 3, options.near = Near::off;
+    options.bounces = Bounces::one;
     OptionValues given;
     for (const std::string& argument : compilation_of({}, options, "").helpers) {
       const auto equals = argument.find('=');

@@ -29,7 +29,7 @@ TEST(BenchStatistics, MedianSpreadAndQuantilesOfAKnownSeries) {
   EXPECT_EQ(s.min, 1);
   EXPECT_EQ(s.median, 4);
   EXPECT_EQ(s.max, 103);
-  EXPECT_EQ(s.mad, 2);                     // of 3 2 0 1 99
+  EXPECT_EQ(s.mad, 2);                     // median of 3 2 0 1 99
   EXPECT_NEAR(s.p95, 5 + 0.8 * 98, 1e-9);  // between the 4th and the 5th, at 3.8
   EXPECT_EQ(statistics_of({}).median, 0);
 }
@@ -211,7 +211,7 @@ TEST(BenchPublished, CellsAreThoseOfTheTable) {
   EXPECT_FALSE(published_ms(Pass::propagate, "sh3", true, 0));
 }
 
-/// The keys of docs/benchmarks.md: of the context, of a row.
+/// The keys of bench/README.md: of the context, of a row.
 const std::vector<std::string> kContext = test::words_of(
     "date host_name device driver platform build_options kernel_hash git_describe host_cpu "
     "clpv_version executable library_build_type");

@@ -20,7 +20,7 @@ namespace {
 using namespace test;
 using std::numbers::pi;
 
-constexpr unsigned kWidth = 192, kHeight = 144;  // of the camera's view
+constexpr unsigned kWidth = 192, kHeight = 144;  // size of the camera's view
 constexpr int kAround = 2;  // pixels around shadow edges and silhouettes that are not compared
 
 SceneData grey_scene() {

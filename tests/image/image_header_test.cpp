@@ -28,7 +28,7 @@ std::string chunk(const std::string& type, const std::string& bytes) {
   return std::string(3, '\0') + length + type + bytes + std::string(4, '\0');
 }
 
-constexpr std::size_t kHeaderEnd = 33;  // of the signature and IHDR
+constexpr std::size_t kHeaderEnd = 33;  // end of the signature and IHDR
 
 const std::string_view kWebps[] = {test::kWebpRgba2x2, test::kWebpLossy, test::kWebpLossyAlpha};
 

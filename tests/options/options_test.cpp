@@ -188,6 +188,13 @@ TEST(Presets, FastHasNoNearFieldAndFineMoreRays) {
   EXPECT_FALSE(options.traces_near()) << "auto: off without a sweep";
 }
 
+TEST(Options, BouncesAreAllWithASweepElseOne) {
+  for (const auto& [transport, bounces] : {std::pair{"sweep", Bounces::all}, {"sampled", Bounces::one}})
+    EXPECT_EQ(resolve_options({{"transport", transport}}, SceneData{}).bounces, bounces);
+  EXPECT_EQ(resolve_options({{"preset", "paper"}}, SceneData{}).bounces, Bounces::one);
+  EXPECT_EQ(resolve_options({{"bounces", "1"}}, SceneData{}).bounces, Bounces::one);
+}
+
 TEST(Options, NearPixelsAreAboutAsManyAtEachSizeOfImage) {
   RenderOptions options;
   const std::map<std::pair<int, int>, int> steps = {

@@ -67,7 +67,7 @@ TEST_F(PathtraceCommand, WritesLayersMetadataAndStats) {
   EXPECT_EQ(image.metadata.at("seed"), "7");
   EXPECT_EQ(image.metadata.at("spp"), "4");
   EXPECT_EQ(image.metadata.at("camera"), "down");
-  EXPECT_EQ(image.metadata.at("bounces"), "1");
+  EXPECT_EQ(image.metadata.at("bounces"), "all");
   const nlohmann::json stats = nlohmann::json::parse(std::ifstream(file("a.json")));
   EXPECT_EQ(stats["schema"], 1);
   EXPECT_EQ(stats["spp"], 4);

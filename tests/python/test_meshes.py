@@ -151,7 +151,7 @@ def test_a_scene_of_trimesh_is_its_file(colour, material, tmp_path):
     for view in "albedo", "normal", "direct":
         found, expected = (clpv.pathtrace(each, view, camera, width=9, height=9, samples=1).array
                            for each in (clpv.Scene.from_trimesh(trimesh.load(file)), clpv.Scene(file)))
-        numpy.testing.assert_allclose(found, expected, atol=0.005)  # of 8 bits
+        numpy.testing.assert_allclose(found, expected, atol=0.005)  # rounding of 8 bits
 
 
 def test_the_example_of_arrays_runs(tmp_path):

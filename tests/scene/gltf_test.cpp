@@ -468,6 +468,11 @@ TEST_F(GltfTest, ExtensionsThatAreNotReadGetANote) {
   EXPECT_THAT(load().notes, ::testing::Not(::testing::Contains(HasSubstr("extensions"))));
   model.document["nodes"][0]["extensions"]["KHR_materials_unlit"] = json::object();
   EXPECT_THAT(load().notes, note) << "which extensionsUsed does not list";
+  const int times = model.accessor<float>("SCALAR", {0, 1});
+  model.document["animations"] = {
+      {{"samplers", {{{"input", times}, {"output", times}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"path", "pointer"}}}}}}}};
+  EXPECT_THAT(load().notes, ::testing::Contains(HasSubstr("KHR_animation_pointer")));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr double kFloat = 1e-6;
 /// A link into a cell: its side, the direction of the light and the weights of the blockers.
 struct Link {
   glm::ivec3 side;
-  glm::dvec3 direction;  // of the light
+  glm::dvec3 direction;  // direction of the light
   std::vector<double> blocked_by;
 };
 

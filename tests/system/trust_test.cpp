@@ -257,7 +257,7 @@ TEST_F(ScratchFolders, AMissingTmpdirIsNamed) {
   EXPECT_THAT(cold.err, HasSubstr(helped ? "TMPDIR: found '" + absent + "'" : ""));
 }
 
-/// What choose_driver_cache() sets with these variables; its message in `err`.
+/// Cache folder that choose_driver_cache() sets with these variables; its message in `err`.
 fs::path chosen_cache(const fs::path& home, const std::string& cache, std::string& err) {
   ::unsetenv("POCL_CACHE_DIR");
   home.empty() ? ::unsetenv("HOME") : ::setenv("HOME", home.c_str(), 1);

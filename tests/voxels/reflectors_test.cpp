@@ -18,7 +18,7 @@ namespace {
 
 using namespace test;
 
-constexpr int kGrid = 9;  // that of `clpv check`: the same programs
+constexpr int kGrid = 9;  // as in `clpv check`: the same programs
 constexpr int kCells = kGrid * kGrid * kGrid;
 constexpr float kColour = 1.0f / 4096;
 const ClpvGrid kGridCells = {{0, 0, 0}, 1, kGrid, {}};
