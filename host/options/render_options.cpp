@@ -112,7 +112,9 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("directions", o.directions, "number of sweep directions in the finest cascade", Named{});
   visit("coarser-directions", o.coarser_directions,
         "number of sweep directions in all other cascades", Named{});
-  visit("bounces", o.bounces, "number of diffuse bounces; more than 1 needs --transport sweep; auto: all with a sweep, else "
+  visit("bounces", o.bounces,
+        "number of diffuse bounces; more than 1 needs --transport sweep; auto: all with a sweep, "
+        "else "
         "1",
         Named{});
   visit("layout", o.layout,

@@ -178,6 +178,7 @@ QualitySummary summary_of(const Variant& variant, const std::vector<QualityCell>
   sum.rejected = sum.views - static_cast<int>(rendered.size());
   for (const QualityCell* cell : rendered) {
     sum.undefined += !cell->nrmse;
+    sum.cached += cell->cached;
     sum.worst_nrmse = std::max(sum.worst_nrmse, cell->nrmse);  // an empty one is the least
     for (const TimeRecord& time : cell->times)
       sum.stage_ms[time.stage] += time.median / static_cast<double>(rendered.size());

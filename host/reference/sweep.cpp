@@ -71,15 +71,15 @@ class Sweep {
           arriving += d.taps[k] * transmitted * upstream;
         }
         const std::vector<double> c = cascade_.injected->cell(channel, p);
-        field.at(channel, 0, p.x, p.y, p.z) = dot(means, c) + c[0] * lacking +
-                                              in_medium(channel, bin, sweep_bin, d, p, arriving);
+        field.at(channel, 0, p.x, p.y, p.z) =
+            dot(means, c) + c[0] * lacking + in_medium(channel, bin, sweep_bin, d, p, arriving);
       }
     });
     return field;
   }
 
  private:
-  /// What the harmonics of a cell lack of a clamped cosine along a direction, per c_0.
+  /// Part that the harmonics of a cell lack of a clamped cosine along a direction, per c_0.
   double lacking_of(const glm::ivec3& p, std::span<const double> means) const {
     std::array<double, 4> c{};
     for (int channel = 0; channel < 3; ++channel)
@@ -91,8 +91,7 @@ class Sweep {
     const double r = std::min(1.0, linear / alpha1 / (uniform / alpha0));
     const double z = (means[1] * c[1] + means[2] * c[2] + means[3] * c[3]) / (y1 * linear);
     const auto [e0, e2, e4] = rest_->even;
-    return std::pow(r, 4) / alpha0 *
-           (std::abs(z) / 2 - e0 - e2 * z * z - e4 * std::pow(z, 4));
+    return std::pow(r, 4) / alpha0 * (std::abs(z) / 2 - e0 - e2 * z * z - e4 * std::pow(z, 4));
   }
 
   /// Part of a cell in the medium.

@@ -127,7 +127,7 @@ bool emits(const ClpvMaterial& material) {
 }
 
 /// Share of light that a pane of glass transmits: its factor times the mean of the base colour.
-/// What emits or transmits by a texture stays opaque, with a note.
+/// A material that emits or transmits by a texture stays opaque, with a note.
 double transmitted(const tinygltf::Material& source, const std::string& glass,
                    const ClpvMaterial& made, Notes& notes) {
   const auto found = source.extensions.find(kTransmission);
@@ -142,8 +142,8 @@ double transmitted(const tinygltf::Material& source, const std::string& glass,
   return factor * (made.base_colour[0] + made.base_colour[1] + made.base_colour[2]) / 3;
 }
 
-/// What stops half of light or more is opaque, a hole elsewhere: 1 - alpha (1 - transmitted)
-/// passes.
+/// A material that stops half of light or more is opaque, a hole elsewhere: 1 - alpha (1 -
+/// transmitted) passes.
 void read_alpha(const tinygltf::Material& source, const std::string& place, ClpvMaterial& made,
                 Notes& notes) {
   if (source.doubleSided) made.flags |= CLPV_MATERIAL_DOUBLE_SIDED;

@@ -61,7 +61,7 @@ CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
   return sum;
 }
 
-// What a sweep adds to the incident flux of the one before.
+// Flux that a sweep adds to the incident flux of the one before.
 CLPV_INLINE FaceFluxes further_flux(const FaceFluxes before, const FaceFluxes after) {
   FaceFluxes flux;
 #pragma unroll
@@ -183,8 +183,8 @@ CLPV_INLINE realW furnace_divisor(const realW f) {
   return f >= (realW)(CLPV_LEAST_WHITE) ? f : rest;
 }
 
-// `swept`: a white furnace in channel 0; `white`: the F of a face that it lights fully. Also divides
-// R of albedo 1, so that R over it stays the albedo.
+// `swept`: a white furnace in channel 0; `white`: the F of a face that it lights fully. Also
+// divides R of albedo 1, so that R over it stays the albedo.
 __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
                                    const float white, CLPV_VOLUME_OUT normalised) {
   Tile t = find_tile();

@@ -10,11 +10,11 @@
 #define CLPV_ALPHA_1 1.02332671f   // sqrt(pi / 3): length of its integrals with band 1
 #define CLPV_Y_1 0.488602512f      // largest value of a function of band 1
 
-// What harmonics lack of a clamped cosine about the normal n of a cell's light, the direction of
-// band 1 of all channels together, per c_0 of a channel:
+// Adds what harmonics lack of a clamped cosine about the normal n of a cell's light, the direction
+// of band 1 of all channels together, per c_0 of a channel:
 //
-//   I_w += c_0 r^4 / alpha_0 (|z| / 2 - e_0 - e_2 z^2 - e_4 z^4),   z = w . n
-//   r = min(1, (|c_1| / |alpha_1|) / (c_0 / alpha_0)),   c the sum of the channels
+//   I_w += r^4 c_0 / alpha_0 (|z| / 2 - e_0 - e_2 z^2 - e_4 z^4),   z = w . n
+//   r = min(1, (|c_1| / |alpha_1|) / (c_0 / alpha_0))   c: sum of all channels
 //
 // r is 1 where all light leaves about n, and less where normals differ; nothing is added without
 // light or direction. `source`: c_0 of the first channel.

@@ -173,8 +173,8 @@ int add_mesh(Scene& scene, const py::object& positions, const py::object& triang
 void add_material(py::module_& module) {
   py::class_<Material> type(
       module, "Material",
-      "Diffuse surface of a mesh. Immutable; replace() makes another. Values are validated on\n"
-      "use.\n\n"
+      "Diffuse surface of a mesh. Immutable; replace() makes another. Values are checked where\n"
+      "it is used.\n\n"
       "base_colour: linear red, green, blue and optionally alpha, or one number, 0 to 1;\n"
       "emission: radiance of the front [W/m^2/sr], three numbers or one; texture: array (height,\n"
       "width, 4), uint8 with sRGB-encoded colour, or floats, linear; alpha_cutoff: alpha below\n"

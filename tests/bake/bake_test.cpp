@@ -356,7 +356,8 @@ TEST_F(BakeCommand, FilesShowTheTruth) {
 TEST_F(BakeCommand, MeanLightAtGivenPoints) {
   std::ofstream(folder / "points.csv") << "0.28,0.27,0.1,0,0,1\n0.1,0.1,0.1,0,1,0\n";
   std::ofstream(folder / "none.csv") << "# x,y,z,nx,ny,nz\n";
-  const Outcome outcome = bake("--from pathtrace --bounces 1 --spp 512 --probes 5,5,5 --points points.csv");
+  const Outcome outcome =
+      bake("--from pathtrace --bounces 1 --spp 512 --probes 5,5,5 --points points.csv");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   std::istringstream rows(outcome.out);
   std::map<std::string, double> mean;

@@ -189,7 +189,8 @@ TEST(Presets, FastHasNoNearFieldAndFineMoreRays) {
 }
 
 TEST(Options, BouncesAreAllWithASweepElseOne) {
-  for (const auto& [transport, bounces] : {std::pair{"sweep", Bounces::all}, {"sampled", Bounces::one}})
+  for (const auto& [transport, bounces] :
+       {std::pair{"sweep", Bounces::all}, {"sampled", Bounces::one}})
     EXPECT_EQ(resolve_options({{"transport", transport}}, SceneData{}).bounces, bounces);
   EXPECT_EQ(resolve_options({{"preset", "paper"}}, SceneData{}).bounces, Bounces::one);
   EXPECT_EQ(resolve_options({{"bounces", "1"}}, SceneData{}).bounces, Bounces::one);

@@ -71,8 +71,7 @@ void Bouncer::sum_series(std::size_t cascade, const Buffer& swept) {
 
 void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, const Volume& injected,
                                Volume& bounced) {
-  inject_reflected_->set(swept, reflectors_[cascade].memory(), injected.memory(),
-                         bounced.memory());
+  inject_reflected_->set(swept, reflectors_[cascade].memory(), injected.memory(), bounced.memory());
   volumes_.launch(*inject_reflected_, kChannels);
 }
 

@@ -37,8 +37,8 @@ def report(score):
                   file=sys.stderr)
 
 
-def main(arguments):
-    parser = argparse.ArgumentParser(prog="python3 -m clpv_lab.score", description=__doc__)
+def main(arguments, program="python3 -m clpv_lab.score"):
+    parser = argparse.ArgumentParser(prog=program, description=__doc__)
     parser.add_argument(
         "folders", metavar="DIR", type=pathlib.Path, nargs="+",
         help="images VIEW.exr, or frames VIEW.NUMBER.exr of the same still view: linear radiance")
