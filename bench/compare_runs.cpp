@@ -45,7 +45,7 @@ std::vector<Value> values_of_bench(const nlohmann::json& rows) {
       values.push_back(value_of(row.at("name"), row));
     else
       values.push_back({row.at("name"), {}, 0, false, row.at("status")});
-    if (row.value("launches", 0.0) == 0) continue;  // of a frame
+    if (row.value("launches", 0.0) == 0) continue;  // a kernel of a frame
     for (const char* number : {"launches", "fills", "waits", "arguments", "written"})
       values.push_back({fmt::format("{} {}", row.at("name").get<std::string>(), number),
                         row.at(number).get<double>(), 0, true});  // it repeats exactly

@@ -96,7 +96,7 @@ struct Rasterization {
 /// centre.
 struct DepthComparison {
   double checked = 0, different = 0;
-  std::string place;  ///< of the last difference
+  std::string place;  ///< place of the last difference
 };
 
 void compare(DepthComparison& comparison, const pathtracer::RayScene& rays, Pass pass,

@@ -19,7 +19,7 @@ struct RasterTask {
   ClpvLight light{};  ///< unused by rasterize_camera
   std::vector<ClpvView> views;
 
-  double pixels() const;  ///< of all views
+  double pixels() const;  ///< sum over all views
 };
 
 /// The task of rasterize_job(), with its errors.

@@ -38,7 +38,7 @@ std::string lobes_of(const RenderOptions& options);
 
 struct Row {
   std::string suite, stage, name;
-  int coefficients = 0;            ///< of the basis
+  int coefficients = 0;            ///< functions of the basis
   std::optional<Problem> problem;  ///< empty for rows without volumes: rasterising and ceilings
   Status status = Status::ok;
   std::string reason;   ///< reason for `unsupported`, or place of the error for `wrong`
@@ -49,7 +49,7 @@ struct Row {
   std::string recompute;
 
   std::vector<double> samples_ms;
-  Statistics times;    ///< of samples_ms
+  Statistics times;    ///< statistics of samples_ms
   double cpu_ms = 0;   ///< processor time of all threads, mean of the samples
   double wall_ms = 0;  ///< median
   bool from_events = true;
@@ -70,7 +70,7 @@ struct Row {
   double gbps() const;
 };
 
-/// JSON with Google Benchmark's keys and clpv's (docs/benchmarks.md lists them). `iterations` is
+/// JSON with Google Benchmark's keys and clpv's (bench/README.md lists them). `iterations` is
 /// the number of propagation steps; Google Benchmark's key of that name would always be 1.
 nlohmann::json to_json(const Row& row, int index);
 

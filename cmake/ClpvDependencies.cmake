@@ -77,7 +77,7 @@ target_include_directories(clpv_internal INTERFACE
 target_link_libraries(clpv_internal INTERFACE
   OpenCL::OpenCL glm::glm fmt::fmt nlohmann_json::nlohmann_json Threads::Threads)
 
-# Of a tinygltf without a library: clpv decodes images by OpenImageIO.
+# For a tinygltf without a library: clpv decodes images by OpenImageIO.
 if(NOT TINYGLTF_LIBRARY)
   target_compile_definitions(clpv_internal INTERFACE TINYGLTF_NO_STB_IMAGE TINYGLTF_NO_STB_IMAGE_WRITE)
   set(tinygltf_source ${CMAKE_CURRENT_BINARY_DIR}/tinygltf.cpp)

@@ -14,7 +14,7 @@ import clpv
 import numpy as np
 from matplotlib import pyplot as plt
 
-A = np.pi * np.array([1] + [2 / 3] * 3 + [1 / 4] * 5)  # of the clamped cosine, by harmonic
+A = np.pi * np.array([1] + [2 / 3] * 3 + [1 / 4] * 5)  # integrals of the clamped cosine, by harmonic
 BAKES = {
     "swept, sh3": ("--format", "sh3"),
     "traced, sh3": ("--format", "sh3", "--from", "pathtrace"),

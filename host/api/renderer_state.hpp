@@ -34,16 +34,16 @@ struct Renderer::State {
   Session session;
   std::string description;  ///< never changes
   std::optional<Frame> frame;
-  unsigned rebuilds;                            ///< of the frame (Scene::Contents)
-  std::map<std::string, std::string> metadata;  ///< of the last frame's images; empty before it
+  unsigned rebuilds;                            ///< the frame's (Scene::Contents)
+  std::map<std::string, std::string> metadata;  ///< for the last frame's images; empty before it
   bool lit = false;  ///< the cascades have the light of the last render(), light() or update()
-  struct Shown {     ///< what the last images are of
+  struct Shown {     ///< subject of the last images
     SceneCamera camera;
     double seconds;
     unsigned changes;  ///< Scene::Contents::changes
   };
   std::optional<Shown> shown = {};
-  std::optional<Shown> lit_of = {};  ///< what the last light is of
+  std::optional<Shown> lit_of = {};  ///< subject of the last light
   bool lit_for_shown = false;        ///< the cascades have its light
   double posed_at = 0;               ///< time of the last pose()
   double frame_ms = 0;

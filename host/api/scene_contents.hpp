@@ -27,7 +27,7 @@ struct Scene::Contents {
   } given;
   unsigned rebuilds = 0;    ///< changes after which frames allocate their memory again
   unsigned geometries = 0;  ///< changes of meshes
-  unsigned changes = 0;     ///< of anything
+  unsigned changes = 0;     ///< counts changes of any kind
 
   void change_meshes(const MovingScene::MeshChange& change) {
     const std::lock_guard lock(mutex);
@@ -63,7 +63,7 @@ class PosedScene {
  private:
   Scene file_;
   std::optional<MovingScene> posed_;
-  unsigned geometries_;  ///< of the last pose
+  unsigned geometries_;  ///< at the last pose
 };
 
 }  // namespace clpv

@@ -21,7 +21,7 @@
 namespace clpv::bake {
 namespace {
 
-constexpr double kBacks = 0.25;  // of all directions
+constexpr double kBacks = 0.25;  // share of all directions
 constexpr std::size_t kHash = 16;
 constexpr std::uint64_t kMaxOldBlocks = 1u << 30;  // bytes
 constexpr std::chrono::hours kMaxAge(24 * 30);

@@ -20,7 +20,7 @@ using pathtracer::Moments;
 struct ProbeFormat {
   std::string name;
   std::size_t size = 0;  ///< numbers per channel
-  std::string meaning;   ///< of the numbers, with their unit
+  std::string meaning;   ///< meaning of the numbers, with their unit
   Moments moments;       ///< integrals of arriving radiance that encode() takes
   /// Null: the integrals are the coefficients.
   std::function<std::vector<glm::dvec3>(std::span<const glm::dvec3> integrals)> encode = {};

@@ -161,10 +161,10 @@ class Swept : public ProbeSource {
   SceneCamera camera_;
   ProbeGrid grid_;
   Frame frame_;
-  std::vector<glm::dvec3> places_;  // of probes, off surfaces
+  std::vector<glm::dvec3> places_;  // positions of probes, off surfaces
   std::array<glm::dvec3, 12> directions_;
   Matrix projection_;
-  std::vector<glm::dvec3> eyes_;  // of blocks
+  std::vector<glm::dvec3> eyes_;  // eyes of blocks
 };
 
 class Traced : public ProbeSource {

@@ -16,6 +16,10 @@ inline constexpr int kCellFaces = 6;
 /// Sweeps for all bounces in a medium that scatters, along 24 directions.
 inline constexpr int kScatteredSweeps = 8;
 
+/// Sweeps for all bounces without such a medium before the last one, along 24 directions; at least
+/// 2. Further ones carry light farther from where it arrived (docs/method.md, 'More bounces').
+inline constexpr int kSeriesSweeps = 3;
+
 /// Limit of the ratio of successive bounces in the series of `--bounces all`, which diverges in
 /// closed white rooms.
 inline constexpr double kMaxReturned = 0.98;
@@ -31,6 +35,9 @@ Matrix reflected_intensity(const Basis& basis);
 /// Light F of a white furnace, over that of even light 1, below which few of its surfaces are in
 /// sight, so that it says little.
 inline constexpr double kLeastWhite = 0.02;
+
+/// Radiance of a white border above which a direction counts as open: walls let less through.
+inline constexpr double kLeastOpen = 0.1;
 
 /// Number that swept light is divided by: F, below kLeastWhite a number that rises to 1, so that
 /// light where the furnace is dark stays as it is.

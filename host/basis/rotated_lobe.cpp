@@ -12,7 +12,7 @@ namespace clpv {
 namespace {
 
 constexpr int kMaxTableSize = 1 << 20;
-constexpr std::size_t kMaxEntries = std::size_t{1} << 24;  // of all tables together: 64 MiB
+constexpr std::size_t kMaxEntries = std::size_t{1} << 24;  // sum over all tables: 64 MiB
 
 double gram_function(double t, double product) {
   return 4 * std::numbers::pi * abel_poisson(t, product);

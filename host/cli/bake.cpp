@@ -67,7 +67,7 @@ RenderOptions frame_options(const Options& options, const SceneData& scene, cons
 struct Light {
   std::unique_ptr<pathtracer::PointTracer> tracer;
   std::unique_ptr<Session> session;
-  RenderOptions frame;  ///< of a sweep
+  RenderOptions frame;  ///< options of a sweep
   std::unique_ptr<ProbeSource> source;
 };
 
@@ -259,7 +259,7 @@ void add_options(CLI::App& command, Options& options) {
                    "with light that comes straight from the scene's lights; emissive surfaces and "
                    "the sky always count");
   command.add_flag("--no-dilate", options.no_dilate,
-                   "keeps the light of probes inside walls, in place of that of their neighbours");
+                   "do not fill probes inside walls from their neighbours");
   add_number(command, "--check", "N", options.check,
              "errors at N points of surfaces and N in the air: prints those of all formats, or, "
              "with --output, those of the file, and adds them to FILE.json",

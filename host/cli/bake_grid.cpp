@@ -14,9 +14,9 @@ namespace clpv::bake_command {
 namespace {
 
 constexpr double kMaxProbes = 1 << 22;
-constexpr double kMaxBytes = 1 << 30;  // of all coefficients, as 32-bit floats
+constexpr double kMaxBytes = 1 << 30;  // all coefficients, as 32-bit floats
 constexpr int kDefaultProbes = 16;     // along the longest edge
-constexpr double kInset = 0.125;       // of the default bounds, in spacings: off walls
+constexpr double kInset = 0.125;       // inset of the default bounds, in spacings: off walls
 
 /// Throws Error(usage).
 template <typename Number, std::size_t Count>

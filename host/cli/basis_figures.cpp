@@ -24,8 +24,8 @@ constexpr const char* kPaperBases[] = {"sh2",     "sh3",     "sh4",     "sh5",  
                                        "srbf8v1", "srbf8v2", "srbf8v3", "srbf14"};
 constexpr double kFigure2Lambda = 0.4;
 const std::array<glm::dvec3, 7> kAxes{
-    {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {-2, 1, -3}}};  // of any
-                                                                                          // length
+    {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {-2, 1, -3}}};
+// length
 
 /// Functions on the sphere, sampled on a grid: rows from +z to -z including poles, columns around z
 /// from +x.

@@ -281,8 +281,7 @@ void add_check(CLI::App& app, Shared& shared) {
           "only comparisons with this text in their name, such as a basis or layout; repeatable")
       ->type_name("TEXT");
   add_number(*command, "--limit", "SECONDS", options->limit,
-             "time after which one of several comparisons has failed [s]",
-             {1e-3, 1e6, "0.001..1e6 s"});
+             "timeout per comparison, if several run [s]", {1e-3, 1e6, "0.001..1e6 s"});
   command->add_flag("--list", options->list, "print the names of the comparisons and end");
   add(*command, "--claims", "DIR", options->claims, "folder shared with other helpers")->group("");
   CLI::Option* capsules =

@@ -135,7 +135,7 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
   app.name("clpv");
   app.set_version_flag("--version", "clpv " + version(), "version of the program");
   app.set_help_flag("-h,--help", "this help");
-  app.set_help_all_flag("--help-all", "help of all commands");
+  app.set_help_all_flag("--help-all", "also show rarer options");
   add(app, "-d,--device", "DEVICE", shared.device,
       "OpenCL device: index, PLATFORM:DEVICE or part of a name (default: CLPV_DEVICE, else the "
       "first supported)");
@@ -185,7 +185,7 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
     if (what.find(" required ") == std::string::npos) throw;
     throw Error(ExitCode::usage, "{}: found {}, allowed: one", option,
                 what.ends_with("missing") ? "no value" : "several values");
-  } catch (const CLI::ValidationError& error) {  // of CLI::IsMember: "--view: a not in {b,c}"
+  } catch (const CLI::ValidationError& error) {  // by CLI::IsMember: "--view: a not in {b,c}"
     const std::string what = error.what();
     const std::size_t colon = what.find(": "), found = what.rfind(" not in {");
     if (found == std::string::npos) throw;

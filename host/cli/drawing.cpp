@@ -9,6 +9,7 @@
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 
@@ -85,6 +86,7 @@ Drawing::Drawing(std::string kind, std::string asked_by)
   std::string tried;
   for (const fs::path& python : interpreters()) {
     const Process::Result ended = run(python, {});
+    stop_if_interrupted();
     if (ended.code == 0) {
       python_ = python;
       log_debug("{}: drawing with {}", asked_by_, python_.string());
@@ -111,6 +113,7 @@ void Drawing::draw(const fs::path& output) const {
                           : kind_ == "report" ? drawn / "index.html"
                                               : drawn;
   const Process::Result ended = run(python_, {folder().string(), target.string()});
+  stop_if_interrupted(fmt::format("{} was not written", output.string()));
   if (ended.code == 0) {
     for (const fs::directory_entry& file : fs::directory_iterator(drawn))
       write_file(folder_of_output / file.path().filename(), read_whole(file.path()),

@@ -288,7 +288,7 @@ void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& ca
       "scene's");
   add_number(command, "--light-scale", "X", changes.light_scale,
              "factor of the intensities of the scene's lights (default: the scene file's, or 1); "
-             "0.001464 counts lux and candela by Blender in watts",
+             "0.001464 converts Blender's lux and candela to watts",
              {1 / bounds::kLightScale, bounds::kLightScale})
       ->excludes(sun);
   const auto take_medium = [&changes](const std::string& text) {

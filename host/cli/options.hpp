@@ -162,9 +162,9 @@ struct SceneChanges {
 /// the option that excludes --eye.
 void add_scene_changes(CLI::App& command, SceneChanges& changes, CLI::Option& camera);
 
-/// The options of path tracing, shared by `pathtrace`, `quality` and `report`.
+/// The options of path tracing.
 struct TracingOptions {
-  std::string bounces = "1";
+  std::string bounces = "all";
   pathtracer::PathTracerOptions values;  ///< all but `bounces`
 
   /// Throws Error(usage) unless --bounces is a number from 1 or all.

@@ -43,7 +43,7 @@ struct Options {
   Show view = Show::indirect;
   int frames = 3;
   bool fresh = false;
-  TracingOptions tracing;
+  TracingOptions tracing{.bounces = "1", .values = {}};
   OptionValues given;
 
   /// The option that asks for cells of the addition; empty: none.
@@ -164,6 +164,7 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session,
     }
     cell->variant = group.variant;  // the spelling of the same options may differ
     if (!kept && cell->rejected.empty()) store.keep(key, *cell);  // a rejection may be temporary
+    cell->cached = kept;
     cells[number] = to_json(*cell);
     kept ? progress.skip() : progress.advance();
   });

@@ -21,7 +21,7 @@ struct QualitySubjects {
   /// "STEM=PATH", STEM of a scene file; for one scene also "PATH".
   std::vector<std::string> models;
   std::vector<std::string> cameras;  ///< names; empty: all
-  SceneChanges changes;              ///< of all scenes
+  SceneChanges changes;              ///< for all scenes
   double time = 0;                   ///< time of the frame [s]
 };
 

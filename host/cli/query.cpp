@@ -32,7 +32,7 @@ struct Options {
   std::vector<CLI::Option*> of_truth = {};  ///< without effect on volumes
 };
 
-constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 22;  // of --basis, all points
+constexpr std::uint64_t kMaxNumbers = std::uint64_t{1} << 22;  // all points, with --basis
 
 std::string table_of(const std::vector<SurfacePoint>& points, Frame& frame) {
   std::vector<glm::vec4> positions, normals;

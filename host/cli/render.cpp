@@ -124,7 +124,7 @@ void add_render(CLI::App& app, Shared& shared) {
       "energies, "
       "as JSON");
   add_number(*command, "--frames", "N", options->frames,
-             "number of timed frames for --stats, after a warm-up frame; it has their medians",
+             "number of timed frames for --stats, after a warm-up frame; medians are reported",
              {1, 1000});
   command->callback([options, &shared] { run(*options, shared); });
 }

@@ -44,7 +44,7 @@ struct Options {
   QualitySubjects subjects;
   std::vector<std::string> quality, benchmarks, images;
   int width = 240, height = 135;
-  TracingOptions tracing;
+  TracingOptions tracing{.bounces = "1", .values = {}};
 };
 
 /// Render variants of the page. The most important comes last; only it has as many bounces as the

@@ -9,6 +9,7 @@
 
 #include "image/image.hpp"
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 
 namespace clpv {
 namespace {
@@ -48,6 +49,7 @@ Video::~Video() {
 }
 
 void Video::fail(const Process::Result& ended) const {
+  stop_if_interrupted(fmt::format("{} was not written", file_.string()));
   throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(),
               ended.code, ended.output);
 }

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kVendors = "/etc/OpenCL/vendors";
-constexpr std::uintmax_t kMostBytes = 4096;         // of an .icd file: one path
+constexpr std::uintmax_t kMostBytes = 4096;         // an .icd file holds one path
 constexpr std::chrono::seconds kLoading{20};        // longer than any driver takes
 constexpr int kSignalled = 128;                     // exit code after a signal, less the signal
 constexpr const char* kLoaded = "driver loaded\n";  // since a driver may end the child with code 0

@@ -103,7 +103,7 @@ class Kernel {
   std::string name_;
   cl::Kernel kernel_;
   cl_uint parameter_count_ = 0, argument_count_ = 0;
-  std::vector<std::vector<std::byte>> values_;  ///< of the arguments set last
+  std::vector<std::vector<std::byte>> values_;  ///< bytes of the arguments set last
 };
 
 }  // namespace clpv

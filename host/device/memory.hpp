@@ -75,7 +75,7 @@ using Image3D = DeviceMemory<cl::Image3D>;
 class TooLarge : public Error {
  public:
   TooLarge(Error error, double share) : Error(std::move(error)), share(share) {}
-  double share;  ///< what the device allows / what is needed (in use + requested), below 1
+  double share;  ///< allowed by the device / needed (in use + requested), below 1
 };
 
 /// Allocates memory on one device, and counts it.

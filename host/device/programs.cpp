@@ -177,7 +177,7 @@ void Programs::build(Program& program) {
   const auto start = std::chrono::steady_clock::now();
   if (recorder_) recorder_->add_program(program.source.file, program.source.options, program.text);
   program.stored = load(program);
-  const bool alone = cache_ || compilation_.claims;  // what they store and claim is built by them
+  const bool alone = cache_ || compilation_.claims;  // they build their programs themselves
   if (!program.stored && !alone) program.built = shared_program(context_, program.key);
   const bool built_before = program.built() != nullptr;
   if (!built_before) {

@@ -37,7 +37,10 @@ Session::Session(Device device, std::optional<ProgramCache> cache, Compilation c
              times && device_.profiling_valid ? CL_QUEUE_PROFILING_ENABLE : 0),
       timeline_(times && device_.profiling_valid, times),
       memory_(device_, context_, queue_, compilation.claims.has_value()),
-      programs_(device_, context_, std::move(cache), std::move(compilation)) {}
+      programs_(device_, context_, std::move(cache), std::move(compilation)) {
+  if (times && !device_.profiling_valid)
+    log_warning("the device's events have no plausible times: those of stages are the host's");
+}
 
 Session::Session(GivenQueue given, std::optional<ProgramCache> cache)
     : device_(std::move(given.device)),

@@ -148,7 +148,7 @@ class Session {
     cl::Event done;
   };
   std::vector<Write> writes_;
-  std::vector<std::shared_ptr<Arriving>> reads_;  ///< of read_later(), until they have arrived
+  std::vector<std::shared_ptr<Arriving>> reads_;  ///< by read_later(), until they arrive
   struct TableImage {
     Buffer values;
     cl::Image1DBuffer image;

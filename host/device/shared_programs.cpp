@@ -8,7 +8,7 @@
 namespace clpv {
 namespace {
 
-constexpr std::size_t kKept = 256;  // of some ten sets of options
+constexpr std::size_t kKept = 256;  // programs of about ten sets of options
 
 /// Contexts and programs of the process.
 class SharedPrograms {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What sessions of one process share: a context for each device, and the programs built in it. With
+// Sessions of one process share a context for each device, and the programs built in it. With
 // PoCL 3.1, a program that its own cache holds still takes 20 to 40 ms to build, and a frame has up
 // to 40.
 #pragma once

@@ -46,9 +46,9 @@ enum class Chain : std::size_t {};
 /// Work of the host for a frame.
 struct HostWork {
   unsigned launches = 0;    ///< kernels, fills and copies
-  unsigned fills = 0;       ///< of them fills and copies
+  unsigned fills = 0;       ///< launches that fill or copy
   unsigned waits = 0;       ///< times that the host waited for the device
-  unsigned arguments = 0;   ///< of kernels, set because they had changed
+  unsigned arguments = 0;   ///< arguments of kernels, set because they had changed
   std::size_t written = 0;  ///< to buffers [bytes]
   double waited_ms = 0;     ///< sum of the waits [ms]
   double host_ms = 0;       ///< from clear() to enqueued(), waits not included [ms]

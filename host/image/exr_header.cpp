@@ -24,8 +24,8 @@ constexpr std::uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kMultiPartFlag = 
 constexpr std::size_t kFlagsAt = 4;
 constexpr std::size_t kNameBytes = 255;
 constexpr std::size_t kMaxParts = 1024, kMaxAttributes = 1024;  // bound the time of the walk
-constexpr std::int64_t kOffsetBytes = 8;  // of a chunk, in the table of chunks
-constexpr unsigned char kCubeMap = 1;     // value of `envmap`
+constexpr std::int64_t kOffsetBytes = 8;                        // an entry in the table of chunks
+constexpr unsigned char kCubeMap = 1;                           // value of `envmap`
 constexpr std::array<std::string_view, 4> kPartTypes = {
     {"scanlineimage", "tiledimage", "deepscanline", "deeptile"}};
 
@@ -115,7 +115,7 @@ struct ExrPart : ExrHeader {
   std::int64_t tile_width = 0, tile_height = 0;  ///< 0 without attribute `tiles`
   std::int64_t chunks = 0;                       ///< value of `chunkCount`
   bool compressed = true;
-  std::int64_t pixel_bytes = 0;  ///< of all channels
+  std::int64_t pixel_bytes = 0;  ///< sum over all channels
   std::string type;
   bool empty = true;  ///< true without attributes
 };

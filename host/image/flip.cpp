@@ -19,7 +19,7 @@ using Planes = std::array<Plane, 3>;
 
 // Exponents and split points of section 4.
 constexpr double kColourExponent = 0.7, kFeatureExponent = 0.5, kSplit = 0.4, kSplitValue = 0.95;
-constexpr double kEdgeWidth = 0.082;  // of a feature [degrees]
+constexpr double kEdgeWidth = 0.082;  // width of a feature [degrees]
 
 /// Contrast sensitivity of a channel: a sum of two Gaussians of the frequency (section 4.1.1).
 struct Sensitivity {

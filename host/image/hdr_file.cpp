@@ -25,7 +25,7 @@ constexpr int kExponentBias = 128 + 8;
 
 /// Header of a picture. Scanlines lie along x, or along y if `columns`.
 struct HdrHeader {
-  glm::dvec3 factor{1};  ///< of the values, by exposures and colour corrections
+  glm::dvec3 factor{1};  ///< factor of the values, by exposures and colour corrections
   std::optional<Chromaticities> primaries;
   bool columns = false, from_right = false, from_bottom = false;
   int width = 0, height = 0;

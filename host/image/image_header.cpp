@@ -169,7 +169,7 @@ std::vector<std::uint8_t> strip_png(Data bytes) {
 }
 
 std::string foreign_colour(Data png) {
-  constexpr double kUnit = 1e-5;  // of gAMA and cHRM
+  constexpr double kUnit = 1e-5;  // unit of gAMA and cHRM
   constexpr double kSrgbGamma = 0.45455, kSameGamma = 5e-3;
   constexpr std::array<std::size_t, 8> kOrder = {6, 7, 0, 1, 2, 3, 4, 5};  // cHRM begins with white
   std::string found;

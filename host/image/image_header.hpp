@@ -16,7 +16,7 @@ namespace clpv {
 
 /// Size of an image as its file declares it, unchecked.
 struct DeclaredImage {
-  std::int64_t width = 0, height = 0;  ///< of the data window [pixels]
+  std::int64_t width = 0, height = 0;  ///< size of the data window [pixels]
   /// Size of a tile, or of the rows decoded at once [pixels].
   std::int64_t chunk_width = 0, chunk_height = 0;
   std::int64_t channels = 0;

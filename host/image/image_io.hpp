@@ -20,7 +20,7 @@ struct ImageLimits {
   std::uintmax_t file_bytes = std::uintmax_t{1} << 30;
   int side = 16384;  ///< width and height [pixels]
   int channels = 256;
-  std::size_t pixel_bytes = std::size_t{1} << 30;  ///< of the decoded pixels, as float
+  std::size_t pixel_bytes = std::size_t{1} << 30;  ///< decoded pixels, as float
 };
 
 /// Reads all channels of an EXR, PNG or HDR file. EXR: the finest level of all parts, placed in the

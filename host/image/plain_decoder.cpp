@@ -17,7 +17,7 @@
 namespace clpv {
 namespace {
 
-constexpr std::string_view kPrefix = "clpv:";  // of metadata
+constexpr std::string_view kPrefix = "clpv:";  // prefix of metadata
 
 /// Adds an entry of a file to the metadata if clpv wrote the entry.
 void keep_metadata(CodedImage& image, const std::string& name, std::string value) {

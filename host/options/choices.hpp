@@ -122,11 +122,12 @@ constexpr int parts_of(Directions directions) {
   return 1 + static_cast<int>(directions);
 }
 
-/// Number of indirect bounces: surfaces between a light and the visible surface.
-enum class Bounces { one, two, all };
+/// Number of indirect bounces: surfaces between a light and the visible surface. automatic: all
+/// with a sweep, else one; resolve_options() replaces it, and stages take it as one.
+enum class Bounces { automatic, one, two, all };
 
 template <>
-inline constexpr auto kNames<Bounces> = name_list("1", "2", "all");
+inline constexpr auto kNames<Bounces> = name_list("auto", "1", "2", "all");
 
 enum class RsmFormat { float32, paper };  ///< paper: 32-bit depth, 8-bit normal and flux
 

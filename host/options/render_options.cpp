@@ -29,7 +29,7 @@ struct Range {
 };
 
 struct Path {
-  const char* content;  ///< of the file
+  const char* content;  ///< content of the file
 };
 
 struct OneOf {
@@ -112,7 +112,10 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("directions", o.directions, "number of sweep directions in the finest cascade", Named{});
   visit("coarser-directions", o.coarser_directions,
         "number of sweep directions in all other cascades", Named{});
-  visit("bounces", o.bounces, "number of diffuse bounces; more than 1 needs --transport sweep",
+  visit("bounces", o.bounces,
+        "number of diffuse bounces; more than 1 needs --transport sweep; auto: all with a sweep, "
+        "else "
+        "1",
         Named{});
   visit("layout", o.layout,
         "memory layout of volumes: 3-D images, or buffers ordered by cell, by coefficient or by "

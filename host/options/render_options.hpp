@@ -41,7 +41,7 @@ struct RenderOptions {
   TransportKind transport = TransportKind::sweep;
   Directions directions = Directions::of96;
   Directions coarser_directions = Directions::of96;
-  Bounces bounces = Bounces::one;
+  Bounces bounces = Bounces::automatic;
   Layout layout = Layout::soa;
   Storage storage = Storage::float16;
   int iterations = 8;
@@ -63,6 +63,8 @@ struct RenderOptions {
 
   VolumeFormat format() const { return {layout, storage}; }
   LobeOptions lobes() const { return {lobe, table_size, evaluate != Evaluation::exact}; }
+  /// True if surfaces reflect swept light.
+  bool reflects() const { return bounces == Bounces::two || bounces == Bounces::all; }
   /// True if the near field is traced.
   bool traces_near() const {
     return near == Near::traced || (near == Near::automatic && transport == TransportKind::sweep);

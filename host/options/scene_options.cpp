@@ -34,6 +34,8 @@ RenderOptions resolve_options(const OptionValues& given, const SceneData& scene)
     if (name != "preset") set_option(options, name, value);
   }
   if (!given.contains("gather-offset")) options.gather_offset = usual_gather_offset(options.gather);
+  if (options.bounces == Bounces::automatic)
+    options.bounces = options.transport == TransportKind::sweep ? Bounces::all : Bounces::one;
   options.near = options.traces_near() ? Near::traced : Near::off;
   if (is_bare_model(scene) && !given.contains("cascade-size"))
     options.cascade_size = fitting_cascade_size(scene, options.cascades, options.cascade_size);

@@ -28,7 +28,7 @@ SweepOptions sweep_options(const RenderOptions& options) {
   return {.grid = options.grid,
           .parts = parts,
           .blocking = options.blocked(),
-          .bounces = options.bounces,
+          .bounces = options.reflects() ? options.bounces : Bounces::one,
           .format = options.format()};
 }
 
@@ -71,7 +71,7 @@ NearOptions near_options(const RenderOptions& options) {
   return {.gather = gather_options(options),
           .step = near_step(options),
           .rays = rays_of(options.near_rays),
-          .reflects = options.bounces != Bounces::one};
+          .reflects = options.reflects()};
 }
 
 MediumOptions medium_options(const RenderOptions& options) {

@@ -22,14 +22,14 @@ struct InjectOptions {
   bool unit_flux_lobes = false;  ///< scales lobes to a flux of pi, as transport `exact` requires
   LobeOptions lobes = {};        ///< `rotate`: by a table in the kernel
   TableStorage table = TableStorage::buffer;
-  VolumeFormat format = {};  ///< of light and geometry volumes
+  VolumeFormat format = {};  ///< format of light and geometry volumes
 };
 
 struct PropagateOptions {
   int grid = 32;  ///< cells along each axis
   LobeTime lobe_time = LobeTime::host;
-  TableStorage table = TableStorage::buffer;  ///< of lobes rotated in the kernel
-  VolumeFormat format = {};                   ///< of all volumes
+  TableStorage table = TableStorage::buffer;  ///< for lobes rotated in the kernel
+  VolumeFormat format = {};                   ///< format of all volumes
 };
 
 /// Distribution of a sweep's work. The light is equal up to rounding.
@@ -44,10 +44,10 @@ inline constexpr auto kNames<SweepForm> = name_list("suited", "bins", "groups", 
 
 struct SweepOptions {
   int grid = 32;                   ///< cells along each axis
-  std::vector<int> parts;          ///< of each bin (sweep_bins), per cascade, finest first
+  std::vector<int> parts;          ///< parts of each bin (sweep_bins), per cascade, finest first
   bool blocking = true;            ///< light is blocked by geometry volumes
   Bounces bounces = Bounces::one;  ///< more than one needs reflectors in set_surfaces()
-  VolumeFormat format = {};        ///< of all volumes; internal buffers use its storage
+  VolumeFormat format = {};        ///< format of all volumes; internal buffers use its storage
   SweepForm form = SweepForm::suited;
   std::optional<ClpvMedium> medium = {};
   /// Lights the coarsest cascade at its border; used by the constructor alone.
@@ -62,20 +62,20 @@ struct GatherOptions {
   double blend_cells = 2;  ///< width of the blend to the next coarser cascade [cells], > 0
   LobeOptions lobes = {};  ///< b(-n) may be read from a table; alpha(-n) is always exact
   TableStorage table = TableStorage::buffer;
-  VolumeFormat format = {};  ///< of the cascades' volumes
+  VolumeFormat format = {};  ///< format of the cascades' volumes
   bool filtered = true;      ///< images: filtered by the sampler; false: from texels in float
   bool packed = false;       ///< packs images too, for stages `near` and `medium`
 };
 
 struct NearOptions {
-  GatherOptions gather = {};  ///< of the volumes
+  GatherOptions gather = {};  ///< how volumes are gathered
   int step = 1;               ///< traces one of step x step pixels: 1, 2, 4 or 8
   int rays = 2;               ///< per traced pixel, a power of two
   bool reflects = false;      ///< surfaces that rays hit also reflect the volumes' light
 };
 
 struct MediumOptions {
-  GatherOptions gather = {};  ///< of the volumes
+  GatherOptions gather = {};  ///< how volumes are gathered
   int light_steps = 8;        ///< points of each ray for each light
   int volume_steps = 1;       ///< points of each ray for the volumes
 };

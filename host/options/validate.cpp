@@ -28,7 +28,7 @@ std::vector<Contradiction> contradictions_of(const RenderOptions& o, const Scene
   return {
       {o.blockers == Blockers::scene && o.blocking != Blocking::areas, "blocking",
        name_of(o.blocking), "blockers 'scene'", "areas (or blockers 'seen')"},
-      {!sweeps && o.bounces != Bounces::one, "bounces", name_of(o.bounces), transport,
+      {!sweeps && o.reflects(), "bounces", name_of(o.bounces), transport,
        "1 (or transport 'sweep')"},
       {!sweeps && o.near == Near::traced, "near", name_of(o.near), transport,
        "off (or transport 'sweep')"},

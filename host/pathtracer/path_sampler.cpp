@@ -29,7 +29,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Random numbers of a bounce, besides those of its direction.
 constexpr std::uint64_t kEmitterStream = 1, kSkyStream = 2, kFlightStream = 3, kBeamStream = 4;
 constexpr std::uint64_t kAirStream = 1ull << 32, kChannelStream = kAirStream + 1,
-                        kEyeBeamStream = kAirStream + 2;  // of a path, besides its bounces
+                        kEyeBeamStream = kAirStream + 2;  // streams of a path, besides its bounces
 constexpr int kCertainBounces = 3;                        // Russian roulette starts at this bounce
 constexpr double kMaxSurvival = 0.95;                     // so that paths end between white walls
 constexpr double kProbeFactor = 0.25;

@@ -29,7 +29,7 @@ class PathSampler {
   /// Point of a path. Light that arrives there counts times a factor.
   struct Vertex {
     enum class Kind {
-      surface,  ///< of the scene: factor cosine
+      surface,  ///< a surface of the scene: factor cosine
       element,  ///< a small surface that is not the scene's: factor cosine
       probe,    ///< factor 1/4, so that the sum over directions is pi times the mean radiance
       medium,   ///< factor pi times the phase function

@@ -63,7 +63,7 @@ struct TracedImage {
 
 /// Receives the estimated share of all paths that are traced, rising to 1 at the end. It is first
 /// called when the number of paths for the noise can be estimated. Called on rank 0, by one thread
-/// at a time. What it throws ends the work and reaches the caller of trace_paths().
+/// at a time. An exception from it ends the work and reaches the caller of trace_paths().
 using TraceProgress = std::function<void(double)>;
 
 /// Traces `scene` lit by `lights`, which replace SceneData::lights. All `ranks` call it; they share

@@ -20,7 +20,7 @@ namespace clpv::pathtracer {
 namespace {
 
 constexpr std::uint32_t kStreams = 8;
-constexpr double kSurfaceDistance = 1e-5;  // of the scene's largest edge
+constexpr double kSurfaceDistance = 1e-5;  // share of the scene's largest edge
 constexpr double kTangential = 1e-3;       // cosine of a surface's normal and the given one
 constexpr double kProbeWeight = 4;         // 1 / (Vertex::Kind::probe's factor)
 constexpr int kSurroundingRays = 128;

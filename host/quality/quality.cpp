@@ -103,14 +103,14 @@ std::string quality_key(const GroundTruth& truth, const Device& device,
                         const RenderOptions& options, Show show, int frames, int processors) {
   Fingerprint print;
   print.add(times_key(device, options, processors));
-  print.add(truth.file.filename().string());  // of scene, lights and camera
+  print.add(truth.file.filename().string());  // a name for scene, lights and camera
   add_pixels(print, truth.image);
   return print.add(name_of(show)).add(frames).add(truth.exposure).hex();
 }
 
 namespace {
 
-constexpr const char* kFingerprint = "fingerprint";  // of the other values of a cached cell
+constexpr const char* kFingerprint = "fingerprint";  // hash of a cached cell's other values
 
 std::string fingerprint_of(const nlohmann::json& cell) {
   return Fingerprint().add(cell.dump()).hex();
@@ -178,6 +178,7 @@ QualitySummary summary_of(const Variant& variant, const std::vector<QualityCell>
   sum.rejected = sum.views - static_cast<int>(rendered.size());
   for (const QualityCell* cell : rendered) {
     sum.undefined += !cell->nrmse;
+    sum.cached += cell->cached;
     sum.worst_nrmse = std::max(sum.worst_nrmse, cell->nrmse);  // an empty one is the least
     for (const TimeRecord& time : cell->times)
       sum.stage_ms[time.stage] += time.median / static_cast<double>(rendered.size());

@@ -47,12 +47,13 @@ struct QualityCell {
   std::optional<double> best_gain, nrmse_best_gain;
   std::optional<double> energy_ratio;  ///< sum of the frame / sum of the ground truth
   std::optional<double> flip;          ///< mean FLIP of the valid pixels, at the scene's exposure
-  /// Of "frame", the sum of all stages, and of each pass over all cascades and lights.
+  /// Times of "frame", the sum of all stages, and of each pass over all cascades and lights.
   std::vector<TimeRecord> times;
   bool from_events = true;     ///< times from device events; false: wall time
-  unsigned compute_units = 0;  ///< of the device or sub-device that was timed
+  unsigned compute_units = 0;  ///< units of the device or sub-device that was timed
   /// Settings of a baseline: samples, threads and times (quality/baseline.hpp).
   std::map<std::string, double> settings;
+  bool cached = false;    ///< measured by an earlier run
   double setup_s = 0;     ///< time to create the frame; 0 if reused from another view
   double measured_s = 0;  ///< total time of the measurement
 };
@@ -92,7 +93,7 @@ class QualityStore {
 /// Means of a variant over those of its views where the value is defined; empty if there is none.
 struct QualitySummary {
   Variant variant;
-  int views = 0, rejected = 0;
+  int views = 0, rejected = 0, cached = 0;
   int undefined = 0;  ///< rendered views without `nrmse`: its ground truth is black, the frame not
   std::optional<double> nrmse, worst_nrmse, nrmse_best_gain, energy_ratio, flip;
   std::optional<double> frame_ms;          ///< mean of the medians

@@ -44,13 +44,18 @@ std::string percent(const std::optional<double>& share) {
   return text_of(share, 1, 100);
 }
 
-/// A line that counts errors which no mean has; empty if there is none.
-std::string note_of_undefined(const std::vector<QualityCell>& cells) {
+/// Lines that explain marks of the table: undefined errors, which no mean has, and cached times.
+std::string notes_of(const std::vector<QualityCell>& cells) {
+  std::string notes;
+  if (std::ranges::any_of(cells, &QualityCell::cached))
+    notes = "*: measured by an earlier run; --fresh measures all together\n";
   const auto undefined = std::ranges::count_if(
       cells, [](const QualityCell& cell) { return cell.rejected.empty() && !cell.nrmse; });
-  if (undefined == 0) return {};
-  return fmt::format("-: undefined, as over a black ground truth: {} of {} errors, in no mean\n",
-                     undefined, cells.size());
+  if (undefined > 0)
+    notes +=
+        fmt::format("-: undefined, as over a black ground truth: {} of {} errors, in no mean\n",
+                    undefined, cells.size());
+  return notes;
 }
 
 /// Timed stages of a frame: stages with a pass of their name.
@@ -75,9 +80,10 @@ double kind_ms(const QualitySummary& sum, std::string_view kind) {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualityCell, scene, camera, rejected, nrmse, best_gain,
                                    nrmse_best_gain, energy_ratio, flip, times, compute_units,
-                                   settings, setup_s, measured_s)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, undefined, nrmse, worst_nrmse,
-                                   nrmse_best_gain, energy_ratio, flip, frame_ms, stage_ms)
+                                   settings, cached, setup_s, measured_s)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QualitySummary, views, rejected, cached, undefined, nrmse,
+                                   worst_nrmse, nrmse_best_gain, energy_ratio, flip, frame_ms,
+                                   stage_ms)
 
 nlohmann::json to_json(const QualityCell& cell) {
   nlohmann::json json = cell, varied = nlohmann::json::array();  // an array: objects lose the order
@@ -134,10 +140,10 @@ std::string quality_table(const std::vector<QualityCell>& cells) {
     row[c++] = percent(sum.nrmse_best_gain);
     row[c++] = text_of(sum.energy_ratio, 2);
     row[c++] = text_of(sum.flip, 3);
-    row[c++] = text_of(sum.frame_ms, 1);
+    row[c++] = text_of(sum.frame_ms, 1) + (sum.cached > 0 ? "*" : "");
     for (const std::string_view kind : kinds) row[c++] = fmt::format("{:.1f}", kind_ms(sum, kind));
   }
-  return aligned(rows) + note_of_undefined(cells);
+  return aligned(rows) + notes_of(cells);
 }
 
 }  // namespace clpv

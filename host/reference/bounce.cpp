@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One bounce: Phi_a = R_a sum_b Omega_b max(0, -w_b . a) L_b s^2, emitted by the cosine about a.
-// All bounces without a medium: light = I + R D_1 + S D_2 in every cascade, coarsest first.
+// All bounces without a medium: light = I + R D_1 + S (D_2 - D_1) in every cascade, coarsest first.
 #include "reference/bounce.hpp"
 
 #include <algorithm>
@@ -49,11 +49,10 @@ Volume emitted(const Basis& basis, const Volume& flux, const Volume& reflectors)
   return light;
 }
 
-/// Sweeps light along 24 directions.
-Volume swept_along_24(const Basis& basis, const Transport& transport, SweptCascade cascade,
-                      const Volume& light) {
-  cascade.injected = &light, cascade.parts = 1;
-  return sweep(basis, transport, {cascade})[0];
+/// A cascade as sweeps for incident flux take it: along 24 directions.
+SweptCascade along_24(SweptCascade cascade) {
+  cascade.parts = 1, cascade.completed = false;
+  return cascade;
 }
 
 /// Incident flux of swept light.
@@ -67,28 +66,38 @@ IncidentFlux incident_flux_of(const Volume& swept) {
 void add_one_bounce(const Basis& basis, const Transport& transport,
                     std::vector<SweptCascade> cascades,
                     const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
-  for (SweptCascade& cascade : cascades) cascade.parts = 1;
+  for (SweptCascade& cascade : cascades) cascade = along_24(cascade);
   const std::vector<Volume> swept = sweep(basis, transport, cascades);
   for (std::size_t c = 0; c < cascades.size(); ++c)
     inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(swept[c]), light[c]);
 }
 
-/// light += R D_1 + S D_2 in every cascade. The coarser cascade's last sweep enters at the border.
+/// light += R D_1 + S (D_2 - D_1) in every cascade; D_2 is of the last sweep for incident flux, D_1
+/// of the one before. The coarser cascade's last sweep enters at the border.
 void add_all_bounces(const Basis& basis, const Transport& transport,
                      const std::vector<SweptCascade>& cascades,
                      const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
   for (std::size_t c = cascades.size(); c-- > 0;) {
     std::vector<SweptCascade> nested(cascades.begin() + static_cast<std::ptrdiff_t>(c),
                                      cascades.end());
-    nested[0].parts = 1;
-    const Volume first = sweep(basis, transport, nested)[0];
-    Volume reflected(first.n, basis.size());
-    inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(first), reflected);
-    const Volume second = swept_along_24(basis, transport, cascades[c], reflected);
-    for (std::size_t i = 0; i < reflected.values.size(); ++i)
-      light[c].values[i] += reflected.values[i];
-    inject_reflected(basis, bounce_series(basis, transport, cascades[c], *reflectors[c]),
-                     *reflectors[c], incident_flux_of(second), light[c]);
+    const Volume injected = light[c];
+    nested[0] = along_24(nested[0]);
+    Volume before, after = sweep(basis, transport, nested)[0];
+    for (int sweeps = 1; sweeps < kSeriesSweeps; ++sweeps) {
+      before = after, light[c] = injected;
+      inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(before), light[c]);
+      after = sweep(basis, transport, nested)[0];
+    }
+    inject_reflected(
+        basis, bounce_series(basis, transport, cascades[c], *reflectors[c]), *reflectors[c],
+        [&](int channel, const glm::ivec3& p) {
+          std::vector<double> further = incident_flux_of(after)(channel, p);
+          const std::vector<double> earlier = incident_flux_of(before)(channel, p);
+          for (std::size_t i = 0; i < further.size(); ++i)
+            further[i] = std::max(further[i] - earlier[i], 0.0);
+          return further;
+        },
+        light[c]);
   }
 }
 
@@ -115,12 +124,12 @@ Sources bounce_in_medium(const Basis& basis, const Transport& transport,
     swept.scattered.push_back(*cascade.scattered);
   }
   Sources result = swept;
-  std::vector<SweptCascade> along_24 = cascades;
-  for (SweptCascade& cascade : along_24) cascade.parts = 1;
+  std::vector<SweptCascade> few;
+  for (const SweptCascade& cascade : cascades) few.push_back(along_24(cascade));
   for (std::size_t c = cascades.size(); c-- > 0;) {
     for (int i = 0; i < sweeps; ++i) {
       swept.light[c] = result.light[c], swept.scattered[c] = result.scattered[c];
-      const Volume found = sweep(basis, transport, swept.of(along_24, c))[0];
+      const Volume found = sweep(basis, transport, swept.of(few, c))[0];
       result.light[c] = *cascades[c].injected;
       inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(found),
                        result.light[c]);
@@ -137,8 +146,10 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
                      const Volume& reflectors) {
   // R X, X the incident flux while each face emits `flux`.
   const auto returned = [&](const Volume& flux) {
-    const Volume swept =
-        swept_along_24(basis, transport, cascade, emitted(basis, flux, reflectors));
+    const Volume light = emitted(basis, flux, reflectors);
+    SweptCascade few = along_24(cascade);
+    few.injected = &light;
+    const Volume swept = sweep(basis, transport, {few})[0];
     const IncidentFlux incident = incident_flux_of(swept);
     Volume reflected = reflectors;
     for_each_cell(flux.n, [&](const glm::ivec3& p) {
@@ -157,9 +168,8 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
       double bound = 0;
       for (int side = 0; side < kCellFaces; ++side)
         bound = std::max(
-            bound,
-            reflectors.value(channel, side, p.x, p.y, p.z) /
-                std::max(reflectors.value(CLPV_REFLECTOR_SHARE, side, p.x, p.y, p.z), kLeastShare));
+            bound, reflectors.value(channel, side, p.x, p.y, p.z) /
+                       std::max(reflectors.value(CLPV_REFLECTOR_WHITE, side, p.x, p.y, p.z), 1e-6));
       bound = std::min(bound, kMaxReturned);
       for (int side = 0; side < kCellFaces; ++side) {
         const double t1 = first.value(channel, side, p.x, p.y, p.z),
@@ -193,8 +203,14 @@ std::vector<Volume> furnace(const Basis& basis, const Transport& transport,
     cascades[c].medium = nullptr, cascades[c].scattered = nullptr;
   }
   std::vector<Volume> swept = sweep(basis, transport, cascades, &even);
-  for (std::size_t c = 0; c < cascades.size(); ++c)
-    for (double& value : swept[c].values) value /= area(c);
+  for (std::size_t c = 0; c < cascades.size(); ++c) {
+    const Volume surfaces = sweep(basis, transport, {cascades[c]})[0];
+    for (std::size_t i = 0; i < surfaces.values.size(); ++i) {
+      const double closed = surfaces.values[i] / area(c),
+                   border = swept[c].values[i] / area(c) - closed;
+      swept[c].values[i] = closed + std::min(border, 2 * std::max(0.0, border - kLeastOpen));
+    }
+  }
   return swept;
 }
 
@@ -210,13 +226,13 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
     const bool all = bounces == Bounces::all && cascades[c].scattered == nullptr;
     std::vector<const Volume*> emitting(white.begin() + first, white.end());
     for (std::size_t i = 0; i < nested.size() && (i == 0 || !all); ++i)
-      nested[i].parts = 1, emitting[i] = reflectors[c + i];
+      nested[i] = along_24(nested[i]), emitting[i] = reflectors[c + i];
     const Volume even = furnace(basis, transport, nested, emitting)[0];
     const IncidentFlux incident = incident_flux_of(even);
     Volume& result = normalised.emplace_back(*reflectors[c]);
     for_each_cell(result.n, [&](const glm::ivec3& p) {
       const std::vector<double> arriving = incident(0, p);
-      for (int channel = 0; channel < 3; ++channel)
+      for (const int channel : {0, 1, 2, int{CLPV_REFLECTOR_WHITE}})
         for (int side = 0; side < kCellFaces; ++side)
           result.at(channel, side, p.x, p.y, p.z) /=
               over_furnace(arriving[side] / std::numbers::pi);

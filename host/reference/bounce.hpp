@@ -11,7 +11,8 @@
 namespace clpv::reference {
 
 /// Light of the white furnace in bins24, as radiance: the faces of `white` (reflector_masks), one
-/// volume per cascade, and the border emit radiance 1.
+/// volume per cascade, and the border emit radiance 1; of the border's, what walls let through does
+/// not count (kLeastOpen).
 std::vector<Volume> furnace(const Basis& basis, const Transport& transport,
                             std::vector<SweptCascade> cascades,
                             const std::vector<const Volume*>& white);

@@ -21,7 +21,7 @@ LinearSample linear_sample(double at, int n) {
 }
 
 constexpr int kPoints = 4;                       // visibility points per cube along each axis
-constexpr double kMinVisibleShare = 1.0 / 64.0;  // of the total weight; below it, all cells count
+constexpr double kMinVisibleShare = 1.0 / 64.0;  // by weight; below it, all cells count
 
 /// Visible share of each of eight cells from a point `t` in their cube: visibility bits,
 /// interpolated trilinearly.

@@ -19,7 +19,7 @@ namespace clpv::reference {
 /// Light of one cascade.
 struct Cascade {
   ClpvGrid grid{};
-  const Volume* accumulated = nullptr;  ///< of swept light: channel 3 is its white furnace
+  const Volume* accumulated = nullptr;  ///< for swept light: channel 3 is its white furnace
   /// Bits of visibility_masks(); required if GatherOptions::gather is `visible`.
   const std::uint8_t* occluded = nullptr;
 };

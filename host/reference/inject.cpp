@@ -11,7 +11,7 @@
 namespace clpv::reference {
 namespace {
 
-constexpr double kMinCosine = 0.1;  // of a surfel seen edge-on
+constexpr double kMinCosine = 0.1;  // for a surfel seen edge-on
 constexpr double kTie = 2e-3;       // relative energy: 4x the rounding error of half precision
 
 glm::dvec3 xyz(const glm::vec4& v) {

@@ -42,7 +42,7 @@ class Sweep {
         boundary_(boundary),
         n_(cascade.grid.n),
         means_(part_means(basis, cascade.parts)),
-        rest_(cosine_rest(basis, means_, cascade.parts)) {
+        rest_(cascade.completed ? cosine_rest(basis, means_, cascade.parts) : std::nullopt) {
     set_transmittances(std::get<std::vector<SweepLink>>(transport.scheme));
   }
 
@@ -58,6 +58,7 @@ class Sweep {
         const int axis = order[i], step = along[2 - i];
         p[axis] = sweep_bin.sign[axis] > 0 ? step : n_ - 1 - step;
       }
+      const double lacking = rest_ ? lacking_of(p, means) : 0;
       for (int channel = 0; channel < 3; ++channel) {
         double arriving = 0;
         for (std::size_t k = 0; k < d.taps.size(); ++k) {
@@ -69,28 +70,28 @@ class Sweep {
                                       : inflow(channel, bin, part, d, q);
           arriving += d.taps[k] * transmitted * upstream;
         }
-        field.at(channel, 0, p.x, p.y, p.z) = injected(cascade_.injected->cell(channel, p), means) +
-                                              in_medium(channel, bin, sweep_bin, d, p, arriving);
+        const std::vector<double> c = cascade_.injected->cell(channel, p);
+        field.at(channel, 0, p.x, p.y, p.z) =
+            dot(means, c) + c[0] * lacking + in_medium(channel, bin, sweep_bin, d, p, arriving);
       }
     });
     return field;
   }
 
  private:
-  /// Light that a cell of coefficients c injects along a direction, with the basis's means over its
-  /// part.
-  double injected(const std::vector<double>& c, std::span<const double> means) const {
-    const double field = dot(means, c);
-    if (!rest_) return field;
+  /// Part that the harmonics of a cell lack of a clamped cosine along a direction, per c_0.
+  double lacking_of(const glm::ivec3& p, std::span<const double> means) const {
+    std::array<double, 4> c{};
+    for (int channel = 0; channel < 3; ++channel)
+      for (int i = 0; i < 4; ++i) c[i] += cascade_.injected->value(channel, i, p.x, p.y, p.z);
     const double linear = std::hypot(c[1], c[2], c[3]), uniform = c[0];
-    if (uniform <= 0 || linear == 0) return field;
+    if (uniform <= 0 || linear == 0) return 0;
     const double alpha0 = std::sqrt(std::numbers::pi) / 2, alpha1 = std::sqrt(std::numbers::pi / 3),
                  y1 = std::sqrt(3 / (4 * std::numbers::pi));
     const double r = std::min(1.0, linear / alpha1 / (uniform / alpha0));
     const double z = (means[1] * c[1] + means[2] * c[2] + means[3] * c[3]) / (y1 * linear);
     const auto [e0, e2, e4] = rest_->even;
-    return field + std::pow(r, 4) * uniform / alpha0 *
-                       (std::abs(z) / 2 - e0 - e2 * z * z - e4 * std::pow(z, 4));
+    return std::pow(r, 4) / alpha0 * (std::abs(z) / 2 - e0 - e2 * z * z - e4 * std::pow(z, 4));
   }
 
   /// Part of a cell in the medium.

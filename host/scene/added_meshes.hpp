@@ -29,7 +29,7 @@ class AddedMeshes {
   /// A mesh at a place. Those at several places share the primitive.
   struct Added {
     Instance instance;
-    NodeTree tree;          ///< of one node
+    NodeTree tree;          ///< a tree of one node
     std::size_t positions;  ///< vertices that were given
     bool moves = false;
   };

@@ -62,7 +62,7 @@ inline constexpr std::size_t kCameras = 1024;
 
 // Coordinates [m]. At 1e7 m the resolution of a float is 1 m.
 inline constexpr double kCoordinate = 1e7;
-inline constexpr double kMinLength = 1e-6;  // of directions, distances and angles
+inline constexpr double kMinLength = 1e-6;  // least size of directions, distances and angles
 
 // Vertical field of view of a camera [degrees].
 inline constexpr double kMinFov = 0.01, kMaxFov = 179.9;

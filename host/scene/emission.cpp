@@ -12,7 +12,7 @@
 namespace clpv {
 namespace {
 
-constexpr int kMaxDoublings = 24;  // of the points' distance; each part then has one point
+constexpr int kMaxDoublings = 24;  // distance between points; each part then has one
 
 double brightest(const ClpvMaterial& material) {
   return std::max({material.emissive[0], material.emissive[1], material.emissive[2], 0.0f});

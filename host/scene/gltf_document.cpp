@@ -179,7 +179,8 @@ void check_transforms(const json& document, const std::string& file) {
   }
 }
 
-/// Finds the names of the extensions of all objects in the document.
+/// Finds the names of the extensions of all objects in the document, and that of an animated
+/// pointer, also without its object.
 void find_extensions(const json& value, std::set<std::string>& names) {
   if (value.is_array()) {
     for (const json& each : value) find_extensions(each, names);
@@ -188,6 +189,7 @@ void find_extensions(const json& value, std::set<std::string>& names) {
       if (key == "extensions" && member.is_object()) {
         for (const auto& [name, extension] : member.items()) names.insert(name);
       }
+      if (key == "path" && member == "pointer") names.insert("KHR_animation_pointer");
       if (key != "extras") find_extensions(member, names);
     }
   }

@@ -65,7 +65,7 @@ class InstanceReader {
 
   const GltfDocument& document_;
   std::string place_;
-  std::optional<std::size_t> count_;  ///< of the attributes so far
+  std::optional<std::size_t> count_;  ///< elements of the attributes so far
   std::optional<GltfAccessor> translations_, rotations_, scales_;
 };
 

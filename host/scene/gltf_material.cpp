@@ -14,9 +14,8 @@
 namespace clpv {
 namespace {
 
-constexpr float kBlendCutoff = 0.5f;  // alphaMode BLEND is rendered as MASK with this cutoff
-constexpr float kHoleCutoff = 2;      // above any alpha: light passes everywhere
-constexpr double kGlass = 0.5;        // minimum transmittance of a material that light passes
+constexpr double kStopped = 0.5;  // least share of light that a surface stops; less is a hole
+constexpr float kHoleCutoff = 2;  // above any alpha: light passes everywhere
 constexpr const char* kTransmission = "KHR_materials_transmission";
 
 using tinygltf::Value;
@@ -127,38 +126,43 @@ bool emits(const ClpvMaterial& material) {
   return material.emissive[0] + material.emissive[1] + material.emissive[2] > 0;
 }
 
-void read_alpha(const tinygltf::Material& source, const std::string& place, ClpvMaterial& made,
-                Notes& notes) {
-  if (source.alphaMode == "MASK") {
-    made.flags |= CLPV_MATERIAL_MASKED;
-    made.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-  } else if (source.alphaMode == "BLEND") {
-    made.flags |= CLPV_MATERIAL_MASKED;
-    made.alpha_cutoff = kBlendCutoff;
-    notes.add(fmt::format("{} ('{}') blends: opaque where alpha reaches {}, a hole elsewhere",
-                          place, source.name, kBlendCutoff));
+/// Share of light that a pane of glass transmits: its factor times the mean of the base colour.
+/// A material that emits or transmits by a texture stays opaque, with a note.
+double transmitted(const tinygltf::Material& source, const std::string& glass,
+                   const ClpvMaterial& made, Notes& notes) {
+  const auto found = source.extensions.find(kTransmission);
+  if (found == source.extensions.end()) return 0;
+  const bool textured = found->second.Has("transmissionTexture");
+  const double factor = number_in(found->second, "transmissionFactor", 0);
+  if (factor > 0 && (textured || emits(made))) {
+    notes.add(fmt::format("{} transmits light: opaque here, since it {}", glass,
+                          textured ? "has a transmissionTexture" : "emits"));
+    return 0;
   }
-  if (source.doubleSided) made.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
+  return factor * (made.base_colour[0] + made.base_colour[1] + made.base_colour[2]) / 3;
 }
 
-/// A pane of glass is a hole, as alpha below the cutoff is: light passes whole and straight. What
-/// emits or transmits by a texture stays opaque.
-void read_transmission(const tinygltf::Material& source, const std::string& place,
-                       ClpvMaterial& made, Notes& notes) {
-  const auto found = source.extensions.find(kTransmission);
-  if (found == source.extensions.end()) return;
-  const double factor = number_in(found->second, "transmissionFactor", 0);
-  if (factor == 0) return;
-  const double transmittance = factor * *std::max_element(made.base_colour, made.base_colour + 3);
-  const std::string glass =
-      fmt::format("{} ('{}') transmits {:.2g} of light", place, source.name, transmittance);
-  if (transmittance < kGlass || found->second.Has("transmissionTexture") || emits(made)) {
-    notes.add(glass + ": opaque here");
-    return;
+/// A material that stops half of light or more is opaque, a hole elsewhere: 1 - alpha (1 -
+/// transmitted) passes.
+void read_alpha(const tinygltf::Material& source, const std::string& place, ClpvMaterial& made,
+                Notes& notes) {
+  if (source.doubleSided) made.flags |= CLPV_MATERIAL_DOUBLE_SIDED;
+  const std::string named = fmt::format("{} ('{}')", place, source.name);
+  const double passes = transmitted(source, named, made, notes), cutoff = kStopped / (1 - passes);
+  const bool blends = source.alphaMode == "BLEND", hole = passes > 1 - kStopped;
+  if (source.alphaMode != "OPAQUE" || hole) made.flags |= CLPV_MATERIAL_MASKED;
+  if (source.alphaMode == "MASK") made.alpha_cutoff = static_cast<float>(source.alphaCutoff);
+  if (blends) made.alpha_cutoff = static_cast<float>(cutoff);
+  if (hole) made.alpha_cutoff = kHoleCutoff;
+  const std::string shown =
+      hole     ? "a hole here, through which all light passes"
+      : blends ? fmt::format("opaque where alpha reaches {:.2g}, a hole elsewhere", cutoff)
+               : "opaque here";
+  if (passes > 0) {
+    notes.add(fmt::format("{} transmits {:.2g} of light: {}", named, passes, shown));
+  } else if (blends) {
+    notes.add(fmt::format("{} blends: {}", named, shown));
   }
-  made.flags |= CLPV_MATERIAL_MASKED;
-  made.alpha_cutoff = kHoleCutoff;
-  notes.add(glass + ": a hole here, through which all light passes");
 }
 
 void read_material(const GltfDocument& document, std::size_t index, MaterialSet& set,
@@ -176,7 +180,6 @@ void read_material(const GltfDocument& document, std::size_t index, MaterialSet&
   for (std::size_t i = 0; i < 3; ++i)
     made.emissive[i] = static_cast<float>(source.emissiveFactor[i] * strength);
   read_alpha(source, place, made, notes);
-  read_transmission(source, place, made, notes);
 
   UvMapping mapping;
   if (colour.texture >= 0) made.texture = request(colour.texture, document, set, notes);

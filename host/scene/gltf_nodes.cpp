@@ -55,7 +55,7 @@ Pose stored_pose(const tinygltf::Node& node, const std::string& file, int index)
 void check_matrix(const tinygltf::Node& node, const std::string& file, int index) {
   const std::vector<double>& m = node.matrix;  // by columns
   if (m.empty()) return;
-  constexpr double kRounding = 1e-6;  // of exporters
+  constexpr double kRounding = 1e-6;  // rounding by exporters
   if (std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1)}) > kRounding)
     reject(file, place_of(index) + "/matrix",
            fmt::format("last row {}, {}, {}, {}", m[3], m[7], m[11], m[15]), "0, 0, 0, 1");

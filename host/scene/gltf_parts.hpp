@@ -34,7 +34,7 @@ struct TextureRequest {
 };
 
 struct MaterialSet {
-  /// Those of the document in order, then glTF's default material.
+  /// The document's materials in order, then glTF's default material.
   std::vector<ClpvMaterial> materials;
   std::vector<UvMapping> mappings;       ///< one per material
   std::vector<TextureRequest> textures;  ///< indexed by Material::texture

@@ -14,7 +14,7 @@
 namespace clpv {
 namespace {
 
-constexpr double kMaxWeight = 1e6;  // of a joint, before weights are normalised to a sum of 1
+constexpr double kMaxWeight = 1e6;  // a joint's, before weights are normalised to a sum of 1
 
 /// Accessors of a primitive's attributes, with equal counts.
 struct Attributes {

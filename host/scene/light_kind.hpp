@@ -35,7 +35,7 @@ inline LightKind kind_of(const ClpvLight& light) {
 /// code rounds up, is computed as it is.
 inline void set_cone(ClpvLight& light, double inner, double outer) {
   constexpr double kNarrow = 0.001;        // difference of cosines
-  constexpr double kResolution = 0x1p-23;  // of a float, relative
+  constexpr double kResolution = 0x1p-23;  // a float's relative resolution
   const double difference = std::cos(inner) - std::cos(outer);
   light.narrow_cone = difference < kNarrow;
   if (!light.narrow_cone) {

@@ -77,7 +77,7 @@ class MovingScene {
   bool medium_fills_scene_ = false;
 };
 
-inline constexpr double kSunIlluminance = 10;  ///< of the sun that a model without lights gets [lx]
+inline constexpr double kSunIlluminance = 10;  ///< sun that a model without lights gets [lx]
 
 /// Returns true if the scene has no scene file, and thus no settings of cascades: a model, or
 /// meshes in memory.

@@ -56,7 +56,7 @@ struct Instance {
   std::size_t node = 0;               ///< index in the tree
   std::optional<glm::dmat4> to_node;  ///< to the node's space, of an instance in that node
   std::shared_ptr<const Skin> skin;   ///< null: the node's transform applies
-  std::vector<double> weights;        ///< of morph targets without a curve
+  std::vector<double> weights;        ///< weights of morph targets without a curve
   /// In the scene, whose vectors have their final size.
   std::uint32_t first_vertex = 0, first_triangle = 0;
 };

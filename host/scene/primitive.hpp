@@ -36,11 +36,11 @@ glm::dvec3 vector_in(const NumberArray& from, std::size_t element);
 /// How corners make triangles (glTF 2.0, section 3.7.2.1).
 enum class TriangleOrder { list, strip, fan };
 
-/// Arrays of a primitive; null if absent. Those of vertices have as many elements as `positions`.
+/// Arrays of a primitive; null if absent. Arrays of vertices have as many elements as `positions`.
 struct PrimitiveArrays {
   const NumberArray* positions = nullptr;
   const NumberArray *normals = nullptr, *uvs = nullptr, *colours = nullptr;
-  const NumberArray* indices = nullptr;  ///< of corners, one component; absent: 0, 1, 2, ...
+  const NumberArray* indices = nullptr;  ///< corners, one component; absent: 0, 1, 2, ...
   TriangleOrder order = TriangleOrder::list;
   glm::dmat3 uv_transform{1.0};
   bool smooth = false;  ///< without normals: means of the triangles' normals, weighted by angle, in

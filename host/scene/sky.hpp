@@ -19,7 +19,7 @@ struct Sky {
   int width = 1, height = 1;
   std::vector<glm::vec3> texels = {glm::vec3(0)};  ///< radiance [W/m^2/sr], row 0 first
   double rotation = 0;                             ///< [rad]
-  std::vector<std::string> notes;                  ///< what reading its file converted
+  std::vector<std::string> notes;                  ///< conversions while its file was read
 
   /// Index of the texel in a unit direction.
   std::size_t texel_at(const glm::dvec3& direction) const;

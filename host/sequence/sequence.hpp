@@ -29,7 +29,7 @@ inline constexpr auto kNames<FrameFormat> = name_list("exr", "png");
 
 /// Frame i shows `from` + i / `frames_per_second` [s].
 struct SequenceOptions {
-  std::string folder;  ///< of frame-0000.exr, ... and times.jsonl
+  std::string folder;  ///< folder of frame-0000.exr, ... and times.jsonl
   int frames = 0;
   double frames_per_second = 0, from = 0;
   Show view = Show::full;
@@ -103,7 +103,7 @@ class Sequence {
   TimesFile times_;
   std::string still_;                 ///< key of all static content
   std::string settings_;              ///< key of what this run's times share
-  std::string keys_;                  ///< of this rank's frames, one after another
+  std::string keys_;                  ///< keys of this rank's frames, one after another
   std::optional<Renderer> renderer_;  ///< empty before the first frame
 };
 

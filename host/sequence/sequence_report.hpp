@@ -25,7 +25,7 @@ class TimesSummary {
  private:
   std::size_t frames_ = 0;
   std::vector<double> pose_, frame_, write_;  ///< [ms] of steady frames
-  FrameTimes stages_;                         ///< of steady frames
+  FrameTimes stages_;                         ///< times of steady frames
 };
 
 /// Schema 1: the fields of `about`, the steps, and a summary of the steps with static lights and

@@ -19,9 +19,9 @@ namespace clpv {
 /// stages, until the device has finished. write: readback, encoding and writing.
 struct FrameLine {
   int frame = 0;         ///< number
-  std::string key;       ///< of the frame's pixels, as in its file
+  std::string key;       ///< key of the frame's pixels, as in its file
   std::string settings;  ///< key of what all frames and times of a run share
-  double seconds = 0;    ///< of the scene
+  double seconds = 0;    ///< time of the scene
   bool first = false;    ///< first frame of a process, whose launches may compile kernels
   double pose_ms = 0, frame_ms = 0, write_ms = 0;
   std::vector<StageTime> stages;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kMagic("\x93NUMPY\x01\x00", 8);
 constexpr std::size_t kPreamble = kMagic.size() + 2;  // magic, then the header's length in 16 bits
-constexpr std::size_t kAlignment = 64;                // of the data, required by the format
+constexpr std::size_t kAlignment = 64;  // alignment of the data, required by the format
 
 /// Magic, version, and the header's dictionary, padded; the data follow.
 std::string preamble(const std::string& type, const std::string& shape) {
@@ -55,7 +55,7 @@ std::string npz_bytes(const std::vector<std::pair<std::string, std::string>>& ar
     const std::string name = array + ".npy";
     const auto size = static_cast<std::uint32_t>(bytes.size()),
                start = static_cast<std::uint32_t>(file.size());
-    std::string common;  // of both headers
+    std::string common;  // common text of both headers
     append_little(common, kVersion, kNone, kNone, kNone, kFirstDay,
                   crc32(std::as_bytes(std::span(bytes))), size, size,
                   static_cast<std::uint16_t>(name.size()), kNone);

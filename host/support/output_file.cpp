@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 
 namespace clpv {
 namespace {
@@ -181,6 +182,8 @@ void check_outputs(const std::vector<NamedFile>& outputs, const std::vector<Name
 void write_file(const fs::path& path, std::span<const std::byte> bytes, OutputFile::Kind kind) {
   OutputFile file(path, kind);
   file.write(bytes);
+  if (kind != OutputFile::Kind::entry)
+    stop_if_interrupted(fmt::format("{} was not written", path.string()));
   file.commit();
 }
 

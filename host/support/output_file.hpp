@@ -21,7 +21,7 @@ class OutputFile {
   enum class Kind {
     result,   ///< a symbolic link is kept, and its target replaced; survives a crash of the machine
     derived,  ///< a result of a name that clpv makes: a symbolic link is rejected
-    entry     ///< of a cache or temporary folder: whatever has the name is replaced
+    entry     ///< in a cache or temporary folder: replaces whatever has the name
   };
 
   /// Creates the temporary file. A result keeps the mode of the file that it replaces. Throws

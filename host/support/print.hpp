@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The only ways to stdout and, beside the log, to stderr. What they print may quote scenes, images
+// The only ways to stdout and, beside the log, to stderr. Their text may quote scenes, images
 // and reports of others, so control characters become '?'.
 #pragma once
 

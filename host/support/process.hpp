@@ -65,7 +65,7 @@ class Process {
   std::unique_ptr<std::FILE, Close> output_;  ///< a file in memory
   int input_ = -1;
   pid_t child_ = -1;
-  int status_ = 0;  ///< of waitpid, once exited_
+  int status_ = 0;  ///< set by waitpid, once exited_
   bool exited_ = false;
   int lost_ = 0;         ///< errno of waitpid, where it knows no such child
   int start_error_ = 0;  ///< errno of a failure to start

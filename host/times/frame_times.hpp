@@ -24,7 +24,7 @@ class FrameTimes {
  public:
   void add(const std::vector<StageTime>& stages, const FrameCost& cost = {});
   void set_kernels(std::vector<KernelTime> times) { kernels_ = std::move(times); }
-  const std::vector<KernelTime>& kernels() const { return kernels_; }  ///< of one frame
+  const std::vector<KernelTime>& kernels() const { return kernels_; }  ///< kernels of one frame
   std::size_t count() const { return costs_.size(); }
 
   const std::vector<FrameCost>& costs() const { return costs_; }

@@ -21,9 +21,9 @@ namespace clpv::verify {
 struct CheckResult {
   std::string stage;         ///< "propagate"
   std::string variant;       ///< name of the case, and of the result where a case has several
-  Deviation deviation = {};  ///< of status `ok` and `wrong`
+  Deviation deviation = {};  ///< with status `ok` and `wrong`
   Status status = Status::ok;
-  /// Of status `failed` and `unsupported`: the driver's words, or the exceeded limit.
+  /// With status `failed` and `unsupported`: the driver's words, or the exceeded limit.
   std::string reason = {};
   double seconds = 0;  ///< time of the case, with building its kernels, per result
   bool passed() const { return status == Status::ok; }

@@ -51,9 +51,9 @@ Cases cases_of(const RenderOptions& options) {
   if (o.blockers == Blockers::seen)
     cases.push_back(job_case(Stage::inject, name + "/geometry",
                              [o](Session& session) { return inject_job_of(session, o, false); }));
-  const Stage propagation = has_faces(o.transport)      ? Stage::propagate
-                            : o.bounces == Bounces::one ? Stage::sweep
-                                                        : Stage::bounce;
+  const Stage propagation = has_faces(o.transport) ? Stage::propagate
+                            : !o.reflects()        ? Stage::sweep
+                                                   : Stage::bounce;
   cases.push_back(
       job_case(propagation, name, [o](Session& session) { return propagate_job_of(session, o); }));
   cases.push_back(

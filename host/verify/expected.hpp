@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What outputs of a comparison must be, number by number, for the capsule that a session records.
+// Allowed outputs of a comparison, number by number, for the capsule that a session records.
 // Without a recording these functions do nothing.
 #pragma once
 

@@ -20,7 +20,7 @@ struct GatherProblem {
   GatherOptions options;
   CascadeLight cascades;
   Surface camera = {};
-  std::shared_ptr<const SurfaceImage> image = {};  ///< of `camera`
+  std::shared_ptr<const SurfaceImage> image = {};  ///< image of `camera`
   std::size_t every = 1;                           ///< compares every `every`-th pixel
 };
 

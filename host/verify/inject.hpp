@@ -31,7 +31,7 @@ struct InjectProblem {
   ClpvGrid grid;
   std::optional<InjectedSurface> light;   ///< none: no light volume
   std::vector<InjectedSurface> blockers;  ///< empty: no geometry volume
-  int stride = 1;                         ///< of the blockers' pixels
+  int stride = 1;                         ///< stride of the blockers' pixels
   bool on_entries = false;  ///< rounding may decide entries of tables (rounding_decides)
 };
 

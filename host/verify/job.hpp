@@ -35,7 +35,7 @@ namespace verify {
 /// stage.
 struct Deviation {
   double worst = 0, allowed = 0;
-  std::string place = {};  ///< of the largest error, with both values; empty without an error
+  std::string place = {};  ///< place of the largest error, with both values; empty without an error
 
   bool passed() const { return worst <= allowed; }  // false for NaN
   /// Records an error if it is the largest so far, with its place from `where`. A NaN exceeds any
@@ -61,7 +61,7 @@ struct Cost {
   // RasterCounts.
   double triangles = 0, pixels = 0, covered = 0;
   double set_up = 0, listed = 0, entries = 0;
-  /// Of a frame: HostWork.
+  /// For a frame: HostWork.
   double launches = 0, fills = 0, waits = 0, arguments = 0, written = 0;
 };
 

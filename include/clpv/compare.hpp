@@ -23,7 +23,7 @@ struct Comparison {
   std::optional<double> psnr_db;  ///< peak signal-to-noise ratio with peak 1 [dB]
   double max_error = 0;
   std::array<int, 2> max_error_at{};       ///< x, y from the top left corner
-  std::array<double, 2> mean_luminance{};  ///< of A and of B (Rec. 709; with one channel, its mean)
+  std::array<double, 2> mean_luminance{};  ///< A's and B's (Rec. 709; with one channel, its mean)
   bool identical = false;                  ///< all colour channels have equal values
   std::uint64_t valid_pixels = 0;  ///< number of valid pixels, over which the following values are
   std::optional<double> nrmse_valid;

@@ -43,14 +43,15 @@ inline constexpr Transform kIdentity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, 
 
 /// Triangles in memory, which add_mesh() copies.
 struct Mesh {
-  std::span<const std::array<float, 3>> positions{};  ///< of vertices [m], y up
+  std::span<const std::array<float, 3>> positions{};  ///< positions of vertices [m], y up
   /// Vertices, counter-clockwise seen from the front.
   std::span<const std::array<std::uint32_t, 3>> triangles{};
-  std::span<const std::array<float, 3>> normals{};  ///< of vertices, of any length
+  std::span<const std::array<float, 3>> normals{};  ///< normals of vertices, of any length
   std::span<const std::array<float, 2>> uvs{};      ///< texture coordinates of vertices
   std::span<const std::array<float, 4>> colours{};  ///< linear, of vertices; times the material's
-  bool smooth = false;  ///< without normals: means of the triangles' normals, weighted by angle;
-                        ///< else flat, as in glTF
+  /// Used only if `normals` is empty. True: vertex normals are angle-weighted means of the
+  /// triangles'; false: flat, as in glTF.
+  bool smooth = false;
   Material material{};
   /// Will move: its first move then needs no new memory (Scene::set_positions).
   bool moves = false;

@@ -53,7 +53,7 @@ struct Frame {
   /// Float4 x, y, z: unit shading normal; w: the triangle's normal, encoded
   /// (kernels/shared/normal.h); 0 without a surface.
   cl_mem normals = nullptr;
-  Event done;  ///< of the whole frame
+  Event done;  ///< end of the whole frame
 };
 
 /// Light of all cascades for a caller's kernel: the arguments CLPV_RADIANCE of
@@ -66,7 +66,7 @@ struct Volumes {
   cl_mem packed = nullptr;    ///< float [cascade][z][y][x][5][2][4]: pair, coefficient of the pair;
                               ///< red, green, blue, and the white furnace
   cl_mem occluded = nullptr;  ///< uchar [cascade][z][y][x][4][4][4], bits of occluded cells; null
-                              ///< with gather all: no argument
+                              ///< with gather `all`, whose kernels have no such parameter
 };
 
 /// A G-buffer of the caller (clpv::GBuffer) in buffers of the renderer's context. Larger buffers

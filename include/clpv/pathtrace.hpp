@@ -16,14 +16,14 @@ namespace clpv {
 
 struct TraceOptions {
   int width = 960, height = 540;  ///< 1 to 16384
-  int bounces = 1;  ///< maximum number of reflections between light and visible surface; 0: all
+  int bounces = 0;  ///< maximum number of reflections between light and visible surface; 0: all
   std::uint32_t samples = 0;  ///< paths per pixel, up to 2^24; 0: as many as `noise` needs
   double noise = 0.02;     ///< relative standard error of the indirect light at which tracing stops
   std::uint64_t seed = 1;  ///< the same seed gives the same image
   int threads = 0;         ///< up to 1024; 0: one per processor
   double seconds = 0;      ///< time in the scene's animation [s]
-  /// Receives the estimated progress in [0, 1], from one thread at a time. What it throws ends the
-  /// work and reaches the caller.
+  /// Receives the estimated progress in [0, 1], from one thread at a time. An exception from it
+  /// ends the work and reaches the caller.
   std::function<void(double)> progress{};
 };
 

@@ -79,8 +79,8 @@ struct LightVolume {
 /// positions, from any kind of camera, or depths of a Camera. A pixel has no surface, and no light,
 /// if its normal is 0, its depth is not positive, or a number of it is not finite.
 struct GBuffer {
-  int width = 0, height = 0;                        ///< 1 to 16384
-  std::span<const std::array<float, 3>> normals{};  ///< of any length, on the side that is seen
+  int width = 0, height = 0;                             ///< 1 to 16384
+  std::span<const std::array<float, 3>> normals{};       ///< any length, on the side that is seen
   std::span<const std::array<float, 3>> positions = {};  ///< [m]
   std::span<const float> depths =
       {};  ///< [m] along the camera's viewing direction, row 0 at the top

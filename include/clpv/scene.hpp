@@ -22,7 +22,7 @@ using Vec3 = std::array<double, 3>;
 /// or out of range, an eye that is its target, and an `up` along the viewing direction.
 struct Camera {
   Vec3 eye{}, target{0, 0, -1};  ///< [m], within +-1e7; only the direction of `target` matters
-  Vec3 up{0, 1, 0};  ///< of any length; need not be perpendicular to the viewing direction
+  Vec3 up{0, 1, 0};              ///< any length; need not be perpendicular to the viewing direction
   double vertical_fov_degrees = 60;  ///< 0.01 to 179.9
   double near = 0.05;                ///< nearest visible depth [m], 1e-6 to 1e7
   std::string name{};                ///< in the scene's list of cameras
@@ -52,7 +52,7 @@ struct Light {
 
 /// Fog or dust in a box, homogeneous. Errors as for Camera.
 struct Medium {
-  Vec3 scattering{}, absorption{};  ///< of red, green and blue [1/m], 0 to 1e6
+  Vec3 scattering{}, absorption{};  ///< red, green and blue [1/m], 0 to 1e6
   /// Anisotropy of Henyey and Greenstein's phase function, -0.9 to 0.9; above 0: forwards.
   double anisotropy = 0;
   /// Lower and upper corner [m]; none: the scene's bounding box, also after its meshes change.

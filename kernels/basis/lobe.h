@@ -7,8 +7,8 @@
 //
 // From the host (lobe_literals, host/pipeline/inject/lobe_literals.hpp): CLPV_FLUX_WEIGHTS,
 // CLPV_GRAM_LOWER (L) and CLPV_GRAM_INVERSE_DIAGONAL; CLPV_ROTATED 1: lobes are rotated
-// (rotated_lobe.h), and the table of H is an argument before that of G. Flux weights: A^-1 Int b.
-// CLPV_AND_H ends parameter lists, CLPV_PASS_H calls.
+// (rotated_lobe.h), and the table of H is an argument before the table of G. Flux weights:
+// A^-1 Int b. CLPV_AND_H ends parameter lists, CLPV_PASS_H calls.
 #pragma once
 
 #include "basis/basis.h"

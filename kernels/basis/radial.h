@@ -14,8 +14,8 @@
 //
 // From the host, for each function:
 //   CLPV_CENTRES        xi_i
-//   CLPV_OPPOSITES      number of an earlier function with the centre -xi_i and the same lambda,
-//                       or i
+//   CLPV_OPPOSITES      index of an earlier function with centre -xi_i and equal lambda; i if there
+//                       is none
 //   CLPV_POISSON        1 - lambda^2, 1 + lambda^2, 2 lambda
 //   CLPV_COSINE_SLOPE   slope_i
 //   CLPV_COSINE_EVEN    even_i: CLPV_COSINE_TERMS coefficients of powers of t^2, or with

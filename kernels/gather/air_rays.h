@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Rays from the camera through a medium, and the points where they gather its light (medium.cl).
 //
-//   t_k: points with a density of exp(-sigma t) along the ray, sigma the mean extinction; dt_k:
-//   their shares of its length [m]
+//   t_k: distances in the medium, with density proportional to exp(-sigma t), sigma the mean
+//   extinction; dt_k: length [m] of the ray that point k stands for
 #pragma once
 
 #include "raster/shadow.h"
@@ -33,7 +33,8 @@ CLPV_INLINE void find_air_rays(const ClpvView view, const PixelRow p, const real
 // A point of each ray.
 typedef struct {
   realW at;           // distance from the camera [m]
-  // t, its way through the medium, and dt exp(-sigma t) [m]; sigma the mean extinction [1/m].
+  // path: t, the point's distance in the medium [m]; step: dt exp(-sigma t) [m]; sigma the mean
+  // extinction [1/m].
   realW path, step;
   float sigma;
 } AirPoint;

@@ -5,9 +5,9 @@
 //   E = 4 I(-n) / s^2           steps
 //   E = pi (alpha(-n) . c) / (alpha(-n) . f)     sweep, f the white furnace's coefficients
 //
-// not below 0, with the coefficients c interpolated trilinearly at p + offset s n_g, n_g the normal
-// of the triangle (shared/normal.h). docs/method.md,
-// 'Gathering'; cascades.h has the weights of cascades.
+// E is at least 0. The coefficients c are interpolated trilinearly at p + offset s n, n =
+// lift_normal(): n_s, or n_g if both differ by more than 20 degrees (shared/normal.h).
+// docs/method.md, 'Gathering'; cascades.h has the weights of cascades.
 //
 // In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS
 //                         positions [m]

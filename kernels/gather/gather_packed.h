@@ -36,8 +36,9 @@ typedef struct {
   __global const uchar* occluded;
 } PackedCascade;
 
-// W points: number of the lowest of the eight cells about each, and its position between their
-// centres in [0, 1]; with CLPV_VISIBLE the same for the sample points of visibility.cl.
+// For each of W points: index of the lowest of the eight cells about it, and the point's position
+// between their centres, in [0, 1]; with CLPV_VISIBLE the same for the sample points of
+// visibility.cl.
 typedef struct {
   int number[W];
   float x[W], y[W], z[W];
@@ -79,7 +80,7 @@ CLPV_INLINE float8 corner_weights(const float x, const float y, const float z) {
   return along_x * along_y * along_z;
 }
 
-// Visible share of all weight below which all cells count.
+// Below this visible share of the weight, visibility is ignored and all eight cells count.
 __constant const float min_visible = 1.0f / 64.0f;
 
 // Visible shares of the eight cells: their bits at eight sample points, interpolated trilinearly so
@@ -149,7 +150,7 @@ CLPV_INLINE float furnace_divisor(const float f) {
   return f >= CLPV_LEAST_WHITE ? f : 1.0f - (1.0f / CLPV_LEAST_WHITE - 1.0f) * fmax(f, 0.0f);
 }
 
-// Divides light by that of the white furnace in its fourth number: where even light of radiance 1
+// Divides light by the white furnace's light, its fourth number: where even light of radiance 1
 // would give `white`, this is a mean of radiances of the surfaces in sight.
 CLPV_INLINE float4 over_furnace(const float4 light, const float white) {
   const float4 mean = light * (1.0f / furnace_divisor(light.w * (1.0f / white)));

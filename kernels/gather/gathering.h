@@ -6,14 +6,14 @@
 //   Sampled, SamplePoints                         coefficients at a point; W points
 //   find_sample_points(at, &points)               W points [cells] from the first centre, clamped
 //                                                 to the grid
-//   float sample_cells(volume, points, i, &s)     trilinear at point i, to be multiplied by the
-//                                                 result
+//   float sample_cells(volume, points, i, &s)     sets s to the coefficients at point i; multiply
+//                                                 them by the returned factor
 //   float4 weigh(weights, sampled)                weights . coefficients for each channel, and 0
 // and defines
 //   CLPV_GATHERED                                 type of a cascade's volume
 //
 // From the host: CLPV_GRID, CLPV_INVERSE_BLEND, CLPV_GATHER_OFFSET; CLPV_FACE_TRANSPORT 1: light of
-// steps, 0: swept light; and those of basis/basis.h.
+// steps, 0: swept light; and the literals of basis/basis.h.
 #pragma once
 
 #include "basis/basis.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light at one point, for kernels of programs that use the library: Renderer::lookup_source() is
-// this file with all that it includes, for the renderer's options. A kernel has CLPV_RADIANCE among
-// its parameters, whose arguments opencl::Volumes lists:
+// this file with all that it includes, for the renderer's options. A kernel that looks up light has
+// the parameters CLPV_RADIANCE; opencl::Volumes holds their arguments:
 //
 //   __kernel void mine(__global float4* out, CLPV_RADIANCE) {
 //     out[0] = clpv_irradiance(CLPV_PASS_RADIANCE, (float3)(0, 1, 0), (float3)(0, 0, 1));

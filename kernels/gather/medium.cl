@@ -33,7 +33,7 @@
 #include "raster/shadow.h"
 #include "raster/surface_row.h"
 
-// Relative difference of ends from which pixels do not count.
+// Pixels whose ends differ by this share of the farther end, or more, have weight 0.
 __constant const float same_end = 0.1f;
 __constant const float unlike_weight = 1e-3f;  // fallback weight if no neighbour has similar depth
 
@@ -152,8 +152,8 @@ __kernel void medium_blur(const ClpvView view, __global const float* ends,
                       r.at);
 }
 
-// Spreads pixels over W pixels of the camera: on each the near pixel at its left, or with `right`
-// the nearest one at its right. They are loaded from widen_from() on.
+// Upsamples: gives each of W camera pixels the half-resolution pixel at or left of it, or with
+// `right` at or right of it. Load W of them from widen_from() on.
 static inline uint widen_from(const uint px, const bool right) {
   return (px + (W == 1 && right ? 1u : 0u)) / 2;
 }

@@ -12,8 +12,8 @@ typedef struct {
   realW start, end;
 } MediumPart;
 
-// Part of the ray origin + t direction with t in (0, end). fmin and fmax return the other number
-// for 0 times infinity, of rays within a face's plane.
+// Part of the ray origin + t direction with t in (0, end). For rays in a face's plane, 0 times
+// infinity is NaN, which fmin and fmax ignore.
 CLPV_INLINE MediumPart find_medium_part(const ClpvMedium medium, const Vec origin,
                                         const Vec direction, const realW end) {
   const Vec lower = vec_of(medium.lower), upper = vec_of(medium.upper);

@@ -7,7 +7,7 @@
 //   d(w) = L_hit - L(p', -w)                 if a surface is met along w within R; at p' all
 //                                            directions share the denominator of E
 //   d(w) = q (L(p' + R w, -w) - L(p', -w))   else, q the weight of the correction (miss_weight)
-//   p' = p + h s n_g                         n_g the normal of the triangle (shared/normal.h)
+//   p' = p + h s n_g                         n_g: lift_normal() (shared/normal.h)
 //
 // h: CLPV_GATHER_OFFSET. R and s: edge of a cell of the cascades at p, blended like their light.
 // near_trace.cl finds hits, near_light.cl their radiance; radiance.h has L. near_filter.cl adds D
@@ -26,9 +26,9 @@
 // Minimum ratio of arriving to leaving irradiance at which misses get full weight.
 __constant const float least_arriving = 0.5f;
 
-// Weight in [0, 1] of the correction for rays that miss. Nine harmonics of light that leaves a
-// bright surface are not 0 towards it: where more leaves than arrives, the correction would be the
-// difference of two such errors. (x, y, z) = n.
+// Weight in [0, 1] of the correction for rays that miss. In nine harmonics, light that leaves a
+// bright surface partly also arrives at it. Where much more leaves than arrives, the correction
+// would be a difference of two such errors. (x, y, z) = n.
 CLPV_INLINE float miss_weight(const Sampled* field, const float4 arriving, const float x,
                               const float y, const float z) {
   const float4 leaving = max(weigh(cosine_integrals(x, y, z), *field), 0.0f);

@@ -2,9 +2,9 @@
 // Averages the near field along surfaces and adds it to the irradiance (near.cl).
 //
 // near_blur
-//   A window of five by five pixels, with half weight at its edges, counts each pixel of a tile
-//   once: (1/2 1 1 1 1/2) along both axes. Pixels count if they are on the same surface
-//   (near_surface.h).
+//   A window of five by five pixels, with half weight at its edges, weights (1/2 1 1 1 1/2) along
+//   both axes, so that each of a tile's 4 x 4 sets of rays counts equally. Pixels count if they are
+//   on the same surface (near_surface.h).
 //   In:      points        near_layout.h; light: D and E of near.cl
 //   Out:     blurred       their means
 // near_widen
@@ -14,9 +14,9 @@
 //   In:      points, blurred
 //   Out:     widened       their means
 // near_add
-//   Interpolates D and E bilinearly between pixels of both layers on the same surface. Without one
-//   it takes the mean of those in the four by four blocks around, on the same surface or else on
-//   any.
+//   Interpolates D and E bilinearly between pixels of both layers on the same surface. If there is
+//   none, takes the mean of those in the 4 x 4 blocks around that are on the same surface; failing
+//   that, of all in these blocks.
 //   In:      places, normals       the camera's surface (surface_row.h): depths [m], or with
 //                                  CLPV_POINTS positions [m]
 //            points, widened
@@ -102,8 +102,8 @@ __kernel void near_widen(const ClpvView view, __global const float* points,
   store_means(sum, r, widened);
 }
 
-// Share of light that stays where D < 0, of the share `left` = (mean E + mean D) / mean E: never 0,
-// though nine harmonics may leave less than nothing.
+// f(left) of the header: share of E that is kept where D < 0; left = (mean E + mean D) / mean E. It
+// is positive even where nine harmonics make `left` negative.
 CLPV_INLINE realW darkened(const realW left) {
   return left > dark_share ? left : dark_share * dark_share / (2.0f * dark_share - left);
 }
@@ -119,8 +119,8 @@ CLPV_INLINE realW clamp_positive(const realW v) {
 }
 
 #if CLPV_PLANE_LAYERS > 1
-// Adds near pixels on the surfaces of W pixels of the camera, or on any: those from `first` on,
-// spread over them.
+// Upsamples near pixels from `first` on to W camera pixels; adds those on the camera pixel's
+// surface, with `any` on any surface.
 CLPV_INLINE void add_spread(__global const float* points, __global const float* widened,
                             const uint plane, const uint first, const bool right, const Surfaces s,
                             const bool any, const realW weight, WeightedSum* sum) {

@@ -2,8 +2,8 @@
 // Pixels of the near field (pixel_planes.h): their points, the directions of their rays, and lists
 // of hits.
 //
-// The first layer has each block's first pixel; the second has one whose surface the first layer
-// has not there, or is empty (near_points.cl).
+// Layer 1 holds the first pixel of each block. Layer 2 holds a pixel of the block whose surface
+// layer 1 lacks there, or nothing (near_points.cl).
 //
 // From the host: CLPV_NEAR_RAYS (rays per pixel).
 #pragma once
@@ -21,7 +21,7 @@ static inline uint find_near_tile(const ClpvView view) {
   return x < across && y < down ? y * across + x : no_tile;
 }
 
-// Largest number of hits of a tile. They lie in groups of W, whose numbers have rows
+// Largest number of hits of a tile. Hits are stored in groups of W, one row per attribute
 // (shared/near.h).
 enum { CLPV_TILE_HITS = W * CLPV_PLANE_TILE * CLPV_NEAR_RAYS };
 
@@ -52,8 +52,8 @@ enum {
   CLPV_DIRECTION_VECTORS = CLPV_DIRECTIONS / W,
 };
 
-// Unit directions of ray k of W pixels. `directions`: about +z, by row of the tile, ray and axis;
-// the four pixels of a tile's row twice.
+// Unit directions of ray k of W pixels. `directions`: vectors about +z, indexed by tile row, ray
+// and axis; each row repeats the tile's four pixels, to fill eight lanes.
 CLPV_INLINE Vec find_near_directions(__global const realW* directions, const PlaneRow r,
                                      const NearPoints* p, const uint k) {
   const uint row = ((uint)r.y % CLPV_PLANE_TILE * CLPV_NEAR_RAYS + k) * 3 * CLPV_DIRECTION_VECTORS;

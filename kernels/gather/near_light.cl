@@ -6,8 +6,8 @@
 //
 // All surfaces reflect on both sides; emissive ones emit from the front, and from the back if
 // double sided. Textures are filtered over the width of a ray's cone, CLPV_NEAR_CONE times its
-// length. A ray that leaves below the plane of its own triangle (the interpolated normal differs
-// from the triangle's) carries no light.
+// length. A ray about the interpolated normal may point below its own triangle and hit it; such a
+// hit counts as dark.
 //
 // In:      points, counts, hits   near_layout.h, near_trace.cl
 //          CLPV_SCENE          the scene
@@ -60,7 +60,7 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   const realW area2 = sqrt(vec_dot(across, across)),
               height = vec_dot(vec_minus(origin, a.position), across);
   const intW back = height < ZERO;
-  // Rays start CLPV_NEAR_LIFT R above their own triangle.
+  // Leaves out hits on the ray's own triangle: its plane holds the pixel that the ray starts from.
   s->hit = listed & (fabs(height) > 2.0f * CLPV_NEAR_LIFT * reach * area2);
   s->position = vec_interpolated(w, a.position, b.position, c.position);
   const Vec front = vec_times(across, back ? (realW)(-1.0f) : ONE);

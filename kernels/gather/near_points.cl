@@ -2,11 +2,11 @@
 // Points of the near field's pixels (near_layout.h).
 //
 // near_points
-//   First layer: of each block of CLPV_PLANE_STEP x CLPV_PLANE_STEP pixels the first. Empties all
+//   Writes layer 1: the first pixel of each block of CLPV_PLANE_STEP x CLPV_PLANE_STEP. Clears all
 //   other points.
 // near_others
-//   Second layer: of each block the first pixel whose surface no near pixel of the four by four
-//   blocks around it has.
+//   Writes layer 2: in each block, the first pixel whose surface has no layer-1 pixel in the 4 x 4
+//   blocks around.
 //
 // In:   places, normals   the camera's surface (surface_row.h): depths [m], or with CLPV_POINTS
 //                         positions [m]
@@ -37,7 +37,7 @@ typedef struct {
   realW geometric;  // number of the geometric normal (shared/normal.h)
 } CameraPixels;
 
-// Loads the pixels (x, y), of those in the mask `inside`.
+// Loads the surfaces of pixels (x, y); lanes outside the mask `inside` get none.
 CLPV_INLINE void load_camera_pixels(const ClpvView view, __global const Place* places,
                                     __global const float4* normals, const intW x, const int y,
                                     const intW inside, CameraPixels* c) {

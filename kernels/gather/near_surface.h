@@ -20,15 +20,15 @@ CLPV_INLINE void load_near_surfaces(__global const float* points, const uint pla
   s->reach = load_lanes(points + CLPV_NEAR_REACH * plane + at);
 }
 
-// Mask of the surfaces that are one with those at `position`.
+// Mask of the lanes whose surface is the one at `position`: similar normal, near its tangent plane.
 CLPV_INLINE intW same_surface(const NearSurfaces s, const Vec position, const Vec normal) {
   const realW off = fabs(vec_dot(vec_minus(s.position, position), normal));
   return (vec_dot(normal, s.normal) > (realW)(same_normal)) & (off < same_plane * s.reach);
 }
 
 #if CLPV_PLANE_LAYERS > 1
-// Spreads pixels over W pixels of the camera from a multiple of W on: on each the near pixel at its
-// left, or with `right` the next one. They are loaded from spread_from() on.
+// Spreads pixels over W pixels of the camera from a multiple of W on: each gets the near pixel of
+// its block, or with `right` of the next block. Load W of them from spread_from() on.
 static inline uint spread_from(const uint first, const bool right) {
   return W == 1 && right ? first + 1u : first;
 }

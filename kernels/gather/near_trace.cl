@@ -7,7 +7,8 @@
 // Out:  distances            per ray: distance of the hit [m], INFINITY without one; a plane for
 //                            each k
 //       counts, hits         per tile: number of hits, and their list (near_layout.h)
-// A work-item traces the rays of a tile, which share an entry to the tree.
+// A work-item traces the rays of a tile, which, with eight lanes, start from the same subtrees
+// (tree_lists.h).
 #include "gather/near_layout.h"
 #if W == 1
 #include "gather/tree_stack.h"

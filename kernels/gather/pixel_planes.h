@@ -15,7 +15,8 @@
 
 // W pixels of a row.
 typedef struct {
-  uint width, height, pitch, plane;  // of both layers: pixels, and numbers of a row and of a plane
+  uint width, height;  // size of all layers [pixels]
+  uint pitch, plane;   // floats per row and per plane
   int x, y;                          // first pixel; may be in the border
   uint at;                           // its index in a plane
 } PlaneRow;
@@ -49,7 +50,7 @@ static inline PlaneRow find_plane_row(const ClpvView view, const int column, con
   return r;
 }
 
-// True if a row has pixels.
+// False past the last column or row, since launches are rounded up.
 static inline bool row_has_pixels(const PlaneRow r) {
   return r.x < (int)r.width && r.y < (int)r.height;
 }

@@ -6,8 +6,8 @@
 
 #include "gather/triangle_tree.h"
 
-// Where a work-item's rays begin. Up to eight subtrees that hold all triangles in a box: a node
-// (shared/tree.h) that rays of one region share.
+// Start of a work-item's rays: a node (rows as in shared/tree.h) made of up to eight subtrees that
+// hold all triangles in the rays' box.
 typedef struct {
   realW rows[CLPV_TREE_CHILDREN + 1];
 } Entry;
@@ -27,7 +27,8 @@ CLPV_INLINE uint find_overlaps(__global const realW* node, const Box box) {
 
 enum { CLPV_ENTRY_STEPS = 24 };  // subtrees to look at, at most
 
-// Opens nodes in order, from the root on, as long as the children that overlap the box fit.
+// From the root on, replaces nodes by their children that overlap the box, as long as all fit into
+// eight.
 CLPV_INLINE void enter_tree(const Tree tree, const Box box, Entry* entry) {
   float rows[CLPV_TREE_CHILDREN][CLPV_TREE_WIDTH];
   int children[CLPV_TREE_WIDTH];
@@ -84,14 +85,14 @@ enum {
     leaf_count += 1u - inner;                                                               \
   }
 
-// Finds the nearest triangle of each ray. Nodes are visited in the order in which they were found;
-// once the list is long the last first, for which the rest of the array suffices.
+// Finds the nearest triangle of each ray. Breadth first; beyond CLPV_LIST nodes depth first, which
+// adds at most CLPV_TREE_WIDTH * CLPV_TREE_DEPTH more.
 CLPV_INLINE void trace_rays(const Tree tree, const Entry* entry, CLPV_SCENE, Rays* rays) {
   uint nodes[CLPV_LIST + CLPV_TREE_WIDTH * CLPV_TREE_DEPTH], leaves[CLPV_LIST + CLPV_TREE_WIDTH];
   uint visited = 0, node_count = 0, leaf_count = 0, masked_count = 0;
   MaskedHits masked;
   store_lanes((uintW)(0u), masked.triangle);
-  store_lanes(ZERO, masked.u), store_lanes(ZERO, masked.v);  // of unused lanes, too
+  store_lanes(ZERO, masked.u), store_lanes(ZERO, masked.v);  // unused lanes, too
   for (uint i = 0; i < W; ++i) {
     const uint bits = rays->distance[i] > 0.0f ? entry_hit(entry->rows, rays, i) : 0u;
     CLPV_ADD_CHILDREN(, entry->rows, bits, i)

@@ -4,8 +4,8 @@
 
 #include "gather/triangle_tree.h"
 
-// Nodes of whose children a ray has yet to visit those in a bit mask. Work-groups are
-// CLPV_STACK_SIDE^2 work-items. Each has a stack of CLPV_TREE_DEPTH in local memory, since GPUs
+// Stack of nodes, each with a bit mask of the children that are still to be visited. Work-groups
+// are CLPV_STACK_SIDE^2 work-items. Each has a stack of CLPV_TREE_DEPTH in local memory, since GPUs
 // keep private arrays in scratch memory. Entries of neighbouring work-items are neighbours.
 enum {
   CLPV_STACK_SIDE = 8,

@@ -15,14 +15,14 @@ typedef struct {
 } Tree;
 
 enum {
-  CLPV_TREE_VECTORS = CLPV_TREE_WIDTH / W,  // of W numbers in a row of a node or a leaf
+  CLPV_TREE_VECTORS = CLPV_TREE_WIDTH / W,  // vectors in a row of a node or a leaf
 };
 
 // W rays and their nearest hits.
 typedef struct {
   float from[3][W], along[3][W], inverse[3][W];  // [m]; unit; 1 / along
   uint near_row[3][W];  // row of a node that holds the nearer planes
-  float distance[W];   // of the hit [m], or reach of the ray
+  float distance[W];   // distance of the hit [m], or reach of the ray
   float u[W], v[W];  // weights of the second and third vertex
   uint triangle[W];
 } Rays;
@@ -38,7 +38,7 @@ CLPV_INLINE void set_ray_axis(const int axis, const realW from, const realW alon
               rays->near_row[axis]);
 }
 
-// Rays without hits; those of reach 0 have none.
+// Initialises W rays without hits. A ray of reach 0 never gets one.
 CLPV_INLINE void set_rays(const Vec from, const Vec along, const realW reach, Rays* rays) {
   set_ray_axis(0, from.x, along.x, rays);
   set_ray_axis(1, from.y, along.y, rays);
@@ -108,7 +108,8 @@ CLPV_RARE intW find_holes(const uintW triangle, const realW u, const realW v, CL
   return alpha < CLPV_COLUMN(factors, w);
 }
 
-// Hits on masked materials, which count unless there is a hole. W are looked up together.
+// Possible hits on masked materials. take_masked() looks up W alphas at once and drops hits in
+// holes.
 typedef struct {
   float distance[W], u[W], v[W];
   uint triangle[W], ray[W];

@@ -5,8 +5,8 @@
 //   CLPV_BLOCKS_BY_AREA 1:   |n_x|, |n_y|, |n_z|; the larger of each area
 //                       0:   the lobe about the normal; the lobe of the larger mean
 //
-// From the host: with lobes CLPV_INTEGRALS, those of the basis's functions, and those of
-// basis/lobe.h.
+// From the host: with lobes CLPV_INTEGRALS, the integrals of the basis's functions, and the
+// literals of basis/lobe.h.
 #pragma once
 
 #include "volume/coefficients.h"

@@ -17,8 +17,8 @@
 //               empty, dark, outside the grid or not finite
 //       shares  blocking: B of each texel
 // A work-item processes a strip of CLPV_STRIP texels of a row. Compilers vectorise this loop on
-// CPUs, given scalars in memory and no floor(); across work-items they would combine y and z first.
-// From the host: CLPV_GEOMETRY (0 light, 1 blocking), CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER.
+// CPUs, if it accesses memory by scalars and calls no floor(). From the host: CLPV_GEOMETRY (0
+// light, 1 blocking), CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER.
 #include "inject/cell_keys.h"
 #include "shared/grid.h"
 #include "shared/thinned.h"

@@ -18,7 +18,7 @@
 // In, out: volume         light volume
 //          partials, firsts   sums and first texels of the cells with several segments
 // From the host: CLPV_GRID, CLPV_UNIT_FLUX 1: lobes are scaled to the exact flux,
-// CLPV_SURFACE_PAPER, and those of basis/lobe.h.
+// CLPV_SURFACE_PAPER, and the literals of basis/lobe.h.
 #include "inject/cell_keys.h"
 #include "basis/lobe.h"
 #include "raster/surface.h"

@@ -72,9 +72,10 @@ static inline uint first_segment(__global const uint2* sorted, const uint total,
 }
 
 // Sums the segments that start in a block of `length` sorted texels; a work-item per block. A cell
-// of one segment is delivered at once. Of a longer cell, firsts[block] is the index of its first
-// texel; partials[2 block + 1] holds the sums of its first segment, partials[2 block] those of a
-// later one. At most one of each starts in a block.
+// of one segment is delivered at once. For a longer cell that starts in the block, firsts[block] is
+// the index of its first texel, partials[2 block + 1] its first segment's sums. partials[2 block]:
+// sums of a later segment of a cell that starts in an earlier block. A block has at most one of
+// each.
 CLPV_INLINE void sum_block(__global const uint2* sorted, __global const uint* count,
                            const uint length, const uint blocks, const Texels texels,
                            CLPV_VOLUME_OUT volume, __global float* partials,

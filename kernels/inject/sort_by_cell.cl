@@ -11,8 +11,8 @@
 // In:   keys    cell of each texel, or CLPV_NO_CELL (cell_keys.h)
 // Out:  sorted  (key, texel) of each texel that has a cell, two words each; their number is the
 //               `total` of prefix_sum.cl
-// counts[digit][chunk] holds the number of elements of a chunk with a digit, then the index of the
-// first of them, by prefix_sum.cl. The host zeroes it.
+// counts[digit][chunk], after the histogram: elements of the chunk with that digit; after
+// prefix_sum.cl: output index of the first of them. The host zeroes it.
 #include "shared/sort.h"
 
 // A run starts where the key changes, and at every multiple of CLPV_LONGEST_RUN.

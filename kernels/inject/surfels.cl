@@ -15,10 +15,11 @@
 //
 // In:      sorted, count  (key, texel) of the sorted texels, and their number (sort_by_cell.cl)
 //          normals        of every texel of the surface (surface.h)
-//          shares         B of each texel taken: every stride-th of rows of `width` (thinned.h)
+//          shares         B of each sampled texel: every stride-th of every stride-th row of
+//                         `width` texels (thinned.h)
 // In, out: volume         geometry volume
 //          partials, firsts   sums and first texels of the corners with several segments
-// From the host: CLPV_GRID, CLPV_SURFACE_PAPER, and those of blocking.h.
+// From the host: CLPV_GRID, CLPV_SURFACE_PAPER, and the literals of blocking.h.
 #include "inject/cell_keys.h"
 #include "inject/blocking.h"
 #include "raster/surface.h"

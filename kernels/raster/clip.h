@@ -39,8 +39,8 @@ static inline float clip_distance(const ClpvView view, const float4 p, const int
 }
 
 // Clips a convex polygon of `count` corners to the positive side of a plane. Returns the number of
-// corners. Works in place, since corner i + 1 is read before the i-th step writes at most i + 2
-// corners. Rounding may make more than that of an edge within the plane; they are dropped.
+// corners. Works in place: step i reads corner i + 1 before it writes, and at most i + 2 corners
+// exist after it. Rounding can produce more on an edge in the plane; they are dropped.
 static inline int clip_by_plane(const ClpvView view, CLPV_POLYGON float4* polygon, const int count,
                                 const int plane) {
   int kept = 0;

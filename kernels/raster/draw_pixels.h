@@ -24,10 +24,10 @@ typedef struct {
   uint index;      // in the list
 } Candidate;
 
-// What a work-group shares.
+// Data that a work-group shares.
 typedef struct {
   __local Candidate* candidates;  // CLPV_TILE_PIXELS
-  __local uint* count;            // of candidates
+  __local uint* count;            // number of candidates
   __local float* keys;            // CLPV_TILE_PIXELS
   __local float* row_keys;        // CLPV_TILE
 } Shared;

@@ -21,7 +21,7 @@ typedef struct {
 } Tile;
 
 // Draws a triangle into a tile. `kind`: flags of ClpvRasterTriangle; `mask`: room for the mask of a
-// masked material; unused for others. `only_depth`: that of the tile, a literal where time counts.
+// masked material; unused for others. `only_depth`: as in the tile, a literal where time counts.
 CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvRasterTriangle* r,
                       const uint kind, const bool masked, Mask* mask, const bool only_depth,
                       const Scene scene) {

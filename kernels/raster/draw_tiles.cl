@@ -110,8 +110,8 @@ static inline bool may_be_seen(const ClpvView view, const ClpvViewCluster cluste
   return false;
 }
 
-// Marks those of `count` clusters from `first` on whose triangles lie behind all that draw_tiles
-// has drawn.
+// Among `count` clusters from `first` on, marks those that lie behind every pixel drawn so far in
+// the tiles of their box.
 __kernel void hide_clusters(const ClpvView view, const uint first, const uint count,
                             __global const float* farthest, __global ClpvViewCluster* clusters) {
   const uint i = get_global_id(0);

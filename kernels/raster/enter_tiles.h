@@ -165,8 +165,8 @@ static inline Places reserve_by_group(volatile __global uint* counts, const Plac
 }
 #endif
 
-// Lists the triangles of the lanes in `mask` at `first`, with their entries, or leaves those of
-// wide ones to enter_wide. Beyond a capacity it does nothing.
+// Lists the triangles of the lanes in `mask` at `first`, with their entries, except
+// the entries of wide triangles, which enter_wide writes. Beyond a capacity it does nothing.
 CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const intW mask,
                             const Places room, const Places first, volatile __global uint* counts,
                             const Capacity capacity, __global ClpvRasterTriangle* list,
@@ -184,7 +184,7 @@ CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const
     const uint tiles = tile_count(tiles_of(words, lane));
     if (room_for_entries && W == 1 && tiles > CLPV_FEW_TILES) {
       const uint slot = atomic_inc(counts + CLPV_WIDE);
-      // Beyond it only after an overflow of 32 bits.
+      // Always true, unless a 32-bit counter has overflowed.
       if (slot < capacity.entries / CLPV_FEW_TILES) entries.wide[slot] = (uint2)(index, at);
       at += tiles;
     } else if (room_for_entries) {

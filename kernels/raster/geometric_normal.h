@@ -12,7 +12,7 @@ static inline realW fold_octahedron(const realW along, const realW other) {
   return along < ZERO ? -folded : folded;
 }
 
-// Number of the normal `geometric`; 0 where it is `shading`.
+// Encodes `geometric` as a whole number (shared/normal.h); 0 where it equals `shading`.
 CLPV_INLINE realW pack_geometric_normal(const Vec geometric, const Vec shading) {
   const Vec g = geometric;
   const realW scale = 1.0f / (fabs(g.x) + fabs(g.y) + fabs(g.z)), x = g.x * scale, y = g.y * scale;

@@ -5,7 +5,7 @@
 //                                     normals of any length (w unused)
 // Out:  places, normals               positions have w = 1; normals are unit vectors
 // A pixel has no surface, and depth or w 0, if its depth is not positive, if its normal is 0, or if
-// a number of it is not finite. Normals of unit length, but for rounding, do not change. A
+// any of its numbers is not finite. Normals whose length is 1 up to rounding are copied. A
 // work-item takes one of `count` pixels.
 #include "raster/surface_row.h"
 

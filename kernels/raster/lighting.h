@@ -50,7 +50,7 @@ static inline Vec clear_irradiance(const ClpvLight light, const Vec position, Ve
   return vec_times(intensity, attenuation);
 }
 
-// The same after attenuation.
+// clear_irradiance() times the medium's transmittance towards the light.
 static inline Vec light_irradiance(const ClpvLight light, const Vec position, Vec* towards) {
   realW distance;
   const Vec irradiance = clear_irradiance(light, position, towards, &distance);

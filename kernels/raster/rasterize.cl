@@ -4,7 +4,8 @@
 //
 //   set_up           triangles of the clusters in view
 //   set_up_clipped   those that cross the near plane or the guard band, which set_up defers
-//   enter_wide       entries of wide triangles, which both defer: one work-item would take long
+//   enter_wide       tile entries of wide triangles, left over by both kernels above: one work-item
+//                    would take too long
 //
 // bin_tiles.cl then sorts the entries by tile, draw_tiles.cl finds the nearest triangle of each
 // pixel, and resolve.cl evaluates its surface.
@@ -16,8 +17,8 @@
 //          cull      1: drop back faces of one-sided materials
 // Out:     list      ClpvRasterTriangle of those that may cover the centre of a pixel, in no
 //                    particular order
-//          entries   CLPV_ENTRY_WORDS words for each listed triangle and tile of 8 x 8 pixels that
-//                    it may cover
+//          entries   CLPV_ENTRY_WORDS words for each tile of a listed triangle's box; CLPV_NO_SLICE
+//                    where it misses the tile
 //          to_clip   numbers of the triangles that set_up defers
 //          wide      those whose entries are deferred: index in `list`, first entry
 // In, out: counts    CLPV_LISTED and so on. They count beyond the capacities most_listed and

@@ -126,7 +126,8 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
 
 #else
 
-// Light from the unit direction `towards` that a surface receives, by that of its triangle.
+// (n_s . towards) / (n_g . towards); 1 where both normals are equal, at most largest_weight, 0 on
+// the dark side.
 CLPV_INLINE realW light_weight(const PixelSurface* surface, const Vec towards) {
   const realW shading = vec_dot(surface->normal, towards),
               geometric = vec_dot(surface->geometric, towards);

@@ -17,7 +17,7 @@
       __global const uint *texels
 #define CLPV_PASS_SCENE vertices, triangles, materials, textures, texels
 
-// Gathers a row per lane, or loads one for all: `alike` is a literal.
+// Loads a row per lane or, if `alike` (a literal), one row for all lanes.
 CLPV_INLINE void load_rows(__global const float4* from, const uintW at, const bool alike,
                            Rows* rows) {
   if (alike) {

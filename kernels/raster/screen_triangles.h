@@ -11,7 +11,7 @@ typedef struct {
   ScreenCorner a, b, c;
   Face face;
   uintW triangle;  // index in the scene
-  uintW flags;     // of the material
+  uintW flags;     // flags of the material
 } ScreenTriangles;
 
 // Box of pixels whose centres lie between the corners of a triangle.
@@ -69,8 +69,8 @@ static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, con
   return edge;
 }
 
-// Mask of the triangles with a box of at most 2 x 2 pixels that cover none of its centres. Exact;
-// about 33 % of them miss.
+// Mask of the triangles with a box of at most 2 x 2 pixels that cover no pixel centre. Exact; about
+// a third of such triangles are dropped.
 static inline intW misses(const ScreenTriangles t, const Box box) {
   const intW tiny = all_bits(box.small & (box.right - box.left <= 1) & (box.bottom - box.top <= 1));
   const TinyEdge e0 = tiny_edge(t.a, t.b, box, tiny), e1 = tiny_edge(t.b, t.c, box, tiny),

@@ -7,18 +7,18 @@
 // does not shadow itself. A lift along the triangle's normal (shared/shade.h) covers rounding and
 // corners; occluders closer than the lift cast no shadow.
 //
-// Under a roof, along the edge where it meets the receiver's wall, that would let light in: the
-// roof is closer than the lift, and texels beyond the edge lie behind the wall's plane. A receiver
-// that not all texels occlude is therefore tested: heights of texels above its plane, extrapolated
-// from one of the four inner texels and its two outer neighbours to the filter's centre, are
-// positive if it is below a surface. They are negative in a concave corner, whose texels are above
-// the receiver's plane, too. Lower neighbours do not count: they may lie on another surface, and
-// where a plane rises, one inner texel has higher ones. A receiver below a surface has no lift, and
-// texels beyond the edge do not count. Nor do texels on the edge itself, which may show either
-// surface: they lie in the receiver's plane and, by two texels closer to it, in the roof's. A
-// receiver below it by no more than rounding may as well be in a concave corner, which then has lit
-// texels in its plane. Only receivers whose normals are one are tested: triangles of a curved mesh
-// lie above each other's planes.
+// The lift lets light in under a roof, along the edge where the roof meets the receiver's wall. So
+// receivers that some texel does not occlude are tested:
+// (1) From each of the four inner texels above the plane and its higher outer neighbours,
+//     extrapolate the height to the filter's centre.
+// (2) No positive result: the receiver is below no surface (a concave corner gives negative ones)
+//     and keeps its lift.
+// (3) Else it has no lift, and two kinds of texels do not count: texels below its plane, and texels
+//     on the edge, where the next two texels towards the centre extrapolate to the plane.
+// (4) If the height is within rounding and lit texels lie in the plane, it is a concave corner
+//     after all: keep the lift.
+// Tested only where shading and triangle normal agree: triangles of a curved mesh lie above each
+// other's planes.
 #pragma once
 
 #include "lanes.h"
@@ -111,7 +111,7 @@ CLPV_INLINE float8 texel_heights(const Receiver r, const float8 d, const float2 
   return select((float8)(-1e6f * r.lift), height, d > 0.0f);
 }
 
-// Height of a surface of the map above a receiver [m]; 0 or less: it is below none. `upper`,
+// Height [m] of the map's surface above a receiver; 0 or less: none is above it. `upper`,
 // `lower`: heights of the filter's first and last two rows.
 CLPV_INLINE float surface_above(const Receiver r, const float8 upper, const float8 lower) {
   const float4 inner = (float4)(upper.s5, upper.s6, lower.s1, lower.s2);
@@ -153,7 +153,7 @@ CLPV_INLINE float blocked_weight(const Receiver r, __global const float* row, co
   const float8 lower_d = side_by_side(vload4(0, row + 2 * width), vload4(0, row + 3 * width));
   const float8 upper = texel_heights(r, upper_d, r.dy.lo),
                lower = texel_heights(r, lower_d, r.dy.hi);
-  const float depth = (r.b + r.lift) / r.a;  // of the lifted receiver
+  const float depth = (r.b + r.lift) / r.a;  // depth of the lifted receiver
   const float8 blocked = select(none, upper_w, (upper > r.lift) & (upper_d < depth)) +
                          select(none, lower_w, (lower > r.lift) & (lower_d < depth));
   const float sum = dot(blocked.lo + blocked.hi, one);
@@ -223,7 +223,8 @@ typedef struct {
 
 // Irradiance [W/m^2] of a light on the surfaces that its view covers. `normal` weighs light,
 // `geometric` decides which side it comes from (shared/normal.h). `lit`: mask of the surfaces to
-// light; becomes that of the lit ones, outside which the result is undefined.
+// light; on return, those that face the light and lie in this view. The result is undefined
+// elsewhere.
 CLPV_INLINE Vec shadowed_irradiance(const ClpvLight light, const ShadowMap shadow,
                                     const Vec position, const Vec normal, const Vec geometric,
                                     intW* lit) {

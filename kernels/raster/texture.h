@@ -36,7 +36,6 @@ CLPV_INLINE void load_level(__global const float4* table, const uintW entry, Lev
   level->wrap = as_uintW(CLPV_COLUMN(rows, w));
 }
 
-// Loads the same entry for all lanes.
 CLPV_INLINE void load_level_for_all(__global const float4* table, const uint entry, Level* level) {
   const uint4 row = as_uint4(table[entry]);
   level->offset = (uintW)(row.x);
@@ -161,7 +160,7 @@ CLPV_INLINE void sample_bilinear(__global const float4* table, __global const ui
   colour->z = filter_channel(f, 16);
 }
 
-// Divided, so that a texel of the cutoff's value equals it.
+// Divides by 255, so that a texel with the cutoff's byte compares equal to the cutoff.
 static inline realW alpha_of(const uintW texel) {
   return to_realW(as_intW(texel >> 24)) / 255.0f;
 }

@@ -15,7 +15,8 @@ typedef struct {
   realW x, y;  // px + lane, py
 } PixelRow;
 
-// Vectors of W pixels in a row of a tile, and index of one in the buffers of draw_tiles.cl.
+// Vectors of W pixels in a row of a tile; tile_row(): index of such a vector in `keys` and `seen`
+// of draw_tiles.cl.
 enum { CLPV_TILE_VECTORS = CLPV_TILE / W };
 static inline uint tile_row(const uint tile, const uint row, const uint vector) {
   return (tile * CLPV_TILE + row) * CLPV_TILE_VECTORS + vector;
@@ -34,8 +35,8 @@ static inline PixelRow find_pixel_row(const ClpvView view) {
   return p;
 }
 
-// With one lane, the last kernel of a view zeroes the counters of rasterize.cl for the next one: a
-// work-group those of its tile. Eight lanes fill memory faster by a command.
+// With one lane, the last kernel of a view zeroes the counters of rasterize.cl for the next one, a
+// work-group the counters of its tile. Eight lanes fill memory faster by a command.
 #if W == 1
 #define CLPV_AND_COUNTERS , __global uint *counts, __global uint *slice_counts
 static inline void clear_counters(__global uint* counts, __global uint* slice_counts) {

@@ -18,7 +18,7 @@ enum {
 typedef struct {
   float position[3];  // [m]
   float normal[3];    // unit
-  float uv[2];        // of the base-colour texture, its KHR_texture_transform applied
+  float uv[2];        // base-colour texture, its KHR_texture_transform applied
   float colour[4];    // vertex colour, linear; 1 where the model has none
 } ClpvVertex;
 
@@ -54,7 +54,7 @@ enum {
 enum { CLPV_TEXTURE_LEVELS = 16 };
 
 typedef struct {
-  unsigned int offset;  // of the level in the texel buffer: 4 bytes per texel, RGB in sRGB
+  unsigned int offset;  // start of the level in the texel buffer: 4 bytes per texel, RGB in sRGB
                         // encoding, linear alpha; in blocks of 4 x 4, which share a cache line
   unsigned int width, height;
   unsigned int wrap;  // CLPV_WRAP_* of u, plus 16 times that of v

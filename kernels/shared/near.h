@@ -2,8 +2,8 @@
 // Layout of the near field's buffers (near_layout.h), shared by host and kernels.
 #pragma once
 
-// Planes of points, one number per pixel: position [m], normal, reach R [m], 0 without a surface in
-// a cascade, and the number of the geometric normal (normal.h).
+// Planes of points, one number per pixel: position [m], normal, reach R [m] (0: no surface inside a
+// cascade), and the encoded geometric normal (normal.h).
 enum {
   CLPV_NEAR_POSITION = 0,
   CLPV_NEAR_NORMAL = 3,

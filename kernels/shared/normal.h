@@ -16,7 +16,8 @@
 #define CLPV_NORMAL_ZERO 2048.0f
 #define CLPV_NORMAL_BASE 4096.0f
 
-// Cosine from which both normals count as one; and that of 20 degrees, up to which lookups and rays
-// are lifted along n_s: on round meshes n_s changes smoothly from triangle to triangle.
+// Minimum cosine at which both normals count as equal; and minimum cosine (20 degrees) at which
+// lookups and rays are lifted along n_s: on round meshes n_s changes smoothly from triangle to
+// triangle.
 #define CLPV_SAME_NORMAL 0.999999f
 #define CLPV_SAME_LIFT 0.94f

@@ -79,12 +79,13 @@ enum {
   CLPV_RASTER_COUNTERS,
 };
 
-// With one lane, a triangle whose box overlaps more tiles is wide: a work-group enters it. A CPU is
-// faster if one work-item steps through the tiles (a shadow map: 0.7 ms in place of 5.6).
+// With one lane, a triangle whose box overlaps more than CLPV_FEW_TILES tiles is wide: a work-group
+// writes its entries. A CPU is faster if one work-item steps through the tiles (a shadow map: 0.7
+// ms in place of 5.6).
 enum { CLPV_FEW_TILES = 16 };
 
 // Slices of a tile. Its triangles are drawn slice by slice, nearest first, so that most hidden ones
-// are skipped. Those of masked materials are the last slice: each of their pixels needs a texture.
+// are skipped. Masked materials are the last slice: each of their pixels needs a texture.
 enum { CLPV_DEPTH_SLICES = 8, CLPV_SLICES };
 
 // An entry has four uint32 words: slice of a tile or CLPV_NO_SLICE, number within the slice, index

@@ -8,8 +8,8 @@ enum {
   CLPV_AXIS_BINS = 8,  // bins swept across x, which come first; as many across y, then z
 };
 
-// Minimum number of the 512 sample points about a cell's centre that the centre sees, unless it is
-// enclosed. In the corner of a room it sees 64.
+// A centre that sees fewer than this many of the 512 sample points about it is enclosed. In the
+// corner of a room it sees 64.
 enum { CLPV_ENCLOSED = 64 };
 // Largest transmittance of a link through a full wall: along a corner.
 #define CLPV_WALL_TRANSMITTANCE 0.42265f
@@ -22,14 +22,14 @@ typedef struct {
   int plane_axis, row_axis, column_axis;  // 0 x, 1 y, 2 z
   int links[4];  // transmittance volumes of the links from the cells offset by 0, u, v, and u and v
   int transposed;  // 1: sources are in the volumes across x; 0: in those across z (sweep_source.cl)
-  int plane, row;  // steps from a source to the next plane's and the next row's
+  int plane, row;  // index steps in `sources` to the next plane and to the next row
 } ClpvSweepBin;
 
 typedef struct {
-  float taps[4];       // t of the same four cells; their sum is 1
+  float taps[4];       // t_k of the four cells of ClpvSweepBin::links; their sum is 1
   float share;  // Omega_d / (|w_m| Omega_b): solid angles of direction and bin, component across
                 // planes
-  float from_coarser;  // D here for 1 of the coarser cascade's D
+  float from_coarser;  // D in this cascade / D in the coarser one
   int coarser;         // part of the bin that contains this direction in the coarser cascade
   float attenuation[3];  // exp(-sigma_t s / |w_m|) of a medium, by channel; 1 without one
   float cosine;          // |w_m|
@@ -40,8 +40,8 @@ typedef struct {
 typedef struct {
   int first[3];   // lowest cell of the box that holds them
   int side;       // cells along each edge of the box; 0: no finer cascade
-  int layers[6];  // lower one of two layers across x, y, z, each for light towards larger, smaller
-                  // numbers
+  int layers[6];  // index of the lower of two layers, two per axis (x, y, z): for light towards
+                  // larger, then towards smaller numbers
 } ClpvSweepHalo;
 
 // Sizes in numbers for a grid of n cells along each axis: of a row, a plane and a volume of planes

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a step loads and stores: neighbours of a cell, transmittances of links, light gained; shared
-// by propagate.cl and propagate_lobes.cl.
+// Data that a step loads and stores: neighbours of a cell, transmittances of links, light gained;
+// shared by propagate.cl and propagate_lobes.cl.
 //
 // Face 5 k + f is the cell's face f of the five that are seen by the neighbour whose light travels
 // along axis k, axes in the order +x, -x, +y, -y, +z, -z.

@@ -17,7 +17,7 @@
 // compilers cannot fold them.
 //
 // From the host (host/pipeline/steps/run_time_lobes.cpp): CLPV_EVALUATE_AT_RUN_TIME; CLPV_UNIT_FLUX
-// 1: lobes are scaled to the exact flux; and those of face_flux.h and basis/lobe.h.
+// 1: lobes are scaled to the exact flux; and the literals of face_flux.h and basis/lobe.h.
 #include "basis/lobe.h"
 #include "steps/face_flux.h"
 #include "volume/whole_groups.h"

@@ -2,8 +2,8 @@
 // Reflects swept light off the surfaces in a cascade's cells: one more bounce, or all bounces as a
 // truncated Neumann series.
 //
-//   I' = I + R D              inject_reflected   one bounce; only R D with `injected_share` 0
-//   I' = I + R D_1 + S D_2    inject_series      all bounces; D_2: incident flux of R D_1
+//   I' = I + R D                     inject_reflected   one more bounce
+//   I' = I + R D_1 + S (D_2 - D_1)   inject_series      all bounces; D_2: with one more than D_1
 //   S = R + T_1 + T_2 / (1 - q),  T_k = R X_k
 //                             reflect_returned   T_1
 //                             sum_series         S
@@ -11,10 +11,10 @@
 //
 // docs/method.md, 'More bounces'. D [W] is the incident flux on a face, R in [0, 1] the reflectance
 // of a face per channel, I the injected light, I' the sources of the next sweep. X_k is the flux
-// that other surfaces return of 1 W leaving a face after k reflections. By reciprocity X_1 is the
-// incident flux while every face emits R, X_2 while it emits T_1 (inject_flux). q in [0, the cell's
-// largest R / m] is T_2 / T_1. S depends only on geometry. A face of normal a that receives D_a
-// (face_fluxes.h) emits, projected on the basis,
+// that comes back to a face after k reflections elsewhere, per 1 W that left it. By reciprocity X_1
+// is the incident flux while every face emits R, X_2 while it emits T_1 (inject_flux). q in [0, the
+// cell's largest albedo] is T_2 / T_1. S depends on the surfaces, not on light. A face of normal a
+// that receives D_a (face_fluxes.h) emits, projected on the basis,
 //   I(w) = Phi_a max(0, w.a) / pi,   Phi_a = R_a D_a
 // With CLPV_HARMONICS, light of all bands but the first is divided by the share m_a of the face's
 // triangles: |n_a| = m_a (|n_x| + |n_y| + |n_z|), so that the faces of a surface emit the clamped
@@ -26,7 +26,7 @@
 //       injected          I: light volume [W/sr]
 // Out:  bounced           I': light volume [W/sr]
 // From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_LOBES, the lobe of 1 W about each
-// face's normal, CLPV_MAX_RETURNED, the largest q, and those of face_fluxes.h.
+// face's normal, CLPV_MAX_RETURNED, the largest q, and the literals of face_fluxes.h.
 // A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"
 #include "sweep/face_fluxes.h"
@@ -61,13 +61,22 @@ CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
   return sum;
 }
 
-// Sum of a geometric series of fluxes from the second on; R / m bounds its ratio.
+// Flux that a sweep adds to the incident flux of the one before.
+CLPV_INLINE FaceFluxes further_flux(const FaceFluxes before, const FaceFluxes after) {
+  FaceFluxes flux;
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) flux.c[a] = fmax(after.c[a] - before.c[a], ZERO);
+  return flux;
+}
+
+// Sum of a geometric series of fluxes from the second on; the largest albedo bounds its ratio.
+// `white`: R of albedo 1.
 CLPV_INLINE FaceFluxes sum_bounces(const FaceFluxes first, const FaceFluxes second,
-                                   const FaceFluxes reflectance, const FaceFluxes share) {
+                                   const FaceFluxes reflectance, const FaceFluxes white) {
   realW largest = 0.0f;
 #pragma unroll
   for (int a = 0; a < CLPV_CELL_FACES; ++a)
-    largest = fmax(largest, reflectance.c[a] / fmax(share.c[a], (realW)(CLPV_LEAST_SHARE)));
+    largest = fmax(largest, reflectance.c[a] / fmax(white.c[a], 1e-6f));
   largest = fmin(largest, CLPV_MAX_RETURNED);
   FaceFluxes sum;
 #pragma unroll
@@ -116,8 +125,7 @@ CLPV_INLINE FaceFluxes load_incident_flux(CLPV_BUFFER_IN swept, const SweepTile*
 }
 
 __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
-                               CLPV_VOLUME_IN injected, const float injected_share,
-                               CLPV_VOLUME_OUT bounced) {
+                               CLPV_VOLUME_IN injected, CLPV_VOLUME_OUT bounced) {
   const Tile t = find_tile();
   if (t.rows == 0) return;
   SweepTile bins[CLPV_AXIS_BINS];
@@ -129,7 +137,7 @@ __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
                             load_share(reflectors, t.x, t.y + r, t.z));
     light_store(
         bounced, t.channel, t.x, t.y + r, t.z,
-        add_scaled(reflected, injected_share, light_load(injected, t.channel, t.x, t.y + r, t.z)));
+        add_coefficients(reflected, light_load(injected, t.channel, t.x, t.y + r, t.z)));
   }
 }
 
@@ -142,11 +150,13 @@ __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_sw
   load_x_bins(first_swept + t.first, t.x, t.y, t.z, first);
   load_x_bins(second_swept + t.first, t.x, t.y, t.z, second);
   for (int r = 0; r < t.rows; ++r) {
-    const FaceFluxes flux =
-        add_fluxes(reflect_flux(load_incident_flux(first_swept, first, t, r),
-                                faces_load(reflectors, t.channel, t.x, t.y + r, t.z)),
-                   reflect_flux(load_incident_flux(second_swept, second, t, r),
-                                faces_load(series, t.channel, t.x, t.y + r, t.z)));
+    const FaceFluxes before = load_incident_flux(first_swept, first, t, r),
+                     after = load_incident_flux(second_swept, second, t, r),
+                     flux = add_fluxes(
+                         reflect_flux(before,
+                                      faces_load(reflectors, t.channel, t.x, t.y + r, t.z)),
+                         reflect_flux(further_flux(before, after),
+                                      faces_load(series, t.channel, t.x, t.y + r, t.z)));
     light_store(bounced, t.channel, t.x, t.y + r, t.z,
                 add_coefficients(light_load(injected, t.channel, t.x, t.y + r, t.z),
                                  reflected_intensity(
@@ -173,7 +183,8 @@ CLPV_INLINE realW furnace_divisor(const realW f) {
   return f >= (realW)(CLPV_LEAST_WHITE) ? f : rest;
 }
 
-// `swept`: a white furnace in channel 0; `white`: the F of a face that it lights fully.
+// `swept`: a white furnace in channel 0; `white`: the F of a face that it lights fully. Also
+// divides R of albedo 1, so that R over it stays the albedo.
 __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
                                    const float white, CLPV_VOLUME_OUT normalised) {
   Tile t = find_tile();
@@ -185,7 +196,7 @@ __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflecto
     FaceFluxes faces = faces_load(reflectors, t.channel, t.x, t.y + r, t.z);
     const FaceFluxes furnace = load_incident_flux(swept, bins, t, r);
 #pragma unroll
-    for (int a = 0; a < CLPV_CELL_FACES && t.channel < CLPV_REFLECTOR_SHARE; ++a)
+    for (int a = 0; a < CLPV_CELL_FACES && t.channel != CLPV_REFLECTOR_SHARE; ++a)
       faces.c[a] = faces.c[a] / furnace_divisor(furnace.c[a] * (1.0f / white));
     faces_store(normalised, t.channel, t.x, t.y + r, t.z, faces);
   }
@@ -213,9 +224,9 @@ __kernel void sum_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_V
     const FaceFluxes reflectance = faces_load(reflectors, t.channel, t.x, t.y + r, t.z),
                      first = faces_load(returned, t.channel, t.x, t.y + r, t.z),
                      second = reflect_flux(load_incident_flux(swept, bins, t, r), reflectance),
-                     share = load_share(reflectors, t.x, t.y + r, t.z);
+                     white = faces_load(reflectors, CLPV_REFLECTOR_WHITE, t.x, t.y + r, t.z);
     faces_store(series, t.channel, t.x, t.y + r, t.z,
                 add_fluxes(reflectance,
-                           add_fluxes(first, sum_bounces(first, second, reflectance, share))));
+                           add_fluxes(first, sum_bounces(first, second, reflectance, white))));
   }
 }

@@ -14,7 +14,7 @@
 #include "sweep/centre_pairs.h"
 #include "sweep/sweep_layout.h"
 
-enum { CLPV_CUBE_WORDS = 8 };  // of eight points, a byte each
+enum { CLPV_CUBE_WORDS = 8 };  // words of eight points, a byte each
 
 // Index of the first word of a cube.
 static inline size_t cube_words(const uint cascade, const int x, const int y, const int z) {

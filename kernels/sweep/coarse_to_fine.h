@@ -25,8 +25,8 @@ CLPV_INLINE float8 interpolate_even(const float8 v) {
 }
 #endif
 
-// W cells between four rows: from index `at` on, and at the distances `row` and `plane` from there.
-// `row_weight`, `plane_weight`: of the farther ones.
+// W cells between four rows, which start at `at`, at + row, at + plane and at + row + plane.
+// `row_weight`: weight of the rows at + row; `plane_weight` likewise.
 CLPV_INLINE realW interpolate_rows(CLPV_BUFFER_IN from, const int at, const int row,
                                    const int plane, const float row_weight,
                                    const float plane_weight) {

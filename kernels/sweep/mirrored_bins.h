@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Bins that mirror one another, as sums and differences: projection and scattering, which mirrors
-// leave as they are, then have few products.
+// Bins that mirror one another, as sums and differences: projection and scattering are symmetric
+// under mirroring, so most of their matrix entries are then 0.
 //
 // The eight bins 8a, ..., 8a + 7 lie about axis a, and differ in the signs of their components:
-// bits 0, 1 and 2 of the index are those of axes a + 1, a + 2 and a (modulo 3).
+// bits 0, 1 and 2 of the index are the bits of axes a + 1, a + 2 and a (modulo 3).
 #pragma once
 
 #include "sweep/sweep_tiles.h"
@@ -25,8 +25,8 @@ CLPV_INLINE Bins fold_bins(const Bins bins) {
   return r;
 }
 
-// Number, among the eight of an axis, of the sum that mirrors of x, y and z (bits 0, 1 and 2 of
-// `odd`) negate.
+// Index, among an axis's eight sums, of the sum that changes sign when an axis in `odd` (bits 0, 1,
+// 2: x, y, z) is mirrored, and only then.
 CLPV_INLINE int folded_number(const int axis, const int odd) {
   return ((odd | odd << 3) >> (axis + 1) % 3) & 7;
 }

@@ -9,6 +9,7 @@
 // In:   halo_light    D_coarser [W/sr] in the cells of `halo` (sweep_border.h)
 //       dx, dy, dz    offset of the grid's origin from the coarser one's, in finer cells
 //                     (coarse_to_fine.h)
+//       first_lit     channels below have a dark border
 // Out:  plane_buffer  D [W/sr] in the plane upstream of the grid, from number `upstream` on
 //       border        D [W/sr] in the rows and columns upstream of each plane
 // A work-item computes W cells of a row of one face, from the cell before the grid on.
@@ -21,8 +22,9 @@
 __kernel void sweep_border(__constant const ClpvSweepBin* bins,
                            __constant const ClpvSweepDirection* directions,
                            CLPV_BUFFER_IN halo_light, const ClpvSweepHalo halo, const int dx,
-                           const int dy, const int dz, __global float* plane_buffer,
-                           const int upstream, CLPV_BUFFER_OUT border) {
+                           const int dy, const int dz, const int first_lit,
+                           __global float* plane_buffer, const int upstream,
+                           CLPV_BUFFER_OUT border) {
   const int column = W * (int)get_global_id(0) - 1, row = (int)get_global_id(1) - 1,
             face = (int)get_global_id(2) % 3;
   const int ordinate = (int)get_global_id(2) / 3, b = ordinate / (3 * CLPV_PARTS);
@@ -44,13 +46,15 @@ __kernel void sweep_border(__constant const ClpvSweepBin* bins,
       halo_light + halo_index(halo, coarser, face, 0, lower_cell(r) - halo_first(halo, row_axis),
                               lower_cell(c) - halo_first(halo, column_axis));
   const float tl = upper_weight(layer), tr = upper_weight(r);
-  const realW v = direction->from_coarser * interpolate_rows(light, 0, pitch, next, tr, tl);
+  const float from_coarser =
+      ordinate / CLPV_PARTS % 3 < first_lit ? 0.0f : direction->from_coarser;
+  const realW v = from_coarser * interpolate_rows(light, 0, pitch, next, tr, tl);
 #if W == 8
   const realW in = c & 1 ? interpolate_odd(v) : interpolate_even(v);
 #else
   const float tc = upper_weight(c);
   const realW in = (1.0f - tc) * v +
-                   tc * direction->from_coarser * interpolate_rows(light, 1, pitch, next, tr, tl);
+                   tc * from_coarser * interpolate_rows(light, 1, pitch, next, tr, tl);
 #endif
   if (plane_face) {
     store_lanes(

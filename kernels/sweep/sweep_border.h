@@ -30,7 +30,7 @@ CLPV_INLINE int border_index(const int ordinate, const int face, const int plane
   return side * CLPV_SWEEP_PITCH + 1 + at;
 }
 
-// The one of three numbers that belongs to an axis. Structs that kernels get by value have their
+// Selects x, y or z by axis, in place of an array: structs that kernels get by value have their
 // arrays indexed only by literals (region.h).
 CLPV_INLINE int along_axis(const int axis, const int x, const int y, const int z) {
   return axis == 0 ? x : (axis == 1 ? y : z);

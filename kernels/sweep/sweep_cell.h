@@ -21,8 +21,8 @@
 // and f J are means of the cell and its neighbour upstream along m.
 //
 // From the host: CLPV_PARTS directions of a bin, CLPV_SOURCES coefficients stored per channel,
-// CLPV_EMITTING that a bin's light depends on, CLPV_BLOCKING, CLPV_MEDIUM, CLPV_COSINE_REST,
-// CLPV_SOURCE_LANES, the W of sweep_source.cl.
+// CLPV_EMITTING, how many of them a bin's light depends on, CLPV_BLOCKING, CLPV_MEDIUM,
+// CLPV_COSINE_REST, CLPV_SOURCE_LANES, the W of sweep_source.cl.
 #pragma once
 
 #include "shared/sweep.h"
@@ -32,11 +32,11 @@
 
 // The bin that a work-item sweeps, and its buffers.
 typedef struct {
-  int number;  // of the bin, 0 to CLPV_SWEEP_BINS - 1
+  int number;  // index of the bin, 0 to CLPV_SWEEP_BINS - 1
   ClpvSweepBin bin;
   __constant const ClpvSweepDirection* directions;  // CLPV_PARTS of them
   __constant const int* coefficients;  // those that the bin's light depends on, CLPV_EMITTING
-  __constant const float* means;       // of their functions, CLPV_EMITTING for each direction
+  __constant const float* means;       // means of their functions, CLPV_EMITTING for each direction
   CLPV_BUFFER_IN sources;      // c of 3 channels and CLPV_SOURCES coefficients (sweep_source.cl)
   __global const uchar* lit;   // 1 for each CLPV_SOURCE_LANES cells that hold sources
   CLPV_BUFFER_IN links;        // T, a volume for each axis and link
@@ -44,11 +44,12 @@ typedef struct {
   CLPV_BUFFER_OUT sums;        // L s^2, a volume for each channel and bin
   CLPV_BUFFER_OUT halo_light;  // D in the cells of the halo (sweep_border.h)
   // With CLPV_MEDIUM:
-  __global const float* inside;  // part in the medium of each cell along each axis, with border
+  __global const float* inside;  // share of each cell in the medium: one bordered row per axis;
+                                 // multiply the three factors
   CLPV_BUFFER_IN scattered;      // J s^2, a volume for each channel and bin
 } BinSweep;
 
-// Moves pointers from the tables of all bins, the kernel's parameters, to those of the bin.
+// Moves pointers from the tables of all bins, the kernel's parameters, to the tables of the bin.
 CLPV_INLINE void select_bin(BinSweep* s) {
   s->directions += s->number * CLPV_PARTS;
   s->coefficients += s->number * CLPV_EMITTING;
@@ -69,6 +70,10 @@ CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
 // Adds I to D in cells with sources, and to `sum`. `planes`: D of the bin's first ordinate there.
 CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float* planes,
                              realW* sum) {
+#if CLPV_COSINE_REST
+  realW lacking[CLPV_PARTS];
+  find_cosine_rest(s->means, s->sources, source, lacking);
+#endif
   for (int channel = 0; channel < 3; ++channel) {
     realW injected[CLPV_PARTS];
 #pragma unroll
@@ -81,8 +86,11 @@ CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float
         injected[part] = fma((realW)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
     }
 #if CLPV_COSINE_REST
-    add_cosine_rest(s->means, s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME, source,
-                    injected);
+    const realW uniform =
+        read_numbers(s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME, source);
+#pragma unroll
+    for (int part = 0; part < CLPV_PARTS; ++part)
+      injected[part] = fma(uniform, lacking[part], injected[part]);
 #endif
 #pragma unroll
     for (int part = 0; part < CLPV_PARTS; ++part) {
@@ -97,7 +105,7 @@ CLPV_INLINE int inside_index(const int axis, const int i) {
   return axis * CLPV_SWEEP_PITCH + CLPV_SWEEP_FIRST + i;
 }
 
-// `from`: plane buffer of the previous plane; `to`: that of this one, which may be the same.
+// `from`, `to`: buffers of the previous plane and of this one, which may be the same.
 CLPV_INLINE void sweep_cells(const BinSweep* s, __global const float* from, __global float* to,
                              const int plane, const int row, const int column) {
   const ClpvSweepBin bin = s->bin;

@@ -28,6 +28,19 @@ CLPV_INLINE Coefficients project_bins(const Bins bins) {
   return c;
 }
 
+// Joins two channels of a white furnace in the first: S, whose border is dark, and S + B with a
+// white one. Of B, what walls let through counts as closed.
+//
+//   F = S + min(B, 2 max(0, B - CLPV_LEAST_OPEN))
+__kernel void join_furnace(CLPV_BUFFER_OUT sums) {
+  const int at = W * (int)get_global_id(0), volumes = CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
+  if (at >= volumes) return;
+  const realW surfaces = read_numbers(sums, at),
+              border = read_numbers(sums + volumes, at) - surfaces;
+  write_numbers(sums, at,
+                surfaces + fmin(border, 2.0f * fmax(border - CLPV_LEAST_OPEN, ZERO)));
+}
+
 __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated,
                             const int first) {
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);

@@ -9,14 +9,14 @@
 // are added in the order of sweep_planes.cl, with the same result, in one launch in place of one
 // per plane.
 //
-// In, out: those of sweep_bin (sweep_bins.cl), without a medium. plane_buffer is only read.
-// From the host: CLPV_ITEMS, work-items of a group; those of sweep_cell.h.
+// In, out: as sweep_bin (sweep_bins.cl), without a medium. plane_buffer is only read.
+// From the host: CLPV_ITEMS, work-items of a group; the literals of sweep_cell.h.
 #include "shared/sweep.h"
 #include "sweep/halo_cells.h"
 #include "sweep/sweep_cell.h"
 
 enum {
-  CLPV_SIDE = CLPV_GRID + 2,  // of a plane in local memory, with a border of one cell
+  CLPV_SIDE = CLPV_GRID + 2,  // side of a plane in local memory, with a border of one cell
   CLPV_CELLS = CLPV_GRID * CLPV_GRID,
   CLPV_EACH = (CLPV_CELLS + CLPV_ITEMS - 1) / CLPV_ITEMS,  // cells of a work-item
 };
@@ -47,7 +47,11 @@ static inline void add_light(const BinSweep* s, const int channel, const int sou
       injected[part] = fma(s->means[part * CLPV_EMITTING + j], c, injected[part]);
   }
 #if CLPV_COSINE_REST
-  add_cosine_rest(s->means, of_channel, source, injected);
+  float lacking[CLPV_PARTS];
+  find_cosine_rest(s->means, s->sources, source, lacking);
+  const float uniform = read_numbers(of_channel, source);
+  for (int part = 0; part < CLPV_PARTS; ++part)
+    injected[part] = fma(uniform, lacking[part], injected[part]);
 #endif
   for (int part = 0; part < CLPV_PARTS; ++part) {
     d[part] += injected[part];

@@ -4,14 +4,14 @@
 //
 //   T = 1 - clamp(B, 0, 1)      (docs/method.md, 'Blockers')
 //   T = 0                       if the link is closed
-//   T = max(0, (T - w) / (1 - w))   if it is closed and one of its centres is enclosed;
-//                               w: CLPV_WALL_TRANSMITTANCE
+//   T = max(0, (T - w) / (1 - w))   instead of 0, if a centre at an end of the closed link is
+//                               enclosed; w: CLPV_WALL_TRANSMITTANCE
 //
 // In:   blockers       geometry volume, samples at the cells' corners
 //       closed         closed pairs of centres in each cube between cells (closed_links.cl)
 // Out:  transmittance  T in [0, 1], a volume for each axis and link that directions across it use
 //                      (sweep_layout.h)
-// From the host (host/pipeline/sweep/sweep_literals.cpp): those of link_transmittance.h,
+// From the host (host/pipeline/sweep/sweep_literals.cpp): literals of link_transmittance.h,
 // and CLPV_VOLUME_LINKS, the link of each volume: CLPV_AXIS_LINKS across x, then as many across y
 // and z. A work-item computes a tile of W x W cells of a slice.
 #include "volume/coefficients.h"

@@ -32,8 +32,8 @@ typedef struct {
   realW x, y, z;
 } LitRow;
 
-// Mean irradiance of the part of cell (x, y, z) in the medium, for each channel. A point in a cell
-// with a spot or point light counts as at least a quarter of the cell's edge away.
+// Mean irradiance of the part of cell (x, y, z) in the medium, for each channel. Points nearer to a
+// spot or point light than a quarter of a cell's edge count as that far away.
 CLPV_INLINE void cell_irradiance(const ClpvGrid grid, const ClpvLight light, const ShadowMap shadow,
                                  const int x, const int y, const int z, float* red, float* green,
                                  float* blue) {
@@ -67,7 +67,8 @@ CLPV_INLINE void cell_irradiance(const ClpvGrid grid, const ClpvLight light, con
   }
 }
 
-// Fills the lit rows of the tile from cell (x, y, z) on; returns whether any cell is lit.
+// Computes the light of each row of the tile from cell (x, y, z) on. Returns true if any cell
+// receives light.
 CLPV_INLINE bool light_tile(const ClpvGrid grid, const ClpvLight light, const ShadowMap shadow,
                             const int x, const int y, const int z, LitRow* rows) {
   float brightest = 0.0f;
@@ -148,8 +149,8 @@ __kernel void scatter_lights(const ClpvGrid grid, const ClpvLight light,
 
 __constant const float scattering[3][CLPV_SWEEP_BINS] = CLPV_SCATTERING;
 
-// M L. Light that mirrors of x, y and z leave as it is or negate (`odd`) scatters into light of the
-// same kind.
+// M L. Light that is even or odd (bits of `odd`) under mirroring x, y and z scatters into light of
+// the same symmetry.
 CLPV_INLINE Bins scatter_bins(const Bins swept) {
   const Bins folded = fold_bins(swept);
   Bins scattered;

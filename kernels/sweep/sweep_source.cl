@@ -15,7 +15,7 @@
 #include "sweep/sweep_tiles.h"
 #include "volume/light.h"
 
-// Sum of all numbers' sizes in W cells of a row.
+// Sum of the absolute values of all coefficients, for W cells of a row.
 CLPV_INLINE realW sum_light(CLPV_VOLUME_IN injected, const int x, const int y, const int z) {
   realW sum = 0.0f;
   for (int channel = 0; channel < 3; ++channel) {
@@ -64,7 +64,8 @@ __kernel void sweep_source(CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources, __g
     if (x + r >= CLPV_GRID) break;
     lit[(CLPV_SWEEP_VOLUME + sweep_index(x + r, z, y)) / W] = light[r] != 0.0f;
   }
-  // Sweeps of eight lanes read the neighbours of a cell with light, so W 1 writes dark cells too.
+  // With W 8, a tile without light need not be written. With W 1 it must: a sweep of eight lanes
+  // also reads the dark neighbours of a cell with light.
   if (W == 8 && no_lane(columns != 0.0f)) return;
   for (int channel = 0; channel < 3; ++channel) copy_tile(injected, sources, channel, x, y, z);
 }

@@ -8,7 +8,7 @@
 
 __constant const float edge_tolerance = 1e-3f;  // [cells]
 __constant const float coordinate_limit = 1e6f;  // [cells] coordinates are clamped to it
-__constant const float first_point = 0.125f;  // of the points along an axis [cells]
+__constant const float first_point = 0.125f;  // first of the points along an axis [cells]
 __constant const float last_point = 0.875f;
 enum { CLPV_LAYERS = 4 };  // layers of points in a cube, across z
 

@@ -89,7 +89,7 @@ __kernel void occlude_cells(const ClpvRegion region, __global const uint* cluste
   const int3 highest = (int3)(region.all.high[0], region.all.high[1], region.all.high[2]);
   const int3 low = max(convert_int3(floor(fmin(v0, fmin(v1, v2)))) - first, lowest);
   const int3 high = min(convert_int3(floor(fmax(v0, fmax(v1, v2)))) - first, highest);
-  const float half_extent = 0.5f * l1_norm(normal);  // of a cube along the normal, times its length
+  const float half_extent = 0.5f * l1_norm(normal);  // half a cube along it, times its length
   for (int z = low.z; z <= high.z; ++z) {
     for (int y = low.y; y <= high.y; ++y) {
       for (int x = low.x; x <= high.x; ++x) {

@@ -56,7 +56,8 @@ static inline bool find_grid_corners(const ClpvRegion* region,
 // Returns false for a triangle that is seen edge-on or has no area.
 static inline bool project_triangle(const GridCorners* corners, const uint axis,
                                     ProjectedTriangle* t) {
-#pragma OPENCL FP_CONTRACT OFF  // else a line along a diagonal has the area that rounding leaves
+// With fma(), a triangle that is a diagonal line gets a small area instead of 0.
+#pragma OPENCL FP_CONTRACT OFF
   float w[3];
   for (int i = 0; i < 3; ++i) {
     t->u[i] = corners->at[(axis + 1) % 3][i];

@@ -22,8 +22,8 @@ constexpr unsigned kMaxSamples = 1u << 16, kMaxStride = 4;
 constexpr int kPasses = 4;
 constexpr unsigned kInterleave = 4;
 constexpr double kFarthest = 2;      // extrapolation of samples
-constexpr int kCorrections = 3;      // of the number of samples
-constexpr double kTolerance = 0.05;  // of the time
+constexpr int kCorrections = 3;      // corrections of the number of samples
+constexpr double kTolerance = 0.05;  // share of the time
 
 bool filters(Baseline baseline) {
   return baseline == Baseline::paths_filtered || baseline == Baseline::vpl_interleaved;
@@ -86,7 +86,7 @@ class Runner {
             taken.count() / frames + (lights_by_rsm(baseline_) ? budget_.rsm_ms : 0)};
   }
   Baseline baseline() const { return baseline_; }
-  const std::map<std::string, double>& settings() const { return settings_; }  ///< of the last run
+  const std::map<std::string, double>& settings() const { return settings_; }  ///< the last
 
  private:
   Baseline baseline_;

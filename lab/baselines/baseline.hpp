@@ -43,8 +43,8 @@ struct BaselineBudget {
   double rsm_ms = 0;     ///< RSMs of the coarsest cascade
   /// Stages that every method needs: G-buffer, shadow maps, shading.
   std::vector<TimeRecord> shared;
-  std::vector<SurfaceImage> rsms;  ///< of the coarsest cascade, flux in W
-  std::vector<ClpvGrid> grids;     ///< of the cascades, finest first
+  std::vector<SurfaceImage> rsms;  ///< RSMs of the coarsest cascade, flux in W
+  std::vector<ClpvGrid> grids;     ///< grids of the cascades, finest first
 };
 
 /// Measures the budget as the median over `frames` frames that recompute all lighting.

@@ -21,7 +21,7 @@ Irradiance trace_paths(const View& view, unsigned samples);
 struct PointLight {
   glm::vec3 position, normal;  ///< [m]; lifted off its surface for shadow rays
   glm::vec3 flux;              ///< [W]
-  float area;                  ///< of the lit surface per light [m^2]
+  float area;                  ///< lit surface per light [m^2]
 };
 
 /// Draws VPLs of equal flux from RSMs (Keller, 'Instant Radiosity', SIGGRAPH 1997; Dachsbacher and

@@ -12,7 +12,7 @@ namespace clpv::baselines {
 namespace {
 
 constexpr int kLightTexels = 8, kDistanceTexels = 16;  // along each edge of an octahedral map
-constexpr int kDistancePower = 50;                     // of the cosine that weights distances
+constexpr int kDistancePower = 50;                     // power of the cosine that weights distances
 constexpr float kHysteresis = 0.97f;   // share of earlier frames, once as many are blended
 constexpr float kReach = 1.5f;         // distances count up to so many diagonals of a cell
 constexpr float kBias = 0.3f * 0.75f;  // lift of a point before visibility [cells]

@@ -23,7 +23,7 @@ class QualityBaselines : public QualityAddition {
 
  private:
   std::vector<Baseline> names_;
-  double time_ = 0;     ///< of each [ms]; 0: the frame's
+  double time_ = 0;     ///< time of each [ms]; 0: the frame's
   std::string images_;  ///< folder for their images; empty: none
 };
 

@@ -9,11 +9,11 @@
 namespace clpv::baselines {
 namespace {
 
-constexpr unsigned kFaces = 12;        // of HEALPix
+constexpr unsigned kFaces = 12;        // faces of HEALPix
 constexpr unsigned kChildren = 4;      // directions of the next cascade in one of this
 constexpr float kVisibleFrom = 1e-3f;  // [spacings]: a probe on the surface of a pixel sees it
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kOverlap = 1e-3f;  // of a ray beyond its end, for surfaces at the end
+constexpr float kOverlap = 1e-3f;  // a ray's length beyond its end, for surfaces at the end
 constexpr std::uint64_t kAxisBits = 21, kAxisOffset = 1 << 20;
 
 std::uint64_t key_of(const glm::ivec3& cell) {
@@ -35,7 +35,7 @@ struct Cascade {
   std::vector<glm::ivec3> cells;                         ///< one per probe
   std::vector<Corners> above;                            ///< probes of the next cascade around each
   std::unordered_map<std::uint64_t, std::size_t> index;  ///< probe by key_of() its cell
-  std::vector<glm::vec4> radiance;  ///< of each probe, by direction; w 0: blocked before `from`
+  std::vector<glm::vec4> radiance;  ///< each probe's, by direction; w 0: blocked before `from`
 
   /// Returns the eight probes around a position given in cells from the first cell's centre. Adds
   /// those that are missing.

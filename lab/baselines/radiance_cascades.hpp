@@ -27,9 +27,9 @@ namespace clpv::baselines {
 
 struct RadianceCascadeSettings {
   unsigned side = 1;          ///< cascade 0 has 12 side^2 directions
-  float spacing = 1;          ///< of cascade 0 [cells]
+  float spacing = 1;          ///< spacing of cascade 0 [cells]
   float first = 2;            ///< length of the intervals of cascade 0 [its spacing]
-  float ratio = 2;            ///< of the lengths of intervals from cascade to cascade
+  float ratio = 2;            ///< ratio of intervals' lengths from cascade to cascade
   unsigned cascades = 3;      ///< the last one's intervals have no end
   bool bilinear_fix = false;  ///< 32 rays for each direction in place of one
 };
@@ -43,7 +43,7 @@ std::size_t healpix_child(std::size_t direction, unsigned side, unsigned which);
 
 struct CascadedImage {
   Irradiance irradiance;
-  std::size_t bytes = 0, probes = 0;  ///< of radiance; of cascade 0
+  std::size_t bytes = 0, probes = 0;  ///< bytes of radiance; probes of cascade 0
 };
 
 /// Irradiance by radiance cascades over the finest grid that encloses each pixel; 0 beyond all

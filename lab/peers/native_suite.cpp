@@ -17,7 +17,7 @@
 namespace clpv::bench {
 namespace {
 
-constexpr const char* kBasis = "sh2";  // of the hand-written code
+constexpr const char* kBasis = "sh2";  // basis of the hand-written code
 constexpr const char* kNative = "native";
 
 struct NativePropagation {

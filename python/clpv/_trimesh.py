@@ -41,7 +41,7 @@ def _arguments(mesh):
                 "triangles": numpy.arange(3 * len(mesh.faces)).reshape(-1, 3),
                 "colours": numpy.repeat(_colours(visual.face_colors), 3, axis=0)}  # yapf: disable
     made = {"positions": mesh.vertices, "triangles": mesh.faces}
-    if "vertex_normals" in mesh._cache:  # of the file: computed ones would be smooth everywhere
+    if "vertex_normals" in mesh._cache:  # the file's: computed ones would be smooth everywhere
         made["normals"] = mesh.vertex_normals
     if visual.kind == "vertex":
         return made | {"colours": _colours(visual.vertex_colors)}

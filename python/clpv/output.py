@@ -9,11 +9,11 @@ import tarfile
 import tempfile
 
 RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3  # exit codes
-MARKER = ".clpv-output"  # of an output folder: the script that wrote it
+MARKER = ".clpv-output"  # marks an output folder: the script that wrote it
 
 
 class Failure(Exception):
-    """What ends a command. `code`: its exit code."""
+    """Ends a command with the exit code `code`."""
 
     def __init__(self, words, code=RUN_TIME):
         super().__init__(words)
@@ -21,7 +21,7 @@ class Failure(Exception):
 
 
 class BadOutput(Failure):
-    """What cannot be written, and why."""
+    """Names an output that cannot be written, and why."""
 
 
 def printable(text):
@@ -84,7 +84,7 @@ def write(path, data):
 
 
 def exit_code(main, *arguments):
-    """That of a script's main function. Prints its Failure."""
+    """Exit code of a script's main function. Prints its Failure."""
     try:
         return main(*arguments)
     except Failure as error:

@@ -29,7 +29,7 @@ from clpv.view_frames import (  # noqa: E402
 
 # Distance from the eye to the point that a drag turns the camera about, of the scene's diagonal.
 PIVOT = 0.03
-PATHS = 16    # of a path-traced pixel
+PATHS = 16    # paths of a path-traced pixel
 
 
 class Interrupted(Exception):

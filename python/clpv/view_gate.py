@@ -13,9 +13,9 @@ import socket
 import unittest.mock
 
 VISER = "1.1.1"          # tested version
-MAX_BYTES = 1 << 16      # of one message; a page sends less than 1 KiB
-MAX_SIDE = 16384         # of a window [pixels]
-FARTHEST = 1e7           # of a camera [m]
+MAX_BYTES = 1 << 16      # limit of one message; a page sends less than 1 KiB
+MAX_SIDE = 16384         # side of a window [pixels]
+FARTHEST = 1e7           # distance of a camera [m]
 
 
 def is_number(value, low=-FARTHEST, high=FARTHEST):

@@ -12,7 +12,7 @@ std::string found(py::handle given) {
   std::string text;
   try {
     text = py::repr(given).cast<std::string>();
-  } catch (const py::error_already_set&) {  // of the object's __repr__
+  } catch (const py::error_already_set&) {  // by the object's __repr__
   } catch (const py::cast_error&) {         // lone surrogates
   }
   if (!text.empty() && text.size() <= kLongest && text.find('\n') == std::string::npos) return text;

@@ -158,7 +158,7 @@ bool takes(py::handle given) {
     return true;
   } catch (const py::reference_cast_error&) {
     return false;
-  } catch (const py::error_already_set& error) {  // of the object's own methods
+  } catch (const py::error_already_set& error) {  // by the object's own methods
     if (!error.matches(PyExc_Exception)) throw;   // such as KeyboardInterrupt
     return false;
   }

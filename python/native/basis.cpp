@@ -142,9 +142,8 @@ void add_basis(py::module_& module) {
   py::class_<Basis> type(
       module, "Basis",
       "Basis(name='sh2', bandwidth=None, centres=None): N functions b_i on the unit sphere.\n\n"
-      "bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre; "
-      "centres: array (N, 3), for\n"
-      "radial functions of one's own. Directions may have any length.");
+      "bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre;\n"
+      "centres: array (N, 3), for radial functions of one's own. Directions may have any length.");
   define_init(type, &make, py::arg("name") = "sh2", py::arg("bandwidth") = py::none(),
               py::arg("centres") = py::none());
   type.def_property_readonly("name", &Basis::name);
@@ -185,26 +184,23 @@ void add_basis(py::module_& module) {
         });
       },
       py::arg("axes"), py::arg("table_size") = py::none(),
-      "clamped_cosine(axes (..., 3), table_size=None) -> float64 array (..., N): projection of "
-      "max(0, w . axis), exact,\n"
-      "or along +z and rotated through a table of that many entries as in the paper (0: without a "
-      "table).");
+      "clamped_cosine(axes (..., 3), table_size=None) -> float64 array (..., N): projection of\n"
+      "max(0, w . axis), exact, or along +z and rotated through a table of that many entries as\n"
+      "in the paper (0: without a table).");
   type.def_property_readonly(
       "mean_error", [](const Basis& b) { return mean_relative_l2(b, Lobes(b, {})); },
       "Mean relative L2 error of exactly projected clamped cosines over all axes.");
   define(type, "energy", &energy, py::arg("steps"), py::arg("transport") = "sampled",
          py::arg("table_size") = py::none(),
-         "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source "
-         "after `steps` steps of\n"
-         "propagation over its initial one; transport: 'sampled' or 'exact'; table_size as for "
-         "clamped_cosine().");
+         "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source\n"
+         "after `steps` steps of propagation over its initial one; transport: 'sampled' or\n"
+         "'exact'; table_size as for clamped_cosine().");
   define(type, "directions", &directions,
          "directions() -> float64 array (K, 3): directions at which project() takes values of a "
          "function.");
   define(type, "project", &project, py::arg("values"),
-         "project(values (K,)) -> float64 array (N,): least-squares projection of a function "
-         "that has these\n"
-         "values at directions().");
+         "project(values (K,)) -> float64 array (N,): least-squares projection of a function that\n"
+         "has these values at directions().");
   define(type, "lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
          "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) "
          "against the clamped\n"

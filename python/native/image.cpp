@@ -103,11 +103,9 @@ void add_comparison(py::module_& module) {
         return interruptible([&] { return compare(a, b, exposure); });
       },
       py::arg("image"), py::arg("reference"), py::arg("exposure") = 0.0f,
-      "compare(image, reference, exposure=0.0) -> Comparison. Both: an Image, or an array (height, "
-      "width, channels).\n"
-      "exposure [EV]: of linear images, for FLIP.\n"
-      "Raises InputError for other sizes, channels or encodings, and for values that are not "
-      "finite.");
+      "compare(image, reference, exposure=0.0) -> Comparison. Both: an Image, or an array\n"
+      "(height, width, channels). exposure [EV]: of linear images, for FLIP. Raises InputError\n"
+      "for other sizes, channels or encodings, and for values that are not finite.");
 }
 
 }  // namespace
@@ -115,11 +113,10 @@ void add_comparison(py::module_& module) {
 void add_image(py::module_& module) {
   py::class_<Image> type(
       module, "Image", py::buffer_protocol(),
-      "Image(array, channels=None, encoding='linear'): copies an array (height, width, "
+      "Image(array, channels=None, encoding='linear'): copies an array (height, width,\n"
       "channels) of real numbers.\n\n"
-      "numpy.asarray(image) and image.array are float32 views of its pixels, row 0 on top, without "
-      "a copy; they keep\n"
-      "the image alive.");
+      "numpy.asarray(image) and image.array are float32 views of its pixels, row 0 on top,\n"
+      "without a copy; they keep the image alive.");
   define_init(
       type,
       [](const py::object& array, std::optional<std::vector<std::string>> channels,
@@ -159,11 +156,9 @@ void add_image(py::module_& module) {
         without_gil([&] { save_image(path, image, exposure); });
       },
       py::arg("path"), py::arg("exposure") = py::none(),
-      "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with "
-      "metadata, .png tone-mapped\n"
-      "(photographic) after multiplication by 2^exposure [EV], on a black background. "
-      "exposure=None: "
-      "automatic_exposure().");
+      "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with\n"
+      "metadata, .png tone-mapped (photographic) after multiplication by 2^exposure [EV], on a\n"
+      "black background. exposure=None: automatic_exposure().");
   type.def(
       "automatic_exposure", &automatic_exposure,
       "automatic_exposure() -> exposure [EV] that brings the logarithmic mean of the luminance of "

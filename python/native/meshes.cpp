@@ -173,14 +173,12 @@ int add_mesh(Scene& scene, const py::object& positions, const py::object& triang
 void add_material(py::module_& module) {
   py::class_<Material> type(
       module, "Material",
-      "Diffuse surface of a mesh. Immutable; replace() makes another. Values are checked where it "
-      "is used.\n\n"
-      "base_colour: linear red, green, blue and optionally alpha, or one number, 0 to 1; emission: "
-      "radiance of the front\n"
-      "[W/m^2/sr], three numbers or one; texture: array (height, width, 4), uint8 with "
-      "sRGB-encoded colour, or floats, linear;\n"
-      "alpha_cutoff: alpha below which there are holes; double_sided: visible, and emissive, from "
-      "both sides.");
+      "Diffuse surface of a mesh. Immutable; replace() makes another. Values are checked where\n"
+      "it is used.\n\n"
+      "base_colour: linear red, green, blue and optionally alpha, or one number, 0 to 1;\n"
+      "emission: radiance of the front [W/m^2/sr], three numbers or one; texture: array (height,\n"
+      "width, 4), uint8 with sRGB-encoded colour, or floats, linear; alpha_cutoff: alpha below\n"
+      "which there are holes; double_sided: visible, and emissive, from both sides.");
   define_init(
       type,
       [](const BaseColour& base_colour, const Colour& emission, const py::object& texture,
@@ -237,19 +235,16 @@ void add_meshes(py::class_<Scene>& type) {
            py::arg("moves") = false, doc);
   };
   arguments([&](const auto&... all) { define(type, "add_mesh", all...); }, &add_mesh,
-            "add_mesh(positions, triangles, *, ...) -> int: a number for the mesh, which is not "
+            "add_mesh(positions, triangles, *, ...) -> int: a number for the mesh, which is not\n"
             "used again.\n\n"
-            "positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise seen "
-            "from the front; normals (n, "
-            "3), of any\nlength; uvs: texture coordinates (n, 2), v = 0 in the first row; colours: "
-            "linear floats (n, 3) or (n, "
-            "4), 0 to 1. Without\nnormals: flat ones, as in glTF, or, if smooth, means of the "
-            "triangles' normals, "
-            "weighted by angle. material: None for white;\ntransform: array (4, 4) to the world, "
-            "which multiplies columns (x, "
-            "y, z, 1). moves: it will move, so its\nfirst move needs no new memory "
-            "(set_positions()). The arrays are copied. Raises InputError with array, index, value "
-            "found and\nvalue allowed.");
+            "positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise\n"
+            "seen from the front; normals (n, 3), of any length; uvs: texture coordinates (n, 2),\n"
+            "v = 0 in the first row; colours: linear floats (n, 3) or (n, 4), 0 to 1. Without\n"
+            "normals: flat ones, as in glTF, or, if smooth, means of the triangles' normals,\n"
+            "weighted by angle. material: None for white; transform: array (4, 4) to the world,\n"
+            "which multiplies columns (x, y, z, 1). moves: it will move, so its first move needs\n"
+            "no new memory (set_positions()). The arrays are copied. Raises InputError with\n"
+            "array, index, value found and value allowed.");
   arguments([&](const auto&... all) { define_static(type, "from_arrays", all...); },
             [](const py::object& positions, const py::object& triangles, const py::object& normals,
                const py::object& uvs, const py::object& colours, bool smooth,
@@ -267,9 +262,8 @@ void add_meshes(py::class_<Scene>& type) {
         return py::module_::import("clpv._trimesh").attr("scene_of_trimesh")(given);
       },
       py::arg("given"),
-      "from_trimesh(given) -> Scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, "
-      "instances, "
-      "colours and base-colour\ntextures.");
+      "from_trimesh(given) -> Scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry,\n"
+      "instances, colours and base-colour textures.");
   define(
       type, "add_instance",
       [](Scene& scene, int mesh, const py::object& transform) {
@@ -291,11 +285,10 @@ void add_meshes(py::class_<Scene>& type) {
         without_gil([&] { scene.set_positions(mesh, moved, turned); });
       },
       py::arg("mesh"), py::arg("positions"), py::arg("normals") = py::none(),
-      "set_positions(mesh, positions, normals=None): moves its vertices, at all of its places. "
-      "Normals that were given stay without\n`normals`. The next frame of each renderer recomputes "
-      "what animation recomputes; at the\n"
-      "first move of a mesh added without `moves`, and after an addition or removal, also its "
-      "memory and what it caches.");
+      "set_positions(mesh, positions, normals=None): moves its vertices, at all of its places.\n"
+      "Normals that were given stay without `normals`. The next frame of each renderer recomputes\n"
+      "what animation recomputes; at the first move of a mesh added without `moves`, and after an\n"
+      "addition or removal, also its memory and what it caches.");
   define(
       type, "set_transform",
       [](Scene& scene, int mesh, const py::object& transform) {

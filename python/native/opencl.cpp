@@ -105,9 +105,8 @@ void add_opencl(py::module_& module) {
       },
       py::keep_alive<0, 1>(), py::arg("view") = "full", py::arg("camera") = py::none(),
       py::arg("time") = 0.0, py::arg("size") = py::none(),
-      "enqueue(view='full', camera=None, time=0.0, size=None) -> DeviceFrame: render() without "
-      "reading the "
-      "image back.\n\n"
+      "enqueue(view='full', camera=None, time=0.0, size=None) -> DeviceFrame: render() without\n"
+      "reading the image back.\n\n"
       "Does not wait for all of the frame (docs/api.md); not for view 'cells'.");
   add(
       "enqueue_light",
@@ -131,12 +130,11 @@ void add_opencl(py::module_& module) {
       py::arg("normals"), py::arg("positions") = py::none(), py::arg("depths") = py::none(),
       py::arg("irradiance"), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
       py::arg("time") = 0.0,
-      "enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...) -> "
-      "DeviceEvent: light() in device memory.\n\n"
-      "Buffers of the renderer's context, as pyopencl's buffers or arrays, or integers: normals "
-      "and positions float4 "
-      "per pixel (w unused), or depths\nfloat; irradiance receives float4. Raises UsageError for "
-      "others, and for buffers that are too small.");
+      "enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...)\n"
+      "-> DeviceEvent: light() in device memory.\n\n"
+      "Buffers of the renderer's context, as pyopencl's buffers or arrays, or integers: normals\n"
+      "and positions float4 per pixel (w unused), or depths float; irradiance receives float4.\n"
+      "Raises UsageError for others, and for buffers that are too small.");
   add(
       "device_volumes",
       [](Renderer& renderer) { return interruptible([&] { return renderer.device_volumes(); }); },

@@ -37,16 +37,15 @@ py::dict pathtrace_points_of(const Scene& scene, const py::object& given_positio
 
 void add_points(py::class_<Scene>& type) {
   define(type, "pathtrace_points", pathtrace_points_of, py::arg("positions"), py::arg("normals"),
-         py::kw_only(), py::arg("bounces") = 1, py::arg("samples") = 0, py::arg("noise") = 0.02,
+         py::kw_only(), py::arg("bounces") = "all", py::arg("samples") = 0, py::arg("noise") = 0.02,
          py::arg("seed") = 1, py::arg("threads") = 0, py::arg("time") = 0.0,
-         "pathtrace_points(positions, normals, *, ...) -> dict: path-traced irradiance [W/m^2], "
-         "red, green, blue, the truth of\nRenderer.irradiance().\n\n"
-         "positions [m] and normals (of any length; or one for all): arrays (..., 3), on a surface "
-         "of the scene "
-         "or in the air. 'indirect', 'direct' (of the\nscene's lights) and 'error', the standard "
-         "error of 'indirect': float32 arrays of their shape; 'samples': paths per point;\n"
-         "'noise': root mean square of 'error' over that of 'indirect', at which tracing stops. "
-         "Arguments as for clpv.pathtrace().");
+         "pathtrace_points(positions, normals, *, ...) -> dict: path-traced irradiance [W/m^2],\n"
+         "red, green, blue, the truth of Renderer.irradiance().\n\n"
+         "positions [m] and normals (of any length; or one for all): arrays (..., 3), on a\n"
+         "surface of the scene or in the air. 'indirect', 'direct' (of the scene's lights) and\n"
+         "'error', the standard error of 'indirect': float32 arrays of their shape; 'samples':\n"
+         "paths per point; 'noise': root mean square of 'error' over that of 'indirect', at which\n"
+         "tracing stops. Arguments as for clpv.pathtrace().");
 }
 
 }  // namespace clpv::python

@@ -164,9 +164,8 @@ void add_volume(py::module_& module) {
   type.def_readonly(
       "coefficients", &PythonVolume::coefficients,
       "float32 array (3, N, z, y, x): red, green, blue; N coefficients c_i of radiant intensity\n"
-      "I(w) = sum_i c_i b_i(w) [W/sr], w the direction in which light travels. After a sweep I / "
-      "cell^2\n"
-      "is the radiance [W/m^2/sr] about the cell's centre.");
+      "I(w) = sum_i c_i b_i(w) [W/sr], w the direction in which light travels. After a sweep I /\n"
+      "cell^2 is the radiance [W/m^2/sr] about the cell's centre.");
   type.def("__repr__", [](const PythonVolume& v) {
     return fmt::format("Volume(origin=({}, {}, {}), cell={}, n={}, basis='{}')", v.volume.origin[0],
                        v.volume.origin[1], v.volume.origin[2], v.volume.cell, v.volume.n,
@@ -180,17 +179,14 @@ void add_renderer(py::module_& module) {
   add_volume(module);
   py::class_<Renderer, std::unique_ptr<Renderer, ReleaseUnlessForked>> type(
       module, "Renderer",
-      "Renderer(scene, device='', *, context=None, queue=None, **options): renders frames of one "
-      "scene on one OpenCL device.\n\n"
-      "device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the "
-      "first usable one.\n"
-      "context, queue: of pyopencl, or their int_ptr; the renderer works there. The queue is "
-      "in-order.\n"
-      "options: those of `clpv render` with _ for - (and lambda_); options() lists them. bool is "
-      "on or off.\n"
-      "Results that do not change are cached from frame to frame. Calls from several threads run "
-      "one after the other.\n"
-      "Raises UsageError, DeviceError, ResourceError.");
+      "Renderer(scene, device='', *, context=None, queue=None, **options): renders frames of\n"
+      "one scene on one OpenCL device.\n\n"
+      "device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the\n"
+      "first usable one. context, queue: of pyopencl, or their int_ptr; the renderer works there.\n"
+      "The queue is in-order. options: those of `clpv render` with _ for - (and lambda_);\n"
+      "options() lists them. bool is on or off. Results that do not change are cached from frame\n"
+      "to frame. Calls from several threads run one after the other. Raises UsageError,\n"
+      "DeviceError, ResourceError.");
   define_init(
       type,
       [](const Scene& scene, const std::string& device, const py::object& context,
@@ -219,13 +215,11 @@ void add_renderer(py::module_& module) {
       },
       py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("time") = 0.0,
       py::arg("size") = py::none(),
-      "render(view='full', camera=None, time=0.0, size=None) -> Image (height, width, 4), linear "
-      "R, G, B, A.\n\n"
-      "view: full, direct, indirect [W/m^2/sr], irradiance [W/m^2], albedo, normal, depth [m], or "
-      "cells: irradiance with\n"
-      "the finest cascade's cells as spheres;\n"
-      "camera: a Camera, or the name of one of the scene (None: its first); time [s] of an "
-      "animated scene;\n"
+      "render(view='full', camera=None, time=0.0, size=None) -> Image (height, width, 4),\n"
+      "linear R, G, B, A.\n\n"
+      "view: full, direct, indirect, medium [W/m^2/sr], irradiance [W/m^2], albedo, normal,\n"
+      "depth [m], or cells: irradiance with the finest cascade's cells as spheres; camera: a\n"
+      "Camera, or the name of one of the scene (None: its first); time [s] of an animated scene;\n"
       "size: (width, height), None for options width and height.");
   define(
       type, "update",
@@ -233,9 +227,8 @@ void add_renderer(py::module_& module) {
         interruptible([&] { renderer.update(eye, time); });
       },
       py::arg("eye"), py::arg("time") = 0.0,
-      "update(eye, time=0.0): lights cascades about `eye` [m] without a frame, for irradiance(), "
-      "radiance(), volumes() and\n"
-      "device_volumes().");
+      "update(eye, time=0.0): lights cascades about `eye` [m] without a frame, for irradiance(),\n"
+      "radiance(), volumes() and device_volumes().");
   const auto release = [](Renderer& renderer) { interruptible([&] { renderer.release(); }); };
   define(type, "release", release,
          "release(): frees the device's memory; the next call that lights or renders allocates it "
@@ -254,39 +247,36 @@ void add_renderer(py::module_& module) {
       type, "light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
       py::arg("depths") = py::none(), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
       py::arg("time") = 0.0,
-      "light(normals, *, positions=None, depths=None, eye=None, camera=None, time=0.0) -> float32 "
-      "array (height, width, "
-      "3).\n\n"
-      "Irradiance of indirect light [W/m^2] on the pixels of a G-buffer, with the near field, as "
-      "view 'irradiance' has it: normals\n(height, width, 3) of any length; positions [m] of their "
-      "shape, or depths (height, width) [m] of `camera`, a Camera or a\nname (None: the scene's "
-      "first). Cascades surround `eye`, or the camera's. Pixels with a normal of 0, a depth that "
-      "is not\npositive or a number that is not finite have no surface, and no light.");
+      "light(normals, *, positions=None, depths=None, eye=None, camera=None, time=0.0) ->\n"
+      "float32 array (height, width, 3).\n\n"
+      "Irradiance of indirect light [W/m^2] on the pixels of a G-buffer, with the near field, as\n"
+      "view 'irradiance' has it: normals (height, width, 3) of any length; positions [m] of their\n"
+      "shape, or depths (height, width) [m] of `camera`, a Camera or a name (None: the scene's\n"
+      "first). Cascades surround `eye`, or the camera's. Pixels with a normal of 0, a depth that\n"
+      "is not positive or a number that is not finite have no surface, and no light.");
   define(
       type, "irradiance",
       [](Renderer& renderer, const py::object& points, const py::object& normals) {
         return at_points(renderer, &Renderer::irradiance, points, normals, "normals");
       },
       py::arg("points"), py::arg("normals"),
-      "irradiance(points, normals) -> float32 array of the points' shape: indirect light [W/m^2], "
-      "red, green, blue.\n\n"
-      "points [m] and normals (of any length): arrays (..., 3), or one normal. Of the volumes of "
-      "the last frame, light()\n"
-      "or update(), without option near; "
-      "0 outside of the cascades. Computed on the device.");
+      "irradiance(points, normals) -> float32 array of the points' shape: indirect light\n"
+      "[W/m^2], red, green, blue.\n\n"
+      "points [m] and normals (of any length): arrays (..., 3), or one normal. Of the volumes of\n"
+      "the last frame, light() or update(), without option near; 0 outside of the cascades.\n"
+      "Computed on the device.");
   define(
       type, "radiance",
       [](Renderer& renderer, const py::object& points, const py::object& directions) {
         return at_points(renderer, &Renderer::radiance, points, directions, "directions");
       },
       py::arg("points"), py::arg("directions"),
-      "radiance(points, directions) -> float32 array of the points' shape: indirect light "
+      "radiance(points, directions) -> float32 array of the points' shape: indirect light\n"
       "[W/m^2/sr], red, green, blue.\n\n"
-      "points [m] and directions in which the light travels (of any length): arrays (..., 3), or "
-      "one direction. As\nirradiance(), of the same volumes, on the device; negative where nine "
-      "harmonics "
-      "undershoot. Raises UsageError without transport 'sweep',\nand for layout 'image' with "
-      "gather 'all'.");
+      "points [m] and directions in which the light travels (of any length): arrays (..., 3), or\n"
+      "one direction. As irradiance(), of the same volumes, on the device; negative where nine\n"
+      "harmonics undershoot. Raises UsageError without transport 'sweep', and for layout 'image'\n"
+      "with gather 'all'.");
   type.def("__repr__",
            [](const Renderer& renderer) { return "Renderer(" + renderer.description() + ")"; });
   define(type, "volumes", &volumes,
@@ -296,12 +286,11 @@ void add_renderer(py::module_& module) {
       [](const Renderer& renderer) {
         return dict_of(interruptible([&] { return renderer.stats(); }));
       },
-      "Dict of the last frame: 'times', a list of records {stage, cascade, light, n, min, median, "
-      "mad, max} [ms], which\nms_of() sums by stage: 'frame' (wall time of render()), 'host' (the "
-      "host's work in it, without waiting), and each stage on the\ndevice that ran ('propagate', "
-      "'gather', ...); 'build': compilation so far [ms]; numbers of 'launches' (kernels, fills "
-      "and\n"
-      "copies) and of 'waits' for the device; 'device_bytes', 'peak_device_bytes'.");
+      "Dict of the last frame: 'times', a list of records {stage, cascade, light, n, min, median,\n"
+      "mad, max} [ms], which ms_of() sums by stage: 'frame' (wall time of render()), 'host' (the\n"
+      "host's work in it, without waiting), and each stage on the device that ran ('propagate',\n"
+      "'gather', ...); 'build': compilation so far [ms]; numbers of 'launches' (kernels, fills\n"
+      "and copies) and of 'waits' for the device; 'device_bytes', 'peak_device_bytes'.");
   define(
       module, "pathtrace",
       [](const Scene& scene, const std::variant<std::string, std::vector<std::string>>& view,
@@ -325,19 +314,16 @@ void add_renderer(py::module_& module) {
             [&] { return pathtrace(scene, views, camera_choice(camera), options); }, tell);
       },
       py::arg("scene"), py::arg("view") = "full", py::arg("camera") = py::none(),
-      py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = 1,
+      py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = "all",
       py::arg("samples") = 0, py::arg("noise") = 0.02, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("time") = 0.0, py::arg("progress") = py::none(),
       "pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.\n\n"
-      "view: as of render(), or a list of several, which become layers of the image: channels "
-      "'indirect.R' and so on;\n"
-      "bounces: reflections between light and visible surface, 'all' or 0 for all; samples: paths "
-      "per "
-      "pixel, 0 for as many as\n"
-      "`noise` (relative standard error of the indirect light) needs; threads: 0 for one per "
-      "processor.\n"
-      "progress: a function that gets the estimated progress, 0 to 1, in this thread, up to 50 "
-      "times a second; what it raises ends\nthe work.");
+      "view: as of render(), or a list of several, which become layers of the image: channels\n"
+      "'indirect.R' and so on; bounces: reflections between light and visible surface, 'all' or 0\n"
+      "for all; samples: paths per pixel, 0 for as many as `noise` (relative standard error of\n"
+      "the indirect light) needs; threads: 0 for one per processor. progress: a function that\n"
+      "gets the estimated progress, 0 to 1, in this thread, up to 50 times a second; what it\n"
+      "raises ends the work.");
 }
 
 }  // namespace clpv::python

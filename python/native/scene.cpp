@@ -44,8 +44,8 @@ void add_value_methods(py::class_<T>& type, const std::vector<const char*>& memb
 void add_camera(py::module_& module) {
   py::class_<Camera> type(
       module, "Camera",
-      "Perspective camera. Immutable; replace() makes another. Values are checked where it is "
-      "used.\n\n"
+      "Perspective camera. Immutable; replace() makes another. Values are validated on "
+      "use.\n\n"
       "eye, target, up: x, y, z [m]; fov: vertical field of view [degrees];\n"
       "near: nearest visible depth [m]; light: name of its only light, empty for all.");
   define_init(
@@ -69,8 +69,8 @@ void add_camera(py::module_& module) {
 void add_light(py::module_& module) {
   py::class_<Light> type(
       module, "Light",
-      "Light without extent. Immutable; replace() makes another. Values are checked where it is "
-      "used.\n\n"
+      "Light without extent. Immutable; replace() makes another. Values are validated on "
+      "use.\n\n"
       "kind: 'directional', 'spot' or 'point'; position [m]; direction in which light travels;\n"
       "intensity: red, green, blue, or one number: illuminance [lx = W/m^2] if directional, else "
       "[cd = W/sr];\n"
@@ -107,7 +107,7 @@ void add_light(py::module_& module) {
 void add_medium(py::module_& module) {
   py::class_<Medium> type(module, "Medium",
                           "Homogeneous fog or dust in a box. Immutable; replace() makes another. "
-                          "Values are checked where it is used.\n\n"
+                          "Values are validated on use.\n\n"
                           "scattering, absorption: red, green, blue, or one number [1/m]; "
                           "anisotropy: -0.9 to 0.9, above 0 forwards;\n"
                           "box: lower and upper corner [m], None for the scene's bounding box.");
@@ -204,9 +204,8 @@ void add_scene(py::module_& module) {
         const auto lights = argument<std::vector<Light>>("lights", given);
         without_gil([&] { scene.set_lights(lights); });
       },
-      "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame "
-      "of every renderer\n"
-      "of this scene recomputes what depends on them.");
+      "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame\n"
+      "of every renderer of this scene recomputes what depends on them.");
   type.def_property(
       "medium", &Scene::medium,
       [](Scene& scene, const py::object& given) {
@@ -221,10 +220,9 @@ void add_scene(py::module_& module) {
         interruptible([&] { scene.save(path); });
       },
       py::arg("path"),
-      "save(path): writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning "
-      "for a sky, a medium, a\n"
-      "camera's only light, number and size of cascades, and an exposure, which glTF has not, and "
-      "for a scene without lights.");
+      "save(path): writes meshes, materials, cameras and lights at 0 s to a .glb. Logs a warning\n"
+      "for a sky, a medium, a camera's only light, number and size of cascades, and an exposure,\n"
+      "which glTF has not, and for a scene without lights.");
   type.def_property_readonly("moves", &Scene::moves, "True if anything is animated.");
   type.def_property_readonly(
       "notes", [](const Scene& scene) { return py::tuple(py::cast(scene.notes())); },

@@ -9,7 +9,7 @@ import math
 POSITION_STEP = 2.0 ** -13  # [m], an eighth of a millimetre
 NORMAL_STEP = 2.0 ** -9
 UV_STEP = 2.0 ** -11
-TEXTURE_METRES = 2.0  # what one repetition of a texture covers
+TEXTURE_METRES = 2.0  # covered by one repetition of a texture
 
 
 def add(a, b):
@@ -65,7 +65,7 @@ class Surface:
 
 
 class Mesh:
-    """What one glTF mesh holds: a Surface per material name."""
+    """Content of one glTF mesh: a Surface per material name."""
 
     def __init__(self):
         self.surfaces = {}

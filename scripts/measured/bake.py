@@ -32,7 +32,7 @@ COLUMNS = "surface", "surface_energy", "air", "air_energy", "negative"
 ROOMS = {"sheet": True, "wall0.5": False, "wall2": False}
 ROOM_LOW, ROOM_HIGH = (-3, -1, -3), (3, 4, 3)  # outermost probes, before the shifts
 ROOM_SPACINGS = 1, 0.5, 0.25
-SHIFTS = (0.2, 0.5, 0.8), (0.7, 0.1, 0.4)  # of the probes [spacings]: walls lie between them
+SHIFTS = (0.2, 0.5, 0.8), (0.7, 0.1, 0.4)  # shifts of the probes [spacings]: walls lie between them
 ROOM_PATHS = "--spp=64"
 ROOM_POINTS = 5  # along each edge of a face
 

@@ -28,6 +28,7 @@ from clpv.draw import style  # noqa: E402
 
 MINIMUM = 1e-5  # smaller changes show as this on the logarithmic axis
 BASES = ("srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
+FORMATS = ("sh2", "zh3", "sh3", "srbf8v2", "ambient-cube", "ambient-cube-mean")
 LAMBDAS = [round(0.05 * i, 2) for i in range(1, 15)]
 
 
@@ -132,18 +133,16 @@ def draw_probes(file, target):
     """Errors of light probes by format, from coarse to fine spacing, over bytes of the volume."""
     rows = json.loads(pathlib.Path(file).read_text(encoding="utf-8"))["rows"]
     figure, panels = style.panels(4, 2, (5.2, 3.6))
-    names = list(dict.fromkeys(row["format"] for row in rows))
     places = [(source, place) for source in bake.SOURCES for place in ("surface", "air")]
     for panel, (source, place) in zip(panels, places):
-        for i, name in enumerate(names):
+        for i, name in enumerate(FORMATS):
             line = bake.over_bytes(rows, name, source, place)
-            panel.plot(*zip(*line), lw=1, ls=("-", "--")[i % 2], marker="osv^D"[i % 5], ms=4,
-                       color=style.colour(i // 2), label=name)
+            panel.plot(*zip(*line), lw=1.5, marker="osv^Dp"[i], ms=5, color=style.colour(i), label=name)
         where = {"surface": "on surfaces", "air": "in the air"}[place]
         panel.set(title=f"{'path-traced' if source == 'pathtrace' else 'swept'} probes, {where}",
                   xlabel="bytes in a cube of the coarse spacing", ylabel="mean NRMSE [%]")
         style.logarithmic(panel.xaxis)
-    panels[-1].legend(fontsize=6, ncol=2)
+    panels[0].legend()
     save(figure, target, 90)
 
 

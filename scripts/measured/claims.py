@@ -32,10 +32,10 @@ clpv = native()
 
 BASES = ("sh2", "srbf8v2")
 STEPS, SIZES, TEXELS = (8, 24), (12.5, 50), (256, 1024)
-WIDTH, HEIGHT = 240, 135  # of images that are compared with path tracing
+WIDTH, HEIGHT = 240, 135  # size of images that are compared with path tracing
 NOISE = 0.02
-NOISE_OF_PAIRS = 0.05  # of the views' ground truths: both bases of a pair meet the same noise
-NOISE_OF_QUICK = 0.05  # of those that errors of 0.8 and more are measured against: adds 0.002
+NOISE_OF_PAIRS = 0.05  # noise of the views' ground truths: both bases of a pair meet the same
+NOISE_OF_QUICK = 0.05  # noise of truths for errors of 0.8 and more: adds 0.002
 UP = 0.99  # minimum y of a floor's normals
 
 
@@ -64,7 +64,7 @@ NAMED = ("sh2", "sh3", "sh4", "sh5", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "sr
 ALONG_Z, OBLIQUE = (0, 0, 1), (-2, 1, -3)
 OF_THE_PAPER = ("srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 LAMBDAS = 0.1, 0.25, 0.4, 0.55, 0.6
-SIMILAR = 0.1  # of the error of sh2
+SIMILAR = 0.1  # share of the error of sh2
 TABLE_SIZES = 256, 257, 512, 1024, 0  # 0: H is computed
 
 
@@ -164,7 +164,7 @@ class Views:
         self.noise = NOISE_OF_QUICK if arguments.quick else NOISE
         self.out = arguments.out
 
-    traced = {}  # of all instances: a scene's cameras and lights have their own names
+    traced = {}  # truths of all instances: a scene's cameras and lights have their own names
 
     def truth(self, camera, view="indirect", noise=None):
         noise = noise or self.noise
@@ -208,7 +208,7 @@ FOURTH = clpv.Camera((7.4, 1.6, -0.3), (-6.0, 2.2, -0.3), name="back")
 
 
 def views(arguments):
-    """Of each setting: both errors in every view, and mean, standard error and signs of their
+    """For each setting: both errors in every view, and mean, standard error and signs of their
     paired differences."""
     views_of = Views(arguments)
     cameras = [*views_of.scene.cameras[:3], FOURTH]
@@ -285,7 +285,7 @@ OTHER_WAY = 0.5  # cosine of the angle beyond which two normals differ
 
 
 def texels(arguments):
-    """Of neighbouring texels: mean difference of their flux over its mean, and share of pairs with
+    """For neighbouring texels: mean difference of their flux over its mean, and share of pairs with
     other normals."""
     views_of = Views(arguments)
     camera = views_of.scene.cameras[0]
@@ -329,7 +329,7 @@ ACROSS, SAMPLES = 180, 2048
 
 
 def arcade(arguments):
-    """Of the wall's irradiance, over four columns: twice its mean product with -cos(2 pi (x -
+    """For the wall's irradiance, over four columns: twice its mean product with -cos(2 pi (x -
     x_column) / spacing), over its mean. Above 0: darker behind columns than behind curtains."""
     views_of = Views(arguments)
     views_of.scene.lights = [ALONG_THE_NAVE]

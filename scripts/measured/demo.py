@@ -23,7 +23,7 @@ SCENE = ROOT / "scenes/atrium.json"
 EXPOSURE = -0.7  # [EV]
 SKY = {"radiance": [1.2, 1.6, 2.4], "ground": [0, 0, 0]}  # [W/m^2/sr]
 WIDTH, HEIGHT = 384, 216  # three of this width fit a screen
-NOISE = 0.1  # of the path-traced light; adds little to the error
+NOISE = 0.1  # noise of the path-traced light; adds little to the error
 GAP = 4  # between the pictures [pixels]
 OWN = "-o", "--output", "--view", "--bounces", "--stats"
 OF_BOTH = ("--camera", "--eye", "--target", "--up", "--fov", "--near-plane", "--sun",
@@ -54,7 +54,7 @@ def read_exr(file):
     while names[0]:
         name, rest = names.split(b"\0", 1)
         planes[name.decode()], names = array.array("f"), rest[16:]
-    rows = 16 if header[b"compression"][0] else 1  # of a block
+    rows = 16 if header[b"compression"][0] else 1  # rows of a block
     for i in range(-(-height // rows)):
         start, = struct.unpack_from("<Q", data, at + 1 + 8 * i)
         first, size = struct.unpack_from("<2i", data, start)
@@ -138,7 +138,7 @@ def picture(pictures):
 
 
 def print_stages(stats):
-    """Of `clpv render --stats`; sums over cascades and lights."""
+    """Stage times of `clpv render --stats`, summed over cascades and lights."""
     rows = [[stage, ms_of(stats["times"], stage)]
             for stage in dict.fromkeys(time["stage"] for time in stats["times"])]
     rows.sort(key=lambda row: row[0] in ("frame", "host"))

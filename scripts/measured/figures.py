@@ -6,6 +6,7 @@ figure1, figure4   Sponza, camera `curtains`, by `--preset paper` and by the def
                    paper's two bases
 figure2, 3, 6      by `clpv basis --figures`, with both kinds of lobes
 figure5            the arcade and the wall behind it, sun along the nave, as figure1
+answer             indirect light of both bases by either preset, beside path tracing
 srbf14             srbf14 with rotated lobes and sampled transport, and with exact ones; camera
                    `atrium`
 
@@ -30,6 +31,7 @@ from clpv.draw import style  # noqa: E402
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 PRESETS = ("paper", "best")
 BASES = ("sh2", "srbf8v2")
+NOISE = 0.1  # noise of the path-traced picture
 LOBES = ("rotate", "exact")
 SIZES = (12.5, 50)  # m, edge of the smallest cascade
 STEPS = (8, 24)
@@ -41,7 +43,7 @@ SETTINGS = {
     "both exact": {**EXACT, "transport": "exact"},
 }
 AMPLIFY = 15  # factor of difference images, as in the paper
-EXPOSURE = 4  # of all images [EV]
+EXPOSURE = 4  # exposure of all images [EV]
 WIDTH, DPI = 12.7, 85  # sheets: inches, pixels per inch
 # A pixel counts as darker if it lost more than this share of the view's mean; smaller changes are
 # rounding.
@@ -111,6 +113,16 @@ def figure1(frames, out):
         for tile in with_caption(pair(frames, preset=preset), f"--preset {preset}")
     ]
     sheet(out.file("figure1.jpg"), f"Figure 1: two bases by either preset ({frames.view})", 3, tiles)
+
+
+def answer(frames, out):
+    truth, tiles = clpv.pathtrace(frames.scene, "indirect", frames.camera, **frames.size, noise=NOISE), []
+    for preset, basis in itertools.product(PRESETS, BASES):
+        image = frames.frame("indirect", basis=basis, preset=preset, bounces=1)
+        error = f"NRMSE {100 * clpv.compare(image, truth).nrmse:.0f} %"
+        tiles.append((image.display(EXPOSURE + 1), f"{basis}, --preset {preset}: {error}"))
+    tiles.insert(len(BASES), (truth.display(EXPOSURE + 1), "path traced"))
+    sheet(out.file("answer.jpg"), f"Indirect light of one bounce: Sponza, {frames.camera}", 3, tiles)
 
 
 def figure4(frames, out, preset):
@@ -200,6 +212,7 @@ def paper(arguments):
     sheets = []
     for name, made, draw in (
         ("figure1", frames, lambda: figure1(frames, out)),
+        ("answer", frames, lambda: answer(frames, out)),
             *((f"figure4-{preset}", frames, lambda preset=preset: figure4(frames, out, preset))
               for preset in PRESETS),
             *((f"figure5-{preset}", shadowed, lambda preset=preset: figure5(shadowed, out, preset))

@@ -36,7 +36,7 @@ FROM_THE_SUN = 1000  # distance of a camera whose picture is nearly parallel [m]
 
 
 def rsm(scene, camera):
-    """What the sun's RSM of the finest cascade holds: the light that each texel reflects."""
+    """Content of the sun's RSM of the finest cascade: the light that each texel reflects."""
     sun = np.array(scene.lights[0].direction)
     sun /= np.linalg.norm(sun)
     above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0),

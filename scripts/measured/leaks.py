@@ -26,8 +26,8 @@ import generate_leaks as scenes  # noqa: E402  pylint: disable=wrong-import-posi
 
 clpv = native()
 POINTS = 5  # along each edge of a face
-SIZE = 240, 135  # of the images of direct light
-NOISE = 0.05  # of path tracing
+SIZE = 240, 135  # size of the images of direct light
+NOISE = 0.05  # noise of path tracing
 # Irradiance of open ground: by the sun, by the even sky, and 3.5 m below the lamp.
 GROUND = {
     "sun": 1e4 / math.hypot(*scenes.SUN), "sky": math.pi * 1e3, "lamp": 1e4 / 3.5**2

@@ -30,7 +30,7 @@ from . import (CLPV, LAB, RESULTS, ROOT, bake, charts, described, json_lines, la
                rows)
 
 FRAME_COUNT = 9
-NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # of a folder in results/
+NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a folder in results/
 PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "bake", "bake-leaks", "leaks"]
 
 

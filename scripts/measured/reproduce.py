@@ -69,7 +69,7 @@ def devices():
 
 
 def key_of(arguments):
-    """What the numbers of a part depend on, by content: program and module, scripts and scenes, the
+    """Key of what the numbers of a part depend on: program and module, scripts and scenes, the
     model, replaced kernels, the devices, and the environment of clpv and its drivers."""
     module = sorted((BUILD / "python/clpv").glob("_native*.so"))
     sources = [CLPV, *module, ROOT / "python/clpv", BUILD / "python/clpv_lab",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the docs' tables show: rows by title, with the options of `clpv`. scripts/measure measures
+"""Rows of the docs' tables by title, with the options of `clpv`. scripts/measure measures
 these rows."""
 import itertools
 

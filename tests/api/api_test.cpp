@@ -4,12 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <future>
 #include <limits>
 
-#include "api/scene_contents.hpp"
-#include "clpv/compare.hpp"
-#include "clpv/pathtrace.hpp"
 #include "clpv/renderer.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
@@ -23,33 +19,6 @@ using ::testing::HasSubstr;
 
 using test::kCornell;
 using test::mean;
-
-TEST(Api, RendersCornell) {
-  Renderer made(Scene(kCornell), test::small_options());
-  Renderer renderer = std::move(made);
-  const Image full = renderer.render(), direct = renderer.render(View::direct),
-              indirect = renderer.render(View::indirect);
-  ASSERT_EQ(full.pixels.size(), 48u * 27 * 4);
-  EXPECT_NEAR(mean(indirect.pixels, 1) / mean(full.pixels, 1), 0.182, 0.02) << "of path tracing";
-  EXPECT_NEAR(mean(full.pixels, 1), mean(direct.pixels, 1) + mean(indirect.pixels, 1),
-              1e-5 * mean(full.pixels, 1));
-  EXPECT_EQ(full.metadata.at("basis"), "sh2");
-  EXPECT_EQ(full.pixels, renderer.render().pixels) << "frames of one renderer are the same";
-}
-
-TEST(Api, ReturnsLightAtAnyPoint) {
-  Renderer renderer(Scene(kCornell), test::small_options());
-  EXPECT_THROW(renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}), Error)
-      << "before the first frame";
-  renderer.render();
-  const auto up = renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}),
-             down = renderer.irradiance({0.28, 0.27, 0.3}, {0, -4, 0});
-  EXPECT_GE(up[1], 0);
-  EXPECT_GT(down[1], up[1]) << "the floor is lit, the ceiling has its light from there";
-  EXPECT_EQ(renderer.irradiance({0.28, 0.27, 0.3}, {0, 1, 0}), up);
-  EXPECT_THROW(renderer.irradiance({0, 0, 0}, {0, 0, 0}), Error);
-  EXPECT_THROW(renderer.irradiance({0, NAN, 0}, {0, 1, 0}), Error);
-}
 
 TEST(Api, AnimatedScenesRenderAtAnyTime) {
   const test::TemporaryFolder folder;
@@ -82,20 +51,6 @@ double difference(const Image& a, const Image& b) {
 Camera front() {
   const auto all = Scene(kCornell).cameras();
   return *std::ranges::find(all, "front", &Camera::name);
-}
-
-TEST(Api, AnyCameraRenders) {
-  const Scene scene(kCornell);
-  Renderer renderer(scene, test::small_options());
-  EXPECT_THROW(renderer.render(View::full, "nowhere"), Error);
-  const Image named = renderer.render(View::full, "front"),
-              given = renderer.render(View::full, front());
-  EXPECT_LT(difference(given, named), 1e-4);
-  EXPECT_EQ(named.metadata.at("camera"), "front");
-  EXPECT_THAT(given.metadata.at("camera"), ::testing::StartsWith("eye 0.278")) << "its numbers";
-  Camera aside = front();
-  aside.target[0] += 0.1;
-  EXPECT_GT(difference(renderer.render(View::full, aside), named), 0.1);
 }
 
 TEST(Api, BadCamerasAreRejectedWithTheirMember) {
@@ -134,6 +89,9 @@ TEST(Api, CamerasOfASceneCanBeChanged) {
   EXPECT_THAT(test::error_of(ExitCode::usage, [&] { scene.set_cameras(cameras); }),
               HasSubstr("duplicate 'added'"));
   EXPECT_EQ(scene.cameras().back().name, "added") << "unchanged after an error";
+  scene.set_cameras({{.eye = {0.1, 1, 3}, .target = {0, 1, -7}, .vertical_fov_degrees = 37.3}});
+  EXPECT_EQ(scene.cameras()[0].target, (Vec3{0, 1, -7})) << "as it was set";
+  EXPECT_EQ(scene.cameras()[0].vertical_fov_degrees, 37.3);
 }
 
 TEST(Api, AChangedLightRecomputesOnlyItsLight) {
@@ -220,65 +178,12 @@ TEST(Api, AMediumCanBeSetAndRemoved) {
   rejected("box", {.box = std::array{Vec3{0, 0, 0}, Vec3{1, 0, 1}}});
 }
 
-// The box of a medium is the scene's whatever the order of calls.
-TEST(Api, AMediumWithoutABoxFillsTheSceneWhateverTheOrder) {
-  const std::vector<std::array<float, 3>> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
-  const std::vector<std::array<std::uint32_t, 3>> triangle{{0, 1, 2}};
-  const Mesh mesh{.positions = corners, .triangles = triangle};
-  Scene before, after, moved;
-  before.set_medium(Medium{.scattering = {1, 1, 1}});
-  before.add_mesh(mesh);
-  after.add_mesh(mesh);
-  after.set_medium(Medium{.scattering = {1, 1, 1}});
-  const auto box = [](const Scene& scene) {
-    const ClpvMedium medium = scene.contents().moving.scene().medium.value();
-    const auto corner = [](const float v[3]) { return Vec3{v[0], v[1], v[2]}; };
-    return std::array{corner(medium.lower), corner(medium.upper)};
-  };
-  EXPECT_EQ(box(before), box(after));
-  EXPECT_EQ(box(before), before.bounds());
-  const int number = moved.add_mesh(mesh);
-  moved.set_medium(Medium{.scattering = {1, 1, 1}});
-  Transform away = kIdentity;
-  away[0][3] = 5;
-  moved.set_transform(number, away);
-  EXPECT_EQ(box(moved), moved.bounds());
-  EXPECT_NE(box(moved), after.bounds());
-}
-
-TEST(Api, WhatIsReadBackIsWhatWasSet) {
-  Scene scene;
-  const Medium fog{.scattering = {0.1, 0.1, 0.1}, .absorption = {0.3, 0, 0}, .anisotropy = 0.7};
-  scene.set_medium(fog);
-  scene.set_medium(scene.medium());
-  EXPECT_EQ(scene.medium()->absorption, fog.absorption);
-  EXPECT_EQ(scene.medium()->anisotropy, fog.anisotropy);
-  EXPECT_FALSE(scene.medium()->box);
-  scene.set_cameras({{.eye = {0.1, 1, 3}, .target = {0, 1, -7}, .vertical_fov_degrees = 37.3}});
-  EXPECT_EQ(scene.cameras()[0].target, (Vec3{0, 1, -7}));
-  EXPECT_EQ(scene.cameras()[0].vertical_fov_degrees, 37.3);
-  scene.set_lights({{.direction = {0.2, -3, 0}, .intensity = {0.1, 0.2, 0.3}}});
-  EXPECT_EQ(scene.lights()[0].direction, (Vec3{0.2, -3, 0}));
-  EXPECT_EQ(scene.lights()[0].intensity, (Vec3{0.1, 0.2, 0.3}));
-}
-
 TEST(Api, ARendererOutlivesItsSceneHandle) {
   auto scene = std::make_unique<Scene>(kCornell);
   Renderer renderer(*scene, test::small_options());
   const Image before = renderer.render();
   scene.reset();
   EXPECT_EQ(renderer.render().pixels, before.pixels);
-}
-
-TEST(Api, CallsFromSeveralThreadsRunOneAfterTheOther) {
-  Scene scene(kCornell);
-  Renderer renderer(scene, test::small_options());
-  const Image expected = renderer.render();
-  std::vector<std::future<Image>> images;
-  for (int i = 0; i < 4; ++i)
-    images.push_back(std::async(std::launch::async, [&] { return renderer.render(); }));
-  scene.set_lights(scene.lights());
-  for (auto& image : images) EXPECT_EQ(image.get().pixels, expected.pixels);
 }
 
 TEST(Api, VolumesHoldTheLight) {
@@ -335,48 +240,7 @@ TEST(Api, IrradianceOfManyPointsIsThatOfEach) {
   normals.push_back({0, 0, 0});
   EXPECT_THAT(test::error_of(ExitCode::usage, [&] { renderer.irradiance(positions, normals); }),
               HasSubstr("point 1099"));
-}
-
-TEST(Api, OtherViewsOfTheLastFrame) {
-  Renderer renderer(Scene(kCornell), test::small_options());
-  EXPECT_THROW(renderer.show(View::depth), Error);
-  renderer.render(View::full, front());
-  const Image depth = renderer.show(View::depth);
-  EXPECT_EQ(depth.pixels, renderer.render(View::depth, front()).pixels);
-}
-
-TEST(Api, PathtraceIsComparable) {
-  const Scene scene(kCornell);
-  TraceOptions options;
-  options.width = 48;
-  options.height = 27;
-  options.samples = 16;
-  double progress = 0;
-  options.progress = [&](double share) { progress = share; };
-  const Image truth = pathtrace(scene, View::indirect, front(), options);
-  EXPECT_EQ(progress, 1);
-  EXPECT_EQ(truth.metadata.at("spp_traced"), "16");
-  EXPECT_EQ(pathtrace(scene, View::indirect, front(), options).pixels, truth.pixels);
-  Renderer renderer(scene, test::small_options());
-  const Comparison errors = compare(renderer.render(View::indirect, front()), truth);
-  EXPECT_GT(errors.nrmse.value(), 0.01);
-  EXPECT_LT(errors.nrmse.value(), 1);
-  EXPECT_TRUE(compare(truth, truth).identical);
-  options.width = 24;
-  EXPECT_THROW(compare(pathtrace(scene, View::indirect, front(), options), truth), Error);
-  for (const int bad : {0, -1, 1 << 20}) {
-    options.height = bad;
-    EXPECT_THROW(pathtrace(scene, View::full, {}, options), Error);
-  }
-}
-
-TEST(Api, OptionsAreThoseOfTheProgram) {
-  const auto all = Options::all();
-  EXPECT_TRUE(
-      std::ranges::any_of(all, [](const OptionDescription& o) { return o.name == "basis"; }));
-  EXPECT_THAT(test::error_of(ExitCode::usage, [] { Options().set("layout", "planes"); }),
-              ::testing::AllOf(HasSubstr("planes"), HasSubstr("soa")));
-  EXPECT_THROW(Options().set("no-such-option", "1"), Error);
+  EXPECT_THROW(renderer.irradiance({0, NAN, 0}, {0, 1, 0}), Error);
 }
 
 // A move once left a Renderer whose calls crashed.
@@ -391,18 +255,6 @@ TEST(Api, ARendererThatWasMovedFromIsNamed) {
            [&] { first.description(); }, [&] { first.volumes(); }, [&] { first.lookup_source(); }})
     EXPECT_THAT(test::error_of(ExitCode::usage, call), HasSubstr("moved from"));
   EXPECT_EQ(second.render().width, 48);
-}
-
-TEST(Api, ErrorsHaveTheirExitCode) {
-  test::error_of(ExitCode::bad_input, [] { Scene("/nowhere/scene.json"); });
-  test::error_of(ExitCode::device, [] {
-    Renderer(Scene(kCornell), test::small_options(), "no device of this name");
-  });
-}
-
-TEST(Api, ListsTheDeviceThatTestsRunOn) {
-  EXPECT_TRUE(std::ranges::any_of(all_devices(),
-                                  [](const DeviceDescription& d) { return d.missing.empty(); }));
 }
 
 }  // namespace

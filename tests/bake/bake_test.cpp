@@ -220,6 +220,7 @@ TEST(Bake, SweptProbesHaveTheLightOfTheVolumes) {
                                            {"directions", "24"},
                                            {"rsm-size", "64"},
                                            {"near", "off"},
+                                           {"bounces", "1"},
                                            {"gather-offset", "0"},
                                            {"cascades", "1"}},
                                           scene);
@@ -310,7 +311,7 @@ TEST_F(BakeCommand, FilesShowTheTruth) {
   const ProbeGrid grid{{7, 7, 7}, glm::dvec3(0.03), glm::dvec3(0.52)};
   const SceneData scene = load_scene(kCornell);
   PathTracerOptions options;
-  options.samples = 64;
+  options.samples = 64, options.bounces = PathTracerOptions::kAllBounces;
   pathtracer::PointTracer tracer(scene, scene.lights_for(scene.camera("")), options);
   double noise = 0, squares[2] = {}, all = 0;
   const CheckPoints points = air_points(tracer, grid, 100, false, noise);
@@ -355,7 +356,8 @@ TEST_F(BakeCommand, FilesShowTheTruth) {
 TEST_F(BakeCommand, MeanLightAtGivenPoints) {
   std::ofstream(folder / "points.csv") << "0.28,0.27,0.1,0,0,1\n0.1,0.1,0.1,0,1,0\n";
   std::ofstream(folder / "none.csv") << "# x,y,z,nx,ny,nz\n";
-  const Outcome outcome = bake("--from pathtrace --spp 512 --probes 5,5,5 --points points.csv");
+  const Outcome outcome =
+      bake("--from pathtrace --bounces 1 --spp 512 --probes 5,5,5 --points points.csv");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   std::istringstream rows(outcome.out);
   std::map<std::string, double> mean;

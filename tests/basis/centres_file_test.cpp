@@ -94,8 +94,7 @@ TEST_F(CentresFile, RejectsWithThePlace) {
 
 TEST_F(CentresFile, IsDescribedByTheProgram) {
   const test::Outcome good =
-      test::run_here("basis --format json --lambda 0.3 --centres " + file(kAxesFile));
-  ASSERT_EQ(good.exit_code, 0) << good.err;
+      test::must_run_here("basis --format json --lambda 0.3 --centres " + file(kAxesFile));
   const auto json = nlohmann::json::parse(good.out);
   EXPECT_EQ(json.at("schema"), 1);
   EXPECT_EQ(json.at("bases").size(), 1u);

@@ -76,14 +76,6 @@ TEST(Lobes, OfBasesWithoutCentresAreProjected) {
   }
 }
 
-TEST(Lobes, BandThreeOfSh4IsZero) {
-  for (const glm::dvec3& axis : test::spread_axes(5)) {
-    const std::vector<double> sh4 = make_basis("sh4")->clamped_cosine(axis);
-    const std::vector<double> sh3 = make_basis("sh3")->clamped_cosine(axis);
-    for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(sh4[i], i < 9 ? sh3[i] : 0);
-  }
-}
-
 TEST(RotatedLobes, EqualTheRotatedLobeTowardsZ) {
   // (R c)_i = Int b_i(w) f(Rot^-1 w) dw.
   const glm::dmat3 back = glm::transpose(rotation_to(kOblique));

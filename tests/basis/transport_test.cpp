@@ -16,12 +16,6 @@ using test::integral;
 
 constexpr double kPi = std::numbers::pi;
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 const FaceTransport& faces(const Transport& transport) {
   return std::get<FaceTransport>(transport.scheme);
 }
@@ -108,18 +102,6 @@ TEST_P(SampledEnergy, DriftsAsTabled) {
   const Transport transport = make_transport(TransportKind::sampled, *basis);
   EXPECT_NEAR(energy_after(*basis, faces(transport), 8), GetParam().after8, 5.1e-4);
   EXPECT_NEAR(energy_after(*basis, faces(transport), 24), GetParam().after24, 5.1e-4);
-}
-
-TEST(Clamping, GainsEnergyFromAnAxisLobe) {
-  const auto basis = make_basis("sh2");
-  const std::vector<double> lobe = basis->clamped_cosine({0, 0, 1});
-  for (const auto& [kind, gain] :
-       {std::pair{TransportKind::sampled, .138}, {TransportKind::exact, .115}}) {
-    const Transport transport = make_transport(kind, *basis);
-    double flux = 0;
-    for (const Face& face : faces(transport).faces) flux += std::max(0.0, dot(face.flux, lobe));
-    EXPECT_NEAR(flux / basis->energy(lobe) - 1, gain, 5.1e-4) << name_of(kind);
-  }
 }
 
 }  // namespace

@@ -54,17 +54,6 @@ TEST(KernelFiles, IncludesAreReplacedAndMarked) {
       "a4\n");
 }
 
-TEST(KernelFiles, GuardReplacesPragmaOnce) {
-  KernelFolder folder;
-  folder.write("a.cl", "#include \"v/b.h\"\na2\n");
-  folder.write("v/b.h", "#pragma once\nb2\n");
-  EXPECT_EQ(assemble_kernel_source("a.cl"),
-            "#line 1 \"a.cl\"\n"
-            "#ifndef CLPV_ONCE_v_b_h\n#define CLPV_ONCE_v_b_h\n#line 1 "
-            "\"v/b.h\"\n\nb2\n#endif\n#line 2 \"a.cl\"\n"
-            "a2\n");
-}
-
 TEST(KernelFiles, FolderOverridesFileByFile) {
   KernelFolder folder;
   folder.write("sizes.cl", "// mine\n#include \"shared/grid.h\"\n");
@@ -78,16 +67,6 @@ TEST(KernelFiles, UnknownAndEndlessOnesAreRejected) {
   KernelFolder folder;
   folder.write("loop.cl", "#include \"loop.cl\"\n");
   EXPECT_THROW(assemble_kernel_source("loop.cl"), Error);
-}
-
-TEST(ProgramText, LiteralsThenFile) {
-  KernelFolder folder;
-  folder.write("a.cl", "int a;\n");
-  const std::string text =
-      program_text({"a.cl", Literals().flag("CLPV_B", true).number("CLPV_A", 3)});
-  EXPECT_EQ(text,
-            "#line 1 \"literals\"\n#define CLPV_A 3u\n#define CLPV_B 1\n"
-            "#line 1 \"a.cl\"\nint a;\n");
 }
 
 TEST(Literals, OneNameHasOneValue) {

@@ -101,16 +101,6 @@ class Page(unittest.TestCase):
         self.assertEqual(html.count("<script"), 3)
         self.assertGreaterEqual(html.count("&lt;script&gt;alert(1)&lt;/script&gt; $x$"), 9)
 
-    def test_the_page_spares_its_inputs(self):
-        self.add_views()
-        self.page()
-        (self.folder / "link.html").symlink_to("lit-0.npy")
-        for name in "report.json", "link.html":
-            before = (self.folder / name).read_bytes()
-            with self.assertRaisesRegex(output.BadOutput, "allowed: another file"):
-                report.draw(self.folder, self.folder / name)
-            self.assertEqual((self.folder / name).read_bytes(), before)
-
     def test_says_what_is_missing(self):
         html = self.page()
         self.assertIn("Not given: scenes; --quality; --bench of clpv bench table1; --bench of clpv "

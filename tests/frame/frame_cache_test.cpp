@@ -224,16 +224,6 @@ TEST_F(CachedAll, RecomputesOnlyWhatChanged) {
   EXPECT_EQ(passes(at), with(with(with(always, kOfView), kOfLight), {Pass::emit}));
 }
 
-TEST_F(CachedAll, IsTheSameAlongAPathAcrossCells) {
-  Instants at;
-  for (int i = 0; i < 6; ++i) {
-    at.eye[i % 2 == 0 ? 0 : 2] += (i % 2 == 0 ? 0.7f : -0.7f) * kCell;
-    if (i % 3 == 1) at.sun += 0.1;
-    if (i % 3 == 2) at.wall += 0.1;
-    passes(at);
-  }
-}
-
 TEST(FrameKeys, ChangeWithEachInput) {
   const test::TemporaryFolder folder;
   Device device;

@@ -214,11 +214,9 @@ TEST(UnreachedSurfaces, AreReported) {
   const test::TemporaryFolder images;
   const std::string render = "render " + kCornell + " --width 48 --height 27 --rsm-size 64 -o " +
                              (images / "a.exr").string();
-  const Outcome all = run_here(render + kSmallSweep);
-  ASSERT_EQ(all.exit_code, 0) << all.err;
+  const Outcome all = must_run_here(render + kSmallSweep);
   EXPECT_THAT(all.err, ::testing::Not(HasSubstr("outside the cascades")));
-  const Outcome few = run_here(render + kSweepOfOne + "--cascade-size 1");
-  ASSERT_EQ(few.exit_code, 0) << few.err;
+  const Outcome few = must_run_here(render + kSweepOfOne + "--cascade-size 1");
   EXPECT_THAT(few.err,
               ::testing::ContainsRegex(
                   "[0-9.]+ % of the visible surface lies outside the cascades and .* a sky"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // An image as clpv compare reads it (EXR, PNG, HDR, by content), held against itself and against
-// its difference image. What the walk through an EXR's headers saw must be what OpenEXR read.
+// its difference image. The walk through an EXR's headers must see what OpenEXR reads.
 #include <span>
 
 #include "image/compare.hpp"

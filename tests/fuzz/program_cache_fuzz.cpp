@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A file of a compiled program, with a right hash put on where the first byte is odd: taken whole
-// or not at all, never an error. What is taken must be what the file says.
+// or not at all, never an error. A program that is taken is the one in the file.
 #include <string>
 
 #include "device/program_cache.hpp"

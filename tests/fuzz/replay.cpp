@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
   std::fflush(stdout);
   const auto end = Clock::now() + std::chrono::duration<double>(std::stod(argv[2]));
   for (const std::string& input : corpus) try_input(input);
-  std::mt19937_64 random;  // of the usual seed
+  std::mt19937_64 random;  // with the usual seed
   std::size_t mutants = 0;
   for (; Clock::now() < end; ++mutants) try_input(mutant(corpus, random));
   std::printf("%zu inputs, %zu mutants\n", corpus.size(), mutants);

@@ -28,7 +28,7 @@ using std::numbers::pi;
 using namespace test;
 
 constexpr int kGrid = 12;        // cells of a cascade along each axis
-constexpr float kCell = 0.5f;    // of the finest cascade [m]
+constexpr float kCell = 0.5f;    // cell of the finest cascade [m]
 constexpr double kFloat = 1e-6;  // relative: positions and normals are float32
 constexpr unsigned kPixels = 241;
 
@@ -220,7 +220,7 @@ TEST(Gather, SharesDoNotJumpWhereTheEyeCrossesIntoAnotherCell) {
                              glm::dvec3(0, 1, 0))
         .x;
   };
-  const float boundary = 2 * kCell;  // of both cascades' cells
+  const float boundary = 2 * kCell;  // boundary of both cascades' cells
   EXPECT_NE(cascade_grids({boundary - 1e-5f, 0, 0}, 1, double{kCell} * kGrid, kGrid)[0].origin[0],
             cascade_grids({boundary + 1e-5f, 0, 0}, 1, double{kCell} * kGrid, kGrid)[0].origin[0]);
   double most = 0;

@@ -191,10 +191,5 @@ TEST_F(CompareCommand, ImagesWithoutACommonValidPixelFail) {
   EXPECT_EQ(run(file("a.exr") + " " + file("a.exr")), 0);
 }
 
-TEST_F(CompareCommand, NeedsTwoFiles) {
-  EXPECT_EQ(run(file("a.exr")), 2);
-  EXPECT_NE(outcome_.err.find("B is required"), std::string::npos) << outcome_.err;
-}
-
 }  // namespace
 }  // namespace clpv::compare_test

@@ -28,21 +28,23 @@ std::string chunk(const std::string& type, const std::string& bytes) {
   return std::string(3, '\0') + length + type + bytes + std::string(4, '\0');
 }
 
-constexpr std::size_t kHeaderEnd = 33;  // of the signature and IHDR
+constexpr std::size_t kHeaderEnd = 33;  // end of the signature and IHDR
+
+const std::string_view kWebps[] = {test::kWebpRgba2x2, test::kWebpLossy, test::kWebpLossyAlpha};
 
 TEST(ImageHeader, ReturnsSizes) {
-  const std::string png = test::decode_base64(test::kPngRgba2x2),
-                    jpeg = test::decode_base64(test::kJpegRed8x8);
-  const auto png_header = read_image_header(bytes_in(png)),
-             jpeg_header = read_image_header(bytes_in(jpeg));
-  ASSERT_TRUE(png_header && jpeg_header);
-  EXPECT_EQ(png_header->format, ImageFormat::png);
-  EXPECT_EQ(png_header->width, 2u);
-  EXPECT_EQ(png_header->height, 2u);
-  EXPECT_EQ(jpeg_header->format, ImageFormat::jpeg);
-  EXPECT_EQ(jpeg_header->width, 8u);
-  EXPECT_EQ(jpeg_header->height, 8u);
-  EXPECT_TRUE(png_header->complete && jpeg_header->complete);
+  for (const auto& [encoded, format, side] : {std::tuple{test::kPngRgba2x2, ImageFormat::png, 2u},
+                                              {test::kJpegRed8x8, ImageFormat::jpeg, 8u},
+                                              {kWebps[0], ImageFormat::webp, 2u},
+                                              {kWebps[1], ImageFormat::webp, 4u},
+                                              {kWebps[2], ImageFormat::webp, 4u}}) {
+    const auto header = read_image_header(bytes_in(test::decode_base64(encoded)));
+    ASSERT_TRUE(header);
+    EXPECT_EQ(header->format, format);
+    EXPECT_EQ(header->width, side);
+    EXPECT_EQ(header->height, side);
+    EXPECT_TRUE(header->complete);
+  }
   EXPECT_FALSE(read_image_header(bytes_in("no image")));
 }
 
@@ -77,20 +79,6 @@ TEST(ImageHeader, APngIsLeftWithWhatItsPixelsNeedAndPlainTexts) {
   for (const std::string_view each : {test::kPngGrey, test::kPngGrey16, test::kPngPalette}) {
     const std::string whole = test::decode_base64(each);
     EXPECT_EQ(bare(whole), whole);
-  }
-}
-
-const std::string_view kWebps[] = {test::kWebpRgba2x2, test::kWebpLossy, test::kWebpLossyAlpha};
-
-TEST(ImageHeader, SizesOfWebps) {
-  const std::uint32_t sides[] = {2, 4, 4};
-  for (std::size_t i = 0; i < std::size(kWebps); ++i) {
-    const auto header = read_image_header(bytes_in(test::decode_base64(kWebps[i])));
-    ASSERT_TRUE(header);
-    EXPECT_EQ(header->format, ImageFormat::webp);
-    EXPECT_EQ(header->width, sides[i]);
-    EXPECT_EQ(header->height, sides[i]);
-    EXPECT_TRUE(header->complete);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What EXR and PNG files can be (docs/scenes.md, "Images"): windows, parts, types and primaries.
+// Kinds of EXR and PNG files (docs/scenes.md, "Images"): windows, parts, types and primaries.
 // Each is converted or rejected by name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -138,20 +138,6 @@ TEST_F(ImageFiles, PngRoundsToBytesAndKeepsAlphaApart) {
     EXPECT_NEAR(back.pixels[i] * 255, expected[i], 1e-3) << i;
 }
 
-TEST_F(ImageFiles, HdrIsRead) {
-  // Radiance RGBE: mantissas 64, 128, 255 with exponent 129 are value / 256 * 2^(129 - 128); flat,
-  // not run-length coded.
-  const unsigned char pixels[] = {64, 128, 255, 129, 128, 128, 128, 128};
-  std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
-  bytes.append(reinterpret_cast<const char*>(pixels), sizeof pixels);
-  write_file(folder_ / "a.hdr", bytes);
-  const Image image = read_image(folder_ / "a.hdr");
-  ASSERT_EQ(image.pixels.size(), 6u);
-  EXPECT_NEAR(image.pixels[0], 0.5f, 0.01f);
-  EXPECT_NEAR(image.pixels[1], 1.0f, 0.01f);
-  EXPECT_NEAR(image.pixels[3], 0.5f, 0.01f);
-}
-
 /// `bytes` put over what follows that text, so many bytes after it.
 std::string with(std::string image, const std::string& after, std::size_t skip,
                  const std::string& bytes) {

@@ -154,7 +154,7 @@ TEST(Emit, TheNumberOfPointsIsBounded) {
   EXPECT_NEAR(total(emitted(scene, few)).x, total(emitted(scene, all)).x, 1e-3);
   EXPECT_THROW(plan_emission(scene, triangles, grids, 1), Error);
   for (int i = 0; i < 50; ++i)
-    add_triangle(scene, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, lamp);  // of no area
+    add_triangle(scene, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, lamp);  // no area
   EXPECT_EQ(plan_of(scene, grids).points, all.points);
 }
 

@@ -247,7 +247,7 @@ TEST(Inject, SlantedSurfelsCoverMoreUpToALimit) {
     const Injection blocked = geometry_of(*basis, {one_texel({0, 0, 0}, normal, glm::vec3(1))});
     return basis->energy(blocked.cell(0, 4, 4, 4)) / (4 * kPi);
   };
-  const double across = 0.01 * 0.01 / (kCell * kCell);  // of a cell, in the view's plane
+  const double across = 0.01 * 0.01 / (kCell * kCell);  // share of a cell, in the view's plane
   EXPECT_NEAR(mean(1.0), across / 4, across * 1e-5);
   EXPECT_NEAR(mean(0.5), across / 2, across * 1e-5);
   EXPECT_NEAR(mean(0.01), across / 0.1 / 4, across * 1e-4);

@@ -188,6 +188,14 @@ TEST(Presets, FastHasNoNearFieldAndFineMoreRays) {
   EXPECT_FALSE(options.traces_near()) << "auto: off without a sweep";
 }
 
+TEST(Options, BouncesAreAllWithASweepElseOne) {
+  for (const auto& [transport, bounces] :
+       {std::pair{"sweep", Bounces::all}, {"sampled", Bounces::one}})
+    EXPECT_EQ(resolve_options({{"transport", transport}}, SceneData{}).bounces, bounces);
+  EXPECT_EQ(resolve_options({{"preset", "paper"}}, SceneData{}).bounces, Bounces::one);
+  EXPECT_EQ(resolve_options({{"bounces", "1"}}, SceneData{}).bounces, Bounces::one);
+}
+
 TEST(Options, NearPixelsAreAboutAsManyAtEachSizeOfImage) {
   RenderOptions options;
   const std::map<std::pair<int, int>, int> steps = {
@@ -207,10 +215,9 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
   const std::string image = (folder.path() / "a.exr").string(),
                     stats = (folder.path() / "a.json").string();
   // Options override the preset wherever it stands; the scene's cascades override its sizes.
-  const test::Outcome outcome =
-      test::run_here("render " CLPV_SOURCE_DIR "/scenes/cornell.json -o " + image + " --stats " +
-                     stats + " --basis sh2 --width 16 --height 9 --grid 16 --preset paper");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const test::Outcome outcome = test::must_run_here(
+      "render " CLPV_SOURCE_DIR "/scenes/cornell.json -o " + image + " --stats " + stats +
+      " --basis sh2 --width 16 --height 9 --grid 16 --preset paper");
   const nlohmann::json report = nlohmann::json::parse(test::read_file(stats));
   const nlohmann::json& options = report.at("options");
   EXPECT_GT(report.at("launches"), 20);
@@ -235,12 +242,11 @@ TEST(Presets, RenderRecordsWhatWasResolved) {
 
 TEST(Presets, QualityTakesAPresetsTransport) {
   const test::TemporaryFolder folder;
-  const test::Outcome outcome =
-      test::run_here("quality " CLPV_SOURCE_DIR
-                     "/scenes/cornell.json --camera red --vary preset=paper,best --basis sh2 "
-                     "--width 16 --height 9 --grid 16 --spp 1 --frames 1 --format json --cache " +
-                     folder.path().string());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const test::Outcome outcome = test::must_run_here(
+      "quality " CLPV_SOURCE_DIR
+      "/scenes/cornell.json --camera red --vary preset=paper,best --basis sh2 "
+      "--width 16 --height 9 --grid 16 --spp 1 --frames 1 --format json --cache " +
+      folder.path().string());
   const nlohmann::json cells = nlohmann::json::parse(outcome.out).at("cells");
   ASSERT_EQ(cells.size(), 2u);
   EXPECT_NE(cells[0]["nrmse"], cells[1]["nrmse"]);

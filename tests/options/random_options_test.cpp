@@ -28,7 +28,7 @@ namespace {
 using namespace test;
 using ::testing::HasSubstr;
 
-constexpr double kPatience = 60;  // of processor time [s], so that other processes do not count
+constexpr double kPatience = 60;  // processor time [s], so that other processes do not count
 constexpr int kLongKernels = 8;   // combinations of options that compile
 constexpr int kNumbers = 12;      // combinations of other options with each
 const Caps kCaps{{"width", 24},       {"height", 24},     {"grid", 12},    {"rsm-size", 48},

@@ -176,16 +176,6 @@ double plates_expected() {
           corner_factor(2, 1.5));
 }
 
-TEST(PathTracer, ParallelPlatesExchangeTheAnalyticFormFactor) {
-  PathTracerOptions options;
-  options.samples = 1 << 14;
-  const TracedImage image = trace_paths(plates(), kUnderTile, options);
-  for (const glm::vec3& e : image.irradiance)
-    EXPECT_NEAR(e.x, plates_expected(), 2e-3 * plates_expected());
-  EXPECT_EQ(mean(image.direct), 0) << "the sun is behind the tile";
-  EXPECT_LT(image.noise, 2e-3);
-}
-
 // The estimator is unbiased, and the reported noise is the actual noise: many short runs average to
 // the closed form.
 TEST(PathTracer, ShortRunsAverageToTheTruthWithTheNoiseTheyReport) {

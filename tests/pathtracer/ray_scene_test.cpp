@@ -72,7 +72,7 @@ TEST(RayScene, SingleSidedSurfacesAreSeenFromTheirFrontAndShadeFromBoth) {
 TEST(RayScene, AlphaOfTheCutoffIsOpaque) {
   struct Case {
     float factor, vertex;
-    int texel;  // of the texture's alpha; -1: no texture
+    int texel;  // texel of the texture's alpha; -1: no texture
     float cutoff;
   };
   std::vector<Case> cases = {{0.3f, 1, -1, 0.3f},

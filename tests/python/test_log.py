@@ -25,11 +25,6 @@ def run(code, folder):
                           cwd=ROOT, env=os.environ | variables)
 
 
-def test_nothing_is_printed(tmp_path):
-    ended = run(RENDER, tmp_path)
-    assert (ended.stdout, ended.stderr) == ("", "")
-
-
 def test_logging_has_the_messages(tmp_path):
     ended = run("import logging\nlogging.basicConfig(level=logging.DEBUG)" + RENDER, tmp_path)
     assert ended.stdout == "" and "DEBUG:clpv:kernels/" in ended.stderr

@@ -49,30 +49,6 @@ def test_draw_imports_without_the_native_module():
     assert ended.stdout.split("\n")[:2] == ["clpv.draw", "no native module"], ended.stderr
 
 
-@pytest.mark.parametrize("work", ["clpv.pathtrace(scene, samples=1 << 20)"])
-def test_ctrl_c_ends_long_work(work):
-    code = f"import clpv\nscene = clpv.Scene({str(CORNELL)!r})\nprint('started', flush=True)\n{work}"
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True) as child:
-        assert child.stdout.readline() == "started\n"
-        time.sleep(0.5)
-        child.send_signal(signal.SIGINT)
-        started = time.monotonic()
-        errors = child.communicate(timeout=60)[1]
-        assert "KeyboardInterrupt" in errors and time.monotonic() - started < 10
-        assert child.returncode in (1, 130, -signal.SIGINT)
-
-
-def test_work_goes_on_after_an_interrupt():
-    ended = run(
-        "import clpv, signal\nscene = clpv.Scene('scenes/cornell.json')\n"
-        "signal.signal(signal.SIGALRM, lambda *a: (_ for _ in ()).throw(TimeoutError('late')))\n"
-        "signal.setitimer(signal.ITIMER_REAL, 0.3)\n"
-        "try:\n  clpv.pathtrace(scene, samples=1 << 20)\nexcept TimeoutError as e:\n  print(e)\n"
-        "print(clpv.pathtrace(scene, width=8, height=8, samples=1).width)")
-    assert ended.stdout == "late\n8\n", ended.stderr
-
-
 def test_the_gil_is_released():
     """A thread counts while the main thread traces."""
     import threading
@@ -110,16 +86,6 @@ def test_path_tracing_tells_its_progress():
     with pytest.raises(RuntimeError, match="enough"):
         clpv.pathtrace(scene, width=96, height=54, samples=1 << 14, progress=stop)
     assert clpv.pathtrace(scene, width=8, height=8, samples=1).width == 8
-
-
-def test_exit_waits_for_a_callback_of_a_daemon_thread():
-    ended = run(
-        "import clpv, threading, time\nscene = clpv.Scene('scenes/cornell.json')\ntold = threading.Event()\n"
-        "def tell(_):\n  told.set()\n  time.sleep(0.3)\n"
-        "def work():\n  clpv.pathtrace(scene, width=96, height=54, samples=1 << 14, progress=tell)\n"
-        "threading.Thread(target=work, daemon=True).start()\ntold.wait(60)\nprint('end')",
-        timeout=60)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "end\n", "")
 
 
 def test_objects_print_what_they_are():

@@ -4,7 +4,6 @@ import argparse
 import json
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
 
@@ -14,7 +13,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 os.environ.setdefault("CLPV_BUILD_DIR", os.environ["CLPV_BUILD"])
 sys.path.insert(0, str(ROOT / "scripts"))
 pytest.importorskip("jinja2", reason="all of it: Jinja2 is not installed (Debian: apt install python3-jinja2)")
-import measured  # noqa: E402
 from measured import expected, reproduce, verdicts  # noqa: E402
 
 
@@ -34,17 +32,6 @@ def test_a_verdict_is_made_from_its_points(outcomes, sentence):
     assert verdicts.sentence("lambda", list(zip((0.1, 0.4, 0.6), outcomes, "abc"))) == sentence
 
 
-def test_outcomes_of_fresh_measurements_count(monkeypatch):
-    numpy = pytest.importorskip(
-        "numpy", reason="NumPy is not installed (Debian: apt install python3-numpy)")
-    points = [{"lambda": 0.1, "value": numpy.float64(1)}, {"lambda": 0.4, "value": numpy.float64(0)}]
-    claim = verdicts.judge.Claim("light", "statement", "rule", "lambda", "command",
-                                 lambda read: points, "lambda", lambda each: each["value"] > 0,
-                                 "{value:g}")
-    monkeypatch.setattr(verdicts.judge, "CLAIMS", [claim])
-    assert verdicts.judged(None)[0]["verdict"] == "holds for lambda <= 0.1"
-
-
 def test_an_interval_covers_both_kinds_of_blocks():
     same = {f"{camera}-{sun}": 0.5 for camera in "abcd" for sun in "xyz"}
     assert verdicts.interval(same) == (0.5, 0.5)
@@ -57,22 +44,15 @@ def test_an_interval_covers_both_kinds_of_blocks():
 
 
 def test_numbers_that_left_their_tolerance_are_named():
-    document = {"numbers": {"a": [1.0, 0.1], "b": [2.0, 0.1]}}
-    assert expected.left(document, {"a": 1.05}) == []
-    assert expected.left(document, {"a": 1.2, "c": 1}) == [
-        "a: found 1.2; allowed: 1 +- 0.1",
+    document = {"numbers": {"a/x": [1.0, 0.1], "b/x": [2.0, 0.1]}}
+    assert expected.left(document, {"a/x": 1.05}) == []
+    assert expected.left(document, {"a/x": 1.2, "c": 1, "b/x": None}, ["a", "b"]) == [
+        "a/x: found 1.2; allowed: 1 +- 0.1",
         "c: found 1; allowed: a number of results/paper/expected.json",
+        "b/x: found null; allowed: 2",
     ]
-    assert len(expected.left(document, {"b": float("nan")})) == 1
-
-
-def test_undefined_and_missing_numbers_left_their_tolerance():
-    document = {"numbers": {"claims/a/x": [1.0, 0.1], "claims/b/x": [2.0, 0.1]}}
-    assert expected.found({"lit": {"x": None}}) == {"claims/lit/x": None}
-    assert expected.left(document, {"claims/a/x": None, "claims/a/new": None}) == [
-        "claims/a/x: found null; allowed: 1"
-    ]
-    assert expected.left(document, {}, ["claims/b"]) == ["claims/b/x: found none; allowed: 2"]
+    assert expected.left(document, {}, ["b"]) == ["b/x: found none; allowed: 2"]
+    assert len(expected.left(document, {"b/x": float("nan")})) == 1
 
 
 def test_the_key_of_a_part_has_the_content_that_it_depends_on(monkeypatch, tmp_path):
@@ -80,8 +60,6 @@ def test_the_key_of_a_part_has_the_content_that_it_depends_on(monkeypatch, tmp_p
     kernels = tmp_path / "kernels"
     kernels.mkdir()
     monkeypatch.setenv("CLPV_KERNEL_DIR", str(kernels))
-    program = tmp_path / "clpv"
-    program.symlink_to(reproduce.CLPV)
     keys = [reproduce.key_of(arguments)]
     assert reproduce.key_of(arguments) == keys[0]
     (kernels / "gather.cl").write_text("a")
@@ -104,47 +82,17 @@ def test_the_key_of_a_part_has_the_content_that_it_depends_on(monkeypatch, tmp_p
     assert len({json.dumps(key) for key in keys}) == len(keys)
 
 
-def test_the_commit_is_unknown_without_git_and_in_an_archive(monkeypatch, tmp_path):
-    (tmp_path / "inner").mkdir()
-    if shutil.which("git"):  # the archive lies in a repository
-        subprocess.run(["git", "init", "-q", tmp_path], check=True)
-    monkeypatch.setattr(measured, "ROOT", tmp_path / "inner")
-    assert measured.described() == "unknown"
-    (tmp_path / "inner/.git").write_text("damaged")
-    assert measured.described() == "unknown"
-    monkeypatch.setenv("PATH", "/none")
-    assert measured.described() == "unknown"
-
-
-def test_rows_of_a_run_replace_those_of_the_record():
-    record = {"x": [{"basis": "sh2", "up": 1, "mean": 2}, {"basis": "srbf4", "up": 3}], "y": 1}
-    assert reproduce.merged(record, {"x": [{"basis": "sh2", "up": 5}]}) == {
-        "x": [{"basis": "sh2", "up": 5, "mean": 2}, {"basis": "srbf4", "up": 3}],
-        "y": 1,
-    }
-    assert reproduce.merged(record, {"x": []}) == record
-
-
-def run(folder):
+def reproduce_parts(*words):
     """Without git and a home."""
     return subprocess.run(
-        [
-            str(ROOT / "scripts/reproduce"),
-            "--no-build",
-            "--quick",
-            "--part=lobes",
-            "--part=tables",
-            f"--out={folder}",
-        ],
-        capture_output=True,
-        text=True,
+        [str(ROOT / "scripts/reproduce"), "--no-build", *words], capture_output=True, text=True,
         check=False,
-        env={key: value for key, value in os.environ.items() if key != "HOME"} | {"PATH": "/none"},
-    )
+        env={key: value for key, value in os.environ.items() if key != "HOME"} | {"PATH": "/none"})
 
 
 def test_lobes_and_tables_have_the_expected_values(tmp_path):
-    first = run(tmp_path)
+    words = "--quick", "--part=lobes", "--part=tables", f"--out={tmp_path}"
+    first = reproduce_parts(*words)
     assert first.returncode == 0, first.stdout[-2000:] + first.stderr
     assert "0 left their tolerance" in first.stdout
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
@@ -154,31 +102,12 @@ def test_lobes_and_tables_have_the_expected_values(tmp_path):
     document["result"]["sets"][0]["up"] += 0.01
     part.write_text(json.dumps(document))
     (tmp_path / "private.txt").write_text("precious")
-    second = run(tmp_path)  # continues: reads the altered part
+    second = reproduce_parts(*words)  # continues: reads the altered part
     assert second.returncode == reproduce.LEFT
     assert "claims/lobes/sets/sh2,4/up: found 0.363553; allowed: 0.353553 +- " in second.stdout
     assert (tmp_path / "private.txt").read_text() == "precious"
 
 
-def test_a_part_that_is_damaged_or_lacks_a_file_is_measured_again(tmp_path, capsys):
-    out = measured.output.Folder(tmp_path / "out", "scripts/reproduce")
-    out.write("figure1.jpg", b"")
-    part = {"key": 1, "minutes": 0, "files": ["figure1.jpg"], "result": [2]}
-    out.write("parts/a.json", json.dumps(part))
-    assert reproduce.earlier(out, "parts/a.json", 1)["result"] == [2]
-    assert reproduce.earlier(out, "parts/a.json", 2) is None
-    (out.path / "figure1.jpg").unlink()
-    assert reproduce.earlier(out, "parts/a.json", 1) is None
-    out.write("parts/a.json", "")
-    assert reproduce.earlier(out, "parts/a.json", 1) is None
-    assert "parts/a.json: damaged (JSON" in capsys.readouterr().err
-
-
 def test_parts_that_need_a_model_are_rejected_without_one():
-    refused = subprocess.run(
-        [str(ROOT / "scripts/reproduce"), "--no-build", "--part=light"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    refused = reproduce_parts("--part=light")
     assert refused.returncode == 2 and "--part light: allowed: lobes, tables" in refused.stderr

@@ -193,7 +193,9 @@ TEST_F(QualityCommand, MeasuresAMatrixAndResumes) {
   int same_times = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(again["cells"][i]["nrmse"], json["cells"][i]["nrmse"]);
-    same_times += again["cells"][i]["times"] == json["cells"][i]["times"];
+    const bool same = again["cells"][i]["times"] == json["cells"][i]["times"];
+    EXPECT_EQ(again["cells"][i]["cached"], same);
+    same_times += same;
   }
   EXPECT_EQ(same_times, 3);
   EXPECT_EQ(kept(), 4u);

@@ -8,9 +8,7 @@
 #include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"
-#include "tests/support/run_here.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 namespace clpv::test::cells_test {
 namespace {
@@ -85,20 +83,6 @@ TEST(CellSpheres, AreShadedByTheirIrradiance) {
     EXPECT_EQ(cells[4 * pixel], walls[4 * pixel]) << pixel;
   }
   EXPECT_EQ(frame.read(Show::irradiance), walls);
-}
-
-TEST(CellSpheres, AreAViewOfRenderAndNotOfPathtrace) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(run_here("render " + kCornell + kSmallSweep +
-                         "--width 32 --height 18 --rsm-size 32 --view cells -o a.exr",
-                     folder.path())
-                .exit_code,
-            0);
-  const Outcome traced =
-      run_here("pathtrace " + kCornell + " --width 8 --height 8 --spp 1 --view cells -o a.exr",
-               folder.path());
-  EXPECT_EQ(traced.exit_code, 2);
-  EXPECT_THAT(traced.err, ::testing::HasSubstr("cells"));
 }
 
 }  // namespace

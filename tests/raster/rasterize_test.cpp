@@ -242,7 +242,7 @@ TEST(Rasterize, ATileOfMoreTrianglesThanOneLoopCanDraw) {
     add_quad(scene, {-20, -20, -depth}, {40, 0, 0}, {0, 40, 0}, material);
   };
   for (unsigned i = 0; i < CLPV_LONGEST_LOOP; ++i) wall_at(5);  // two triangles each
-  wall_at(4.9995f);  // of the same slice; work-items enter it in any order, but late
+  wall_at(4.9995f);  // in the same slice; work-items enter it in any order, but late
   for (const float depth : drawn(scene, small_camera(8, 8)).depth) EXPECT_FLOAT_EQ(depth, 4.9995f);
 }
 
@@ -303,7 +303,7 @@ TEST(Rasterize, SeveralLaunchesDrawTheSame) {
   const ClpvView view = small_camera(160, 90);
   const SurfaceImage whole = drawn(scene, view);
   Session& session = test_session();
-  for (const std::size_t max_listed : {1, 100, 700}) {  // of about 2000
+  for (const std::size_t max_listed : {1, 100, 700}) {  // triangles listed, of about 2000
     Rasterizer rasterizer(session, upload_scene(session, scene), max_listed);
     const SurfaceImage parts = drawn(rasterizer, view);
     EXPECT_EQ(whole.depth, parts.depth);

@@ -36,7 +36,7 @@ TEST(MipChain, EndsAtOneTexelWithTheMeanInLinearLight) {
   EXPECT_EQ(levels[1].width, 3u);
   EXPECT_EQ(levels[1].height, 2u);
   EXPECT_EQ(levels[2].rgba,
-            (std::vector<std::uint8_t>{188, 188, 188, 255}));  // of 0.5; not 128, of the bytes
+            (std::vector<std::uint8_t>{188, 188, 188, 255}));  // mean 0.5; not 128, as by bytes
 }
 
 TEST(MipChain, OddSizesLoseNothing) {
@@ -91,7 +91,7 @@ Texture stripes(std::uint32_t wrap) {
   return made;
 }
 
-std::vector<float> reds(const SurfaceImage& image) {  // of the top row
+std::vector<float> reds(const SurfaceImage& image) {  // in the top row
   std::vector<float> values;
   for (unsigned x = 0; x < image.view.width; ++x) values.push_back(image.colour[x].x);
   return values;

@@ -9,7 +9,6 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::Not;
 
 constexpr float kClose = 1e-6f;
@@ -28,15 +27,6 @@ TEST_F(AnimationTest, AMeshMovesBetweenItsKeys) {
     EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(wanted + glm::vec3(1, 0, 0), kClose));
     EXPECT_EQ(moving.scene().lower, position(moving.scene(), 0, 0)) << "the box goes with it";
   }
-}
-
-TEST_F(AnimationTest, AStillModelDoesNotMove) {
-  MovingScene moving = load();
-  EXPECT_FALSE(moving.moves());
-  const std::vector<MeshRange> parts = moving.scene().moving;
-  EXPECT_THAT(parts, IsEmpty());
-  moving.pose(3);
-  EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(1, 0, 0), kClose));
 }
 
 TEST_F(AnimationTest, PropertiesWithoutCurvesAreConstant) {
@@ -66,13 +56,6 @@ TEST_F(AnimationTest, ParentsCarryTheirChildren) {
   EXPECT_THAT(position(moving.scene(), 1, 1), IsNear(glm::vec3(1, 0, 0), kClose));
 }
 
-TEST_F(AnimationTest, NormalsTurnAlong) {
-  animate<float>(0, "rotation", {0, 1}, {0, 0, 0, 1, 0, kHalf, 0, kHalf});  // z to x
-  MovingScene moving = load();
-  moving.pose(1);
-  EXPECT_THAT(normal(moving.scene(), 0, 0), IsNear(glm::vec3(1, 0, 0), kClose));
-}
-
 TEST_F(AnimationTest, MirroredMeshesKeepTheirFront) {
   animate<float>(0, "scale", {0, 1}, {1, 1, 1, -1, 1, 1});
   MovingScene moving = load();
@@ -96,15 +79,6 @@ TEST_F(AnimationTest, SplinesAndSteps) {
   moving.pose(1);
   EXPECT_THAT(position(moving.scene(), 0, 0), IsNear(glm::vec3(5, 0, 0), kClose));
   EXPECT_THAT(position(moving.scene(), 0, 1), IsNear(glm::vec3(10, 0, 0), kClose));
-}
-
-TEST_F(AnimationTest, RotationsInShortIntegers) {
-  animate<std::int16_t>(0, "rotation", {0, 1}, {0, 0, 0, 32767, 0, 0, 23170, 23170});
-  MovingScene moving = load();
-  moving.pose(0.5);
-  const float angle = glm::quarter_pi<float>();
-  EXPECT_THAT(position(moving.scene(), 0, 1),
-              IsNear(glm::vec3(std::cos(angle), std::sin(angle), 0), 1e-4f));
 }
 
 TEST_F(AnimationTest, CamerasAndLightsFollowTheirNodes) {

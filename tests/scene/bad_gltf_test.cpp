@@ -15,7 +15,7 @@ using Changes = std::vector<std::pair<std::string, json>>;
 
 struct Row {
   Changes changes;
-  std::vector<std::string> words;  ///< of the rejection
+  std::vector<std::string> words;  ///< words of the rejection
 };
 
 void change(json& document, const Changes& changes) {

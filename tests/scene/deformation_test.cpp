@@ -42,7 +42,7 @@ struct SkinTest : AnimationTest {
 };
 
 TEST_F(SkinTest, VerticesFollowTheirJoints) {
-  model.document["nodes"][0]["translation"] = {50, 50, 50};  // of no account: the joints place it
+  model.document["nodes"][0]["translation"] = {50, 50, 50};  // ignored: the joints place it
   model.document["nodes"][1]["translation"] = {0, 0, 4};
   model.document["nodes"][2]["translation"] = {2, 10, 0};
   const SceneData scene = load_scene(model.write(folder));

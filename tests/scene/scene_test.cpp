@@ -152,14 +152,6 @@ TEST_F(SceneTest, ACameraMayNameItsLight) {
   EXPECT_EQ(scene.lights_for(scene.camera("b")).size(), 3u);
 }
 
-TEST_F(SceneTest, CamerasAreFoundByName) {
-  const SceneData scene = load(kFull);
-  EXPECT_EQ(scene.camera("").name, "a");
-  EXPECT_EQ(scene.camera("b").name, "b");
-  EXPECT_THAT(error_of(ExitCode::usage, [&] { scene.camera("c"); }),
-              AllOf(HasSubstr("'c'"), HasSubstr("a, b")));
-}
-
 TEST_F(SceneTest, TheModelsCamerasAndLightsAreTheDefault) {
   const SceneData scene = load(R"({"model": "models/model.gltf", "metres_per_unit": 2})");
   ASSERT_EQ(scene.cameras.size(), 1u);

@@ -137,9 +137,8 @@ TEST_F(SpotCone, BothRenderersShowAConeOfADegree) {
     for (const std::string& command :
          {"render" + test::kSweepOfOne + "--rsm-size 32", std::string("pathtrace")}) {
       const Outcome outcome =
-          run_here(command + " narrow.json --view direct --width 33 --height 33 -o image.exr",
-                   folder.path());
-      ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+          must_run_here(command + " narrow.json --view direct --width 33 --height 33 -o image.exr",
+                        folder.path());
       const Image image = read_image(folder / "image.exr");
       // 4 degrees from 1.5 m show 0.105 m; the cone has a radius of 0.035 m.
       EXPECT_NEAR(image.pixels[image.channels.size() * (16 * 33 + 16)], 1, 2e-3) << command;

@@ -250,10 +250,7 @@ TEST_F(SequenceTest, TimesOfEveryStageAreSummedUp) {
     std::ranges::sort(ms);
     EXPECT_EQ(stages[s]["stage"], frames[1]["stages"][s]["stage"]);
     EXPECT_EQ(stages[s]["n"], 3);
-    EXPECT_DOUBLE_EQ(stages[s]["min"].get<double>(), ms[0]) << stages[s];
     EXPECT_DOUBLE_EQ(stages[s]["median"].get<double>(), ms[1]) << stages[s];
-    EXPECT_DOUBLE_EQ(stages[s]["max"].get<double>(), ms[2]) << stages[s];
-    EXPECT_NEAR(stages[s]["mad"].get<double>(), std::min(ms[1] - ms[0], ms[2] - ms[1]), 1e-9);
   }
 }
 

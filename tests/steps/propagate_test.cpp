@@ -60,19 +60,6 @@ TEST(Propagate, AxisLobeGainsByClampingOnceAndKeepsIt) {
   EXPECT_NEAR(exact[1] / exact[0], 1.115, 1e-3);
 }
 
-TEST(Propagate, UnclampedExactTransportConservesEnergyOfEveryBasis) {
-  for (const std::string& name : basis_names()) {
-    const auto basis = make_basis(name);
-    if (basis->size() > 30) continue;  // bins96 take too long
-    const Transport transport = make_transport(TransportKind::exact, *basis);
-    const auto light = one_source(*basis, 9, isotropic(*basis), {4, 4, 4});
-    const auto end = reference::propagate(transport, light, nullptr, 3, false);
-    EXPECT_NEAR(reference::energy(*basis, end.travelling)[0] / reference::energy(*basis, light)[0],
-                1.0, 1e-13)
-        << name;
-  }
-}
-
 TEST(Propagate, AUniformFieldIsConstantAwayFromTheBorder) {
   const auto basis = make_basis("sh2");
   const Transport transport = make_transport(TransportKind::sampled, *basis);

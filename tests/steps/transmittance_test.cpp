@@ -24,7 +24,7 @@ constexpr double kFloat = 1e-6;
 /// A link into a cell: its side, the direction of the light and the weights of the blockers.
 struct Link {
   glm::ivec3 side;
-  glm::dvec3 direction;  // of the light
+  glm::dvec3 direction;  // direction of the light
   std::vector<double> blocked_by;
 };
 
@@ -77,13 +77,6 @@ class EachTransport : public ::testing::TestWithParam<TransportKind> {
 INSTANTIATE_TEST_SUITE_P(Transmit, EachTransport,
                          ::testing::Values(TransportKind::sampled, TransportKind::sweep),
                          [](const auto& info) { return std::string(name_of(info.param)); });
-
-TEST_P(EachTransport, NothingBlocksNothing) {
-  const auto basis = make_basis("srbf8v2");
-  const reference::Volume nothing(kGrid + 1, basis->size(), 1);
-  expect_all(
-      transport(*basis), nothing, [](const glm::ivec3&, const Link&) { return 1.0; }, 0);
-}
 
 // In sh2, whose constant is exactly 1: blockers that grow from corner to corner are averaged over
 // the side that light enters by, and B is clamped to [0, 1].

@@ -23,7 +23,7 @@ struct ExrPart {
   ExrBox data, display;
   /// By channel and coordinates.
   std::function<float(const std::string& channel, int x, int y)> value;
-  std::string name = {};                ///< of several parts
+  std::string name = {};                ///< name of one of several parts
   std::vector<std::string> integers{};  ///< channels of type UINT; the others are FLOAT
   std::vector<float> chromaticities{};  ///< attribute, unless empty
   std::string attributes = {};          ///< more of them

@@ -112,11 +112,6 @@ struct GltfBuilder {
     return folder.write(name, document.dump());
   }
 
-  std::filesystem::path write_base64(const TemporaryFolder& folder) {
-    finish("data:application/octet-stream;base64," + encode_base64(binary));
-    return folder.write("model.gltf", document.dump());
-  }
-
   std::string glb() {
     finish("");
     std::string text = document.dump();

@@ -102,13 +102,5 @@ TEST(Numbers, OfVectors) {
     EXPECT_EQ(test::run_here(before + "--eye 0,0,1 " + bad).exit_code, 2) << bad;
 }
 
-TEST(Numbers, NanIsNoThreshold) {
-  for (const char* option : {"--fail-above nan", "--exposure nan", "--amplify nan"}) {
-    const test::Outcome outcome = test::run_here("compare a.json b.json " + std::string(option));
-    EXPECT_EQ(outcome.exit_code, 2) << option;
-    EXPECT_THAT(outcome.err, HasSubstr("found 'nan'"));
-  }
-}
-
 }  // namespace
 }  // namespace clpv::numbers_test

@@ -51,4 +51,12 @@ inline Outcome run_here(std::string_view arguments, const std::filesystem::path&
   return outcome;
 }
 
+/// run_here() of a command that must end with 0.
+inline Outcome must_run_here(std::string_view arguments,
+                             const std::filesystem::path& folder = ".") {
+  Outcome outcome = run_here(arguments, folder);
+  EXPECT_EQ(outcome.exit_code, 0) << arguments << '\n' << outcome.err;
+  return outcome;
+}
+
 }  // namespace clpv::test

@@ -29,7 +29,7 @@ using test::test_session;
 
 inline constexpr unsigned kSide = 96;    // pixels of the camera's image
 inline constexpr double kHalf = 6;       // the camera sees the floor from -kHalf to kHalf [m]
-inline constexpr unsigned kTexels = 64;  // of a shadow map's side
+inline constexpr unsigned kTexels = 64;  // texels along a shadow map's side
 inline constexpr double kMapHalf = 10;   // [m]
 inline constexpr double kTexel = 2 * kMapHalf / kTexels;
 inline constexpr double kFloat = 1e-5;
@@ -111,7 +111,7 @@ inline SurfaceImage floor_image() {
   return look(-kUp, floor_at(0), [](const glm::dvec3&) { return kUp; });
 }
 
-inline const glm::vec3 kChannels(1, 2, 3);  // of every light: channels must not be mixed up
+inline const glm::vec3 kChannels(1, 2, 3);  // every light's: channels must not be mixed up
 
 inline MappedLight sun(const glm::dvec3& direction, double irradiance) {
   return {test::directional_light(glm::vec3(direction), static_cast<float>(irradiance) * kChannels),

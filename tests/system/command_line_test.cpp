@@ -19,14 +19,6 @@ test::Outcome clpv(const std::string& arguments) {
   return test::run(CLPV_PROGRAM " " + arguments);
 }
 
-TEST(CommandLine, WithoutArgumentsItPrintsHelp) {
-  const test::Outcome bare = clpv(""), help = clpv("--help");
-  EXPECT_EQ(bare.exit_code, 0);
-  EXPECT_EQ(bare.out, help.out);
-  EXPECT_THAT(bare.out, AllOf(HasSubstr("render"), HasSubstr("Exit codes")));
-  EXPECT_EQ(bare.err, "");
-}
-
 TEST(CommandLine, ExitCodes) {
   EXPECT_EQ(clpv("--version").exit_code, 0);
   EXPECT_EQ(clpv("basis sh2 --figures /proc/none").exit_code, 1);
@@ -48,21 +40,11 @@ TEST(CommandLine, UsageErrorsNameTheProgram) {
   EXPECT_EQ(clpv("render --help").err, "");
 }
 
-TEST(CommandLine, LanesAreOneOrEight) {
-  const test::Outcome option = clpv("--lanes 2 devices"),
-                      variable = test::run("CLPV_LANES=2 " CLPV_PROGRAM " devices");
-  EXPECT_EQ(option.exit_code, 2);
-  EXPECT_THAT(option.err, AllOf(HasSubstr("--lanes"), HasSubstr("auto,1,8")));
-  EXPECT_EQ(variable.exit_code, 2);
-  EXPECT_THAT(variable.err, HasSubstr("CLPV_LANES: 2; allowed: auto, 1 or 8"));
-}
-
-TEST(CommandLine, HelpOfAllCommandsIsForTheManPage) {
-  EXPECT_THAT(clpv("--help-all").out,
-              AllOf(HasSubstr("--transport"), HasSubstr("--frames"), HasSubstr("--vary")));
-}
-
 TEST(CommandLine, HelpIsShortAndHelpAllIsWhole) {
+  const test::Outcome bare = clpv("");
+  EXPECT_EQ(bare.exit_code, 0);
+  EXPECT_EQ(bare.out, clpv("--help").out);
+  EXPECT_EQ(bare.err, "");
   const std::string brief = clpv("render --help").out, whole = clpv("render --help-all").out;
   for (const char* common : {"--basis", "--grid", "--transport", "--near", "--output"})
     EXPECT_THAT(brief, HasSubstr(common));
@@ -74,7 +56,9 @@ TEST(CommandLine, HelpIsShortAndHelpAllIsWhole) {
   EXPECT_THAT(brief, ::testing::ContainsRegex("--help-all lists [0-9]+ more options?,"));
   EXPECT_THAT(clpv("--help").out,
               AllOf(HasSubstr("Look:"), HasSubstr("Measure:"), HasSubstr("Verify:"),
-                    ::testing::Not(HasSubstr("prepare"))));
+                    HasSubstr("Exit codes"), ::testing::Not(HasSubstr("prepare"))));
+  EXPECT_THAT(clpv("--help-all").out,
+              AllOf(HasSubstr("--transport"), HasSubstr("--frames"), HasSubstr("--vary")));
 }
 
 TEST(CommandLine, AClosedPipeEndsTheProgram) {

@@ -13,6 +13,7 @@
 namespace clpv::drawing_test {
 namespace {
 
+using test::must_run_here;
 using test::run_here;
 using ::testing::HasSubstr;
 
@@ -23,19 +24,9 @@ class Drawing : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(Drawing, AMissingPythonIsReportedBeforeTheWork) {
-  const test::Outcome outcome =
-      test::run("CLPV_PYTHON=/nowhere/python3 " CLPV_PROGRAM " basis sh2 --figures " + file("out"));
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("--figures: no Python can draw"));
-  EXPECT_THAT(outcome.err, HasSubstr("/nowhere/python3: No such file or directory"));
-  EXPECT_FALSE(std::filesystem::exists(file("out")));
-}
-
 TEST_F(Drawing, BasisFiguresAreWrittenAndListed) {
   const std::string to = file("new/folder");
-  const test::Outcome outcome = run_here("basis srbf8v2 --lobe rotate --figures " + to);
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const test::Outcome outcome = must_run_here("basis srbf8v2 --lobe rotate --figures " + to);
   for (const char* name : {"figure2.png", "figure3.png", "figure6.png"}) {
     EXPECT_THAT(outcome.out, HasSubstr(name));
     EXPECT_GT(read_image(to + "/" + name).width, 100) << name;
@@ -68,8 +59,7 @@ TEST_F(SkyReport, IsOnePageWithItsViewsAndLeavesOutWhatHasNoSky) {
   EXPECT_EQ(larger.exit_code, 3);
   EXPECT_THAT(larger.err, HasSubstr("sky-front.exr has 48 x 27 pixels, the page has 48 x 28"));
   EXPECT_FALSE(std::filesystem::exists(file("cache"))) << "found before tracing";
-  const test::Outcome outcome = run_here(report + " --height 27 --images " + file("theirs"));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const test::Outcome outcome = must_run_here(report + " --height 27 --images " + file("theirs"));
   EXPECT_THAT(outcome.out, HasSubstr("index.html"));
   EXPECT_THAT(outcome.err, HasSubstr("sky.json: not on the page by published scheme (sh2)"));
   EXPECT_THAT(outcome.err, HasSubstr("a sky"));
@@ -83,9 +73,8 @@ TEST_F(SkyReport, IsOnePageWithItsViewsAndLeavesOutWhatHasNoSky) {
 using LongDrawing = Drawing;
 TEST_F(LongDrawing, AReportHasThePublishedScheme) {
   const test::Outcome outcome =
-      run_here("report " + file("page") + " " + test::kTinyRoom +
-               " --width 48 --height 27 --spp 4 --cache " + file("cache"));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+      must_run_here("report " + file("page") + " " + test::kTinyRoom +
+                    " --width 48 --height 27 --spp 4 --cache " + file("cache"));
   const std::string html = test::read_file(file("page/index.html"));
   for (const char* part :
        {"<td>published scheme (sh2)</td>", "<td>published scheme (srbf8v2)</td>"})

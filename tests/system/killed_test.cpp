@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs ended from outside. Killed at random moments (fixed seed), they leave complete files or
-// none, and the next run is right. Interrupted, they report which results exist.
+// Runs ended from outside. Killed, they leave complete files or none, and the next run is right.
+// Interrupted, they report which results exist.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,6 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <set>
 #include <string>
 #include <thread>
@@ -30,12 +29,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
-
-/// Moments a command is killed at; more by CLPV_KILLED_MOMENTS.
-int moments() {
-  const char* wish = std::getenv("CLPV_KILLED_MOMENTS");
-  return wish != nullptr ? std::atoi(wish) : 2;
-}
 
 /// A process in a separate group, so that a signal reaches it and its children.
 class Child {
@@ -82,60 +75,11 @@ class Child {
   mutable int status_ = 0;
 };
 
-class Killed : public ::testing::Test {
- protected:
-  /// Runs `arguments` to their end and measures the time; then kills them at moments within that
-  /// time, and calls `look` after each. A whole run must go well then.
-  template <typename Look>
-  void kill_at_moments(const std::string& arguments, const Look& look) {
-    const auto started = Clock::now();
-    const Outcome whole = run(CLPV_PROGRAM " " + arguments);
-    ASSERT_EQ(whole.exit_code, 0) << whole.err;
-    const double span = std::chrono::duration<double>(Clock::now() - started).count();
-    std::mt19937 random(20261122);
-    std::uniform_real_distribution<double> moment(0, span);
-    for (int i = 0; i < moments(); ++i) {
-      Child child(CLPV_PROGRAM " " + arguments, folder_ / "said");
-      std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
-      child.end(SIGKILL);
-      look();
-    }
-    const Outcome again = run(CLPV_PROGRAM " " + arguments);
-    EXPECT_EQ(again.exit_code, 0) << again.err;
-    look();
-  }
-
-  /// Each .json below that folder can be read.
-  static void expect_whole_json(const fs::path& folder) {
-    if (!fs::exists(folder)) return;
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-      const std::string name = entry.path().filename().string();
-      if (name.starts_with(".") || !name.ends_with(".json")) continue;
-      EXPECT_TRUE(nlohmann::json::accept(read_file(entry.path()))) << entry.path();
-    }
-  }
-
+struct Killed : ::testing::Test {
   TemporaryFolder folder_;
 };
 
 const std::string kSmall = " --grid 5 --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 ";
-
-TEST_F(Killed, WhileQualityMeasures) {
-  const fs::path json = folder_ / "q.json";
-  kill_at_moments("quality " + kTiny + kSmall +
-                      "--basis sh2 --gather all --blockers seen --transport sampled --vary "
-                      "iterations=1,2 --width 24 --height 18 --spp 4 --frames 1 --cache " +
-                      (folder_ / "kept").string() + " --output " + json.string(),
-                  [&] {
-                    expect_whole_json(folder_ / "kept");
-                    EXPECT_TRUE(nlohmann::json::accept(read_file(json)));
-                    for (const auto& entry : fs::directory_iterator(folder_ / "kept/references")) {
-                      if (entry.path().extension() == ".exr") {
-                        EXPECT_NO_THROW(read_image(entry.path()));
-                      }
-                    }
-                  });
-}
 
 /// Long enough to be met at work: frames without end.
 std::string sequence(const fs::path& folder, int frames = 1000) {

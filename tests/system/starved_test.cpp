@@ -112,7 +112,7 @@ TEST_F(Starved, OfACompiler) {
   const Outcome always = render("*");
   EXPECT_EQ(always.exit_code, 1);
   EXPECT_THAT(always.err, HasSubstr("does not build"));
-  EXPECT_THAT(always.err, HasSubstr("no log"));  // of a program that its driver has not seen
+  EXPECT_THAT(always.err, HasSubstr("no log"));  // for a program that its driver has not seen
   EXPECT_FALSE(fs::exists(image));
   const Outcome once = render("3");  // and is tried again
   EXPECT_EQ(once.exit_code, 0) << once.err;

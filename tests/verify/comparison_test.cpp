@@ -99,8 +99,7 @@ TEST(Junit, WithoutAnOkResultItHasAnError) {
 TEST(Junit, IsWrittenByTheCheck) {
   const test::TemporaryFolder folder;
   const std::string file = (folder / "check.xml").string();
-  const test::Outcome outcome = test::run_here("check --stage sizes --junit " + file);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const test::Outcome outcome = test::must_run_here("check --stage sizes --junit " + file);
   EXPECT_THAT(test::read_file(file), HasSubstr("<testsuite name=\"sizes\""));
 }
 

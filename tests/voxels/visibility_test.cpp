@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-constexpr int kGrid = 9;                            // that of `clpv check`: the same programs
+constexpr int kGrid = 9;                            // as in `clpv check`: the same programs
 const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 8.5
 
 /// Bytes of all points, by the kernel.

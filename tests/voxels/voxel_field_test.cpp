@@ -22,7 +22,7 @@ namespace {
 
 using namespace test;
 
-constexpr int kGrid = 9;  // that of `clpv check`: the same programs
+constexpr int kGrid = 9;  // as in `clpv check`: the same programs
 constexpr float kCell = 0.4f;
 
 /// A grid whose first cell is `first` cells from the world's origin along each axis.

@@ -59,6 +59,9 @@ Frame::Frame(Session& session, const SceneData& scene, FrameSetup setup)
   if (scene.medium) medium_.emplace(session, gathered(), *scene.medium, medium_options(options()));
   draw_ahead(false);
   make_images();
+  ClpvView view = {};  // fails for images that do not fit before kernels compile
+  view.width = options().width, view.height = options().height;
+  make_surface(session, view, RsmFormat::float32, buffers_.emissive);
   session.programs().build_described();
   if (near_) near_->finish();
 }

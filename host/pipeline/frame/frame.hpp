@@ -46,7 +46,7 @@ class Frame {
   void render(const SceneCamera& camera, const CascadeObserver& observer = {});
 
   /// Enqueues the light of cascades about the camera's eye, as render() without an image. Throws
-  /// Error(usage) for blockers that the frame's G-buffer makes.
+  /// Error(usage) with option blockers `seen`, which needs a camera's G-buffer.
   void update(const SceneCamera& camera);
 
   /// Enqueues the irradiance of indirect light, with the near field, on surfaces that a caller
@@ -89,7 +89,7 @@ class Frame {
   /// The text for lookups by a caller's kernel (kernels/gather/lookup.h). Throws Error(usage) for
   /// options as radiance_at().
   std::string lookup_source() const;
-  /// Throws Error(usage) for such options; `what` opens the message.
+  /// Throws Error(usage) if the options exclude lookups; the message begins with `what`.
   void require_lookups(const char* what) const;
   /// Has the packed volumes of the last render() or light(), if lookup_source() does not throw.
   const Gatherer& gatherer() const { return gatherer_; }
@@ -121,7 +121,7 @@ class Frame {
   void gather(const Surface& surface, CacheKey rays, Buffer& irradiance);
   void rasterize_camera(const SceneCamera& camera);
   void make_images();
-  /// Gives the near field that many pixels of the camera per traced pixel, along each axis.
+  /// Sets up the near field to trace one of `step` x `step` camera pixels.
   void prepare_near(int step);
   void enqueue_light(const SceneCamera& camera);
   void require_light(const char* what) const;
@@ -137,15 +137,15 @@ class Frame {
   Gatherer gatherer_;
   Shader shader_;
   std::optional<NearField> near_;      ///< none: off
-  int near_step_, light_step_;         ///< of near_; of light()
+  int near_step_, light_step_;         ///< step of near_; step of light()
   std::optional<MediumLight> medium_;  ///< none: no medium
   FrameLights lights_;
   FrameCascades cascades_;
   std::optional<Surface> camera_surface_;
-  std::optional<Kernel> radiance_;     ///< of radiance_at(), built when it is first called
-  std::optional<GivenSurface> given_;  ///< of light(), built when it is first called
+  std::optional<Kernel> radiance_;     ///< kernel of radiance_at(), built when it is first called
+  std::optional<GivenSurface> given_;  ///< surface of light(), built when it is first called
   Buffer given_irradiance_;
-  Cached near_hits_;   ///< of near_
+  Cached near_hits_;   ///< hits of near_
   Buffer irradiance_;  ///< float4 per pixel, like image_
   Buffer image_;
   Show shown_ = Show::full;

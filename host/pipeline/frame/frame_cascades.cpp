@@ -48,14 +48,14 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
         options_.format());
   };
   if (sweeper_) voxelise(white_, white_faces_, true);
-  if (options_.bounces != Bounces::one) voxelise(reflectors_, reflected_, false);
+  if (options_.reflects()) voxelise(reflectors_, reflected_, false);
   if (options_.gather == Gathering::visible)
     visibility_.emplace(session, buffers, visibility_masks(options_.grid, options_.cascades));
 } catch (const TooLarge& error) {
   throw Error(
       error.code(), "{}; grid: found {}, and at most {} can fit", error.what(), setup.options.grid,
       static_cast<int>(setup.options.grid *
-                       std::cbrt(error.share)));  // all that cascades have grows with its cube
+                       std::cbrt(error.share)));  // their memory grows with the cube of the grid
 }
 
 std::vector<FrameCascades::CachedVolume> FrameCascades::volumes(int count, const VolumeShape& shape,
@@ -149,7 +149,7 @@ void FrameCascades::update_links(int cascade) {
   });
 }
 
-/// Bits that close links; without memory if nothing tests visibility or blocks.
+/// Bits that close links; an empty Buffer if nothing tests visibility or nothing blocks.
 Buffer FrameCascades::occluded(int cascade) {
   if (!visibility_ || !blockers_) return {};
   update_visibility(cascade);

@@ -86,12 +86,12 @@ class FrameCascades {
   std::optional<VoxelField> white_;       ///< none without a sweep
   std::optional<VoxelField> reflectors_;  ///< none with one bounce
   std::optional<VoxelField> visibility_;  ///< none: all cells light a surface
-  std::optional<Propagator> propagator_;  ///< one of the two
+  std::optional<Propagator> propagator_;  ///< either propagator_ or sweeper_ is set
   std::optional<Sweeper> sweeper_;
   std::vector<CachedVolume> injected_, accumulated_;
   std::vector<CachedVolume> geometry_;  ///< none without occlusion
   std::unique_ptr<Volume> white_faces_,
-      reflected_;  ///< of white_ and reflectors_, as surfaces_ uses them
+      reflected_;  ///< faces of white_ and reflectors_, as surfaces_ uses them
   /// Contents of the sweeper and of visibility_, per cascade.
   std::vector<Cached> links_, surfaces_, visible_cells_;
   std::vector<ClpvGrid> grids_;

@@ -93,7 +93,7 @@ class FrameLights {
   std::vector<Lit> lights_;
   std::string lit_by_;  ///< Camera::light for which lights_ were prepared
   float scale_ = 1;
-  LightBounds bounds_;  ///< of the scene's current time
+  LightBounds bounds_;  ///< at the scene's current time
   Cached bounds_cached_;
   unsigned epoch_ = 0;  ///< part of every key
 };

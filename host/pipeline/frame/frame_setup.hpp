@@ -12,7 +12,7 @@
 
 namespace clpv {
 
-/// What frames of a scene are built from, checked once. Copies share the bases.
+/// Inputs from which frames of a scene are built, checked once. Copies share the bases.
 struct FrameSetup {
   /// Throws Error(usage) for contradictory options (validate), and as make_basis and
   /// make_transport.
@@ -21,8 +21,8 @@ struct FrameSetup {
   FrameSetup(const OptionValues& given, const SceneData& scene);
 
   RenderOptions options;
-  std::shared_ptr<const Basis> basis;     ///< of injected light
-  std::shared_ptr<const Basis> gathered;  ///< of gathered light: that of a sweep, else `basis`
+  std::shared_ptr<const Basis> basis;     ///< basis of injected light
+  std::shared_ptr<const Basis> gathered;  ///< swept_basis() after a sweep, else `basis`
   Transport transport;
 
   bool sweeps() const { return options.transport == TransportKind::sweep; }
@@ -36,7 +36,7 @@ struct FrameSetup {
   /// Returns true if surfaces in the camera's G-buffer block light. A new view then recomputes the
   /// RSMs and injected light of every cascade.
   bool blocked_by_view() const { return options.blockers == Blockers::seen; }
-  /// Throws Error(usage) if so: light without a frame has no G-buffer.
+  /// Throws Error(usage) if blocked_by_view(): light() and update() have no camera's G-buffer.
   void require_own_blockers() const;
   /// Number of stored volumes of injected light, and of stored RSMs that follow cascades. It is one
   /// per cascade if any frame may need all of them, else one that is recomputed for the current

@@ -30,8 +30,8 @@ struct GatheredLight {
   std::vector<ClpvGrid> grids;
   std::vector<const Volume*> accumulated;  ///< one per grid
   float scale = 1;       ///< factor by which the volumes scale the light (light_scale)
-  Buffer occluded = {};  ///< of `grids`, for Gathering::visible: VoxelField::masks()
-  std::vector<std::uint64_t> keys = {};  ///< of the volumes' contents and scale; empty: unknown
+  Buffer occluded = {};  ///< VoxelField::masks() of `grids`, for Gathering::visible
+  std::vector<std::uint64_t> keys = {};  ///< the volumes' contents and scale; empty: unknown
 };
 
 /// Gathers light of one basis and transport: E(n) = g(n) . c / s^2 (has_faces), for swept light
@@ -52,7 +52,8 @@ class Gatherer {
   /// Throws Error(run_time) if counts or shapes do not match, or device memory does not suffice.
   void gather(const Surface& camera, const GatheredLight& light, Buffer& irradiance);
 
-  /// Takes the light without gathering it: for what follows below. Throws as gather().
+  /// Packs the light for grids(), packed() and add_radiance(), without gathering. Throws as
+  /// gather().
   void take(const GatheredLight& light);
 
   /// Grids and packed volumes (kernels/gather/gather_packed.h) of the last gather() or take() on
@@ -93,7 +94,7 @@ class Gatherer {
   /// By number of cascades, 0 for packed volumes, and whether surfaces are points without a view.
   std::map<std::pair<std::size_t, bool>, Kernel> gather_;
   Buffer packed_, grids_, occluded_;
-  std::vector<std::optional<std::uint64_t>> packed_keys_;  ///< of the volumes in packed_
+  std::vector<std::optional<std::uint64_t>> packed_keys_;  ///< keys of the volumes in packed_
   cl_uint cascades_ = 0;
   float scale_ = 1;
 };

@@ -17,8 +17,8 @@ namespace clpv {
 
 class MediumLight {
  public:
-  /// `basis`: of the gathered light, swept_basis(). `medium`: that of all lights given to
-  /// scatter().
+  /// `basis`: of the gathered light, swept_basis(). `medium`: equals ClpvLight::medium of all
+  /// lights given to scatter().
   MediumLight(Session& session, const Basis& basis, const ClpvMedium& medium,
               const MediumOptions& options);
 

@@ -140,9 +140,9 @@ void NearField::reserve(const ClpvView& view) {
   session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
   session_.reserve(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers, "near field");
   session_.reserve(blurred_, CLPV_NEAR_LIGHT_PLANES * numbers, "blurred near field");
-  session_.fill_zero(
-      hits_,
-      hits);  // read, but not used, behind the last hit of a tile, as radiances without a hit
+  // Kernels read, but do not use, entries after a tile's last hit and radiances of rays without a
+  // hit.
+  session_.fill_zero(hits_, hits);
   session_.fill_zero(radiances_, 3 * options_.rays * numbers);
   session_.fill_zero(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers);  // borders stay 0
   session_.fill_zero(blurred_, CLPV_NEAR_LIGHT_PLANES * numbers);
@@ -195,7 +195,7 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
         .launch(cl::NDRange(items_along(session_, width), near_pixels(view.height, options_.step)),
                 pixel_group(session_));
   }
-  // With eight lanes, a work-item alone in its group: the lists of several would not fit into the
+  // With eight lanes, a work-group has one work-item: node lists of several would not fit into the
   // first-level cache.
   const cl::NDRange group =
       session_.device().lanes == 8 ? cl::NDRange(1, 1) : pixel_group(session_);

@@ -16,7 +16,7 @@ struct BuiltNode {
   std::array<BuiltNode*, CLPV_TREE_WIDTH> children{};
   std::array<Bounds, CLPV_TREE_WIDTH> bounds{};
   unsigned count = 0;
-  std::vector<std::uint32_t> triangles;  ///< of a leaf
+  std::vector<std::uint32_t> triangles;  ///< triangles of a leaf
 };
 
 /// Owns the nodes of a tree. One thread builds, so it needs no lock and the tree is always the

@@ -16,9 +16,9 @@ namespace clpv {
 /// A row: eight numbers, float or 32-bit integer as kernels/shared/tree.h says.
 using TreeRow = std::array<float, CLPV_TREE_WIDTH>;
 
-/// Largest numbers of triangles for the slower builders, whose boxes overlap less: by surface area
-/// with triangles cut in parts, and by surface area. More triangles are sorted along a Morton
-/// curve.
+/// Limits of the slower builders, whose boxes overlap less. Up to `parts` triangles: by surface
+/// area, triangles cut in parts; up to `areas`: by surface area. More triangles are sorted along a
+/// Morton curve.
 struct TreeLimits {
   std::size_t parts = 500'000, areas = 1'000'000;
   bool medians = false;  ///< halve triangles at medians instead, as a build without Embree does

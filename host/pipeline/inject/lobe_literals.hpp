@@ -8,8 +8,8 @@
 
 namespace clpv {
 
-/// The basis's tables and those of its lobes, besides what add_coefficient_literals() and, for
-/// rotated lobes, LookupTable::add_literals() add.
+/// Tables of the basis and of its lobes. Call add_coefficient_literals() too and, for rotated
+/// lobes, LookupTable::add_literals().
 Literals lobe_literals(const Basis& basis, const LobeOptions& lobes);
 
 }  // namespace clpv

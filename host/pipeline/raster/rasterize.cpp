@@ -45,8 +45,7 @@ float largest_flux(const ClpvLight& light, const ClpvView& view) {
   return flux > 0 ? static_cast<float>(flux) : 1.0f;
 }
 
-/// Moves the nearest clusters to the front, which keep their order, as do the others. Returns their
-/// number.
+/// Stably moves the nearest clusters to the front. Returns how many they are.
 unsigned move_nearest_first(std::vector<ClpvViewCluster>& clusters) {
   std::vector<float> depths;
   for (const ClpvViewCluster& cluster : clusters) depths.push_back(cluster.nearest);

@@ -65,7 +65,8 @@ class Rasterizer {
   /// always wait.
   void draw_ahead(bool ahead) { ahead_ = ahead; }
 
-  /// Adds what later views need to `counts`, and waits for the device to do so; null: does neither.
+  /// Adds the counts of all later views to `counts`, and waits for the device each time; null:
+  /// stops.
   void count(RasterCounts* counts) { counted_ = counts; }
 
  private:

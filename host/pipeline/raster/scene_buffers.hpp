@@ -24,7 +24,7 @@ struct SceneBuffers {
   /// Features of the scene: textures, vertex colours other than 1, emissive materials, masked
   /// materials.
   bool textured = false, coloured = false, emissive = false, masked = false, medium = false;
-  Bounds bounds;                               ///< of all vertices [m]
+  Bounds bounds;                               ///< bounds of all vertices [m]
   std::shared_ptr<TriangleClusters> clusters;  ///< bounds of the triangles; shared by all copies
 };
 

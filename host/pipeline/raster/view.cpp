@@ -18,7 +18,7 @@ constexpr double kLightNear = 0.01;       // [m]; a lamp's own glass may be this
 constexpr double kSmallestMargin = 0.01;  // [m] between an orthographic eye and the nearest surface
 constexpr double kRelativeMargin = 1e-3;  // the same, relative to the scene's depth
 constexpr double kRounding = 1e-5;        // relative rounding of distances from the eye in kernels
-constexpr int kMaxCubes = 64;             // of light_bounds()
+constexpr int kMaxCubes = 64;             // cubes of light_bounds()
 constexpr int kGapCubes = 3;              // empty ones that are a gap
 
 struct Axes {
@@ -309,8 +309,8 @@ LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
                          const ClpvGrid& coarsest) {
   const double half = 0.5 * static_cast<double>(coarsest.n) * coarsest.cell;
   const glm::dvec3 middle = vector(coarsest.origin) + half;
-  /// Exponent k of the smallest cube of half edge 2^k half about the middle with the vertex; 0 in
-  /// the cascade.
+  /// Smallest k for which the cube about the middle with half edge 2^k * half contains the vertex;
+  /// 0 in the cascade.
   const auto cube_of = [&](const Vertex& v) {
     const glm::dvec3 off = glm::abs(vector(v.position) - middle) / half;
     const double farthest = std::max({off.x, off.y, off.z});

@@ -44,7 +44,7 @@ class Propagator {
   /// at.
   void propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step = {});
 
-  /// Transmittance; null until something has blocked.
+  /// Transmittance; null before the first propagate() with blockers.
   const LinkTransmittance* transmitter() const { return transmitter_.get(); }
 
  private:

@@ -14,8 +14,8 @@ namespace clpv {
 /// Constants of kernels/steps/link_transmittance.h for one transport and blocking mode. Links are
 /// numbered like FaceTransport::faces or sweep_links().
 struct LinkConstants {
-  Literals literals;  ///< those of the geometry volume's coefficients, CLPV_LINKS, CLPV_LINK_SIDES
-                      ///< and CLPV_LINK_BLOCKED
+  Literals literals;          ///< the geometry volume's coefficients, CLPV_LINKS, CLPV_LINK_SIDES
+                              ///< and CLPV_LINK_BLOCKED
   OperationCount operations;  ///< per cell, each sum over corners counted for each link
   int links = 0;
 };

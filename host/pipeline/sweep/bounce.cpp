@@ -69,10 +69,9 @@ void Bouncer::sum_series(std::size_t cascade, const Buffer& swept) {
   volumes_.launch(*sum_series_, kChannels);
 }
 
-void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, float share,
-                               const Volume& injected, Volume& bounced) {
-  inject_reflected_->set(swept, reflectors_[cascade].memory(), injected.memory(), share,
-                         bounced.memory());
+void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, const Volume& injected,
+                               Volume& bounced) {
+  inject_reflected_->set(swept, reflectors_[cascade].memory(), injected.memory(), bounced.memory());
   volumes_.launch(*inject_reflected_, kChannels);
 }
 

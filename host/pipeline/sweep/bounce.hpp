@@ -40,10 +40,10 @@ class Bouncer {
   /// Sets the series S of a cascade. `swept`: a sweep of inject_flux() of reflect_returned().
   void sum_series(std::size_t cascade, const Buffer& swept);
 
-  /// Writes `share` I + R D. `swept` gives the incident flux D.
-  void inject_reflected(std::size_t cascade, const Buffer& swept, float share,
-                        const Volume& injected, Volume& bounced);
-  /// Writes I + R D_1 + S D_2.
+  /// Writes I + R D. `swept` gives the incident flux D.
+  void inject_reflected(std::size_t cascade, const Buffer& swept, const Volume& injected,
+                        Volume& bounced);
+  /// Writes I + R D_1 + S (D_2 - D_1).
   void inject_series(std::size_t cascade, const Buffer& first_swept, const Buffer& second_swept,
                      const Volume& injected, Volume& bounced);
 

@@ -15,7 +15,7 @@
 namespace clpv {
 namespace {
 
-constexpr float kCellRatio = 2;  // of a coarser cascade's cell to the next finer one's
+constexpr float kCellRatio = 2;  // ratio of a coarser cascade's cell to the next finer one's
 constexpr int kBounceParts = 1;  // parts of a bin, squared, in sweeps for bounces
 
 std::size_t directions_of(int parts) {
@@ -67,6 +67,8 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
               "sweep_source"),
       collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals()),
                "sweep_collect"),
+      join_furnace_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals()),
+                    "join_furnace"),
       bouncer_(session, basis, options,
                options.bounces == Bounces::all && !scatters(options.medium)),
       bounced_(session, VolumeShape{options.grid, basis.size(), 3}, "injected and reflected light",
@@ -114,13 +116,13 @@ void Sweeper::make_cascades(const Basis& basis) {
     if (has_few)
       cascade.few = make_directions(basis, kBounceParts,
                                     coarser == 0 || last_light_enters() ? coarser : kBounceParts,
-                                    c > 0 && !last_light_enters());
+                                    c > 0 && !last_light_enters(), true);
     cascades_.push_back(std::move(cascade));
   }
 }
 
-/// Returns true if all sweeps of a cascade let in the light of the coarser one's last sweep; false
-/// if light of the same number of bounces enters.
+/// Light that enters at a cascade's border. True: in every sweep, the coarser cascade's final
+/// light; false: the coarser cascade's light after the same number of bounces.
 bool Sweeper::last_light_enters() const {
   return options_.bounces == Bounces::all && !scatters(options_.medium);
 }
@@ -166,8 +168,9 @@ std::size_t Sweeper::group() const {
 }
 
 Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int coarser,
-                                             bool feeds_finer) const {
-  const SweepMeans means = sweep_means(basis, parts);
+                                             bool feeds_finer, bool few) const {
+  SweepMeans means = sweep_means(basis, parts);
+  if (few) means.rest.reset();
   std::vector<ClpvSweepDirection> table = sweep_direction_table(parts, coarser);
   const Buffer light_table = session_.upload(table, "directions to sweep");
   for (ClpvSweepDirection& each : table) each.from_coarser *= kCellRatio * kCellRatio;
@@ -195,7 +198,7 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int 
     made.border.emplace(session_, border, "sweep_border");
   } else {
     Sky even;
-    even.width = even.height = 1, even.texels = {glm::vec3(1)};
+    even.width = even.height = 1, even.texels = {glm::vec3(0, 1, 1)};
     made.white_sky = session_.upload(swept_sky(even, parts), "boundary light of the furnace");
     if (options_.sky != nullptr)
       made.sky = session_.upload(swept_sky(*options_.sky, parts), "boundary light of the sky");
@@ -271,9 +274,11 @@ void Sweeper::sweep_white(bool all_directions, std::size_t cascade,
   };
   swap_with_light();
   Directions& directions = all_directions ? cascades_[cascade].all : *cascades_[cascade].few;
-  light_border(all_directions, cascade, grids, directions.white_sky, 1);
+  light_border(all_directions, cascade, grids, directions.white_sky, 1, 1);
   launch(directions, cascade, prepare_halo(directions, cascade, grids), true);
   swap_with_light();
+  join_furnace_.set(swept_);
+  join_furnace_.launch({kSweepBins * sweep_volume_size(options_.grid) / volumes_.lanes()}, {1});
 }
 
 void Sweeper::sweep(const SweepInput& input, Volume& accumulated) {
@@ -291,9 +296,8 @@ void Sweeper::run(const SweepStep& step, const SweepInput& input) {
   if (step.scattered) medium_->scatter_swept(swept_);
   set_sources(light_of(step, input));
   const float cell = input.grids[input.cascade].cell;
-  const bool lit =
-      !step.dark_border && light_border(step.all_directions, input.cascade, input.grids,
-                                        directions.sky, input.sky_scale * (cell * cell));
+  const bool lit = light_border(step.all_directions, input.cascade, input.grids, directions.sky,
+                                input.sky_scale * (cell * cell));
   const ClpvSweepHalo stored = prepare_halo(directions, input.cascade, input.grids);
   if (last_swept_.exists()) std::swap(swept_, last_swept_);
   launch(directions, input.cascade, stored, lit, step.scattered);
@@ -316,10 +320,7 @@ const Volume& Sweeper::light_of(const SweepStep& step, const SweepInput& input) 
     case SweptLight::injected:
       return input.injected;
     case SweptLight::reflected:
-      bouncer_.inject_reflected(c, swept_, 1, input.injected, bounced_);
-      break;
-    case SweptLight::only_reflected:
-      bouncer_.inject_reflected(c, swept_, 0, input.injected, bounced_);
+      bouncer_.inject_reflected(c, swept_, input.injected, bounced_);
       break;
     case SweptLight::series:
       bouncer_.inject_series(c, last_swept_, swept_, input.injected, bounced_);
@@ -337,7 +338,7 @@ void Sweeper::set_sources(const Volume& light) {
 /// Sets the boundary condition of a cascade from the next coarser one, or from `sky` times
 /// `sky_scale`. Returns false, and sets nothing, if no light enters.
 bool Sweeper::light_border(bool all_directions, std::size_t c, const std::vector<ClpvGrid>& grids,
-                           const Buffer& sky, float sky_scale) {
+                           const Buffer& sky, float sky_scale, cl_int first_lit) {
   const auto directions_in = [&](std::size_t cascade) -> Directions& {
     return all_directions || (cascade != c && last_light_enters()) ? cascades_[cascade].all
                                                                    : *cascades_[cascade].few;
@@ -352,8 +353,8 @@ bool Sweeper::light_border(bool all_directions, std::size_t c, const std::vector
   if (directions.border) {
     const std::array<int, 3> offset = offset_in_coarser(grids[c + 1], grids[c]);
     kernel.set(bins_, directions.table, directions_in(c + 1).halo_light,
-               halo_of(options_.grid, offset), offset[0], offset[1], offset[2], plane_buffer_,
-               upstream, border_);
+               halo_of(options_.grid, offset), offset[0], offset[1], offset[2], first_lit,
+               plane_buffer_, upstream, border_);
   } else {
     kernel.set(sky, sky_scale, plane_buffer_, upstream, border_);
   }

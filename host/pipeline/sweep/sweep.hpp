@@ -27,7 +27,7 @@ namespace clpv {
 /// Light that a sweep of a cascade transports.
 struct SweepInput {
   std::size_t cascade;
-  const std::vector<ClpvGrid>& grids;  ///< of all cascades, finest first
+  const std::vector<ClpvGrid>& grids;  ///< grids of all cascades, finest first
   const Volume& injected;
   float sky_scale = 1;  ///< number that volumes store for 1 W/sr
   std::vector<ShadowedLight> lights =
@@ -44,8 +44,8 @@ class Sweeper {
           const SweepOptions& options);
 
   /// Computes the transmittance of a cascade's links from a geometry volume of (grid + 1)^3
-  /// samples. `occluded`: bits of visibility_masks() for all cascades, which close links; without
-  /// memory: none.
+  /// samples. `occluded`: bits of visibility_masks() for all cascades, from which closed links are
+  /// found; an empty Buffer closes none.
   void set_blockers(std::size_t cascade, const Volume& geometry, const Buffer& occluded = {});
 
   /// Sets the surfaces of a cascade after those of the next coarser one and after its blockers.
@@ -88,7 +88,9 @@ class Sweeper {
     std::optional<Directions> few;  ///< one per bin; none if no step of the plan has them
     Buffer links;                   ///< transmittance
   };
-  Directions make_directions(const Basis& basis, int parts, int coarser, bool feeds_finer) const;
+  /// `few`: for incident flux alone, from the basis's functions as they are.
+  Directions make_directions(const Basis& basis, int parts, int coarser, bool feeds_finer,
+                             bool few = false) const;
   void make_cascades(const Basis& basis);
   ProgramSource sweep_program(int coefficients, const SweepMeans& means, int parts) const;
   void enter_medium(std::size_t cascade, const ClpvGrid& grid);
@@ -97,7 +99,7 @@ class Sweeper {
   void set_sources(const Volume& light);
   void sweep_white(bool all_directions, std::size_t cascade, const std::vector<ClpvGrid>& grids);
   bool light_border(bool all_directions, std::size_t cascade, const std::vector<ClpvGrid>& grids,
-                    const Buffer& sky, float sky_scale);
+                    const Buffer& sky, float sky_scale, cl_int first_lit = 0);
   void darken_border(const Directions& directions);
   ClpvSweepHalo prepare_halo(const Directions& directions, std::size_t cascade,
                              const std::vector<ClpvGrid>& grids);
@@ -115,7 +117,7 @@ class Sweeper {
   /// Results of the last two sweeps; last_swept_: only for SweptLight::series.
   Buffer swept_, last_swept_;
   Buffer plane_buffer_, border_;
-  Kernel source_, collect_;
+  Kernel source_, collect_, join_furnace_;
   std::optional<Kernel> find_closed_links_, transmittance_;
   std::optional<SweepMedium> medium_;
   std::vector<SweepStep> plan_;

@@ -58,7 +58,8 @@ Literals sweep_collect_literals() {
   const Matrix projection = folded(swept_projection());
   Literals literals;
   add_coefficient_literals(literals, projection.rows());
-  return literals.matrix("CLPV_PROJECTION", transposed(projection));
+  return literals.matrix("CLPV_PROJECTION", transposed(projection))
+      .real("CLPV_LEAST_OPEN", kLeastOpen);
 }
 
 OperationCount sweep_collect_operations() {

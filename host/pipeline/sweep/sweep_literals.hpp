@@ -9,7 +9,7 @@
 
 namespace clpv {
 
-/// For sweep_source.cl: those of coefficients of `basis`.
+/// Literals of sweep_source.cl: what add_coefficient_literals() adds for `basis`.
 Literals source_literals(const Basis& basis);
 
 /// For sweep_links.cl: those of link_literals(), CLPV_AXIS_LINKS and CLPV_VOLUME_LINKS.

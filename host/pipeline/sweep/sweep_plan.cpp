@@ -6,12 +6,12 @@
 namespace clpv {
 namespace {
 
-/// In a medium that scatters, each sweep adds one reflection and one scattering.
-std::vector<SweepStep> scattering_plan(int sweeps) {
+/// `sweeps` of few directions, each with one more reflection, then the last sweep.
+std::vector<SweepStep> bounced_plan(int sweeps, SweptLight last, bool scattered) {
   std::vector<SweepStep> plan{{.light = SweptLight::injected}};
   while (static_cast<int>(plan.size()) < sweeps)
-    plan.push_back({.light = SweptLight::reflected, .scattered = true});
-  plan.push_back({.light = SweptLight::reflected, .all_directions = true, .scattered = true});
+    plan.push_back({.light = SweptLight::reflected, .scattered = scattered});
+  plan.push_back({.light = last, .all_directions = true, .scattered = scattered});
   return plan;
 }
 
@@ -19,17 +19,14 @@ std::vector<SweepStep> scattering_plan(int sweeps) {
 
 std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters) {
   switch (bounces) {
+    case Bounces::automatic:
     case Bounces::one:
       return {{.light = SweptLight::injected, .all_directions = true}};
     case Bounces::two:
-      if (scatters) return scattering_plan(1);
-      return {{.light = SweptLight::injected},
-              {.light = SweptLight::reflected, .all_directions = true}};
+      return bounced_plan(1, SweptLight::reflected, scatters);
     case Bounces::all:
-      if (scatters) return scattering_plan(kScatteredSweeps);
-      return {{.light = SweptLight::injected},
-              {.light = SweptLight::only_reflected, .dark_border = true},
-              {.light = SweptLight::series, .all_directions = true}};
+      return scatters ? bounced_plan(kScatteredSweeps, SweptLight::reflected, true)
+                      : bounced_plan(kSeriesSweeps, SweptLight::series, false);
   }
   return {};
 }

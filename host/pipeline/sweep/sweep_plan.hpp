@@ -9,18 +9,17 @@
 namespace clpv {
 
 /// Light that a sweep starts from. I: injected light; R: reflectors; S: their series; D: incident
-/// flux of the last sweep, D_1 of the one before it.
+/// flux of the last sweep, D_1 of the one before it. In a medium that scatters, each sweep adds one
+/// reflection and one scattering.
 enum class SweptLight {
-  injected,        ///< I
-  reflected,       ///< I + R D
-  only_reflected,  ///< R D
-  series,          ///< I + R D_1 + S D
+  injected,   ///< I
+  reflected,  ///< I + R D
+  series,     ///< I + R D_1 + S (D - D_1)
 };
 
 struct SweepStep {
   SweptLight light;
   bool all_directions = false;  ///< false: one per bin, enough for incident flux
-  bool dark_border = false;     ///< true: no light enters from the coarser cascade or the sky
   bool scattered = false;       ///< true: a medium scatters the last sweep's light too
 };
 

@@ -22,8 +22,9 @@ std::vector<ClpvSweepDirection> sweep_direction_table(int parts, int coarser_par
 void attenuate(std::vector<ClpvSweepDirection>& table, int parts, const ClpvMedium& medium,
                double cell);
 
-/// Separable cell coverage by the medium's box, in [0, 1]; multiply x, y and z. Three rows of
-/// bordered_pitch(n) numbers, cell i at CLPV_SWEEP_FIRST + i, with the halo's cells.
+/// Share of each cell inside the medium's box, as factors in [0, 1] for x, y and z to be
+/// multiplied. Three rows of bordered_pitch(n) numbers, cell i at CLPV_SWEEP_FIRST + i, with the
+/// halo's cells.
 std::vector<float> cells_in_medium(const ClpvMedium& medium, const ClpvGrid& grid);
 
 /// part_means() without the coefficients that no direction of a bin depends on (they belong to

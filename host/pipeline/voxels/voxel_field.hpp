@@ -33,7 +33,7 @@ struct VoxelMaskShape {
 struct VoxelKind {
   std::string what;  ///< for errors
   VoxelMaskShape shape;
-  unsigned max_triangles;  ///< of one launch, since larger launches take seconds on some devices
+  unsigned max_triangles;  ///< in one launch, since larger launches take seconds on some devices
   /// Kernel that sets masks of a region's cells from triangles in any order. Its arguments are the
   /// region, the clusters (triangle_number of kernels/voxels/region.h), the scene's triangles, its
   /// textures if `textured`, the masks, and the index of the cascade's masks if `indexed`.

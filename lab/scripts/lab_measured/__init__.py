@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""What the lab measures and shows, with the package `measured` of the core's scripts."""
+"""The lab's measurements and tables, with the package `measured` of the core's scripts."""

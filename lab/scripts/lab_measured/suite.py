@@ -27,7 +27,7 @@ SCENES = {
     "sponza": ["curtains", "atrium", "columns"], "cornell": ["front"],
     "atrium": ["nave", "curtains", "gallery"], "atrium_living": ["walk"], "sponza_other_suns": []
 }  # cameras; none: all
-FILES = {"sponza": "sponza_suns"}  # of scenes whose files have other names
+FILES = {"sponza": "sponza_suns"}  # scenes whose files have other names
 TIMES = {"atrium_living": 4}  # [s]
 LAYERS = "indirect", "direct", "irradiance", "depth", "normal", "albedo"
 LARGEST = 64 * 2**20  # bytes of the tar

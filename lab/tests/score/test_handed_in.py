@@ -23,7 +23,7 @@ def view_names():
 
 
 def faults(document):
-    """What is wrong with a score, in words; empty if nothing is."""
+    """Faults of a score, in words; empty if there is none."""
     found, views, names = [], document.get("views", []), list(view_names())
     if document.get("schema") != scored.SCHEMA:
         found.append(f"schema: found {document.get('schema')}; allowed: {scored.SCHEMA}")

@@ -51,7 +51,7 @@ def page_colours():
 
 
 def variants(quality, marked):
-    """What was not rejected and has an error, best first."""
+    """Cells that were not rejected and have an error, best first."""
     rows = []
     for source in quality:
         listed = source["document"].get("variants")

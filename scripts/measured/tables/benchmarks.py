@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Tables of docs/benchmarks.md, docs/gpu.md and docs/paper/table1.md, by `clpv bench` and `clpv
+"""Tables of docs/benchmark_results.md, docs/gpu.md and docs/paper/table1.md, by `clpv bench` and `clpv
 render --stats`."""
 import math
-import textwrap
 
 from clpv import ms_of
 
 from .. import rows as known
-from .cells import found, load, number, ratio, result, shown, summed, table, time
+from .cells import found, load, number, ratio, shown, summed, table, time
 
 
 def bench(suite):
@@ -90,27 +89,6 @@ def layouts():
         lines.append([f"{stage} {basis}{', blockers' if occlusion else ''}", *map(time, rows),
                       ratio(rows[0]["median"], best)])
     return lines
-
-
-def buffers_over_images(rows):
-    """Least and largest ratio of propagation in half-precision images to that in the best buffers."""
-    ratios = []
-    for basis, occlusion in dict.fromkeys((row["basis"], row["occlusion"]) for row in rows
-                                          if row["stage"] == "propagate"):
-        same = [row for row in rows if row["status"] == "ok" and row["stage"] == "propagate"
-                and (row["basis"], row["occlusion"]) == (basis, occlusion)]
-        best = min(row["median"] for row in same if row["layout"] != "image")
-        ratios.append(found(same, layout="image", storage="half")["median"] / best)
-    return f"{min(ratios):.0f}x to {max(ratios):.0f}x"
-
-
-@table
-def readme_layouts():
-    intel = result("intel-2026.22-epyc-2-cores/layouts")["benchmarks"]
-    return textwrap.fill(
-        f"- Propagation in buffers is {buffers_over_images(bench('layouts'))} faster than in half-precision "
-        "3-D images, which the paper used, on PoCL 3.1, and "
-        f"{buffers_over_images(intel)} on Intel's OpenCL runtime.", 130, subsequent_indent="  ") + "\n"
 
 
 @table

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tables of docs/quality.md and README.md: NRMSE of indirect light in %, and energy over the ground
+"""Tables of docs/quality_results.md and README.md: NRMSE of indirect light in %, and energy over the ground
 truth's."""
 import json
 

@@ -5,7 +5,7 @@ import textwrap
 
 from .cells import load, shown, table
 
-LINE = 130  # of the docs
+LINE = 130  # width of the docs
 MEANINGS = {
     "nrmse_valid": "root mean square error divided by the root mean square of the truth",
     "energy_ratio": "mean of the image divided by the mean of the truth",
@@ -34,12 +34,6 @@ def tutorial_grid():
 @table
 def tutorial_transport():
     return variants("transport")
-
-
-@table
-def tutorial_bench():
-    return shown({"row": "`{name}`", "median ms": "{median:#}", "mad": "{mad:#}"},
-                 [{**row, "name": name} for name, row in load("tutorial")["bench"].items()])
 
 
 @table

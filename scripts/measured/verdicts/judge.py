@@ -28,7 +28,7 @@ class Claim(typing.NamedTuple):
 
     def points(self, read):
         for each in self.rows(read):
-            outcome = self.holds(each)  # of a fresh measurement perhaps NumPy's Boolean
+            outcome = self.holds(each)  # after a fresh measurement perhaps NumPy's Boolean
             yield (each[self.at] if self.at in each else self.at.format(**each),
                    None if outcome is None else bool(outcome), self.numbers.format(**each))
 

@@ -13,7 +13,7 @@ KINDS = {"channels": "chlist", "compression": "compression", "dataWindow": "box2
          "envmap": "envmap"}  # types of attributes that are read
 CUBE_MAP, LINE_ORDERS = b"\1", (b"\0", b"\1")
 TYPES = {0: numpy.dtype("<u4"), 1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
-ROWS = {0: 1, 2: 1, 3: 16}  # of a chunk, by compression: none, ZIPS, ZIP
+ROWS = {0: 1, 2: 1, 3: 16}  # rows of a chunk, by compression: none, ZIPS, ZIP
 REC709 = 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.3290  # x and y of red, green, blue and white
 SAME_CHROMATICITY = 1e-3  # standards state three or four digits
 BRADFORD = numpy.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367],
@@ -65,7 +65,7 @@ def channel_list(value):
 def unzipped(data, size):
     """Inverts ZIP compression: bytes are differences, those at even places first."""
     if len(data) == size:
-        return data  # what does not shrink is stored as it is
+        return data  # data that do not shrink are stored as they are
     data = zlib.decompressobj().decompress(data, size + 1)
     deltas = numpy.frombuffer(data, numpy.uint8).astype(numpy.uint64)
     deltas[1:] += 128  # differences are stored with an offset of 128

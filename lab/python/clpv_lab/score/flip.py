@@ -4,7 +4,7 @@ host/image/flip.cpp."""
 import numpy
 
 PIXELS_PER_DEGREE = 67.0206  # 3840 pixels over 0.7 m, seen from 0.7 m
-EDGE_WIDTH = 0.082  # of a feature [degrees]
+EDGE_WIDTH = 0.082  # width of a feature [degrees]
 SENSITIVITIES = [(1, 0.0047)], [(1, 0.0053)], [(34.1, 0.04),
                                                (13.5, 0.025)]  # height, width by channel
 WIDEST = 0.04

@@ -6,9 +6,9 @@ import numpy
 
 from clpv_lab.score import flip
 
-GAIN_LIMIT = 1.8  # of another exposure
+GAIN_LIMIT = 1.8  # factor of another exposure
 EXPLAINED = 0.6  # each correction must leave at most this share of the error
-LAYERS = "direct", "albedo"  # of a truth, that mistakes in indirect light are known by
+LAYERS = "direct", "albedo"  # layers of a truth that show mistakes in indirect light
 MIRRORS = {
     "left to right": numpy.s_[:, ::-1], "upside down": numpy.s_[::-1],
     "rotated by half a turn": numpy.s_[::-1, ::-1]

@@ -17,11 +17,11 @@ SCHEMA = 1
 MAX_NUMBER = 1000  # noise, and exposures [EV], whose powers of 2 are finite
 MEASURES = "nrmse", "nrmse_best_gain", "energy_ratio", "flip", "bias", "noise", "change"
 LIGHT = "indirect"  # layer that a score is of
-LAYERS = LIGHT, "depth", "normal", "albedo", "direct", "irradiance"  # of a truth
-DIGITS = 5  # of printed errors
+LAYERS = LIGHT, "depth", "normal", "albedo", "direct", "irradiance"  # layers of a truth
+DIGITS = 5  # digits of printed errors
 NUMBER = int, float
 UNKNOWN = type(None)
-FIELDS = {"name": str, "truth": str, "noise": (*NUMBER, UNKNOWN), "exposure": NUMBER}  # of a view
+FIELDS = {"name": str, "truth": str, "noise": (*NUMBER, UNKNOWN), "exposure": NUMBER}  # fields of a view
 
 
 def is_valid(value, kind):
