@@ -2,7 +2,7 @@
 // Irradiance of W pixels from the volumes of all cascades, one after the other: shared by gather.cl
 // and gather_images.cl.
 //
-// The file that includes this one includes gather_packed.h or gather_image.h, which define
+// Before it come gather_packed.h or the functions of gather_images.cl, which define
 //   Sampled, SamplePoints                         coefficients at a point; W points
 //   find_sample_points(at, &points)               W points [cells] from the first centre, clamped
 //                                                 to the grid

@@ -14,7 +14,7 @@
 // that comes back to a face after k reflections elsewhere, per 1 W that left it. By reciprocity X_1
 // is the incident flux while every face emits R, X_2 while it emits T_1 (inject_flux). q in [0, the
 // cell's largest albedo] is T_2 / T_1. S depends on the surfaces, not on light. A face of normal a
-// that receives D_a (face_fluxes.h) emits, projected on the basis,
+// that receives D_a emits, projected on the basis,
 //   I(w) = Phi_a max(0, w.a) / pi,   Phi_a = R_a D_a
 // With CLPV_HARMONICS, light of all bands but the first is divided by the share m_a of the face's
 // triangles: |n_a| = m_a (|n_x| + |n_y| + |n_z|), so that the faces of a surface emit the clamped
@@ -26,11 +26,35 @@
 //       injected          I: light volume [W/sr]
 // Out:  bounced           I': light volume [W/sr]
 // From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_LOBES, the lobe of 1 W about each
-// face's normal, CLPV_MAX_RETURNED, the largest q, and the literals of face_fluxes.h.
+// face's normal, CLPV_MAX_RETURNED, the largest q, CLPV_INCIDENT,
+// the weights of D_a for each face and bin.
 // A work-item computes a tile of W x W cells of a slice and channel.
 #include "volume/coefficients.h"
-#include "sweep/face_fluxes.h"
+#include "shared/reflectors.h"
+#include "sweep/sweep_tiles.h"
 #include "volume/light.h"
+
+// Fluxes [W] on the six faces of W cells, in the order of shared/reflectors.h.
+//
+//   D_a = 0.956 sum_b Omega_b max(0, -w_b.a) L_b s^2, pi of even light 1
+typedef struct {
+  realW c[CLPV_CELL_FACES];
+} FaceFluxes;
+
+__constant const float incident_weights[CLPV_CELL_FACES][CLPV_SWEEP_BINS] = CLPV_INCIDENT;
+
+CLPV_INLINE FaceFluxes incident_flux(const Bins bins) {
+  FaceFluxes flux;
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) {
+    flux.c[a] = 0.0f;
+#pragma unroll
+    for (int b = 0; b < CLPV_SWEEP_BINS; ++b)
+      if (incident_weights[a][b] != 0.0f)
+        flux.c[a] = fma((realW)(incident_weights[a][b]), bins.c[b], flux.c[a]);
+  }
+  return flux;
+}
 
 #define CLPV_VOLUME faces
 #define CLPV_VOLUME_N CLPV_GRID

@@ -7,11 +7,10 @@
 //                 (voxels/visibility.cl)
 //       cascade   number of the cascade whose bytes to read
 // Out:  closed    a word per cube, with a border of one cube: bit pair_number(i, j)
-//                 (sweep/centre_pairs.h) is set if the pair is closed, bit CLPV_ENCLOSED_BIT if
+//                 (sweep/sweep_layout.h) is set if the pair is closed, bit CLPV_ENCLOSED_BIT if
 //                 the cube's lowest centre is enclosed
 // A work-item tests a cube.
 #include "shared/sweep.h"
-#include "sweep/centre_pairs.h"
 #include "sweep/sweep_layout.h"
 
 enum { CLPV_CUBE_WORDS = 8 };  // words of eight points, a byte each

@@ -31,3 +31,13 @@ CLPV_INLINE int plane_index(const int row, const int column) {
 CLPV_INLINE int bordered_index(const int plane, const int row, const int column) {
   return (plane + 1) * CLPV_BORDERED_PLANE + plane_index(row, column);
 }
+
+// Pairs of the eight cell centres at the corners of a cube: closed_links.cl writes a bit for each,
+// sweep_links.cl reads them.
+enum {
+  CLPV_CENTRES = 8,        // centre i is offset by (i & 1, i >> 1 & 1, i >> 2)
+  CLPV_ENCLOSED_BIT = 28,  // after the pairs
+};
+
+// Number of the pair of centres i < j: 0 to 27.
+static inline int pair_number(const int i, const int j) { return i * (13 - i) / 2 + j - 1; }

@@ -16,7 +16,6 @@
 // and z. A work-item computes a tile of W x W cells of a slice.
 #include "volume/coefficients.h"
 #include "steps/link_transmittance.h"
-#include "sweep/centre_pairs.h"
 #include "sweep/sweep_tiles.h"
 
 __constant const int volume_links[3 * CLPV_AXIS_LINKS] = CLPV_VOLUME_LINKS;

@@ -26,7 +26,7 @@ std::size_t directions_of(int parts) {
 ClpvSweepHalo halo_of(int grid, const std::array<int, 3>& offset) {
   const auto lower = [](int u) {
     return (u - 1) >> 1;
-  };  // lower_cell() of kernels/sweep/coarse_to_fine.h
+  };  // lower_cell() of kernels/sweep/sweep_border.cl
   ClpvSweepHalo halo{};
   halo.side = halo_side(grid);
   for (std::size_t axis = 0; axis < 3; ++axis) {
