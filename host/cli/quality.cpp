@@ -163,6 +163,7 @@ std::vector<QualityCell> measure_all(Ranks& ranks, Session& session,
     }
     cell->variant = group.variant;  // the spelling of the same options may differ
     if (!kept && cell->rejected.empty()) store.keep(key, *cell);  // a rejection may be temporary
+    cell->cached = kept;
     cells[number] = to_json(*cell);
     kept ? progress.skip() : progress.advance();
   };

@@ -57,7 +57,6 @@ class Process {
   Result end();
 
  private:
-
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
