@@ -27,7 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 
@@ -146,21 +145,6 @@ TEST_F(Killed, AnInterruptIsReported) {
         EXPECT_NO_THROW(read_image(entry.path()));
       }
     }
-  }
-}
-
-TEST_F(Killed, AnInterruptedQualityTellsWhatResumes) {
-  for (const auto& [option, then] :
-       {std::pair{"", "; the same command resumes\n"}, {" --fresh", "\n"}}) {
-    const fs::path said = folder_ / "said", cache = folder_ / ("cache" + std::string(option));
-    Child child(CLPV_PROGRAM " quality " + kTiny + " --spp 1 --frames 1000 --vary basis=sh2,sh3" +
-                    kSmall + option + " --cache '" + cache.string() + "'",
-                said);
-    for (int i = 0; i < 600 && !fs::exists(cache / "references"); ++i)
-      std::this_thread::sleep_for(100ms);
-    ASSERT_TRUE(child.running()) << read_file(said);
-    EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
-    EXPECT_THAT(read_file(said), EndsWith(" of 2 cells are finished" + std::string(then)));
   }
 }
 
