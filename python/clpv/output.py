@@ -4,9 +4,9 @@ see the old file or the new one. Only the standard library."""
 import io
 import os
 import pathlib
+import shutil
 import sys
 import tarfile
-import tempfile
 
 RUN_TIME, USAGE, BAD_INPUT = 1, 2, 3  # exit codes
 MARKER = ".clpv-output"  # marks an output folder: the script that wrote it
@@ -20,67 +20,39 @@ class Failure(Exception):
         self.code = code
 
 
-class BadOutput(Failure):
-    """Names an output that cannot be written, and why."""
-
-
 def printable(text):
     """Foreign text for a terminal: control characters become `?`."""
     return "".join(c if c.isprintable() or c == " " else "?" for c in str(text))
 
 
-class Output:
-    """An output file, checked before long work: its folder is there, and it replaces nothing but a
-    regular file that is no input. A link stays a link."""
-
-    def __init__(self, path, inputs=(), option="output"):
-        """`inputs`: files that must stay, and other Outputs. Raises BadOutput."""
-        self.path, self.target = path, pathlib.Path(os.path.realpath(path))
-        for other in inputs:
-            name = other.path if isinstance(other, Output) else other
-            same = self.target.exists() and os.path.exists(name) and self.target.samefile(name)
-            if same or self.target == pathlib.Path(os.path.realpath(name)):
-                raise BadOutput(
-                    f"{option} {path}: found the file of {name}; allowed: another file", USAGE)
-        try:
-            os.scandir(self.target.parent).close()
-            regular = self.target.is_file() or not os.path.lexists(self.target)
-        except OSError as error:
-            raise self._bad(f"{self.target.parent}: {error.strerror}") from None
-        if not regular:
-            raise self._bad("it is not a regular file")
-
-    def write(self, data):
-        """Writes bytes or text. Raises BadOutput; the old file then is as it was."""
-        made = None
-        try:
-            with tempfile.NamedTemporaryFile(dir=self.target.parent, prefix=".", suffix=".part",
-                                             delete=False) as file:
-                made = file.name
-                file.write(data.encode("utf-8") if isinstance(data, str) else data)
-                file.flush()
-                os.fsync(file)
-            os.chmod(made, self._mode())
-            os.rename(made, self.target)
-        except OSError as error:
-            if made:
-                os.unlink(made)
-            raise self._bad(error.strerror) from None
-
-    def _mode(self):
-        if self.target.exists():
-            return self.target.stat().st_mode & 0o777
-        mask = os.umask(0)
-        os.umask(mask)
-        return 0o666 & ~mask
-
-    def _bad(self, why):
-        return BadOutput(f"{self.path}: cannot be written: {why}")
+def target_of(path, *inputs):
+    """The file that a link leads to. Raises Failure, before long work: the folder is missing, or
+    there is what is no regular file, or an input."""
+    target = pathlib.Path(os.path.realpath(path))
+    for name in inputs:
+        both = target.exists() and os.path.exists(name)
+        if target.samefile(name) if both else str(target) == os.path.realpath(name):
+            raise Failure(f"{path}: found the file of {name}; allowed: another file", USAGE)
+    if not target.parent.is_dir():
+        raise Failure(f"{path}: cannot be written: there is no folder {target.parent}")
+    if target.exists() and not target.is_file():
+        raise Failure(f"{path}: cannot be written: it is not a regular file")
+    return target
 
 
 def write(path, data):
-    """Writes bytes or text to a file. Raises BadOutput."""
-    Output(path).write(data)
+    """Writes bytes or text to a file. Raises Failure; the old file then is as it was."""
+    target = target_of(path)
+    made = target.with_name(f".{os.getpid()}.part")
+    try:
+        with open(made, "xb") as file:
+            file.write(data.encode("utf-8") if isinstance(data, str) else data)
+        if target.exists():
+            shutil.copymode(target, made)
+        os.rename(made, target)
+    except OSError as error:
+        made.unlink(missing_ok=True)
+        raise Failure(f"{path}: cannot be written: {error.strerror}") from None
 
 
 def exit_code(main, *arguments):
@@ -110,7 +82,7 @@ class Folder:
     files of this run."""
 
     def __init__(self, path, script):
-        """Raises BadOutput."""
+        """Raises Failure."""
         self.path, self.written = pathlib.Path(path), []
         marker = self.path / MARKER
         try:
@@ -120,9 +92,9 @@ class Folder:
             found = marker.is_file() and not marker.is_symlink()
             lines = marker.read_text("utf-8").splitlines() if found else []
         except OSError as error:
-            raise BadOutput(f"{path}: cannot be written: {error.strerror}") from None
+            raise Failure(f"{path}: cannot be written: {error.strerror}") from None
         if lines[:1] != [script]:
-            raise BadOutput(f"{path}: found files, and no {MARKER} of {script}; allowed: a new or "
+            raise Failure(f"{path}: found files, and no {MARKER} of {script}; allowed: a new or "
                             f"empty folder, or one that {script} wrote", USAGE)
 
     def file(self, name):

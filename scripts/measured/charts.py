@@ -183,7 +183,7 @@ def main():
         parser.error(
             f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
     read = {"times": "/times.jsonl", "stability": "/stability.json"}.get(arguments.chart, "")
-    output.Output(arguments.output, [path + read for _, path in files])
+    output.target_of(arguments.output, *(path + read for _, path in files))
     if arguments.chart == "lambda":
         draw_lambda(arguments.output)
     elif arguments.chart == "probes":

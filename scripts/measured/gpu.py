@@ -164,10 +164,10 @@ def measure(options, folder):
 
 def main(arguments=None):
     options = arguments_of(arguments)
-    file = output.Output(options.output)  # found before the work
+    output.target_of(options.output)  # found before the work
     with tempfile.TemporaryDirectory() as folder:
         report = measure(options, pathlib.Path(folder))
-    file.write(json_lines(report))
+    output.write(options.output, json_lines(report))
     print(table(report))
     bad = [row for row in report["frames"] if "failed" in row or "differ" in row["hash"]]
     bad += report["check"].get("bad", []) + report["check first"].get("bad", [])

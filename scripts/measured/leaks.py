@@ -141,10 +141,11 @@ def main():
         options[name.replace("-", "_")] = value_of(value)
     columns = [(light, number_of(n)) for light in arguments.lights.split(",")
                for n in arguments.bounces.split(",")]
-    made = output.Output(arguments.output) if arguments.output else None  # found before the work
+    if arguments.output:
+        output.target_of(arguments.output)  # found before the work
     rows = measure(shapes, columns, arguments.offsets, options)
-    if made:
-        made.write(json_lines({"leaks": rows}))
+    if arguments.output:
+        output.write(arguments.output, json_lines({"leaks": rows}))
     head, *body = lines(rows)
     for line in (head, ["---"] * len(head), *body):
         print("|", " | ".join(line), "|")

@@ -269,10 +269,11 @@ def main(arguments=None):
     path, file, count = given.pop("output"), given.pop("weights"), given["count"]
     try:
         given["over"] = weights(file) if file else given["over"]
-        target = path and output.Output(path, [file] if file else [])
+        if path:
+            output.target_of(path, *filter(None, [file]))
         found = search(**given)
         if path:
-            target.write(json.dumps(document_of(path.stem, found), indent=1) + "\n")
+            output.write(path, json.dumps(document_of(path.stem, found), indent=1) + "\n")
     except (output.Failure, ValueError) as error:
         print(error, file=sys.stderr)
         return getattr(error, "code", output.USAGE)

@@ -202,7 +202,7 @@ def add_scene(folder, name, sponza, cache):
 
 
 def write_suite(folder, tar, sponza, cache, names):
-    """`folder`: output.Folder; `tar`: output.Output."""
+    """`folder`: output.Folder; `tar`: a file."""
     scenes, views = {}, []
     for name in names:
         scenes[name], found = add_scene(folder, name, sponza, cache)
@@ -222,9 +222,9 @@ def write_suite(folder, tar, sponza, cache, names):
     packed = output.tar_of(folder.path.name, {name: (folder.path / name).read_bytes()
                                               for name in sorted(set(folder.written))})
     if len(packed) > LARGEST:
-        raise output.BadOutput(f"{tar.path}: found {len(packed)} bytes; allowed: {LARGEST}")
-    tar.write(packed)
-    print(f"{tar.path}: {len(views)} views, {len(packed) / 2**20:.1f} MiB")
+        raise output.Failure(f"{tar}: found {len(packed)} bytes; allowed: {LARGEST}")
+    output.write(tar, packed)
+    print(f"{tar}: {len(views)} views, {len(packed) / 2**20:.1f} MiB")
 
 
 def main():
@@ -246,7 +246,7 @@ def main():
     packed = place.with_name(place.name + ".tar")
     if packed.exists() and not (place / output.MARKER).exists():
         parser.error(f"--output {place}: found a file {packed}; allowed: none where DIR is new")
-    folder, tar = output.Folder(place, "lab/scripts/suite"), output.Output(packed)
-    write_suite(folder, tar, arguments.model and arguments.model.resolve(),
+    output.target_of(packed)
+    write_suite(output.Folder(place, "lab/scripts/suite"), packed, arguments.model and arguments.model.resolve(),
                 arguments.cache and arguments.cache.resolve(), names)
     return 0

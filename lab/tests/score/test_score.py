@@ -216,7 +216,7 @@ class Outputs(Undefined):
             for option in "--output", "--page":
                 code, _, said = self.command("--only", "room-left", option, self.folder / name)
                 self.assertEqual(code, 2)
-                self.assertIn(f"{option} {self.folder / name}: found the file of", said)
+                self.assertIn(f"{self.folder / name}: found the file of", said)
         code, _, said = self.command("--page", self.folder / "x", "-o", self.folder / "ours/../x")
         self.assertEqual((code, (self.folder / "x").exists()), (2, False))
         self.assertEqual({name: (self.folder / name).read_bytes() for name in files}, before)
@@ -224,7 +224,7 @@ class Outputs(Undefined):
     def test_are_checked_before_the_work(self):
         code, _, said = self.command("-o", self.folder / "none/score.json")
         self.assertEqual(code, 1)  # images are missing, too: 3
-        self.assertIn("none: No such file", said)
+        self.assertIn("there is no folder", said)
 
     def test_page_and_score_are_written(self):
         self.put(lambda truth: truth)

@@ -130,7 +130,6 @@ def images(source, views):
 
 def draw(source: pathlib.Path, target: pathlib.Path) -> None:
     report = documents.read(source / "report.json")
-    made = output.Output(target, [source / "report.json", *source.glob("*.npy")])
     rows = [row for given in report["benchmarks"]
             for row in documents.checked(given["document"], given["file"], "benchmarks", bench.ROW)]
     quality = variants(report["quality"], report["marked"])
@@ -148,4 +147,4 @@ def draw(source: pathlib.Path, target: pathlib.Path) -> None:
         quality_chart=inlined(error_against_cost(quality), [row["name"] for row in quality]),
         table1=tables, layouts=layouts, layouts_chart=inlined(bench.layouts(layouts)),
         missing=missing, colours=page_colours())
-    made.write(html)
+    output.write(target, html)

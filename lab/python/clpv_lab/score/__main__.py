@@ -6,7 +6,7 @@ import json
 import pathlib
 import sys
 
-from clpv.output import BadOutput, Output, name_missing_modules, printable
+from clpv.output import Failure, name_missing_modules, printable, target_of, write
 name_missing_modules()
 from clpv.draw import viewer  # noqa: E402
 from clpv_lab.score import page, suite  # noqa: E402
@@ -61,21 +61,19 @@ def main(arguments, program="python3 -m clpv_lab.score"):
         parser.error(f"--page: found --layer {given.layer}; allowed: {suite.LIGHT}")
     only = given.only or ["*"]
     try:
-        outputs = []
-        for option, path in ("--output", given.output), ("--page", given.page):
-            if path:
-                read = suite.inputs(given.folders, given.suite)
-                outputs.append(Output(path, [*read, *outputs], option))
+        outputs = [path for path in (given.output, given.page) if path]
+        for i, path in enumerate(outputs):
+            target_of(path, *suite.inputs(given.folders, given.suite), *outputs[:i])
         scores = [suite.score(folder, given.suite, given.method, only, given.layer)
                   for folder in given.folders]
         titles = [score["method"] for score in scores]
         if given.page and len(set(titles)) < len(titles):
             parser.error("--page: found folders of the same name; allowed: different names")
         if given.page:
-            outputs[-1].write(page.made(given.suite, zip(titles, given.folders), only))
+            write(given.page, page.made(given.suite, zip(titles, given.folders), only))
         if given.output:
-            outputs[0].write(json.dumps(scores[0], indent=1, allow_nan=False) + "\n")
-    except (BadImage, BadOutput) as error:
+            write(given.output, json.dumps(scores[0], indent=1, allow_nan=False) + "\n")
+    except (BadImage, Failure) as error:
         print(f"clpv_lab.score: {printable(error)}", file=sys.stderr)
         return getattr(error, "code", BAD_INPUT)
     try:
