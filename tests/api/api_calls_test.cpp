@@ -117,25 +117,6 @@ TEST(ApiCalls, ARefusedCallKeepsTheLastFrame) {
   }
 }
 
-TEST(ApiCalls, AnExceptionOfTheProgressReachesTheCaller) {
-  TraceOptions options;
-  options.width = options.height = 40, options.samples = 2, options.threads = 3;
-  options.progress = [](double) { throw std::out_of_range("enough"); };
-  EXPECT_THROW(pathtrace(Scene(kCornell), View::full, {}, options), std::out_of_range);
-}
-
-TEST(ApiCalls, TracingHasBounds) {
-  const auto error = [](const TraceOptions& options) {
-    return test::error_of(ExitCode::usage,
-                          [&] { pathtrace(Scene(kCornell), View::full, {}, options); });
-  };
-  EXPECT_THAT(error({.threads = 100000000}), HasSubstr("threads: found 100000000"));
-  EXPECT_THAT(error({.threads = -1}), HasSubstr("threads: found -1"));
-  EXPECT_THAT(error({.samples = 2, .noise = NAN}), HasSubstr("noise: found nan"));
-  EXPECT_THAT(error({.bounces = -1}), HasSubstr("0 for all"));
-  for (const int bad : {0, -1, 1 << 20}) error({.height = bad});
-}
-
 TEST(ApiCalls, AnotherSizeIsThatOfAnotherRenderer) {
   const Scene scene(kCornell);
   for (const char* near_size : {"auto", "half"}) {
@@ -173,22 +154,6 @@ TEST(ApiCalls, MemoryComesBack) {
   EXPECT_THROW(renderer.irradiance(kEye, {0, 1, 0}), Error);
   EXPECT_THROW(renderer.lookup_source(), Error);
   EXPECT_EQ(renderer.render().pixels, before.pixels);
-}
-
-TEST(ApiCalls, ViewsAreLayersOfTheSamePaths) {
-  const Scene scene(kCornell);
-  TraceOptions options;
-  options.width = 8, options.height = 6, options.samples = 2;
-  const Image both = pathtrace(scene, std::vector{View::indirect, View::albedo}, {}, options);
-  EXPECT_THAT(both.channels, Contains("indirect.R"));
-  for (const View view : {View::indirect, View::albedo}) {
-    const Image one = pathtrace(scene, view, {}, options);
-    const std::string name = view == View::albedo ? "albedo.G" : "indirect.G";
-    for (int x = 0; x < 8; ++x)
-      EXPECT_EQ(both.at(x, 3, both.channel(name).value()), one.at(x, 3, one.channel("G").value()));
-  }
-  EXPECT_THROW(pathtrace(scene, std::vector<View>{}, {}, options), Error);
-  EXPECT_THROW(pathtrace(scene, std::vector{View::full, View::full}, {}, options), Error);
 }
 
 TEST(ApiCalls, MeshesThatComeLaterFitTheCascades) {

@@ -378,15 +378,6 @@ TEST_F(BakeCommand, MeanLightAtGivenPoints) {
               HasSubstr("2 of 3 points lie more than half a spacing outside the probes"));
 }
 
-TEST(ProbeGrid, IsFarBeyondHalfASpacing) {
-  const ProbeGrid grid{{3, 1, 2}, {0, 0, 0}, {2, 2, 4}};  // 1, 2 and 4 m apart
-  EXPECT_FALSE(grid.is_far({-0.5, 3, 6}));
-  EXPECT_TRUE(grid.is_far({-0.51, 3, 6}));
-  EXPECT_TRUE(grid.is_far({2.51, 0, 0}));
-  EXPECT_TRUE(grid.is_far({0, 3.01, 0}));
-  EXPECT_TRUE(grid.is_far({0, 0, -2.01}));
-}
-
 TEST_F(BakeCommand, OfASweepInAnArchive) {
   const std::string small = kSweepOfOne + "--rsm-size 64 --cascade-size 1.6 --gather-offset 0 ";
   const Outcome outcome = bake(small + "--probes 3,4,5 --format zh3 --no-dilate -o a.npz");

@@ -45,13 +45,6 @@ TEST(Cascade, OriginsAreWholeCellsAndTheEyeIsInTheMiddle) {
   }
 }
 
-TEST(Cascade, MovesByWholeCellsOnly) {
-  const auto at = [](float x) { return cascade_grids({x, 0, 0}, 1, 32.0, 32)[0].origin[0]; };
-  EXPECT_EQ(at(0.1f), at(0.9f));
-  EXPECT_EQ(at(1.1f), at(0.9f) + 1);
-  EXPECT_EQ(at(-0.1f), at(0.1f) - 1);
-}
-
 TEST(Cascade, RejectsCellsBelowTheResolutionOfCoordinates) {
   const std::string message = test::error_of(ExitCode::usage, [] {
     cascade_grids({1e7f, 0, 0}, 2, 12.5, 32);

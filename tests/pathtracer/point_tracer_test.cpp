@@ -127,27 +127,6 @@ TEST(PointTracer, SunlitPatch) {
   EXPECT_NEAR(probe.indirect[1].x, -below * pi * std::sqrt(3 / (4 * pi)), 0.01 * below * pi);
 }
 
-// Form factor of a rectangle a x b across from a point at distance 1 (Howell, B-4, four times).
-TEST(PointTracer, SkyThroughASlit) {
-  constexpr float kA = 0.1f, kB = 2, kFar = 400;
-  SceneData scene;
-  scene.path = "slit";
-  const unsigned black = add_grey(scene, 0);
-  const auto ceiling = [&](float x0, float x1, float z0, float z1) {
-    add_quad(scene, {x0, 1, z0}, {x1 - x0, 0, 0}, {0, 0, z1 - z0}, black);
-  };
-  ceiling(-kFar, -kA / 2, -kFar, kFar);
-  ceiling(kA / 2, kFar, -kFar, kFar);
-  ceiling(-kA / 2, kA / 2, -kFar, -kB / 2);
-  ceiling(-kA / 2, kA / 2, kB / 2, kFar);
-  scene.sky = std::make_shared<const Sky>(constant_sky(glm::vec3(3)));
-  const double a = kA / 2, b = kB / 2, ra = std::sqrt(1 + a * a), rb = std::sqrt(1 + b * b);
-  const double factor = 4 * (a / ra * std::atan(b / ra) + b / rb * std::atan(a / rb)) / (2 * pi);
-  const PointLight light = light_at(scene, {{0, 0, 0}, {0, 1, 0}}, paths(8192));
-  EXPECT_NEAR(light.indirect.x, 3 * pi * factor, 0.02 * 3 * pi * factor);
-  EXPECT_NEAR(light.indirect.x, 3 * pi * factor, 5 * light.error.x + 1e-3 * 3 * pi * factor);
-}
-
 // Points at the positions and normals of an image's pixels have the image's light.
 TEST(PointTracer, EqualsTheImageAtItsPixels) {
   const SceneData scene = load_scene(kCornell);

@@ -1,36 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Bases, against closed forms."""
 import json
-import math
 
 import numpy as np
 import pytest
 
 import clpv
 from conftest import program
-
-
-def directions(count=200):
-    w = np.random.default_rng(2).normal(size=(count, 3))
-    return w / np.linalg.norm(w, axis=1, keepdims=True)
-
-
-def test_harmonics_have_their_closed_form():
-    basis, w = clpv.Basis("sh2"), directions()
-    assert "sh2" in clpv.bases() and len(basis) == 4
-    values = basis.evaluate(w.reshape(20, 10, 3))
-    assert values.shape == (20, 10, 4)
-    assert np.allclose(values[..., 0], 1 / math.sqrt(4 * math.pi))
-    assert np.allclose(np.abs(values.reshape(-1, 4)[:, 2]),
-                       math.sqrt(3 / (4 * math.pi)) * np.abs(w[:, 2]))
-
-
-def test_lobes():
-    basis = clpv.Basis("sh3")
-    lobe = basis.lobe((0, 0, 2))
-    assert lobe["flux"] == pytest.approx(math.pi) and 0 < lobe["relative_l2"] < 0.2
-    assert basis.lobe((0, 0, 1), np.zeros(9))["relative_l2"] == pytest.approx(1)
-    assert basis.clamped_cosine(np.eye(3)).shape == (3, 9)
 
 
 def test_lobes_of_the_paper_are_those_of_the_program():

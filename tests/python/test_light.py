@@ -38,17 +38,6 @@ def test_bad_arrays_are_named(renderer, seen):
         renderer.light(normals, depths=depths, eye=FRONT.eye)
 
 
-def test_light_without_a_frame(scene):
-    renderer = clpv.Renderer(scene, near="off", **SMALL)
-    points, up = np.full((5, 3), (0.2, 0.25, 0.2)), np.broadcast_to((0, 2, 0), (5, 3))
-    light = renderer.light(up[None], positions=points[None], eye=FRONT.eye)
-    assert light.max() > 0
-    renderer.update(FRONT.eye)
-    assert np.array_equal(renderer.irradiance(points, (0, 1, 0)), light[0])  # one normal for all
-    with pytest.raises(clpv.UsageError, match="no frame was rendered"):
-        renderer.show("full")
-
-
 def test_sizes_and_release(scene):
     with clpv.Renderer(scene, **SMALL) as renderer:
         assert renderer.render(size=(30, 20)).array.shape == (20, 30, 4)

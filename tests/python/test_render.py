@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import clpv
-from conftest import CORNELL, FRONT, SMALL, STEPS, program
+from conftest import CORNELL, FRONT, SMALL, program
 
 
 def flags():
@@ -54,14 +54,6 @@ def test_pathtrace_points_of_arrays(scene):
     assert scene.pathtrace_points(np.zeros((0, 3)), np.zeros((0, 3)))["error"].shape == (0, 3)
 
 
-def test_volumes_have_their_grid_and_basis(renderer):
-    renderer.render()
-    for volume in renderer.volumes():
-        assert volume.coefficients.shape == (3, 9, 16, 16, 16) and volume.basis == "sh3"
-        assert np.abs(volume.coefficients).max() > 0
-        assert len(volume.origin) == 3 and volume.cell > 0
-
-
 def test_arrays_do_not_copy_and_outlive_their_owners(scene):
     image = clpv.Renderer(scene, **SMALL).render()  # the renderer is gone
     array, same = image.array, np.asarray(image)
@@ -87,23 +79,6 @@ def test_a_camera_by_value(renderer):
         FRONT.fov = 3
 
 
-def test_lights_cameras_and_medium_are_replaced():
-    scene = clpv.Scene(CORNELL)
-    renderer = clpv.Renderer(scene, **SMALL)
-    clear = renderer.render().array
-    scene.medium = clpv.Medium(scattering=0.5, absorption=(0, 1, 2), anisotropy=0.25)
-    assert scene.medium == clpv.Medium(scattering=0.5, absorption=(0, 1, 2), anisotropy=0.25)
-    assert scene.medium.box is None
-    scene.medium = None
-    assert np.array_equal(renderer.render().array, clear)
-    scene.lights = [clpv.Light("point", position=(0.278, 0.5, 0.28), intensity=2)]
-    assert scene.lights[0].kind == "point" and scene.lights[0].intensity == (2, 2, 2)
-    scene.cameras = [*scene.cameras, FRONT.replace(name="mine")]
-    assert not np.array_equal(renderer.render(camera="mine").array, clear)
-    with pytest.raises(AttributeError):
-        scene.lights.append(clpv.Light())  # a tuple: a change would be lost
-
-
 def test_stats(scene):
     renderer = clpv.Renderer(scene, **SMALL)
     assert ms(renderer, "propagate") == 0
@@ -127,24 +102,6 @@ def test_irradiance_takes_arrays_of_any_layout(renderer):
     assert np.array_equal(renderer.irradiance(points.astype(np.float32).tolist(), normals), light)
     assert renderer.irradiance([0.2, 0.2, 0.2], [0, 1, 0]).shape == (3,)
     assert renderer.irradiance(np.zeros((0, 3)), np.zeros((0, 3))).shape == (0, 3)
-
-
-def test_radiance(scene, renderer):
-    renderer.render()
-    points = np.random.default_rng(1).uniform(0.1, 0.4, (5, 7, 3))
-    light = renderer.radiance(points, np.broadcast_to([0, -2, 0], points.shape))
-    assert light.shape == points.shape and light.dtype == np.float32 and light.max() > 0
-    assert np.array_equal(renderer.radiance(points[2, 3], [0, -1, 0]), light[2, 3])
-    assert renderer.radiance(np.zeros((0, 3)), np.zeros((0, 3))).shape == (0, 3)
-    assert (renderer.radiance([900, 0, 0], [0, 1, 0]) == 0).all()
-    steps = clpv.Renderer(scene, **STEPS)
-    with pytest.raises(clpv.UsageError, match="no frame was rendered"):
-        steps.radiance([0, 0, 0], [0, 1, 0])
-    steps.render()
-    with pytest.raises(clpv.UsageError, match="found transport 'sampled', allowed: sweep"):
-        steps.radiance([0, 0, 0], [0, 1, 0])
-    with pytest.raises(clpv.UsageError, match="^lookup_source: found transport 'sampled', allowed:"):
-        steps.lookup_source()
 
 
 def test_threads_share_a_renderer(renderer):
@@ -178,4 +135,3 @@ def test_errors_have_their_kind(tmp_path, scene, renderer):
         clpv.Image(np.zeros((2, 2, 3)), channels=["R"])
     errors = clpv.compare(renderer.render().array * 2, renderer.render())
     assert errors.best_gain == pytest.approx(0.5) and not errors.identical
-

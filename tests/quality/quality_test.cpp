@@ -141,18 +141,6 @@ TEST(QualityReport, TableHasALineAVariant) {
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
 }
 
-TEST(QualityStore, ReturnsStoredCells) {
-  const test::TemporaryFolder folder;
-  QualityStore store(folder.path());
-  EXPECT_FALSE(store.find("k"));
-  for (const QualityCell& kept : {cell("sh2", "a", 0.9, 10), rejected("sh4", "a")}) {
-    store.keep("k", kept);
-    const auto found = store.find("k");
-    ASSERT_TRUE(found);
-    EXPECT_EQ(to_json(*found), to_json(kept));
-  }
-}
-
 TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
   std::ofstream(file("cache")) << "a file, so that no folder of this name can be made";
   const test::Outcome outcome = quality("--basis sh2 --camera left --format json");

@@ -221,45 +221,6 @@ TEST(Shadow, ShadowsKeepTouchingWhatCastsThem) {
   }
 }
 
-/// A closed box of thin walls, 4 x 3 x 4 m, 1.5 m above the ground.
-double box_over_ground(const glm::dvec3& o, const glm::dvec3& d) {
-  double t = plane_at(o, d, kUp, -1.5);
-  for (const glm::dvec3& n : kDirections) {
-    const double at = plane_at(o, d, n, n.y > 0 ? 3 : n.y < 0 ? 0 : 2);
-    const glm::dvec3 p = o + at * d - glm::dvec3(0, 1.5, 0),
-                     off = glm::abs(p) - glm::dvec3(2, 1.5, 2);
-    if (at > 0 && std::max({off.x, off.y, off.z}) < 1e-9) t = nearer(t, at);
-  }
-  return t;
-}
-
-// Roofs and walls reach to the very edge of what they shade, and rays just beyond it pass outside.
-TEST(Shadow, ASealedBoxIsDark) {
-  for (const glm::dvec3& sunlight : {glm::dvec3(0.4, -1, 0.3), {1, -1, 0.1}, {-0.2, -1, 0.05}}) {
-    MappedLight light = sun(sunlight, 7);
-    light.maps = {cast(view_of(-30.0 * glm::normalize(sunlight), sunlight, true, kMapHalf, 512),
-                       box_over_ground)};
-    double sum = 0;
-    std::size_t pixels = 0;
-    for (const glm::dvec3& out : kDirections) {
-      const double height = out.y > 0 ? 3 : out.y < 0 ? 0 : 2;
-      const SurfaceImage wall = look(
-          out,
-          [&](const glm::dvec3& o, const glm::dvec3& d) { return plane_at(o, d, out, height); },
-          [&](const glm::dvec3&) { return -out; });
-      const std::vector<double> e = lit(wall, {light});
-      for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
-        const glm::dvec3 off =
-            glm::abs(point_of(wall, pixel) - glm::dvec3(0, 1.5, 0)) - glm::dvec3(2, 1.5, 2);
-        if (std::max({off.x, off.y, off.z}) > 1e-4) continue;  // beyond the wall
-        sum += e[pixel], ++pixels;
-      }
-    }
-    EXPECT_GT(pixels, 4000u);
-    EXPECT_LT(sum / pixels, 1e-4 * 7) << sunlight.x;
-  }
-}
-
 // A floor that the light grazes at up to 87 degrees; and a room whose walls are oblique to the six
 // views.
 TEST(Shadow, SixViewsOfAPointLightShowNoSeamsAndDoNotShadowTheirReceiver) {
