@@ -12,8 +12,7 @@
 namespace clpv {
 namespace verify {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
-                                   triangles, pixels, covered, set_up, listed, entries, launches,
-                                   fills, waits, arguments, written)
+                                   launches, fills, waits, arguments, written)
 }
 
 namespace bench {
@@ -86,9 +85,7 @@ nlohmann::json to_json(const Row& row, int index) {
                {"coefficients",
                 row.coefficients > 0 ? nlohmann::json(row.coefficients) : nlohmann::json(nullptr)},
                {"preset", text_or_null(row.preset)},
-               {"recompute", text_or_null(row.recompute)},
-               {"changed",
-                row.suite == "factors" ? nlohmann::json(row.changed) : nlohmann::json(nullptr)}});
+               {"recompute", text_or_null(row.recompute)}});
   json.update(row.problem ? problem_json(*row.problem) : no_problem_json());
   json.update({{"status", name_of(row.status)},
                {"reason", text_or_null(row.reason)},
@@ -110,8 +107,6 @@ nlohmann::json to_json(const Row& row, int index) {
                {"ceiling_share", row.ceiling_share},
                {"max_rel_error", number_or_null(row.max_rel_error)},
                {"tolerance", row.tolerance},
-               {"difference", number_or_null(row.difference)},
-               {"volume_bytes", row.volume_bytes},
                {"published_ms", number_or_null(row.published_ms)}});
   return json;
 }

@@ -41,10 +41,8 @@ struct Row {
   int coefficients = 0;            ///< functions of the basis
   std::optional<Problem> problem;  ///< empty for rows without volumes: rasterising and ceilings
   Status status = Status::ok;
-  std::string reason;   ///< reason for `unsupported`, or place of the error for `wrong`
-  std::string preset;   ///< suite frame
-  std::string changed;  ///< suite factors: options that differ from the preset, "layout=soa
-                        ///< evaluate=buffer"
+  std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`
+  std::string preset;  ///< suite frame
   /// Suite frame: results each repetition recomputes: light, everything, nothing.
   std::string recompute;
 
@@ -62,8 +60,6 @@ struct Row {
   double ceiling_share = 0;
   std::optional<double> max_rel_error;  ///< against the CPU reference; empty without one
   double tolerance = 0;
-  std::optional<double> difference;  ///< suite factors: NRMSE of indirect light against the preset
-  std::size_t volume_bytes = 0;      ///< suite factors: memory of a light volume
   std::optional<double> published_ms;  ///< time in the paper's Table 1
 
   double gflops() const;

@@ -12,9 +12,8 @@
 namespace clpv::bench {
 
 const std::vector<Suite>& suites() {
-  static const std::vector<Suite> all = {table1_suite(),   layouts_suite(), bases_suite(),
-                                         ceilings_suite(), frame_suite(),   factors_suite(),
-                                         rasterize_suite()};
+  static const std::vector<Suite> all = {table1_suite(), layouts_suite(), bases_suite(),
+                                         ceilings_suite(), frame_suite()};
   return all;
 }
 

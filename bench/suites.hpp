@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "bench/ceilings.hpp"
-#include "bench/rasterize_job.hpp"
 #include "bench/stage_jobs.hpp"
 #include "scene/scene.hpp"
 
@@ -45,13 +44,6 @@ Suite layouts_suite();
 Suite bases_suite();
 Suite ceilings_suite();
 Suite frame_suite();
-Suite factors_suite();
-/// Suite `rasterize`. With the job of a peer, which draws the same: `rasterize-PEER` with both.
-struct RasterPeer {
-  std::string name;
-  Job (*job)(RasterTask task) = nullptr;
-};
-Suite rasterize_suite(const RasterPeer& peer = {});
 
 /// The suite's settings with `basis`.
 Problem basis_problem(const SuiteOptions& options, const std::string& basis);

@@ -8,8 +8,7 @@
 namespace clpv {
 
 Additions lab_additions() {
-  static const std::vector<bench::Suite> suites{
-      bench::native_suite(), bench::rasterize_suite({"opengl", bench::rasterize_gl_job})};
+  static const std::vector<bench::Suite> suites{bench::native_suite()};
   return {std::make_shared<QualityBaselines>(), &suites, add_normals};
 }
 

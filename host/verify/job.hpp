@@ -57,10 +57,6 @@ struct Cost {
   /// Values (or texels) read from volumes per cell, over all channels and steps.
   double reads_per_cell = 0;
   double writes_per_cell = 0;
-  // Rasterising, sums over all views: triangles of the scene, pixels, pixels with a surface, and
-  // RasterCounts.
-  double triangles = 0, pixels = 0, covered = 0;
-  double set_up = 0, listed = 0, entries = 0;
   /// For a frame: HostWork.
   double launches = 0, fills = 0, waits = 0, arguments = 0, written = 0;
 };

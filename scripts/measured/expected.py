@@ -32,14 +32,13 @@ PARTS = {
     "arcade": Part("claims", {"": (0.02, 0)}),
     "lit": Part("claims", {"": (5e-3, 0)}),
     "figures": Part("figures", {"": (5e-3, 0.03)}, model=False),
-    "factors": Part("factors", {"": (5e-3, 0.05)}),
     "table1": Part("table1", None),
 }
 CLAIMS = [name for name, part in PARTS.items() if part.file == "claims"]
 # Fields that name a row, and fields that are no results.
 IDENTITY = ("basis", "lobe", "transport", "n", "over", "lambdas", "lambda", "entries",
             "cascade_size", "rsm_size", "iterations", "cascade-size", "image", "options", "camera",
-            "size", "changed")
+            "size")
 SKIPPED = ("floor_pixels", "views", "apart")
 
 
@@ -65,16 +64,13 @@ def numbers(value, path):
 
 def place(name):
     """Start of the names of a part's numbers."""
-    return {"figures": "figures/rows", "factors": "factors/difference"}.get(name, f"claims/{name}")
+    return "figures/rows" if name == "figures" else f"claims/{name}"
 
 
 def compared(name, result):
     """{place: what is compared of a part's result}."""
     if name == "figures":
         result = result["rows"] or None
-    elif name == "factors":
-        result = {f"{row['basis']},{row['changed']}": row["difference"]
-                  for row in result["benchmarks"] if row["stage"] == "sum"}
     return {place(name): result} if PARTS[name].tolerances else {}
 
 

@@ -30,14 +30,14 @@ from .expected import CLAIMS, PARTS
 from .measure import measured_with, write
 
 LEFT = 5  # exit code
-FACTORS_OF_QUICK = "--filter=/paper/(layout=soa.*|evaluate=[a-z]*)?$"
 
 
-def of_bench(suite, options, arguments):
+def of_table1(arguments):
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "rows.json"
-        subprocess.run([str(CLPV), "bench", suite, "--scene=scenes/sponza_suns.json",
-                        f"--model={arguments.model}", "--camera=curtains", *options,
+        subprocess.run([str(CLPV), "bench", "table1", "--scene=scenes/sponza_suns.json",
+                        f"--model={arguments.model}", "--camera=curtains",
+                        f"--repetitions={2 if arguments.quick else 7}",
                         f"--output={file}"], stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
         document = json.loads(file.read_text(encoding="utf-8"))
     document["context"].pop("host_name", None)
@@ -48,12 +48,8 @@ def result_of(name, arguments):
     """Measures a part."""
     from . import claims, figures
 
-    quick = arguments.quick
     if name == "table1":
-        return of_bench(name, [f"--repetitions={2 if quick else 7}"], arguments)
-    if name == "factors":
-        return of_bench(name, [FACTORS_OF_QUICK, "--repetitions=2"] if quick
-                        else ["--repetitions=5"], arguments)
+        return of_table1(arguments)
     return figures.paper(arguments) if name == "figures" else claims.CLAIMS[name](arguments)
 
 
@@ -140,8 +136,8 @@ def results_of(done, names):
 def overlay(done):
     """Puts the numbers of this run in place of the record's, for the tables and the claims."""
     tables.MEASURED["claims"] = merged(tables.read("claims"), results_of(done, CLAIMS))
-    for name, result in results_of(done, ("table1", "factors")).items():
-        tables.MEASURED[name] = {"measured": {}, **result}
+    if "table1" in done:
+        tables.MEASURED["table1"] = {"measured": {}, **done["table1"]["result"]}
     tables.read.cache_clear()
 
 
@@ -158,8 +154,8 @@ def record(done, out):
         measured = now if whole else {**recorded["measured"], "except": excepted}
         parts = {name: claims.get(name, recorded.get(name)) for name in CLAIMS}
         write(folder, "claims", {"measured": measured, **parts})
-    for name, result in results_of(done, ("table1", "factors")).items():
-        write(folder, name, {"measured": now, **result})
+    if "table1" in done:
+        write(folder, "table1", {"measured": now, **done["table1"]["result"]})
     if "figures" in done:
         figures = done["figures"]["result"]
         write(folder, "figures", {"measured": now, "rows": figures["rows"]})
@@ -212,7 +208,7 @@ def page(arguments, done, left, checked, unmeasured):
                             cwd=ROOT).stdout.splitlines()[:1]
     minutes = [["part", "minutes"],
                *([name, f"{part['minutes']:.1f}"] for name, part in done.items())]
-    here = {name: "this run" if name in done else "the record" for name in ("table1", "factors")}
+    here = "this run" if "table1" in done else "the record"
     html = environment.get_template("paper.html").render(
         subtitle=", ".join([f"clpv {described()}", "quick run" if arguments.quick else "whole run",
                             *device, time.strftime("%Y-%m-%d")]),
@@ -220,10 +216,8 @@ def page(arguments, done, left, checked, unmeasured):
         sheets=sheets, turned=turned(),
         lobes=[{"name": name, "uri": uri(out / name)} for name in figures["lobes"]],
         width=arguments.width, colours=report.page_colours(),
-        tables=[(f"With indirect shadows ({here['table1']})", tables.TABLES["table1-shadows"]()),
-                (f"Without indirect shadows ({here['table1']})",
-                 tables.TABLES["table1-no-shadows"]()),
-                (f"One option at a time ({here['factors']})", tables.TABLES["factors"]())])
+        tables=[(f"With indirect shadows ({here})", tables.TABLES["table1-shadows"]()),
+                (f"Without indirect shadows ({here})", tables.TABLES["table1-no-shadows"]())])
     arguments.out.write("index.html", html)
 
 

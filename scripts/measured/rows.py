@@ -158,7 +158,6 @@ DOCS_SUITES = {
     "bases": [],
     "native": ["--repetitions=41"],
     "frame": ["sponza", "--repetitions=9", "--basis=sh2", "--filter=best"],
-    "rasterize-opengl": ["sponza"],
 }
-OF_LAB = "native", "rasterize-opengl", "quality-cascades", "quality-centres"  # need a built lab
+OF_LAB = "native", "quality-cascades", "quality-centres"  # need a built lab
 CHARTS = {"layouts": ("layouts", "roofline")}  # those in docs/images

@@ -146,23 +146,6 @@ def quality_cascades():
 
 
 @table
-def rasterize():
-    names = {"rasterize-camera": "camera, 960x540", "rasterize-shadow": "shadow map, 1024^2",
-             "rasterize-rsm": "three RSMs, 256^2"}
-    rows = []
-    for stage, name in names.items():
-        ours, theirs = (found(bench("rasterize-opengl"), name=stage + peer)
-                        for peer in ("", "/opengl"))
-        wall = ours["wall_ms"]
-        rows.append({"name": name, "wall": wall, "triangle": 1e6 * wall / ours["triangles"],
-                     "pixel": 1e6 * wall / ours["pixels"], "theirs": theirs["wall_ms"],
-                     "ratio": theirs["wall_ms"] / wall})
-    return shown({"": "{name}", "clpv [ms]": "{wall:#}", "per triangle [ns]": "{triangle:#}",
-                  "per pixel [ns]": "{pixel:#}", "OpenGL [ms]": "{theirs:#}",
-                  "OpenGL / clpv": "{ratio:#}x"}, rows)
-
-
-@table
 def baseline():
     lines = [[
         "sh2", "OpenCL, minimum [ms]", "GFLOP/s", "of the ceiling", "C++, minimum [ms]", "GFLOP/s",

@@ -6,7 +6,7 @@ import math
 from clpv import ms_of
 
 from .. import rows as known
-from .cells import found, load, number, ratio, shown, summed, table, time
+from .cells import found, load, number, ratio, summed, table, time
 
 
 def bench(suite):
@@ -137,33 +137,3 @@ def frames_recomputed():
              time(found(rows, stage="frame")),
              number(sum(parts)) if sum(parts) else "-"])
     return lines
-
-
-# One option at a time, by `clpv bench factors`.
-
-
-@table
-def factors():
-    """A line for each row: times of both bases, their ratio and difference from the preset."""
-    every = bench("factors")
-    sums = [row for row in every if row["stage"] == "sum"]
-    preset, rows = found(sums, basis="srbf8v2", changed=""), []
-    for changed in dict.fromkeys(row["changed"] for row in sums):
-        sh, srbf = (found(sums, basis=basis, changed=changed) for basis in ("sh2", "srbf8v2"))
-        steps = [found(every, stage="propagate", basis=basis, changed=changed)["median"]
-                 for basis in ("srbf8v2", "sh2")]
-        *before, last = changed.split(" ")
-        rows.append({
-            "title": f"and {last}" if before else f"only {last}" if last else
-                     "nothing: as published",
-            "sh": sh, "srbf": srbf, "ratio": srbf["median"] / sh["median"],
-            "steps": steps[0] / steps[1], "memory": srbf["volume_bytes"] / 2**20,
-            "faster": f"{preset['median'] / srbf['median']:.3g}x faster" if changed else None
-        })
-    return shown({
-        "changed from `--preset paper`": "{title}", "sh2 [ms]": "{sh[median]:#} +- {sh[mad]:#}",
-        "srbf8v2 [ms]": "{srbf[median]:#} +- {srbf[mad]:#}", "srbf8v2 / sh2": "{ratio:#}x",
-        "propagation: srbf8v2 / sh2": "{steps:#}x", "srbf8v2 over the preset's": "{faster}",
-        "a light volume of srbf8v2 [MiB]": "{memory:#}", "difference: sh2": "{sh[difference]:.4f}",
-        "srbf8v2": "{srbf[difference]:.4f}"
-    }, rows)
