@@ -12,7 +12,7 @@
 #include "bench/suites.hpp"
 #include "device/kernel.hpp"
 #include "support/error.hpp"
-#include "verify/comparison.hpp"
+#include "verify/check.hpp"
 
 namespace clpv::bench {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "bench/job.hpp"
+#include "bench/row.hpp"
 
 namespace clpv::bench {
 

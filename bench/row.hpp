@@ -2,13 +2,15 @@
 // One row of a benchmark's results: the timed problem, its times, cost and error.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "device/session.hpp"
 #include "options/render_options.hpp"
-#include "support/statistics.hpp"
+#include "times/time_record.hpp"
 #include "verify/job.hpp"
 
 namespace clpv::bench {
@@ -69,5 +71,50 @@ struct Row {
 /// JSON with Google Benchmark's keys and clpv's (bench/README.md lists them). `iterations` is
 /// the number of propagation steps; Google Benchmark's key of that name would always be 1.
 nlohmann::json to_json(const Row& row, int index);
+
+// Jobs of a benchmark, and the cases that make them.
+
+using verify::Deviation, verify::kChannels;
+
+/// A job of `clpv check`, with what only its timing needs.
+struct Job : verify::Job {
+  /// True: `run` marks stages on the timeline itself, and the row has wall times.
+  bool own_stages = false;
+  /// Called after each run, warm-up included; may be null.
+  std::function<void(const std::vector<StageTime>&)> after_run = {};
+  /// Adds numbers that only a run gives; called once, after all runs; may be null.
+  std::function<void(Cost&)> count = {};
+  /// Returns further rows, after the job's own; may be null.
+  std::function<std::vector<Row>(const Row&)> more_rows = {};
+};
+
+/// A row before its measurement: its identity, and a function that sets up its work.
+struct Case {
+  Row row;  ///< suite, stage, name, n and problem
+  /// Builds kernels and allocates; Error(device) makes the row `unsupported`.
+  std::function<Job()> make;
+};
+
+// Results of a benchmark as text: JSON with Google Benchmark's keys, or a table.
+
+struct Ceilings;
+
+/// Context of a run: Google Benchmark's keys (date, host_name, num_cpus, load_avg ...) and clpv's
+/// (schema, clpv_version, git_describe, host_cpu, platform, device, driver, compute_units,
+/// build_options, kernel_hash).
+nlohmann::json context_json(const Session& session);
+
+/// {"context": ..., "benchmarks": [row, ...]}; `ceilings` becomes context/ceilings: gflops,
+/// bandwidths[], launch_ms.
+nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
+                           const std::vector<Row>& rows);
+
+/// [{"name", "unit": "ms", "value", "range"}, ...]: medians and MADs of the rows of status ok, in
+/// the form that GitHub's benchmark actions read (smaller is better).
+std::string report_github_action(const std::vector<Row>& rows);
+
+/// Table with a line per row: name, median, MAD, wall time, GFLOP/s, GB/s, share of the ceiling,
+/// error.
+std::string report_table(const std::vector<Row>& rows);
 
 }  // namespace clpv::bench

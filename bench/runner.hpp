@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/ceilings.hpp"
-#include "bench/job.hpp"
+#include "bench/row.hpp"
 #include "bench/suites.hpp"
 #include "support/progress.hpp"
 

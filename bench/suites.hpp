@@ -16,7 +16,7 @@ namespace clpv::bench {
 
 /// Scene, camera, bases and settings for a suite.
 struct SuiteOptions {
-  std::shared_ptr<const SceneData> scene;  ///< null: the hall of hall.hpp
+  std::shared_ptr<const SceneData> scene;  ///< null: the hall
   std::string camera;                      ///< by name; empty: the scene's first
   std::vector<std::string> bases;          ///< empty: the suite's default bases
   /// Settings of all rows, apart from those that the suite varies.

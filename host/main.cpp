@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/program_main.hpp"
+#include "cli/commands.hpp"
 
 int main(int argc, char** argv) {
   return clpv::program_main(argc, argv);

@@ -10,8 +10,8 @@
 # them runs alone at the end, in an order in which two that run at once compile different programs.
 cmake_minimum_required(VERSION 3.22)
 # DEVELOPER are left out of `scripts/test` without options.
-set(FIRST check soak helpers bench drawing killed frame_cache starved opencl frame empty_room quality trust sequence programs)
-set(DEVELOPER baseline capsules killed mpi peers soak starved trust)
+set(FIRST check soak helpers bench killed frame_cache starved opencl frame rooms quality trust sequence programs)
+set(DEVELOPER baseline capsules killed mpi soak starved trust)
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests --gtest_output=json:${OUTPUT}.json OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(STRINGS ${OUTPUT}.json lines REGEX "\"(name|file)\":")
 foreach(line IN LISTS lines)

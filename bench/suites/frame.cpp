@@ -10,7 +10,7 @@
 #include "options/render_options.hpp"
 #include "support/named_enum.hpp"
 #include "times/frame_times.hpp"
-#include "verify/comparison.hpp"
+#include "verify/check.hpp"
 
 namespace clpv {
 namespace bench {

@@ -10,7 +10,7 @@
 #include "clpv/pathtrace.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pathtracer/point_tracer.hpp"
-#include "pathtracer/sample_counts.hpp"
+#include "pathtracer/tracing.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/bounds.hpp"
 #include "support/error.hpp"

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "support/bytes.hpp"
+#include "support/array_files.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bake {

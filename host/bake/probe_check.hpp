@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/bake.hpp"
-#include "scene/points_file.hpp"
+#include "scene/input.hpp"
 
 namespace clpv::bake {
 

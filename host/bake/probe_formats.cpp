@@ -18,10 +18,10 @@
 #include <memory>
 #include <numbers>
 
+#include "basis/bases.hpp"
 #include "basis/basis.hpp"
 #include "basis/clamped_cosine.hpp"
 #include "basis/quadrature.hpp"
-#include "basis/spherical_harmonics.hpp"
 #include "support/error.hpp"
 
 namespace clpv::bake {

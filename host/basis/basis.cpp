@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "basis/direction_bins.hpp"
-#include "basis/spherical_harmonics.hpp"
-#include "basis/srbf.hpp"
+#include "basis/bases.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "basis/srbf.hpp"
+#include "basis/bases.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 #include <numbers>
 #include <span>
+#include <vector>
 
 namespace clpv {
 
@@ -141,5 +142,16 @@ inline CdfSample sample_cdf(std::span<const double> cdf, double random) {
   return {static_cast<std::size_t>(at - cdf.begin()),
           *at > before ? std::clamp((random - before) / (*at - before), 0.0, 1.0) : 0.5};
 }
+
+// Directions of the rays of the near field (docs/method.md, 'Near field').
+
+/// Unit directions about +z with density cos / pi: `rays` for each of the 4 x 4 pixels of a tile,
+/// [4 y + x][ray]. All of a tile together, and those of each pixel, are (0,2)-nets. `rays` is a
+/// power of two.
+std::vector<std::vector<glm::vec3>> near_directions(int rays);
+
+/// Width of a ray's cone over its length, for filtering textures: the rays of a tile share the
+/// hemisphere.
+double near_cone(int rays);
 
 }  // namespace clpv

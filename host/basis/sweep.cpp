@@ -6,10 +6,9 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "basis/direction_bins.hpp"
+#include "basis/bases.hpp"
 #include "basis/quadrature.hpp"
 #include "basis/sampling.hpp"
-#include "basis/spherical_harmonics.hpp"
 
 namespace clpv {
 namespace {

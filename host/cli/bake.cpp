@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // clpv bake: light probes on a grid, in files that engines load.
 //
-//   grid, source  ->  integrals of arriving light per probe, block by block (bake/probe_source.hpp)
+//   grid, source  ->  integrals of arriving light per probe, block by block (bake/bake.hpp)
 //   integrals     ->  coefficients of a format; probes inside walls filled (bake/bake.hpp)
 //   coefficients  ->  .ktx2 (bake/ktx2.hpp) or .npz, and .json beside it; or errors (--check)
 #include "bake/bake.hpp"
@@ -20,15 +20,14 @@
 #include "cli/commands.hpp"
 #include "device/result_keys.hpp"
 #include "scene/bounds.hpp"
+#include "scene/input.hpp"
 #include "scene/load.hpp"
-#include "scene/points_file.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
 #include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
-#include "support/print.hpp"
 #include "support/progress.hpp"
 
 namespace clpv {

@@ -9,7 +9,7 @@
 
 #include "basis/basis.hpp"
 #include "bench/compare_runs.hpp"
-#include "bench/report.hpp"
+#include "bench/row.hpp"
 #include "bench/runner.hpp"
 #include "cli/commands.hpp"
 #include "cli/drawing.hpp"
@@ -19,7 +19,6 @@
 #include "support/json_schema.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
-#include "support/print.hpp"
 
 namespace clpv {
 namespace bench_command {
@@ -30,12 +29,6 @@ struct Options {
   SceneChanges changes;
   bench::BenchOptions bench;
 };
-
-std::vector<bench::Suite> suites_of(const Additions& additions) {
-  std::vector<bench::Suite> suites = bench::suites();
-  if (additions.suites) std::ranges::copy(*additions.suites, std::back_inserter(suites));
-  return suites;
-}
 
 std::regex parse_filter(const std::string& text) {
   try {
@@ -138,8 +131,8 @@ void run(Options options, const Shared& shared) {
   }
   check_outputs(outputs_of(options));
   const nlohmann::json before = earlier_run(options);
-  const std::vector<bench::Suite> suites = suites_of(shared.additions);
-  const bench::Suite& suite = *std::ranges::find(suites, options.suite, &bench::Suite::name);
+  const bench::Suite& suite =
+      *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
   load_suite_scene(options, suite);
   check_outputs(outputs_of(options));
   const Device device = choose_device(shared.device);
@@ -183,7 +176,7 @@ void add_bench(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<bench_command::Options>();
   std::string suites = "suite to run:";
   std::vector<std::string> names;
-  for (const bench::Suite& suite : suites_of(shared.additions)) {
+  for (const bench::Suite& suite : bench::suites()) {
     names.push_back(suite.name);
     suites += fmt::format("\n{}: {}", suite.name, suite.help);
   }

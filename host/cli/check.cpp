@@ -15,10 +15,8 @@
 #include "support/helpers.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
-#include "support/print.hpp"
 #include "support/progress.hpp"
 #include "verify/capsules.hpp"
-#include "verify/junit.hpp"
 #include "verify/schedule.hpp"
 
 namespace clpv {

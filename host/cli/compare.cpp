@@ -9,7 +9,6 @@
 #include "bench/compare_runs.hpp"
 #include "cli/commands.hpp"
 #include "cli/drawing.hpp"
-#include "cli/image_layer.hpp"
 #include "cli/options.hpp"
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
@@ -18,7 +17,6 @@
 #include "support/json_schema.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
-#include "support/print.hpp"
 #include "support/text.hpp"
 
 namespace clpv {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "image/image_io.hpp"
 #include "support/cache_folder.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
@@ -133,6 +134,12 @@ Process::Result Drawing::run(const fs::path& python,
   Process::Result ended = Process(python, words).end();
   while (ended.output.ends_with('\n')) ended.output.pop_back();
   return ended;
+}
+
+Image read_image_layer(const std::filesystem::path& file, const std::string& layer) {
+  Image image = extract_layer(read_image(file), layer, file.string());
+  for (const std::string& note : image.notes) log_warning("{}: {}", file.string(), note);
+  return image;
 }
 
 }  // namespace clpv

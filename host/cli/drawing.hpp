@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "image/image.hpp"
+#include "support/cache_folder.hpp"
 #include "support/process.hpp"
-#include "support/scratch_folder.hpp"
 
 namespace clpv {
 
@@ -40,5 +41,11 @@ class Drawing {
   std::filesystem::path python_;
   ScratchFolder folder_;
 };
+
+// Images that commands read.
+
+/// Reads a layer of an image file, and logs what reading converted or ignored. Throws as read_image
+/// and extract_layer.
+Image read_image_layer(const std::filesystem::path& file, const std::string& layer);
 
 }  // namespace clpv

@@ -37,6 +37,12 @@ CLI::Option* add(CLI::App& command, const std::string& name, const char* type, T
                  const std::string& help) {
   static_assert(!std::is_arithmetic_v<T>, "add_number() reads numbers");
   CLI::Option* option = command.add_option(name, member, help)->type_name(type);
+  if (name.starts_with('-')) {
+    option->check([](const std::string& value) {
+      return value.starts_with("--") ? fmt::format("found the option {}, allowed: a value", value)
+                                     : std::string();
+    });
+  }
   if constexpr (std::is_same_v<T, std::string>) {
     if (member != T{}) option->capture_default_str();
   }

@@ -24,12 +24,12 @@
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/quality_subjects.hpp"
-#include "cli/unreached.hpp"
+#include "cli/render_request.hpp"
 #include "clpv/version.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
+#include "support/log.hpp"
 #include "support/output_file.hpp"
-#include "support/print.hpp"
 #include "support/progress.hpp"
 
 namespace clpv {

@@ -14,11 +14,10 @@
 #include "pathtracer/point_tracer.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/frame/frame.hpp"
+#include "scene/input.hpp"
 #include "scene/load.hpp"
-#include "scene/points_file.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
-#include "support/print.hpp"
 
 namespace clpv {
 namespace query_command {

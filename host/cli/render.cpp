@@ -1,30 +1,156 @@
 // SPDX-License-Identifier: MIT
 // clpv render: renders an image of a scene lit by cascaded light propagation volumes.
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
 #include "cli/render_request.hpp"
-#include "cli/unreached.hpp"
 #include "image/image_io.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "quality/ground_truth.hpp"
 #include "scene/load.hpp"
+#include "scene/motion.hpp"
 #include "support/error.hpp"
+#include "support/helpers.hpp"
 #include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/named_enum.hpp"
 #include "support/output_file.hpp"
-#include "support/print.hpp"
 #include "support/progress.hpp"
-#include "times/frame_stats.hpp"
+#include "times/frame_times.hpp"
+#include "times/time_record.hpp"
 
 namespace clpv {
+
+/// Collects the statistics of one `clpv render`. Times are wall times unless the timer of a stage
+/// is "event".
+class FrameStats {
+ public:
+  void begin_startup() { mark_ = Clock::now(); }
+  /// The device is open, programs are built, the scene is uploaded.
+  void end_startup() {
+    startup_ms_ = since_mark();
+    mark_ = Clock::now();
+  }
+  /// The first launches compile kernels for their work-group sizes.
+  void end_first_frame(Session& session) {
+    session.queue().finish();
+    first_frame_ms_ = since_mark();
+  }
+  /// Sets the times of the timed frames, of one camera. The statistics report their medians.
+  void set_times(FrameTimes times) { times_ = std::move(times); }
+  void add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes);
+
+  /// Returns JSON of schema 2: device, options, times (`frame` on the host's clock, `host`: its
+  /// work without waits, and the stages), kernels of one frame, timer of the stages, numbers of
+  /// HostWork, first_launch_ms, build_ms, startup_ms, device_bytes, energy.
+  nlohmann::json to_json(const Session& session, const nlohmann::json& options) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double since_mark() const {
+    return std::chrono::duration<double, std::milli>(Clock::now() - mark_).count();
+  }
+
+  struct Energy {
+    int cascade;
+    std::array<double, 3> injected, accumulated;
+  };
+  Clock::time_point mark_;
+  double startup_ms_ = 0, first_frame_ms_ = 0;
+  FrameTimes times_;
+  std::vector<Energy> energies_;
+};
+
+/// Returns the integral over directions summed over all cells of a light volume, per channel [W].
+std::array<double, 3> volume_energy(Session& session, const Basis& basis, const Volume& volume) {
+  const std::vector<float> values = volume.read(session);
+  const auto plane = values.size() / 3 / static_cast<std::size_t>(basis.size());
+  std::array<double, 3> energy{};
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    for (std::size_t i = 0; i < basis.integrals().size(); ++i) {
+      double sum = 0;
+      for (std::size_t p = 0; p < plane; ++p)
+        sum += values[(channel * basis.integrals().size() + i) * plane + p];
+      energy[channel] += sum * basis.integrals()[i];
+    }
+  }
+  return energy;
+}
+
+void FrameStats::add_energy(Session& session, const Frame& frame, const CascadeVolumes& volumes) {
+  const auto energy = [&](const Volume& volume, const Basis& basis) {
+    std::array<double, 3> stored = volume_energy(session, basis, volume);
+    for (double& watts : stored) watts /= volumes.light_scale;
+    return stored;
+  };
+  // Sort finest first, independent of the order of computation.
+  energies_.insert(energies_.begin(), {volumes.cascade, energy(volumes.injected, frame.basis()),
+                                       energy(volumes.accumulated, frame.gathered())});
+}
+
+nlohmann::json FrameStats::to_json(const Session& session, const nlohmann::json& options) const {
+  nlohmann::json energy = nlohmann::json::array();
+  for (const Energy& e : energies_) {
+    energy.push_back(
+        {{"cascade", e.cascade}, {"injected", e.injected}, {"accumulated", e.accumulated}});
+  }
+  const auto samples = [&](const auto& part) {
+    std::vector<double> values;
+    for (const FrameCost& cost : times_.costs()) values.push_back(part(cost));
+    return values;
+  };
+  std::vector<TimeRecord> times = {
+      time_record("frame", samples([](const FrameCost& cost) { return cost.wall_ms; })),
+      time_record("host", samples([](const FrameCost& cost) { return cost.host.host_ms; }))};
+  const auto of_host = [&](auto HostWork::*part) {
+    return median(samples([&](const FrameCost& cost) { return cost.host.*part; }));
+  };
+  nlohmann::json kernels = nlohmann::json::array();
+  for (const KernelTime& time : times_.kernels()) {
+    kernels.push_back({{"stage", name_of(time_record(time.mark, {time.ms}))},
+                       {"kernel", time.kernel},
+                       {"launches", time.launches},
+                       {"items", time.items},
+                       {"chain", time.chain},
+                       {"ms", time.ms}});
+  }
+  const double frame_ms = times[0].median;
+  std::ranges::move(times_.stage_records(), std::back_inserter(times));
+  return {{"schema", 2},
+          {"device", clpv::to_json(session.device())},
+          {"options", options},
+          {"times", times},
+          {"kernels", kernels},
+          {"timer", times_.from_events() ? "event" : "wall"},
+          {"launches", of_host(&HostWork::launches)},
+          {"fills", of_host(&HostWork::fills)},
+          {"waits", of_host(&HostWork::waits)},
+          {"arguments", of_host(&HostWork::arguments)},
+          {"written_bytes", of_host(&HostWork::written)},
+          {"host_ms",
+           {{"culling", of_host(&HostWork::culling_ms)},
+            {"arguments", of_host(&HostWork::arguments_ms)},
+            {"enqueueing", of_host(&HostWork::enqueueing_ms)},
+            {"waiting", of_host(&HostWork::waited_ms)}}},
+          {"first_launch_ms", std::max(0.0, first_frame_ms_ - frame_ms)},
+          {"build_ms", session.programs().build_ms()},
+          {"startup_ms", startup_ms_},
+          {"device_bytes", session.peak_device_bytes()},
+          {"energy", energy}};
+}
+
 namespace render_command {
 
 namespace fs = std::filesystem;
@@ -126,6 +252,40 @@ void add_render(CLI::App& app, Shared& shared) {
   add_number(*command, "--frames", "N", options->frames,
              "number of timed frames for --stats, after a warm-up frame; medians are reported",
              {1, 1000});
+  command->callback([options, &shared] { run(*options, shared); });
+}
+
+// clpv prepare: a helper process, which compiles kernels of a frame that another process is about
+// to render.
+
+namespace prepare_command {
+
+struct Options {
+  RenderRequest request;
+  std::string claims;
+};
+
+/// Does everything that rendering does, but launches only the kernels of claimed programs.
+void run(const Options& options, const Shared& shared) {
+  become_helper();
+  MovingScene moving = options.request.open();
+  moving.pose(0);
+  Session session(choose_device(shared.device), std::nullopt, {{}, Claims(options.claims)});
+  Frame frame(session, moving.scene(), FrameSetup(options.request.frame, moving.scene()));
+  frame.render(moving.scene().camera(options.request.camera));
+  session.programs().mark_compiled();
+}
+
+}  // namespace prepare_command
+
+void add_prepare(CLI::App& app, Shared& shared) {
+  using namespace prepare_command;
+  CLI::App* command =
+      app.add_subcommand("prepare", "Compile kernels, as a helper of another process");
+  command->group("");  // not for users
+  auto options = std::make_shared<prepare_command::Options>();
+  add_render_request(*command, options->request);
+  add(*command, "--claims", "DIR", options->claims, "folder shared with other helpers")->required();
   command->callback([options, &shared] { run(*options, shared); });
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/options.hpp"
+#include "device/session.hpp"
 #include "image/image.hpp"
 #include "image/tone_map.hpp"
 #include "options/show.hpp"
@@ -86,5 +87,14 @@ void log_scene(const SceneData& scene, const SceneCamera& camera, const RenderOp
 /// Returns all inputs of an image at a time [s], by name.
 nlohmann::json describe(const RenderRequest& request, const RenderOptions& options,
                         const SceneCamera& camera, double seconds);
+
+// Surfaces that no cascade reaches.
+
+/// Returns the share of the visible surfaces' pixels that no cascade of the last render reaches:
+/// they have no indirect light. 0 without a surface.
+double unreached_share(Session& session, const Frame& frame);
+
+/// Warns above 0.1 %.
+void warn_of_unreached(Session& session, const Frame& frame, const std::string& camera);
 
 }  // namespace clpv

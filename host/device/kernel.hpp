@@ -4,6 +4,7 @@
 
 #include <CL/opencl.hpp>
 #include <concepts>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "device/memory.hpp"
 #include "device/program.hpp"
+#include "device/session.hpp"
 #include "device/timeline.hpp"
 
 namespace clpv {
@@ -104,6 +106,23 @@ class Kernel {
   cl::Kernel kernel_;
   cl_uint parameter_count_ = 0, argument_count_ = 0;
   std::vector<std::vector<std::byte>> values_;  ///< bytes of the arguments set last
+};
+
+// Prefix sums of numbers on the device (kernels/prefix_sum.cl).
+
+/// Exclusive prefix sum of uints, in place.
+class PrefixSum {
+ public:
+  explicit PrefixSum(Session& session);
+
+  /// Replaces the first `count` values, at least one, by the sums of those before them. Value
+  /// `count`, which the buffer has as well, and `total` (uint) become the sum of all.
+  void run(const Buffer& values, std::size_t count, const Buffer& total);
+
+ private:
+  Session& session_;
+  Kernel sum_blocks_, place_blocks_;
+  Buffer totals_;
 };
 
 }  // namespace clpv

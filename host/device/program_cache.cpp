@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "device/driver_cache.hpp"
-#include "device/driver_settings.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/log.hpp"

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "basis/basis.hpp"
-#include "device/driver_settings.hpp"
-#include "device/kernel_files.hpp"
+#include "device/driver_cache.hpp"
+#include "device/program.hpp"
 #include "support/fingerprint.hpp"
 #include "support/json_schema.hpp"
 

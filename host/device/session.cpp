@@ -6,7 +6,7 @@
 
 #include "device/cl_error.hpp"
 #include "device/kernel.hpp"
-#include "device/shared_programs.hpp"
+#include "device/programs.hpp"
 #include "support/log.hpp"
 
 namespace clpv {

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "device/device.hpp"
-#include "device/given_queue.hpp"
 #include "device/memory.hpp"
 #include "device/programs.hpp"
 #include "device/recorder.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "image/decode.hpp"
+#include "image/image_header.hpp"
 
 namespace clpv {
 namespace {

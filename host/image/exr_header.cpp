@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "image/image_header.hpp"
-#include "support/bytes.hpp"
+#include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 

@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 #include <string_view>
 
-#include "image/decode.hpp"
+#include "image/image_header.hpp"
 #include "support/error.hpp"
 #include "support/text.hpp"
 

@@ -2,17 +2,38 @@
 // Size of an encoded image by its header, read without decoding, and removal of unneeded chunks.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <glm/mat3x3.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "image/primaries.hpp"
+#include "image/codec.hpp"
+#include "image/image_io.hpp"
 #include "support/named_enum.hpp"
 
 namespace clpv {
+
+// Conversion of linear RGB between primaries.
+
+/// CIE x and y of red, green, blue and white.
+using Chromaticities = std::array<double, 8>;
+
+/// Rec. 709 (ITU-R BT.709-6, table 1), whose primaries sRGB shares.
+inline constexpr Chromaticities kRec709 = {0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.3290};
+
+/// True within the digits to which standards state chromaticities.
+bool is_rec709(const Chromaticities& chromaticities);
+
+/// Matrix from linear RGB of these primaries to Rec. 709. Bradford's transform adapts the white, so
+/// grey stays grey (as OpenEXR's reader of ACES files does). Empty if they span no colours.
+std::optional<glm::dmat3> to_rec709(const Chromaticities& chromaticities);
+
+/// "0.64,0.33 0.3,0.6 0.15,0.06, white 0.3127,0.329"
+std::string text_of(const Chromaticities& chromaticities);
 
 /// Size of an image as its file declares it, unchecked.
 struct DeclaredImage {
@@ -76,5 +97,58 @@ std::string foreign_colour(std::span<const std::uint8_t> png);
 /// value found and value allowed.
 std::vector<ExrHeader> read_exr_header(const std::filesystem::path& path,
                                        std::span<const unsigned char> bytes);
+
+// Decoders of single formats, for image_io.cpp, and the checks that they share.
+
+[[noreturn]] void reject_image(const std::filesystem::path& path, const std::string& reason);
+
+/// Rejects an image, or its chunks, beyond the limits.
+void check_size(const std::filesystem::path& path, const DeclaredImage& image,
+                const ImageLimits& limits);
+
+/// An image file whose header OpenImageIO accepted. The bytes must outlive it.
+std::unique_ptr<ImageDecoder> open_decoder(const std::filesystem::path& path,
+                                           const std::string& format,
+                                           std::span<const std::uint8_t> bytes,
+                                           const ImageLimits& limits);
+
+/// Checks the size that a decoder declares for the part that is open.
+void check_declared(const std::filesystem::path& path, const CodedImage& image,
+                    const ImageLimits& limits);
+
+/// Reads the pixels of a decoder's open part.
+void read_pixels(const std::filesystem::path& path, ImageDecoder& decoder, float* pixels);
+
+/// An EXR whose headers are checked.
+class ExrFile {
+ public:
+  /// The bytes must outlive it.
+  ExrFile(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
+          const ImageLimits& limits);
+  const std::map<std::string, std::string>& metadata() const;
+  /// Decodes all parts. Pixels lie by their coordinates in the display window.
+  Image decode();
+
+ private:
+  const CodedImage& open_part(std::size_t index);
+  Image decode_part(std::size_t index);
+  std::vector<std::string> channel_names();
+
+  std::filesystem::path path_;
+  ImageLimits limits_;
+  std::vector<ExrHeader> parts_;
+  std::unique_ptr<ImageDecoder> decoder_;
+};
+
+/// Decodes a Radiance picture with channels R, G and B: each EXPOSURE and COLORCORR is divided out,
+/// any orientation is turned upright, PRIMARIES are converted to Rec. 709 (Radiance's "File
+/// Formats", section "Picture Files"). Throws Error(bad_input).
+Image decode_hdr(const std::filesystem::path& path, std::span<const std::uint8_t> bytes,
+                 const ImageLimits& limits);
+
+/// Converts R, G and B of each layer from these primaries to Rec. 709, and adds a note. Rejects
+/// primaries that span no colours.
+void convert_primaries(const std::filesystem::path& path, Image& image,
+                       const Chromaticities& chromaticities);
 
 }  // namespace clpv

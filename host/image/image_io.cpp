@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "image/decode.hpp"
+#include "image/image_header.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
 #include "support/output_file.hpp"

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Writes EXR without compression and PNG, for a build without OpenImageIO (CLPV_IMAGES=OFF), and
 // reads what open_plain() names.
+
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
+#include <limits>
 #include <numeric>
 #include <string_view>
 
 #include "image/codec.hpp"
-#include "support/bytes.hpp"
+#include "support/array_files.hpp"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -169,6 +172,173 @@ class PlainCodec : public ImageCodec {
 const ImageCodec& plain_codec() {
   static const PlainCodec codec;
   return codec;
+}
+
+}  // namespace clpv
+// Decoders of a build without OpenImageIO (CLPV_IMAGES=OFF).
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_NO_STDIO
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+
+namespace clpv {
+namespace {
+
+constexpr std::string_view kPrefix = "clpv:";  // prefix of metadata
+
+/// Adds an entry of a file to the metadata if clpv wrote the entry.
+void keep_metadata(CodedImage& image, const std::string& name, std::string value) {
+  if (name.starts_with(kPrefix)) image.metadata[name.substr(kPrefix.size())] = std::move(value);
+}
+
+/// Metadata of a PNG, from chunks tEXt: a name, a zero and the text.
+void read_texts(CodedImage& image, std::span<const std::uint8_t> png) {
+  constexpr std::size_t kSignature = 8, kHead = 8, kCrc = 4;
+  for (std::size_t at = kSignature; at + kHead + kCrc <= png.size();) {
+    const std::size_t size = big_endian(png, at, 4);
+    if (size > png.size() - at - kHead - kCrc) return;
+    const std::string data(reinterpret_cast<const char*>(&png[at + kHead]), size);
+    const std::size_t zero = data.find('\0');
+    if (std::memcmp(&png[at + 4], "tEXt", 4) == 0 && zero != std::string::npos)
+      keep_metadata(image, data.substr(0, zero), data.substr(zero + 1));
+    at += kHead + size + kCrc;
+  }
+}
+
+class PlainDecoder : public ImageDecoder {
+ public:
+  std::string select(int) override { return {}; }
+  const CodedImage& described() const override { return image_; }
+
+ protected:
+  CodedImage image_;
+};
+
+/// A PNG or JPEG, decoded when it is opened.
+class BytePixels : public PlainDecoder {
+ public:
+  std::string open(const std::string& format, std::span<const std::uint8_t> bytes) {
+    if (bytes.size() > std::size_t{std::numeric_limits<int>::max()}) return "over 2 GiB";
+    const auto size = static_cast<int>(bytes.size());
+    if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0)
+      return "16 bits per channel; a build without OpenImageIO decodes 8";
+    int channels = 0;
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+        stbi_load_from_memory(bytes.data(), size, &image_.width, &image_.height, &channels, 0),
+        stbi_image_free);
+    if (!pixels) return stbi_failure_reason();
+    image_.channels =
+        channels < 3 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+    if (channels % 2 == 0) image_.channels.push_back("A");
+    pixels_.assign(pixels.get(), pixels.get() + static_cast<std::size_t>(image_.width) *
+                                                    static_cast<std::size_t>(image_.height) *
+                                                    image_.channels.size());
+    if (format == "png") read_texts(image_, bytes);
+    return {};
+  }
+  std::string read(float* pixels) override {
+    constexpr float kUnit = 1.0f / 255;
+    std::ranges::transform(pixels_, pixels, [](std::uint8_t value) { return kUnit * value; });
+    return {};
+  }
+  std::string read(std::uint8_t* pixels) override {
+    std::ranges::copy(pixels_, pixels);
+    return {};
+  }
+
+ private:
+  std::vector<std::uint8_t> pixels_;
+};
+
+/// EXR (OpenEXR's documentation, "File Layout").
+class PlainExr : public PlainDecoder {
+ public:
+  explicit PlainExr(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  std::string open() {
+    constexpr std::uint32_t kVersion = 2, kLongNames = 0x400;
+    constexpr std::size_t kFlagsAt = 4, kTypeAndSampling = 16, kFloat = 2;
+    if ((little_endian(bytes_, kFlagsAt) & ~kLongNames) != kVersion) return kOthers;
+    at_ = 2 * kFlagsAt;
+    for (std::string name; !(name = text()).empty();) {
+      const std::string type = text();
+      const std::size_t size = little_endian(bytes_, at_), end = at_ + 4 + size;
+      at_ += 4;
+      if (name == "compression" && bytes_[at_] != 0) return kOthers;
+      if (name == "dataWindow") {
+        const auto side = [&](std::size_t from) {
+          return little_endian<std::int32_t>(bytes_, at_ + from + 8) -
+                 little_endian<std::int32_t>(bytes_, at_ + from) + 1;
+        };
+        image_.width = side(0), image_.height = side(4);
+      } else if (name == "channels") {
+        while (bytes_[at_] != 0) {
+          image_.channels.push_back(text());
+          if (little_endian(bytes_, at_) != kFloat || little_endian(bytes_, at_ + 8) != 1 ||
+              little_endian(bytes_, at_ + 12) != 1)
+            return kOthers;
+          at_ += kTypeAndSampling;
+        }
+      } else if (type == "string") {
+        keep_metadata(image_, name, {bytes_.begin() + at_, bytes_.begin() + end});
+      }
+      at_ = end;
+    }
+    return {};
+  }
+  std::string read(float* pixels) override {
+    const auto width = static_cast<std::size_t>(image_.width), channels = image_.channels.size(),
+               row = width * channels * sizeof(float), head = std::size_t{8};
+    for (std::size_t y = 0; y < static_cast<std::size_t>(image_.height); ++y) {
+      const auto from = little_endian<std::uint64_t>(bytes_, at_ + 8 * y);
+      if (from > bytes_.size() || bytes_.size() - from < head + row)
+        return "row " + std::to_string(y) + " lies beyond the end of the file";
+      for (std::size_t c = 0; c < channels; ++c) {
+        for (std::size_t x = 0; x < width; ++x)
+          std::memcpy(&pixels[(y * width + x) * channels + c],
+                      &bytes_[from + head + (c * width + x) * sizeof(float)], sizeof(float));
+      }
+    }
+    return {};
+  }
+  std::string read(std::uint8_t*) override { return "floats, not bytes"; }
+
+ private:
+  static constexpr const char* kOthers =
+      "this clpv was built without OpenImageIO (CLPV_IMAGES=OFF); it decodes EXR of floats in rows "
+      "without compression only";
+
+  /// Returns the text up to the next zero, and passes both.
+  std::string text() {
+    const auto zero = std::ranges::find(bytes_.subspan(at_), 0);
+    std::string found(bytes_.begin() + at_, zero);
+    at_ += found.size() + 1;
+    return found;
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;  ///< after open(): the table of offsets of rows
+};
+
+}  // namespace
+
+std::unique_ptr<ImageDecoder> open_plain(const std::string& format,
+                                         std::span<const std::uint8_t> bytes, std::string& error) {
+  if (format == "openexr") {
+    auto exr = std::make_unique<PlainExr>(bytes);
+    error = exr->open();
+    if (error.empty()) return exr;
+  } else if (format == "png" || format == "jpeg") {
+    auto pixels = std::make_unique<BytePixels>();
+    error = pixels->open(format, bytes);
+    if (error.empty()) return pixels;
+  } else {
+    error = "this clpv was built without OpenImageIO (CLPV_IMAGES=OFF); it decodes no " + format;
+  }
+  return nullptr;
 }
 
 }  // namespace clpv

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "basis/blocking.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "basis/transport.hpp"
 #include "clpv/options.hpp"
 #include "options/choices.hpp"
+#include "scene/scene.hpp"
 
 namespace clpv {
 
@@ -100,5 +100,16 @@ std::string preset_note(const RenderOptions& options, std::string_view name);
 /// Sets these options to their values in the preset, those of other presets to their defaults.
 /// Other options do not change.
 void apply_preset(RenderOptions& options, PresetName name);
+
+// Options that contradict each other or the scene, or have no effect.
+
+/// Throws Error(usage) if options contradict each other or the scene: names one, its value, the
+/// other, and the values allowed with it.
+void validate(const RenderOptions& options, const SceneData& scene);
+
+/// Throws Error(usage) if an option that the user gave has no effect with the others; names both.
+/// `basis`: of the options.
+void reject_without_effect(const OptionValues& given, const RenderOptions& options,
+                           const Basis& basis);
 
 }  // namespace clpv

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "basis/blocking.hpp"
 #include "basis/rotated_lobe.hpp"
+#include "basis/transport.hpp"
 #include "kernels/shared/light.h"
 #include "options/choices.hpp"
 

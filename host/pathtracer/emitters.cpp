@@ -8,7 +8,7 @@
 #include <span>
 
 #include "basis/sampling.hpp"
-#include "reference/triangle.hpp"
+#include "reference/view.hpp"
 #include "scene/emission.hpp"
 
 namespace clpv::pathtracer {

@@ -19,8 +19,7 @@
 
 #include "basis/sampling.hpp"
 #include "reference/view.hpp"
-#include "scene/light_kind.hpp"
-#include "scene/medium.hpp"
+#include "scene/scene.hpp"
 
 namespace clpv::pathtracer {
 namespace {

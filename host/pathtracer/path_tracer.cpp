@@ -10,15 +10,13 @@
 #include <utility>
 
 #include "basis/sampling.hpp"
-#include "pathtracer/centred_scene.hpp"
 #include "pathtracer/emitters.hpp"
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/ray_scene.hpp"
-#include "pathtracer/sample_counts.hpp"
-#include "pathtracer/threads.hpp"
+#include "pathtracer/tracing.hpp"
 #include "reference/view.hpp"
 #include "scene/emission.hpp"
-#include "scene/medium.hpp"
+#include "scene/scene.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
 

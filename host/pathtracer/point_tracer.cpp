@@ -9,10 +9,8 @@
 #include <numbers>
 
 #include "basis/sampling.hpp"
-#include "pathtracer/centred_scene.hpp"
 #include "pathtracer/path_sampler.hpp"
-#include "pathtracer/sample_counts.hpp"
-#include "pathtracer/threads.hpp"
+#include "pathtracer/tracing.hpp"
 #include "scene/emission.hpp"
 #include "support/interrupt.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pathtracer/path_tracer.hpp"
-#include "scene/points_file.hpp"
+#include "scene/input.hpp"
 
 namespace clpv::pathtracer {
 

@@ -8,7 +8,6 @@
 #include <limits>
 #include <vector>
 
-#include "reference/triangle.hpp"
 #include "reference/view.hpp"
 #include "support/error.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
-#include "image/surface_image.hpp"
+#include "image/image.hpp"
 #include "kernels/shared/grid.h"
 #include "options/stage_options.hpp"
 #include "reference/volume.hpp"

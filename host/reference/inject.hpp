@@ -3,11 +3,16 @@
 // surfels of an RSM or G-buffer into volumes (docs/method.md, 'Injection', 'Blockers').
 #pragma once
 
+#include <glm/glm.hpp>
+#include <vector>
+
 #include "basis/basis.hpp"
-#include "image/surface_image.hpp"
+#include "image/image.hpp"
 #include "kernels/shared/grid.h"
 #include "options/stage_options.hpp"
 #include "reference/volume.hpp"
+#include "scene/emission.hpp"
+#include "scene/scene.hpp"
 
 namespace clpv::reference {
 
@@ -34,5 +39,19 @@ Volume merged_against_ties(const Volume& a, const Volume& b, const Basis& basis,
 /// half a cell along the normal.
 glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid,
                       bool light);
+
+// CPU reference of stage `emit` (kernels/inject/emit.cl): virtual point lights of emissive
+// triangles, in double (docs/method.md, 'Emissive surfaces').
+
+/// A virtual point light. Its flux is P = pi L A.
+struct EmittedPoint {
+  glm::dvec3 position{0};
+  glm::dvec3 normal{0};  ///< unit, on the emitting side; 0 for a triangle without area
+  glm::dvec3 flux{0};    ///< [W]
+  double tolerance = 0;  ///< flux of samples close to a masked material's alpha cutoff [W]
+};
+
+/// Returns the points of `plan` in order.
+std::vector<EmittedPoint> emit(const SceneData& scene, const EmissionPlan& plan);
 
 }  // namespace clpv::reference

@@ -5,8 +5,7 @@
 #include <limits>
 
 #include "reference/view.hpp"
-#include "scene/light_kind.hpp"
-#include "scene/medium.hpp"
+#include "scene/scene.hpp"
 
 namespace clpv::reference {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reference/triangle.hpp"
+#include "reference/view.hpp"
 #include "scene/mip_chain.hpp"
 
 namespace clpv::reference {

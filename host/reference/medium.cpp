@@ -9,11 +9,9 @@
 #include "basis/sampling.hpp"
 #include "basis/sweep.hpp"
 #include "kernels/shared/pixel_planes.h"
+#include "reference/cascade_sample.hpp"
 #include "reference/lighting.hpp"
-#include "reference/radiance.hpp"
 #include "reference/view.hpp"
-#include "scene/light_kind.hpp"
-#include "scene/medium.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::reference {

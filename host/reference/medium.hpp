@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "basis/basis.hpp"
-#include "image/surface_image.hpp"
+#include "image/image.hpp"
 #include "kernels/shared/light.h"
 #include "options/stage_options.hpp"
 #include "reference/gather.hpp"

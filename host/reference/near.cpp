@@ -7,12 +7,10 @@
 #include <numbers>
 
 #include "basis/bounce.hpp"
-#include "basis/near_directions.hpp"
+#include "basis/sampling.hpp"
 #include "kernels/shared/near.h"
 #include "kernels/shared/pixel_planes.h"
 #include "reference/cascade_sample.hpp"
-#include "reference/radiance.hpp"
-#include "reference/triangle.hpp"
 #include "reference/view.hpp"
 
 namespace clpv::reference {

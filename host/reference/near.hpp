@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "basis/basis.hpp"
-#include "image/surface_image.hpp"
+#include "image/image.hpp"
 #include "options/stage_options.hpp"
 #include "reference/gather.hpp"
 #include "reference/materials.hpp"

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "image/surface_image.hpp"
+#include "image/image.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::reference {

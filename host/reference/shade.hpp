@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "image/surface_image.hpp"
+#include "image/image.hpp"
 #include "kernels/shared/light.h"
 #include "options/show.hpp"
 

@@ -9,10 +9,9 @@
 
 #include "scene/bounds.hpp"
 #include "scene/gltf_accessor.hpp"
-#include "support/bytes.hpp"
+#include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/input_file.hpp"
-#include "support/input_record.hpp"
 
 namespace clpv {
 namespace {

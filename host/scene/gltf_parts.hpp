@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "scene/gltf_document.hpp"
+#include "scene/input.hpp"
 #include "scene/motion.hpp"
-#include "scene/notes.hpp"
 #include "scene/primitive.hpp"
 #include "scene/scene.hpp"
 

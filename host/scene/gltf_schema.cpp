@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "scene/bounds.hpp"
-#include "scene/curve.hpp"
 #include "scene/gltf_document.hpp"
-#include "scene/light_kind.hpp"
+#include "scene/motion.hpp"
+#include "scene/scene.hpp"
 #include "support/error.hpp"
 #include "support/json_schema.hpp"
 

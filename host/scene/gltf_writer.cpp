@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_writer.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -12,9 +10,10 @@
 
 #include "clpv/version.hpp"
 #include "image/image_io.hpp"
-#include "scene/light_kind.hpp"
+#include "scene/load.hpp"
+#include "scene/scene.hpp"
 #include "scene/view_values.hpp"
-#include "support/bytes.hpp"
+#include "support/array_files.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"

@@ -15,7 +15,7 @@
 #include "scene/input.hpp"
 #include "scene/sky.hpp"
 #include "support/error.hpp"
-#include "support/input_record.hpp"
+#include "support/input_file.hpp"
 #include "support/text.hpp"
 
 namespace clpv {

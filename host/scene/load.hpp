@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "scene/added_meshes.hpp"
+#include "scene/input.hpp"
 #include "scene/motion.hpp"
-#include "scene/notes.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
 
@@ -82,5 +82,12 @@ inline constexpr double kSunIlluminance = 10;  ///< sun that a model without lig
 /// Returns true if the scene has no scene file, and thus no settings of cascades: a model, or
 /// meshes in memory.
 bool is_bare_model(const SceneData& scene);
+
+// Writes a scene as a binary glTF file.
+
+/// Writes meshes, materials, textures, cameras and lights to a .glb. Logs a warning for a sky, a
+/// medium and cameras with an only light, which glTF has not. Throws Error: usage (another
+/// extension), run_time (the file cannot be written, or would be larger than 4 GiB).
+void write_glb(const std::filesystem::path& path, const SceneData& scene);
 
 }  // namespace clpv

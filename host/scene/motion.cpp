@@ -1,19 +1,195 @@
 // SPDX-License-Identifier: MIT
 // Poses meshes, cameras and lights: morph targets, skinning and node transforms (glTF 2.0, section
 // 3.7).
+
 #include "scene/motion.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "scene/bounds.hpp"
-#include "scene/light_kind.hpp"
+#include "scene/scene.hpp"
 #include "support/error.hpp"
 
 namespace clpv {
+
+// Evaluates keyframe curves.
+
+namespace {
+
+/// The interval between two keys that contains an instant.
+struct KeyInterval {
+  /// Key at the start of the interval, or the first or last key outside all intervals.
+  std::size_t key;
+  double fraction = 0;  ///< position in the interval, in [0, 1); 0 outside
+  double duration = 0;  ///< [s]
+};
+
+KeyInterval interval_at(const Curve& curve, double seconds) {
+  const auto after = std::upper_bound(curve.times.begin(), curve.times.end(), seconds);
+  if (after == curve.times.begin()) return {0};
+  const auto key = static_cast<std::size_t>(after - curve.times.begin()) - 1;
+  if (after == curve.times.end()) return {key};
+  const double duration = *after - curve.times[key];
+  return {key, (seconds - curve.times[key]) / duration, duration};
+}
+
+/// Numbers of a key. In a cubic spline, `part` is 0 for the in-tangent, 1 for the value, 2 for the
+/// out-tangent.
+const double* key_of(const Curve& curve, std::size_t key, std::size_t part = 1) {
+  const bool cubic = curve.interpolation == Interpolation::cubic_spline;
+  return &curve.values[(cubic ? 3 * key + part : key) * curve.components];
+}
+
+void hermite(const Curve& curve, const KeyInterval& at, std::span<double> out) {
+  const double t = at.fraction, t2 = t * t, t3 = t2 * t;
+  const double* from = key_of(curve, at.key);
+  const double* out_tangent = key_of(curve, at.key, 2);
+  const double* to = key_of(curve, at.key + 1);
+  const double* in_tangent = key_of(curve, at.key + 1, 0);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = (2 * t3 - 3 * t2 + 1) * from[i] + at.duration * (t3 - 2 * t2 + t) * out_tangent[i] +
+             (3 * t2 - 2 * t3) * to[i] + at.duration * (t3 - t2) * in_tangent[i];
+  }
+}
+
+glm::dvec3 vector_of(const double* v) {
+  return {v[0], v[1], v[2]};
+}
+
+glm::dquat rotation_of(const double* v) {
+  return {v[3], v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+void evaluate(const Curve& curve, double seconds, std::span<double> out) {
+  const KeyInterval at = interval_at(curve, seconds);
+  const double* from = key_of(curve, at.key);
+  if (at.fraction == 0 || curve.interpolation == Interpolation::step) {
+    std::copy_n(from, out.size(), out.begin());
+  } else if (curve.interpolation == Interpolation::cubic_spline) {
+    hermite(curve, at, out);
+  } else {
+    const double* to = key_of(curve, at.key + 1);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = (1 - at.fraction) * from[i] + at.fraction * to[i];
+  }
+}
+
+glm::dvec3 vector_at(const Curve& curve, double seconds) {
+  double v[3];
+  evaluate(curve, seconds, v);
+  return vector_of(v);
+}
+
+glm::dvec3 direction_at(const Curve& curve, double seconds) {
+  const KeyInterval at = interval_at(curve, seconds);
+  const glm::dvec3 from = vector_of(key_of(curve, at.key));
+  if (at.fraction == 0 || curve.interpolation == Interpolation::step) return from;
+  const glm::dvec3 to = vector_of(key_of(curve, at.key + 1));
+  const double angle = std::atan2(glm::length(glm::cross(from, to)), glm::dot(from, to));
+  if (angle < 1e-9) return from;  // equal up to rounding
+  return glm::normalize(std::sin((1 - at.fraction) * angle) * from +
+                        std::sin(at.fraction * angle) * to);
+}
+
+glm::dquat rotation_at(const Curve& curve, double seconds) {
+  const KeyInterval at = interval_at(curve, seconds);
+  if (at.fraction > 0 && curve.interpolation == Interpolation::linear) {
+    const glm::dquat from = rotation_of(key_of(curve, at.key)),
+                     to = rotation_of(key_of(curve, at.key + 1));
+    return glm::normalize(glm::slerp(from, to, at.fraction));
+  }
+  double v[4];
+  evaluate(curve, seconds, v);
+  const glm::dquat rotation = rotation_of(v);
+  const double length = glm::length(rotation);
+  return length > 0 ? rotation / length : rotation;
+}
+
+// Evaluates transforms of nodes and joints.
+
+namespace {
+
+bool finite(const glm::dmat4& m) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (!std::isfinite(m[column][row])) return false;
+    }
+  }
+  return true;
+}
+
+/// Pose of an animated node.
+Pose pose_at(const NodeTree& tree, const TreeNode& node, double seconds) {
+  Pose pose = node.pose;
+  if (node.curves.translation) pose.translation = vector_at(*node.curves.translation, seconds);
+  if (node.curves.scale) pose.scale = vector_at(*node.curves.scale, seconds);
+  if (node.curves.rotation) {
+    pose.rotation = rotation_at(*node.curves.rotation, seconds);
+    if (!(glm::length(*pose.rotation) > 0.5)) {
+      reject(tree.file, fmt::format("/nodes/{}/rotation", node.index),
+             fmt::format("a quaternion of length {} at {} s", glm::length(*pose.rotation), seconds),
+             "splines through lengths above 0.5");
+    }
+  }
+  return pose;
+}
+
+/// Transform of a node to its parent's space.
+glm::dmat4 local_transform(const NodeTree& tree, const TreeNode& node, double seconds) {
+  return node.curves.moves() ? pose_at(tree, node, seconds).matrix() : node.rest;
+}
+
+}  // namespace
+
+std::string place_of(const TreeNode& node) {
+  return node.index < 0 ? "transform" : fmt::format("/nodes/{}", node.index);
+}
+
+glm::dmat4 Pose::matrix() const {
+  glm::dmat4 transform(1.0);
+  if (translation) transform = glm::translate(transform, *translation);
+  if (rotation) transform *= glm::mat4_cast(*rotation);
+  if (scale) transform = glm::scale(transform, *scale);
+  return transform;
+}
+
+std::vector<glm::dmat4> NodeTree::to_world(double seconds) const {
+  std::vector<glm::dmat4> made;
+  made.reserve(nodes.size());
+  for (const TreeNode& node : nodes) {
+    const glm::dmat4& parent = node.parent ? made[*node.parent] : root;
+    made.push_back(parent * local_transform(*this, node, seconds));
+    if (!finite(made.back())) {
+      reject(file, place_of(node), "a transform that overflows", "finite transforms");
+    }
+  }
+  return made;
+}
+
+glm::dmat4 PosedTree::unmirrored(std::size_t index) const {
+  const TreeNode& node = tree_.nodes[index];
+  Pose pose = pose_at(tree_, node, seconds_);
+  if (!pose.scale || !glm::any(glm::lessThan(*pose.scale, glm::dvec3(0)))) return to_world_[index];
+  pose.scale = glm::abs(*pose.scale);
+  return (node.parent ? to_world_[*node.parent] : tree_.root) * pose.matrix();
+}
+
+std::span<const glm::dmat4> PosedTree::joints(const Skin& skin) {
+  std::vector<glm::dmat4>& matrices = joints_[&skin];
+  if (matrices.empty()) {
+    for (std::size_t i = 0; i < skin.joints.size(); ++i)
+      matrices.push_back(to_world_[skin.joints[i]] * skin.inverse_binds[i]);
+  }
+  return matrices;
+}
+
 namespace {
 
 // Shorter morphed normals are replaced by the stored ones.

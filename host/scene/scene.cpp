@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cameras and lights of a scene by name, and hashes of its animated parts.
+
 #include "scene/scene.hpp"
 
 #include <fmt/ranges.h>
@@ -78,6 +79,28 @@ void add_range(Fingerprint& print, const SceneData& scene, const MeshRange& rang
 
 void add_moving(Fingerprint& print, const SceneData& scene) {
   for (const MeshRange& range : scene.moving) add_range(print, scene, range);
+}
+
+MediumPart medium_part(const ClpvMedium& medium, const glm::dvec3& origin,
+                       const glm::dvec3& direction, double end) {
+  if (vector(medium.extinction) == glm::dvec3(0)) return {};
+  MediumPart part{0, end};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lower = double{medium.lower[axis]} - origin[axis],
+                 upper = double{medium.upper[axis]} - origin[axis];
+    if (direction[axis] == 0) {
+      if (lower > 0 || upper < 0) return {};
+      continue;
+    }
+    const double a = lower / direction[axis], b = upper / direction[axis];
+    part.start = std::max(part.start, std::min(a, b));
+    part.end = std::min(part.end, std::max(a, b));
+  }
+  return part;
+}
+
+glm::dvec3 transmittance(const ClpvMedium& medium, const MediumPart& part) {
+  return glm::exp(-part.length() * vector(medium.extinction));
 }
 
 }  // namespace clpv

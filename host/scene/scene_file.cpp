@@ -12,7 +12,7 @@
 
 #include "scene/bounds.hpp"
 #include "scene/input.hpp"
-#include "scene/light_kind.hpp"
+#include "scene/scene.hpp"
 #include "scene/sky.hpp"
 #include "scene/view_values.hpp"
 #include "support/error.hpp"

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Reads the keys of cameras and lights, and evaluates them.
-#include "scene/scene_keys.hpp"
-
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "scene/bounds.hpp"
+#include "scene/scene_file.hpp"
 #include "support/error.hpp"
 #include "support/named_enum.hpp"
 

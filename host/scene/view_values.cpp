@@ -9,7 +9,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "scene/bounds.hpp"
-#include "scene/light_kind.hpp"
+#include "scene/scene.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

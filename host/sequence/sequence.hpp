@@ -3,11 +3,14 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "device/session.hpp"
 #include "image/image.hpp"
@@ -16,11 +19,33 @@
 #include "parallel/ranks.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
-#include "sequence/sequence_report.hpp"
+#include "sequence/stability.hpp"
 #include "sequence/times_file.hpp"
 #include "support/named_enum.hpp"
+#include "times/frame_times.hpp"
 
 namespace clpv {
+
+// Reports of `clpv sequence`: the summary in times.jsonl, and stability.json.
+
+/// Sums up times of frames, one after another.
+class TimesSummary {
+ public:
+  void add(const FrameLine& line);
+
+  /// Number of frames, and of those without first frames (`steady`); `times`: records of pose,
+  /// frame, write and the stages over steady frames.
+  nlohmann::json to_json() const;
+
+ private:
+  std::size_t frames_ = 0;
+  std::vector<double> pose_, frame_, write_;  ///< [ms] of steady frames
+  FrameTimes stages_;                         ///< times of steady frames
+};
+
+/// Schema 1: the fields of `about`, the steps, and a summary of the steps with static lights and
+/// triangles, grouped by whether a cascade moved.
+nlohmann::json stability_json(const nlohmann::json& about, std::span<const StabilityStep> steps);
 
 enum class FrameFormat : unsigned { exr, png };
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <system_error>
 #include <vector>
 
@@ -121,6 +122,23 @@ void CacheFolder::evict(const std::regex& own, std::uint64_t bytes,
 
 std::string CacheFolder::problem() const {
   return with_file("probe", [](OutputFile&) {});
+}
+
+ScratchFolder::ScratchFolder() {
+  const char* given = std::getenv("TMPDIR");
+  const fs::path above = fs::absolute(given != nullptr && *given != '\0' ? given : "/tmp");
+  std::string name = (above / ".clpv-run-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) {
+    throw Error(ExitCode::run_time,
+                "TMPDIR: found '{}' ({}); allowed: a folder that can be written", above.string(),
+                std::generic_category().message(errno));
+  }
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
 }
 
 }  // namespace clpv

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "support/error.hpp"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "support/named_enum.hpp"
 #include "support/text.hpp"
 
 // Checks of numbers, everywhere, need NaN and infinity.
@@ -18,6 +23,18 @@ void reject(const std::string& file, std::string_view place, std::string_view fo
             std::string_view allowed) {
   throw Error(ExitCode::bad_input, "{}: {}{}found {}; allowed: {}", file, place,
               place.empty() ? "" : ": ", found, allowed);
+}
+
+}  // namespace clpv
+namespace clpv {
+
+std::size_t index_of_name(std::string_view what, std::string_view name,
+                          std::span<const std::string_view> allowed) {
+  const auto found = std::ranges::find(allowed, name);
+  if (found == allowed.end())
+    throw Error(ExitCode::usage, "{}: found '{}', allowed: {}", what, name,
+                fmt::join(allowed, "|"));
+  return found - allowed.begin();
 }
 
 }  // namespace clpv

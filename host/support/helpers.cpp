@@ -16,7 +16,6 @@
 #include "support/input_file.hpp"
 #include "support/output_file.hpp"
 #include "support/text.hpp"
-#include "support/this_program.hpp"
 
 namespace clpv {
 namespace {

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "support/cache_folder.hpp"
 #include "support/process.hpp"
-#include "support/scratch_folder.hpp"
 
 namespace clpv {
 
@@ -90,5 +90,8 @@ class Helpers {
 
 /// In a helper: a signal ends this process at once.
 void become_helper();
+
+/// Returns the file that set_helper_program() set; empty without one.
+const std::string& this_program();
 
 }  // namespace clpv

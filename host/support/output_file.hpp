@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "support/input_record.hpp"
+#include "support/input_file.hpp"
 
 namespace clpv {
 

@@ -11,7 +11,6 @@
 #include <string_view>
 
 #include "support/log.hpp"
-#include "support/print.hpp"
 #include "support/text.hpp"
 
 namespace clpv {

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "verify/check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
 #include "device/cl_error.hpp"
 #include "support/interrupt.hpp"
+#include "support/text.hpp"
 
 namespace clpv::verify {
+
 namespace {
 
 constexpr StageCases* kStages[] = {sizes_cases,    rasterize_cases,  emit_cases,      inject_cases,
@@ -92,6 +96,116 @@ bool passed(const CheckResults& results) {
     return std::ranges::count(results, status, &CheckResult::status) > 0;
   };
   return has(Status::ok) && !has(Status::wrong) && !has(Status::failed);
+}
+
+namespace {
+
+std::string test_case(const CheckResult& result) {
+  const std::string head =
+      fmt::format("    <testcase classname=\"clpv.{}\" name=\"{}\" time=\"{:.6f}\"",
+                  xml_escaped(result.stage), xml_escaped(result.variant), result.seconds);
+  const auto with = [&](const std::string& element) {
+    return fmt::format("{}>\n      {}\n    </testcase>\n", head, element);
+  };
+  switch (result.status) {
+    case Status::ok:
+      return head + "/>\n";
+    case Status::wrong:
+      return with(fmt::format("<failure message=\"{:.3e} &gt; {:.0e}\">{}</failure>",
+                              result.deviation.worst, result.deviation.allowed,
+                              xml_escaped(result.deviation.place)));
+    case Status::failed:
+      return with(fmt::format("<error>{}</error>", xml_escaped(result.reason)));
+    case Status::unsupported:
+      return with(fmt::format("<skipped message=\"{}\"/>", xml_escaped(result.reason)));
+  }
+  return {};
+}
+
+/// The counts of a suite, as attributes.
+std::string counts(CheckResults::const_iterator first, CheckResults::const_iterator last) {
+  const auto of = [&](Status status) {
+    return std::count_if(first, last,
+                         [&](const CheckResult& result) { return result.status == status; });
+  };
+  return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\"", last - first,
+                     of(Status::wrong), of(Status::failed), of(Status::unsupported));
+}
+
+}  // namespace
+
+std::string junit(CheckResults results, const std::string& device) {
+  if (std::ranges::none_of(results, &CheckResult::passed))
+    results.push_back(
+        result_of("check", "at least one comparison is ok", Status::failed, "none is"));
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"clpv check on {}\" {}>\n",
+      xml_escaped(device), counts(results.begin(), results.end()));
+  for (auto first = results.begin(); first != results.end();) {
+    const auto last = std::find_if(first, results.end(), [&](const CheckResult& result) {
+      return result.stage != first->stage;
+    });
+    text += fmt::format("  <testsuite name=\"{}\" {}>\n", xml_escaped(first->stage),
+                        counts(first, last));
+    for (; first != last; ++first) text += test_case(*first);
+    text += "  </testsuite>\n";
+  }
+  return text + "</testsuites>\n";
+}
+
+Deviation compare_volumes(std::span<const float> found, std::span<const double> expected, int n,
+                          double allowed) {
+  const WorstError worst = worst_difference(
+      expected.size(), [&](std::size_t i) { return static_cast<double>(found[i]); },
+      [&](std::size_t i) { return expected[i]; });
+  if (worst.value == 0) return {0, allowed};
+  const std::size_t side = n;
+  const std::size_t at = worst.at;
+  return {
+      worst.value, allowed,
+      fmt::format("cell {},{},{} plane {}: {:.7g}, expected {:.7g}", at % side, at / side % side,
+                  at / side / side % side, at / side / side / side, found[at], expected[at])};
+}
+
+std::vector<glm::dvec3> compared_directions() {
+  std::vector<glm::dvec3> directions;
+  for (int neighbour = 0; neighbour < 27; ++neighbour) {
+    if (neighbour == 13) continue;  // the cell itself
+    directions.push_back(
+        glm::normalize(glm::dvec3(neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1)));
+  }
+  return directions;
+}
+
+Deviation compare_functions(std::span<const float> found, std::span<const double> expected,
+                            std::span<const double> other, int n, int numbers,
+                            const std::function<std::vector<double>(const glm::dvec3&)>& weights,
+                            double allowed) {
+  const std::size_t side = n, samples = side * side * side, size = numbers;
+  double largest = 0;
+  WorstError worst;
+  Deviation result{0, allowed};
+  for (const glm::dvec3& w : compared_directions()) {
+    const std::vector<double> b = weights(w);
+    for (std::size_t at = 0; at < found.size() / size; ++at) {
+      double value = 0, wanted = 0, or_wanted = 0;
+      for (std::size_t i = 0; i < size; ++i) {
+        const std::size_t index = (at / samples * size + i) * samples + at % samples;
+        value += b[i] * found[index];
+        wanted += b[i] * expected[index];
+        or_wanted += b[i] * other[index];
+      }
+      largest = std::max(largest, std::abs(wanted));
+      if (!worst.take(std::min(std::abs(value - wanted), std::abs(value - or_wanted)), at))
+        continue;
+      result.place = fmt::format(
+          "cell {},{},{} channel {} towards {:.2f},{:.2f},{:.2f}: {:.7g}, expected {:.7g}",
+          at % side, at / side % side, at / side / side % side, at / samples, w.x, w.y, w.z, value,
+          wanted);
+    }
+  }
+  result.worst = worst.value / largest;
+  return result;
 }
 
 }  // namespace clpv::verify

@@ -1,17 +1,31 @@
 // SPDX-License-Identifier: MIT
 // Comparisons of the kernels that a frame with given options runs, in that combination.
+
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+
 #include "basis/sweep.hpp"
+#include "device/kernel.hpp"
+#include "kernels/shared/emit.h"
+#include "kernels/shared/fields.h"
+#include "kernels/shared/grid.h"
+#include "kernels/shared/light.h"
+#include "kernels/shared/mesh.h"
+#include "kernels/shared/raster.h"
+#include "kernels/shared/region.h"
+#include "kernels/shared/sweep.h"
+#include "kernels/shared/view.h"
 #include "options/render_options.hpp"
 #include "options/stage_options.hpp"
 #include "verify/check.hpp"
-#include "verify/gather.hpp"
-#include "verify/inject.hpp"
-#include "verify/propagate.hpp"
-#include "verify/sweep.hpp"
+#include "verify/jobs.hpp"
+#include "verify/tolerances.hpp"
 
 namespace clpv::verify {
+
 namespace {
 
 constexpr int kGrid = 9;  // small; no multiple of a work-group
@@ -59,6 +73,49 @@ Cases cases_of(const RenderOptions& options) {
   cases.push_back(
       job_case(Stage::gather, name, [o](Session& session) { return gather_job_of(session, o); }));
   return cases;
+}
+
+// Compares the device's layout of the shared structs with the host's; a mismatch would corrupt
+// every stage's input.
+
+namespace {
+
+struct Place {
+  const char* name;
+  std::uint32_t bytes;
+};
+
+constexpr Place kHost[] = {
+#define CLPV_FIELD(type, field) \
+  {"size of " #type, sizeof(type)}, {#type "." #field, offsetof(type, field)},
+    CLPV_EACH_SHARED(CLPV_FIELD)
+#undef CLPV_FIELD
+};
+
+Deviation compare_sizes(Session& session) {
+  const std::size_t count = std::size(kHost);
+  Buffer bytes = session.buffer(count * sizeof(std::uint32_t), "sizes of the shared structs");
+  Kernel(session, {"sizes.cl"}, "sizes").set(bytes).launch(cl::NDRange(1), cl::NDRange(1));
+  const auto device = session.read<std::uint32_t>(bytes, count);
+
+  Ranges ranges;
+  for (const Place& place : kHost) ranges.push_back({double(place.bytes), double(place.bytes)});
+  if (session.recorder() != nullptr) session.recorder()->expect(bytes.handle(), "uint", ranges);
+  Deviation result{0, tolerance("sizes")};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double error =
+        device[i] > kHost[i].bytes ? device[i] - kHost[i].bytes : kHost[i].bytes - device[i];
+    result.take(error, [&] {
+      return fmt::format("{}: {} bytes, host {}", kHost[i].name, device[i], kHost[i].bytes);
+    });
+  }
+  return result;
+}
+
+}  // namespace
+
+Cases sizes_cases(const CheckScope&) {
+  return {deviation_case(Stage::sizes, "shared structs", compare_sizes)};
 }
 
 }  // namespace clpv::verify

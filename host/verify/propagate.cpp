@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Propagation: kernels against CPU reference. Checks use a small grid of random light and random
 // blockers.
-#include "verify/propagate.hpp"
+#include "pipeline/steps/propagate.hpp"
 
 #include <fmt/format.h>
 
@@ -12,13 +12,11 @@
 #include <string>
 #include <string_view>
 
-#include "pipeline/steps/propagate.hpp"
 #include "reference/propagate.hpp"
 #include "support/named_enum.hpp"
 #include "verify/check.hpp"
-#include "verify/comparison.hpp"
-#include "verify/expected.hpp"
 #include "verify/inputs.hpp"
+#include "verify/jobs.hpp"
 #include "verify/tolerances.hpp"
 
 namespace clpv::verify {

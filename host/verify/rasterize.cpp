@@ -12,9 +12,9 @@
 
 #include "pipeline/raster/view.hpp"
 #include "reference/rasterize.hpp"
-#include "scene/light_kind.hpp"
+#include "scene/scene.hpp"
 #include "verify/check.hpp"
-#include "verify/expected.hpp"
+#include "verify/inputs.hpp"
 #include "verify/tolerances.hpp"
 
 namespace clpv::verify {

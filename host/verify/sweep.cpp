@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sweep and bounces: kernels against CPU references. Checks use small cascades of random light,
 // blockers and reflectors.
-#include "verify/sweep.hpp"
+#include "basis/sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "basis/bounce.hpp"
-#include "basis/sweep.hpp"
 #include "kernels/shared/reflectors.h"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/raster/shadow_maps.hpp"
@@ -25,9 +24,8 @@
 #include "reference/medium.hpp"
 #include "reference/sweep.hpp"
 #include "verify/check.hpp"
-#include "verify/comparison.hpp"
-#include "verify/expected.hpp"
 #include "verify/inputs.hpp"
+#include "verify/jobs.hpp"
 #include "verify/tolerances.hpp"
 
 namespace clpv::verify {

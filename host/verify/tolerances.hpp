@@ -27,7 +27,7 @@ inline constexpr Tolerance kTolerances[] = {
     // may snap to the next 1/256 pixel; measured 7e-4, one pixel.
     {"rasterize-edges", 5e-3},
     // Relative to the largest flux and position, except where rounding can decide
-    // (reference/emit.hpp): float32 texture coordinates, and the texture's mean over 64 samples.
+    // (reference/inject.hpp): float32 texture coordinates, and the texture's mean over 64 samples.
     {"emit", 2e-5},
     // Values of the functions in 26 directions: float32 rounding times the square root of the Gram
     // matrix's condition number; measured 2e-7 (sh2) to 5e-6 (srbf14). float16 rounds once per
@@ -45,10 +45,10 @@ inline constexpr Tolerance kTolerances[] = {
     // Shares of samples, except where rounding can decide (reference/blockers.hpp); 64ths are exact
     // in any format.
     {"blockers", 0, 0},
-    // Areas on faces, except where rounding can decide (reference/reflectors.hpp). Colours are in
+    // Areas on faces, except where rounding can decide (reference/blockers.hpp). Colours are in
     // 4096ths, and texture steps magnify float32 errors of sample positions.
     {"reflectors", 1e-3, 2e-3},
-    // Occluded cells of a point, except where rounding can decide (reference/visibility.hpp).
+    // Occluded cells of a point, except where rounding can decide (reference/blockers.hpp).
     {"visibility", 0},
     // float32 sums of 30 faces over 8 steps; measured drift 1.5e-6 (sh2) to 6.4e-6 (srbf14). With
     // float16, each step rounds propagated light and its sum, with relative error up to 2^-12;

@@ -6,7 +6,7 @@
 //   alpha_lm(n) = A_l Y_lm(n)
 //
 // Q_lm is even or odd in z: a polynomial in z^2, times z if l - |m| is odd
-// (host/basis/spherical_harmonics.cpp).
+// (host/basis/bases.cpp).
 //
 // From the host: CLPV_BANDS; CLPV_Y and CLPV_COSINE_Y, the coefficients of z^0, z^2, ... of K_lm
 // Q_lm without the factor z, and A_l times them. Functions of bands that the cosine lacks (A_l 0)

@@ -5,7 +5,7 @@
 //   blocking:  c = merge(c, sum B b(n))
 //
 // docs/method.md, 'Blockers'; Kaplanyan and Dachsbacher 2010. B is the blocked share of a surfel
-// (find_cells.cl), b(n) the function of host/basis/blocking.hpp. Sources of blockers see the same
+// (find_cells.cl), b(n) the function of host/basis/transport.hpp. Sources of blockers see the same
 // walls, so merge_blockers takes a maximum.
 //
 //   find_cells.cl    corner of each texel

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "baselines/view.hpp"
-#include "image/surface_image.hpp"
+#include "image/image.hpp"
 #include "kernels/shared/grid.h"
 
 namespace clpv::baselines {

@@ -14,7 +14,7 @@
 #include "pathtracer/path_sampler.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pathtracer/ray_scene.hpp"
-#include "pathtracer/threads.hpp"
+#include "pathtracer/tracing.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv::baselines {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Baselines of clpv quality against path tracing and closed forms, and their options.
+
 #include "baselines/baseline.hpp"
 
 #include <gmock/gmock.h>
@@ -12,7 +13,6 @@
 #include <set>
 
 #include "additions.hpp"
-#include "baselines/filter.hpp"
 #include "baselines/methods.hpp"
 #include "baselines/radiance_cascades.hpp"
 #include "image/compare.hpp"
@@ -20,6 +20,7 @@
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
+#include "support/error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/quality_room.hpp"
@@ -29,6 +30,7 @@
 #include "times/time_record.hpp"
 
 namespace clpv::baseline_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -376,4 +378,5 @@ TEST_F(QualityCommand, ImagesAreCheckedBeforeTheWork) {
 }
 
 }  // namespace
+
 }  // namespace clpv::baseline_test

@@ -34,10 +34,9 @@ NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a folder in results/
 PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "bake", "bake-leaks", "leaks"]
 
 
-def run(*arguments, charts_of=(), program=CLPV):
+def run(*arguments, program=CLPV):
     """Returns the JSON of `clpv ARGUMENTS FILE.json`, with FOLDER a temporary folder. Where that
-    fails and leaves a file, as `clpv bench` does, goes on. `charts_of`: images in FOLDER that go to
-    docs/images."""
+    fails and leaves a file, as `clpv bench` does, goes on."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "result.json"
         command = [
@@ -50,9 +49,6 @@ def run(*arguments, charts_of=(), program=CLPV):
             print(f"scripts/measure: exit code {code}", file=sys.stderr)
         if not file.exists():
             sys.exit(code)
-        for chart in charts_of:
-            image = (pathlib.Path(folder) / f"{chart}.png").read_bytes()
-            output.write(ROOT / f"docs/images/bench-{chart}.png", image)
         return json.loads(file.read_text(encoding="utf-8"))
 
 
@@ -112,8 +108,7 @@ def measure_docs(folder, model, parts):
             continue
         if options[:1] == ["sponza"]:
             options = ["--scene=scenes/sponza_suns.json", *sponza, *options[1:]]
-        document = run("bench", suite, *options, "--plot=FOLDER", "--output",
-                       charts_of=rows.CHARTS.get(suite, ()), program=program_of(suite))
+        document = run("bench", suite, *options, "--output")
         write(folder, suite, {"measured": measured, **document})
     if "quality-centres" in parts:
         search_centres(sponza)
@@ -136,11 +131,6 @@ def measure_docs(folder, model, parts):
             ROOT / "docs/images/front.png")
 
 
-def program_of(name):
-    """The program that measures a file of results/docs."""
-    return LAB if name in rows.OF_LAB else CLPV
-
-
 def search_centres(sponza):
     (ROOT / "out").mkdir(exist_ok=True)
     subprocess.run([str(LAB), "normals", "scenes/sponza_suns.json", *sponza, "-o", "out/normals.json"],
@@ -158,7 +148,7 @@ def measure_quality(folder, name, model, measured):
             "--preset=best")  # bases and transports that a run does not name keep their defaults
     for options in runs:
         vary = [f"--vary={option}={value}" for option, value in options.items()]
-        document = run("quality", *given, *vary, "--output", program=program_of(name))
+        document = run("quality", *given, *vary, "--output")
         cells += document["cells"]
         variants += document["variants"]
     write(folder, name,

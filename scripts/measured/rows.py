@@ -75,11 +75,6 @@ CENTRES = {
        for basis in ("srbf6", "srbf8v1", "srbf8v3", "sh3")}
 }  # without the near field
 
-# Radiance cascades beside other methods.
-CASCADE_CAMERAS = "curtains", "atrium", "columns", "front", "nave", "gallery"
-CASCADE_METHODS = ("ddgi-first", "ddgi-converged", "paths-filtered", "vpl-interleaved",
-                   "radiance-cascades", "radiance-cascades-fine")
-
 # Files of results/docs by `clpv quality`: scenes and options of all runs, and what each run sets.
 VIEWS = [
     "sponza_suns", "cornell", "--camera=curtains", "--camera=atrium", "--camera=columns",
@@ -96,11 +91,6 @@ QUALITY_FILES = {
     "quality-scenes": (["atrium", "atrium_overcast", "sponza_overcast",
                         "--noise=0.03"], list(SUNS.values())),
     "quality-bounces": ([*VIEWS, "--noise=0.05", "--bounces=all"], list(BOUNCES.values())),
-    "quality-cascades": ([
-        "sponza_suns", "cornell", "atrium", *(f"--camera={name}" for name in CASCADE_CAMERAS),
-        "--noise=0.03", "--frames=3", f"--baseline={','.join(CASCADE_METHODS)}",
-        "--baseline-time=21.9"
-    ], [{}]),
     "quality-lamp": (["cornell_lamp", "--noise=0.02"], [FAST]),
     "quality-lamp-bounces": (["cornell_lamp", "--noise=0.02",
                               "--bounces=all"], [{**FAST, "bounces": n}
@@ -156,8 +146,6 @@ DEVICE_SUITES = {
 DOCS_SUITES = {
     "layouts": [],
     "bases": [],
-    "native": ["--repetitions=41"],
     "frame": ["sponza", "--repetitions=9", "--basis=sh2", "--filter=best"],
 }
-OF_LAB = "native", "quality-cascades", "quality-centres"  # need a built lab
-CHARTS = {"layouts": ("layouts", "roofline")}  # those in docs/images
+OF_LAB = ("quality-centres", )  # needs a built lab

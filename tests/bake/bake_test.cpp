@@ -26,9 +26,9 @@
 #include "tests/support/ktx2_reader.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/sphere_quadrature.hpp"
-#include "tests/support/temporary_folder.hpp"
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::bake_test {

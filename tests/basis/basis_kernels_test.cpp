@@ -12,9 +12,8 @@
 #include "pipeline/inject/lobe_literals.hpp"
 #include "pipeline/inject/lookup_table.hpp"
 #include "tests/support/on_device.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/sphere_quadrature.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/variable.hpp"
 #include "volume/volume_format.hpp"
 
 namespace clpv::basis_kernels_test {

@@ -1,20 +1,31 @@
 // SPDX-License-Identifier: MIT
 // Bases against quadrature done here: Gram matrices, integrals of the clamped cosine, quality of
 // its lobe.
+
 #include "basis/basis.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "basis/bases.hpp"
 #include "basis/clamped_cosine.hpp"
 #include "basis/lobe_quality.hpp"
-#include "basis/srbf.hpp"
+#include "basis/matrix.hpp"
+#include "basis/sweep.hpp"
+#include "basis/transport.hpp"
+#include "kernels/shared/sweep.h"
+#include "support/literals.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/run_here.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv::basis_test {
+
 namespace {
 
 using test::integral;
@@ -180,4 +191,244 @@ TEST(Rejected, TwoEqualCentres) {
 }
 
 }  // namespace
+
 }  // namespace clpv::basis_test
+
+namespace clpv::test::constants_test {
+
+// Tables for kernels as text, and the order of bins and links that kernels of the sweep rely on.
+
+namespace {
+
+TEST(Constants, RoundingErrorsOfZerosAreZeroAndNotCounted) {
+  Matrix matrix(2, 2);
+  matrix(0, 0) = 0.5;
+  matrix(0, 1) = -1e-14;
+  matrix(1, 1) = -0.5;
+  EXPECT_EQ(Literals().matrix("CLPV_M", matrix).defined().at("CLPV_M"),
+            "{{0.5f, 0.0f}, \\\n  {0.0f, (-0.5f)}}");
+  EXPECT_EQ(products(matrix), 2);
+}
+
+TEST(Constants, BinsAndLinksAreGroupedByAxis) {
+  const std::vector<SweepBin> bins = sweep_bins(1);
+  ASSERT_EQ(bins.size(), CLPV_SWEEP_BINS);
+  for (std::size_t b = 0; b < bins.size(); ++b)
+    EXPECT_EQ(bins[b].axis, static_cast<int>(b) / CLPV_AXIS_BINS) << "bin " << b;
+  // Bits of a bin's index among those of its axis are signs (kernels/sweep/mirrored_bins.h).
+  for (int b = 0; b < CLPV_SWEEP_BINS; ++b) {
+    const int first = b - b % CLPV_AXIS_BINS;
+    for (int bit = 0; bit < 3; ++bit) {
+      const int axis = (bins[b].axis + 1 + bit) % 3;
+      const bool same = bins[b].sign[axis] == bins[first].sign[axis];
+      EXPECT_EQ(same, ((b - first) >> bit & 1) == 0) << "bin " << b << ", bit " << bit;
+    }
+  }
+  const LinkVolumes links = link_volumes();
+  EXPECT_EQ(links.across[1].size(), links.across[0].size());
+  EXPECT_EQ(links.across[2].size(), links.across[0].size());
+}
+
+}  // namespace
+
+}  // namespace clpv::test::constants_test
+
+namespace clpv::centres_file_test {
+
+// Sets of SRBF centres: files of them, and a lambda for each centre.
+
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(LambdaOfEachCentre, GramMatrixIsThatOfTheFunctions) {
+  const std::vector<double> lambdas{.2, .3, .25, .4, .33, .21};
+  const auto basis = make_basis_from_centres("set", even_directions(6), lambdas);
+  EXPECT_EQ(basis->lambda(), 0);
+  EXPECT_EQ(basis->lambda_text(), "0.2 to 0.4");
+  for (int i = 0; i < basis->size(); ++i) {
+    for (int j = 0; j < basis->size(); ++j) {
+      const double expected = test::integral(test::sphere({0, 0, 1}, 40), [&](const glm::dvec3& w) {
+        const std::vector<double> b = basis->evaluate(w);
+        return b[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)];
+      });
+      EXPECT_NEAR(basis->gram()(i, j), expected, 1e-9) << i << ' ' << j;
+    }
+  }
+}
+
+class CentresFile : public ::testing::Test {
+ protected:
+  std::string file(const std::string& text) {
+    const std::string path = (folder_.path() / "mine.json").string();
+    std::ofstream(path) << text;
+    return path;
+  }
+  void expect_rejected(const std::string& path, const std::string& word) {
+    EXPECT_THAT(test::error_of(ExitCode::bad_input, [&] { load_basis(path); }),
+                ::testing::AllOf(HasSubstr(path), HasSubstr(word)));
+  }
+  test::TemporaryFolder folder_;
+};
+
+const char* const kAxesFile = R"({"name": "axes", "centres":
+    [[2, 0, 0], [-1e200, 0, 0], [0, 1, 0], [0, -3, 0], [0, 0, 1e-200], [0, 0, -1]]})";
+
+TEST_F(CentresFile, MakesTheBasis) {
+  const auto basis = load_basis(file(kAxesFile), 0.3);
+  const auto named = make_basis("srbf6", 0.3);
+  EXPECT_EQ(basis->name(), "axes");
+  EXPECT_EQ(basis->centres(), named->centres());
+  EXPECT_EQ(basis->condition(), named->condition());
+  EXPECT_EQ(load_basis(file(R"({"centres": [[0, 0, 1]]})"))->name(), "mine");
+}
+
+TEST_F(CentresFile, RejectsWithThePlace) {
+  const std::pair<std::string, std::string> bad[] = {
+      {"{", "invalid JSON"},
+      {"[1]", "object"},
+      {"{}", "/centres is missing"},
+      {R"({"centres": []})", "1 to 64"},
+      {R"({"centres": 7})", "is 7"},
+      {R"({"centres": [[0, 0, 1], [1, 2]]})", "/centres/1"},
+      {R"({"centres": [[0, 0, 0]]})", "/centres/0"},
+      {R"({"centres": [[0, 0, "1"]]})", "/centres/0/2"},
+      {R"({"centres": [[0, 0, 1e999]]})", "invalid JSON"},
+      {R"({"centres": [[0, 0, 1], [0, 0, 5]]})", "/centres/1"},
+      {R"({"centres": [[0, 0, 1]], "lambda": 1})",
+       "/lambda is 1; allowed: a number greater than 0 and less than 1"},
+      {R"({"centres": [[0, 0, 1]], "lambda": "wide"})", "/lambda is \"wide\""},
+      {R"({"centres": [[0, 0, 1], [1, 0, 0]], "lambda": [0.2, 0]})", "/lambda/1 is 0"},
+      {R"({"centres": [[0, 0, 1], [1, 0, 0]], "lambda": [0.2]})",
+       "/lambda is an array of 1; allowed: a number, or 2"},
+      {R"({"centres": [[0, 0, 1], [0.01, 0, 1]], "lambda": 0.01})", "condition number"},
+      {R"({"centres": [[0, 0, 1]], "lambdas": 0.2})", "lambdas"},
+      {R"({"centres": [[0, 0, 1]], "name": 3})", "/name"},
+      {std::string(100000, '['), "nested more than"},
+      {std::string(2 << 20, ' '), "bytes"},
+  };
+  for (const auto& [text, word] : bad) expect_rejected(file(text), word);
+  std::string many = "[[0,0,1]";
+  for (int i = 1; i < 65; ++i) many += ",[" + std::to_string(i) + ",1,0]";
+  expect_rejected(file("{\"centres\": " + many + "]}"), "array of 65");
+  expect_rejected((folder_.path() / "none.json").string(), "no file");
+  expect_rejected(folder_.path().string(), "a folder");
+}
+
+TEST_F(CentresFile, IsDescribedByTheProgram) {
+  const test::Outcome good =
+      test::must_run_here("basis --format json --lambda 0.3 --centres " + file(kAxesFile));
+  const auto json = nlohmann::json::parse(good.out);
+  EXPECT_EQ(json.at("schema"), 1);
+  EXPECT_EQ(json.at("bases").size(), 1u);
+  EXPECT_EQ(json.at("bases")[0].at("name"), "axes");
+  EXPECT_EQ(test::run_here("basis --centres " + file("{")).exit_code, 3);
+  EXPECT_EQ(test::run_here("basis sh2 --centres " + file(kAxesFile)).exit_code, 2);
+  EXPECT_EQ(test::run_here("basis --lambda 0.001 --centres " + file(kAxesFile)).exit_code, 2);
+}
+
+}  // namespace
+
+}  // namespace clpv::centres_file_test
+
+namespace clpv::transport_test {
+
+// Transports against quadrature done here: solid angles, face fluxes, energies.
+
+namespace {
+
+using test::integral;
+
+constexpr double kPi = std::numbers::pi;
+
+const FaceTransport& faces(const Transport& transport) {
+  return std::get<FaceTransport>(transport.scheme);
+}
+TEST(SolidAngles, AreThoseOfTheFacesAndSumToTheSphere) {
+  EXPECT_NEAR(far_solid_angle(), 0.4006696846462392, 1e-15);
+  EXPECT_NEAR(side_solid_angle(), 0.4234313544367390, 1e-15);
+  const auto basis = make_basis("sh2");
+  const Transport transport = make_transport(TransportKind::sampled, *basis);
+  ASSERT_EQ(faces(transport).faces.size(), 30u);
+  double sum = 0;
+  for (const Face& face : faces(transport).faces) {
+    const glm::dvec3 normal(face.normal), centre = glm::dvec3(face.travel) + 0.5 * normal;
+    EXPECT_NEAR(face.solid_angle, integral(test::square(centre, normal), [](auto) { return 1.0; }),
+                1e-12);
+    EXPECT_NEAR(glm::length(face.direction - glm::normalize(centre)), 0, 1e-15);
+    sum += face.solid_angle;
+  }
+  EXPECT_NEAR(sum, 4 * kPi, 1e-13);
+}
+
+struct TransportOf : test::EveryBasis {};
+INSTANTIATE_TEST_SUITE_P(Names, TransportOf, ::testing::ValuesIn(test::smooth_bases()),
+                         [](const auto& info) { return info.param; });
+
+TEST_P(TransportOf, FluxesAreSamplesOrIntegralsOverTheFace) {
+  const Transport sampled = make_transport(TransportKind::sampled, *basis_),
+                  exact = make_transport(TransportKind::exact, *basis_);
+  for (std::size_t f = 0; f < 30; ++f) {
+    const Face &at_centre = faces(sampled).faces[f], &over_cone = faces(exact).faces[f];
+    const glm::dvec3 normal(at_centre.normal);
+    const auto nodes = test::square(glm::dvec3(at_centre.travel) + 0.5 * normal, normal);
+    const std::vector<double> b = basis_->evaluate(at_centre.direction);
+    std::vector<double> expected(b.size(), 0.0);
+    for (const test::Node& node : nodes) {
+      const std::vector<double> value = basis_->evaluate(node.w);
+      for (std::size_t i = 0; i < b.size(); ++i) expected[i] += node.weight * value[i];
+    }
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      EXPECT_NEAR(at_centre.flux[i], at_centre.solid_angle * b[i], 1e-14);
+      EXPECT_NEAR(over_cone.flux[i], expected[i], 1e-11);
+    }
+  }
+}
+
+TEST_P(TransportOf, ExactFluxesConserveEnergy) {
+  const Transport transport = make_transport(TransportKind::exact, *basis_);
+  EXPECT_TRUE(transport.unit_flux_lobes);
+  EXPECT_NEAR(energy_after(*basis_, faces(transport), 8), 1, 1e-13);
+  EXPECT_NEAR(energy_after(*basis_, faces(transport), 24), 1, 1e-13);
+}
+
+TEST_P(TransportOf, LobesAreClampedCosinesAlongTheAxes) {
+  const Transport sampled = make_transport(TransportKind::sampled, *basis_),
+                  exact = make_transport(TransportKind::exact, *basis_);
+  for (std::size_t a = 0; a < kAxes.size(); ++a) {
+    const std::vector<double> lobe = basis_->clamped_cosine(glm::dvec3(kAxes[a]));
+    // Unit flux changes a lobe by -0.13 to +0.05 %.
+    EXPECT_NEAR(basis_->energy(lobe) / kPi, 1, 1.4e-3);
+    std::vector<double> unit;
+    for (int i = 0; i < basis_->size(); ++i) {
+      EXPECT_NEAR(faces(sampled).lobes(i, static_cast<int>(a)),
+                  lobe[static_cast<std::size_t>(i)] / kPi, 1e-12);
+      unit.push_back(faces(exact).lobes(i, static_cast<int>(a)));
+    }
+    EXPECT_NEAR(basis_->energy(unit), 1, 1e-12);
+  }
+}
+
+struct Energies {
+  const char* name;
+  double after8, after24;
+};
+class SampledEnergy : public ::testing::TestWithParam<Energies> {};
+INSTANTIATE_TEST_SUITE_P(Names, SampledEnergy,
+                         ::testing::Values(Energies{"sh2", 1, 1}, Energies{"srbf4", 1.004, 1.012},
+                                           Energies{"srbf8v1", 1.011, 1.032},
+                                           Energies{"srbf8v2", .964, .897},
+                                           Energies{"srbf8v3", 1.043, 1.134},
+                                           Energies{"srbf14", .565, .153}),
+                         [](const auto& info) { return info.param.name; });
+
+TEST_P(SampledEnergy, DriftsAsTabled) {
+  const auto basis = make_basis(GetParam().name);
+  const Transport transport = make_transport(TransportKind::sampled, *basis);
+  EXPECT_NEAR(energy_after(*basis, faces(transport), 8), GetParam().after8, 5.1e-4);
+  EXPECT_NEAR(energy_after(*basis, faces(transport), 24), GetParam().after24, 5.1e-4);
+}
+
+}  // namespace
+
+}  // namespace clpv::transport_test

@@ -14,7 +14,7 @@ def row(suite, stage, **fields):
         "name": "a name", "suite": suite, "stage": stage, "status": "ok", "reason": None,
         "basis": "sh2", "coefficients": 4, "layout": "soa", "storage": "float", "lobe": "exact",
         "occlusion": False, "cascade": None, "filtered": True,
-        "preset": None, "recompute": None, "median": 4.25, "min": 4.0, "p95": 5.0, "flops": 1e9,
+        "median": 4.25, "min": 4.0, "p95": 5.0, "flops": 1e9,
         "bytes": 1e8, "gflops": 20.0, **fields
     }
 

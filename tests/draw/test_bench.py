@@ -24,21 +24,6 @@ class Charts(unittest.TestCase):
                          ["image/half texels", "image/half"])
         self.assertEqual(shadowed.get_title(), "gather sh2, occlusion")
 
-    def test_labels_of_frames_are_preset_and_recomputed_results(self):
-        rows = [
-            row("frame", stage, preset=p, recompute=a, median=m)
-            for p, a in (("paper", "light"), ("best", "nothing"), ("best", "light"))
-            for stage, m in (("gather", 3.0), ("propagate", 5.0), ("frame", 9.0))
-            if (a, stage) != ("nothing", "propagate")
-        ]
-        axis, = bench.frame(rows).axes
-        self.assertEqual([t.get_text() for t in axis.get_yticklabels()], [
-            "sh2 paper, light recomputed", "sh2 best, nothing recomputed",
-            "sh2 best, light recomputed"
-        ])
-        self.assertEqual(axis.patches[-2].get_width(), 0.0)
-        self.assertEqual(axis.patches[-1].get_x() + axis.patches[-1].get_width(), 8.0)
-
     def test_logarithmic_axes_are_written_plainly(self):
         figure = bench.layouts([row("layouts", "gather", median=m) for m in (1.0, 30.0)])
         figure.canvas.draw()
@@ -56,7 +41,7 @@ class Charts(unittest.TestCase):
         self.assertIsNone(bench.roofline([failed], {"gflops": 100.0, "bandwidths": []}))
 
     def test_files_are_those_the_rows_allow_and_the_same_twice(self):
-        rows = [row("bases", "propagate"), row("bases", "propagate", occlusion=True)]
+        rows = [row("layouts", "propagate"), row("layouts", "propagate", occlusion=True)]
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             source, one, two = folder, folder / "one", folder / "two"
@@ -65,7 +50,7 @@ class Charts(unittest.TestCase):
                 target.mkdir()
                 bench.draw(source, target)
             self.assertEqual(sorted(p.name for p in one.iterdir()),
-                             ["bases.png", "bases.svg", "roofline.png", "roofline.svg"])
+                             ["layouts.png", "layouts.svg", "roofline.png", "roofline.svg"])
             for made in one.iterdir():
                 self.assertEqual(made.read_bytes(), (two / made.name).read_bytes(), made.name)
 

@@ -15,7 +15,6 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_program.hpp"
-#include "tests/support/variable.hpp"
 
 namespace clpv::frame_cache_test {
 namespace {

@@ -9,15 +9,15 @@
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/raster/view.hpp"
 #include "pipeline/voxels/visibility.hpp"
-#include "reference/radiance.hpp"
+#include "reference/cascade_sample.hpp"
 #include "reference/view.hpp"
+#include "scene/input.hpp"
 #include "scene/load.hpp"
-#include "scene/points_file.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 namespace clpv::test::query_test {
 namespace {

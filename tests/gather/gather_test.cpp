@@ -14,8 +14,8 @@
 
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/voxels/visibility.hpp"
+#include "reference/blockers.hpp"
 #include "reference/gather.hpp"
-#include "reference/visibility.hpp"
 #include "support/error.hpp"
 #include "tests/support/numbers.hpp"
 #include "tests/support/on_device.hpp"

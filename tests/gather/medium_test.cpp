@@ -16,12 +16,12 @@
 #include "pipeline/raster/view.hpp"
 #include "reference/sweep.hpp"
 #include "scene/load.hpp"
-#include "scene/medium.hpp"
+#include "scene/scene.hpp"
 #include "scene/sky.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/numbers.hpp"
 #include "tests/support/on_device.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::medium_test {
@@ -359,14 +359,6 @@ TEST(Medium, ScatteredLightFallsOnSurfaces) {
   expect_near(medium_of(glm::vec3(0.05f), glm::vec3(0.05f), 0.3f, lower, upper), Bounces::one, 1);
   expect_near(medium_of(glm::vec3(0.5f), {}, 0.3f, lower, upper), Bounces::all,
               PathTracerOptions::kAllBounces);
-}
-
-TEST(Medium, StepPropagationIsRefused) {
-  const SceneData scene = shafts();
-  RenderOptions options;
-  apply_preset(options, PresetName::paper);
-  EXPECT_THAT(error_of(ExitCode::usage, [&] { Frame(test_session(), scene, options); }),
-              HasSubstr("with a medium, allowed: sweep (or a scene without a medium)"));
 }
 
 }  // namespace

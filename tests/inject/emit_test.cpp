@@ -12,7 +12,7 @@
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/inject/inject.hpp"
 #include "pipeline/raster/view.hpp"
-#include "reference/emit.hpp"
+#include "reference/inject.hpp"
 #include "support/error.hpp"
 #include "tests/support/numbers.hpp"
 #include "tests/support/on_device.hpp"

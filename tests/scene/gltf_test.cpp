@@ -3,7 +3,7 @@
 // checks the scene in world space.
 #include <glm/gtc/constants.hpp>
 
-#include "support/input_record.hpp"
+#include "support/input_file.hpp"
 #include "tests/support/gltf_builder.hpp"
 
 namespace clpv::test::gltf_test {

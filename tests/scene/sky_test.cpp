@@ -24,7 +24,7 @@
 #include "tests/support/error_of.hpp"
 #include "tests/support/numbers.hpp"
 #include "tests/support/on_device.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/traced_scenes.hpp"
 
 namespace clpv::sky_test {

@@ -6,7 +6,7 @@
 
 #include "image/image_io.hpp"
 #include "reference/lighting.hpp"
-#include "scene/light_kind.hpp"
+#include "scene/scene.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/scenes.hpp"

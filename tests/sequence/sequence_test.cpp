@@ -10,7 +10,7 @@
 #include "image/image_io.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
-#include "tests/support/variable.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace clpv::test::sequence_test {
 namespace {

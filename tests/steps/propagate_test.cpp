@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Propagation: the CPU reference against closed forms.
+
 #include "reference/propagate.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <numbers>
+#include <vector>
 
+#include "basis/transport.hpp"
+#include "reference/transmittance.hpp"
 #include "tests/support/numbers.hpp"
 
 namespace clpv::propagate_test {
+
 namespace {
 
 reference::Volume one_source(const Basis& basis, int n, const std::vector<double>& c,
@@ -106,4 +115,165 @@ TEST(Propagate, OnlyLightThatLeavesTheGridIsLost) {
 }
 
 }  // namespace
+
 }  // namespace clpv::propagate_test
+
+namespace clpv::transmittance_test {
+
+// Transmittance past blockers against closed forms, by the CPU reference.
+
+namespace {
+
+using test::times;
+
+constexpr int kGrid = 5;
+constexpr double kFloat = 1e-6;
+
+/// A link into a cell: its side, the direction of the light and the weights of the blockers.
+struct Link {
+  glm::ivec3 side;
+  glm::dvec3 direction;  // direction of the light
+  std::vector<double> blocked_by;
+};
+
+/// In the order of the transmittance volume's planes.
+std::vector<Link> links(const Transport& transport) {
+  std::vector<Link> result;
+  if (const auto* faces = std::get_if<FaceTransport>(&transport.scheme)) {
+    for (const Face& face : faces->faces)
+      result.push_back({face.normal, face.direction, face.blocked_by});
+    return result;
+  }
+  for (const SweepLink& link : std::get<std::vector<SweepLink>>(transport.scheme))
+    result.push_back({-link.offset, link.direction, link.blocked_by});
+  return result;
+}
+
+/// Coefficients of the blockers at a corner.
+using Blockers = std::function<std::vector<double>(const glm::ivec3& corner)>;
+
+reference::Volume geometry_of(int numbers, const Blockers& blockers) {
+  reference::Volume volume(kGrid + 1, numbers, 1);
+  reference::for_each_cell(kGrid + 1, [&](const glm::ivec3& p) {
+    const std::vector<double> c = blockers(p);
+    for (int i = 0; i < numbers; ++i)
+      volume.at(0, i, p.x, p.y, p.z) = c[static_cast<std::size_t>(i)];
+  });
+  return volume;
+}
+
+/// Expects each cell to transmit `expected` along each link.
+void expect_all(const Transport& transport, const reference::Volume& geometry,
+                const std::function<double(const glm::ivec3& cell, const Link& link)>& expected,
+                double allowed = kFloat) {
+  for (const Link& link : links(transport)) {
+    reference::for_each_cell(kGrid, [&](const glm::ivec3& cell) {
+      ASSERT_NEAR(reference::transmittance(geometry, cell, link.side, link.blocked_by),
+                  expected(cell, link), allowed)
+          << "link to " << link.side.x << link.side.y << link.side.z << " of cell " << cell.x
+          << cell.y << cell.z;
+    });
+  }
+}
+
+class EachTransport : public ::testing::TestWithParam<TransportKind> {
+ protected:
+  Transport transport(const Basis& basis, Blocking blocking = Blocking::one_sided) const {
+    return make_transport(GetParam(), basis, {}, blocking);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Transmit, EachTransport,
+                         ::testing::Values(TransportKind::sampled, TransportKind::sweep),
+                         [](const auto& info) { return std::string(name_of(info.param)); });
+
+// In sh2, whose constant is exactly 1: blockers that grow from corner to corner are averaged over
+// the side that light enters by, and B is clamped to [0, 1].
+TEST_P(EachTransport, BlockersAreAveragedOverTheLinksFace) {
+  const auto basis = make_basis("sh2");
+  const glm::dvec3 slope(0.21, -0.13, 0.17);
+  const auto blocked = [&](const glm::dvec3& corner) { return 0.4 + glm::dot(slope, corner); };
+  const reference::Volume geometry = geometry_of(basis->size(), [&](const glm::ivec3& corner) {
+    return times(blocked(glm::dvec3(corner)), basis->constant());
+  });
+  int open = 0, shut = 0, between = 0;
+  expect_all(transport(*basis), geometry, [&](const glm::ivec3& cell, const Link& link) {
+    const double through = 1 - blocked(glm::dvec3(cell) + 0.5 + 0.5 * glm::dvec3(link.side));
+    ++(through >= 1 ? open : through <= 0 ? shut : between);
+    return std::clamp(through, 0.0, 1.0);
+  });
+  EXPECT_GT(open, 0);
+  EXPECT_GT(shut, 0);
+  EXPECT_GT(between, 0);
+}
+
+// On sh2 a surfel of normal n blocks 1/4 - n.w/2 of the light along w.
+TEST_P(EachTransport, SurfelsBlockWhatTravelsAgainstTheirNormal) {
+  const auto basis = make_basis("sh2");
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(2, -1, 3));
+  const std::vector<double> front = times(0.9, basis->clamped_cosine(normal));
+  expect_all(
+      transport(*basis), geometry_of(basis->size(), [&](const glm::ivec3&) { return front; }),
+      [&](const glm::ivec3&, const Link& link) {
+        return 1 - std::clamp(0.9 * (0.25 - 0.5 * glm::dot(normal, link.direction)), 0.0, 1.0);
+      });
+}
+
+// A surfel across an axis blocks |n.w| of the light along every w. An oblique surfel transmits the
+// same fraction along the axes, and at least that elsewhere.
+TEST_P(EachTransport, AreasBlockTheirShareOfEachFace) {
+  const auto basis = make_basis("sh2");
+  const Transport by_areas = transport(*basis, Blocking::areas);
+  const auto surfel = [](const glm::dvec3& n) {
+    return geometry_of(3, [n](const glm::ivec3&) {
+      return times(0.6, {std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+    });
+  };
+  const auto blocked = [](const glm::dvec3& n, const glm::dvec3& w) {
+    return 0.6 * std::abs(glm::dot(n, w));
+  };
+  const glm::dvec3 up(0, 1, 0), slanted = glm::normalize(glm::dvec3(2, -1, 3));
+  expect_all(by_areas, surfel(up),
+             [&](const glm::ivec3&, const Link& link) { return 1 - blocked(up, link.direction); });
+  int along_axes = 0;
+  for (const Link& link : links(by_areas)) {
+    const double through =
+        reference::transmittance(surfel(slanted), glm::ivec3(2), link.side, link.blocked_by);
+    const bool along = std::max({std::abs(link.direction.x), std::abs(link.direction.y),
+                                 std::abs(link.direction.z)}) > 1 - 1e-12;
+    along_axes += along;
+    if (along) {
+      EXPECT_NEAR(through, 1 - blocked(slanted, link.direction), kFloat);
+    } else {
+      EXPECT_LE(through, 1 - blocked(slanted, link.direction) + kFloat);
+    }
+  }
+  EXPECT_EQ(along_axes, 6);
+}
+
+/// Transmittance of a link into the middle one of 3^3 cells. `hidden`: centres that the two points
+/// at lower x in each row of a cube do not see, and those that the others do not see.
+double open_share(double transmittance, const std::array<std::uint8_t, 2>& hidden,
+                  const glm::ivec3& side) {
+  constexpr int kCells = 3;
+  std::vector<std::uint8_t> occluded(std::size_t{64} * kCells * kCells * kCells);
+  for (std::size_t i = 0; i < occluded.size(); ++i) occluded[i] = hidden[i % 4 / 2];
+  return reference::open_share(transmittance, occluded, kCells, glm::ivec3(1), side);
+}
+
+TEST(Transmittance, AWallClosesLinks) {
+  constexpr std::array<std::uint8_t, 2> kNone = {0, 0}, kWall = {0xaa, 0x55}, kAll = {0xff, 0xff};
+  for (const glm::ivec3 side : {glm::ivec3(1, 0, 0), {-1, 1, 0}, {1, 1, -1}}) {
+    EXPECT_EQ(open_share(0.3, kNone, side), 0.3);
+    EXPECT_EQ(open_share(0.3, kWall, side), 0);
+    EXPECT_EQ(open_share(1, kWall, side), 0);
+    // Enclosed centres see nothing.
+    EXPECT_EQ(open_share(0.42, kAll, side), 0) << "a full wall along a corner";
+    EXPECT_NEAR(open_share(0.71, kAll, side), 0.5, 0.01);
+    EXPECT_EQ(open_share(1, kAll, side), 1);
+  }
+  EXPECT_EQ(open_share(0.3, kWall, {0, 1, -1}), 0.3) << "along the wall";
+}
+
+}  // namespace
+
+}  // namespace clpv::transmittance_test

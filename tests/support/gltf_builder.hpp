@@ -15,7 +15,7 @@
 #include "scene/bounds.hpp"
 #include "scene/load.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/tiny_images.hpp"
 
 namespace clpv::test {

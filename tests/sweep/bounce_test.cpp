@@ -17,7 +17,6 @@
 #include "pipeline/sweep/sweep.hpp"
 #include "reference/blockers.hpp"
 #include "reference/bounce.hpp"
-#include "reference/reflectors.hpp"
 #include "scene/load.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"

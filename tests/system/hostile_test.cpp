@@ -119,6 +119,7 @@ TEST(HostileCommandLines, OfFrames) {
           {"--preset paper --transport sweep", {"found 'kernel' (set by --preset paper)"}},
           {"--grid 8 --grid 16", {"--grid"}},
           {"--grid", {"--grid: found no value"}},
+          {"--stats --quiet", {"--stats: found the option --quiet, allowed: a value"}},
           {"--samples 64", {"render: unknown option '--samples'; --help-all"}},
           {"--eye 1,2,3", {"--target"}},
           {"--target 1,2,3", {"--eye"}},

@@ -27,12 +27,11 @@
 #include "scene/load.hpp"
 #include "support/cache_folder.hpp"
 #include "support/log.hpp"
-#include "support/scratch_folder.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/scenes.hpp"
-#include "tests/support/variable.hpp"
 #include "times/time_record.hpp"
 
 namespace clpv::trust_test {

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Kernels against the CPU reference, stage by stage, as `clpv check` compares them.
+
 #include "verify/check.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
+#include "basis/basis.hpp"
+#include "reference/inject.hpp"
 #include "tests/support/on_device.hpp"
+#include "tests/support/run_here.hpp"
 
 namespace clpv::check_test {
+
 namespace {
 
 /// Compares these kernels.
@@ -66,4 +75,102 @@ TEST(LongCheck, KernelsAgreeInTheOtherNumberOfLanes) {
 }
 
 }  // namespace
+
 }  // namespace clpv::check_test
+
+namespace clpv::verify::comparison_test {
+
+// Comparison of results with the CPU reference, and its JUnit report.
+
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+TEST(Comparison, ReportsTheLargestErrorAndItsPlace) {
+  std::vector<double> expected(2 * 8, 0.5);
+  std::vector<float> found(expected.begin(), expected.end());
+  EXPECT_EQ(compare_volumes(found, expected, 2).worst, 0);
+  EXPECT_EQ(compare_volumes(found, expected, 2).place, "");
+  found[3] = 0.625f;
+  found[8 + 6] = 0.25f;
+  EXPECT_EQ(compare_volumes(found, expected, 2).worst, 0.5);
+  EXPECT_EQ(compare_volumes(found, expected, 2).place, "cell 0,1,1 plane 1: 0.25, expected 0.5");
+}
+
+TEST(Comparison, NaNIsWorseThanAnyNumberAndStays) {
+  std::vector<double> expected(8, 0.5);
+  std::vector<float> found(expected.begin(), expected.end());
+  found[2] = NAN;
+  found[5] = 1000;
+  EXPECT_TRUE(std::isnan(compare_volumes(found, expected, 2).worst));
+  EXPECT_THAT(compare_volumes(found, expected, 2).place, HasSubstr("cell 0,1,0"));
+}
+
+TEST(Comparison, AReferenceOfNothingAllowsNothing) {
+  const std::vector<double> expected(8, 0.0);
+  std::vector<float> found(8, 0.0f);
+  EXPECT_FALSE(compare_volumes(found, expected, 2).worst <= 1);  // 0 / 0 does not pass
+}
+
+TEST(Comparison, EitherOfTwoNearlyEqualBlockersIsRight) {
+  const std::unique_ptr<Basis> basis = make_basis("sh2");
+  const std::vector<double> up = basis->clamped_cosine({0, 1, 0}),
+                            along = basis->clamped_cosine({1, 0, 0});
+  reference::Volume a(2, basis->size(), 1), b = a;
+  const auto put = [](reference::Volume& to, int x, const std::vector<double>& c, double scale) {
+    for (std::size_t i = 0; i < c.size(); ++i)
+      to.at(0, static_cast<int>(i), x, 0, 0) = scale * c[i];
+  };
+  put(a, 0, up, 1), put(b, 0, along, 1.0005);  // as halves may round it
+  put(a, 1, up, 1), put(b, 1, along, 1.01);
+  reference::Volume merged = a;
+  reference::merge_geometry(b, *basis, Blocking::one_sided, merged);
+  EXPECT_EQ(merged.values, b.values);
+  const reference::Volume other = reference::merged_against_ties(a, b, *basis, Blocking::one_sided);
+  for (int i = 0; i < basis->size(); ++i) {
+    EXPECT_EQ(other.value(0, i, 0, 0, 0), a.value(0, i, 0, 0, 0));
+    EXPECT_EQ(other.value(0, i, 1, 0, 0), b.value(0, i, 1, 0, 0));
+  }
+}
+
+TEST(Junit, ListsStagesCasesAndFailures) {
+  const auto of = [](const char* stage, const char* variant, double worst, const char* place) {
+    return result_of(stage, variant, {worst, 1e-6, place});
+  };
+  const std::string xml = junit({of("inject", "sh2", 1e-7, ""),
+                                 of("gather", "a<b", 0.5, "cell \"1\" & more"),
+                                 of("gather", "nan", NAN, "cell 2"),
+                                 {"gather", "dead", {}, Status::failed, "signal <11>"},
+                                 {"gather", "image", {}, Status::unsupported, "no images"}},
+                                "A & B");
+  EXPECT_THAT(
+      xml,
+      AllOf(
+          HasSubstr("<testsuites name=\"clpv check on A &amp; B\" tests=\"5\" failures=\"2\" "
+                    "errors=\"1\" skipped=\"1\">"),
+          HasSubstr(
+              "<testsuite name=\"inject\" tests=\"1\" failures=\"0\" errors=\"0\" skipped=\"0\">"),
+          HasSubstr("<testcase classname=\"clpv.inject\" name=\"sh2\" time=\"0.000000\"/>"),
+          HasSubstr("name=\"a&lt;b\" time=\"0.000000\">"),
+          HasSubstr("cell &quot;1&quot; &amp; more</failure>"),
+          HasSubstr("<error>signal &lt;11></error>"),
+          HasSubstr("<skipped message=\"no images\"/>")));
+}
+
+TEST(Junit, WithoutAnOkResultItHasAnError) {
+  for (const CheckResults& none :
+       {CheckResults{}, CheckResults{{"gather", "image", {}, Status::unsupported, "no images"}}})
+    EXPECT_THAT(junit(none, "A"), HasSubstr("failures=\"0\" errors=\"1\""));
+}
+
+TEST(Junit, IsWrittenByTheCheck) {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder / "check.xml").string();
+  const test::Outcome outcome = test::must_run_here("check --stage sizes --junit " + file);
+  EXPECT_THAT(test::read_file(file), HasSubstr("<testsuite name=\"sizes\""));
+}
+
+}  // namespace
+
+}  // namespace clpv::verify::comparison_test

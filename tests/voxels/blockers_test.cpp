@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: MIT
 // Blockers from a scene's triangles against known areas.
+
 #include "pipeline/voxels/blockers.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <random>
 #include <vector>
 
+#include "basis/bounce.hpp"
+#include "kernels/shared/reflectors.h"
+#include "pipeline/voxels/reflectors.hpp"
+#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "verify/check.hpp"
 
 namespace clpv::blockers_test {
+
 namespace {
 
 using namespace test;
@@ -108,4 +118,363 @@ TEST(Blockers, AHugeTriangleIsAWall) {
 }
 
 }  // namespace
+
 }  // namespace clpv::blockers_test
+
+namespace clpv::reflectors_test {
+
+// Face albedo of voxelised triangles against known areas.
+
+namespace {
+
+using namespace test;
+
+constexpr int kGrid = 9;  // as in `clpv check`: the same programs
+constexpr int kCells = kGrid * kGrid * kGrid;
+constexpr float kColour = 1.0f / 4096;
+const ClpvGrid kGridCells = {{0, 0, 0}, 1, kGrid, {}};
+
+/// Areas [channel][side][z][y][x], by the kernels.
+struct Areas {
+  std::vector<float> values;
+  float at(int side, int x, int y, int z, int channel = 0) const {
+    return values[static_cast<std::size_t>((channel * kCellFaces + side) * kCells +
+                                           (z * kGrid + y) * kGrid + x)];
+  }
+  float sum(int side, int channel = 0) const {
+    float total = 0;
+    for (int i = 0; i < kCells; ++i)
+      total += at(side, i % kGrid, i / kGrid % kGrid, i / kGrid / kGrid, channel);
+    return total;
+  }
+};
+
+Areas reflected(const SceneData& scene, bool white = false) {
+  const SceneBuffers buffers = upload_scene(test_session(), scene);
+  Volume reflectors(test_session(), {kGrid, kCellFaces, CLPV_REFLECTOR_CHANNELS},
+                    "test: reflectors");
+  VoxelField(test_session(), buffers, reflector_masks(buffers, kGrid, {}, white))
+      .update(0, kGridCells, reflectors);
+  return {reflectors.read(test_session())};
+}
+
+TEST(Reflectors, AWallHasItsAlbedoOnBothSides) {
+  SceneData scene;
+  add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene, {0.8f, 0.5f, 0.25f}));
+  const Areas areas = reflected(scene);
+  for (int i = 0; i < kGrid * kGrid; ++i) {
+    EXPECT_NEAR(areas.at(0, 2, i % kGrid, i / kGrid), 0.8f, kColour) << i;  // 1.7 + 0.5
+    EXPECT_NEAR(areas.at(1, 1, i % kGrid, i / kGrid), 0.8f, kColour) << i;  // 1.7 - 0.5
+  }
+  const float cells = kGrid * kGrid;
+  for (int channel = 0; channel < 3; ++channel) {
+    const float albedo = channel == 0 ? 0.8f : (channel == 1 ? 0.5f : 0.25f);
+    for (int side = 0; side < kCellFaces; ++side)
+      EXPECT_NEAR(areas.sum(side, channel), side < 2 ? albedo * cells : 0, kColour * cells) << side;
+  }
+}
+
+TEST(Reflectors, AlbedoIsWeightedByCoveredArea) {
+  SceneData scene;
+  const unsigned material = add_material(scene, glm::vec3(0.5f));
+  add_quad(scene, {2, 1.2f, 1}, {0.5f, 0, 0}, {0, 0, -0.25f}, material);
+  EXPECT_NEAR(reflected(scene).sum(2), 0.125f * 0.5f, kColour);
+  add_quad(scene, {2, 1.3f, 1}, {0.5f, 0, 0}, {0, 0, -0.25f}, add_material(scene, glm::vec3(1)));
+  const Areas both = reflected(scene);
+  EXPECT_NEAR(both.sum(2), 0.125f * 0.75f, kColour) << "one area, of the mean albedo";
+  EXPECT_NEAR(both.sum(3), 0.125f * 0.75f, kColour);
+}
+
+// A wall at 45 degrees is split into two areas, which together reflect as much light.
+TEST(Reflectors, ASlantedWallSplitsIntoAreasPerAxis) {
+  SceneData scene;
+  add_quad(scene, {1.5f, 1.0f, 1}, {1, 1, 0}, {0, 0, 1},
+           add_material(scene, glm::vec3(0.5f)));  // towards (1, -1, 0)
+  const Areas areas = reflected(scene);
+  const float whole = 0.5f * std::sqrt(2.0f);
+  for (const int side : {0, 1, 2, 3}) EXPECT_NEAR(areas.sum(side), 0.5f * whole, kColour) << side;
+  EXPECT_EQ(areas.sum(4) + areas.sum(5), 0);
+}
+
+TEST(Reflectors, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
+  SceneData scene;
+  scene.textures.push_back({.width = 2,
+                            .height = 1,
+                            .rgba = {255, 255, 255, 255, 0, 0, 0, 0},
+                            .name = "white, and a black hole"});
+  const unsigned material = add_material(scene, glm::vec3(0.5f));
+  scene.materials[material].texture = 0;
+  add_quad(scene, {1, 2.2f, 1}, {0, 0, 1}, {1, 0, 0}, material);  // up
+  EXPECT_NEAR(reflected(scene).sum(2), 0.25f, 0.02f) << "half of it white";
+  for (Vertex& vertex : scene.vertices) vertex.colour[1] = 0.5f;
+  const Areas tinted = reflected(scene);
+  EXPECT_NEAR(tinted.sum(2, 1), 0.5f * tinted.sum(2, 0), 2 * kColour);
+  scene.materials[material].flags = CLPV_MATERIAL_MASKED;
+  scene.materials[material].alpha_cutoff = 0.5f;
+  EXPECT_NEAR(reflected(scene).sum(2), 0.25f, 0.06f) << "black texels are holes";
+}
+
+// The furnace has the side that a triangle faces, and both where its material is double-sided.
+TEST(Reflectors, OnlyFrontsOfTheFurnaceEmit) {
+  SceneData scene;
+  const unsigned dark = add_material(scene, glm::vec3(0));
+  add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, dark);  // towards +x
+  const Areas one = reflected(scene, true);
+  scene.materials[dark].flags |= CLPV_MATERIAL_DOUBLE_SIDED;
+  const Areas both = reflected(scene, true);
+  constexpr int kWhite = CLPV_REFLECTOR_WHITE;
+  EXPECT_NEAR(one.at(0, 2, 1, 1, kWhite), 1, kColour);
+  EXPECT_EQ(one.sum(1, kWhite), 0);
+  EXPECT_NEAR(both.at(0, 2, 1, 1, kWhite), 1, kColour);
+  EXPECT_NEAR(both.at(1, 1, 1, 1, kWhite), 1, kColour);
+}
+
+TEST(Reflectors, AlbedoIsAtMostOne) {
+  SceneData scene;
+  add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene, {3, -1, 0.5f}));
+  const Areas areas = reflected(scene);
+  EXPECT_EQ(areas.at(0, 2, 1, 1, 0), 1);
+  EXPECT_EQ(areas.at(0, 2, 1, 1, 1), 0);
+}
+
+}  // namespace
+
+}  // namespace clpv::reflectors_test
+
+namespace clpv::visibility_test {
+
+// Visibility between cells against closed forms: walls hide exactly the cells behind them.
+
+namespace {
+
+using namespace test;
+
+constexpr int kGrid = 9;                            // as in `clpv check`: the same programs
+const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 8.5
+
+/// Bytes of all points, by the kernel.
+std::vector<std::uint8_t> occluded(const SceneData& scene, const ClpvGrid& grid = kCells) {
+  const SceneBuffers buffers = upload_scene(test_session(), scene);
+  VoxelField visibility(test_session(), buffers, visibility_masks(static_cast<int>(grid.n), 1));
+  visibility.update(0, grid);
+  return test_session().read<std::uint8_t>(visibility.masks(),
+                                           visibility_bytes(static_cast<int>(grid.n)));
+}
+
+/// Cube and point of a byte.
+glm::ivec3 cube_of(std::size_t at) {
+  const int cube = static_cast<int>(at / 64);
+  return {cube % kGrid, cube / kGrid % kGrid, cube / kGrid / kGrid};
+}
+glm::ivec3 point_of(std::size_t at) {
+  const int point = static_cast<int>(at % 64);
+  return {point % 4, point / 4 % 4, point / 16};
+}
+bool between_centres(std::size_t at) {
+  const glm::ivec3 cube = cube_of(at);
+  return std::max({cube.x, cube.y, cube.z}) < kGrid - 1;
+}
+
+constexpr unsigned kCornersWithX = 0b10101010;
+
+TEST(Visibility, AWallHidesExactlyTheCellsBehindIt) {
+  SceneData scene;
+  add_quad(scene, {2.0f, -9, -9}, {0, 20, 0}, {0, 0, 20},
+           add_material(scene));  // between centres at 1.5 and 2.5
+  const std::vector<std::uint8_t> found = occluded(scene);
+  for (std::size_t at = 0; at < found.size(); ++at) {
+    unsigned expected = 0;
+    if (between_centres(at) && cube_of(at).x == 1)
+      expected = point_of(at).x < 2 ? kCornersWithX : 0xff & ~kCornersWithX;
+    ASSERT_EQ(found[at], expected) << at;
+  }
+}
+
+TEST(Visibility, AWallThroughCentresHidesNothing) {
+  SceneData scene;
+  add_quad(scene, {1.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
+  for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
+}
+
+TEST(Visibility, ASmallTriangleHidesOnlyWhatLiesBehindIt) {
+  SceneData scene;
+  // On the segment from the centre (0.5, 0.5, 0.5) to the first point, 1/8 of a cell further along
+  // each axis.
+  add_quad(scene, {0.55f, 0.55f, 0.56f}, {0.02f, 0, 0}, {0, 0.02f, 0}, add_material(scene));
+  std::vector<std::uint8_t> found = occluded(scene);
+  EXPECT_EQ(found[0] & 1, 1) << "the first point of the first cube does not see its first corner";
+  EXPECT_EQ(found[0] & ~1, 0);
+  for (std::size_t at = 64; at < found.size(); ++at) ASSERT_EQ(found[at], 0) << at;
+}
+
+TEST(Visibility, TrianglesOfOneSurfaceLeaveNoGap) {
+  SceneData scene;
+  const unsigned material = add_material(scene);
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j)
+      add_quad(scene, {2.0f, 0.1f * i, 0.1f * j}, {0, 0.1f, 0}, {0, 0, 0.1f}, material);
+  }
+  SceneData whole;
+  add_quad(whole, {2.0f, 0, 0}, {0, 4, 0}, {0, 0, 4}, add_material(whole));
+  EXPECT_EQ(occluded(scene), occluded(whole));
+}
+
+TEST(Visibility, MaskedMaterialsHideNothing) {
+  SceneData scene;
+  add_quad(scene, {2, -9, -9}, {0, 20, 0}, {0, 0, 20},
+           add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED));
+  for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
+}
+
+TEST(Visibility, NothingIsHiddenInAGridOfOneCell) {
+  SceneData scene;
+  add_quad(scene, {0.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
+  for (const std::uint8_t bits : occluded(scene, {{0, 0, 0}, 1, 1, {}})) ASSERT_EQ(bits, 0);
+}
+
+}  // namespace
+
+}  // namespace clpv::visibility_test
+namespace clpv::voxel_field_test {
+
+// Voxelised triangles are the same whether computed from nothing or updated as cascades and
+// triangles move.
+
+namespace {
+
+using namespace test;
+
+constexpr int kGrid = 9;  // as in `clpv check`: the same programs
+constexpr float kCell = 0.4f;
+
+/// A grid whose first cell is `first` cells from the world's origin along each axis.
+ClpvGrid grid_at(const glm::ivec3& first) {
+  ClpvGrid grid{{}, kCell, kGrid, {}};
+  for (int a = 0; a < 3; ++a) grid.origin[a] = kCell * static_cast<float>(first[a]);
+  return grid;
+}
+
+/// Triangles of all sizes in and around a space of 20 cells; the last 40 move.
+SceneData soup() {
+  SceneData scene;
+  const unsigned materials[] = {add_material(scene, {0.8f, 0.5f, 0.3f}),
+                                add_material(scene, {0.2f, 0.7f, 0.9f})};
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  const auto anywhere = [&](float reach) {
+    return reach * glm::vec3(unit(random), unit(random), unit(random));
+  };
+  for (int i = 0; i < 700; ++i) {
+    const glm::vec3 at = anywhere(i < 660 ? 4.0f : 1.5f);
+    const float size = i % 50 == 0 ? 9.0f : i % 5 == 0 ? 1.0f : 0.2f;
+    add_triangle(scene, at, at + anywhere(size), at + anywhere(size), materials[i % 2]);
+  }
+  scene.moving = {{3 * 660, 3 * 20, 660, 20}, {3 * 680, 3 * 20, 680, 20}};
+  return scene;
+}
+
+void shift(SceneData& scene, const MeshRange& part, const glm::vec3& by) {
+  for (unsigned v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
+    for (int a = 0; a < 3; ++a) scene.vertices[v].position[a] += by[a];
+  }
+}
+
+/// All results of voxelisation in a cascade.
+struct Left {
+  std::vector<std::uint8_t> occluded;
+  std::vector<float> blocked, reflected;
+  bool operator==(const Left&) const = default;
+};
+
+/// The three voxelising stages for two cascades; only the second moves.
+class Stages {
+ public:
+  explicit Stages(const SceneBuffers& buffers)
+      : visibility_(test_session(), buffers, visibility_masks(kGrid, 2)),
+        blockers_(test_session(), buffers, blocker_masks(buffers, kGrid, 2, {})),
+        reflectors_(test_session(), buffers, reflector_masks(buffers, kGrid, {})) {}
+
+  Left bring(const ClpvGrid& grid) {
+    visibility_.update(1, grid);
+    blockers_.update(1, grid, geometry_);
+    reflectors_.update(0, grid, reflected_);
+    const std::size_t bytes = visibility_bytes(kGrid);
+    const auto occluded = test_session().read<std::uint8_t>(visibility_.masks(), 2 * bytes);
+    return {{occluded.begin() + static_cast<std::ptrdiff_t>(bytes), occluded.end()},
+            geometry_.read(test_session()),
+            reflected_.read(test_session())};
+  }
+
+ private:
+  VoxelField visibility_, blockers_, reflectors_;
+  Volume geometry_{test_session(), {kGrid + 1, 3, 1}, "test: geometry"};
+  Volume reflected_{
+      test_session(), {kGrid, kCellFaces, CLPV_REFLECTOR_CHANNELS}, "test: reflectors"};
+};
+
+Left from_nothing(const SceneData& scene, const ClpvGrid& grid) {
+  return Stages(upload_scene(test_session(), scene)).bring(grid);
+}
+
+TEST(VoxelField, MoveWithACascade) {
+  const SceneData scene = soup();
+  Stages kept(upload_scene(test_session(), scene));
+  // By one cell, by several along two and three axes, back, by more than the grid, past a base
+  // (every 32 cells), by none.
+  const glm::ivec3 places[] = {{-4, -4, -4}, {-3, -4, -4}, {-3, -6, -1}, {-1, -5, -2},
+                               {-4, -4, -4}, {6, -4, -4},  {11, -4, 2},  {17, -4, 2},
+                               {15, -4, 2},  {16, -3, 2},  {16, -3, 2}};
+  for (const glm::ivec3& place : places) {
+    EXPECT_TRUE(kept.bring(grid_at(place)) == from_nothing(scene, grid_at(place)))
+        << place.x << " " << place.y << " " << place.z;
+  }
+}
+
+TEST(VoxelField, DoNotDependOnTheOrderOfTriangles) {
+  SceneData scene = soup();
+  scene.moving.clear();
+  const Left before = from_nothing(scene, grid_at({-4, -4, -4}));
+  std::ranges::reverse(scene.triangles);
+  EXPECT_TRUE(from_nothing(scene, grid_at({-4, -4, -4})) == before);
+}
+
+TEST(VoxelField, DegenerateTrianglesSetNoBits) {
+  SceneData scene;
+  const auto expect_none = [&] {
+    const Left left = from_nothing(scene, grid_at({0, 0, 0}));
+    EXPECT_EQ(std::ranges::count(left.occluded, 0), std::ssize(left.occluded));
+    EXPECT_EQ(std::ranges::count(left.blocked, 0.0f), std::ssize(left.blocked));
+    EXPECT_EQ(std::ranges::count(left.reflected, 0.0f), std::ssize(left.reflected));
+  };
+  expect_none();
+  const unsigned material = add_material(scene);
+  add_triangle(scene, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, material);  // no area
+  add_triangle(scene, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, material);
+  add_triangle(scene, {50, 1, 1}, {60, 1, 1}, {50, 9, 9}, material);  // beside the grid
+  expect_none();
+}
+
+TEST(VoxelField, FollowMovingObjects) {
+  SceneData scene = soup();
+  SceneBuffers buffers = upload_scene(test_session(), scene);
+  Stages kept(buffers);
+  glm::ivec3 place(-4, -4, -4);
+  Left before = kept.bring(grid_at(place));
+  for (int step = 0; step < 4; ++step) {
+    shift(scene, scene.moving[static_cast<std::size_t>(step % 2)], {0.3f, -0.2f, 0.25f});
+    upload_moving(test_session(), scene, buffers);
+    if (step >= 2) ++place[step - 2];
+    if (step == 3) {  // an instant that was not looked at
+      shift(scene, scene.moving[0], {-1, 0.5f, 0});
+      upload_moving(test_session(), scene, buffers);
+    }
+    const Left now = kept.bring(grid_at(place));
+    EXPECT_TRUE(now == from_nothing(scene, grid_at(place))) << step;
+    EXPECT_FALSE(now == before) << step;
+    before = now;
+  }
+}
+
+}  // namespace
+
+}  // namespace clpv::voxel_field_test

@@ -2,8 +2,8 @@
 #include "pipeline/frame/frame_setup.hpp"
 
 #include "basis/sweep.hpp"
+#include "options/render_options.hpp"
 #include "options/scene_options.hpp"
-#include "options/validate.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

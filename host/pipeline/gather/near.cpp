@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/gather/near.hpp"
 
-#include "basis/near_directions.hpp"
+#include "basis/sampling.hpp"
 #include "kernels/shared/near.h"
 #include "kernels/shared/pixel_planes.h"
 

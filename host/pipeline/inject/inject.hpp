@@ -8,7 +8,7 @@
 #include <map>
 
 #include "basis/basis.hpp"
-#include "basis/blocking.hpp"
+#include "basis/transport.hpp"
 #include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "kernels/shared/grid.h"

@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "device/kernel.hpp"
-#include "device/prefix_sum.hpp"
 #include "device/session.hpp"
 
 namespace clpv {

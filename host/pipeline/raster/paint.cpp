@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "pipeline/raster/cells.hpp"
-#include "scene/medium.hpp"
 #include "scene/scene.hpp"
 
 namespace clpv {

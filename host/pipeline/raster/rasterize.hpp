@@ -14,7 +14,6 @@
 #include <set>
 
 #include "device/kernel.hpp"
-#include "device/prefix_sum.hpp"
 #include "device/session.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/surface.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "device/session.hpp"
-#include "image/surface_image.hpp"
+#include "image/image.hpp"
 #include "kernels/shared/raster.h"
 #include "kernels/shared/view.h"
 #include "options/choices.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "kernels/shared/raster.h"
-#include "scene/light_kind.hpp"
+#include "scene/scene.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

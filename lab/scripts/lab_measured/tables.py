@@ -3,9 +3,8 @@
 import json
 
 from clpv import ms_of
-from measured import ROOT, bake as probes, rows as known
-from measured.tables.benchmarks import bench
-from measured.tables.cells import found, load, number, percent, ratio, shown, table
+from measured import ROOT, bake as probes
+from measured.tables.cells import found, load, number, percent, shown, table
 from measured.verdicts.judge import sentence
 
 from . import standing as benchmark
@@ -114,53 +113,6 @@ def standing_runs():
         "except": "{except}"
     }, [{**document, "run": run, "except": document["measured"].get("except", "-")}
         for run, document in standing()])
-
-
-# Methods and peers: other_methods.md, peers.md.
-
-
-@table
-def quality_cascades():
-    cells = load("quality-cascades")["cells"]
-    views = list(dict.fromkeys((cell["scene"], cell["camera"]) for cell in cells))
-    lines = [[
-        "NRMSE [%]", *(f"{scene}, {camera}" for scene, camera in views), "mean", "FLIP",
-        "light [ms]", "memory [MB]"
-    ]]
-    for method in (None, *known.CASCADE_METHODS):
-        options = {"baseline": method} if method else {}
-        found_cells = [
-            found(cells, options=options, scene=scene, camera=camera) for scene, camera in views
-        ]
-        times = sorted(ms_of(cell["times"], "baseline") for cell in found_cells)
-        memory = max(cell["settings"].get("megabytes", 0) for cell in found_cells)
-        lines.append([
-            f"`{method}`" if method else "clpv, the defaults", *(percent(cell["nrmse"])
-                                                                 for cell in found_cells),
-            *(f"{sum(cell[name] for cell in found_cells) * factor / len(views):.{digits}f}"
-              for name, factor, digits in (("nrmse", 100, 1), ("flip", 1, 3))),
-            f"{times[0]:.0f}-{times[-1]:.0f}" if method else "-",
-            number(memory) if memory else "-"
-        ])
-    return lines
-
-
-@table
-def baseline():
-    lines = [[
-        "sh2", "OpenCL, minimum [ms]", "GFLOP/s", "of the ceiling", "C++, minimum [ms]", "GFLOP/s",
-        "of the ceiling", "OpenCL / C++"
-    ]]
-    for occlusion, name in ((False, "without blockers"), (True, "with blockers")):
-        rows = [found(bench("native"), stage=stage, occlusion=occlusion)
-                for stage in ("propagate", "native")]
-        cells = [
-            cell for row in rows
-            for cell in (number(row["min"]), f"{row['gflops'] * row['median'] / row['min']:.0f}",
-                         f"{100 * row['ceiling_share'] * row['median'] / row['min']:.0f} %")
-        ]
-        lines.append([name, *cells, ratio(rows[0]["min"], rows[1]["min"])])
-    return lines
 
 
 # Formats of light probes: probes.md.

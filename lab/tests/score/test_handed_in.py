@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Scores that others hand in, lab/results/quality/scores: each has the form that `python3 -m
 clpv_lab.score -o` writes."""
-import copy
 import json
 import math
 import re
@@ -66,24 +65,6 @@ class HandedIn(unittest.TestCase):
         self.assertEqual(len({document["suite"]
                               for document in documents}), 1,
                          "scores of different suites in one table")
-
-    def test_faults_are_found(self):
-        document = json.loads(FILES[0].read_text())
-        for change, words in [(lambda d: d.update(schema=0), "schema: found 0"),
-                              (lambda d: d.update(suite="x"), "suite: found x"),
-                              (lambda d: d.update(method=" "), "method"),
-                              (lambda d: d.update(layer="depth"), "layer: found depth"),
-                              (lambda d: d.update(complete=None), "complete: found None"),
-                              (lambda d: d["views"][0].update(view="cellar-stairs"),
-                               "view cellar-stairs"),
-                              (lambda d: d["views"].append(d["views"][0]), "some twice"),
-                              (lambda d: d["views"][0].update(nrmse=math.nan), "nrmse: found nan"),
-                              (lambda d: d["mean"].update(flip=0.9), "mean flip: found 0.9"),
-                              (lambda d: d["mean"].pop("nrmse"), "mean nrmse: missing")]:
-            broken = copy.deepcopy(document)
-            change(broken)
-            self.assertTrue(any(words in fault for fault in faults(broken)),
-                            (words, faults(broken)))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Charts of `clpv bench`: layouts, roofline, bases and frame.
+"""Charts of `clpv bench`: layouts and a roofline.
 
 Each function turns rows into a figure, or returns None if no row belongs to its chart. It reads
 fields of rows, not names. """
@@ -111,55 +111,6 @@ def roofline(rows, ceilings):
     return figure
 
 
-def bases(rows):
-    rows = [
-        r for r in of_suite(rows, "bases") if r["stage"] == "propagate" and r["lobe"] == "exact"
-    ]
-    sizes = {r["basis"]: r["coefficients"] for r in sorted(rows, key=lambda r: r["coefficients"])}
-    if not sizes:
-        return None
-    kinds = [False, True]
-    figure, axis = pyplot.subplots(figsize=(9, 3.6))
-    width = 0.8 / len(kinds)
-    for k, occlusion in enumerate(kinds):
-        found = {r["basis"]: r for r in rows if r["occlusion"] == occlusion}
-        at = [i + (k - 0.5) * width for i, name in enumerate(sizes) if name in found]
-        members = [found[name] for name in sizes if name in found]
-        axis.bar(at, [r["median"] for r in members], width, yerr=error_bars(members),
-                 color=style.colour(k), error_kw={"lw": 0.7, "ecolor": style.INK},
-                 label="occlusion" if occlusion else "no occlusion")
-    axis.set_xticks(range(len(sizes)), [f"{name}\nN={n}" for name, n in sizes.items()])
-    axis.set(ylabel="ms", title="Propagation by basis")
-    style.logarithmic(axis.yaxis)
-    axis.legend(fontsize=7, ncol=2)
-    return figure
-
-
-def frame(rows):
-    rows = [r for r in of_suite(rows, "frame") if r.get("preset")]
-    frames = [r for r in rows if r["stage"] == "frame"]
-    if not frames:
-        return None
-    figure, axis = pyplot.subplots(figsize=(8, 1.2 + 0.5 * len(frames)))
-    names = [
-        f"{r['basis']} {r['preset']}" +
-        (f", {r['recompute']} recomputed" if r.get("recompute") else "") for r in frames
-    ]
-    left = [0.0] * len(frames)
-    for i, stage in enumerate(distinct(r["stage"] for r in rows if r["stage"] != "frame")):
-        times = {(r["basis"], r["preset"], r.get("recompute")): r["median"]
-                 for r in rows if r["stage"] == stage}
-        widths = [times.get((f["basis"], f["preset"], f.get("recompute")), 0.0) for f in frames]
-        axis.barh(names, widths, left=left, color=style.colour(i),
-                  hatch="//" if i >= len(style.COLOURS) else None, label=stage)
-        left = [a + b for a, b in zip(left, widths)]
-    axis.plot([f["median"] for f in frames], names, "|", color=style.INK, ms=14,
-              label="frame (wall)")
-    axis.set(xlabel="ms, medians", title="Frames by stage")
-    axis.legend(fontsize=7, ncol=4, loc="upper center", bbox_to_anchor=(0.5, -0.25))
-    return figure
-
-
 def save(figure, folder, name, context):
     """Writes the chart with a footer below it, which the margins include."""
     device = f"{context['device']} ({context['platform']} {context['driver']})"[:DEVICE_CHARS]
@@ -177,10 +128,7 @@ def draw(source: pathlib.Path, folder: pathlib.Path) -> None:
     document = documents.read(source / "bench.json")
     rows, context = documents.checked(document, "bench.json", "benchmarks",
                                       ROW), document["context"]
-    charts = {
-        "layouts": layouts(rows), "roofline": roofline(rows, context["ceilings"]),
-        "bases": bases(rows), "frame": frame(rows)
-    }
+    charts = {"layouts": layouts(rows), "roofline": roofline(rows, context["ceilings"])}
     for name, figure in charts.items():
         if figure:
             save(figure, folder, name, context)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """FLIP (Andersson et al. 2020) of linear images after tone curve ACES, with the numbers of
-host/image/flip.cpp."""
+host/image/compare.cpp."""
 import numpy
 
 PIXELS_PER_DEGREE = 67.0206  # 3840 pixels over 0.7 m, seen from 0.7 m

@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: MIT
+// Fuzz targets, by name: each has a corpus/NAME. libFuzzer calls them with generated inputs
+// (scripts/fuzz); without it, this program gives a target each file of a folder, then mutants of
+// them for some seconds (a test of every build):
+//
+//   fuzz FOLDER SECONDS       the target is CLPV_FUZZ_TARGET
+//
+// An input is read or rejected. Whatever else happens is a finding: a crash, a sanitizer's report,
+// an exception of another kind, or an error of another exit code than those a target allows. The
+// mutants are the same in every run: a test that failed fails again. The current input is a file,
+// which remains when it ends the program.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <initializer_list>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "basis/basis.hpp"
+#include "cli/commands.hpp"
+#include "cli/options.hpp"
+#include "device/program_cache.hpp"
+#include "image/compare.hpp"
+#include "image/image_header.hpp"
+#include "image/image_io.hpp"
+#include "options/scene_options.hpp"
+#include "scene/gltf_parts.hpp"
+#include "scene/input.hpp"
+#include "scene/load.hpp"
+#include "sequence/times_file.hpp"
+#include "support/error.hpp"
+#include "support/fingerprint.hpp"
+#include "support/log.hpp"
+#include "tests/support/random_options.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/tiny_images.hpp"
+
+namespace clpv::fuzz {
+namespace {
+
+/// The process's folder for small files, in memory where possible.
+const test::TemporaryFolder& folder() {
+  static const bool in_memory = [] {
+    if (std::filesystem::is_directory("/dev/shm")) ::setenv("TMPDIR", "/dev/shm", 0);
+    return true;
+  }();
+  static const test::TemporaryFolder made;
+  static_cast<void>(in_memory);
+  return made;
+}
+
+/// Runs `read`; it may reject its input, but only with these exit codes.
+template <typename Read>
+void read_or_reject(std::initializer_list<ExitCode> allowed, Read&& read) {
+  try {
+    read();
+  } catch (const Error& error) {
+    for (const ExitCode code : allowed) {
+      if (error.code() == code) return;
+    }
+    std::fprintf(stderr, "exit code %d is not this reader's: %s\n", static_cast<int>(error.code()),
+                 error.what());
+    std::abort();
+  }
+}
+
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+// -------------------------------------------------------------------------------------------
+// models
+
+constexpr double kInstants[] = {-1, 0, 0.25, 1, 1e6};  // [s]; before, at and after keys
+
+/// A triangle from 36 bytes of model.bin, which are zeros but for its corners.
+constexpr std::string_view kSound =
+    R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri":
+"model.bin"}], "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126,
+"count": 3, "type": "VEC3"}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}]})";
+
+/// The same with image.png on it, and a scene of that under sky.hdr.
+std::string textured() {
+  nlohmann::json model = nlohmann::json::parse(kSound);
+  model["images"][0]["uri"] = "image.png";
+  model["textures"][0]["source"] = 0;
+  model["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+  model["meshes"][0]["primitives"][0]["material"] = 0;
+  return model.dump();
+}
+
+constexpr std::string_view kUnderSky = R"({"model": "textured.gltf", "sky": {"map": "sky.hdr"}})";
+
+/// The files that URIs may name. An input that names one must not end there: they are read here,
+/// and must not be rejected.
+void write_neighbours() {
+  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  std::string bytes(reinterpret_cast<const char*>(corners), sizeof corners);
+  bytes.resize(1024, '\0');
+  folder().write("model.bin", bytes);
+  folder().write("sound.gltf", kSound);
+  folder().write("image.png", test::decode_base64(test::kPngGrey));
+  folder().write("sky.hdr", std::string_view("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"
+                                             "\x40\x80\x20\x80\x80\x40\x20\x81"));  // two texels
+  folder().write("textured.gltf", textured());
+  MovingScene(folder().write("under_sky.json", kUnderSky));
+}
+
+/// Reads the scene under that name, and shows it at several instants.
+void load_model(const std::string& name, std::string_view bytes) {
+  static const bool written = (write_neighbours(), true);
+  static_cast<void>(written);
+  const std::filesystem::path path = folder().write(name, bytes);
+  read_or_reject({ExitCode::bad_input}, [&] {
+    MovingScene moving(path);
+    for (const double instant : kInstants) {
+      if (moving.moves()) read_or_reject({ExitCode::bad_input}, [&] { moving.pose(instant); });
+    }
+  });
+}
+
+/// A .gltf, text: loaded, and shown at some instants if it moves. Beside it are model.bin and
+/// image.png for its URIs.
+void gltf(std::string_view bytes) {
+  load_model("model.gltf", bytes);
+}
+
+/// A .glb, chunks of JSON and of bytes: loaded as any model.
+void glb(std::string_view bytes) {
+  load_model("model.glb", bytes);
+}
+
+/// A scene file, with a valid model (sound.gltf) in the same folder.
+void scene(std::string_view bytes) {
+  load_model("scene.json", bytes);
+}
+
+// -------------------------------------------------------------------------------------------
+// images
+
+/// Small, since a decoder's time depends on the header.
+constexpr ImageLimits kImageLimits{
+    .file_bytes = 1 << 20, .side = 512, .channels = 32, .pixel_bytes = 1 << 22};
+
+const char* name_for(std::string_view bytes) {
+  if (bytes.starts_with("\x89P")) return "image.png";
+  if (bytes.starts_with("#?")) return "image.hdr";
+  return "image.exr";
+}
+
+void hold_against_header(const Image& image, const char* name,
+                         std::span<const unsigned char> bytes) {
+  std::int64_t channels = 0;
+  for (const ExrHeader& part : read_exr_header(name, bytes)) {
+    channels += part.channels;
+    if (part.display.width() != image.width || part.display.height() != image.height) std::abort();
+  }
+  // Channels of one name count once for OpenEXR.
+  if (channels < static_cast<std::int64_t>(image.channels.size())) std::abort();
+}
+
+/// An image as clpv compare reads it (EXR, PNG, HDR, by content), held against itself and against
+/// its difference image. The walk through an EXR's headers must see what OpenEXR reads.
+void image(std::string_view bytes) {
+  const char* const name = name_for(bytes);
+  const auto path = folder().write(name, bytes);
+  read_or_reject({ExitCode::bad_input}, [&] {
+    const Image image = read_image(path, kImageLimits);
+    if (path.extension() == ".exr") hold_against_header(image, name, bytes_of(bytes));
+    for (const std::string& layer : layers(image)) {
+      read_or_reject({ExitCode::bad_input}, [&] {
+        const Image one = extract_layer(image, layer, "fuzzed");
+        if (!compare(one, "a", one, "b").identical) std::abort();
+        difference_image(one, one, 15);
+      });
+    }
+  });
+}
+
+/// Larger images take a decoder seconds and find no further faults.
+constexpr std::uint32_t kSide = 512;
+
+bool is_small(std::span<const std::uint8_t> bytes) {
+  const auto header = read_image_header(bytes);
+  return !header || (header->width <= kSide && header->height <= kSide);
+}
+
+/// A texture: bytes of a buffer, which say themselves whether they are a PNG, a JPEG or a WebP.
+void texture(std::string_view bytes) {
+  if (bytes.empty() || !is_small(bytes_of(bytes))) return;
+  GltfDocument document;
+  document.file = "fuzzed.glb";
+  document.model.buffers.emplace_back().data.assign(bytes.begin(), bytes.end());
+  tinygltf::BufferView view;
+  view.buffer = 0;
+  view.byteOffset = 0;
+  view.byteLength = bytes.size();
+  document.model.bufferViews.push_back(view);
+  document.model.images.emplace_back().bufferView = 0;
+  read_or_reject({ExitCode::bad_input}, [&] { load_textures(document, {{0, 0, 0}}); });
+}
+
+// ------------------------------------------------------------------------------------------
+// options
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines = {"clpv"};
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    // As the shell would hand it over: up to the first NUL.
+    lines.emplace_back(text.substr(0, std::min(end, text.find('\0'))));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+/// Those that can be chosen, since adding all takes some twenty times as long as parsing. All where
+/// none is named, for the words about a misspelt one.
+std::vector<Command> commands_named_in(const std::vector<std::string>& arguments) {
+  const auto all = all_commands();
+  std::vector<Command> named;
+  std::ranges::copy_if(all, std::back_inserter(named), [&](const Command& command) {
+    return std::ranges::any_of(arguments.begin() + 1, arguments.end(),
+                               [&](const std::string& argument) {
+                                 return argument.find(command.name) != std::string::npos;
+                               });
+  });
+  return named.empty() ? std::vector(all.begin(), all.end()) : named;
+}
+
+void parse(std::vector<std::string> arguments) {
+  CLI::App app;
+  Shared shared;
+  const std::vector<Command> commands = commands_named_in(arguments);
+  add_commands(app, shared, commands);
+  for (const Command& command : commands)
+    app.get_subcommand(command.name);  // throws if it has another name
+  // Before any command runs; their callbacks stay, since they hold what options are read into.
+  app.parse_complete_callback([] { throw CLI::Success(); });
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  try {
+    parse_command_line(app, static_cast<int>(pointers.size()), pointers.data());
+  } catch (const CLI::Error&) {  // usage, or a question for help
+  }
+}
+
+/// A command line, an argument a line: parsed as the program parses it, commands not run; and each
+/// argument as a vector and as a box.
+void command_line(std::string_view bytes) {
+  const std::vector<std::string> arguments = lines_of(bytes);
+  read_or_reject({ExitCode::usage}, [&] { parse(arguments); });
+  for (const std::string& argument : arguments)
+    read_or_reject({ExitCode::usage}, [&] { parse_vector(argument, "--option"); });
+}
+
+/// Values of every render option, drawn from the option table by the input's bytes: resolved for a
+/// scene, with basis and transport, without a device.
+void options(std::string_view bytes) {
+  std::size_t next = 0;
+  test::Choices choices([&](std::size_t end) -> std::size_t {
+    std::size_t value = 0;
+    for (std::size_t range = 1; range < end && next < bytes.size(); range *= 256)
+      value = value * 256 + bytes_of(bytes)[next++];
+    return value % end;
+  });
+  OptionValues given;
+  const test::Caps caps{{"table-size", 4096}};  // larger ones only take longer
+  for (const OptionDescription& option : list_options(RenderOptions{})) {
+    if (choices.one_in(2)) continue;
+    if (const std::string value = test::drawn_value(option, choices, caps); !value.empty())
+      given[option.name] = value;
+  }
+  read_or_reject({ExitCode::usage}, [&] {
+    const RenderOptions options = resolve_options(given, SceneData{});
+    const auto basis = make_basis(options);
+    // Exact fluxes are integrals that take seconds under sanitizers.
+    if (options.transport != TransportKind::exact) make_transport(options, *basis);
+  });
+}
+
+// ------------------------------------------------------------------------------------- smaller
+// files
+
+/// A file of --centres, up to the basis that is made of it.
+void centres(std::string_view bytes) {
+  const auto path = folder().write("centres.json", bytes);
+  // Equal centres are an error of usage: lambda may come from the command line.
+  read_or_reject({ExitCode::bad_input, ExitCode::usage}, [&] { load_basis(path.string()); });
+}
+
+/// A file of points for clpv query.
+void points(std::string_view bytes) {
+  const auto path = folder().write("points.csv", bytes);
+  read_or_reject({ExitCode::bad_input}, [&] { read_points(path); });
+}
+
+/// A file of a compiled program, with a right hash put on where the first byte is odd: taken whole
+/// or not at all, never an error. A program that is taken is the one in the file.
+void program_cache(std::string_view given) {
+  log_to_stderr(LogLevel::error);
+  if (given.empty()) return;
+  std::string bytes(given.substr(1));
+  if (given[0] & 1) {
+    bytes.insert(0, "clpv program 2\n");
+    const std::uint64_t hash = Fingerprint().add(std::string_view(bytes)).value();
+    bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
+  }
+  const ProgramCache cache(folder().path());
+  folder().write(cache.file_of("key").filename().string(), bytes);
+  const auto binary = cache.load("key");
+  if (binary && binary->size() > bytes.size()) std::abort();
+}
+
+/// A line of times.jsonl: skipped, or a frame's times that are written as they were read.
+void times(std::string_view bytes) {
+  const auto line = frame_line(std::string(bytes));
+  if (!line) return;
+  const std::string written = to_json(*line).dump();
+  const auto again = frame_line(written);
+  if (!again || to_json(*again).dump() != written || line->frame < 0) std::abort();
+}
+
+using Target = void (*)(std::string_view bytes);
+
+Target chosen_target() {
+  static const std::map<std::string_view, Target> kTargets = {
+      {"centres", centres}, {"command_line", command_line},
+      {"glb", glb},         {"gltf", gltf},
+      {"image", image},     {"options", options},
+      {"points", points},   {"program_cache", program_cache},
+      {"scene", scene},     {"texture", texture},
+      {"times", times}};
+  const char* name = std::getenv("CLPV_FUZZ_TARGET");
+  const auto found = kTargets.find(name != nullptr ? name : "");
+  if (found != kTargets.end()) return found->second;
+  std::fprintf(stderr, "CLPV_FUZZ_TARGET: allowed: a folder of tests/fuzz/corpus\n");
+  std::exit(2);
+}
+
+}  // namespace
+}  // namespace clpv::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const clpv::fuzz::Target target = clpv::fuzz::chosen_target();
+  target({reinterpret_cast<const char*>(data), size});
+  return 0;
+}
+
+#ifndef CLPV_LIBFUZZER
+namespace clpv::fuzz {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Random = std::mt19937_64;
+
+/// As binary files and as texts write them.
+constexpr std::array<std::string_view, 14> kEdges = {
+    {std::string_view("\0", 1), "\x7f", "\x80", "\xff", std::string_view("\0\0\0\0", 4),
+     "\xff\xff\xff\xff", "\xff\xff\xff\x7f", std::string_view("\0\0\0\x80", 4), "-1", "0", "1e999",
+     "nan", "4294967296", "18446744073709551615"}};
+constexpr std::size_t kMaxSpan = 64;
+
+std::size_t below(std::size_t end, Random& random) {
+  return end == 0 ? 0 : random() % end;
+}
+
+std::string_view span_of(std::string_view text, Random& random) {
+  const std::size_t start = below(text.size() + 1, random);
+  return text.substr(start, 1 + below(kMaxSpan, random));
+}
+
+/// In place of as many bytes, or of those of a number in digits, or of none.
+void put(std::string& text, std::string_view piece, Random& random) {
+  const std::size_t start = below(text.size() + 1, random);
+  const std::size_t digits =
+      std::min(text.find_first_not_of("0123456789", start), text.size()) - start;
+  const std::array<std::size_t, 3> lengths = {piece.size(), digits, 0};
+  text.replace(start, lengths[below(lengths.size(), random)], piece);
+}
+
+void change(std::string& text, std::span<const std::string> inputs, Random& random) {
+  switch (below(5, random)) {
+    case 0:
+      if (!text.empty())
+        text[below(text.size(), random)] ^= static_cast<char>(1 << below(8, random));
+      break;
+    case 1:
+      put(text, kEdges[below(kEdges.size(), random)], random);
+      break;
+    case 2: {
+      const std::string_view left_out = span_of(text, random);
+      text.erase(static_cast<std::size_t>(left_out.data() - text.data()), left_out.size());
+      break;
+    }
+    case 3:
+      put(text, std::string(span_of(text, random)), random);
+      break;
+    default:
+      put(text, span_of(inputs[below(inputs.size(), random)], random), random);
+  }
+}
+
+/// One of `inputs`, changed in up to four places: bits, numbers on the edge, pieces left out,
+/// repeated or of another input.
+std::string mutant(std::span<const std::string> inputs, Random& random) {
+  std::string text = inputs[below(inputs.size(), random)];
+  for (std::size_t changes = 1 + below(4, random); changes > 0; --changes)
+    change(text, inputs, random);
+  return text;
+}
+
+constexpr const char* kInHand = "in_hand";
+
+std::vector<std::string> corpus_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder))
+    files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<std::string> corpus;
+  for (const std::filesystem::path& file : files) corpus.push_back(test::read_file(file));
+  return corpus;
+}
+
+void try_input(const std::string& bytes) {
+  folder().write(kInHand, bytes);
+  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+}
+
+}  // namespace
+}  // namespace clpv::fuzz
+
+int main(int argc, char** argv) {
+  using namespace clpv::fuzz;
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: %s FOLDER SECONDS\n", argv[0]);
+    return 2;
+  }
+  const std::vector<std::string> corpus = corpus_in(argv[1]);
+  if (corpus.empty()) {
+    std::fprintf(stderr, "%s: no inputs\n", argv[1]);
+    return 1;
+  }
+  std::printf("the input in hand: %s\n", folder().write(kInHand, "").c_str());
+  std::fflush(stdout);
+  const auto end = Clock::now() + std::chrono::duration<double>(std::stod(argv[2]));
+  for (const std::string& input : corpus) try_input(input);
+  std::mt19937_64 random;  // with the usual seed
+  std::size_t mutants = 0;
+  for (; Clock::now() < end; ++mutants) try_input(mutant(corpus, random));
+  std::printf("%zu inputs, %zu mutants\n", corpus.size(), mutants);
+  return 0;
+}
+#endif
