@@ -256,11 +256,16 @@ def moved(**changes):
                    **vars(camera_message(**{"position": (0.278, 0.273, -0.18), **changes})))
 
 
-def drawn_after(made, count, seconds=60):
+def holds(condition, seconds=60):
+    """True once the condition is."""
     end = time.monotonic() + seconds
-    while made.frames <= count and time.monotonic() < end:
+    while not condition() and time.monotonic() < end:
         time.sleep(0.02)
-    return made.frames > count
+    return condition()
+
+
+def drawn_after(made, count):
+    return holds(lambda: made.frames > count)
 
 
 def test_other_sites_are_refused(viewer):
@@ -332,10 +337,7 @@ def test_an_error_ends_one_client(viewer, monkeypatch):
 
         monkeypatch.setattr(view, "camera_of", fail_for_others)
         bad.send(moved())
-        end = time.monotonic() + 30
-        while time.monotonic() < end and not (failed and set(made.clients) == spared):
-            time.sleep(0.02)
-        assert failed
+        assert holds(lambda: failed and set(made.clients) == spared)
         before = made.frames
         good.send(moved(position=(0.28, 0.27, -0.21)))
         assert drawn_after(made, before) and set(made.clients) == spared
@@ -351,20 +353,11 @@ def test_r_returns_to_the_scenes_camera(viewer):
         assert drawn_after(made, before)
         handle = max(made.clients.values(), key=lambda each: each.handle.client_id).handle
         client.send(message("CommandTriggerMessage", uuid=commands[0]._impl.uuid))
-        end = time.monotonic() + 30
-        while time.monotonic() < end and np.allclose(handle.camera.position, (5, 5, 5)):
-            time.sleep(0.02)
-        assert np.allclose(handle.camera.position, made.scene.cameras[0].eye)
+        assert holds(lambda: np.allclose(handle.camera.position, made.scene.cameras[0].eye))
 
 
 def test_a_click_shows_values_and_buttons_give_camera_and_image(viewer):
     made, port = viewer
-
-    def holds(condition, seconds=30):
-        end = time.monotonic() + seconds
-        while not condition() and time.monotonic() < end:
-            time.sleep(0.02)
-        return condition()
 
     def said(words):
         return holds(lambda: words in made.controls.said.content)
@@ -404,9 +397,7 @@ def test_path_tracing_beside_a_view_that_rests(viewer, monkeypatch):
     try:
         with browser(port) as client:
             client.send(moved())
-            end = time.monotonic() + 60
-            while not rights and time.monotonic() < end:
-                time.sleep(0.05)
+            assert holds(lambda: rights)
     finally:
         made.controls.traced.value = False
     (height, width, _), (half_height, half_width, _), shown = rights[0]
