@@ -144,8 +144,7 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
       point.difference += radiance_of(*hit, point, w, point.uncertain) - v;
     } else {
       const glm::dvec3 end = point.position + point.reach * (offset * point.lift + w);
-      point.uncertain = point.uncertain || unsure(end, 0, point.normal, -w);
-      point.difference += share * (radiance(basis, field_at(end, 0, point.normal, -w), -w) - v);
+      point.difference += share * (radiance(basis, field_at(end, 0, point.normal), -w) - v);
     }
   }
   point.difference *= std::numbers::pi / static_cast<double>(directions.size());

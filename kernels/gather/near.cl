@@ -72,10 +72,9 @@ __kernel void near(const ClpvView view, __global const float* points,
     const Vec w = find_near_directions(directions, r, &p, k);
     const intW hit = load_lanes(distances + k * r.plane + r.at) < (realW)(INFINITY);
     const intW missed = lit & (hit == 0) & (trust > ZERO);
-    const Vec returning = vec_times(w, (realW)(-1.0f));
     sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), ZERO, p.normal,
-                    returning, missed, &there);
-    const VecLanes back = unpack(lit, returning);
+                    vec(ZERO, ZERO, ZERO), missed, &there);
+    const VecLanes back = unpack(lit, vec_times(w, (realW)(-1.0f)));
     float shares[W];
     store_lanes(lit ? (hit ? ONE : trust) : ZERO, shares);
     for (int i = 0; i < W; ++i) {
