@@ -179,10 +179,10 @@ void warn_of_later_frames(const Options& options) {
 
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
-  const std::vector<NamedFile> outputs = prepare_outputs(options);
   std::optional<Video> video;
   if (!options.video.empty() && ranks.is_root())
     video.emplace(options.video, options.frames_per_second);
+  const std::vector<NamedFile> outputs = prepare_outputs(options);
   RenderRequest request = options.request;
   MovingScene moving = request.open();
   const FrameSetup setup = setup_of(request, moving.scene());
@@ -223,10 +223,15 @@ void run(const Options& options, Shared& shared) {
   sequence.render();
   if (!ranks.is_root()) return;
   warn_of_later_frames(options);
-  if (options.stability) sequence.measure_stability();
-  if (!video) return;
-  sequence.for_all_images([&](const Image& image) { video->add(image); });
-  video->finish();
+  try {
+    if (options.stability) sequence.measure_stability();
+    if (!video) return;
+    sequence.for_all_images([&](const Image& image) { video->add(image); });
+    video->finish();
+  } catch (const Interrupted&) {
+    throw Interrupted(fmt::format("all {} frames are in {}; the same command goes on with them",
+                                  options.frames, options.folder));
+  }
 }
 
 }  // namespace sequence_command

@@ -27,8 +27,15 @@ struct TrilinearSample {
 /// each axis.
 TrilinearSample trilinear_sample(const glm::dvec3& at, int n);
 
-/// Multiplies weights by the visible shares of the cells from `at`, and normalises them.
-void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, int n,
+/// Multiplies weights by the visible shares of the cells from `at`, and normalises them. `clear`: a
+/// unit vector along which nothing stands, or 0. Only those sample points count that see a cell
+/// which the sample point a quarter of a cell along it sees, too.
+void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::dvec3& clear, int n,
+                      const std::uint8_t* occluded);
+
+/// Returns true if rounding decides which cells the sample point a quarter of a cell along `clear`
+/// sees.
+bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n,
                       const std::uint8_t* occluded);
 
 /// Interpolated coefficients of one channel.
@@ -45,10 +52,11 @@ double share_of(const glm::dvec3& position, const ClpvGrid& grid, int n, double 
 using RadianceField = std::array<std::vector<double>, 4>;
 
 /// Returns coefficients at position + offset s lift of each cascade, s its cell, blended by the
-/// cascades' shares at `position` [m].
+/// cascades' shares at `position` [m]. `clear`: apply_visibility().
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset = 0,
-                             const glm::dvec3& lift = glm::dvec3(0));
+                             const glm::dvec3& lift = glm::dvec3(0),
+                             const glm::dvec3& clear = glm::dvec3(0));
 
 /// Returns L(p, w) [W/m^2/sr], light that travels along the unit vector w. May be negative.
 glm::dvec3 radiance(const Basis& basis, const RadianceField& field, const glm::dvec3& w);
