@@ -63,5 +63,5 @@ set(CPACK_DEBIAN_PACKAGE_DEPENDS "pocl-opencl-icd | opencl-icd, python3, python3
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/cmake/prerm)
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/package_shlibs.cmake)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-jinja2, python3-scipy")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "openmpi-bin, libglm-dev, libfmt-dev, nlohmann-json3-dev, libopenimageio-dev, libembree-dev, libtinygltf-dev, ocl-icd-opencl-dev")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "openmpi-bin, libglm-dev, libfmt-dev, nlohmann-json3-dev, libopenimageio-dev, openimageio-tools, libembree-dev, libtinygltf-dev, ocl-icd-opencl-dev")
 include(CPack)

@@ -240,9 +240,7 @@ void add_devices(CLI::App& app, Shared& shared) {
       print(list);
       for (const FaultyDriver& each : faulty) print_data("-  {}: {}\n", each.file, each.reason);
     }
-    if (list.devices.empty())
-      throw Error(ExitCode::device,
-                  "no OpenCL device found; on Debian: apt install pocl-opencl-icd");
+    if (list.devices.empty()) (void)choose_device(list.devices, {});  // throws
   });
 }
 

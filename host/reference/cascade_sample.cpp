@@ -58,13 +58,13 @@ std::array<double, 8> visible_shares(const glm::dvec3& t, const std::uint8_t* po
   return visible;
 }
 
-constexpr unsigned kAllCells = 255;
+constexpr unsigned kAllPoints = 511;  // cells that none lacks: every sample point counts
 
 /// Cells of the cube, a bit each, of which a sample point must see one to count. `shift` is added
 /// to the point along `clear` [quarters of a cell].
 unsigned clear_cells(const glm::dvec3& at, const glm::ivec3& cube, const glm::dvec3& clear, int n,
                      const std::uint8_t* occluded, double shift = 0) {
-  if (clear == glm::dvec3(0)) return kAllCells;
+  if (clear == glm::dvec3(0)) return kAllPoints;
   const int last = std::max(kPoints * (n - 1) - 1, 0);
   const glm::dvec3 way = double{kPoints} * glm::clamp(at, 0.0, n - 1.0) + clear + shift;
   const glm::ivec3 point(glm::clamp(way, 0.0, double(last))), there = point / kPoints;
@@ -77,7 +77,7 @@ unsigned clear_cells(const glm::dvec3& at, const glm::ivec3& cube, const glm::dv
                         glm::all(glm::lessThanEqual(in_cube, glm::ivec3(1)));
     if (shared && (bits >> corner & 1) == 0) cells |= 1u << number_of(in_cube, 2);
   }
-  return cells != 0 ? cells : kAllCells;
+  return cells != 0 ? cells : kAllPoints;
 }
 
 }  // namespace

@@ -114,12 +114,14 @@ CLPV_INLINE int cells_from(int cells, const int steps) {
   return z == 2 ? (cells & 0x0f) << 4 : z == 0 ? (cells & 0xf0) >> 4 : cells;
 }
 
+enum { CLPV_ALL_POINTS = 511 };  // cells that none lacks: every sample point counts
+
 // Cells, a bit each, of which a sample point must see one to count.
 CLPV_INLINE int clear_cells(__global const uchar* occluded, const SamplePoints* points,
                             const int i) {
-  if (points->clear_point[i] < 0) return 255;
+  if (points->clear_point[i] < 0) return CLPV_ALL_POINTS;
   const int cells = cells_from(~occluded[points->clear_point[i]] & 255, points->clear_cube[i]);
-  return cells != 0 ? cells : 255;
+  return cells != 0 ? cells : CLPV_ALL_POINTS;
 }
 
 // Visible shares of the eight cells: their bits at those of eight sample points that see one of

@@ -79,6 +79,7 @@ static inline void load_points(const ClpvView view, const PixelRow p, __global c
 
 // Unit vectors from positions [m] to the eye; 0 for points without a view.
 static inline Vec towards_eye(const ClpvView view, const Vec position) {
+  if (view.orthographic != 0.0f) return vec_times(vec_of(view.forward), (realW)(-1.0f));
   const Vec way = vec_minus(vec_of(view.eye), position);
   const realW scale = view.half_width > 0.0f ? rsqrt(vec_dot(way, way)) : ZERO;
   return vec_times(way, scale);

@@ -66,11 +66,12 @@ reference::Volume uniform(const std::vector<double>& c) {
   });
 }
 
-/// Surfaces of one normal, pixel i of kPixels at from + (i + 1/2) / kPixels (to - from) [m].
+/// Surfaces of one normal, pixel i of kPixels at from + (i + 1/2) / kPixels (to - from) [m], seen
+/// from their front.
 SurfaceImage walk(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& normal) {
   const glm::dvec3 right = glm::normalize(to - from),
-                   other = std::abs(right.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 up = glm::normalize(glm::cross(right, other)), forward = -glm::cross(right, up);
+                   off = std::abs(glm::dot(normal, right)) < 0.9 ? normal : glm::dvec3(0.6, 0.8, 0);
+  const glm::dvec3 up = glm::normalize(glm::cross(off, right)), forward = -glm::cross(right, up);
   const glm::dvec3 eye = (from + to) / 2.0 - forward;
   SurfaceImage image;
   ClpvView& view = image.view;

@@ -45,10 +45,11 @@ std::vector<std::string> choices_in(const std::string& allowed) {
 
 TEST(Options, EachConvertsFromTextToValueAndBack) {
   const std::map<std::string, std::string> numbers_and_files = {
-      {"centres", "mine.json"}, {"lambda", "0.375"}, {"table-size", "99"},     {"iterations", "3"},
-      {"grid", "17"},           {"cascades", "2"},   {"cascade-size", "6.25"}, {"rsm-size", "64"},
-      {"shadow-size", "128"},   {"width", "31"},     {"blocker-stride", "2"},  {"height", "17"},
-      {"gather-offset", "1.5"}};
+      {"centres", "mine.json"}, {"lambda", "0.375"},     {"table-size", "99"},
+      {"iterations", "3"},      {"grid", "17"},          {"cascades", "2"},
+      {"cascade-size", "6.25"}, {"rsm-size", "64"},      {"shadow-size", "128"},
+      {"width", "31"},          {"blocker-stride", "2"}, {"height", "17"},
+      {"gather-offset", "1.5"}, {"bounce-sweeps", "5"}};
   for (const OptionDescription& info : list_options(RenderOptions{})) {
     SCOPED_TRACE(info.name);
     const bool choice = info.allowed.find('|') != std::string::npos;

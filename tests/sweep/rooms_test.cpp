@@ -114,8 +114,10 @@ void expect_furnace(const Room& room, float albedo) {
     const std::string name =
         fmt::format("albedo {}, {} degrees{}{}, bounces {}", albedo, room.degrees,
                     room.skew ? ", skew" : "", room.sheet ? ", one sheet" : "", name_of(bounces));
-    EXPECT_NEAR(mean(light) / std::numbers::pi / exact, 1, albedo > 0.9f ? 0.08 : 0.05) << name;
-    EXPECT_LE(lines(light), 0.05) << name;
+    const double error = albedo <= 0.9f ? 0.05 : room.sheet ? 0.09 : 0.08;
+    EXPECT_NEAR(mean(light) / std::numbers::pi / exact, 1, error) << name;
+    // In a corner that is turned about a skew axis no cell of eight may be in the room.
+    EXPECT_LE(lines(light), room.sheet && room.skew ? 0.12 : 0.05) << name;
   }
 }
 
