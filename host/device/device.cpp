@@ -250,8 +250,9 @@ std::vector<Device> choose_devices(std::string_view choice) {
 
 Device choose_device(const std::vector<Device>& devices, std::string_view choice) {
   if (devices.empty()) {
-    throw Error(ExitCode::device,
-                "no OpenCL device found; on Debian: apt install pocl-opencl-icd; by pip: clpv[pocl]");
+    throw Error(
+        ExitCode::device,
+        "no OpenCL device found; on Debian: apt install pocl-opencl-icd; by pip: clpv[pocl]");
   }
   if (choice.empty()) {
     const auto found =
