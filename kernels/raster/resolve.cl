@@ -107,8 +107,9 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
                              __global const float4* textures, __global const uint* texels,
                              __global float* depths, __global SurfaceTexel* normals,
                              __global SurfaceTexel* colours,
-                             __global float4* emissives CLPV_AND_COUNTERS) {
-  CLPV_CLEAR_COUNTERS;
+                             __global float4* emissives, __global uint* counts,
+                             __global uint* slice_counts) {
+  clear_counters(view, counts, slice_counts);
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
@@ -143,8 +144,9 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global c
                           __global const float4* textures, __global const uint* texels,
                           __global float* depths, __global SurfaceTexel* normals,
                           __global SurfaceTexel* fluxes,
-                          const float colour_scale CLPV_AND_COUNTERS) {
-  CLPV_CLEAR_COUNTERS;
+                          const float colour_scale, __global uint* counts,
+                          __global uint* slice_counts) {
+  clear_counters(view, counts, slice_counts);
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;

@@ -178,8 +178,8 @@ void Rasterizer::count_set_up(const Range& range) {
 
 /// Leaves out the clusters of a range that lie behind all that has been drawn.
 void Rasterizer::hide_clusters(const ClpvView& view, const Range& range) {
-  hide_clusters_.set(view, range.first, range.count, farthest_, clusters_)
-      .launch(range.count, kRasterGroup);
+  hide_clusters_.set(view, range.first, range.count, farthest_, clusters_);
+  add_counters(hide_clusters_).launch(range.count, kRasterGroup);
 }
 
 /// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of
@@ -188,9 +188,7 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
   const cl_uint cull = drawing.culls_back_faces() ? 1 : 0;
   if (!cleared_) {
     session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
-    session_.fill_zero(slice_counts_, session_.device().lanes == 1
-                                          ? slice_counts_.bytes()
-                                          : slice_count(drawing.view) * sizeof(cl_uint));
+    session_.fill_zero(slice_counts_, slice_counts_.bytes());
   }
   cleared_ = false;
   if (count == 0) return;
@@ -210,9 +208,8 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
       .launch(session_.device().compute_units * kWideGroupsPerUnit * kRasterGroup, kRasterGroup);
 }
 
-/// Adds the counters to a kernel that zeroes them for the next set_up(), with one lane.
+/// Adds the counters to a kernel that zeroes them for the next set_up().
 Kernel& Rasterizer::add_counters(Kernel& kernel) {
-  if (session_.device().lanes != 1) return kernel;
   cleared_ = true;
   return kernel.add(counts_, slice_counts_);
 }
