@@ -17,6 +17,7 @@
 #include "kernels/shared/region.h"
 #include "kernels/shared/sweep.h"
 #include "kernels/shared/view.h"
+#include "kernels/shared/view_injection.h"
 #include "verify/check.hpp"
 #include "verify/tolerances.hpp"
 

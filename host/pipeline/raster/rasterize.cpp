@@ -145,14 +145,16 @@ std::vector<Rasterizer::Range> Rasterizer::list_clusters(const ClpvView& view) {
   const HostPart part(session_.timeline().host().culling_ms);
   const std::vector<Bounds>& bounds = scene_.clusters->bounds();
   const std::vector<BoxPlace> places = places_of(view, scene_.clusters->boxes());
-  const ClusterPlacer place(view);
   std::vector<ClpvViewCluster> visible;
   visible.reserve(bounds.size());
   for (unsigned i = 0; i < bounds.size(); ++i) {
-    if (places[i] != BoxPlace::outside) visible.push_back(place(bounds[i], i));
+    if (places[i] != BoxPlace::outside) visible.push_back({i, 0, 0, 0});
   }
   const unsigned count = visible.size();
   const bool hides = view.orthographic != 0 && count >= least_hidden_;
+  const ClusterPlacer place(view);  // only hide_clusters reads the others' places
+  for (unsigned i = 0; hides && i < count; ++i)
+    visible[i] = place(bounds[visible[i].number], visible[i].number);
   const unsigned nearest = hides ? move_nearest_first(visible) : count;
   session_.write(clusters_, visible);
   std::vector<Range> ranges{{0, nearest}};
@@ -302,9 +304,9 @@ void Rasterizer::clear(Surface& surface) {
   const std::size_t texel =
       surface.format == RsmFormat::paper ? sizeof(cl_uchar4) : sizeof(cl_float4);
   const std::size_t count = std::size_t{surface.view.width} * surface.view.height;
-  session_.fill_zero(surface.depth, count * sizeof(cl_float));
-  session_.fill_zero(surface.normal, count * texel);
-  session_.fill_zero(surface.colour, count * texel);
+  session_.fill_zero(surface.depth, count * sizeof(cl_float), surface.first * sizeof(cl_float));
+  for (const Buffer& texels : {surface.normal, surface.colour})
+    session_.fill_zero(texels, count * texel, surface.first * texel);
 }
 
 void Rasterizer::rasterize_camera(Surface& surface) {
@@ -337,7 +339,7 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
                             .emissive = false});
   kernel.set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
              scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
-             surface.colour_scale);
+             surface.colour_scale, surface.first);
   add_counters(kernel).launch(items_of(session_, view), pixel_group(session_));
 }
 
