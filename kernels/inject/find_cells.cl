@@ -8,12 +8,13 @@
 //
 // docs/method.md, 'Injection' and 'Blockers'.
 //
-// In:   places   depths [m]; with CLPV_POINTS positions [m] instead (emit.cl)
+// In:   injections   surfaces and their grids (shared/view_injection.h)
+//       places   depths [m]; with CLPV_POINTS positions [m] instead (emit.cl)
 //       normals; colours: flux [W], see surface.h for colour_scale
 //       stride   blocking: subsampling; a texel represents stride x stride texels
 //                (shared/thinned.h)
-// Out:  keys    key of the cell of each texel of each surface (cell_keys.h); CLPV_NO_CELL for texels that are
-//               empty, dark, outside the grid or not finite
+// Out:  keys    key of the cell of each texel of each surface (cell_keys.h); CLPV_NO_CELL for
+//               texels that are empty, dark, outside the grid or not finite
 //       shares  blocking: B of each texel
 // A work-item processes a strip of CLPV_STRIP texels of a row. Compilers vectorise this loop on
 // CPUs, if it accesses memory by scalars and calls no floor(). From the host: CLPV_GEOMETRY (0

@@ -134,8 +134,8 @@ void FrameCascades::inject_light(int first, int last) {
   std::vector<std::vector<const Surface*>> sources;
   for (int c = last; c >= first; --c) lights_.update_sources(c);
   for (int c = first; c <= last; ++c) sources.push_back(lights_.sources(c));
-  const StageScope scope(
-      session_, {Pass::inject_light, first == last ? std::optional(first) : std::nullopt});
+  const StageScope scope(session_,
+                         {Pass::inject_light, first == last ? std::optional(first) : std::nullopt});
   of_cascade(injected_, first).volume->clear_to(session_, *of_cascade(injected_, last).volume);
   for (std::size_t i = 0; i < sources[0].size(); ++i) {
     std::vector<Injector::Target> targets;

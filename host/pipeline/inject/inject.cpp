@@ -111,8 +111,8 @@ void Injector::inject_cells(Kind kind, const std::vector<Target>& targets, int s
   reserve(texels, blocks);
   std::vector<ClpvInjection> injections;
   for (const auto& [from, grid, volume] : targets)
-    injections.push_back({from.view, grid, from.colour_scale, from.first,
-                          static_cast<cl_uint>(volume.place()), 0});
+    injections.push_back(
+        {from.view, grid, from.colour_scale, from.first, static_cast<cl_uint>(volume.place()), 0});
   session_.reserve(injections_, count * sizeof(ClpvInjection), "surfaces to inject");
   session_.write(injections_, injections);
   Kernels& kernel = kernels({kind, surface.format, surface.points()});

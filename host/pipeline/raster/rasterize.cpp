@@ -143,18 +143,18 @@ void Rasterizer::find_visible(const Drawing& drawing) {
 /// Lists the triangle clusters that may be visible: all of them, or the nearest and the others.
 std::vector<Rasterizer::Range> Rasterizer::list_clusters(const ClpvView& view) {
   const HostPart part(session_.timeline().host().culling_ms);
-  const std::vector<Bounds>& bounds = scene_.clusters->bounds();
-  const std::vector<BoxPlace> places = places_of(view, scene_.clusters->boxes());
+  const Boxes& boxes = scene_.clusters->boxes();
+  const std::vector<BoxPlace> places = places_of(view, boxes);
   std::vector<ClpvViewCluster> visible;
-  visible.reserve(bounds.size());
-  for (unsigned i = 0; i < bounds.size(); ++i) {
+  visible.reserve(places.size());
+  for (unsigned i = 0; i < places.size(); ++i) {
     if (places[i] != BoxPlace::outside) visible.push_back({i, 0, 0, 0});
   }
   const unsigned count = visible.size();
   const bool hides = view.orthographic != 0 && count >= least_hidden_;
-  const ClusterPlacer place(view);  // only hide_clusters reads the others' places
+  // Only hide_clusters reads places.
   for (unsigned i = 0; hides && i < count; ++i)
-    visible[i] = place(bounds[visible[i].number], visible[i].number);
+    visible[i] = place_cluster(view, boxes, visible[i].number);
   const unsigned nearest = hides ? move_nearest_first(visible) : count;
   session_.write(clusters_, visible);
   std::vector<Range> ranges{{0, nearest}};

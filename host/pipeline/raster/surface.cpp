@@ -44,8 +44,7 @@ Bytes encode(const std::vector<glm::vec4>& values, float scale, float offset) {
 }
 
 std::vector<glm::vec4> read_texels(Session& session, const Buffer& buffer, std::size_t count,
-                                   std::size_t first, RsmFormat format, float scale,
-                                   float offset) {
+                                   std::size_t first, RsmFormat format, float scale, float offset) {
   if (format == RsmFormat::paper)
     return decode(session.read<cl_uchar4>(buffer, count, first), scale, offset);
   return session.read<glm::vec4>(buffer, count, first);
