@@ -16,9 +16,10 @@ inline constexpr int kCellFaces = 6;
 /// Sweeps for all bounces in a medium that scatters, along 24 directions.
 inline constexpr int kScatteredSweeps = 8;
 
-/// Sweeps for all bounces without such a medium before the last one, along 24 directions; at least
-/// 2. Further ones carry light farther from where it arrived (docs/method.md, 'More bounces').
-inline constexpr int kSeriesSweeps = 3;
+/// Sweeps for all bounces without such a medium before the last one, along 24 directions: default
+/// and least number. Further ones carry light farther from where it arrived (docs/method.md, 'More
+/// bounces').
+inline constexpr int kSeriesSweeps = 3, kLeastSeriesSweeps = 2;
 
 /// Limit of the ratio of successive bounces in the series of `--bounces all`, which diverges in
 /// closed white rooms.

@@ -104,7 +104,7 @@ std::string group_of(const std::string& name) {
       {"basis and tables", {"centres", "lambda", "lobe", "lobe-time", "evaluate", "table-size"}},
       {"shadow maps", {"rsm-format", "shadow-size"}},
       {"blockers", {"blocking", "blocker-stride"}},
-      {"propagation", {"iterations", "directions", "coarser-directions", "layout", "storage"}},
+      {"propagation", {"iterations", "directions", "coarser-directions", "bounce-sweeps", "layout", "storage"}},
       {"gathering", {"gather", "gather-offset", "near-size", "near-rays"}},
   };
   const std::string stage = group_with(kStages, name, "");

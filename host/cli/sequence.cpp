@@ -13,6 +13,7 @@
 #include "pathtracer/path_tracer.hpp"
 #include "scene/bounds.hpp"
 #include "support/error.hpp"
+#include "support/interrupt.hpp"
 #include "support/log.hpp"
 #include "support/output_file.hpp"
 
@@ -81,10 +82,10 @@ void warn_of_later_frames(const Options& options) {
 
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
-  const std::vector<NamedFile> outputs = prepare_outputs(options);
   std::optional<Video> video;
   if (!options.video.empty() && ranks.is_root())
     video.emplace(options.video, options.frames_per_second);
+  const std::vector<NamedFile> outputs = prepare_outputs(options);
   RenderRequest request = options.request;
   MovingScene moving = request.open();
   const FrameSetup setup = setup_of(request, moving.scene());
@@ -125,10 +126,15 @@ void run(const Options& options, Shared& shared) {
   sequence.render();
   if (!ranks.is_root()) return;
   warn_of_later_frames(options);
-  if (options.stability) sequence.measure_stability();
-  if (!video) return;
-  sequence.for_all_images([&](const Image& image) { video->add(image); });
-  video->finish();
+  try {
+    if (options.stability) sequence.measure_stability();
+    if (!video) return;
+    sequence.for_all_images([&](const Image& image) { video->add(image); });
+    video->finish();
+  } catch (const Interrupted&) {
+    throw Interrupted(fmt::format("all {} frames are in {}; the same command goes on with them",
+                                  options.frames, options.folder));
+  }
 }
 
 }  // namespace sequence_command

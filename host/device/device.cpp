@@ -39,21 +39,29 @@ std::string type_name(cl_device_type type) {
   return "other";
 }
 
-/// Returns true if two events have plausible times: each takes some, and the device's clock says
-/// that between them the host waited.
+/// Returns true if events have plausible times: each takes some, the device's clock says that the
+/// host waited between two of them, and fills of a busy queue take a fair share of the host's time.
 bool profiling_is_plausible(const cl::Device& handle) {
   using Clock = std::chrono::steady_clock;
   using Ns = std::chrono::duration<double, std::nano>;
   constexpr std::chrono::milliseconds kWait{1};  // far above the resolution of clocks
-  constexpr std::size_t kBytes = 1 << 20;
+  constexpr std::size_t kBytes = 1 << 20, kMost = 64 << 20;
   constexpr cl_ulong kLeast = 100;  // [ns]: 1 MiB would be filled at 10 TB/s
+  constexpr int kFills = 16, kTries = 3;
+  constexpr double kShare = 1. / 16;  // gaps between launches and a busy host take the rest
   try {
     cl::Context context(handle);
     cl::CommandQueue queue(context, handle, CL_QUEUE_PROFILING_ENABLE);
-    cl::Buffer buffer(context, CL_MEM_READ_WRITE, kBytes);
-    const auto filled = [&] {
+    const std::size_t most =
+        std::clamp<std::size_t>(handle.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>() / 4, kBytes, kMost);
+    cl::Buffer buffer(context, CL_MEM_READ_WRITE, most);
+    const auto fill = [&](std::size_t bytes) {
       cl::Event event;
-      queue.enqueueFillBuffer(buffer, cl_uchar{0}, 0, kBytes, nullptr, &event);
+      queue.enqueueFillBuffer(buffer, cl_uchar{0}, 0, bytes, nullptr, &event);
+      return event;
+    };
+    const auto filled = [&] {
+      const cl::Event event = fill(kBytes);
       queue.finish();
       const EventTimes times = times_of(event);
       return times.end - times.start >= kLeast ? times : EventTimes();
@@ -64,10 +72,28 @@ bool profiling_is_plausible(const cl::Device& handle) {
     std::this_thread::sleep_for(kWait);
     const Ns least = Clock::now() - waited;
     const EventTimes second = filled();
-    const Ns most = Clock::now() - begun;
+    const Ns most_between = Clock::now() - begun;
     const double between = static_cast<double>(second.start) - static_cast<double>(first.end);
-    return first.valid && second.valid && between >= least.count() * (1 - kClockTolerance) &&
-           between <= most.count() * (1 + kClockTolerance);
+    if (!first.valid || !second.valid || between < least.count() * (1 - kClockTolerance) ||
+        between > most_between.count() * (1 + kClockTolerance))
+      return false;
+    // Fills grow until the host needs kWait for them, so that launches do not hide their time.
+    int tries = 0;
+    for (std::size_t bytes = kBytes; tries < kTries;) {
+      const Clock::time_point start = Clock::now();
+      std::vector<cl::Event> events;
+      for (int i = 0; i < kFills; ++i) events.push_back(fill(bytes));
+      queue.finish();
+      const Ns elapsed = Clock::now() - start;
+      double sum = 0;
+      for (const cl::Event& event : events) sum += times_of(event).ms() * 1e6;
+      if (sum >= elapsed.count() * kShare) return true;
+      if (elapsed < kWait && bytes < most)
+        bytes = std::min(2 * bytes, most);
+      else
+        ++tries;
+    }
+    return false;
   } catch (const cl::Error&) {
     return false;
   }

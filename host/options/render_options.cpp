@@ -16,7 +16,7 @@ namespace clpv {
 namespace {
 
 // Upper limits, beyond any practical use: a mistyped value fails before memory is allocated.
-constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxTexels = 8192;
+constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxBounceSweeps = 64, kMaxTexels = 8192;
 // Edge of a cascade [m]. With 512 cells of the smallest, products of a cell's edges are far from a
 // float's limits; the largest holds every scene (bounds::kCoordinate).
 constexpr double kMinMetres = 1e-6, kMaxMetres = 1e7;
@@ -114,9 +114,13 @@ void for_each_option(Options& o, Visit&& visit) {
         "number of sweep directions in all other cascades", Named{});
   visit("bounces", o.bounces,
         "number of diffuse bounces; more than 1 needs --transport sweep; auto: all with a sweep, "
-        "else "
-        "1",
+        "else 1",
         Named{});
+  visit(
+      "bounce-sweeps", o.bounce_sweeps,
+      "sweeps along 24 directions before the rest of --bounces all is estimated; more carry light "
+      "farther through corridors",
+      Range{kLeastSeriesSweeps, kMaxBounceSweeps});
   visit("layout", o.layout,
         "memory layout of volumes: 3-D images, or buffers ordered by cell, by coefficient or by "
         "block",

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "basis/blocking.hpp"
+#include "basis/bounce.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "basis/transport.hpp"
 #include "clpv/options.hpp"
@@ -42,6 +43,7 @@ struct RenderOptions {
   Directions directions = Directions::of96;
   Directions coarser_directions = Directions::of96;
   Bounces bounces = Bounces::automatic;
+  int bounce_sweeps = kSeriesSweeps;
   Layout layout = Layout::soa;
   Storage storage = Storage::float16;
   int iterations = 8;

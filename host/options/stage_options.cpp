@@ -29,6 +29,7 @@ SweepOptions sweep_options(const RenderOptions& options) {
           .parts = parts,
           .blocking = options.blocked(),
           .bounces = options.reflects() ? options.bounces : Bounces::one,
+          .bounce_sweeps = options.bounce_sweeps,
           .format = options.format()};
 }
 

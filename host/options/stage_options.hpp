@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "basis/blocking.hpp"
+#include "basis/bounce.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "kernels/shared/light.h"
 #include "options/choices.hpp"
@@ -47,7 +48,8 @@ struct SweepOptions {
   std::vector<int> parts;          ///< parts of each bin (sweep_bins), per cascade, finest first
   bool blocking = true;            ///< light is blocked by geometry volumes
   Bounces bounces = Bounces::one;  ///< more than one needs reflectors in set_surfaces()
-  VolumeFormat format = {};        ///< format of all volumes; internal buffers use its storage
+  int bounce_sweeps = kSeriesSweeps;
+  VolumeFormat format = {};  ///< format of all volumes; internal buffers use its storage
   SweepForm form = SweepForm::suited;
   std::optional<ClpvMedium> medium = {};
   /// Lights the coarsest cascade at its border; used by the constructor alone.

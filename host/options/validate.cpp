@@ -67,6 +67,10 @@ std::vector<Effect> effects_of(const OptionValues& given, const RenderOptions& o
   return {
       {!sweeps, {"iterations"}, transport, "transport sampled or exact"},
       {sweeps, {"directions", "coarser-directions"}, transport, "transport sweep"},
+      {options.bounces == Bounces::all,
+       {"bounce-sweeps"},
+       found("bounces", name_of(options.bounces)),
+       "bounces all"},
       {options.cascades > 1,
        {"coarser-directions"},
        found("cascades", std::to_string(options.cascades)),

@@ -76,14 +76,15 @@ void add_one_bounce(const Basis& basis, const Transport& transport,
 /// of the one before. The coarser cascade's last sweep enters at the border.
 void add_all_bounces(const Basis& basis, const Transport& transport,
                      const std::vector<SweptCascade>& cascades,
-                     const std::vector<const Volume*>& reflectors, std::vector<Volume>& light) {
+                     const std::vector<const Volume*>& reflectors, int sweeps,
+                     std::vector<Volume>& light) {
   for (std::size_t c = cascades.size(); c-- > 0;) {
     std::vector<SweptCascade> nested(cascades.begin() + static_cast<std::ptrdiff_t>(c),
                                      cascades.end());
     const Volume injected = light[c];
     nested[0] = along_24(nested[0]);
     Volume before, after = sweep(basis, transport, nested)[0];
-    for (int sweeps = 1; sweeps < kSeriesSweeps; ++sweeps) {
+    for (int done = 1; done < sweeps; ++done) {
       before = after, light[c] = injected;
       inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(before), light[c]);
       after = sweep(basis, transport, nested)[0];
@@ -243,24 +244,27 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
 
 std::vector<Volume> bounce(const Basis& basis, const Transport& transport,
                            std::vector<SweptCascade> cascades,
-                           const std::vector<const Volume*>& reflectors, Bounces bounces) {
+                           const std::vector<const Volume*>& reflectors, Bounces bounces,
+                           int sweeps) {
   std::vector<Volume> light;
   for (const SweptCascade& cascade : cascades) light.push_back(*cascade.injected);
   for (std::size_t c = 0; c < cascades.size(); ++c) cascades[c].injected = &light[c];
   if (bounces == Bounces::two) add_one_bounce(basis, transport, cascades, reflectors, light);
-  if (bounces == Bounces::all) add_all_bounces(basis, transport, cascades, reflectors, light);
+  if (bounces == Bounces::all)
+    add_all_bounces(basis, transport, cascades, reflectors, sweeps, light);
   return light;
 }
 
 std::vector<Volume> sweep_bounced(const Basis& basis, const Transport& transport,
                                   std::vector<SweptCascade> cascades,
-                                  const std::vector<const Volume*>& reflectors, Bounces bounces) {
+                                  const std::vector<const Volume*>& reflectors, Bounces bounces,
+                                  int sweeps) {
   if (cascades.front().scattered != nullptr) {
     const Sources sources = bounce_in_medium(basis, transport, cascades, reflectors,
                                              bounces == Bounces::all ? kScatteredSweeps : 1);
     return sweep(basis, transport, sources.of(cascades, 0));
   }
-  const std::vector<Volume> light = bounce(basis, transport, cascades, reflectors, bounces);
+  const std::vector<Volume> light = bounce(basis, transport, cascades, reflectors, bounces, sweeps);
   for (std::size_t c = 0; c < cascades.size(); ++c) cascades[c].injected = &light[c];
   return sweep(basis, transport, cascades);
 }

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "basis/bounce.hpp"
 #include "options/choices.hpp"
 #include "reference/sweep.hpp"
 
@@ -34,11 +35,13 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
 /// `reflectors`, normalised and one volume per cascade, reflect.
 std::vector<Volume> bounce(const Basis& basis, const Transport& transport,
                            std::vector<SweptCascade> cascades,
-                           const std::vector<const Volume*>& reflectors, Bounces bounces);
+                           const std::vector<const Volume*>& reflectors, Bounces bounces,
+                           int sweeps = kSeriesSweeps);
 
 /// Sweeps the result of bounce().
 std::vector<Volume> sweep_bounced(const Basis& basis, const Transport& transport,
                                   std::vector<SweptCascade> cascades,
-                                  const std::vector<const Volume*>& reflectors, Bounces bounces);
+                                  const std::vector<const Volume*>& reflectors, Bounces bounces,
+                                  int sweeps = kSeriesSweeps);
 
 }  // namespace clpv::reference

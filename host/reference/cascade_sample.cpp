@@ -23,12 +23,18 @@ LinearSample linear_sample(double at, int n) {
 constexpr int kPoints = 4;                       // visibility points per cube along each axis
 constexpr double kMinVisibleShare = 1.0 / 64.0;  // by weight; below it, all cells count
 
-/// Visible share of each of eight cells from a point `t` in their cube: visibility bits,
-/// interpolated trilinearly.
-std::array<double, 8> visible_shares(const glm::dvec3& t, const std::uint8_t* points) {
+int number_of(const glm::ivec3& at, int n) {
+  return (at.z * n + at.y) * n + at.x;
+}
+
+/// Visible share of each of eight cells from a point `t` in their cube: visibility bits of the
+/// points that see one of `clear`, interpolated trilinearly.
+std::array<double, 8> visible_shares(const glm::dvec3& t, const std::uint8_t* points,
+                                     unsigned clear) {
   std::array<LinearSample, 3> axes;
   for (int axis = 0; axis < 3; ++axis) axes[axis] = linear_sample(kPoints * t[axis] - 0.5, kPoints);
   std::array<double, 8> visible{};
+  double sum = 0;
   for (int i = 0; i < 8; ++i) {
     int point = 0;
     double weight = 1;
@@ -38,10 +44,36 @@ std::array<double, 8> visible_shares(const glm::dvec3& t, const std::uint8_t* po
       point = kPoints * point + (upper ? b.upper : b.lower);
       weight *= upper ? b.t : 1 - b.t;
     }
+    const unsigned seen = ~unsigned{points[point]};
+    if ((seen & clear) == 0) continue;
+    sum += weight;
     for (std::size_t corner = 0; corner < 8; ++corner)
-      visible[corner] += (points[point] >> corner & 1) != 0 ? 0 : weight;
+      visible[corner] += (seen >> corner & 1) != 0 ? weight : 0;
   }
+  for (double& share : visible) share = sum > 0 ? share / sum : 0;
   return visible;
+}
+
+constexpr unsigned kAllCells = 255;
+
+/// Cells of the cube, a bit each, of which a sample point must see one to count. `shift` is added
+/// to the point along `clear` [quarters of a cell].
+unsigned clear_cells(const glm::dvec3& at, const glm::ivec3& cube, const glm::dvec3& clear, int n,
+                     const std::uint8_t* occluded, double shift = 0) {
+  if (clear == glm::dvec3(0)) return kAllCells;
+  const int last = std::max(kPoints * (n - 1) - 1, 0);
+  const glm::dvec3 way = double{kPoints} * glm::clamp(at, 0.0, n - 1.0) + clear + shift;
+  const glm::ivec3 point(glm::clamp(way, 0.0, double(last))), there = point / kPoints;
+  const std::uint8_t bits = occluded[number_of(there, n) * kPoints * kPoints * kPoints +
+                                     number_of(point % kPoints, kPoints)];
+  unsigned cells = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 in_cube = there - cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+    const bool shared = glm::all(glm::greaterThanEqual(in_cube, glm::ivec3(0))) &&
+                        glm::all(glm::lessThanEqual(in_cube, glm::ivec3(1)));
+    if (shared && (bits >> corner & 1) == 0) cells |= 1u << number_of(in_cube, 2);
+  }
+  return cells != 0 ? cells : kAllCells;
 }
 
 }  // namespace
@@ -62,12 +94,21 @@ TrilinearSample trilinear_sample(const glm::dvec3& at, int n) {
   return sample;
 }
 
-void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, int n,
+bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n,
+                      const std::uint8_t* occluded) {
+  constexpr double kUnsure = 1e-4;  // above single precision's error at the coordinates of a grid
+  const glm::ivec3 cube = trilinear_sample(at, n).cell[0];
+  return clear_cells(at, cube, clear, n, occluded, -kUnsure) !=
+         clear_cells(at, cube, clear, n, occluded, kUnsure);
+}
+
+void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::dvec3& clear, int n,
                       const std::uint8_t* occluded) {
   const glm::ivec3 cube = sample.cell[0];
   const glm::dvec3 t = glm::clamp(at, 0.0, n - 1.0) - glm::dvec3(cube);
-  const int number = ((cube.z * n + cube.y) * n + cube.x) * kPoints * kPoints * kPoints;
-  const std::array<double, 8> visible = visible_shares(t, occluded + number);
+  const int number = number_of(cube, n) * kPoints * kPoints * kPoints;
+  const std::array<double, 8> visible =
+      visible_shares(t, occluded + number, clear_cells(at, cube, clear, n, occluded));
   double total = 0;
   for (std::size_t corner = 0; corner < 8; ++corner)
     total += visible[corner] * sample.weight[corner];

@@ -24,8 +24,15 @@ struct TrilinearSample {
 /// each axis.
 TrilinearSample trilinear_sample(const glm::dvec3& at, int n);
 
-/// Multiplies weights by the visible shares of the cells from `at`, and normalises them.
-void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, int n,
+/// Multiplies weights by the visible shares of the cells from `at`, and normalises them. `clear`: a
+/// unit vector along which nothing stands, or 0. Only those sample points count that see a cell
+/// which the sample point a quarter of a cell along it sees, too.
+void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::dvec3& clear, int n,
+                      const std::uint8_t* occluded);
+
+/// Returns true if rounding decides which cells the sample point a quarter of a cell along `clear`
+/// sees.
+bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n,
                       const std::uint8_t* occluded);
 
 /// Interpolated coefficients of one channel.

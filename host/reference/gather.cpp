@@ -39,7 +39,7 @@ glm::dvec4 irradiance(const Volume& volume, const TrilinearSample& sample,
 
 glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
-                  const glm::dvec3& normal, const glm::dvec3& lift) {
+                  const glm::dvec3& normal, const glm::dvec3& lift, const glm::dvec3& clear) {
   const std::vector<double> weights = gather_weights(basis, transport, options.lobes, normal);
   glm::dvec4 e(0);
   double rest = 1;  // weight of the coarser cascades
@@ -52,13 +52,24 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
     const double area = double{grid.cell} * grid.cell;
     TrilinearSample sample = trilinear_sample(point, options.grid);
     if (options.gather == Gathering::visible)
-      apply_visibility(sample, point, options.grid, cascade.occluded);
+      apply_visibility(sample, point, clear, options.grid, cascade.occluded);
     e += share * rest / glm::dvec4(area, area, area, 1) *
          irradiance(*cascade.accumulated, sample, weights);
     rest *= 1 - share;
   }
   if (has_faces(transport)) return glm::dvec3(e);
   return glm::dvec3(e) / over_furnace(e.w / std::numbers::pi + rest);
+}
+
+bool rounding_decides(const GatherOptions& options, const std::vector<Cascade>& cascades,
+                      const glm::dvec3& position, double offset, const glm::dvec3& lift,
+                      const glm::dvec3& clear) {
+  return options.gather == Gathering::visible &&
+         std::ranges::any_of(cascades, [&](const Cascade& cascade) {
+           const glm::dvec3 at =
+               (position - vector(cascade.grid.origin)) / double{cascade.grid.cell};
+           return rounding_decides(at + offset * lift - 0.5, clear, options.grid, cascade.occluded);
+         });
 }
 
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,
@@ -68,9 +79,10 @@ std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,
   for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
     const double depth = camera.depth[pixel];
     if (depth <= 0) continue;
+    const glm::dvec3 position = surface_position(camera.view, pixel, depth);
     image[pixel] =
-        gather(basis, transport, options, cascades, surface_position(camera.view, pixel, depth),
-               glm::dvec3(camera.normal[pixel]), lift_normal(camera.normal[pixel]));
+        gather(basis, transport, options, cascades, position, glm::dvec3(camera.normal[pixel]),
+               lift_normal(camera.normal[pixel]), towards_eye(camera.view, position));
   }
   return image;
 }

@@ -25,10 +25,17 @@ struct Cascade {
 };
 
 /// Returns the irradiance [W/m^2] in red, green, blue of a surface at `position` [m] with unit
-/// `normal`. `cascades`: finest first.
+/// `normal`. `cascades`: finest first. `clear`: apply_visibility().
 glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptions& options,
                   const std::vector<Cascade>& cascades, const glm::dvec3& position,
-                  const glm::dvec3& normal, const glm::dvec3& lift);
+                  const glm::dvec3& normal, const glm::dvec3& lift,
+                  const glm::dvec3& clear = glm::dvec3(0));
+
+/// Returns true if rounding decides which sample points count in a lookup of gather() or
+/// radiance_field().
+bool rounding_decides(const GatherOptions& options, const std::vector<Cascade>& cascades,
+                      const glm::dvec3& position, double offset, const glm::dvec3& lift,
+                      const glm::dvec3& clear);
 
 /// Returns the irradiance of every pixel of a G-buffer, row 0 first; 0 for pixels without a
 /// surface.

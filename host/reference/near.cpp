@@ -28,7 +28,7 @@ bool close_to(double value, double limit) {
 
 /// A traced pixel.
 struct NearPoint {
-  glm::dvec3 position{0}, normal{0}, lift{0};
+  glm::dvec3 position{0}, normal{0}, lift{0}, clear{0};
   double reach = 0;  ///< [m]; 0 without a surface in a cascade
   glm::dvec3 difference{0}, gathered{0};
   bool uncertain = false;  ///< light
@@ -41,8 +41,14 @@ struct NearField {
   const NearScene& scene;
 
   double reach_at(const glm::dvec3& position) const;
-  RadianceField field_at(const glm::dvec3& position, double offset, const glm::dvec3& lift) const {
-    return radiance_field(options.gather, scene.cascades, basis.size(), position, offset, lift);
+  RadianceField field_at(const glm::dvec3& position, double offset, const glm::dvec3& lift,
+                         const glm::dvec3& clear = glm::dvec3(0)) const {
+    return radiance_field(options.gather, scene.cascades, basis.size(), position, offset, lift,
+                          clear);
+  }
+  bool unsure(const glm::dvec3& position, double offset, const glm::dvec3& lift,
+              const glm::dvec3& clear) const {
+    return rounding_decides(options.gather, scene.cascades, position, offset, lift, clear);
   }
   double trust(const RadianceField& field, const glm::dvec3& normal) const;
   glm::dvec3 radiance_of(const NearHit& hit, const NearPoint& point, const glm::dvec3& along,
@@ -119,7 +125,7 @@ glm::dmat3 frame_about(const glm::dvec3& n) {
 
 void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions) const {
   const double offset = options.gather.gather_offset;
-  const RadianceField here = field_at(point.position, offset, point.lift);
+  const RadianceField here = field_at(point.position, offset, point.lift, point.clear);
   point.gathered = field_irradiance(basis, here, point.normal);
   const double share = trust(here, point.normal);
   // At the pixel all directions share the denominator of its irradiance.
@@ -138,7 +144,8 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
       point.difference += radiance_of(*hit, point, w, point.uncertain) - v;
     } else {
       const glm::dvec3 end = point.position + point.reach * (offset * point.lift + w);
-      point.difference += share * (radiance(basis, field_at(end, 0, point.normal), -w) - v);
+      point.uncertain = point.uncertain || unsure(end, 0, point.normal, -w);
+      point.difference += share * (radiance(basis, field_at(end, 0, point.normal, -w), -w) - v);
     }
   }
   point.difference *= std::numbers::pi / static_cast<double>(directions.size());
@@ -249,7 +256,10 @@ struct NearPixels {
     point.position = surface_position(camera.view, pixel, camera.depth[pixel]);
     point.normal = glm::dvec3(camera.normal[pixel]);
     point.lift = lift_normal(camera.normal[pixel]);
+    point.clear = towards_eye(camera.view, point.position);
     point.reach = field.reach_at(point.position);
+    point.uncertain =
+        field.unsure(point.position, field.options.gather.gather_offset, point.lift, point.clear);
     return point;
   }
 
@@ -365,9 +375,9 @@ NearResult near(const Basis& basis, const NearOptions& options, const NearScene&
   NearResult result{gathered, std::vector<bool>(gathered.size(), false)};
   for (std::size_t pixel = 0; pixel < gathered.size(); ++pixel) {
     if (camera.depth[pixel] <= 0) continue;
-    const Mean sums = pixels.interpolated(image, static_cast<int>(pixel % view.width),
-                                          static_cast<int>(pixel / view.width));
-    result.uncertain[pixel] = sums.uncertain;
+    const int x = static_cast<int>(pixel % view.width), y = static_cast<int>(pixel / view.width);
+    const Mean sums = pixels.interpolated(image, x, y);
+    result.uncertain[pixel] = sums.uncertain || pixels.point_at(x, y).uncertain;
     NearPoint mean;
     sums.put(mean);
     for (int channel = 0; channel < 3; ++channel) {

@@ -12,7 +12,7 @@ namespace clpv::reference {
 
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset,
-                             const glm::dvec3& lift) {
+                             const glm::dvec3& lift, const glm::dvec3& clear) {
   RadianceField field;
   for (auto& channel : field) channel.assign(coefficients, 0.0);
   double rest = 1;  // weight of the coarser cascades
@@ -23,7 +23,7 @@ RadianceField radiance_field(const GatherOptions& options, const std::vector<Cas
         (position - vector(grid.origin)) / double{grid.cell} + offset * lift - 0.5;
     TrilinearSample sample = trilinear_sample(at, options.grid);
     if (options.gather == Gathering::visible)
-      apply_visibility(sample, at, options.grid, cascade.occluded);
+      apply_visibility(sample, at, clear, options.grid, cascade.occluded);
     for (int channel = 0; channel < 4 && share * rest > 0; ++channel) {
       const double weight = share * rest / (channel < 3 ? double{grid.cell} * grid.cell : 1);
       const std::vector<double> c = interpolated(*cascade.accumulated, channel, sample);

@@ -17,10 +17,11 @@ namespace clpv::reference {
 using RadianceField = std::array<std::vector<double>, 4>;
 
 /// Returns coefficients at position + offset s lift of each cascade, s its cell, blended by the
-/// cascades' shares at `position` [m].
+/// cascades' shares at `position` [m]. `clear`: apply_visibility().
 RadianceField radiance_field(const GatherOptions& options, const std::vector<Cascade>& cascades,
                              int coefficients, const glm::dvec3& position, double offset = 0,
-                             const glm::dvec3& lift = glm::dvec3(0));
+                             const glm::dvec3& lift = glm::dvec3(0),
+                             const glm::dvec3& clear = glm::dvec3(0));
 
 /// Returns L(p, w) [W/m^2/sr], light that travels along the unit vector w. May be negative.
 glm::dvec3 radiance(const Basis& basis, const RadianceField& field, const glm::dvec3& w);

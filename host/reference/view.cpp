@@ -13,6 +13,11 @@ glm::dvec3 surface_position(const ClpvView& view, double px, double py, double d
          sy * vector(view.up);
 }
 
+glm::dvec3 towards_eye(const ClpvView& view, const glm::dvec3& position) {
+  if (view.half_width <= 0) return glm::dvec3(0);
+  return glm::normalize(vector(view.eye) - position);
+}
+
 ProjectedPoint project(const ClpvView& view, const glm::dvec3& point) {
   const glm::dvec3 offset = point - vector(view.eye);
   const double depth = glm::dot(offset, vector(view.forward));

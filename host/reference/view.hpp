@@ -23,6 +23,9 @@ inline glm::dvec3 surface_position(const ClpvView& view, std::size_t pixel, doub
   return surface_position(view, pixel % view.width, pixel / view.width, depth);
 }
 
+/// Returns the unit vector from `position` [m] to the eye; 0 for points without a view.
+glm::dvec3 towards_eye(const ClpvView& view, const glm::dvec3& position);
+
 /// Projection of a point: pixel coordinates (pixel centres are integers) and depth [m]. In
 /// perspective views valid for depth > 0.
 struct ProjectedPoint {

@@ -115,12 +115,11 @@ void Sequence::render() {
   renderer_.reset();
 }
 
-/// `lost`: the data missing after an interrupted run.
 template <typename Action>
-void Sequence::for_all_frames(const char* title, const char* lost, const Action& action) {
+void Sequence::for_all_frames(const char* title, const Action& action) {
   Progress progress(title, static_cast<std::uint64_t>(options_.frames));
   for (int i = 0; i < options_.frames; ++i, progress.advance()) {
-    stop_if_interrupted(fmt::format("the frames are in {}, {}", options_.folder, lost));
+    stop_if_interrupted();
     action(i);
   }
 }
@@ -128,7 +127,7 @@ void Sequence::for_all_frames(const char* title, const char* lost, const Action&
 void Sequence::measure_stability() {
   Renderer renderer(device_, moving_.scene(), setup_, compilation_);
   Stability stability(renderer.session, renderer.frame, options_.traced);
-  for_all_frames("stability", "stability.json is not written", [&](int i) {
+  for_all_frames("stability", [&](int i) {
     moving_.pose(options_.time_of(i));
     renderer.frame.scene_moved();
     renderer.frame.render(camera());
@@ -141,7 +140,7 @@ void Sequence::measure_stability() {
 }
 
 void Sequence::for_all_images(const std::function<void(const Image&)>& action) {
-  for_all_frames("video", "the video is not written", [&](int i) {
+  for_all_frames("video", [&](int i) {
     const Image image = read_image(options_.file(i));
     action(image.encoding == Encoding::srgb ? image : subject_.displayed(image));
   });

@@ -84,7 +84,7 @@ class Sequence {
   using Clock = std::chrono::steady_clock;
 
   template <typename Action>
-  void for_all_frames(const char* title, const char* lost, const Action& action);
+  void for_all_frames(const char* title, const Action& action);
   const SceneCamera& camera() const { return moving_.scene().camera(subject_.camera); }
   nlohmann::json described(double seconds) const;
   std::string key(const nlohmann::json& described) const;

@@ -57,11 +57,12 @@ std::vector<double> expected_pixels(const GatherWork& p) {
   const SurfaceImage& image = *q.image;
   std::vector<double> values;
   for (std::size_t i = 0; i < image.depth.size(); i += q.every) {
+    const glm::dvec3 at = reference::surface_position(image.view, i, double{image.depth[i]});
     const glm::dvec3 e =
         image.depth[i] > 0
-            ? reference::gather(*q.basis, q.transport, q.options, p.light.cascades,
-                                reference::surface_position(image.view, i, double{image.depth[i]}),
-                                glm::dvec3(image.normal[i]), lift_normal(image.normal[i]))
+            ? reference::gather(*q.basis, q.transport, q.options, p.light.cascades, at,
+                                glm::dvec3(image.normal[i]), lift_normal(image.normal[i]),
+                                reference::towards_eye(image.view, at))
             : glm::dvec3(0);
     append_pixel(values, e, 0);
   }
@@ -114,17 +115,27 @@ GatherProblem random_gathering(Session& session, const std::shared_ptr<const Bas
                                TransportKind transport, const GatherOptions& options) {
   std::mt19937 random(11);
   SurfaceImage image = random_surfaces(random);
-  for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
-    if (rounding_decides(*basis, options.lobes, glm::dvec3(image.normal[pixel])))
-      image.depth[pixel] = 0;
-  }
   std::vector<std::uint8_t> occluded = random_occlusion(kCascades, options.grid, random);
   if (options.gather != Gathering::visible) occluded.clear();
+  CascadeLight light = random_cascades(*basis, kCascades, kFinestEdge, options.grid,
+                                       !has_faces(transport), std::move(occluded), random);
+  std::vector<reference::Cascade> cascades;
+  for (std::size_t c = 0; c < light.grids.size(); ++c)
+    cascades.push_back(
+        {light.grids[c], nullptr, light.occluded.data() + c * light.occluded.size() / kCascades});
+  for (std::size_t pixel = 0; pixel < image.depth.size(); ++pixel) {
+    const glm::dvec3 at =
+        reference::surface_position(image.view, pixel, double{image.depth[pixel]});
+    if (rounding_decides(*basis, options.lobes, glm::dvec3(image.normal[pixel])) ||
+        reference::rounding_decides(options, cascades, at, options.gather_offset,
+                                    lift_normal(image.normal[pixel]),
+                                    reference::towards_eye(image.view, at)))
+      image.depth[pixel] = 0;
+  }
   return {basis,
           transport,
           options,
-          random_cascades(*basis, kCascades, kFinestEdge, options.grid, !has_faces(transport),
-                          std::move(occluded), random),
+          std::move(light),
           upload_surface(session, image),
           std::make_shared<const SurfaceImage>(image)};
 }

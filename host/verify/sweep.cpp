@@ -114,7 +114,8 @@ std::vector<double> expected_light(const SweepProblem& p) {
   const std::vector<reference::Volume> swept =
       o.bounces == Bounces::one
           ? reference::sweep(*p.basis, p.transport, cascades, sky ? &*sky : nullptr)
-          : reference::sweep_bounced(*p.basis, p.transport, cascades, reflecting, o.bounces);
+          : reference::sweep_bounced(*p.basis, p.transport, cascades, reflecting, o.bounces,
+                                     o.bounce_sweeps);
   std::vector<reference::Volume> furnace;
   if (!white.empty()) furnace = reference::furnace(*p.basis, p.transport, cascades, white);
   std::vector<double> values;
@@ -178,13 +179,15 @@ struct SweepCase {
   bool sky = false;
   bool medium = false;
   bool closed = false;  ///< occluded cells close links
+  int sweeps = kSeriesSweeps;
 
   std::string name() const {
     std::string directions;
     for (const int p : parts)
       directions += fmt::format("{}{}", directions.empty() ? "" : ",", kSweepBins * p * p);
-    return fmt::format("{}/{}^3/{}{}{}{}{}{}{}{}/{}", basis, grid, directions,
+    return fmt::format("{}/{}^3/{}{}{}{}{}{}{}{}{}/{}", basis, grid, directions,
                        bounces == Bounces::one ? "" : fmt::format("/{} bounces", name_of(bounces)),
+                       sweeps == kSeriesSweeps ? "" : fmt::format("/{} sweeps", sweeps),
                        blocking ? "" : "/free", blocked_by == Blocking::areas ? "" : "/one-sided",
                        form == SweepForm::bins ? "" : fmt::format("/{}", name_of(form)),
                        sky ? "/sky" : "", medium ? "/medium" : "", closed ? "/closed" : "",
@@ -261,6 +264,7 @@ Job job_of(Session& session, const SweepCase& c) {
                     .parts = c.parts,
                     .blocking = c.blocking,
                     .bounces = c.bounces,
+                    .bounce_sweeps = c.sweeps,
                     .format = c.format,
                     .form = c.form,
                     .medium = c.medium ? std::optional(kSweptMedium) : std::nullopt});
@@ -367,8 +371,12 @@ Cases bounce_cases(const CheckScope& scope) {
     cases.push_back({.basis = "sh3", .grid = 9, .parts = {1, 1}, .bounces = all, .format = format});
   }
   if (scope.thorough) {
-    cases.push_back(
-        {.basis = "sh2", .grid = 7, .parts = {1, 2, 1}, .bounces = all, .form = SweepForm::planes});
+    cases.push_back({.basis = "sh2",
+                     .grid = 7,
+                     .parts = {1, 2, 1},
+                     .bounces = all,
+                     .form = SweepForm::planes,
+                     .sweeps = 5});
     cases.push_back({.basis = "bins24",
                      .grid = 8,
                      .parts = {2, 2},

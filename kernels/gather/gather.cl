@@ -31,7 +31,7 @@ __kernel void gather(const ClpvView view, __global const Place* places,
   if (p.count == 0) return;
   Gathering g;
   CLPV_LOAD_SURFACES(view, p, places, normals, &g.surfaces);
-  begin_gathering(&g CLPV_PASS_G);
+  begin_gathering(view, &g CLPV_PASS_G);
   for (uint c = 0; c < cascades; ++c)
     add_cascade(&g, grids + c, packed_cascade(c CLPV_PASS_VOLUMES));
   float outside[W];  // outside all cascades the furnace is white

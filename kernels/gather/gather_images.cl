@@ -21,7 +21,7 @@ typedef struct {
   float x[W], y[W], z[W];
 } SamplePoints;
 
-CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
+CLPV_INLINE void find_sample_points(const Vec at, const Vec clear, SamplePoints* points) {
   store_lanes(at.x, points->x);
   store_lanes(at.y, points->y);
   store_lanes(at.z, points->z);
@@ -55,7 +55,7 @@ __kernel void gather_images(const ClpvView view, __global const Place* places,
   if (p.count == 0) return;
   Gathering g;
   CLPV_LOAD_SURFACES(view, p, places, normals, &g.surfaces);
-  begin_gathering(&g CLPV_PASS_G);
+  begin_gathering(view, &g CLPV_PASS_G);
   CLPV_EACH_CASCADE(CLPV_ADD_IMAGE)
   for (uint i = 0; i < p.count; ++i) irradiance[g.surfaces.first + i] = unit * g.sums[i];
 }

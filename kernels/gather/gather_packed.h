@@ -5,6 +5,9 @@
 //   w_i' = w_i v_i / sum_j w_j v_j,   w trilinear weights of the eight cells, v their visible
 //                                     shares
 //
+// Where a direction is known along which nothing stands, such as that to the eye, only those sample
+// points count that see a cell which the sample point a quarter of a cell along it sees, too: no
+// point behind a wall beside the surface does.
 // docs/method.md, 'Gathering'.
 // A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b f)(r g b f). The eight
 // cells about a point are read as whole vectors. f is swept light of the white furnace, 0 after
@@ -44,10 +47,29 @@ typedef struct {
   float x[W], y[W], z[W];
   int visibility_point[W];
   float visibility_x[W], visibility_y[W], visibility_z[W];
+  int clear_point[W];  // of all cubes' points; negative: not known
+  int clear_cube[W];   // steps from the point's cube to that one, each plus 1, in bits 0, 2 and 4
 } SamplePoints;
 
+// Finds the sample points a quarter of a cell along `clear` from p [cells], whose cube is (x, y,
+// z).
+CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, const intW z,
+                                   const Vec clear, SamplePoints* points) {
+  const float past = 4.0f * (float)(CLPV_GRID - 1);
+  const intW highest = (intW)(CLPV_GRID > 1 ? 4 * CLPV_GRID - 5 : 0);
+  const intW a = min(to_intW(clamp_to(fma(p.x, (realW)(4.0f), clear.x), past)), highest),
+             b = min(to_intW(clamp_to(fma(p.y, (realW)(4.0f), clear.y), past)), highest),
+             c = min(to_intW(clamp_to(fma(p.z, (realW)(4.0f), clear.z), past)), highest);
+  const intW cube = ((c >> 2) * CLPV_GRID + (b >> 2)) * CLPV_GRID + (a >> 2);
+  const intW point = cube * 64 + ((c & 3) * 4 + (b & 3)) * 4 + (a & 3);
+  const intW known = (clear.x != ZERO) | (clear.y != ZERO) | (clear.z != ZERO);
+  store_lanes(known ? point : (intW)(-1), points->clear_point);
+  store_lanes(((a >> 2) - x) + 4 * ((b >> 2) - y) + 16 * ((c >> 2) - z) + 21, points->clear_cube);
+}
+
 // At the last centre the eight cells are the last ones, so that offsets between them are literals.
-CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
+// `clear`: unit vectors along which nothing stands, or 0.
+CLPV_INLINE void find_sample_points(const Vec at, const Vec clear, SamplePoints* points) {
   const float last = (float)(CLPV_GRID - 1);
   const intW highest = (intW)(CLPV_GRID > 1 ? CLPV_GRID - 2 : 0);
   const Vec p = vec(clamp_to(at.x, last), clamp_to(at.y, last), clamp_to(at.z, last));
@@ -66,6 +88,7 @@ CLPV_INLINE void find_sample_points(const Vec at, SamplePoints* points) {
   store_lanes(q.x - to_realW(qx), points->visibility_x);
   store_lanes(q.y - to_realW(qy), points->visibility_y);
   store_lanes(q.z - to_realW(qz), points->visibility_z);
+  find_clear_points(p, x, y, z, clear, points);
 }
 
 // Trilinear weights of the eight corners about a point (x, y, z) in [0, 1]^3; corner bits: 1 x, 2
@@ -83,29 +106,50 @@ CLPV_INLINE float8 corner_weights(const float x, const float y, const float z) {
 // Below this visible share of the weight, visibility is ignored and all eight cells count.
 __constant const float min_visible = 1.0f / 64.0f;
 
-// Visible shares of the eight cells: their bits at eight sample points, interpolated trilinearly so
-// that light is continuous, and constant beyond the outermost points.
-CLPV_INLINE float8 visible_shares(__global const uchar* at, const float8 weights) {
+// Cells of a cube, a bit each, as cells of the cube that `steps` lead away from.
+CLPV_INLINE int cells_from(int cells, const int steps) {
+  const int x = steps & 3, y = steps >> 2 & 3, z = steps >> 4;
+  cells = x == 2 ? (cells & 0x55) << 1 : x == 0 ? (cells & 0xaa) >> 1 : cells;
+  cells = y == 2 ? (cells & 0x33) << 2 : y == 0 ? (cells & 0xcc) >> 2 : cells;
+  return z == 2 ? (cells & 0x0f) << 4 : z == 0 ? (cells & 0xf0) >> 4 : cells;
+}
+
+// Cells, a bit each, of which a sample point must see one to count.
+CLPV_INLINE int clear_cells(__global const uchar* occluded, const SamplePoints* points,
+                            const int i) {
+  if (points->clear_point[i] < 0) return 255;
+  const int cells = cells_from(~occluded[points->clear_point[i]] & 255, points->clear_cube[i]);
+  return cells != 0 ? cells : 255;
+}
+
+// Visible shares of the eight cells: their bits at those of eight sample points that see one of
+// `clear`, interpolated trilinearly so that light is continuous, and constant beyond the outermost
+// points.
+CLPV_INLINE float8 visible_shares(__global const uchar* at, const float8 weights,
+                                  const int clear) {
   const int8 bit = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
   float8 visible = 0.0f;
+  float sum = 0.0f;
 #pragma unroll
   for (int i = 0; i < 8; ++i) {
-    const int occluded = at[(i & 1) + 4 * (i >> 1 & 1) + 16 * (i >> 2)];
-    const float weight = ((const float*)&weights)[i];
-    visible += ((int8)(occluded) & bit) != 0 ? (float8)(0.0f) : (float8)(weight);
+    const int seen = ~(int)at[(i & 1) + 4 * (i >> 1 & 1) + 16 * (i >> 2)];
+    const float weight = (seen & clear) != 0 ? ((const float*)&weights)[i] : 0.0f;
+    sum += weight;
+    visible += ((int8)(seen) & bit) != 0 ? (float8)(weight) : (float8)(0.0f);
   }
-  return visible;
+  return sum > 0.0f ? visible * (1.0f / sum) : visible;
 }
 
 // Multiplies the weights of cells by their visible shares and returns the factor that normalises
 // them. If less than min_visible is visible, the weights do not change.
 CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoints* points,
                                    const int i, float8* weights) {
-  const float8 from =
-      corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
   __global const uchar* at =
       cascade.occluded + (size_t)points->number[i] * 64 + points->visibility_point[i];
-  const float8 visible = *weights * visible_shares(at, from);
+  const float8 from =
+      corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
+  const float8 visible =
+      *weights * visible_shares(at, from, clear_cells(cascade.occluded, points, i));
   const float4 four = visible.lo + visible.hi;
   const float total = four.x + four.y + four.z + four.w;
   if (!(total > min_visible)) return 1.0f;

@@ -4,8 +4,8 @@
 //
 // Before it come gather_packed.h or the functions of gather_images.cl, which define
 //   Sampled, SamplePoints                         coefficients at a point; W points
-//   find_sample_points(at, &points)               W points [cells] from the first centre, clamped
-//                                                 to the grid
+//   find_sample_points(at, clear, &points)        W points [cells] from the first centre, clamped
+//                                                 to the grid; `clear`: gather_packed.h
 //   float sample_cells(volume, points, i, &s)     sets s to the coefficients at point i; multiply
 //                                                 them by the returned factor
 //   float4 weigh(weights, sampled)                weights . coefficients for each channel, and 0
@@ -38,6 +38,7 @@ CLPV_INLINE float4 volume_irradiance(CLPV_GATHERED volume, const SamplePoints* p
 // W pixels: surfaces, and the irradiance summed so far.
 typedef struct {
   Surfaces surfaces;
+  Vec clear;        // towards the eye, or 0
   realW remaining;  // weight that finer cascades leave
   Coefficients weights[W];
   float4 sums[W];
@@ -54,7 +55,8 @@ CLPV_INLINE void add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GAT
   SamplePoints points;
   const Vec lift = lift_normal(g->surfaces.geometric, g->surfaces.normal);
   find_sample_points(
-      find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), lift), &points);
+      find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), lift), g->clear,
+      &points);
   float shares[W];
   store_lanes(weight, shares);
   for (int i = 0; i < W; ++i) {
@@ -64,7 +66,8 @@ CLPV_INLINE void add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GAT
 }
 
 // Finds the weights of W pixels, before any cascade is added.
-CLPV_INLINE void begin_gathering(Gathering* g CLPV_AND_G) {
+CLPV_INLINE void begin_gathering(const ClpvView view, Gathering* g CLPV_AND_G) {
+  g->clear = towards_eye(view, g->surfaces.position);
   g->remaining = g->surfaces.depth > ZERO ? ONE : ZERO;
   const VecLanes normal = unpack((intW)(-1), g->surfaces.normal);
   for (int i = 0; i < W; ++i) {

@@ -108,7 +108,7 @@ __kernel void medium_volumes(const ClpvView view, __global const float* depths,
     const Vec share = air_share(&p, medium, ZERO);
     RadianceField field;
     sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(a.origin, p.at, a.direction), ZERO,
-                    a.direction, a.inside, &field);
+                    a.direction, vec(ZERO, ZERO, ZERO), a.inside, &field);
     float red[W], green[W], blue[W];
     for (int i = 0; i < W; ++i) {
       Coefficients y = basis_functions(-w.x[i], -w.y[i], -w.z[i]);

@@ -49,8 +49,8 @@ __kernel void near(const ClpvView view, __global const float* points,
     return;
   }
   RadianceField here, there;
-  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.lift, lit,
-                  &here);
+  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.lift,
+                  towards_eye(view, p.position), lit, &here);
   const VecLanes n = unpack(lit, p.normal);
   float trusts[W], x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {
@@ -72,9 +72,10 @@ __kernel void near(const ClpvView view, __global const float* points,
     const Vec w = find_near_directions(directions, r, &p, k);
     const intW hit = load_lanes(distances + k * r.plane + r.at) < (realW)(INFINITY);
     const intW missed = lit & (hit == 0) & (trust > ZERO);
-    sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), ZERO, p.normal, missed,
-                    &there);
-    const VecLanes back = unpack(lit, vec_times(w, (realW)(-1.0f)));
+    const Vec returning = vec_times(w, (realW)(-1.0f));
+    sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), ZERO, p.normal,
+                    returning, missed, &there);
+    const VecLanes back = unpack(lit, returning);
     float shares[W];
     store_lanes(lit ? (hit ? ONE : trust) : ZERO, shares);
     for (int i = 0; i < W; ++i) {

@@ -42,9 +42,10 @@ CLPV_INLINE void add_field(const PackedCascade cascade, const SamplePoints* poin
 }
 
 // C at the points position + offset * s * lift of each cascade, s its cell; cascades have their
-// shares at `position`. 0 outside the mask `wanted`.
+// shares at `position`. `clear`: gather_packed.h. 0 outside the mask `wanted`.
 CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW offset,
-                                 const Vec lift, const intW wanted, RadianceField* field) {
+                                 const Vec lift, const Vec clear, const intW wanted,
+                                 RadianceField* field) {
   realW remaining = wanted ? (realW)(unit) : ZERO;
   for (int i = 0; i < W; ++i) {
 #pragma unroll
@@ -57,7 +58,7 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
     remaining *= 1.0f - share;
     if (no_lane(weight > ZERO)) continue;
     SamplePoints points;
-    find_sample_points(find_cascade_points(grid, position, offset, lift), &points);
+    find_sample_points(find_cascade_points(grid, position, offset, lift), clear, &points);
     add_field(packed_cascade(c CLPV_PASS_VOLUMES), &points, weight, field);
   }
   float outside[W];

@@ -77,6 +77,13 @@ static inline void load_points(const ClpvView view, const PixelRow p, __global c
   s->geometric = unpack_geometric_normal(CLPV_COLUMN(rows, w), s->normal);
 }
 
+// Unit vectors from positions [m] to the eye; 0 for points without a view.
+static inline Vec towards_eye(const ClpvView view, const Vec position) {
+  const Vec way = vec_minus(vec_of(view.eye), position);
+  const realW scale = view.half_width > 0.0f ? rsqrt(vec_dot(way, way)) : ZERO;
+  return vec_times(way, scale);
+}
+
 // Place of a surface: its depth in the view, or with CLPV_POINTS 1 a point without a view.
 #if CLPV_POINTS
 typedef float4 Place;

@@ -276,7 +276,7 @@ TEST_F(SequenceTest, AMissingFfmpegIsReportedBeforeTheWork) {
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err,
               HasSubstr("--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)"));
-  EXPECT_FALSE(fs::exists(frame(0)));
+  EXPECT_FALSE(fs::exists(frame(0).parent_path()));
 }
 
 TEST_F(SequenceTest, StabilityCoversAllFramesButTheFirst) {

@@ -374,7 +374,7 @@ TEST(LongSweep, ASquareConvergesToItsClosedForm) {
 
 TEST(Sweep, PlansHaveTheSweepsOfTheMethod) {
   const auto few = [](Bounces bounces, bool scatters) {
-    const std::vector<SweepStep> plan = sweep_plan(bounces, scatters);
+    const std::vector<SweepStep> plan = sweep_plan(bounces, scatters, 3);
     EXPECT_TRUE(plan.back().all_directions);
     return std::ranges::count(plan, false, &SweepStep::all_directions);
   };

@@ -148,6 +148,19 @@ TEST_F(Killed, AnInterruptIsReported) {
   }
 }
 
+TEST_F(Killed, AnInterruptAfterTheFramesSaysThatTheyAreWhole) {
+  const fs::path film = folder_ / "film", said = folder_ / "said";
+  Child child(CLPV_PROGRAM " " + sequence(film, 2) + " --stability --traced 65536", said);
+  for (int i = 0; i < 600 && !fs::exists(film / "frame-0001.exr"); ++i)
+    std::this_thread::sleep_for(100ms);
+  std::this_thread::sleep_for(500ms);
+  ASSERT_TRUE(child.running()) << read_file(said);
+  EXPECT_EQ(child.end(SIGINT), 128 + SIGINT);
+  EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; all 2 frames are in " + film.string() +
+                                         "; the same command goes on with them"));
+  EXPECT_FALSE(fs::exists(film / "stability.json"));
+}
+
 TEST_F(Killed, AnInterruptedTruthIsNotWritten) {
   const fs::path image = folder_ / "truth.exr", said = folder_ / "said";
   Child child(CLPV_PROGRAM " pathtrace " CLPV_SOURCE_DIR "/scenes/cornell.json --spp 65536 -o " +

@@ -106,7 +106,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
 void Sweeper::make_cascades(const Basis& basis) {
   const std::size_t count = options_.parts.size();
   const std::size_t links = options_.blocking ? link_volumes().count() : 1;
-  plan_ = sweep_plan(options_.bounces, scatters(options_.medium));
+  plan_ = sweep_plan(options_.bounces, scatters(options_.medium), options_.bounce_sweeps);
   const bool has_few = !std::ranges::all_of(plan_, &SweepStep::all_directions);
   for (std::size_t c = 0; c < count; ++c) {
     const int coarser = c + 1 == count ? 0 : options_.parts[c + 1];

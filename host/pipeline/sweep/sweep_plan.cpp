@@ -17,7 +17,7 @@ std::vector<SweepStep> bounced_plan(int sweeps, SweptLight last, bool scattered)
 
 }  // namespace
 
-std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters) {
+std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters, int before_series) {
   switch (bounces) {
     case Bounces::automatic:
     case Bounces::one:
@@ -26,7 +26,7 @@ std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters) {
       return bounced_plan(1, SweptLight::reflected, scatters);
     case Bounces::all:
       return scatters ? bounced_plan(kScatteredSweeps, SweptLight::reflected, true)
-                      : bounced_plan(kSeriesSweeps, SweptLight::series, false);
+                      : bounced_plan(before_series, SweptLight::series, false);
   }
   return {};
 }

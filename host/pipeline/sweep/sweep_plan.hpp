@@ -24,7 +24,7 @@ struct SweepStep {
 };
 
 /// The last step has all directions, and its result is the light of the cascade. `scatters`: there
-/// is a medium that scatters light.
-std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters);
+/// is a medium that scatters light. `before_series`: sweeps before the series of all bounces.
+std::vector<SweepStep> sweep_plan(Bounces bounces, bool scatters, int before_series);
 
 }  // namespace clpv
