@@ -4,7 +4,6 @@
 
 #include <CL/opencl.hpp>
 #include <array>
-#include <climits>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -65,13 +64,10 @@ class Session {
   Buffer given(cl_mem memory, std::size_t bytes, const char* what) const {
     return memory_.given(memory, bytes, what);
   }
-  /// Part of a buffer from byte `from` on, a multiple of part_alignment(). Kernels see what others
-  /// wrote to the whole, and the reverse.
+  /// Part of a buffer from byte `from` on, a multiple of CL_DEVICE_MEM_BASE_ADDR_ALIGN. Kernels see
+  /// what others wrote to the whole, and the reverse.
   Buffer part(const Buffer& whole, std::size_t from, std::size_t bytes) const {
     return memory_.part(whole, from, bytes);
-  }
-  std::size_t part_alignment() const {
-    return device_.handle.getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>() / CHAR_BIT;
   }
   /// Replaces `buffer` by a new one with undefined contents if it has fewer than `bytes` bytes.
   void reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "volume/volume.hpp"
 
+#include <climits>
 #include <glm/gtc/packing.hpp>
 
 #include "support/error.hpp"
@@ -37,14 +38,10 @@ Volume::Volume(const VolumeShape& shape, const VolumeFormat& format)
 
 std::vector<Volume> Volume::array(Session& session, int count, const VolumeShape& shape,
                                   const std::string& what, const VolumeFormat& format) {
-  std::vector<Volume> volumes;
-  if (format.layout == Layout::image || count == 1) {
-    for (int i = 0; i < count; ++i) volumes.emplace_back(session, shape, what, format);
-    return volumes;
-  }
-  volumes.assign(count, Volume(shape, format));
   require_supported(session.device(), format, shape);
-  const std::size_t align = session.part_alignment(), bytes = volumes[0].bytes_,
+  std::vector<Volume> volumes(count, Volume(shape, format));
+  const std::size_t bits = session.device().handle.getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>(),
+                    align = bits / CHAR_BIT, bytes = volumes[0].bytes_,
                     step = (bytes + align - 1) / align * align;
   const Buffer whole = session.buffer(count * step, what);
   for (int i = 0; i < count; ++i) {

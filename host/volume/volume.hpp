@@ -19,8 +19,8 @@ class Volume {
   Volume(Session& session, const VolumeShape& shape, const std::string& what,
          const VolumeFormat& format = {});
 
-  /// As many volumes, in one buffer if they are no images, for kernels that write several of them:
-  /// place() is the index of a volume's first number in whole().
+  /// As many volumes in one buffer, for kernels that write several of them: place() is the index of
+  /// a volume's first number in whole(). Any layout but `image`.
   static std::vector<Volume> array(Session& session, int count, const VolumeShape& shape,
                                    const std::string& what, const VolumeFormat& format);
   const Buffer& whole() const { return whole_.exists() ? whole_ : buffer_; }

@@ -2,8 +2,8 @@
 // Keys of cells, by which injection sorts texels (find_cells.cl, sort_by_cell.cl, light.cl,
 // surfels.cl).
 //
-// Cell (x, y, z) of n^3 has the key ((s n + z) n + y) n + x for surface s. Geometry volumes have n +
-// 1 corners along each axis instead of n cells.
+// Cell (x, y, z) of n^3 has the key ((s n + z) n + y) n + x for surface s. Geometry volumes have
+// n + 1 corners along each axis instead of n cells.
 #pragma once
 
 #include "shared/sort.h"

@@ -35,8 +35,8 @@ static inline PixelRow find_pixel_row(const ClpvView view) {
   return p;
 }
 
-// Zeroes the counters of rasterize.cl for its next launch: all work-items of a kernel that no longer
-// reads them, in place of two fills.
+// Zeroes the counters of rasterize.cl for its next launch, in place of two fills: all work-items of
+// a kernel that no longer reads them do so.
 static inline void clear_counters(const ClpvView view, __global uint* counts,
                                   __global uint* slice_counts) {
   const uint item = get_global_id(1) * get_global_size(0) + get_global_id(0),

@@ -23,7 +23,6 @@ class Cached {
     key_ = key;
   }
 
-  bool has(CacheKey key) const { return key_ == key; }
   void invalidate() { key_.reset(); }
 
  private:

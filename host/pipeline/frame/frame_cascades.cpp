@@ -118,11 +118,8 @@ FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
 void FrameCascades::inject(int cascade) {
   CachedVolume& injected = of_cascade(injected_, cascade);
   injected.cached.update(keys_[cascade].injected, [&] {
-    if (!setup_.injects_at_once()) return inject_light(cascade, cascade);
-    // The coarsest is injected first, with all others from which the scene or a camera moved away.
-    int first = cascade;
-    for (int c = 0; c < first; ++c)
-      if (!injected_[c].cached.has(keys_[c].injected)) first = c;
+    // A finer cascade moves whenever a coarser one does.
+    const int first = setup_.injects_at_once() ? 0 : cascade;
     for (int c = first; c < cascade; ++c) injected_[c].cached.invalidate();
     inject_light(first, cascade);
     for (int c = first; c < cascade; ++c) injected_[c].cached.update(keys_[c].injected, [] {});
