@@ -14,6 +14,7 @@
 #include "shared/region.h"
 #include "shared/sweep.h"
 #include "shared/view.h"
+#include "shared/view_injection.h"
 
 __kernel void sizes(__global uint* bytes) {
   if (get_global_id(0) != 0) return;

@@ -53,6 +53,13 @@ Buffer Memory::buffer(std::size_t bytes, const std::string& what) {
   }
 }
 
+Buffer Memory::part(const Buffer& whole, std::size_t from, std::size_t bytes) const {
+  const cl_buffer_region region{from, bytes};
+  cl::Buffer buffer = whole.handle();
+  return {buffer.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region),
+          std::make_shared<MemoryShare>(use_, 0)};
+}
+
 void Memory::reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {
   if (buffer.exists() && buffer.bytes() >= bytes) return;
   buffer = {};  // first: memory may not suffice for both

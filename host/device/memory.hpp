@@ -110,6 +110,7 @@ class Memory {
   Buffer given(cl_mem memory, std::size_t bytes, const char* what) const {
     return {given_buffer(context_, memory, bytes, what), std::make_shared<MemoryShare>(use_, 0)};
   }
+  Buffer part(const Buffer& whole, std::size_t from, std::size_t bytes) const;
   void reserve(Buffer& buffer, std::size_t bytes, const std::string& what);
   Image3D image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
                 std::size_t bytes, const std::string& what);

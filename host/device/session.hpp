@@ -63,6 +63,11 @@ class Session {
   Buffer given(cl_mem memory, std::size_t bytes, const char* what) const {
     return memory_.given(memory, bytes, what);
   }
+  /// Part of a buffer from byte `from` on, a multiple of CL_DEVICE_MEM_BASE_ADDR_ALIGN. Kernels see
+  /// what others wrote to the whole, and the reverse.
+  Buffer part(const Buffer& whole, std::size_t from, std::size_t bytes) const {
+    return memory_.part(whole, from, bytes);
+  }
   /// Replaces `buffer` by a new one with undefined contents if it has fewer than `bytes` bytes.
   void reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {
     memory_.reserve(buffer, bytes, what);
@@ -102,11 +107,12 @@ class Session {
     return made;
   }
   template <typename T>
-  std::vector<T> read(const Buffer& buffer, std::size_t count) {
+  std::vector<T> read(const Buffer& buffer, std::size_t count, std::size_t first = 0) {
     std::vector<T> values(count);
     if (count == 0) return values;
     timeline_.wait([&] {
-      queue_.enqueueReadBuffer(buffer.handle(), CL_TRUE, 0, count * sizeof(T), values.data());
+      queue_.enqueueReadBuffer(buffer.handle(), CL_TRUE, first * sizeof(T), count * sizeof(T),
+                               values.data());
     });
     return values;
   }

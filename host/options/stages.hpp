@@ -40,7 +40,7 @@ enum class Pass {
   rasterize_shadow,  ///< per light
   rasterize_rsm,     ///< per cascade and light
   emit,              ///< points of emissive surfaces
-  inject_light,      ///< per cascade, as the next five
+  inject_light,      ///< per cascade, or of all; the next five are per cascade
   inject_geometry,
   blockers,
   reflectors,

@@ -18,6 +18,7 @@
 #include "kernels/shared/region.h"
 #include "kernels/shared/sweep.h"
 #include "kernels/shared/view.h"
+#include "kernels/shared/view_injection.h"
 #include "options/render_options.hpp"
 #include "options/stage_options.hpp"
 #include "verify/check.hpp"

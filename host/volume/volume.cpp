@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "volume/volume.hpp"
 
+#include <climits>
 #include <glm/gtc/packing.hpp>
 
 #include "support/error.hpp"
@@ -32,9 +33,28 @@ cl::array<cl::size_type, 3> region(const VolumeShape& shape) {
 
 }  // namespace
 
+Volume::Volume(const VolumeShape& shape, const VolumeFormat& format)
+    : shape_(shape), format_(format), bytes_(stored_bytes(format, shape)) {}
+
+std::vector<Volume> Volume::array(Session& session, int count, const VolumeShape& shape,
+                                  const std::string& what, const VolumeFormat& format) {
+  require_supported(session.device(), format, shape);
+  std::vector<Volume> volumes(count, Volume(shape, format));
+  const std::size_t bits = session.device().handle.getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>(),
+                    align = bits / CHAR_BIT, bytes = volumes[0].bytes_,
+                    step = (bytes + align - 1) / align * align;
+  const Buffer whole = session.buffer(count * step, what);
+  for (int i = 0; i < count; ++i) {
+    volumes[i].whole_ = whole, volumes[i].from_ = i * step;
+    volumes[i].buffer_ = session.part(whole, i * step, bytes);
+  }
+  volumes.front().clear_to(session, volumes.back());
+  return volumes;
+}
+
 Volume::Volume(Session& session, const VolumeShape& shape, const std::string& what,
                const VolumeFormat& format)
-    : shape_(shape), format_(format), bytes_(stored_bytes(format, shape)) {
+    : Volume(shape, format) {
   require_supported(session.device(), format, shape);
   if (format.layout == Layout::image) {
     const cl::ImageFormat texel(CL_RGBA,
@@ -62,6 +82,11 @@ void Volume::clear(Session& session) {
                                        region(shape_), nullptr, event);
     });
   });
+}
+
+void Volume::clear_to(Session& session, const Volume& last) {
+  if (!whole_.exists()) return clear(session);
+  session.fill_zero(whole_, last.from_ + last.bytes_ - from_, from_);
 }
 
 void Volume::copy_from(Session& session, const Volume& from) {

@@ -23,7 +23,12 @@ static inline uint find_near_tile(const ClpvView view) {
 
 // Largest number of hits of a tile. Hits are stored in groups of W, one row per attribute
 // (shared/near.h).
+// With one lane each ray has its own slot and count: 1 with a hit, else 0.
 enum { CLPV_TILE_HITS = W * CLPV_PLANE_TILE * CLPV_NEAR_RAYS };
+static inline uint first_slot(const uint tile) {
+  return W > 1 ? tile * CLPV_TILE_HITS : tile * CLPV_TILE_HITS + (uint)get_global_id(2);
+}
+static inline uint count_index(const uint tile) { return W > 1 ? tile : first_slot(tile); }
 
 // Points of W pixels.
 typedef struct {

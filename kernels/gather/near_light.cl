@@ -32,14 +32,22 @@ typedef struct {
   Vec albedo, emitted;   // [W/m^2/sr]
 } HitSurface;
 
+// Number of a tile's hits from this work-item's first one on.
+static inline uint hits_left(const ClpvView view, __global const uint* counts) {
+  const uint tile = find_near_tile(view), first = W > 1 ? get_global_id(2) * W : 0;
+  if (tile == no_tile) return 0;
+  const uint count = counts[count_index(tile)];
+  return count > first ? count - first : 0;
+}
+
 // The surfaces of this work-item's hits. Returns false if there are none.
 CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* points,
                                    __global const uint* counts, __global const realW* hits,
                                    CLPV_SCENE, HitSurface* s) {
-  const uint tile = find_near_tile(view), first = get_global_id(2) * W;
-  if (tile == no_tile || first >= counts[tile]) return false;
-  hits += (tile * CLPV_TILE_HITS + first) / W * CLPV_HIT_ROWS;
-  const intW listed = lane_numbers() < (intW)((int)(counts[tile] - first));
+  const uint left = hits_left(view, counts);
+  if (left == 0) return false;
+  hits += (find_near_tile(view) * CLPV_TILE_HITS / W + get_global_id(2)) * CLPV_HIT_ROWS;
+  const intW listed = lane_numbers() < (intW)((int)left);
   const realW u = listed ? hits[CLPV_HIT_U] : ZERO, v = listed ? hits[CLPV_HIT_V] : ZERO,
                distance = listed ? hits[CLPV_HIT_DISTANCE] : ZERO;
   const uintW zero = (uintW)(0u), triangle = listed ? as_uintW(hits[CLPV_HIT_TRIANGLE]) : zero,
@@ -88,8 +96,7 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
 CLPV_INLINE void add_radiance(const ClpvView view, const HitSurface s, const intW lit,
                               const Vec radiance, const uint fresh, __global const uint* counts,
                               __global float* radiances) {
-  const uint plane = plane_size(view);
-  const uint left = counts[find_near_tile(view)] - get_global_id(2) * W;
+  const uint plane = plane_size(view), left = hits_left(view, counts);
   const VecLanes added = unpack(lit, radiance);
   uint at[W];
   store_lanes(s.radiance, at);

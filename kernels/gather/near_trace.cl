@@ -7,8 +7,8 @@
 // Out:  distances            per ray: distance of the hit [m], INFINITY without one; a plane for
 //                            each k
 //       counts, hits         per tile: number of hits, and their list (near_layout.h)
-// A work-item traces the rays of a tile, which, with eight lanes, start from the same subtrees
-// (tree_lists.h).
+// With eight lanes a work-item traces the rays of a tile, which start from the same subtrees
+// (tree_lists.h); with one lane a ray.
 #include "gather/near_layout.h"
 #if W == 1
 #include "gather/tree_stack.h"
@@ -87,9 +87,12 @@ __kernel void near_trace(const ClpvView view, __global const float* points,
   Entry entry;
   enter_tree(tree, box, &entry);
 #endif
-  __global float* list = hits + (size_t)tile * CLPV_TILE_HITS * CLPV_HIT_ROWS;
+  __global float* list = hits + (size_t)first_slot(tile) * CLPV_HIT_ROWS;
   uint count = 0;
-  for (int y = 0; y < CLPV_PLANE_TILE; ++y) {
+  const uint ray = W > 1 ? 0 : get_global_id(2), first_y = ray / CLPV_NEAR_RAYS,
+             rows = W > 1 ? CLPV_PLANE_TILE : 1, first_k = ray % CLPV_NEAR_RAYS,
+             rays_of_row = W > 1 ? CLPV_NEAR_RAYS : 1;
+  for (uint y = first_y; y < first_y + rows; ++y) {
     const PlaneRow r =
         find_plane_row(view, get_global_id(0), get_global_id(1) * CLPV_PLANE_TILE + y);
     if (!row_has_pixels(r)) continue;
@@ -97,7 +100,7 @@ __kernel void near_trace(const ClpvView view, __global const float* points,
     load_near_points(points, r, &p);
     if (no_lane(p.reach > ZERO)) continue;
     const Vec from = vec_add_scaled(p.position, CLPV_NEAR_LIFT * p.reach, p.lift);
-    for (uint k = 0; k < CLPV_NEAR_RAYS; ++k) {
+    for (uint k = first_k; k < first_k + rays_of_row; ++k) {
       Rays rays;
       set_rays(from, find_near_directions(directions, r, &p, k), p.reach, &rays);
 #if W > 1
@@ -111,5 +114,5 @@ __kernel void near_trace(const ClpvView view, __global const float* points,
       add_hits(r, k, p.reach, &rays, list, &count);
     }
   }
-  counts[tile] = count;
+  counts[count_index(tile)] = count;
 }

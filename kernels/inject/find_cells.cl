@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Finds the cell of each texel of a surface: the first step of injection (light.cl,
-// surfels.cl).
+// Finds the cell of each texel of `injections`: the first step of injection (light.cl, surfels.cl).
 //
 //   light:     cell of p + n s / 2       half a cell off the surface, so that a surface does not
 //                                        light itself
@@ -9,12 +8,13 @@
 //
 // docs/method.md, 'Injection' and 'Blockers'.
 //
-// In:   places   depths [m]; with CLPV_POINTS positions [m] instead (emit.cl)
+// In:   injections   surfaces and their grids (shared/view_injection.h)
+//       places   depths [m]; with CLPV_POINTS positions [m] instead (emit.cl)
 //       normals; colours: flux [W], see surface.h for colour_scale
 //       stride   blocking: subsampling; a texel represents stride x stride texels
 //                (shared/thinned.h)
-// Out:  keys    key of the cell of each texel (cell_keys.h); CLPV_NO_CELL for texels that are
-//               empty, dark, outside the grid or not finite
+// Out:  keys    key of the cell of each texel of each surface (cell_keys.h); CLPV_NO_CELL for
+//               texels that are empty, dark, outside the grid or not finite
 //       shares  blocking: B of each texel
 // A work-item processes a strip of CLPV_STRIP texels of a row. Compilers vectorise this loop on
 // CPUs, if it accesses memory by scalars and calls no floor(). From the host: CLPV_GEOMETRY (0
@@ -23,6 +23,7 @@
 #include "shared/grid.h"
 #include "shared/thinned.h"
 #include "raster/surface.h"
+#include "shared/view_injection.h"
 
 #define CLPV_MIN_COSINE 0.1f  // bounds the area of a surfel that is seen edge-on
 
@@ -47,10 +48,10 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
          (fmax(cosine, CLPV_MIN_COSINE) * grid.cell * grid.cell);
 }
 
-__kernel void find_cells(const ClpvView view, const ClpvGrid grid,
+__kernel void find_cells(__global const ClpvInjection* restrict injections,
                          __global const float* restrict places,
                          __global const SurfaceTexel* restrict normals,
-                         __global const SurfaceTexel* restrict colours, const float colour_scale,
+                         __global const SurfaceTexel* restrict colours,
                          __global uint* restrict keys
 #if CLPV_GEOMETRY
                          ,
@@ -60,16 +61,20 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
 #if !CLPV_GEOMETRY
   const uint stride = 1;
 #endif
+  const uint surface = get_global_id(2), first_texel = injections[surface].first;
+  const ClpvView view = injections[surface].view;
+  const ClpvGrid grid = injections[surface].grid;
+  const float colour_scale = injections[surface].colour_scale;
   const uint width = taken_texels(view.width, stride), height = taken_texels(view.height, stride);
   const uint first = get_global_id(0) * CLPV_STRIP, row = get_global_id(1);
   if (first >= width || row >= height) return;
   const uint last = min(first + CLPV_STRIP, width);
   const uint py = taken_texel(row, stride);
-  const uint n = grid.n + CLPV_GEOMETRY;
+  const uint n = grid.n + CLPV_GEOMETRY, first_key = surface * n * n * n;
   const float per_metre = 1.0f / grid.cell;
   for (uint column = first; column < last; ++column) {
-    const uint px = taken_texel(column, stride), texel = py * view.width + px,
-               i = row * width + column;
+    const uint px = taken_texel(column, stride), texel = first_texel + py * view.width + px,
+               i = (surface * height + row) * width + column;
     const float3 normal = load_normal(normals, texel);
     const float depth = CLPV_POINTS ? 1.0f : places[texel];
     const float3 position =
@@ -91,6 +96,6 @@ __kernel void find_cells(const ClpvView view, const ClpvGrid grid,
     x += shift, y += shift, z += shift;
     valid = valid & in_grid((float)n, x, y, z);  // false for points that are not finite
     const uint cx = valid ? (uint)x : 0, cy = valid ? (uint)y : 0, cz = valid ? (uint)z : 0;
-    keys[i] = valid ? cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
+    keys[i] = valid ? first_key + cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
   }
 }

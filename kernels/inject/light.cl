@@ -13,18 +13,21 @@
 //   sum_segments     sums of segments of a cell's texels (segments.h)
 //   join_segments    sums of the cells that have several segments
 //
-// In:      sorted, count  (key, texel) of the sorted texels, and their number (sort_by_cell.cl)
-//          normals, colours, colour_scale   surface texels, flux [W] (surface.h)
-// In, out: volume         light volume
+// In:      injections     surfaces and their volumes (shared/view_injection.h)
+//          sorted, count  (key, texel) of the sorted texels, and their number (sort_by_cell.cl)
+//          normals, colours   surface texels, flux [W] (surface.h)
+// In, out: volume         light volumes
 //          partials, firsts   sums and first texels of the cells with several segments
 // From the host: CLPV_GRID, CLPV_UNIT_FLUX 1: lobes are scaled to the exact flux,
 // CLPV_SURFACE_PAPER, and the literals of basis/lobe.h.
 #include "inject/cell_keys.h"
 #include "basis/lobe.h"
 #include "raster/surface.h"
+#include "shared/grid.h"
+#include "shared/view_injection.h"
 #include "volume/light.h"
 
-enum { CLPV_CHANNELS = 3 };
+enum { CLPV_CHANNELS = 3, CLPV_KEYS = CLPV_GRID * CLPV_GRID * CLPV_GRID };
 
 // Sums of P alpha over the texels of a cell, for each channel.
 typedef struct {
@@ -34,13 +37,16 @@ typedef struct {
 typedef struct {
   __global const SurfaceTexel* normals;
   __global const SurfaceTexel* colours;
-  float colour_scale;
+  __global const ClpvInjection* surface;
+  uint number;
 } Texels;
 
-static inline Sums add_texel(Sums sums, const uint texel, const Texels texels CLPV_AND_H) {
+static inline Sums add_texel(Sums sums, const uint i, const Texels texels CLPV_AND_H) {
+  const uint texel = texels.surface->first + i -
+                     texels.number * texels.surface->view.width * texels.surface->view.height;
   const float3 n = load_normal(texels.normals, texel);
   const Coefficients lobe = lobe_integrals(n.x, n.y, n.z CLPV_PASS_H);
-  float3 flux = load_colour(texels.colours, texel, texels.colour_scale);
+  float3 flux = load_colour(texels.colours, texel, texels.surface->colour_scale);
   if (CLPV_UNIT_FLUX) flux *= M_PI_F / lobe_flux(lobe);
   sums.channel[0] = add_scaled(sums.channel[0], flux.x, lobe);
   sums.channel[1] = add_scaled(sums.channel[1], flux.y, lobe);
@@ -60,18 +66,12 @@ static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums su
 
 #include "inject/segments.h"
 
-__kernel void sum_segments(__global const uint2* sorted, __global const uint* count,
-                           const uint length, const uint blocks,
+__kernel void sum_segments(__global const ClpvInjection* injections, __global const uint2* sorted,
+                           __global const uint* count, const uint length, const uint blocks,
                            __global const SurfaceTexel* normals,
-                           __global const SurfaceTexel* colours, const float colour_scale,
-                           CLPV_VOLUME_OUT volume, __global float* partials,
-                           __global uint* firsts CLPV_AND_H) {
-  const Texels texels = {normals, colours, colour_scale};
-  sum_block(sorted, count, length, blocks, texels, volume, partials, firsts CLPV_PASS_H);
-}
-
-__kernel void join_segments(__global const uint2* sorted, __global const uint* count,
-                            const uint length, const uint blocks, CLPV_VOLUME_OUT volume,
-                            __global const float* partials, __global const uint* firsts) {
-  join_block(sorted, count, length, blocks, volume, partials, firsts);
+                           __global const SurfaceTexel* colours, CLPV_VOLUME_OUT volume,
+                           __global float* partials, __global uint* firsts CLPV_AND_H) {
+  const Texels texels = {normals, colours, injections, 0};
+  sum_block(injections, sorted, count, length, blocks, texels, volume, partials,
+            firsts CLPV_PASS_H);
 }

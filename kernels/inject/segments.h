@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Sums over the sorted texels of each cell, by segments: up to `length` texels of a cell, counted
 // from the cell's first texel. A cell's sum depends only on its own texels, bit by bit. Part of
-// light.cl and surfels.cl, whose kernels call these functions:
+// light.cl and surfels.cl, whose kernel sum_segments calls sum_block:
 //
-//   sum_block     sums of the segments that start in a block
-//   join_block    sums of the cells that have several segments
+//   sum_block       sums of the segments that start in a block
+//   join_segments   sums of the cells that have several segments: the kernel of both files
 //
 // The file that includes this one defines
 //   CLPV_CHANNELS                              number of sums of a cell
-//   Texels                                     struct of the texels' buffers
+//   CLPV_KEYS                                  number of keys of a surface
+//   Texels                                     struct of the texels' buffers, with `surface`:
+//                                              ClpvInjection of the texels' surface, and its index
 //   Sums add_texel(sums, texel, texels)        adds a texel to a cell's sums
 //   void deliver(volume, key, sums)            adds a cell's sums to the volume
 #pragma once
@@ -76,9 +78,9 @@ static inline uint first_segment(__global const uint2* sorted, const uint total,
 // the index of its first texel, partials[2 block + 1] its first segment's sums. partials[2 block]:
 // sums of a later segment of a cell that starts in an earlier block. A block has at most one of
 // each.
-CLPV_INLINE void sum_block(__global const uint2* sorted, __global const uint* count,
-                           const uint length, const uint blocks, const Texels texels,
-                           CLPV_VOLUME_OUT volume, __global float* partials,
+CLPV_INLINE void sum_block(__global const ClpvInjection* injections, __global const uint2* sorted,
+                           __global const uint* count, const uint length, const uint blocks,
+                           Texels texels, CLPV_VOLUME_OUT volume, __global float* partials,
                            __global uint* firsts CLPV_AND_H) {
   const uint block = get_global_id(0);
   if (block >= blocks) return;
@@ -92,11 +94,12 @@ CLPV_INLINE void sum_block(__global const uint2* sorted, __global const uint* co
     const uint key = sorted[at].x;
     const uint first = at, end = min(at + length, total);
     Sums sums = no_sums();
+    texels.number = key / CLPV_KEYS, texels.surface = injections + texels.number;
     for (; at < end && sorted[at].x == key; ++at)
       sums = add_texel(sums, sorted[at].y, texels CLPV_PASS_H);
     const bool ends_cell = at == total || sorted[at].x != key;
     if (starts_cell && ends_cell) {
-      deliver(volume, key, sums);
+      deliver(volume + texels.surface->volume, key % CLPV_KEYS, sums);
     } else {
       store_sums(partials, 2 * block + (starts_cell ? 1 : 0), sums);
       if (starts_cell) firsts[block] = first;
@@ -107,9 +110,10 @@ CLPV_INLINE void sum_block(__global const uint2* sorted, __global const uint* co
 
 // Delivers the cells of several segments; a work-item per block, for the cell whose first segment
 // starts in it.
-CLPV_INLINE void join_block(__global const uint2* sorted, __global const uint* count,
-                            const uint length, const uint blocks, CLPV_VOLUME_OUT volume,
-                            __global const float* partials, __global const uint* firsts) {
+__kernel void join_segments(__global const ClpvInjection* injections, __global const uint2* sorted,
+                            __global const uint* count, const uint length, const uint blocks,
+                            CLPV_VOLUME_OUT volume, __global const float* partials,
+                            __global const uint* firsts) {
   const uint block = get_global_id(0);
   if (block >= blocks) return;
   uint at = firsts[block];
@@ -120,5 +124,5 @@ CLPV_INLINE void join_block(__global const uint2* sorted, __global const uint* c
   for (at += length; at < total && sorted[at].x == key; at += length, slot += 2) {
     sums = add_stored(sums, partials, slot);
   }
-  deliver(volume, key, sums);
+  deliver(volume + injections[key / CLPV_KEYS].volume, key % CLPV_KEYS, sums);
 }

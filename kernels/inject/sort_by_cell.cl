@@ -12,7 +12,7 @@
 // Out:  sorted  (key, texel) of each texel that has a cell, two words each; their number is the
 //               `total` of prefix_sum.cl
 // counts[digit][chunk], after the histogram: elements of the chunk with that digit; after
-// prefix_sum.cl: output index of the first of them. The host zeroes it.
+// prefix_sum.cl: output index of the first of them.
 #include "shared/sort.h"
 
 // A run starts where the key changes, and at every multiple of CLPV_LONGEST_RUN.
@@ -28,11 +28,18 @@ static inline uint run_length(__global const uint* keys, const uint texels, cons
   return end - first;
 }
 
+// Zeroes the counts of a chunk.
+static inline void clear_chunk(__global uint* counts, const uint digits, const uint chunks,
+                               const uint c) {
+  for (uint digit = 0; digit < digits; ++digit) counts[digit * chunks + c] = 0;
+}
+
 // First pass, histogram. A work-item counts `chunk` texels, a multiple of CLPV_LONGEST_RUN.
 __kernel void count_runs(__global const uint* keys, const uint texels, const uint chunk,
                          const uint chunks, const uint low_bits, __global uint* counts) {
   const uint c = get_global_id(0);
   if (c >= chunks) return;
+  clear_chunk(counts, 1u << low_bits, chunks, c);
   const uint last = min((c + 1) * chunk, texels);
   const uint mask = (1u << low_bits) - 1u;
   uint previous = CLPV_NO_CELL;
@@ -67,9 +74,10 @@ __kernel void scatter_runs(__global const uint* keys, const uint texels, const u
 // Second pass, histogram of texels. A work-item counts `chunk` runs.
 __kernel void count_texels(__global const uint* runs, __global const uint* run_count,
                            const uint chunk, const uint chunks, const uint low_bits,
-                           __global uint* counts) {
+                           const uint high_digits, __global uint* counts) {
   const uint c = get_global_id(0);
   if (c >= chunks) return;
+  clear_chunk(counts, high_digits, chunks, c);
   const uint last = min((c + 1) * chunk, run_count[0]);
   for (uint i = c * chunk; i < last; ++i) {
     counts[(runs[2 * i] >> low_bits) * chunks + c] += runs[2 * i + 1] % CLPV_LONGEST_RUN + 1;

@@ -13,20 +13,26 @@
 //   sum_segments     sums of segments of a corner's texels (segments.h)
 //   join_segments    sums of the corners that have several segments
 //
-// In:      sorted, count  (key, texel) of the sorted texels, and their number (sort_by_cell.cl)
+// In:      injections     surfaces and their volumes (shared/view_injection.h)
+//          sorted, count  (key, texel) of the sorted texels, and their number (sort_by_cell.cl)
 //          normals        of every texel of the surface (surface.h)
-//          shares         B of each sampled texel: every stride-th of every stride-th row of
-//                         `width` texels (thinned.h)
+//          shares         B of each sampled texel: every stride-th of every stride-th row
+//                         (thinned.h)
 // In, out: volume         geometry volume
 //          partials, firsts   sums and first texels of the corners with several segments
 // From the host: CLPV_GRID, CLPV_SURFACE_PAPER, and the literals of blocking.h.
 #include "inject/cell_keys.h"
 #include "inject/blocking.h"
 #include "raster/surface.h"
+#include "shared/grid.h"
+#include "shared/view_injection.h"
 #include "shared/thinned.h"
 #include "volume/geometry.h"
 
-enum { CLPV_CHANNELS = 1 };
+enum {
+  CLPV_CHANNELS = 1,
+  CLPV_KEYS = (CLPV_GRID + 1) * (CLPV_GRID + 1) * (CLPV_GRID + 1),
+};
 
 // Sum of B b(n) over the texels of a corner, before project_blockers().
 typedef struct {
@@ -36,13 +42,17 @@ typedef struct {
 typedef struct {
   __global const SurfaceTexel* normals;
   __global const float* shares;
-  uint width, stride;
+  uint stride;
+  __global const ClpvInjection* surface;
+  uint number;
 } Texels;
 
-// Index of the i-th texel taken from a surface.
+// Index of the i-th texel taken from the surfaces.
 static inline uint taken_index(const Texels texels, const uint i) {
-  const uint of_row = taken_texels(texels.width, texels.stride);
-  return taken_texel(i / of_row, texels.stride) * texels.width +
+  const uint width = texels.surface->view.width, of_row = taken_texels(width, texels.stride),
+             row = i / of_row - texels.number *
+                                    taken_texels(texels.surface->view.height, texels.stride);
+  return texels.surface->first + taken_texel(row, texels.stride) * width +
          taken_texel(i % of_row, texels.stride);
 }
 
@@ -63,17 +73,12 @@ static inline void deliver(CLPV_VOLUME_OUT volume, const uint key, const Sums su
 
 #include "inject/segments.h"
 
-__kernel void sum_segments(__global const uint2* sorted, __global const uint* count,
-                           const uint length, const uint blocks,
+__kernel void sum_segments(__global const ClpvInjection* injections, __global const uint2* sorted,
+                           __global const uint* count, const uint length, const uint blocks,
                            __global const SurfaceTexel* normals, __global const float* shares,
-                           const uint width, const uint stride, CLPV_VOLUME_OUT volume,
-                           __global float* partials, __global uint* firsts CLPV_AND_H) {
-  const Texels texels = {normals, shares, width, stride};
-  sum_block(sorted, count, length, blocks, texels, volume, partials, firsts CLPV_PASS_H);
-}
-
-__kernel void join_segments(__global const uint2* sorted, __global const uint* count,
-                            const uint length, const uint blocks, CLPV_VOLUME_OUT volume,
-                            __global const float* partials, __global const uint* firsts) {
-  join_block(sorted, count, length, blocks, volume, partials, firsts);
+                           const uint stride, CLPV_VOLUME_OUT volume, __global float* partials,
+                           __global uint* firsts CLPV_AND_H) {
+  const Texels texels = {normals, shares, stride, injections, 0};
+  sum_block(injections, sorted, count, length, blocks, texels, volume, partials,
+            firsts CLPV_PASS_H);
 }

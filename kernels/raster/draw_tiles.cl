@@ -113,7 +113,9 @@ static inline bool may_be_seen(const ClpvView view, const ClpvViewCluster cluste
 // Among `count` clusters from `first` on, marks those that lie behind every pixel drawn so far in
 // the tiles of their box.
 __kernel void hide_clusters(const ClpvView view, const uint first, const uint count,
-                            __global const float* farthest, __global ClpvViewCluster* clusters) {
+                            __global const float* farthest, __global ClpvViewCluster* clusters,
+                            __global uint* counts, __global uint* slice_counts) {
+  clear_counters(view, counts, slice_counts);
   const uint i = get_global_id(0);
   if (i >= count) return;
   const ClpvViewCluster cluster = clusters[first + i];
@@ -122,8 +124,9 @@ __kernel void hide_clusters(const ClpvView view, const uint first, const uint co
 
 // Only depths: a shadow map. A work-item stores W pixels of a row.
 __kernel void resolve_depth(const ClpvView view, __global const realW* keys,
-                            __global float* depths CLPV_AND_COUNTERS) {
-  CLPV_CLEAR_COUNTERS;
+                            __global float* depths, __global uint* counts,
+                            __global uint* slice_counts) {
+  clear_counters(view, counts, slice_counts);
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   store_depth(view, p, keys[p.row], depths);

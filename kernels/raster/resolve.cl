@@ -14,6 +14,7 @@
 //       vertices, triangles, materials, textures, texels   the scene, in rows of float4
 //                                                          (shared/mesh.h)
 //       colour_scale  Surface::colour_scale: flux [W] of a stored 1
+//       first_texel   of an RSM: index of its first texel in depths, normals and fluxes
 // Out:  depths        [m] along the view's forward axis, 0 for empty pixels
 //       normals       unit, towards the viewer: n_s and the number of n_g (shared/normal.h); RSMs:
 //                     n_g
@@ -107,8 +108,9 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
                              __global const float4* textures, __global const uint* texels,
                              __global float* depths, __global SurfaceTexel* normals,
                              __global SurfaceTexel* colours,
-                             __global float4* emissives CLPV_AND_COUNTERS) {
-  CLPV_CLEAR_COUNTERS;
+                             __global float4* emissives, __global uint* counts,
+                             __global uint* slice_counts) {
+  clear_counters(view, counts, slice_counts);
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
@@ -143,18 +145,19 @@ __kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global c
                           __global const float4* textures, __global const uint* texels,
                           __global float* depths, __global SurfaceTexel* normals,
                           __global SurfaceTexel* fluxes,
-                          const float colour_scale CLPV_AND_COUNTERS) {
-  CLPV_CLEAR_COUNTERS;
+                          const float colour_scale, const uint first_texel, __global uint* counts,
+                          __global uint* slice_counts) {
+  clear_counters(view, counts, slice_counts);
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
   PixelSurface surface;
-  resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths, &hit, &surface);
+  resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths + first_texel, &hit, &surface);
   const realW depth = stored_depth(view, keys[p.row]);
   Vec towards;
   const Vec incident = vec_times(light_irradiance(light, row_positions(view, p, depth), &towards),
                                  row_footprints(view, p, depth) * light_weight(&surface, towards));
-  const uint first = p.py * view.width + p.px;
+  const uint first = first_texel + p.py * view.width + p.px;
   store_normals(p, vec_masked(hit, surface.geometric), ZERO, normals + first);
   store_colours(p, vec_masked(hit, vec_product(surface.albedo, incident)), colour_scale,
                 fluxes + first);

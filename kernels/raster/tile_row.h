@@ -35,22 +35,17 @@ static inline PixelRow find_pixel_row(const ClpvView view) {
   return p;
 }
 
-// With one lane, the last kernel of a view zeroes the counters of rasterize.cl for the next one, a
-// work-group the counters of its tile. Eight lanes fill memory faster by a command.
-#if W == 1
-#define CLPV_AND_COUNTERS , __global uint *counts, __global uint *slice_counts
-static inline void clear_counters(__global uint* counts, __global uint* slice_counts) {
-  const uint item = get_local_id(1) * CLPV_TILE + get_local_id(0),
-             tile = get_group_id(1) * get_num_groups(0) + get_group_id(0),
-             last = get_num_groups(0) * get_num_groups(1) - 1;
-  if (item < CLPV_SLICES + (tile == last ? 1 : 0)) slice_counts[tile * CLPV_SLICES + item] = 0;
-  if (tile == 0 && item < CLPV_RASTER_COUNTERS) counts[item] = 0;
+// Zeroes the counters of rasterize.cl for its next launch, in place of two fills: all work-items of
+// a kernel that no longer reads them do so.
+static inline void clear_counters(const ClpvView view, __global uint* counts,
+                                  __global uint* slice_counts) {
+  const uint item = get_global_id(1) * get_global_size(0) + get_global_id(0),
+             items = get_global_size(0) * get_global_size(1),
+             tiles = ((view.width + CLPV_TILE - 1) / CLPV_TILE) *
+                     ((view.height + CLPV_TILE - 1) / CLPV_TILE);
+  for (uint i = item; i <= tiles * CLPV_SLICES; i += items) slice_counts[i] = 0;
+  if (item < CLPV_RASTER_COUNTERS) counts[item] = 0;
 }
-#define CLPV_CLEAR_COUNTERS clear_counters(counts, slice_counts)
-#else
-#define CLPV_AND_COUNTERS
-#define CLPV_CLEAR_COUNTERS
-#endif
 
 // Depth [m] of the surface with a key; may be less than the near depth. Undefined for empty pixels.
 static inline realW hit_depth(const ClpvView view, const realW key) {

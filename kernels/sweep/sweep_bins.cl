@@ -102,16 +102,10 @@ CLPV_INLINE void prefetch_row(const BinSweep* s, const int plane, const int row)
 }
 
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep_bin(
-    __constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
-    __constant const int* coefficients, __constant const float* means, CLPV_BUFFER_IN sources,
-    __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,
-    const ClpvSweepHalo halo, __global float* plane_buffer, CLPV_BUFFER_OUT sums,
-    CLPV_BUFFER_OUT halo_light, const int dark, __global const float* inside,
-    CLPV_BUFFER_IN scattered) {
+    CLPV_SWEEP_PARAMETERS(dark)) {
   const int b = (int)get_global_id(0);
   const ClpvSweepBin bin = bins[b];
-  BinSweep s = {b, bin, directions, coefficients, means, sources, lit, links, border, sums,
-                halo_light, inside, scattered};
+  BinSweep s = CLPV_SWEEP_OF_BIN(b);
   select_bin(&s);
   for (int i = 0; i < ordinate_of(1, 0, 0) * CLPV_BORDERED_PLANE && dark; i += W)
     store_lanes(ZERO, plane_buffer + ordinate_of(b, 0, 0) * CLPV_BORDERED_PLANE + i);

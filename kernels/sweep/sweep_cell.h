@@ -49,6 +49,18 @@ typedef struct {
   CLPV_BUFFER_IN scattered;      // J s^2, a volume for each channel and bin
 } BinSweep;
 
+// Parameters of the kernels that sweep, and what BinSweep has of them.
+#define CLPV_SWEEP_PARAMETERS(last)                                                             \
+  __constant const ClpvSweepBin *bins, __constant const ClpvSweepDirection *directions,         \
+      __constant const int *coefficients, __constant const float *means, CLPV_BUFFER_IN sources, \
+      __global const uchar *lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,                    \
+      const ClpvSweepHalo halo, __global float *plane_buffer, CLPV_BUFFER_OUT sums,              \
+      CLPV_BUFFER_OUT halo_light, const int last, __global const float *inside,                  \
+      CLPV_BUFFER_IN scattered
+#define CLPV_SWEEP_OF_BIN(b)                                                                     \
+  {b, bins[b], directions, coefficients, means, sources, lit, links, border, sums, halo_light,   \
+   inside, scattered}
+
 // Moves pointers from the tables of all bins, the kernel's parameters, to the tables of the bin.
 CLPV_INLINE void select_bin(BinSweep* s) {
   s->directions += s->number * CLPV_PARTS;
@@ -67,31 +79,36 @@ CLPV_INLINE bool holds_sources(__global const uchar* lit, const int source) {
 #endif
 }
 
+// I of a channel in cells with sources. `lacking`: of find_cosine_rest().
+CLPV_INLINE void load_injected(const BinSweep* s, const int channel, const int source,
+                               const realW* lacking, realW* injected) {
+  CLPV_BUFFER_IN of_channel = s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME;
+#pragma unroll
+  for (int part = 0; part < CLPV_PARTS; ++part) injected[part] = 0.0f;
+  for (int j = 0; j < CLPV_EMITTING; ++j) {
+    const realW c = read_numbers(of_channel + s->coefficients[j] * CLPV_SWEEP_VOLUME, source);
+#pragma unroll
+    for (int part = 0; part < CLPV_PARTS; ++part)
+      injected[part] = fma((realW)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
+  }
+#if CLPV_COSINE_REST
+  const realW uniform = read_numbers(of_channel, source);
+#pragma unroll
+  for (int part = 0; part < CLPV_PARTS; ++part)
+    injected[part] = fma(uniform, lacking[part], injected[part]);
+#endif
+}
+
 // Adds I to D in cells with sources, and to `sum`. `planes`: D of the bin's first ordinate there.
 CLPV_INLINE void add_sources(const BinSweep* s, const int source, __global float* planes,
                              realW* sum) {
-#if CLPV_COSINE_REST
   realW lacking[CLPV_PARTS];
+#if CLPV_COSINE_REST
   find_cosine_rest(s->means, s->sources, source, lacking);
 #endif
   for (int channel = 0; channel < 3; ++channel) {
     realW injected[CLPV_PARTS];
-#pragma unroll
-    for (int part = 0; part < CLPV_PARTS; ++part) injected[part] = 0.0f;
-    for (int j = 0; j < CLPV_EMITTING; ++j) {
-      const int volume = channel * CLPV_SOURCES + s->coefficients[j];
-      const realW c = read_numbers(s->sources + volume * CLPV_SWEEP_VOLUME, source);
-#pragma unroll
-      for (int part = 0; part < CLPV_PARTS; ++part)
-        injected[part] = fma((realW)(s->means[part * CLPV_EMITTING + j]), c, injected[part]);
-    }
-#if CLPV_COSINE_REST
-    const realW uniform =
-        read_numbers(s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME, source);
-#pragma unroll
-    for (int part = 0; part < CLPV_PARTS; ++part)
-      injected[part] = fma(uniform, lacking[part], injected[part]);
-#endif
+    load_injected(s, channel, source, lacking, injected);
 #pragma unroll
     for (int part = 0; part < CLPV_PARTS; ++part) {
       const int ordinate = ordinate_of(0, channel, part) * CLPV_BORDERED_PLANE;

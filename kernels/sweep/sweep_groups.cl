@@ -38,21 +38,11 @@ static inline void load_links(const BinSweep* s, const int plane, const int cell
 static inline void add_light(const BinSweep* s, const int channel, const int source, float* d,
                              float* sum) {
   if (!holds_sources(s->lit, source)) return;
-  CLPV_BUFFER_IN of_channel = s->sources + channel * CLPV_SOURCES * CLPV_SWEEP_VOLUME;
-  float injected[CLPV_PARTS];
-  for (int part = 0; part < CLPV_PARTS; ++part) injected[part] = 0.0f;
-  for (int j = 0; j < CLPV_EMITTING; ++j) {
-    const float c = read_numbers(of_channel + s->coefficients[j] * CLPV_SWEEP_VOLUME, source);
-    for (int part = 0; part < CLPV_PARTS; ++part)
-      injected[part] = fma(s->means[part * CLPV_EMITTING + j], c, injected[part]);
-  }
+  float lacking[CLPV_PARTS], injected[CLPV_PARTS];
 #if CLPV_COSINE_REST
-  float lacking[CLPV_PARTS];
   find_cosine_rest(s->means, s->sources, source, lacking);
-  const float uniform = read_numbers(of_channel, source);
-  for (int part = 0; part < CLPV_PARTS; ++part)
-    injected[part] = fma(uniform, lacking[part], injected[part]);
 #endif
+  load_injected(s, channel, source, lacking, injected);
   for (int part = 0; part < CLPV_PARTS; ++part) {
     d[part] += injected[part];
     *sum = fma(s->directions[part].share, injected[part], *sum);
@@ -102,18 +92,12 @@ static inline void set_border(const BinSweep* s, const int channel, const int da
 }
 
 __kernel __attribute__((reqd_work_group_size(CLPV_ITEMS, 1, 1))) void sweep_group(
-    __constant const ClpvSweepBin* bins, __constant const ClpvSweepDirection* directions,
-    __constant const int* coefficients, __constant const float* means, CLPV_BUFFER_IN sources,
-    __global const uchar* lit, CLPV_BUFFER_IN links, CLPV_BUFFER_IN border,
-    const ClpvSweepHalo halo, __global float* plane_buffer, CLPV_BUFFER_OUT sums,
-    CLPV_BUFFER_OUT halo_light, const int dark, __global const float* inside,
-    CLPV_BUFFER_IN scattered) {
+    CLPV_SWEEP_PARAMETERS(dark)) {
   __local float d[CLPV_PARTS * CLPV_SIDE * CLPV_SIDE];
   const int item = get_local_id(0);
   const int b = (int)get_group_id(0) / 3, channel = (int)get_group_id(0) % 3;
   const ClpvSweepBin bin = bins[b];
-  BinSweep s = {b, bin, directions, coefficients, means, sources, lit, links, border, sums,
-                halo_light, inside, scattered};
+  BinSweep s = CLPV_SWEEP_OF_BIN(b);
   select_bin(&s);
   for (int i = item; i < CLPV_PARTS * CLPV_SIDE * CLPV_SIDE; i += CLPV_ITEMS) {
     const int part = i / (CLPV_SIDE * CLPV_SIDE), cell = i % (CLPV_SIDE * CLPV_SIDE);

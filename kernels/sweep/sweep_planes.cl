@@ -25,20 +25,12 @@
 #include "shared/sweep.h"
 #include "sweep/halo_cells.h"
 
-__kernel void sweep_plane(__constant const ClpvSweepBin* bins,
-                          __constant const ClpvSweepDirection* directions,
-                          __constant const int* coefficients, __constant const float* means,
-                          CLPV_BUFFER_IN sources, __global const uchar* lit, CLPV_BUFFER_IN links,
-                          CLPV_BUFFER_IN border, const ClpvSweepHalo halo,
-                          __global float* plane_buffer, CLPV_BUFFER_OUT sums,
-                          CLPV_BUFFER_OUT halo_light, const int step,
-                          __global const float* inside, CLPV_BUFFER_IN scattered) {
+__kernel void sweep_plane(CLPV_SWEEP_PARAMETERS(step)) {
   const int column = W * (int)get_global_id(0), row = (int)get_global_id(1),
             b = (int)get_global_id(2);
   if (column >= CLPV_GRID || row >= CLPV_GRID) return;
   const ClpvSweepBin bin = bins[b];
-  BinSweep s = {b, bin, directions, coefficients, means, sources, lit, links, border, sums,
-                halo_light, inside, scattered};
+  BinSweep s = CLPV_SWEEP_OF_BIN(b);
   select_bin(&s);
   const int plane = bin.plane_sign > 0 ? step : CLPV_GRID - 1 - step;
   // Numbers in all even planes.

@@ -4,7 +4,7 @@
     scripts/gpu -o FILE.json [--device NAME] [--clpv PROGRAM] [--before PROGRAM] [--model PATH/Sponza.gltf]
                 [--first STAGE,...] [--minutes 9] [--quick]
 
-Devices; frames of the defaults, 1920x1080, `fine`, `paper`, all bounces and a camera that only
+Devices; frames of the defaults, 1920x1080, `fine`, `paper`, one bounce and a camera that only
 moves, also of an older program; hashes of the images of two runs; ceilings and launches; `clpv
 check`, thorough, stages of --first first. A step that the time left does not hold is cut off or
 left out, and FILE.json says so. Prints a table of the frames. Scene: Sponza's `curtains` with
@@ -26,7 +26,7 @@ FRAMES = {
     "1080p": ["--width", "1920", "--height", "1080"],
     "fine": ["--width", "960", "--height", "540", "--preset", "fine"],
     "paper": ["--width", "960", "--height", "540", "--preset", "paper"],
-    "all bounces": ["--width", "960", "--height", "540", "--bounces", "all"],
+    "one bounce": ["--width", "960", "--height", "540", "--bounces", "1"],
 }
 QUICK = ["--width", "48", "--height", "27"]
 COUNTS = "launches", "fills", "waits", "arguments"

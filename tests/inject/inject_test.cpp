@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -297,6 +298,33 @@ TEST(Inject, LightOfSeveralSurfacesAddsUp) {
   const Injection once = light_of(*basis, floor);
   const std::vector<float> twice = light.read(session);
   for (std::size_t i = 0; i < twice.size(); ++i) ASSERT_EQ(twice[i], 2 * once.values[i]);
+}
+
+TEST(Inject, SeveralSurfacesAtOnceAreEachAsAlone) {
+  const auto basis = make_basis("sh2");
+  Session& session = test_session();
+  const VolumeFormat format{};
+  Injector injector(session, *basis, {.grid = kGrid, .format = format});
+  SurfaceImage both = plane(from_above(20, 40, 0.1f), 0.3f);
+  for (std::size_t i = 0; i < both.depth.size(); ++i) both.colour[i].x = static_cast<float>(i % 7);
+  std::vector<Surface> halves(2, upload_surface(session, both));
+  std::vector<ClpvGrid> grids(2, kCells);
+  grids[1].cell = 2 * kCells.cell, halves[1].first = 20 * 20;
+  const VolumeShape shape{kGrid, basis->size(), 3};
+  auto volumes = Volume::array(session, 3, shape, "light", format);
+  std::vector<Injector::Target> targets;
+  for (int i : {0, 1}) {
+    halves[i].view.height = 20;
+    targets.push_back({halves[i], grids[i], volumes[2 - i]});
+  }
+  injector.inject_light(targets);
+  for (const auto& [surface, grid, volume] : targets) {
+    Volume alone(session, shape, "light", format);
+    injector.inject_light(surface, grid, alone);
+    EXPECT_EQ(volume.read(session), alone.read(session));
+    EXPECT_GT(std::ranges::max(alone.read(session)), 0);
+  }
+  EXPECT_EQ(std::ranges::max(volumes[0].read(session)), 0);
 }
 
 // Segments are longer in larger surfaces: a smaller one may have more of them, and their sums once

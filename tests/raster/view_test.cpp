@@ -185,7 +185,9 @@ TEST(View, BoxesOutsideTheScreenAreNotVisible) {
       for (const float size : {0.1f, 2.0f}) {
         const glm::vec3 middle = 7.0f * direction;
         const Bounds box{middle - size, middle + size};
-        const bool may_be = may_be_visible(view, box);
+        Boxes boxes;
+        for (int a = 0; a < 3; ++a) boxes.centre[a] = {middle[a]}, boxes.half[a] = {size};
+        const bool may_be = places_of(view, boxes)[0] != BoxPlace::outside;
         left_out += may_be ? 0 : 1;
         for (const glm::dvec3& corner : corners(glm::dvec3(box.lower), glm::dvec3(box.upper))) {
           const bool on = on_screen(view, corner) && project(view, corner).depth < view.far_depth;

@@ -18,10 +18,12 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
     : session_(session),
       scene_(scene),
       buffers_(buffers),
+      setup_(setup),
       options_(setup.options),
       lights_(lights),
       injector_(session, *setup.basis, inject_options(options_, setup.transport.unit_flux_lobes)),
-      injected_(volumes(setup.injected_volumes(), setup.injected_shape(), "injected light")),
+      injected_(volumes(setup.injected_volumes(), setup.injected_shape(), "injected light",
+                        setup.injects_at_once())),
       accumulated_(volumes(options_.cascades, setup.gathered_shape(), "accumulated light")),
       geometry_(volumes(setup.geometry_volumes(), setup.geometry_shape(), "geometry volume")),
       links_(options_.cascades),
@@ -59,10 +61,14 @@ FrameCascades::FrameCascades(Session& session, const SceneData& scene, const Sce
 }
 
 std::vector<FrameCascades::CachedVolume> FrameCascades::volumes(int count, const VolumeShape& shape,
-                                                                const char* what) const {
+                                                                const char* what,
+                                                                bool array) const {
   std::vector<CachedVolume> made(count);
-  for (CachedVolume& each : made)
-    each.volume = std::make_unique<Volume>(session_, shape, what, options_.format());
+  std::vector<Volume> together;
+  if (array) together = Volume::array(session_, count, shape, what, options_.format());
+  for (int i = 0; i < count; ++i)
+    made[i].volume = array ? std::make_unique<Volume>(together[i])
+                           : std::make_unique<Volume>(session_, shape, what, options_.format());
   return made;
 }
 
@@ -112,12 +118,28 @@ FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
 void FrameCascades::inject(int cascade) {
   CachedVolume& injected = of_cascade(injected_, cascade);
   injected.cached.update(keys_[cascade].injected, [&] {
-    lights_.update_sources(cascade);
-    const StageScope scope(session_, {Pass::inject_light, cascade});
-    injected.volume->clear(session_);
-    for (const Surface* source : lights_.sources(cascade))
-      injector_.inject_light(*source, grids_[cascade], *injected.volume);
+    // A finer cascade moves whenever a coarser one does.
+    const int first = setup_.injects_at_once() ? 0 : cascade;
+    for (int c = first; c < cascade; ++c) injected_[c].cached.invalidate();
+    inject_light(first, cascade);
+    for (int c = first; c < cascade; ++c) injected_[c].cached.update(keys_[c].injected, [] {});
   });
+}
+
+/// Injects the light of the cascades from `first` to `last` by the same launches, source by source.
+void FrameCascades::inject_light(int first, int last) {
+  std::vector<std::vector<const Surface*>> sources;
+  for (int c = last; c >= first; --c) lights_.update_sources(c);
+  for (int c = first; c <= last; ++c) sources.push_back(lights_.sources(c));
+  const StageScope scope(session_,
+                         {Pass::inject_light, first == last ? std::optional(first) : std::nullopt});
+  of_cascade(injected_, first).volume->clear_to(session_, *of_cascade(injected_, last).volume);
+  for (std::size_t i = 0; i < sources[0].size(); ++i) {
+    std::vector<Injector::Target> targets;
+    for (int c = first; c <= last; ++c)
+      targets.push_back({*sources[c - first][i], grids_[c], *of_cascade(injected_, c).volume});
+    injector_.inject_light(targets);
+  }
 }
 
 void FrameCascades::update_blockers(int cascade) {

@@ -61,13 +61,16 @@ class FrameCascades {
   struct Keys {
     CacheKey triangles = 0, injected = 0, geometry = 0, surfaces = 0, accumulated = 0;
   };
-  std::vector<CachedVolume> volumes(int count, const VolumeShape& shape, const char* what) const;
+  /// `array`: in one buffer.
+  std::vector<CachedVolume> volumes(int count, const VolumeShape& shape, const char* what,
+                                    bool array = false) const;
   static CachedVolume& of_cascade(std::vector<CachedVolume>& volumes, int cascade);
   Keys keys_of(int cascade) const;
   const Volume* geometry(int cascade);
 
   /// Each function updates one result of a cascade, and first the inputs it depends on.
   void inject(int cascade);
+  void inject_light(int first, int last);
   void update_blockers(int cascade);
   void update_links(int cascade);
   Buffer occluded(int cascade);
@@ -79,6 +82,7 @@ class FrameCascades {
   Session& session_;
   const SceneData& scene_;
   const SceneBuffers& buffers_;
+  const FrameSetup& setup_;
   const RenderOptions& options_;
   FrameLights& lights_;
   Injector injector_;

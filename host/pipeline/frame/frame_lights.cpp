@@ -108,12 +108,17 @@ void FrameLights::rasterize_shadows() {
   }
 }
 
-void FrameLights::rasterize(const Lit& lit, const std::vector<ClpvView>& views,
-                            std::vector<Surface>& surfaces) {
+void FrameLights::rasterize(Lit& lit, std::size_t slot, const std::vector<ClpvView>& views) {
+  std::vector<Surface>& surfaces = lit.rsms[slot].surfaces;
+  const int count = rsm_follows_cascade(lit.light) ? static_cast<int>(lit.rsms.size()) : 1;
   surfaces.resize(views.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
-    if (!surfaces[v].depth.exists())
-      surfaces[v] = make_surface(session_, views[v], options_.rsm_format, false);
+    if (!surfaces[v].depth.exists()) {
+      if (!lit.together.depth.exists() || count == 1)
+        lit.together = make_surface(session_, views[v], options_.rsm_format, false, count);
+      surfaces[v] = lit.together;
+      surfaces[v].first = slot * views[v].width * views[v].height;
+    }
     surfaces[v].view = views[v];
     rasterizer_.rasterize_rsm(scaled(lit.light, scale_), surfaces[v]);
   }
@@ -125,10 +130,10 @@ std::size_t FrameLights::slot(const Lit& lit, int cascade) {
 
 void FrameLights::rasterize_rsms(int cascade) {
   for (Lit& lit : lights_) {
-    Rsms& rsms = lit.rsms[slot(lit, cascade)];
-    rsms.cached.update(lit.wanted[cascade].key, [&] {
+    const std::size_t which = slot(lit, cascade);
+    lit.rsms[which].cached.update(lit.wanted[cascade].key, [&] {
       const StageScope scope(session_, {Pass::rasterize_rsm, cascade, lit.index});
-      rasterize(lit, lit.wanted[cascade].views, rsms.surfaces);
+      rasterize(lit, which, lit.wanted[cascade].views);
     });
   }
 }

@@ -69,6 +69,7 @@ class FrameLights {
     ClpvLight light;
     int index;                   ///< index in SceneData::lights
     std::vector<Rsms> rsms;      ///< one per cascade, or one shared in turn
+    Surface together;            ///< memory of the RSMs that follow cascades
     std::vector<Wanted> wanted;  ///< one per cascade
     ShadowedLight shadow;
     Cached shadow_cached;
@@ -79,8 +80,7 @@ class FrameLights {
   void find_scale(const ClpvGrid& coarsest);
   void find_bounds(const ClpvGrid& coarsest);
   CacheKey key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const;
-  void rasterize(const Lit& lit, const std::vector<ClpvView>& views,
-                 std::vector<Surface>& surfaces);
+  void rasterize(Lit& lit, std::size_t slot, const std::vector<ClpvView>& views);
 
   Session& session_;
   const SceneData& scene_;

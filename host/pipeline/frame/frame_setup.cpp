@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/frame/frame_setup.hpp"
 
+#include <algorithm>
+
 #include "basis/sweep.hpp"
 #include "options/render_options.hpp"
 #include "options/scene_options.hpp"
@@ -12,6 +14,9 @@ namespace {
 /// A sky is far brighter than the interior behind walls, so leaks along diagonal links are most
 /// visible with a sky.
 constexpr double kClosedUnderASky = 0.75;
+/// Bytes of the RSMs or of the volumes of all cascades: about the second cache of a GPU.
+constexpr std::size_t kAtOnce = std::size_t{64} << 20;
+constexpr std::size_t kRsmTexel = 36;  // depth, normal and flux as floats
 
 }  // namespace
 
@@ -33,6 +38,13 @@ void FrameSetup::require_own_blockers() const {
   throw Error(ExitCode::usage,
               "light: found blockers '{}', which a frame's G-buffer makes, allowed: scene",
               name_of(options.blockers));
+}
+
+bool FrameSetup::injects_at_once() const {
+  const std::size_t texels = std::size_t(options.rsm_size) * options.rsm_size,
+                    bytes = stored_bytes(options.format(), injected_shape());
+  return sweeps() && options.layout != Layout::image &&
+         options.cascades * std::max(kRsmTexel * texels, bytes) <= kAtOnce;
 }
 
 int FrameSetup::geometry_volumes() const {

@@ -38,10 +38,15 @@ struct FrameSetup {
   bool blocked_by_view() const { return options.blockers == Blockers::seen; }
   /// Throws Error(usage) if blocked_by_view(): light() and update() have no camera's G-buffer.
   void require_own_blockers() const;
+  /// Returns true if the same launches inject the light of all cascades: with a sweep, where their
+  /// RSMs and volumes need little memory.
+  bool injects_at_once() const;
   /// Number of stored volumes of injected light, and of stored RSMs that follow cascades. It is one
   /// per cascade if any frame may need all of them, else one that is recomputed for the current
   /// cascade.
-  int injected_volumes() const { return blocked_by_view() ? options.cascades : 1; }
+  int injected_volumes() const {
+    return blocked_by_view() || injects_at_once() ? options.cascades : 1;
+  }
   /// Number of stored geometry volumes: one per cascade for scene blockers, else one; 0 without
   /// occlusion.
   int geometry_volumes() const;

@@ -123,6 +123,11 @@ void NearField::finish() {
   uploaded_ = true;
 }
 
+/// Rays of a tile that has as many pixels along x as a work-item.
+std::size_t NearField::rays_of_tile() const {
+  return std::size_t{CLPV_PLANE_TILE} * options_.rays;
+}
+
 void NearField::reserve(const ClpvView& view) {
   const unsigned width = near_pixels(view.width, options_.step),
                  height = near_rows(view.height, options_.step);
@@ -133,9 +138,9 @@ void NearField::reserve(const ClpvView& view) {
   session_.reserve(distances_, options_.rays * numbers, "distances of the near field");
   const std::size_t tiles = items_along(session_, width) * tiles_down(height),
                     lanes = session_.device().lanes;
-  session_.reserve(counts_, tiles * sizeof(cl_uint), "hits of the near field");
-  const std::size_t hits =
-      tiles * lanes * CLPV_PLANE_TILE * options_.rays * CLPV_HIT_ROWS * sizeof(cl_float);
+  session_.reserve(counts_, tiles * (lanes == 1 ? rays_of_tile() : 1) * sizeof(cl_uint),
+                   "hits of the near field");
+  const std::size_t hits = tiles * lanes * rays_of_tile() * CLPV_HIT_ROWS * sizeof(cl_float);
   session_.reserve(hits_, hits, "hits of the near field");
   session_.reserve(radiances_, 3 * options_.rays * numbers, "radiance of the near field");
   session_.reserve(near_light_, CLPV_NEAR_LIGHT_PLANES * numbers, "near field");
@@ -159,8 +164,7 @@ void NearField::light_hits(const Surface& camera, const Gatherer& gatherer,
                            const std::vector<ShadowedLight>& lights) {
   const ClpvView& view = camera.view;
   const cl::NDRange rays(items_along(session_, near_pixels(view.width, options_.step)),
-                         tiles_down(near_rows(view.height, options_.step)),
-                         CLPV_PLANE_TILE * options_.rays);
+                         tiles_down(near_rows(view.height, options_.step)), rays_of_tile());
   const cl::NDRange group(8, session_.device().lanes == 8 ? 1 : 8, 1);
   bool fresh = true;
   if (buffers_.emissive || lights.empty()) {
@@ -197,13 +201,13 @@ void NearField::trace(const Surface& camera, const Gatherer& gatherer) {
   }
   // With eight lanes, a work-group has one work-item: node lists of several would not fit into the
   // first-level cache.
-  const cl::NDRange group =
-      session_.device().lanes == 8 ? cl::NDRange(1, 1) : pixel_group(session_);
+  const bool tiles = session_.device().lanes == 8;
+  const cl::NDRange group = tiles ? cl::NDRange(1, 1, 1) : cl::NDRange(8, 8, 1);
   trace_
       .set(view, points_, directions_, nodes_, leaves_, buffers_.vertices, buffers_.triangles,
            buffers_.materials, buffers_.textures, buffers_.texels, distances_, counts_, hits_)
-      .launch(cl::NDRange(items_along(session_, width), tiles_down(height)), group,
-              Chain(options_.rays * CLPV_PLANE_TILE));
+      .launch({items_along(session_, width), tiles_down(height), tiles ? 1 : rays_of_tile()}, group,
+              Chain{tiles ? rays_of_tile() : 1});
 }
 
 void NearField::add(const Surface& camera, const Gatherer& gatherer,

@@ -46,6 +46,7 @@ class NearField {
 
  private:
   void reserve(const ClpvView& view);
+  std::size_t rays_of_tile() const;
   void light_hits(const Surface& camera, const Gatherer& gatherer,
                   const std::vector<ShadowedLight>& lights);
   Kernel& set_hits(Kernel& kernel, const ClpvView& view, bool fresh);

@@ -3,6 +3,7 @@
 
 #include "kernels/shared/sort.h"
 #include "kernels/shared/thinned.h"
+#include "kernels/shared/view_injection.h"
 #include "pipeline/inject/lobe_literals.hpp"
 #include "support/error.hpp"
 
@@ -21,11 +22,6 @@ std::size_t segment_length(std::size_t texels) {
   std::size_t length = kMinSegment;
   while (length * kMaxBlocks < texels) length *= 2;
   return length;
-}
-
-std::size_t block_count(std::size_t texels) {
-  const std::size_t length = segment_length(texels);
-  return (texels + length - 1) / length;
 }
 
 }  // namespace
@@ -86,58 +82,69 @@ Injector::Kernels& Injector::kernels(const Variant& variant) {
   return found->second;
 }
 
-void Injector::reserve(std::size_t texels) {
+void Injector::reserve(std::size_t texels, std::size_t blocks) {
   sorter_.reserve(texels);
   const std::size_t coefficients = basis_.size();
-  const std::size_t blocks = block_count(texels);
   session_.reserve(shares_, texels * sizeof(cl_float), "injection, texels");
   session_.reserve(partials_, 2 * blocks * 3 * coefficients * sizeof(cl_float),
                    "injection, partial sums");
   session_.reserve(firsts_, blocks * sizeof(cl_uint), "injection, segments");
 }
 
-void Injector::inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
-                      Volume& volume) {
-  accumulator_.add_to_cells(
-      volume, [&](const Volume& cells) { inject_cells(kind, surface, grid, stride, cells); });
+void Injector::inject(Kind kind, const std::vector<Target>& targets, int stride) {
+  accumulator_.add_to_cells(targets.front().volume, [&](const Volume& cells) {
+    inject_cells(kind, targets, stride, cells.whole());
+  });
 }
 
-void Injector::inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
-                            const Volume& volume) {
+/// `volumes`: buffer of the targets' volumes.
+void Injector::inject_cells(Kind kind, const std::vector<Target>& targets, int stride,
+                            const Buffer& volumes) {
   const bool light = kind == Kind::light;
+  const Surface& surface = targets.front().surface;
   const unsigned step = stride;
   const std::size_t width = taken_texels(surface.view.width, step),
-                    height = taken_texels(surface.view.height, step), texels = width * height;
+                    height = taken_texels(surface.view.height, step), count = targets.size(),
+                    texels = width * height * count;
   if (texels == 0) return;
-  reserve(texels);
-  const bool points = surface.position.exists();
-  Kernels& kernel = kernels({kind, surface.format, points});
-  kernel.find_cells.set(surface.view, grid, points ? surface.position : surface.depth,
-                        surface.normal, surface.colour, surface.colour_scale, sorter_.keys());
+  const cl_uint length = segment_length(width * height), blocks = (texels + length - 1) / length;
+  reserve(texels, blocks);
+  std::vector<ClpvInjection> injections;
+  for (const auto& [from, grid, volume] : targets)
+    injections.push_back(
+        {from.view, grid, from.colour_scale, from.first, static_cast<cl_uint>(volume.place()), 0});
+  session_.reserve(injections_, count * sizeof(ClpvInjection), "surfaces to inject");
+  session_.write(injections_, injections);
+  Kernels& kernel = kernels({kind, surface.format, surface.points()});
+  kernel.find_cells.set(injections_, surface.places(), surface.normal, surface.colour,
+                        sorter_.keys());
   if (!light) kernel.find_cells.add(shares_, step);
-  kernel.find_cells.launch(cl::NDRange((width + strip_ - 1) / strip_, height),
-                           strip_ > 1 ? cl::NDRange(1, 16) : cl::NDRange(64, 1));
+  kernel.find_cells.launch(cl::NDRange((width + strip_ - 1) / strip_, height, count),
+                           strip_ > 1 ? cl::NDRange(1, 16, 1) : cl::NDRange(64, 1, 1));
   const std::size_t keys = options_.grid + (light ? 0 : 1);
-  sorter_.sort(texels, keys * keys * keys);
+  sorter_.sort(texels, count * keys * keys * keys);
 
-  const cl_uint length = segment_length(texels), blocks = block_count(texels);
-  kernel.sum_segments.set(sorter_.sorted(), sorter_.count(), length, blocks, surface.normal);
+  kernel.sum_segments.set(injections_, sorter_.sorted(), sorter_.count(), length, blocks,
+                          surface.normal);
   if (light) {
-    kernel.sum_segments.add(surface.colour, surface.colour_scale);
+    kernel.sum_segments.add(surface.colour);
   } else {
-    kernel.sum_segments.add(shares_, surface.view.width, step);
+    kernel.sum_segments.add(shares_, step);
   }
-  kernel.sum_segments.add(volume.memory(), partials_, firsts_);
+  kernel.sum_segments.add(volumes, partials_, firsts_);
   if (looks_up(kind)) table_.add_to(kernel.sum_segments);
   kernel.sum_segments.launch(cl::NDRange(blocks), kSegments, Chain{length});
   kernel.join_segments
-      .set(sorter_.sorted(), sorter_.count(), length, blocks, volume.memory(), partials_, firsts_)
+      .set(injections_, sorter_.sorted(), sorter_.count(), length, blocks, volumes, partials_,
+           firsts_)
       .launch(cl::NDRange(blocks), kSegments);
 }
 
-void Injector::inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light) {
-  require_fit(light, {options_.grid, basis_.size(), 3}, options_.format, "injection of light");
-  inject(Kind::light, rsm, grid, 1, light);
+void Injector::inject_light(const std::vector<Target>& targets) {
+  for (const Target& target : targets)
+    require_fit(target.volume, {options_.grid, basis_.size(), 3}, options_.format,
+                "injection of light");
+  inject(Kind::light, targets, 1);
 }
 
 void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry,
@@ -145,7 +152,7 @@ void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Vol
   if (stride < 1) throw Error(ExitCode::usage, "inject: stride {} is not at least 1", stride);
   require_fit(geometry, {options_.grid + 1, blocking_size(options_.blocking, basis_), 1},
               options_.format, "injection of blockers");
-  inject(Kind::geometry, surface, grid, stride, geometry);
+  inject(Kind::geometry, {{surface, grid, geometry}}, stride);
 }
 
 }  // namespace clpv

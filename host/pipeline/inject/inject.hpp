@@ -27,9 +27,19 @@ class Injector {
  public:
   Injector(Session& session, const Basis& basis, const InjectOptions& options);
 
-  /// Adds the virtual point lights of an RSM or an Emitter to `light` [W/sr]: `grid` cells, 3
-  /// channels. Texels that are empty, dark, not finite or outside the grid add nothing.
-  void inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light);
+  /// A surface, and the volume at `grid` into which its light goes.
+  struct Target {
+    const Surface& surface;
+    const ClpvGrid& grid;
+    Volume& volume;
+  };
+  /// Adds the virtual point lights of an RSM or an Emitter to a volume [W/sr]: `grid` cells, 3
+  /// channels. Texels that are empty, dark, not finite or outside the grid add nothing. Several
+  /// targets have surfaces of one size in the same buffers, and volumes of one array().
+  void inject_light(const std::vector<Target>& targets);
+  void inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light) {
+    inject_light({{rsm, grid, light}});
+  }
 
   /// Merges `surface`, an RSM or a G-buffer, into `geometry`: grid + 1 samples along each axis, 1
   /// channel, in the representation of `blocking`. Surfaces may share walls, so a sample keeps the
@@ -55,10 +65,10 @@ class Injector {
   Kernels make_kernels(const Variant& variant) const;
   Kernels& kernels(const Variant& variant);
   bool looks_up(Kind kind) const;  ///< true if the kernel uses a look-up table
-  void reserve(std::size_t texels);
-  void inject(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride, Volume& volume);
-  void inject_cells(Kind kind, const Surface& surface, const ClpvGrid& grid, int stride,
-                    const Volume& volume);
+  void reserve(std::size_t texels, std::size_t blocks);
+  void inject(Kind kind, const std::vector<Target>& targets, int stride);
+  void inject_cells(Kind kind, const std::vector<Target>& targets, int stride,
+                    const Buffer& volumes);
 
   Session& session_;
   const Basis& basis_;
@@ -68,7 +78,7 @@ class Injector {
   std::size_t strip_;  ///< texels of a row that one work-item assigns to cells
   std::map<Variant, Kernels> kernels_;
   Accumulator accumulator_;
-  Buffer shares_, partials_, firsts_;
+  Buffer shares_, partials_, firsts_, injections_;
 };
 
 }  // namespace clpv

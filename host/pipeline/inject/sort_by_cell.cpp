@@ -71,7 +71,6 @@ void CellSorter::sort(std::size_t texels, std::size_t cells) {
                     high_counts = std::size_t{high_digits} * chunks;
   session_.reserve(counts_, (low_counts + 1) * sizeof(cl_uint), "sort by cell, counts");
 
-  session_.fill_zero(counts_, low_counts * sizeof(cl_uint));
   const Chain chain{chunk};
   count_runs_.set(keys_, count, chunk, chunks, low_bits, counts_)
       .launch(cl::NDRange(chunks), kLocal, chain);
@@ -79,8 +78,7 @@ void CellSorter::sort(std::size_t texels, std::size_t cells) {
   scatter_runs_.set(keys_, count, chunk, chunks, low_bits, counts_, runs_)
       .launch(cl::NDRange(chunks), kLocal, chain);
 
-  session_.fill_zero(counts_, high_counts * sizeof(cl_uint));
-  count_texels_.set(runs_, run_count_, chunk, chunks, low_bits, counts_)
+  count_texels_.set(runs_, run_count_, chunk, chunks, low_bits, high_digits, counts_)
       .launch(cl::NDRange(chunks), kLocal, chain);
   prefix_sum_.run(counts_, high_counts, count_);
   scatter_texels_.set(runs_, run_count_, chunk, chunks, low_bits, counts_, sorted_)

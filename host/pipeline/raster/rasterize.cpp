@@ -143,16 +143,18 @@ void Rasterizer::find_visible(const Drawing& drawing) {
 /// Lists the triangle clusters that may be visible: all of them, or the nearest and the others.
 std::vector<Rasterizer::Range> Rasterizer::list_clusters(const ClpvView& view) {
   const HostPart part(session_.timeline().host().culling_ms);
-  const std::vector<Bounds>& bounds = scene_.clusters->bounds();
-  const std::vector<BoxPlace> places = places_of(view, scene_.clusters->boxes());
-  const ClusterPlacer place(view);
+  const Boxes& boxes = scene_.clusters->boxes();
+  const std::vector<BoxPlace> places = places_of(view, boxes);
   std::vector<ClpvViewCluster> visible;
-  visible.reserve(bounds.size());
-  for (unsigned i = 0; i < bounds.size(); ++i) {
-    if (places[i] != BoxPlace::outside) visible.push_back(place(bounds[i], i));
+  visible.reserve(places.size());
+  for (unsigned i = 0; i < places.size(); ++i) {
+    if (places[i] != BoxPlace::outside) visible.push_back({i, 0, 0, 0});
   }
   const unsigned count = visible.size();
   const bool hides = view.orthographic != 0 && count >= least_hidden_;
+  // Only hide_clusters reads places.
+  for (unsigned i = 0; hides && i < count; ++i)
+    visible[i] = place_cluster(view, boxes, visible[i].number);
   const unsigned nearest = hides ? move_nearest_first(visible) : count;
   session_.write(clusters_, visible);
   std::vector<Range> ranges{{0, nearest}};
@@ -178,8 +180,8 @@ void Rasterizer::count_set_up(const Range& range) {
 
 /// Leaves out the clusters of a range that lie behind all that has been drawn.
 void Rasterizer::hide_clusters(const ClpvView& view, const Range& range) {
-  hide_clusters_.set(view, range.first, range.count, farthest_, clusters_)
-      .launch(range.count, kRasterGroup);
+  hide_clusters_.set(view, range.first, range.count, farthest_, clusters_);
+  add_counters(hide_clusters_).launch(range.count, kRasterGroup);
 }
 
 /// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of
@@ -188,9 +190,7 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
   const cl_uint cull = drawing.culls_back_faces() ? 1 : 0;
   if (!cleared_) {
     session_.fill_zero(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint));
-    session_.fill_zero(slice_counts_, session_.device().lanes == 1
-                                          ? slice_counts_.bytes()
-                                          : slice_count(drawing.view) * sizeof(cl_uint));
+    session_.fill_zero(slice_counts_, slice_counts_.bytes());
   }
   cleared_ = false;
   if (count == 0) return;
@@ -210,9 +210,8 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
       .launch(session_.device().compute_units * kWideGroupsPerUnit * kRasterGroup, kRasterGroup);
 }
 
-/// Adds the counters to a kernel that zeroes them for the next set_up(), with one lane.
+/// Adds the counters to a kernel that zeroes them for the next set_up().
 Kernel& Rasterizer::add_counters(Kernel& kernel) {
-  if (session_.device().lanes != 1) return kernel;
   cleared_ = true;
   return kernel.add(counts_, slice_counts_);
 }
@@ -305,9 +304,9 @@ void Rasterizer::clear(Surface& surface) {
   const std::size_t texel =
       surface.format == RsmFormat::paper ? sizeof(cl_uchar4) : sizeof(cl_float4);
   const std::size_t count = std::size_t{surface.view.width} * surface.view.height;
-  session_.fill_zero(surface.depth, count * sizeof(cl_float));
-  session_.fill_zero(surface.normal, count * texel);
-  session_.fill_zero(surface.colour, count * texel);
+  session_.fill_zero(surface.depth, count * sizeof(cl_float), surface.first * sizeof(cl_float));
+  for (const Buffer& texels : {surface.normal, surface.colour})
+    session_.fill_zero(texels, count * texel, surface.first * texel);
 }
 
 void Rasterizer::rasterize_camera(Surface& surface) {
@@ -340,7 +339,7 @@ void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
                             .emissive = false});
   kernel.set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
              scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
-             surface.colour_scale);
+             surface.colour_scale, surface.first);
   add_counters(kernel).launch(items_of(session_, view), pixel_group(session_));
 }
 

@@ -44,10 +44,10 @@ Bytes encode(const std::vector<glm::vec4>& values, float scale, float offset) {
 }
 
 std::vector<glm::vec4> read_texels(Session& session, const Buffer& buffer, std::size_t count,
-                                   RsmFormat format, float scale, float offset) {
+                                   std::size_t first, RsmFormat format, float scale, float offset) {
   if (format == RsmFormat::paper)
-    return decode(session.read<cl_uchar4>(buffer, count), scale, offset);
-  return session.read<glm::vec4>(buffer, count);
+    return decode(session.read<cl_uchar4>(buffer, count, first), scale, offset);
+  return session.read<glm::vec4>(buffer, count, first);
 }
 
 void write_texels(Session& session, const Buffer& buffer, const std::vector<glm::vec4>& values,
@@ -67,11 +67,12 @@ void require_size(std::size_t found, std::size_t wanted, const char* what) {
 
 }  // namespace
 
-Surface make_surface(Session& session, const ClpvView& view, RsmFormat format, bool with_emissive) {
+Surface make_surface(Session& session, const ClpvView& view, RsmFormat format, bool with_emissive,
+                     int surfaces) {
   Surface surface;
   surface.view = view;
   surface.format = format;
-  const std::size_t count = pixels(view);
+  const std::size_t count = surfaces * pixels(view);
   surface.depth = session.buffer(count * sizeof(float), "depth of a surface");
   surface.normal = session.buffer(count * texel_bytes(format), "normals of a surface");
   surface.colour = session.buffer(count * texel_bytes(format), "colours of a surface");
@@ -84,14 +85,14 @@ SurfaceImage read_surface(Session& session, const Surface& surface) {
   const std::size_t count = pixels(surface.view);
   SurfaceImage image;
   image.view = surface.view;
-  image.normal = read_texels(session, surface.normal, count, surface.format, 2, -1);
-  image.colour =
-      read_texels(session, surface.colour, count, surface.format, surface.colour_scale, 0);
+  image.normal = read_texels(session, surface.normal, count, surface.first, surface.format, 2, -1);
+  image.colour = read_texels(session, surface.colour, count, surface.first, surface.format,
+                             surface.colour_scale, 0);
   if (surface.position.exists()) {
     image.position = session.read<glm::vec4>(surface.position, count);
     return image;
   }
-  image.depth = session.read<float>(surface.depth, count);
+  image.depth = session.read<float>(surface.depth, count, surface.first);
   if (surface.emissive.exists()) image.emissive = session.read<glm::vec4>(surface.emissive, count);
   for (std::size_t i = 0; i < count; ++i) {
     glm::vec4& normal = image.normal[i];

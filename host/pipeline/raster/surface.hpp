@@ -20,6 +20,7 @@ namespace clpv {
 /// floats (kernels/raster/surface.h).
 struct Surface {
   ClpvView view{};
+  cl_uint first = 0;  ///< index of its first pixel in the buffers
   RsmFormat format = RsmFormat::float32;
   float colour_scale = 1;  ///< value of a stored 1 of `colour` in format paper
   Buffer depth;            ///< float
@@ -36,8 +37,9 @@ struct Surface {
 };
 
 /// Allocates a surface of the view's size for a rasteriser; contents are undefined.
-/// `with_emissive`: allocates Surface::emissive.
-Surface make_surface(Session& session, const ClpvView& view, RsmFormat format, bool with_emissive);
+/// `with_emissive`: allocates Surface::emissive. `count`: surfaces for which its buffers have room.
+Surface make_surface(Session& session, const ClpvView& view, RsmFormat format, bool with_emissive,
+                     int count = 1);
 
 /// Reads a surface and decodes paper format. Normals are 0 without a surface. The emissive field is
 /// empty without Surface::emissive.

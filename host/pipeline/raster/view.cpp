@@ -17,7 +17,7 @@ namespace {
 constexpr double kLightNear = 0.01;       // [m]; a lamp's own glass may be this close
 constexpr double kSmallestMargin = 0.01;  // [m] between an orthographic eye and the nearest surface
 constexpr double kRelativeMargin = 1e-3;  // the same, relative to the scene's depth
-constexpr double kRounding = 1e-5;        // relative rounding of distances from the eye in kernels
+constexpr float kMargin = 4e-5f;          // relative rounding of distances from the eye, here too
 constexpr int kMaxCubes = 64;             // cubes of light_bounds()
 constexpr int kGapCubes = 3;              // empty ones that are a gap
 
@@ -158,7 +158,6 @@ std::vector<Plane> beyond_guards(const ClpvView& view) {
 /// Calls visit(i, true) if some point of box i may lie in the half-space, else visit(i, false).
 template <typename Visit>
 void for_each_reach(const ClpvView& view, const Boxes& boxes, const Plane& plane, Visit visit) {
-  constexpr float kMargin = 4 * static_cast<float>(kRounding);  // sums here round, too
   const float x = plane.along.x, y = plane.along.y, z = plane.along.z, offset = plane.offset,
               margin = kMargin * static_cast<float>(glm::length(plane.along));
   const float *cx = boxes.centre[0].data(), *cy = boxes.centre[1].data(),
@@ -175,25 +174,6 @@ void for_each_reach(const ClpvView& view, const Boxes& boxes, const Plane& plane
     visit(i, nearest + (wide_x * hx[i] + wide_y * hy[i] + wide_z * hz[i]) + offset >= 0);
   }
 }
-
-/// A box relative to a view's eye.
-class BoxOfView {
- public:
-  BoxOfView(const ClpvView& view, const Bounds& bounds)
-      : half_(0.5 * (glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower))),
-        centre_(0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper)) - vector(view.eye)),
-        margin_(kRounding * (glm::length(centre_) + glm::length(half_))) {}
-
-  /// Returns true if some point of the box may lie in the half-space.
-  bool operator()(const Plane& plane) const {
-    return glm::dot(plane.along, centre_) + glm::dot(glm::abs(plane.along), half_) + plane.offset >=
-           -margin_ * glm::length(plane.along);
-  }
-
- private:
-  glm::dvec3 half_, centre_;
-  double margin_;
-};
 
 }  // namespace
 
@@ -252,16 +232,6 @@ std::vector<ClpvView> point_views(const ClpvLight& light, int size, const Bounds
   return views;
 }
 
-bool may_be_visible(const ClpvView& view, const Bounds& bounds) {
-  const BoxOfView reaches(view, bounds);
-  return std::ranges::all_of(borders(view), reaches);
-}
-
-bool may_be_clipped(const ClpvView& view, const Bounds& bounds) {
-  const BoxOfView reaches(view, bounds);
-  return std::ranges::any_of(beyond_guards(view), reaches);
-}
-
 std::vector<BoxPlace> places_of(const ClpvView& view, const Boxes& boxes) {
   const std::size_t count = boxes.centre[0].size();
   std::vector<std::uint8_t> visible(count, 1), clipped(count, 0);
@@ -277,32 +247,32 @@ std::vector<BoxPlace> places_of(const ClpvView& view, const Boxes& boxes) {
   return places;
 }
 
-ClusterPlacer::ClusterPlacer(const ClpvView& view)
-    : view_(view),
-      eye_(vector(view.eye)),
-      right_(vector(view.right)),
-      down_(-vector(view.up)),
-      forward_(vector(view.forward)) {}
-
-ClpvViewCluster ClusterPlacer::operator()(const Bounds& bounds, unsigned number) const {
-  const glm::dvec3 half = 0.5 * (glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower)),
-                   centre = 0.5 * (glm::dvec3(bounds.lower) + glm::dvec3(bounds.upper)) - eye_;
-  const double margin = kRounding * (glm::length(centre) + glm::length(half));
-  const auto least = [&](const glm::dvec3& axis) {
-    return glm::dot(axis, centre) - glm::dot(glm::abs(axis), half) - margin;
+ClpvViewCluster place_cluster(const ClpvView& view, const Boxes& boxes, unsigned number) {
+  const auto &centre = boxes.centre, &half = boxes.half;
+  const float x = centre[0][number] - view.eye[0], y = centre[1][number] - view.eye[1],
+              z = centre[2][number] - view.eye[2], wide = half[0][number], high = half[1][number],
+              deep = half[2][number];
+  const float margin = kMargin * (std::abs(x) + std::abs(y) + std::abs(z) + wide + high + deep);
+  /// Smallest and largest distance from the eye along an axis.
+  const auto span = [&](const float* axis) {
+    const float middle = axis[0] * x + axis[1] * y + axis[2] * z,
+                reach = std::abs(axis[0]) * wide + std::abs(axis[1]) * high +
+                        std::abs(axis[2]) * deep + margin;
+    return std::pair(middle - reach, middle + reach);
   };
   /// Tile of the pixel beside a distance from the left or top border.
-  const auto tile = [](double across, double half_extent, int pixels, int beside) {
-    const double pixel = (across / half_extent + 1) * 0.5 * pixels + beside;
-    return static_cast<unsigned>(std::clamp(pixel, 0.0, pixels - 1.0)) / CLPV_TILE;
+  const auto tile = [](float across, float half_extent, int pixels, int beside) {
+    const float pixel = (across / half_extent + 1) * 0.5f * pixels + beside;
+    return static_cast<unsigned>(std::clamp(pixel, 0.0f, pixels - 1.0f)) / CLPV_TILE;
   };
-  const int width = view_.width, height = view_.height;
-  return {number,
-          tile(least(right_), view_.half_width, width, -1) +
-              (tile(least(down_), view_.half_height, height, -1) << 16),
-          tile(-least(-right_), view_.half_width, width, 1) +
-              (tile(-least(-down_), view_.half_height, height, 1) << 16),
-          static_cast<float>(least(forward_))};
+  const int width = view.width, height = view.height;
+  const auto [left, right] = span(view.right);
+  const auto [bottom, top] = span(view.up);
+  return {
+      number,
+      tile(left, view.half_width, width, -1) + (tile(-top, view.half_height, height, -1) << 16),
+      tile(right, view.half_width, width, 1) + (tile(-bottom, view.half_height, height, 1) << 16),
+      span(view.forward).first};
 }
 
 LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,

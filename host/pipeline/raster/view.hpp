@@ -21,29 +21,14 @@ inline constexpr double kWidestSpotView = 1.0472;  // 60 degrees
 /// Returns the camera's view of `width` x `height` square pixels. It has no far plane.
 ClpvView camera_view(const SceneCamera& camera, int width, int height);
 
-/// Returns false only if `bounds` lies outside one of the view's borders, by a margin for rounding.
-bool may_be_visible(const ClpvView& view, const Bounds& bounds);
-
-/// Returns false only if all of `bounds` lies beyond the near plane and inside the rasteriser's
-/// guard band, by a margin for rounding.
-bool may_be_clipped(const ClpvView& view, const Bounds& bounds);
-
-/// Where a box lies in a view: if `outside`, may_be_visible() is false, and if not `clipped`,
-/// may_be_clipped() is.
+/// Where a box lies in a view: `outside` if surely beyond one of its borders, `inside` if surely
+/// beyond the near plane and inside the rasteriser's guard band.
 enum class BoxPlace : unsigned char { outside, inside, clipped };
-/// Returns the places of all boxes, found in floats with a wider margin.
+/// Returns the places of all boxes, with a margin for rounding.
 std::vector<BoxPlace> places_of(const ClpvView& view, const Boxes& boxes);
 
-/// Places triangle clusters in an orthographic view, with margins for rounding.
-class ClusterPlacer {
- public:
-  explicit ClusterPlacer(const ClpvView& view);
-  ClpvViewCluster operator()(const Bounds& bounds, unsigned number) const;
-
- private:
-  ClpvView view_;
-  glm::dvec3 eye_, right_, down_, forward_;
-};
+/// Places a triangle cluster in an orthographic view, with margins for rounding.
+ClpvViewCluster place_cluster(const ClpvView& view, const Boxes& boxes, unsigned number);
 
 /// Returns a directional light's orthographic view of a cascade, with `size` texels along each
 /// side. It covers the cascade's cube plus half a cell, since virtual point lights move by as much,

@@ -284,6 +284,7 @@ void Sweeper::sweep_white(bool all_directions, std::size_t cascade,
 void Sweeper::sweep(const SweepInput& input, Volume& accumulated) {
   enter_medium(input.cascade, input.grids[input.cascade]);
   if (medium_) medium_->scatter_lights(input.grids[input.cascade], input.lights);
+  bordered_ = nullptr;
   for (const SweepStep& step : plan_) run(step, input);
   collect(accumulated, 0, 3);
 }
@@ -296,8 +297,11 @@ void Sweeper::run(const SweepStep& step, const SweepInput& input) {
   if (step.scattered) medium_->scatter_swept(swept_);
   set_sources(light_of(step, input));
   const float cell = input.grids[input.cascade].cell;
-  const bool lit = light_border(step.all_directions, input.cascade, input.grids, directions.sky,
-                                input.sky_scale * (cell * cell));
+  // Groups leave the boundary condition as it is: it serves all sweeps along the same directions.
+  const bool stands = form() == SweepForm::groups && bordered_ == &directions;
+  const bool lit = stands || light_border(step.all_directions, input.cascade, input.grids,
+                                          directions.sky, input.sky_scale * (cell * cell));
+  bordered_ = lit ? &directions : nullptr;
   const ClpvSweepHalo stored = prepare_halo(directions, input.cascade, input.grids);
   if (last_swept_.exists()) std::swap(swept_, last_swept_);
   launch(directions, input.cascade, stored, lit, step.scattered);

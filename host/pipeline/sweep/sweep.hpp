@@ -117,6 +117,7 @@ class Sweeper {
   /// Results of the last two sweeps; last_swept_: only for SweptLight::series.
   Buffer swept_, last_swept_;
   Buffer plane_buffer_, border_;
+  const Directions* bordered_ = nullptr;  ///< whose boundary condition a sweep() has set last
   Kernel source_, collect_, join_furnace_;
   std::optional<Kernel> find_closed_links_, transmittance_;
   std::optional<SweepMedium> medium_;
