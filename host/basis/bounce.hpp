@@ -40,6 +40,9 @@ inline constexpr double kLeastWhite = 0.02;
 /// Radiance of a white border above which a direction counts as open: walls let less through.
 inline constexpr double kLeastOpen = 0.1;
 
+/// Limit of a furnace's radiance where all surfaces block light: none.
+inline constexpr double kNoLimitOfWhite = 1e30;
+
 /// Number that swept light is divided by: F, below kLeastWhite a number that rises to 1, so that
 /// light where the furnace is dark stays as it is.
 inline double over_furnace(double f) {

@@ -28,6 +28,7 @@ SweepOptions sweep_options(const RenderOptions& options) {
   return {.grid = options.grid,
           .parts = parts,
           .blocking = options.blocked(),
+          .most_white = options.blockers == Blockers::scene ? kNoLimitOfWhite : 1,
           .bounces = options.reflects() ? options.bounces : Bounces::one,
           .bounce_sweeps = options.bounce_sweeps,
           .format = options.format()};

@@ -47,6 +47,8 @@ struct SweepOptions {
   int grid = 32;                   ///< cells along each axis
   std::vector<int> parts;          ///< parts of each bin (sweep_bins), per cascade, finest first
   bool blocking = true;            ///< light is blocked by geometry volumes
+  /// Limit of the white furnace's radiance: 1 where not all surfaces block light.
+  double most_white = kNoLimitOfWhite;
   Bounces bounces = Bounces::one;  ///< more than one needs reflectors in set_surfaces()
   int bounce_sweeps = kSeriesSweeps;
   VolumeFormat format = {};  ///< format of all volumes; internal buffers use its storage

@@ -185,7 +185,7 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
 
 std::vector<Volume> furnace(const Basis& basis, const Transport& transport,
                             std::vector<SweptCascade> cascades,
-                            const std::vector<const Volume*>& white) {
+                            const std::vector<const Volume*>& white, double most_white) {
   Sky even;
   even.width = even.height = 1, even.texels = {glm::vec3(1)};
   std::vector<Volume> light;
@@ -209,7 +209,8 @@ std::vector<Volume> furnace(const Basis& basis, const Transport& transport,
     for (std::size_t i = 0; i < surfaces.values.size(); ++i) {
       const double closed = surfaces.values[i] / area(c),
                    border = swept[c].values[i] / area(c) - closed;
-      swept[c].values[i] = closed + std::min(border, 2 * std::max(0.0, border - kLeastOpen));
+      const double open = std::min(border, 2 * std::max(0.0, border - kLeastOpen));
+      swept[c].values[i] = std::min(most_white, closed + open);
     }
   }
   return swept;
@@ -219,7 +220,7 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
                                           const std::vector<SweptCascade>& cascades,
                                           const std::vector<const Volume*>& white,
                                           const std::vector<const Volume*>& reflectors,
-                                          Bounces bounces) {
+                                          Bounces bounces, double most_white) {
   std::vector<Volume> normalised;
   for (std::size_t c = 0; c < cascades.size(); ++c) {
     const auto first = static_cast<std::ptrdiff_t>(c);
@@ -228,7 +229,7 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
     std::vector<const Volume*> emitting(white.begin() + first, white.end());
     for (std::size_t i = 0; i < nested.size() && (i == 0 || !all); ++i)
       nested[i] = along_24(nested[i]), emitting[i] = reflectors[c + i];
-    const Volume even = furnace(basis, transport, nested, emitting)[0];
+    const Volume even = furnace(basis, transport, nested, emitting, most_white)[0];
     const IncidentFlux incident = incident_flux_of(even);
     Volume& result = normalised.emplace_back(*reflectors[c]);
     for_each_cell(result.n, [&](const glm::ivec3& p) {

@@ -16,7 +16,8 @@ namespace clpv::reference {
 /// not count (kLeastOpen).
 std::vector<Volume> furnace(const Basis& basis, const Transport& transport,
                             std::vector<SweptCascade> cascades,
-                            const std::vector<const Volume*>& white);
+                            const std::vector<const Volume*>& white,
+                            double most_white = kNoLimitOfWhite);
 
 /// Reflectors over their own furnace's incident flux, as sweeps for `bounces` use them; coarser
 /// cascades have `white` where their last sweep enters.
@@ -24,7 +25,7 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
                                           const std::vector<SweptCascade>& cascades,
                                           const std::vector<const Volume*>& white,
                                           const std::vector<const Volume*>& reflectors,
-                                          Bounces bounces);
+                                          Bounces bounces, double most_white = kNoLimitOfWhite);
 
 /// Series S of all further bounces inside one cascade: flux that a face, and the faces that its
 /// light meets, reflect of 1 W of incident flux.

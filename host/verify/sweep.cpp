@@ -107,7 +107,7 @@ std::vector<double> expected_light(const SweepProblem& p) {
   std::vector<reference::Volume> normalised;
   if (o.bounces != Bounces::one)
     normalised = reference::normalised_reflectors(*p.basis, p.transport, cascades, white,
-                                                  reflecting, o.bounces);
+                                                  reflecting, o.bounces, o.most_white);
   for (std::size_t i = 0; i < normalised.size(); ++i) reflecting[i] = &normalised[i];
   const std::vector<reference::Volume> swept =
       o.bounces == Bounces::one
@@ -115,7 +115,8 @@ std::vector<double> expected_light(const SweepProblem& p) {
           : reference::sweep_bounced(*p.basis, p.transport, cascades, reflecting, o.bounces,
                                      o.bounce_sweeps);
   std::vector<reference::Volume> furnace;
-  if (!white.empty()) furnace = reference::furnace(*p.basis, p.transport, cascades, white);
+  if (!white.empty())
+    furnace = reference::furnace(*p.basis, p.transport, cascades, white, o.most_white);
   std::vector<double> values;
   for (std::size_t i = 0; i < swept.size(); ++i) {
     const reference::Volume light = reference::project_bins(swept[i]);
@@ -261,6 +262,7 @@ Job job_of(Session& session, const SweepCase& c) {
                    {.grid = c.grid,
                     .parts = c.parts,
                     .blocking = c.blocking,
+                    .most_white = c.blocking ? kNoLimitOfWhite : 1,
                     .bounces = c.bounces,
                     .bounce_sweeps = c.sweeps,
                     .format = c.format,

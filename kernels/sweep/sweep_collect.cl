@@ -29,16 +29,17 @@ CLPV_INLINE Coefficients project_bins(const Bins bins) {
 }
 
 // Joins two channels of a white furnace in the first: S, whose border is dark, and S + B with a
-// white one. Of B, what walls let through counts as closed.
+// white one. Of B, what walls let through counts as closed. The limit is 1 where surfaces do not
+// block light, so that theirs adds up.
 //
-//   F = S + min(B, 2 max(0, B - CLPV_LEAST_OPEN))
+//   F = min(CLPV_MOST_WHITE, S + min(B, 2 max(0, B - CLPV_LEAST_OPEN)))
 __kernel void join_furnace(CLPV_BUFFER_OUT sums) {
   const int at = W * (int)get_global_id(0), volumes = CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
   if (at >= volumes) return;
   const realW surfaces = read_numbers(sums, at),
               border = read_numbers(sums + volumes, at) - surfaces;
-  write_numbers(sums, at,
-                surfaces + fmin(border, 2.0f * fmax(border - CLPV_LEAST_OPEN, ZERO)));
+  const realW open = fmin(border, 2.0f * fmax(border - CLPV_LEAST_OPEN, ZERO));
+  write_numbers(sums, at, fmin((realW)(CLPV_MOST_WHITE), surfaces + open));
 }
 
 __kernel void sweep_collect(CLPV_BUFFER_IN sums, CLPV_VOLUME_OUT accumulated,

@@ -65,10 +65,14 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
       volumes_(session, options.grid, options.format),
       source_(session, volumes_.program("sweep/sweep_source.cl", source_literals(basis)),
               "sweep_source"),
-      collect_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals()),
-               "sweep_collect"),
-      join_furnace_(session, volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals()),
-                    "join_furnace"),
+      collect_(
+          session,
+          volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals(options.most_white)),
+          "sweep_collect"),
+      join_furnace_(
+          session,
+          volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals(options.most_white)),
+          "join_furnace"),
       bouncer_(session, basis, options,
                options.bounces == Bounces::all && !scatters(options.medium)),
       bounced_(session, VolumeShape{options.grid, basis.size(), 3}, "injected and reflected light",

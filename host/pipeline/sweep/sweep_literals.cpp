@@ -54,12 +54,13 @@ Literals sweep_links_literals(const Basis& basis, const Transport& transport) {
       .integers("CLPV_VOLUME_LINKS", links);
 }
 
-Literals sweep_collect_literals() {
+Literals sweep_collect_literals(double most_white) {
   const Matrix projection = folded(swept_projection());
   Literals literals;
   add_coefficient_literals(literals, projection.rows());
   return literals.matrix("CLPV_PROJECTION", transposed(projection))
-      .real("CLPV_LEAST_OPEN", kLeastOpen);
+      .real("CLPV_LEAST_OPEN", kLeastOpen)
+      .real("CLPV_MOST_WHITE", most_white);
 }
 
 OperationCount sweep_collect_operations() {

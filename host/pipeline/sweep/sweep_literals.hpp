@@ -17,7 +17,7 @@ Literals sweep_links_literals(const Basis& basis, const Transport& transport);
 
 /// For sweep_collect.cl: those of coefficients of swept_basis(), and CLPV_PROJECTION, 24 x 9:
 /// swept_projection() by folded bins.
-Literals sweep_collect_literals();
+Literals sweep_collect_literals(double most_white);
 /// Operations per cell and channel.
 OperationCount sweep_collect_operations();
 
