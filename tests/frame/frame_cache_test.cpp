@@ -9,6 +9,7 @@
 
 #include "device/result_keys.hpp"
 #include "options/render_options.hpp"
+#include "options/scene_options.hpp"
 #include "pipeline/frame/cached.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "scene/load.hpp"
@@ -296,6 +297,34 @@ TEST_F(CachedPublishedFrame, RecomputesOnlyWhatChanged) {
     at.eye += glm::vec3(0.6f, 0.0f, -0.55f) * kCell;
     if (i % 3 == 1) at.sun += 0.1;
     passes(at);
+  }
+}
+
+// A later change that adds launches, waits or arguments fails here (docs/gpu.md, 'What a frame
+// launches').
+TEST(FrameWork, DoesNotGrow) {
+  struct Row {
+    int lanes;
+    unsigned launches, fills, waits, arguments;
+  };
+  const SceneData scene = load_scene(CLPV_SOURCE_DIR "/scenes/atrium.json");
+  for (const Row& row : {Row{1, 107, 1, 0, 113}, Row{8, 134, 1, 9, 138}}) {
+    SCOPED_TRACE(row.lanes);
+    Device device = choose_device();
+    device.lanes = row.lanes;
+    Session session(device);
+    Frame frame(session, scene,
+                resolve_options({{"width", "64"}, {"height", "36"}, {"near-size", "half"}}, scene));
+    for (int i = 0; i < 3; ++i) {  // lists of triangles have their size after two
+      frame.invalidate_light();
+      frame.render(scene.camera(""));
+    }
+    const HostWork& host = session.timeline().host();
+    EXPECT_GT(host.launches, 0u);
+    EXPECT_LE(host.launches, row.launches);
+    EXPECT_LE(host.fills, row.fills);
+    EXPECT_LE(host.waits, row.waits);
+    EXPECT_LE(host.arguments, row.arguments);
   }
 }
 
