@@ -19,7 +19,7 @@ CLPV_INLINE Vec vec_at(const float3 v) {
 CLPV_INLINE float4 clpv_irradiance(CLPV_RADIANCE, const float3 position, const float3 normal) {
   RadianceField field;
   sample_radiance(CLPV_PASS_RADIANCE, vec_at(position), (realW)(CLPV_GATHER_OFFSET), vec_at(normal),
-                  vec(ZERO, ZERO, ZERO),                   lane_numbers() == 0, &field);
+                  vec(ZERO, ZERO, ZERO), lane_numbers() == 0, &field);
   return field_irradiance(&field.at[0], normal.x, normal.y, normal.z);
 }
 
@@ -28,6 +28,6 @@ CLPV_INLINE float4 clpv_irradiance(CLPV_RADIANCE, const float3 position, const f
 CLPV_INLINE float4 clpv_radiance(CLPV_RADIANCE, const float3 position, const float3 direction) {
   RadianceField field;
   sample_radiance(CLPV_PASS_RADIANCE, vec_at(position), ZERO, vec_at(direction),
-                  vec(ZERO, ZERO, ZERO),                   lane_numbers() == 0, &field);
+                  vec(ZERO, ZERO, ZERO), lane_numbers() == 0, &field);
   return radiance_along(&field.at[0], direction.x, direction.y, direction.z);
 }

@@ -140,8 +140,8 @@ __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
   if (!load_hit_surfaces(CLPV_PASS_HITS, &s)) return;
   RadianceField field;
   const Vec lift = lift_normal(s.geometric, s.normal);
-  sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), lift, vec(ZERO, ZERO, ZERO),
-                  s.hit, &field);
+  sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), lift,
+                  vec(ZERO, ZERO, ZERO), s.hit, &field);
   const VecLanes n = unpack(s.hit, s.normal);
   float x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {
