@@ -134,7 +134,6 @@ std::vector<NamedFile> prepare_outputs(const Options& options) {
     throw Error(ExitCode::usage, "--frames {}: the last is at {} s; allowed: up to {} s",
                 options.frames, last, bounds::kSeconds);
   }
-  if (!options.video.empty()) require_extension("--video", options.video, {".mp4"});
   if (options.traced > 0 && !options.stability)
     throw Error(ExitCode::usage, "--traced {}: needs --stability", options.traced);
   std::error_code failed;
@@ -179,6 +178,7 @@ void warn_of_later_frames(const Options& options) {
 
 void run(const Options& options, Shared& shared) {
   Ranks& ranks = shared.ranks();
+  if (!options.video.empty()) require_extension("--video", options.video, {".mp4"});
   std::optional<Video> video;
   if (!options.video.empty() && ranks.is_root())
     video.emplace(options.video, options.frames_per_second);

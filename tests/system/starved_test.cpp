@@ -78,8 +78,8 @@ class Starved : public ::testing::Test {
     const long count = report()[call];
     ASSERT_GT(count, 1);
     if (const char* wish = std::getenv("CLPV_STARVED_STEP")) step = std::max(1, std::atoi(wish));
-    // The first two ask whether the clock of events is to be trusted (device.cpp); their failure is
-    // an answer.
+    // The first buffers ask whether the clock of events is to be trusted (device.cpp); their
+    // failure is an answer.
     for (long n = 3; n <= count; n += step) expect_reported(call, n, code, name);
   }
 
