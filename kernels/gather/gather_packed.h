@@ -47,8 +47,10 @@ typedef struct {
   float x[W], y[W], z[W];
   int visibility_point[W];
   float visibility_x[W], visibility_y[W], visibility_z[W];
-  int clear_point[W];  // of all cubes' points; negative: not known
-  int clear_cube[W];   // steps from the point's cube to that one, each plus 1, in bits 0, 2 and 4
+  int clear_cube[W];  // negative: not known
+  // From bit 6 on a point of that cube; in bits 0, 2 and 4 the steps to it from the surface's cube,
+  // each plus 1.
+  int clear_point[W];
 } SamplePoints;
 
 // Finds the sample points a quarter of a cell along `clear` from p [cells], whose cube is (x, y,
@@ -61,10 +63,11 @@ CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, cons
              b = min(to_intW(clamp_to(fma(p.y, (realW)(4.0f), clear.y), past)), highest),
              c = min(to_intW(clamp_to(fma(p.z, (realW)(4.0f), clear.z), past)), highest);
   const intW cube = ((c >> 2) * CLPV_GRID + (b >> 2)) * CLPV_GRID + (a >> 2);
-  const intW point = cube * 64 + ((c & 3) * 4 + (b & 3)) * 4 + (a & 3);
+  const intW point = ((c & 3) * 4 + (b & 3)) * 4 + (a & 3);
+  const intW steps = ((a >> 2) - x) + 4 * ((b >> 2) - y) + 16 * ((c >> 2) - z) + 21;
   const intW known = (clear.x != ZERO) | (clear.y != ZERO) | (clear.z != ZERO);
-  store_lanes(known ? point : (intW)(-1), points->clear_point);
-  store_lanes(((a >> 2) - x) + 4 * ((b >> 2) - y) + 16 * ((c >> 2) - z) + 21, points->clear_cube);
+  store_lanes(known ? cube : (intW)(-1), points->clear_cube);
+  store_lanes(64 * point + steps, points->clear_point);
 }
 
 // At the last centre the eight cells are the last ones, so that offsets between them are literals.
@@ -119,8 +122,10 @@ enum { CLPV_ALL_POINTS = 511 };  // cells that none lacks: every sample point co
 // Cells, a bit each, of which a sample point must see one to count.
 CLPV_INLINE int clear_cells(__global const uchar* occluded, const SamplePoints* points,
                             const int i) {
-  if (points->clear_point[i] < 0) return CLPV_ALL_POINTS;
-  const int cells = cells_from(~occluded[points->clear_point[i]] & 255, points->clear_cube[i]);
+  const int cube = points->clear_cube[i], point = points->clear_point[i];
+  if (cube < 0) return CLPV_ALL_POINTS;
+  const int seen = ~occluded[(size_t)cube * 64 + (point >> 6)] & 255;
+  const int cells = cells_from(seen, point & 63);
   return cells != 0 ? cells : CLPV_ALL_POINTS;
 }
 
