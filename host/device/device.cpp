@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -47,7 +48,7 @@ bool profiling_is_plausible(const cl::Device& handle) {
   constexpr std::chrono::milliseconds kWait{1};  // far above the resolution of clocks
   constexpr std::size_t kBytes = 1 << 20, kMost = 64 << 20;
   constexpr cl_ulong kLeast = 100;  // [ns]: 1 MiB would be filled at 10 TB/s
-  constexpr int kFills = 16, kTries = 3;
+  constexpr std::size_t kFills = 16, kTries = 3;
   constexpr double kShare = 1. / 16;  // gaps between launches and a busy host take the rest
   try {
     cl::Context context(handle);
@@ -78,20 +79,19 @@ bool profiling_is_plausible(const cl::Device& handle) {
         between > most_between.count() * (1 + kClockTolerance))
       return false;
     // Fills grow until the host needs kWait for them, so that launches do not hide their time.
-    int tries = 0;
-    for (std::size_t bytes = kBytes; tries < kTries;) {
+    for (std::size_t bytes = kBytes, tries = 0; tries < kTries;) {
       const Clock::time_point start = Clock::now();
       std::vector<cl::Event> events;
-      for (int i = 0; i < kFills; ++i) events.push_back(fill(bytes));
+      for (std::size_t i = 0; i < kFills; ++i) events.push_back(fill(bytes));
       queue.finish();
       const Ns elapsed = Clock::now() - start;
       double sum = 0;
-      for (const cl::Event& event : events) sum += times_of(event).ms() * 1e6;
+      for (const cl::Event& event : events)
+        sum += times_of(event).valid ? times_of(event).ms() * 1e6 : NAN;
       if (sum >= elapsed.count() * kShare) return true;
-      if (elapsed < kWait && bytes < most)
-        bytes = std::min(2 * bytes, most);
-      else
-        ++tries;
+      const bool grows = elapsed < kWait && bytes < most;
+      bytes = grows ? std::min(2 * bytes, most) : bytes;
+      tries += grows ? 0 : 1;
     }
     return false;
   } catch (const cl::Error&) {
