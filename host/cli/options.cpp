@@ -229,10 +229,15 @@ OutputFolder::OutputFolder(const std::string& option, const std::filesystem::pat
        !missing.empty() && !std::filesystem::exists(missing, failed);
        missing = missing.parent_path())
     created_.push_back(missing);
-  create_folder(option, folder);
+  try {
+    create_folder(option, folder);
+  } catch (const Error&) {
+    remove_empty();
+    throw;
+  }
 }
 
-OutputFolder::~OutputFolder() {
+void OutputFolder::remove_empty() {
   std::error_code used;
   for (const std::filesystem::path& folder : created_) std::filesystem::remove(folder, used);
 }

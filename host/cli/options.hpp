@@ -151,11 +151,13 @@ void create_folder(const std::string& option, const std::filesystem::path& folde
 class OutputFolder {
  public:
   OutputFolder(const std::string& option, const std::filesystem::path& folder);
-  ~OutputFolder();
+  ~OutputFolder() { remove_empty(); }
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
  private:
+  void remove_empty();
+
   std::vector<std::filesystem::path> created_;  ///< the innermost first
 };
 
