@@ -33,7 +33,8 @@ Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& optio
   inject_series_.emplace(session, program, "inject_series");
   const VolumeShape shape{options.grid, kCellFaces, kChannels};
   for (std::size_t c = 0; c < options.parts.size(); ++c)
-    series_.emplace_back(session, shape, "series of bounces", options.format);
+    series_.emplace_back(session, VolumeShape{options.grid, kCellFaces, CLPV_SERIES_CHANNELS},
+                         "series of bounces", options.format);
   returned_ = std::make_unique<Volume>(session, shape, "returned flux", options.format);
 }
 
@@ -70,8 +71,11 @@ void Bouncer::sum_series(std::size_t cascade, const Buffer& swept) {
 }
 
 void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, const Volume& injected,
-                               Volume& bounced) {
-  inject_reflected_->set(swept, reflectors_[cascade].memory(), injected.memory(), bounced.memory());
+                               Volume& bounced, bool relaxed) {
+  const Volume& reflectance = (relaxed ? series_ : reflectors_)[cascade];
+  inject_reflected_->set(swept, reflectors_[cascade].memory(), reflectance.memory(),
+                         cl_int{relaxed ? CLPV_SERIES_FIRST : 0}, injected.memory(),
+                         bounced.memory());
   volumes_.launch(*inject_reflected_, kChannels);
 }
 

@@ -328,7 +328,9 @@ const Volume& Sweeper::light_of(const SweepStep& step, const SweepInput& input) 
     case SweptLight::injected:
       return input.injected;
     case SweptLight::reflected:
-      bouncer_.inject_reflected(c, swept_, input.injected, bounced_);
+    case SweptLight::relaxed:
+      bouncer_.inject_reflected(c, swept_, input.injected, bounced_,
+                                step.light == SweptLight::relaxed);
       break;
     case SweptLight::series:
       bouncer_.inject_series(c, last_swept_, swept_, input.injected, bounced_);
