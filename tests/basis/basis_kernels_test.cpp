@@ -9,7 +9,6 @@
 
 #include "basis/basis.hpp"
 #include "basis/rotated_lobe.hpp"
-#include "pipeline/inject/lobe_literals.hpp"
 #include "pipeline/inject/lookup_table.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_program.hpp"

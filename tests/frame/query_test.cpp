@@ -8,7 +8,7 @@
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/raster/view.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "reference/cascade_sample.hpp"
 #include "reference/view.hpp"
 #include "scene/input.hpp"

@@ -13,7 +13,7 @@
 #include <random>
 
 #include "pipeline/frame/cascade.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "reference/blockers.hpp"
 #include "reference/gather.hpp"
 #include "support/error.hpp"

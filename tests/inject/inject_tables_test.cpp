@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "kernels/shared/sort.h"
-#include "pipeline/inject/lobe_literals.hpp"
 #include "pipeline/inject/lookup_table.hpp"
 #include "pipeline/inject/sort_by_cell.hpp"
 #include "pipeline/steps/propagate.hpp"
