@@ -21,6 +21,7 @@
 #include "kernels/shared/sweep.h"
 #include "support/literals.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv::basis_test {

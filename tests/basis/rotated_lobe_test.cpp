@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "basis/basis.hpp"
+#include "basis/lobe_quality.hpp"
 #include "basis/quadrature.hpp"
 #include "basis/rotated_lobe.hpp"
 #include "basis/transport.hpp"
