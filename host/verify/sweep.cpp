@@ -19,7 +19,7 @@
 #include "pipeline/steps/transmittance.hpp"
 #include "pipeline/sweep/sweep.hpp"
 #include "pipeline/sweep/sweep_literals.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "reference/bounce.hpp"
 #include "reference/medium.hpp"
 #include "reference/sweep.hpp"

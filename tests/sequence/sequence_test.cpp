@@ -11,6 +11,7 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::test::sequence_test {
 namespace {

@@ -6,7 +6,7 @@
 #include "basis/bounce.hpp"
 #include "kernels/shared/reflectors.h"
 #include "pipeline/sweep/sweep_literals.hpp"
-#include "pipeline/voxels/reflectors.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 
 namespace clpv {
 namespace {
