@@ -50,7 +50,7 @@ double run_once(Session& session, CaseRun& run) {
     const StageScope scope(session, {Pass::whole});
     job.run();
   }
-  session.queue().finish();
+  session.timeline().finish(session.queue());
   run.wall_ms.push_back(ms_since(start));
   const bool events = session.timeline().events_valid();
   const std::vector<StageTime> times = session.timeline().times();

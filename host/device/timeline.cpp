@@ -43,6 +43,12 @@ void Timeline::add(Launch launch) {
   if (current_ >= 0 && events_valid_) entries_[current_].launches.push_back(std::move(launch));
 }
 
+void Timeline::finish(cl::CommandQueue& queue) {
+  const double before = host_.waited_ms;
+  wait([&] { queue.finish(); });
+  finished_ms_ += host_.waited_ms - before;
+}
+
 std::vector<StageTime> Timeline::times() {
   std::vector<StageTime> result;
   double sum = 0;
@@ -58,11 +64,15 @@ std::vector<StageTime> Timeline::times() {
     result.push_back(std::move(time));
   }
   const bool still = launched && sum == 0;
-  if (!events_valid_ || (plausible && !still && sum <= since(cleared_) * (1 + kClockTolerance)))
+  const bool is_short = finished_ms_ >= kLeastWaitMs && sum < finished_ms_ * kLeastShareOfWait;
+  short_ = is_short ? short_ + 1 : 0;
+  if (!events_valid_ ||
+      (plausible && !still && short_ < 2 && sum <= since(cleared_) * (1 + kClockTolerance)))
     return result;
   log_warning("the device's events {}: times of stages are the host's from here on",
               !plausible ? "end before they start"
               : still    ? "take no time"
+              : is_short ? "take far less time than the host waits for them"
                          : "take longer than the host waits for them");
   events_valid_ = false;
   entries_.clear();
@@ -93,6 +103,7 @@ std::vector<KernelTime> Timeline::kernel_times() {
 void Timeline::clear() {
   entries_.clear();
   host_ = {};
+  finished_ms_ = 0;
   current_ = -1;
   cleared_ = Clock::now();
 }

@@ -167,8 +167,8 @@ void Sequence::render() {
       (fresh ? rendered : there) += 1;
       fresh ? progress.advance() : progress.skip();
     } catch (const Interrupted&) {
-      throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes",
-                                    rendered + there, mine, options_.folder));
+      throw Interrupted(fmt::format("stopped at frame {} of {}; the same command resumes in {}", i,
+                                    options_.frames, options_.folder));
     }
   }
   ranks_.sum(counts);
@@ -248,7 +248,7 @@ bool Sequence::render(int number) {
   line.pose_ms = host_ms + milliseconds_since(started);
   started = Clock::now();
   frame.render(camera());
-  session.queue().finish();
+  session.timeline().finish(session.queue());
   line.frame_ms = milliseconds_since(started);
   line.stages = session.timeline().times();
   if (line.first) subject_.first_frame(session, frame);

@@ -158,6 +158,13 @@ TEST(Process, AnInterruptEndsIt) {
   const StopRequest stop = true;
   const StopScope scope(&stop);
   EXPECT_EQ(Process("/bin/sleep", {"60"}).end().code, 128 + SIGKILL);
+  const test::TemporaryFolder folder;
+  const std::string late = (folder / "late").string();
+  Process script("/bin/sh", {"-c", "(sleep 0.5; echo >" + late + ") & wait"});
+  ::usleep(100000);
+  EXPECT_EQ(script.end().code, 128 + SIGKILL);
+  ::usleep(600000);
+  EXPECT_FALSE(std::filesystem::exists(late)) << "what it started";
 }
 
 TEST(Process, OneThatIsNotThere) {
