@@ -18,7 +18,8 @@ def main():
         return
     driver = _pocl.use()
     if driver and "devices" in sys.argv[1:]:
-        print(f"clpv: the system offers no OpenCL device; uses {driver}", file=sys.stderr, flush=True)
+        print(f"clpv: the system offers no OpenCL device; uses {driver}", file=sys.stderr,
+              flush=True)
     os.environ.setdefault("CLPV_PYTHON", sys.executable)
     os.execv(PROGRAM, [str(PROGRAM), *sys.argv[1:]])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""PoCL of the package pocl-binary-distribution (`clpv[pocl]`), for systems without an OpenCL device."""
+"""PoCL of the package pocl-binary-distribution (`clpv[pocl]`), where the system has no device."""
 import functools
 import importlib.util
 import json
@@ -25,8 +25,8 @@ def system_has_device():
 
 def use():
     """Lets OpenCL's loader find the package's driver where the system offers no device and
-    OCL_ICD_VENDORS is not set. Returns the driver's library, or None. PoCL calls `ld` with libraries
-    of a C compiler: where there is none, the wheel's own linker comes first in PATH."""
+    OCL_ICD_VENDORS is not set. Returns the driver's library, or None. PoCL calls `ld` with
+    libraries of a C compiler: where there is none, the wheel's own linker comes first in PATH."""
     if os.environ.get("OCL_ICD_VENDORS") or not PROGRAM.is_file():
         return None
     found = importlib.util.find_spec("pocl_binary_distribution")
