@@ -254,7 +254,9 @@ Device choose_device(const std::vector<Device>& devices, std::string_view choice
     throw Error(ExitCode::device,
                 "no OpenCL device found{}; on Debian: apt install pocl-opencl-icd; by pip: "
                 "clpv[pocl]",
-                drivers != nullptr && *drivers != '\0' ? fmt::format(" by OCL_ICD_VENDORS={}", drivers) : "");
+                drivers != nullptr && *drivers != '\0'
+                    ? fmt::format(" by OCL_ICD_VENDORS={}", drivers)
+                    : "");
   }
   if (choice.empty()) {
     const auto found =
