@@ -365,6 +365,40 @@ TEST(Rasterize, HiddenClustersChangeNothing) {
   }
 }
 
+// Successive maps of one size in the same buffers are drawn together, parallel and perspective
+// views apart.
+TEST(Rasterize, MapsDrawnTogetherAreThoseDrawnAlone) {
+  const SceneData scene = heaps();
+  const ClpvLight light = directional_light({0, 0, -1}, glm::vec3(3));
+  Session& session = test_session();
+  std::vector<ClpvView> views(5, orthographic_square(4, 61));
+  views[1].eye[0] = 1, views[2].half_width = 0.5f, views[4] = small_camera(61, 61);
+  const SurfaceImage empty = rsm_image(SceneData{}, light, views[0]);
+  for (const unsigned least_hidden : {UINT_MAX, 1u}) {
+    Rasterizer rasterizer(session, upload_scene(session, scene), Rasterizer::kMaxListed,
+                          least_hidden);
+    std::vector<Surface> maps(views.size(), make_surface(session, views[0], RsmFormat::float32,
+                                                         false, static_cast<int>(views.size())));
+    std::vector<Rasterizer::Rsm> drawn;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      maps[i].view = views[i], maps[i].first = i * 61 * 61;
+      drawn.push_back({light, &maps[i]});
+    }
+    session.timeline().clear();
+    rasterizer.rasterize_rsms(drawn);
+    EXPECT_LE(session.timeline().host().launches, 2 * 14u);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      SCOPED_TRACE(i);
+      const SurfaceImage together = read_surface(session, maps[i]),
+                         alone = rsm_image(scene, light, views[i]);
+      EXPECT_NE(together.depth, empty.depth);
+      EXPECT_EQ(together.depth, alone.depth);
+      EXPECT_EQ(together.normal, alone.normal);
+      EXPECT_EQ(together.colour, alone.colour);
+    }
+  }
+}
+
 TEST(Rasterize, DrawnAheadIsTheSameWithListsThatAreTooShort) {
   SceneData scene = jittered_plane(20, 5, 4, 0);
   for (int i = 0; i < 200; ++i) {  // through the near plane, and each over the whole screen
