@@ -41,13 +41,13 @@ __kernel void draw_tiles(__constant const ClpvView* views, const uint fresh, con
                          __global const ClpvMaterial* materials, __global const float4* textures,
                          __global const uint* texels, __global realW* keys, __global uintW* seen,
                          __global float* farthest) {
-  const ClpvView view = views[get_global_id(2)];
+  const ClpvView view = views[get_group_id(2)];
   const uint tiles_x = tiles_across(view),
              x = get_global_id(0) / CLPV_TILE_VECTORS, y = get_global_id(1) * CLPV_ROWS / CLPV_TILE,
              vector = get_global_id(0) % CLPV_TILE_VECTORS,
              first_row = get_global_id(1) * CLPV_ROWS % CLPV_TILE;
   if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
-  const uint at = get_global_id(2) * tiles_in(view) + y * tiles_x + x;
+  const uint at = get_group_id(2) * tiles_in(view) + y * tiles_x + x;
   const bool sorted = counts[CLPV_ENTERED] <= most_entered && counts[CLPV_ENTERED_TOO_MANY] == 0;
   const uint start = starts[at * CLPV_SLICES], end = starts[(at + 1) * CLPV_SLICES];
   if (!fresh && sorted && start == end) return;

@@ -147,7 +147,7 @@ __kernel void resolve_rsm(__constant const ClpvLitView* views, __global const re
                           __global SurfaceTexel* fluxes, const uint slices,
                           __global uint* counts, __global uint* slice_counts) {
   clear_counters(slices, counts, slice_counts);
-  const ClpvLitView lit = views[get_global_id(2)];
+  const ClpvLitView lit = views[get_group_id(2)];
   const ClpvView view = lit.view;
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;

@@ -30,10 +30,11 @@ static inline uint tiles_in(const ClpvView view) {
   return tiles_across(view) * ((view.height + CLPV_TILE - 1) / CLPV_TILE);
 }
 
-// With several views of one size, the third global id is that of the view.
+// With several views of one size, the third id of the work-group is the number of the view: unlike
+// that of an item, compilers know it to be the same for the group.
 static inline PixelRow find_pixel_row(const ClpvView view) {
   PixelRow p;
-  const uint column = get_global_id(0), first_tile = get_global_id(2) * tiles_in(view);
+  const uint column = get_global_id(0), first_tile = get_group_id(2) * tiles_in(view);
   p.px = column * W;
   p.py = get_global_id(1);
   p.count = p.px < view.width && p.py < view.height ? min(view.width - p.px, (uint)W) : 0;
