@@ -95,7 +95,8 @@ void Rasterizer::reserve_entries(std::size_t count) {
   count += count / kSpare;
   entries_ = {};  // until memory suffices for all
   session_.reserve(binned_, count * sizeof(cl_uint2), "triangles by tile");
-  session_.reserve(wide_, (count / CLPV_FEW_TILES + 1) * sizeof(cl_uint2), "wide triangles");
+  session_.reserve(wide_, (count / CLPV_FEW_TILES + 1) * sizeof(ClpvWideTriangle),
+                   "wide triangles");
   session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
 }
 
@@ -120,7 +121,8 @@ void Rasterizer::find_visible(const Drawing& drawing) {
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
   session_.reserve(farthest_, tiles * sizeof(cl_float), "farthest keys of tiles");
   const std::uint64_t before = slice_counts_.number();
-  session_.reserve(slice_counts_, (std::size_t{drawing.slices()} + 1) * sizeof(cl_uint), "slices of tiles");
+  session_.reserve(slice_counts_, (std::size_t{drawing.slices()} + 1) * sizeof(cl_uint),
+                   "slices of tiles");
   cleared_ = cleared_ && slice_counts_.number() == before;
   session_.reserve(views_, drawing.views.size() * sizeof(ClpvView), "views to draw");
   session_.write(views_, drawing.views);
@@ -211,8 +213,7 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
       .launch(kClippers, kRasterGroup);
   if (session_.device().lanes != 1) return;
   enter_wide_
-      .set(views_, counts_, list_room(), entry_room(), listed_, wide_, entries_,
-           slice_counts_)
+      .set(views_, counts_, list_room(), entry_room(), listed_, wide_, entries_, slice_counts_)
       .launch(session_.device().compute_units * kWideGroupsPerUnit * kRasterGroup, kRasterGroup);
 }
 
