@@ -61,8 +61,8 @@ Volume::Volume(Session& session, const VolumeShape& shape, const std::string& wh
                                 format.storage == Storage::float16 ? CL_HALF_FLOAT : CL_FLOAT);
     image_ = session.image(texel, region(shape), bytes_, what);
     if (session.device().lanes == 1)
-      zero_ = std::make_shared<Kernel>(session, ProgramSource{"volume/zero_image.cl"},
-                                       "zero_image");
+      zero_ =
+          std::make_shared<Kernel>(session, ProgramSource{"volume/zero_image.cl"}, "zero_image");
   } else {
     buffer_ = session.buffer(bytes_, what);
   }

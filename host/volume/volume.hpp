@@ -54,9 +54,9 @@ class Volume {
   VolumeShape shape_;
   VolumeFormat format_;
   std::size_t bytes_ = 0, from_ = 0;
-  Buffer whole_;   ///< of an array(), and from_ the volume's first byte
-  Buffer buffer_;  ///< empty if the layout is `image`
-  Image3D image_;  ///< empty otherwise
+  Buffer whole_;                  ///< of an array(), and from_ the volume's first byte
+  Buffer buffer_;                 ///< empty if the layout is `image`
+  Image3D image_;                 ///< empty otherwise
   std::shared_ptr<Kernel> zero_;  ///< clears an image on a GPU: its host may wait for a fill
 };
 

@@ -297,9 +297,8 @@ void Rasterizer::draw_tiles(const Drawing& drawing, bool fresh) {
       .set(views_, cl_uint{fresh}, cl_uint{only_depth}, listed_, slice_counts_, binned_, counts_,
            entry_room(), scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
            scene_.texels, keys_, seen_, farthest_)
-      .launch(session_.device().lanes == 1
-                  ? drawing.items(across * CLPV_TILE, down * CLPV_TILE)
-                  : drawing.items(across, down),
+      .launch(session_.device().lanes == 1 ? drawing.items(across * CLPV_TILE, down * CLPV_TILE)
+                                           : drawing.items(across, down),
               drawing.group(session_), longest_list(drawing));
   if (counted_ == nullptr) return;
   const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
@@ -337,9 +336,8 @@ void Rasterizer::rasterize_camera(Surface& surface) {
 }
 
 void Rasterizer::rasterize_rsms(std::span<const Rsm> rsms) {
-  const std::size_t most =
-      std::clamp(kMostAhead / std::max<std::size_t>(scene_.triangle_count, 1), std::size_t{1},
-                 kMostViews);
+  const std::size_t most = std::clamp(kMostAhead / std::max<std::size_t>(scene_.triangle_count, 1),
+                                      std::size_t{1}, kMostViews);
   while (!rsms.empty()) {
     const Surface& first = *rsms[0].surface;
     const auto end = std::ranges::find_if(rsms, [&](const Rsm& rsm) {

@@ -77,9 +77,11 @@ void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, const V
 }
 
 void Bouncer::inject_series(std::size_t cascade, const Buffer& first_swept,
-                            const Buffer& second_swept, const Volume& injected, SweepSources& sources) {
+                            const Buffer& second_swept, const Volume& injected,
+                            SweepSources& sources) {
   inject_series_->set(first_swept, second_swept, reflectors_[cascade].memory(),
-                      series_[cascade].memory(), injected.memory(), sources.coefficients, sources.lit);
+                      series_[cascade].memory(), injected.memory(), sources.coefficients,
+                      sources.lit);
   volumes_.launch(*inject_series_, 1);
 }
 

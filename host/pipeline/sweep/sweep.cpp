@@ -81,7 +81,7 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
   bins_ = session.upload(sweep_bin_table(options.grid), "bins to sweep");
   sources_.coefficients = volumes_.make(2 * 3 * basis.size(), "sources of the sweep");
   sources_.lit = zeroed_buffer(session, 2 * sweep_volume_size(options.grid) / volumes_.lanes(),
-                       "lit rows of the sweep");
+                               "lit rows of the sweep");
   swept_ = volumes_.make(3 * kSweepBins, "sums of the sweep");
   plane_buffer_ = zeroed_buffer(session, (form() == SweepForm::planes ? 2 : 1) * ordinates * plane,
                                 "plane buffer of the sweep");
@@ -370,8 +370,8 @@ void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSwee
                      bool lit, bool scattered) {
   const auto set = [&](cl_int last) {
     directions.sweep.set(bins_, directions.table, directions.coefficients, directions.means,
-                         sources_.coefficients, sources_.lit, cascades_[cascade].links, border_, halo, plane_buffer_,
-                         swept_, directions.halo_light, last);
+                         sources_.coefficients, sources_.lit, cascades_[cascade].links, border_,
+                         halo, plane_buffer_, swept_, directions.halo_light, last);
     if (medium_)
       medium_->add_to(directions.sweep, cascade, scattered);
     else
