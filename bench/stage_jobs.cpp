@@ -14,7 +14,7 @@
 #include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/scene_buffers.hpp"
 #include "pipeline/raster/view.hpp"
-#include "pipeline/voxels/blockers.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "reference/inject.hpp"
 #include "support/error.hpp"
 #include "verify/jobs.hpp"

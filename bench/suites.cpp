@@ -135,17 +135,16 @@ std::vector<Group> groups_by_basis(
   return groups;
 }
 
-std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& passes,
-                           const Row& frame) {
+std::vector<Row> pass_rows(const FrameTimes& times, const Row& frame) {
   std::vector<Row> rows;
-  for (const auto& [pass, ms] : passes) {
+  for (const auto& [pass, ms] : times.passes()) {
     Row row = frame;
     row.stage = pass;
     row.name = pass + frame.name.substr(frame.name.find('/'));
     row.samples_ms = ms;
     row.times = statistics_of(ms);
     row.wall_ms = row.cpu_ms = row.first_launch_ms = row.build_ms = 0;
-    row.from_events = true;
+    row.from_events = times.from_events();
     row.max_rel_error.reset();  // the frame's error is that of the image, not of a pass
     row.cost = {};
     row.ceiling.clear();

@@ -11,6 +11,7 @@
 #include "bench/ceilings.hpp"
 #include "bench/stage_jobs.hpp"
 #include "scene/scene.hpp"
+#include "times/frame_times.hpp"
 
 namespace clpv::bench {
 
@@ -57,10 +58,8 @@ std::vector<Group> groups_by_basis(
     const std::vector<std::string>& bases,
     const std::function<std::vector<Case>(const std::string& basis)>& cases);
 
-/// A row for each pass of a timed frame: the row of the frame with the pass's times. `passes`:
-/// samples [ms] by name.
-std::vector<Row> pass_rows(const std::map<std::string, std::vector<double>>& passes,
-                           const Row& frame);
+/// A row for each pass of timed frames: the row of the frame with the times of the pass.
+std::vector<Row> pass_rows(const FrameTimes& times, const Row& frame);
 
 /// The row's error for a table, "-" if nothing was compared.
 std::string error_text(const Row& row);

@@ -116,7 +116,7 @@ Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions
   job.reset = [sequence] { sequence->invalidate(); };
   job.run = [sequence] { sequence->frame.render(sequence->camera(sequence->next++)); };
   job.after_run = [sequence](const std::vector<StageTime>& times) { sequence->add(times); };
-  job.more_rows = [sequence](const Row& row) { return pass_rows(sequence->times.passes(), row); };
+  job.more_rows = [sequence](const Row& row) { return pass_rows(sequence->times, row); };
   job.count = [&session](Cost& cost) {
     const HostWork& host = session.timeline().host();
     cost.launches = host.launches, cost.fills = host.fills, cost.waits = host.waits,

@@ -117,7 +117,7 @@ std::vector<fs::path> write_basis_figures(BasisFigures figures, const fs::path& 
     for (const char* name : kPaperBases) figures.bases.push_back(make_basis(name, figures.lambda));
   }
   const Drawing drawing("basis", "--figures");
-  create_folder("--figures", folder);
+  const OutputFolder created("--figures", folder);
   const std::vector<fs::path> files{folder / "figure2.png", folder / "figure3.png",
                                     folder / "figure6.png"};
   for (const fs::path& file : files) check_outputs({{"--figures", file, true}});

@@ -125,9 +125,10 @@ void run(Options options, const Shared& shared) {
   options.bench.log = options.log;
   if (!options.output.empty()) require_extension("--output", options.output, {".json"});
   std::optional<const Drawing> plot;  // before the benchmark, to report whether charts can be drawn
+  std::optional<const OutputFolder> charts;
   if (!options.plot.empty()) {
     plot.emplace("bench", "--plot");
-    create_folder("--plot", options.plot);
+    charts.emplace("--plot", options.plot);
   }
   check_outputs(outputs_of(options));
   const nlohmann::json before = earlier_run(options);

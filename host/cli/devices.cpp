@@ -226,9 +226,12 @@ void add_devices(CLI::App& app, Shared& shared) {
   command->callback([format, driver, &shared] {
     if (!driver->empty()) return load_driver(*driver);
     const std::vector<FaultyDriver> faulty = faulty_drivers();
+    const char* drivers = std::getenv("OCL_ICD_VENDORS");
+    const std::string set = drivers == nullptr ? "" : drivers;
     std::optional<ScratchFolder> others;
     if (!faulty.empty()) leave_out(faulty, others.emplace().path());
     DeviceList list = list_devices();
+    ::setenv("OCL_ICD_VENDORS", set.c_str(), 1);  // messages name it
     if (!shared.device.empty()) {
       list = {{choose_device(list.devices, shared.device)}, {}};
     }

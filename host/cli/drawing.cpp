@@ -97,7 +97,8 @@ Drawing::Drawing(std::string kind, std::string asked_by)
   }
   throw Error(ExitCode::run_time,
               "{}: no Python can draw; CLPV_PYTHON names one with matplotlib, NumPy and Jinja2 "
-              "(Debian: python3-matplotlib python3-numpy python3-jinja2). Tried:{}",
+              "(Debian: python3-matplotlib python3-numpy python3-jinja2; pip: clpv[draw]). "
+              "Tried:{}",
               asked_by_, tried.empty() ? " none: there is no python3" : tried);
 }
 

@@ -223,6 +223,25 @@ void create_folder(const std::string& option, const std::filesystem::path& folde
     throw Error(ExitCode::run_time, "{} {}: {}", option, folder.string(), failed.message());
 }
 
+OutputFolder::OutputFolder(const std::string& option, const std::filesystem::path& folder) {
+  std::error_code failed;
+  for (std::filesystem::path missing = folder;
+       !missing.empty() && !std::filesystem::exists(missing, failed);
+       missing = missing.parent_path())
+    created_.push_back(missing);
+  try {
+    create_folder(option, folder);
+  } catch (const Error&) {
+    remove_empty();
+    throw;
+  }
+}
+
+void OutputFolder::remove_empty() {
+  std::error_code used;
+  for (const std::filesystem::path& folder : created_) std::filesystem::remove(folder, used);
+}
+
 void SceneChanges::apply(MovingScene& scene) const {
   if (eye && target) {
     Camera given = camera;

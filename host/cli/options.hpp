@@ -146,6 +146,21 @@ void require_extension(const std::string& option, const std::filesystem::path& f
 /// Creates the folder of an option if it is missing. Throws Error(run_time).
 void create_folder(const std::string& option, const std::filesystem::path& folder);
 
+/// The folder of an option: created if it is missing, and removed if it is still empty at the end
+/// of the command, as after an error.
+class OutputFolder {
+ public:
+  OutputFolder(const std::string& option, const std::filesystem::path& folder);
+  ~OutputFolder() { remove_empty(); }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+ private:
+  void remove_empty();
+
+  std::vector<std::filesystem::path> created_;  ///< the innermost first
+};
+
 /// A camera, a sun and a medium given by numbers, in place of the scene's; a factor of its lights.
 struct SceneChanges {
   std::optional<Vec3> eye, target;  ///< both or none

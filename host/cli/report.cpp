@@ -277,7 +277,7 @@ nlohmann::json add_views(Session& session, const Options& options, const Drawing
 void run(const Options& options, const Shared& shared) {
   if (options.subjects.scenes.empty() && options.quality.empty() && options.benchmarks.empty())
     throw Error(ExitCode::usage, "report: nothing to show; allowed: scenes, --quality or --bench");
-  create_folder("DIR", options.folder);
+  const OutputFolder folder("DIR", options.folder);
   if (!options.images.empty() && options.subjects.scenes.empty())
     throw Error(ExitCode::usage, "--images: needs a scene");
   nlohmann::json report{{"quality", read_documents(options.quality, "variants", "quality")},

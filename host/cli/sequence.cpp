@@ -136,11 +136,7 @@ std::vector<NamedFile> prepare_outputs(const Options& options) {
   }
   if (options.traced > 0 && !options.stability)
     throw Error(ExitCode::usage, "--traced {}: needs --stability", options.traced);
-  std::error_code failed;
   const fs::path folder = options.folder;
-  if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
-    throw Error(ExitCode::run_time, "--output {}: exists and is not a folder", options.folder);
-  create_folder("--output", folder);
   std::vector<NamedFile> outputs{{"--output", options.file(0), true},
                                  {"--output", folder / "times.jsonl", true},
                                  {"--video", options.video}};
@@ -182,6 +178,7 @@ void run(const Options& options, Shared& shared) {
   std::optional<Video> video;
   if (!options.video.empty() && ranks.is_root())
     video.emplace(options.video, options.frames_per_second);
+  const OutputFolder folder("--output", options.folder);
   const std::vector<NamedFile> outputs = prepare_outputs(options);
   RenderRequest request = options.request;
   MovingScene moving = request.open();

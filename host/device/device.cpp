@@ -250,9 +250,13 @@ std::vector<Device> choose_devices(std::string_view choice) {
 
 Device choose_device(const std::vector<Device>& devices, std::string_view choice) {
   if (devices.empty()) {
-    throw Error(
-        ExitCode::device,
-        "no OpenCL device found; on Debian: apt install pocl-opencl-icd; by pip: clpv[pocl]");
+    const char* drivers = std::getenv("OCL_ICD_VENDORS");
+    throw Error(ExitCode::device,
+                "no OpenCL device found{}; on Debian: apt install pocl-opencl-icd; by pip: "
+                "clpv[pocl]",
+                drivers != nullptr && *drivers != '\0'
+                    ? fmt::format(" by OCL_ICD_VENDORS={}", drivers)
+                    : "");
   }
   if (choice.empty()) {
     const auto found =

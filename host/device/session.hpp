@@ -50,9 +50,9 @@ class Session {
   Programs& programs() { return programs_; }
   const Programs& programs() const { return programs_; }
 
-  /// Waits for the queue, and counts the wait.
+  /// Waits for the queue, whose kernels may be compiled meanwhile, and counts the wait.
   void finish() {
-    timeline_.wait([this] { queue_.finish(); });
+    timeline_.wait([this] { queue_.finish(); }, true);
   }
 
   /// Allocates a buffer of max(bytes, 4) bytes with undefined contents. `what` names it in errors.

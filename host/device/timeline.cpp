@@ -58,11 +58,14 @@ std::vector<StageTime> Timeline::times() {
     result.push_back(std::move(time));
   }
   const bool still = launched && sum == 0;
-  if (!events_valid_ || (plausible && !still && sum <= since(cleared_) * (1 + kClockTolerance)))
-    return result;
+  const bool is_short =
+      waits_ && launched && worked_ms_ >= kLeastWaitMs && sum < worked_ms_ * kLeastShareOfWait;
+  const bool is_long = sum > since(cleared_) * (1 + kClockTolerance);
+  if (!events_valid_ || (plausible && !still && !is_short && !is_long)) return result;
   log_warning("the device's events {}: times of stages are the host's from here on",
               !plausible ? "end before they start"
               : still    ? "take no time"
+              : is_short ? "take far less time than the host waits for them"
                          : "take longer than the host waits for them");
   events_valid_ = false;
   entries_.clear();
@@ -93,6 +96,7 @@ std::vector<KernelTime> Timeline::kernel_times() {
 void Timeline::clear() {
   entries_.clear();
   host_ = {};
+  worked_ms_ = 0;
   current_ = -1;
   cleared_ = Clock::now();
 }

@@ -85,12 +85,17 @@ EventTimes times_of(const cl::Event& event);
 /// Clocks of device and host differ by less: resolution of the device's, adjustment of the host's.
 inline constexpr double kClockTolerance = 0.1;
 
+/// Events may not take less than this share of what the host waited for them: gaps between launches
+/// take the rest (seen: 0.97 on PoCL, busy or not). Shorter waits than kLeastWaitMs are no
+/// evidence: a busy host takes as long to wake up.
+inline constexpr double kLeastShareOfWait = 0.25, kLeastWaitMs = 10;
+
 /// Collects the events of launches, by stage, and counts launches and waits.
 class Timeline {
  public:
   /// `events_valid`: true if profiling events report plausible times (Device::profiling_valid).
-  /// `waits`: if events are invalid, end() waits for the queue and measures wall time; false: those
-  /// times are 0.
+  /// `waits`: the queue has no work of others; if events are invalid, end() waits for it and
+  /// measures wall time. False: those times are 0.
   explicit Timeline(bool events_valid, bool waits = true)
       : events_valid_(events_valid), waits_(waits) {}
 
@@ -112,17 +117,24 @@ class Timeline {
   /// If true, launches find their Chain even if they have to wait for it.
   bool counts_chains() const { return counts_chains_; }
   void count_chains(bool counts) { counts_chains_ = counts; }
-  /// Calls `wait`, which waits for the device, and counts it.
+  /// Calls `wait`, which waits for the device, and counts it. `compiles`: the device may also
+  /// compile meanwhile.
   template <typename Wait>
-  void wait(const Wait& wait) {
+  void wait(const Wait& wait, bool compiles = false) {
     const Clock::time_point start = Clock::now();
     named_errors(wait);
     ++host_.waits;
     host_.waited_ms += since(start);
+    if (!compiles) worked_ms_ += since(start);
+  }
+  /// Waits until the queue's work is done, which ends a frame.
+  void finish(cl::CommandQueue& queue) {
+    wait([&] { queue.finish(); });
   }
   /// Waits for the events; one entry per stage, in order of first begin. Events that end before
-  /// they start, or together take no time or longer than the host waits, are a warning: there are
-  /// no entries then, and stages have wall times from the next clear() on.
+  /// they start, or together take no time, longer than the host's since clear(), or far less than
+  /// the host waited, are a warning: there are no entries then, and stages have wall times from the
+  /// next clear() on.
   std::vector<StageTime> times();
   bool events_valid() const { return events_valid_; }
   /// As times(). One entry per stage and kernel, in order of first launch; none without valid
@@ -151,6 +163,7 @@ class Timeline {
     double wall_ms = 0;
   };
   bool events_valid_, waits_, counts_chains_ = false;
+  double worked_ms_ = 0;  ///< that the host waited while the device only worked, since clear()
   HostWork host_;
   int current_ = -1;
   std::vector<Entry> entries_;

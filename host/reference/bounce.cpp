@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One bounce: Phi_a = R_a sum_b Omega_b max(0, -w_b . a) L_b s^2, emitted by the cosine about a.
-// All bounces without a medium: light = I + R D_1 + S (D_2 - D_1) in every cascade, coarsest first.
+// All bounces without a medium: light = I + R D_1 + S (D_2 - D_1) in every cascade, coarsest first;
+// with three sweeps and more, the second starts from I + E D.
 #include "reference/bounce.hpp"
 
 #include <algorithm>
@@ -17,20 +18,20 @@
 namespace clpv::reference {
 namespace {
 
-/// Incident flux [W] on the six faces of a cell, in a channel.
-using IncidentFlux = std::function<std::vector<double>(int, const glm::ivec3&)>;
+/// Flux [W] on, or off, the six faces of a cell, in a channel.
+using FaceFlux = std::function<std::vector<double>(int, const glm::ivec3&)>;
 
-/// light += `reflected` D: adds the intensity of the reflected flux. `reflectors`: shares of the
-/// faces' triangles.
-void inject_reflected(const Basis& basis, const Volume& reflected, const Volume& reflectors,
-                      const IncidentFlux& incident, Volume& light) {
+/// Adds the intensity of the flux that leaves faces to `light`. `reflectors`: shares of the faces'
+/// triangles.
+void inject_flux(const Basis& basis, const FaceFlux& leaving, const Volume& reflectors,
+                 Volume& light) {
   const Matrix intensity = reflected_intensity(basis);
   for_each_cell(light.n, [&](const glm::ivec3& p) {
     const std::vector<double> shares = reflectors.cell(CLPV_REFLECTOR_SHARE, p);
     for (int channel = 0; channel < 3; ++channel) {
-      const std::vector<double> arriving = incident(channel, p);
+      const std::vector<double> fluxes = leaving(channel, p);
       for (int side = 0; side < kCellFaces; ++side) {
-        const double flux = arriving[side] * reflected.value(channel, side, p.x, p.y, p.z);
+        const double flux = fluxes[side];
         const double per_share =
             basis.bands() > 0 ? flux / std::max(shares[side], kLeastShare) : flux;
         for (int i = 0; i < basis.size(); ++i)
@@ -43,9 +44,9 @@ void inject_reflected(const Basis& basis, const Volume& reflected, const Volume&
 /// Light of faces that emit `flux` [W].
 Volume emitted(const Basis& basis, const Volume& flux, const Volume& reflectors) {
   Volume light(flux.n, basis.size());
-  inject_reflected(
-      basis, flux, reflectors,
-      [](int, const glm::ivec3&) { return std::vector<double>(kCellFaces, 1.0); }, light);
+  inject_flux(
+      basis, [&](int channel, const glm::ivec3& p) { return flux.cell(channel, p); }, reflectors,
+      light);
   return light;
 }
 
@@ -56,9 +57,19 @@ SweptCascade along_24(SweptCascade cascade) {
 }
 
 /// Incident flux of swept light.
-IncidentFlux incident_flux_of(const Volume& swept) {
+FaceFlux incident_flux_of(const Volume& swept) {
   return [flux = incident_flux(), &swept](int channel, const glm::ivec3& p) {
     return flux * swept.cell(channel, p);
+  };
+}
+
+/// `reflectance` times the incident flux of swept light.
+FaceFlux reflected_flux(const Volume& reflectance, const Volume& swept) {
+  return [&, incident = incident_flux_of(swept)](int channel, const glm::ivec3& p) {
+    std::vector<double> flux = incident(channel, p);
+    for (int side = 0; side < kCellFaces; ++side)
+      flux[side] *= reflectance.value(channel, side, p.x, p.y, p.z);
+    return flux;
   };
 }
 
@@ -69,11 +80,11 @@ void add_one_bounce(const Basis& basis, const Transport& transport,
   for (SweptCascade& cascade : cascades) cascade = along_24(cascade);
   const std::vector<Volume> swept = sweep(basis, transport, cascades);
   for (std::size_t c = 0; c < cascades.size(); ++c)
-    inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(swept[c]), light[c]);
+    inject_flux(basis, reflected_flux(*reflectors[c], swept[c]), *reflectors[c], light[c]);
 }
 
-/// light += R D_1 + S (D_2 - D_1) in every cascade; D_2 is of the last sweep for incident flux, D_1
-/// of the one before. The coarser cascade's last sweep enters at the border.
+/// light += R D_1 + S (D_2 - D_1), not below 0, in every cascade; D_2 is of the last sweep for
+/// incident flux, D_1 of the one before. The coarser cascade's last sweep enters at the border.
 void add_all_bounces(const Basis& basis, const Transport& transport,
                      const std::vector<SweptCascade>& cascades,
                      const std::vector<const Volume*>& reflectors, int sweeps,
@@ -82,23 +93,30 @@ void add_all_bounces(const Basis& basis, const Transport& transport,
     std::vector<SweptCascade> nested(cascades.begin() + static_cast<std::ptrdiff_t>(c),
                                      cascades.end());
     const Volume injected = light[c];
+    const BounceSeries series = bounce_series(basis, transport, cascades[c], *reflectors[c]);
     nested[0] = along_24(nested[0]);
     Volume before, after = sweep(basis, transport, nested)[0];
     for (int done = 1; done < sweeps; ++done) {
       before = after, light[c] = injected;
-      inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(before), light[c]);
+      const bool relaxed = done == 1 && sweeps > kLeastSeriesSweeps;
+      inject_flux(basis, reflected_flux(relaxed ? series.first : *reflectors[c], before),
+                  *reflectors[c], light[c]);
       after = sweep(basis, transport, nested)[0];
     }
-    inject_reflected(
-        basis, bounce_series(basis, transport, cascades[c], *reflectors[c]), *reflectors[c],
+    light[c] = injected;
+    const FaceFlux known = reflected_flux(*reflectors[c], before),
+                   earlier = reflected_flux(series.all, before),
+                   later = reflected_flux(series.all, after);
+    inject_flux(
+        basis,
         [&](int channel, const glm::ivec3& p) {
-          std::vector<double> further = incident_flux_of(after)(channel, p);
-          const std::vector<double> earlier = incident_flux_of(before)(channel, p);
-          for (std::size_t i = 0; i < further.size(); ++i)
-            further[i] = std::max(further[i] - earlier[i], 0.0);
-          return further;
+          std::vector<double> flux = known(channel, p);
+          const std::vector<double> first = earlier(channel, p), second = later(channel, p);
+          for (std::size_t i = 0; i < flux.size(); ++i)
+            flux[i] = std::max(flux[i] + second[i] - first[i], 0.0);
+          return flux;
         },
-        light[c]);
+        *reflectors[c], light[c]);
   }
 }
 
@@ -132,8 +150,7 @@ Sources bounce_in_medium(const Basis& basis, const Transport& transport,
       swept.light[c] = result.light[c], swept.scattered[c] = result.scattered[c];
       const Volume found = sweep(basis, transport, swept.of(few, c))[0];
       result.light[c] = *cascades[c].injected;
-      inject_reflected(basis, *reflectors[c], *reflectors[c], incident_flux_of(found),
-                       result.light[c]);
+      inject_flux(basis, reflected_flux(*reflectors[c], found), *reflectors[c], result.light[c]);
       result.scattered[c] = *cascades[c].scattered;
       add_scattered(*cascades[c].medium, found, result.scattered[c]);
     }
@@ -143,28 +160,25 @@ Sources bounce_in_medium(const Basis& basis, const Transport& transport,
 
 }  // namespace
 
-Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
-                     const Volume& reflectors) {
+BounceSeries bounce_series(const Basis& basis, const Transport& transport,
+                           const SweptCascade& cascade, const Volume& reflectors) {
   // R X, X the incident flux while each face emits `flux`.
   const auto returned = [&](const Volume& flux) {
     const Volume light = emitted(basis, flux, reflectors);
     SweptCascade few = along_24(cascade);
     few.injected = &light;
     const Volume swept = sweep(basis, transport, {few})[0];
-    const IncidentFlux incident = incident_flux_of(swept);
+    const FaceFlux leaving = reflected_flux(reflectors, swept);
     Volume reflected = reflectors;
     for_each_cell(flux.n, [&](const glm::ivec3& p) {
-      for (int channel = 0; channel < 3; ++channel) {
-        const std::vector<double> arriving = incident(channel, p);
-        for (int side = 0; side < kCellFaces; ++side)
-          reflected.at(channel, side, p.x, p.y, p.z) *= arriving[side];
-      }
+      for (int channel = 0; channel < 3; ++channel)
+        reflected.set_cell(channel, p, leaving(channel, p));
     });
     return reflected;
   };
   const Volume first = returned(reflectors), second = returned(first);
-  Volume series = reflectors;
-  for_each_cell(series.n, [&](const glm::ivec3& p) {
+  BounceSeries series{reflectors, reflectors};
+  for_each_cell(reflectors.n, [&](const glm::ivec3& p) {
     for (int channel = 0; channel < 3; ++channel) {
       double bound = 0;
       for (int side = 0; side < kCellFaces; ++side)
@@ -176,7 +190,8 @@ Volume bounce_series(const Basis& basis, const Transport& transport, const Swept
         const double t1 = first.value(channel, side, p.x, p.y, p.z),
                      t2 = second.value(channel, side, p.x, p.y, p.z),
                      ratio = std::clamp(t2 / std::max(t1, 1e-6), 0.0, bound);
-        series.at(channel, side, p.x, p.y, p.z) += t1 + t2 / (1 - ratio);
+        series.all.at(channel, side, p.x, p.y, p.z) += t1 + t2 / (1 - ratio);
+        series.first.at(channel, side, p.x, p.y, p.z) /= 1 - kRelaxation * ratio;
       }
     }
   });
@@ -230,7 +245,7 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
     for (std::size_t i = 0; i < nested.size() && (i == 0 || !all); ++i)
       nested[i] = along_24(nested[i]), emitting[i] = reflectors[c + i];
     const Volume even = furnace(basis, transport, nested, emitting, most_white)[0];
-    const IncidentFlux incident = incident_flux_of(even);
+    const FaceFlux incident = incident_flux_of(even);
     Volume& result = normalised.emplace_back(*reflectors[c]);
     for_each_cell(result.n, [&](const glm::ivec3& p) {
       const std::vector<double> arriving = incident(0, p);

@@ -27,10 +27,14 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
                                           const std::vector<const Volume*>& reflectors,
                                           Bounces bounces, double most_white = kNoLimitOfWhite);
 
-/// Series S of all further bounces inside one cascade: flux that a face, and the faces that its
-/// light meets, reflect of 1 W of incident flux.
-Volume bounce_series(const Basis& basis, const Transport& transport, const SweptCascade& cascade,
-                     const Volume& reflectors);
+/// All further bounces inside one cascade. `all`: the series S, flux that a face, and the faces
+/// that its light meets, reflect of 1 W of incident flux; `first`: E, which stands for R in the
+/// first reflection.
+struct BounceSeries {
+  Volume all, first;
+};
+BounceSeries bounce_series(const Basis& basis, const Transport& transport,
+                           const SweptCascade& cascade, const Volume& reflectors);
 
 /// Sources of the sweep in every cascade, in `basis` [W/sr]: injected light and the light that
 /// `reflectors`, normalised and one volume per cascade, reflect.

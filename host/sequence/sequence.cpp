@@ -33,7 +33,8 @@ void TimesSummary::add(const FrameLine& line) {
   pose_.push_back(line.pose_ms);
   frame_.push_back(line.frame_ms);
   write_.push_back(line.write_ms);
-  if (!line.stages.empty()) stages_.add(line.stages);  // none by a clock at fault
+  if (line.stages.empty()) return;  // by a clock at fault
+  (line.stages.front().from_events ? by_events_ : by_host_).add(line.stages);
 }
 
 json TimesSummary::to_json() const {
@@ -41,8 +42,10 @@ json TimesSummary::to_json() const {
   if (frame_.empty()) return all;
   std::vector<TimeRecord> times = {time_record("pose", pose_), time_record("frame", frame_),
                                    time_record("write", write_)};
-  std::ranges::move(stages_.stage_records(), std::back_inserter(times));
+  const FrameTimes& stages = by_host_.count() > 0 ? by_host_ : by_events_;
+  std::ranges::move(stages.stage_records(), std::back_inserter(times));
   all["times"] = times;
+  all["timer"] = stages.from_events() ? "event" : "wall";
   return all;
 }
 
@@ -167,8 +170,8 @@ void Sequence::render() {
       (fresh ? rendered : there) += 1;
       fresh ? progress.advance() : progress.skip();
     } catch (const Interrupted&) {
-      throw Interrupted(fmt::format("{} of {} frames are in {}; the same command resumes",
-                                    rendered + there, mine, options_.folder));
+      throw Interrupted(fmt::format("stopped at frame {} of {}; the same command resumes in {}", i,
+                                    options_.frames, options_.folder));
     }
   }
   ranks_.sum(counts);
@@ -248,9 +251,9 @@ bool Sequence::render(int number) {
   line.pose_ms = host_ms + milliseconds_since(started);
   started = Clock::now();
   frame.render(camera());
-  session.queue().finish();
+  session.timeline().finish(session.queue());
   line.frame_ms = milliseconds_since(started);
-  line.stages = session.timeline().times();
+  if (!line.first) line.stages = session.timeline().times();
   if (line.first) subject_.first_frame(session, frame);
   log_debug("frame {}: {:.3f} s, {:.1f} ms", number, seconds, line.frame_ms);
   write(std::move(line), frame, description);

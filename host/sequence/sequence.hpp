@@ -34,13 +34,14 @@ class TimesSummary {
   void add(const FrameLine& line);
 
   /// Number of frames, and of those without first frames (`steady`); `times`: records of pose,
-  /// frame, write and the stages over steady frames.
+  /// frame, write and the stages over steady frames; `timer` of the stages: wall where any frame's
+  /// are the host's, whose stages alone count then, else event.
   nlohmann::json to_json() const;
 
  private:
   std::size_t frames_ = 0;
   std::vector<double> pose_, frame_, write_;  ///< [ms] of steady frames
-  FrameTimes stages_;                         ///< times of steady frames
+  FrameTimes by_events_, by_host_;            ///< times of steady frames
 };
 
 /// Schema 1: the fields of `about`, the steps, and a summary of the steps with static lights and

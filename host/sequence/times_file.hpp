@@ -24,7 +24,7 @@ struct FrameLine {
   double seconds = 0;    ///< time of the scene
   bool first = false;    ///< first frame of a process, whose launches may compile kernels
   double pose_ms = 0, frame_ms = 0, write_ms = 0;
-  std::vector<StageTime> stages;
+  std::vector<StageTime> stages;  ///< none of a first frame
 };
 
 nlohmann::json to_json(const FrameLine& line);

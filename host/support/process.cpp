@@ -65,6 +65,7 @@ using Streams = std::array<int, 3>;
 int become(const char* program, char* const* words, const Streams& streams, pid_t parent) {
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return errno;
   if (::getppid() != parent) return ESRCH;  // it ended before prctl()
+  if (::setpgid(0, 0) != 0) return errno;   // kill() ends what it starts, too
   for (int stream = 0; stream < 3; ++stream)
     if (::dup2(streams[stream], stream) < 0) return errno;
   for (int signal = 1; signal < NSIG; ++signal) {  // no handler of this process may run
@@ -185,7 +186,7 @@ bool Process::running() {
 }
 
 void Process::kill() {
-  if (running()) ::kill(child_, SIGKILL);
+  if (running()) ::kill(-child_, SIGKILL);
 }
 
 Process::Result Process::end() {

@@ -50,7 +50,7 @@ class Process {
   pid_t id() const { return child_; }  ///< -1 if it did not start, and after end()
   /// Returns true until the process has exited.
   bool running();
-  /// Ends the process at once, with SIGKILL.
+  /// Ends the process at once, with SIGKILL, and the processes that it started.
   void kill();
 
   /// Closes its stdin and waits for it to exit; an interrupt kills it.

@@ -61,16 +61,15 @@ FrameTimes measure_frames(Session& session, Frame& frame, const SceneCamera& cam
     const Clock::time_point start = Clock::now();
     frame.render(camera);
     const HostWork host = session.timeline().host();
-    session.queue().finish();
+    session.timeline().finish(session.queue());
     const std::chrono::duration<double, std::milli> wall = Clock::now() - start;
     if (after) after();
-    if (i < 0) continue;
     const bool events = session.timeline().events_valid();
     const std::vector<StageTime> stages = session.timeline().times();
-    if (events == session.timeline().events_valid()) {
-      times.add(stages, {wall.count(), host});
-    } else {
+    if (events != session.timeline().events_valid()) {
       times = {}, i = -warm_up - 1;  // all again, by one clock
+    } else if (i >= 0) {
+      times.add(stages, {wall.count(), host});
     }
   }
   times.set_kernels(session.timeline().kernel_times());

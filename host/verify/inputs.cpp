@@ -10,7 +10,7 @@
 #include "basis/matrix.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/raster/view.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "verify/check.hpp"
 
 namespace clpv::verify {

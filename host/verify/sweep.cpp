@@ -19,7 +19,7 @@
 #include "pipeline/steps/transmittance.hpp"
 #include "pipeline/sweep/sweep.hpp"
 #include "pipeline/sweep/sweep_literals.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "reference/bounce.hpp"
 #include "reference/medium.hpp"
 #include "reference/sweep.hpp"
@@ -214,15 +214,21 @@ SharedVolume sparse_light(const Basis& basis, int n, std::mt19937& random) {
   return light;
 }
 
-/// 1 of 3 faces reflects, with a share of 0.6 to 1.
+/// 1 of 3 faces reflects, with an albedo of up to 0.5 and a share of 0.6 to 1.
 SharedVolume random_reflectors(int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-2, 1);
   auto volume = std::make_shared<reference::Volume>(n, kCellFaces, CLPV_REFLECTOR_CHANNELS);
   for (double& value : volume->values) value = std::max(0.0f, uniform(random));
   reference::for_each_cell(n, [&](const glm::ivec3& p) {
-    for (int side = 0; side < kCellFaces; ++side)
+    for (int side = 0; side < kCellFaces; ++side) {
       volume->at(CLPV_REFLECTOR_SHARE, side, p.x, p.y, p.z) =
           0.6f + 0.2f * std::abs(uniform(random));
+      const double white = volume->value(CLPV_REFLECTOR_WHITE, side, p.x, p.y, p.z);
+      for (int channel = 0; channel < 3; ++channel) {
+        double& reflected = volume->at(channel, side, p.x, p.y, p.z);
+        reflected = std::min(reflected, 0.5 * white);
+      }
+    }
   });
   return volume;
 }

@@ -63,8 +63,9 @@ inline constexpr Tolerance kTolerances[] = {
     // stores injected light, transmittance, sums and results; light inside the sweep is float32.
     {"sweep", 5e-6, 4e-3},
     // As sweep, for up to nine sweeps in a row and the series of bounces, each over a furnace that
-    // may be small; measured 1.4e-5 (nine sweeps in a medium).
-    {"bounce", 3e-5, 1e-2},
+    // may be small; measured 1.4e-5 (nine sweeps in a medium), 4.8e-5 where the series multiplies the
+    // difference of two sweeps that are nearly equal.
+    {"bounce", 1e-4, 1e-2},
     // float32 trilinear weights and N products of mixed sign; srbf14 coefficients are ten times
     // their sum. A position error of 1e-6 m at 10 m adds to it. Measured 1.1e-5 (srbf14), 4e-6
     // (others). float16 rounds once, for N values of mixed sign per direction; measured 4e-4.

@@ -5,7 +5,7 @@
 //
 // A^-1 is two triangular systems: a float A^-1 would have 20x the rounding error for srbf14.
 //
-// From the host (lobe_literals, host/pipeline/inject/lobe_literals.hpp): CLPV_FLUX_WEIGHTS,
+// From the host (lobe_literals, host/pipeline/inject/lookup_table.hpp): CLPV_FLUX_WEIGHTS,
 // CLPV_GRAM_LOWER (L) and CLPV_GRAM_INVERSE_DIAGONAL; CLPV_ROTATED 1: lobes are rotated
 // (rotated_lobe.h), and the table of H is an argument before the table of G. Flux weights:
 // A^-1 Int b. CLPV_AND_H ends parameter lists, CLPV_PASS_H calls.

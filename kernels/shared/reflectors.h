@@ -17,6 +17,10 @@ enum {
 // Channels of reflectors after red, green and blue (face_albedo.cl).
 enum { CLPV_REFLECTOR_SHARE = 3, CLPV_REFLECTOR_WHITE = 4, CLPV_REFLECTOR_CHANNELS = 5 };
 
+// Channels of the series S of all bounces: red, green, blue; then those of E, which reflects the
+// first light (sweep/bounce.cl).
+enum { CLPV_SERIES_FIRST = 3, CLPV_SERIES_CHANNELS = 6 };
+
 // Fixed-point value of albedo 1 in those sums. 2^14 triangles that each cover the whole face fit
 // into 32 bits.
 #define CLPV_ALBEDO_UNIT 4096.0f

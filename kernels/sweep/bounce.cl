@@ -3,30 +3,32 @@
 // truncated Neumann series.
 //
 //   I' = I + R D                     inject_reflected   one more bounce
-//   I' = I + R D_1 + S (D_2 - D_1)   inject_series      all bounces; D_2: with one more than D_1
-//   S = R + T_1 + T_2 / (1 - q),  T_k = R X_k
+//   I' = I + E D                     inject_reflected   the first of all bounces
+//   I' = I + R D_1 + S (D_2 - D_1)   inject_series      all bounces; D_2: of one sweep more
+//   S = R + T_1 + T_2 / (1 - q),  E = R / (1 - 2 q / 3),  T_k = R X_k
 //                             reflect_returned   T_1
-//                             sum_series         S
+//                             sum_series         S, E
 //   R = R_0 pi / F              normalise_reflectors   F: incident flux of a white furnace
 //
 // docs/method.md, 'More bounces'. D [W] is the incident flux on a face, R in [0, 1] the reflectance
 // of a face per channel, I the injected light, I' the sources of the next sweep. X_k is the flux
 // that comes back to a face after k reflections elsewhere, per 1 W that left it. By reciprocity X_1
 // is the incident flux while every face emits R, X_2 while it emits T_1 (inject_flux). q in [0, the
-// cell's largest albedo] is T_2 / T_1. S depends on the surfaces, not on light. A face of normal a
-// that receives D_a emits, projected on the basis,
+// cell's largest albedo] is T_2 / T_1. S and E depend on the surfaces, not on light. A face of
+// normal a that receives D_a emits, projected on the basis,
 //   I(w) = Phi_a max(0, w.a) / pi,   Phi_a = R_a D_a
 // With CLPV_HARMONICS, light of all bands but the first is divided by the share m_a of the face's
 // triangles: |n_a| = m_a (|n_x| + |n_y| + |n_z|), so that the faces of a surface emit the clamped
 // cosine about its normal n in bands 0 and 1.
 //
 // In:   swept             L s^2 [W/sr] of 3 channels and 24 bins (sweep_layout.h)
-//       reflectors, series  R, S: volumes of six numbers per cell and channel, faces as in
-//                           shared/reflectors.h; further channels: face_albedo.cl
+//       reflectors, series  R; S and, from channel CLPV_SERIES_FIRST on, E: volumes of six numbers
+//                           per cell and channel, faces as in shared/reflectors.h; further
+//                           channels of R: face_albedo.cl
 //       injected          I: light volume [W/sr]
 // Out:  sources, lit      I' as the next sweep injects it (sources.h)
 // From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_LOBES, the lobe of 1 W about each
-// face's normal, CLPV_MAX_RETURNED, the largest q, CLPV_INCIDENT,
+// face's normal, CLPV_MAX_RETURNED, the largest q, CLPV_RELAXATION, the 2 / 3 of E, CLPV_INCIDENT,
 // the weights of D_a for each face and bin.
 // A work-item computes a tile of W x W cells of a slice, of one channel or for the sources of all.
 #include "volume/coefficients.h"
@@ -80,30 +82,39 @@ CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
   return sum;
 }
 
-// Flux that a sweep adds to the incident flux of the one before.
-CLPV_INLINE FaceFluxes further_flux(const FaceFluxes before, const FaceFluxes after) {
+// R D_1 + S (D_2 - D_1), not below 0.
+CLPV_INLINE FaceFluxes series_flux(const FaceFluxes before, const FaceFluxes after,
+                                   const FaceFluxes reflectance, const FaceFluxes series) {
   FaceFluxes flux;
 #pragma unroll
-  for (int a = 0; a < CLPV_CELL_FACES; ++a) flux.c[a] = fmax(after.c[a] - before.c[a], ZERO);
+  for (int a = 0; a < CLPV_CELL_FACES; ++a)
+    flux.c[a] = fmax(fma(series.c[a], after.c[a] - before.c[a], reflectance.c[a] * before.c[a]),
+                     ZERO);
   return flux;
 }
 
-// Sum of a geometric series of fluxes from the second on; the largest albedo bounds its ratio.
-// `white`: R of albedo 1.
-CLPV_INLINE FaceFluxes sum_bounces(const FaceFluxes first, const FaceFluxes second,
+// The ratio q = T_2 / T_1 of each face; the largest albedo bounds it. `white`: R of albedo 1.
+CLPV_INLINE FaceFluxes find_ratios(const FaceFluxes first, const FaceFluxes second,
                                    const FaceFluxes reflectance, const FaceFluxes white) {
   realW largest = 0.0f;
 #pragma unroll
   for (int a = 0; a < CLPV_CELL_FACES; ++a)
     largest = fmax(largest, reflectance.c[a] / fmax(white.c[a], 1e-6f));
   largest = fmin(largest, CLPV_MAX_RETURNED);
+  FaceFluxes ratio;
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a)
+    ratio.c[a] = fmin(fmax(second.c[a] / fmax(first.c[a], 1e-6f), ZERO), largest);
+  return ratio;
+}
+
+// Sum of the geometric series of a flux: flux / (1 - ratio).
+CLPV_INLINE FaceFluxes sum_series_of(const FaceFluxes flux, const FaceFluxes ratio,
+                                     const float share) {
   FaceFluxes sum;
 #pragma unroll
-  for (int a = 0; a < CLPV_CELL_FACES; ++a) {
-    // q = T_2 / T_1, without dividing by 0
-    const realW ratio = second.c[a] / fmax(first.c[a], 1e-6f);
-    sum.c[a] = second.c[a] / (1.0f - fmin(fmax(ratio, ZERO), largest));
-  }
+  for (int a = 0; a < CLPV_CELL_FACES; ++a)
+    sum.c[a] = flux.c[a] / (1.0f - share * ratio.c[a]);
   return sum;
 }
 
@@ -152,7 +163,9 @@ CLPV_INLINE Coefficients row_light(const FaceFluxes flux, CLPV_VOLUME_IN reflect
   return reflected_intensity(flux, faces_load(reflectors, CLPV_REFLECTOR_SHARE, t.x, t.y + r, t.z));
 }
 
+// `reflectance`: R or, from channel `first` on, E.
 __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
+                               CLPV_VOLUME_IN reflectance, const int first,
                                CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources,
                                __global uchar* lit) {
   TileLight light = dark_light();
@@ -162,8 +175,9 @@ __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
     if (t.rows == 0) return;
     load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
     for (int r = 0; r < t.rows; ++r) {
-      const FaceFluxes flux = reflect_flux(load_incident_flux(swept, bins, t, r),
-                                           faces_load(reflectors, channel, t.x, t.y + r, t.z));
+      const FaceFluxes flux =
+          reflect_flux(load_incident_flux(swept, bins, t, r),
+                       faces_load(reflectance, first + channel, t.x, t.y + r, t.z));
       set_light(&light, channel, r,
                 add_coefficients(row_light(flux, reflectors, t, r),
                                  light_load(injected, channel, t.x, t.y + r, t.z)));
@@ -184,13 +198,10 @@ __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_sw
     load_x_bins(first_swept + t.first, t.x, t.y, t.z, first);
     load_x_bins(second_swept + t.first, t.x, t.y, t.z, second);
     for (int r = 0; r < t.rows; ++r) {
-      const FaceFluxes before = load_incident_flux(first_swept, first, t, r),
-                       after = load_incident_flux(second_swept, second, t, r),
-                       flux = add_fluxes(
-                           reflect_flux(before,
-                                        faces_load(reflectors, channel, t.x, t.y + r, t.z)),
-                           reflect_flux(further_flux(before, after),
-                                        faces_load(series, channel, t.x, t.y + r, t.z)));
+      const FaceFluxes flux = series_flux(load_incident_flux(first_swept, first, t, r),
+                                          load_incident_flux(second_swept, second, t, r),
+                                          faces_load(reflectors, channel, t.x, t.y + r, t.z),
+                                          faces_load(series, channel, t.x, t.y + r, t.z));
       set_light(&light, channel, r,
                 add_coefficients(light_load(injected, channel, t.x, t.y + r, t.z),
                                  row_light(flux, reflectors, t, r)));
@@ -263,9 +274,11 @@ __kernel void sum_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_V
     const FaceFluxes reflectance = faces_load(reflectors, t.channel, t.x, t.y + r, t.z),
                      first = faces_load(returned, t.channel, t.x, t.y + r, t.z),
                      second = reflect_flux(load_incident_flux(swept, bins, t, r), reflectance),
-                     white = faces_load(reflectors, CLPV_REFLECTOR_WHITE, t.x, t.y + r, t.z);
+                     white = faces_load(reflectors, CLPV_REFLECTOR_WHITE, t.x, t.y + r, t.z),
+                     ratio = find_ratios(first, second, reflectance, white);
     faces_store(series, t.channel, t.x, t.y + r, t.z,
-                add_fluxes(reflectance,
-                           add_fluxes(first, sum_bounces(first, second, reflectance, white))));
+                add_fluxes(reflectance, add_fluxes(first, sum_series_of(second, ratio, 1.0f))));
+    faces_store(series, CLPV_SERIES_FIRST + t.channel, t.x, t.y + r, t.z,
+                sum_series_of(reflectance, ratio, CLPV_RELAXATION));
   }
 }

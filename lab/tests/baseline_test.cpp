@@ -104,37 +104,12 @@ TEST_F(Cornell, ConvergesToPathTracing) {
   }
 }
 
-TEST_F(Cornell, ProbesConvergeOverFrames) {
-  const double first = errors(run(Baseline::ddgi_first, 8)).nrmse_valid.value(),
-               later = errors(run(Baseline::ddgi_converged, 8, 1, 64)).nrmse_valid.value();
-  EXPECT_LT(later, 0.7 * first);
-}
-
 TEST_F(Cornell, BytesDoNotDependOnThreads) {
   const baselines::View one(*scene_, camera_, kWidth, kHeight, 1, 1);
   for (const Baseline baseline : values_of<Baseline>()) {
     std::map<std::string, double> settings;
     EXPECT_EQ(run_baseline(baseline, one, one, budget_, 3, 2, settings), run(baseline, 3, 1, 2))
         << name_of(baseline);
-  }
-}
-
-TEST_F(Cornell, FilterKeepsAConstant) {
-  baselines::Irradiance image(view_->hits().size());
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    if (view_->hits()[i]) image.set(i, {1, 2, 3});
-  }
-  const baselines::View thin = view_->thinned(4);
-  baselines::Irradiance part(thin.hits().size());
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    if (thin.hits()[i]) part.set(i, {1, 2, 3});
-  }
-  for (const baselines::Irradiance& filtered :
-       {baselines::wavelet_filter(*view_, image, 4),
-        joint_bilateral(*view_, image, baselines::block_taps()),
-        baselines::upsampled(*view_, thin, part)}) {
-    for (std::size_t i = 0; i < image.size(); ++i)
-      EXPECT_LT(glm::length(filtered.at(i) - image.at(i)), 1e-4f) << i;
   }
 }
 
@@ -174,19 +149,6 @@ SceneData furnace() {
   for (float& e : scene.materials[wall].emissive) e = 2;
   test::add_box(scene, glm::vec3(0), 2, wall);
   return scene;
-}
-
-TEST(BaselineProbes, FurnaceIsEvenlyLit) {
-  const SceneData scene = furnace();
-  const SceneCamera camera = camera_at({1, 1, 1.5f}, {0, -0.2f, -1.5f});
-  const baselines::View view(scene, camera, 16, 9, 1, 2);
-  ClpvGrid grid{{-0.5f, -0.5f, -0.5f}, 0.375f, 8, {1, 1, 1}};
-  baselines::Probes probes(view, {grid});
-  const baselines::Irradiance image = probes.render(256);
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    EXPECT_NEAR(image.at(i).x, 2 * pi_v<float>,
-                0.16f * 2 * pi_v<float>);  // probes behind the walls count, most in corners
-  }
 }
 
 // A closed room with a box, whose surfaces emit the same radiance: rays that end nowhere would lose
@@ -249,43 +211,6 @@ TEST(BaselineRadianceCascades, ApproachAWallsLight) {
   const double coarse = error(0.4f, 1), middle = error(0.2f, 2), fine = error(0.1f, 4);
   EXPECT_LT(middle, 0.7 * coarse);
   EXPECT_LT(fine, 0.04);  // rays between probes change their direction, so a few per cent remain
-}
-
-// Directions have equal solid angles: their means are those of the sphere. Four of the next cascade
-// surround each.
-TEST(BaselineRadianceCascades, DirectionsAreHierarchical) {
-  for (const unsigned side : {1u, 2u, 3u, 4u}) {
-    const auto directions = baselines::healpix_directions(side),
-               next = baselines::healpix_directions(2 * side);
-    ASSERT_EQ(directions.size(), 12 * side * side);
-    glm::dvec3 sum(0), squares(0);
-    for (std::size_t d = 0; d < directions.size(); ++d) {
-      EXPECT_NEAR(glm::length(directions[d]), 1, 1e-6f);
-      sum += directions[d], squares += directions[d] * directions[d];
-      for (unsigned i = 0; i < 4; ++i) {
-        const glm::vec3 child = next[baselines::healpix_child(d, side, i)];
-        for (const glm::vec3& other : directions)
-          EXPECT_LE(glm::dot(child, other), glm::dot(child, directions[d]) + 0.02f)
-              << side << " " << d;
-      }
-    }
-    EXPECT_LT(glm::length(sum), 1e-5);
-    EXPECT_LT(glm::length(squares / double(directions.size()) - 1.0 / 3), 0.05 / side);
-  }
-}
-
-TEST(BaselineLights, CarryAllFluxAndArea) {
-  SurfaceImage rsm;
-  rsm.view = test::kDown;
-  rsm.depth.assign(63, 2), rsm.normal.assign(63, {0, 1, 0, 0}), rsm.colour.assign(63, {1, 2, 3, 0});
-  rsm.colour[5] = {9, 9, 9, 0};
-  glm::vec3 flux(0);
-  float area = 0;
-  for (const baselines::PointLight& light : baselines::draw_lights(std::vector{rsm}, 4096))
-    flux += light.flux, area += light.area;
-  EXPECT_NEAR(flux.x, 62 + 9, 0.1f);
-  EXPECT_NEAR(flux.z, 3 * 62 + 9, 0.1f);
-  EXPECT_NEAR(area, 2.0f * 2 * 7 / 9, 0.02f);  // the floor that kDown sees from 2 m: 2 m x 14/9 m
 }
 
 TEST(BaselineRejection, NamesWhatAMethodDoesNotHave) {
@@ -356,25 +281,6 @@ TEST_F(QualityCommand, ASceneDoesNotChooseWhereImagesLie) {
     names.insert(image.path().lexically_relative(file("out")));
   EXPECT_THAT(names, ElementsAre("paths", testing::MatchesRegex("paths/room-__-[0-9a-f]*.exr"),
                                  testing::MatchesRegex("paths/room-x_+victim-[0-9a-f]*.exr")));
-}
-
-// They were once found after the measuring, as unwritable, or replaced by each other.
-TEST_F(QualityCommand, ImagesAreCheckedBeforeTheWork) {
-  const std::string images = "--camera left --baseline paths --images " + file("out");
-  fs::create_directories(file("out/paths/room-left.exr"));
-  const test::Outcome folder = quality(images, lab_additions());
-  EXPECT_EQ(folder.exit_code, 1);
-  EXPECT_THAT(folder.err, HasSubstr("room-left.exr: cannot be written: it is a folder"));
-  fs::remove(file("out/paths/room-left.exr"));
-  fs::create_directory(file("b"));
-  fs::copy(file("room.json"), file("b/room.json"));
-  fs::copy(file("model.gltf"), file("b/model.gltf"));
-  fs::copy(file("model.bin"), file("b/model.bin"));
-  const test::Outcome same = quality(file("b/room.json") + " " + images, lab_additions());
-  EXPECT_EQ(same.exit_code, 2);
-  EXPECT_THAT(same.err, HasSubstr("--images: room-left.exr would be the file of"));
-  EXPECT_TRUE(fs::is_empty(file("out/paths")));
-  EXPECT_FALSE(fs::exists(file("cache/references"))) << "nothing was traced";
 }
 
 }  // namespace

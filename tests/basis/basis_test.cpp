@@ -21,7 +21,7 @@
 #include "kernels/shared/sweep.h"
 #include "support/literals.hpp"
 #include "tests/support/error_of.hpp"
-#include "tests/support/run_here.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
 namespace clpv::basis_test {
@@ -152,20 +152,6 @@ TEST(ClampedCosine, Bands) {
     EXPECT_NEAR(cosine_band(band), expected[band], 1e-15) << band;
 }
 
-TEST(ClampedCosine, ChebyshevSeriesOfTheKernelText) {
-  for (const double lambda : {.05, .25, .6, .9}) {
-    const CosineOfPoisson g(lambda);
-    const std::vector<double> c = g.chebyshev();
-    for (double t = -1; t <= 1; t += 1.0 / 64) {
-      const double theta = std::acos(std::clamp(2 * t * t - 1, -1.0, 1.0));
-      double sum = 0;
-      for (std::size_t k = 0; k < c.size(); ++k)
-        sum += c[k] * std::cos(static_cast<double>(k) * theta);
-      EXPECT_NEAR(sum, g.even(t), 2e-7 * c[0]) << lambda << ' ' << t;
-    }
-  }
-}
-
 std::string rejection(const std::string& name, double lambda) {
   return test::error_of(ExitCode::usage, [&] { make_basis(name, lambda); });
 }
@@ -208,25 +194,6 @@ TEST(Constants, RoundingErrorsOfZerosAreZeroAndNotCounted) {
   EXPECT_EQ(Literals().matrix("CLPV_M", matrix).defined().at("CLPV_M"),
             "{{0.5f, 0.0f}, \\\n  {0.0f, (-0.5f)}}");
   EXPECT_EQ(products(matrix), 2);
-}
-
-TEST(Constants, BinsAndLinksAreGroupedByAxis) {
-  const std::vector<SweepBin> bins = sweep_bins(1);
-  ASSERT_EQ(bins.size(), CLPV_SWEEP_BINS);
-  for (std::size_t b = 0; b < bins.size(); ++b)
-    EXPECT_EQ(bins[b].axis, static_cast<int>(b) / CLPV_AXIS_BINS) << "bin " << b;
-  // Bits of a bin's index among those of its axis are signs (kernels/sweep/mirrored_bins.h).
-  for (int b = 0; b < CLPV_SWEEP_BINS; ++b) {
-    const int first = b - b % CLPV_AXIS_BINS;
-    for (int bit = 0; bit < 3; ++bit) {
-      const int axis = (bins[b].axis + 1 + bit) % 3;
-      const bool same = bins[b].sign[axis] == bins[first].sign[axis];
-      EXPECT_EQ(same, ((b - first) >> bit & 1) == 0) << "bin " << b << ", bit " << bit;
-    }
-  }
-  const LinkVolumes links = link_volumes();
-  EXPECT_EQ(links.across[1].size(), links.across[0].size());
-  EXPECT_EQ(links.across[2].size(), links.across[0].size());
 }
 
 }  // namespace
@@ -313,18 +280,6 @@ TEST_F(CentresFile, RejectsWithThePlace) {
   expect_rejected(file("{\"centres\": " + many + "]}"), "array of 65");
   expect_rejected((folder_.path() / "none.json").string(), "no file");
   expect_rejected(folder_.path().string(), "a folder");
-}
-
-TEST_F(CentresFile, IsDescribedByTheProgram) {
-  const test::Outcome good =
-      test::must_run_here("basis --format json --lambda 0.3 --centres " + file(kAxesFile));
-  const auto json = nlohmann::json::parse(good.out);
-  EXPECT_EQ(json.at("schema"), 1);
-  EXPECT_EQ(json.at("bases").size(), 1u);
-  EXPECT_EQ(json.at("bases")[0].at("name"), "axes");
-  EXPECT_EQ(test::run_here("basis --centres " + file("{")).exit_code, 3);
-  EXPECT_EQ(test::run_here("basis sh2 --centres " + file(kAxesFile)).exit_code, 2);
-  EXPECT_EQ(test::run_here("basis --lambda 0.001 --centres " + file(kAxesFile)).exit_code, 2);
 }
 
 }  // namespace

@@ -5,15 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "bench/compare_runs.hpp"
-#include "bench/published.hpp"
 #include "bench/row.hpp"
 #include "bench/runner.hpp"
 #include "bench/suites.hpp"
@@ -48,12 +45,6 @@ inline std::vector<Row> rows_of(const Suite& suite, const std::string& filter,
   return rows;
 }
 
-inline std::vector<std::string> names_of(const std::vector<Row>& rows) {
-  std::vector<std::string> names;
-  for (const Row& row : rows) names.push_back(row.name);
-  return names;
-}
-
 inline void expect_right(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     EXPECT_EQ(row.status, Status::ok) << row.name << ": " << row.reason;
@@ -68,7 +59,6 @@ namespace clpv::bench::bench_test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(BenchStatistics, MedianSpreadAndQuantilesOfAKnownSeries) {
   const Statistics s = statistics_of({5, 1, 4, 2, 103});
@@ -205,15 +195,6 @@ TEST(BenchCompare, ReportsWithoutACommonRowFail) {
   const test::TemporaryFolder folder;
   const std::string old = folder.write("old.json", one.dump()).string();
   EXPECT_EQ(test::run_here("bench ceilings --filter launch --compare " + old).exit_code, 5);
-}
-
-TEST(BenchPublished, CellsAreThoseOfTheTable) {
-  EXPECT_EQ(published_ms(Pass::inject_light, "sh2", true, 1), 2.292);
-  EXPECT_EQ(published_ms(Pass::propagate, "srbf8v2", false, 2), 7.019);
-  EXPECT_EQ(published_ms(Pass::gather, "srbf4", true, std::nullopt), 1.214);
-  EXPECT_FALSE(published_ms(Pass::inject_geometry, "sh2", true, 0));
-  EXPECT_FALSE(published_ms(Pass::propagate, "sh2", true, 3));
-  EXPECT_FALSE(published_ms(Pass::propagate, "sh3", true, 0));
 }
 
 /// The keys of bench/README.md: of the context, of a row.

@@ -332,7 +332,7 @@ TEST(DevicesCommand, WithoutDriversIsAnEmptyListAndAMessage) {
   const auto listed = test::run(none + CLPV_PROGRAM " devices --format json");
   EXPECT_EQ(listed.exit_code, 4);
   EXPECT_TRUE(nlohmann::json::parse(listed.out).at("devices").empty());
-  EXPECT_THAT(listed.err, HasSubstr("no OpenCL device"));
+  EXPECT_THAT(listed.err, HasSubstr("no OpenCL device found by OCL_ICD_VENDORS=/"));
   const auto asked = test::run(none + CLPV_PROGRAM " devices --device 0");
   EXPECT_EQ(asked.exit_code, static_cast<int>(ExitCode::device));
   EXPECT_EQ(asked.out, "");
@@ -343,14 +343,15 @@ TEST(DeviceClock, AtFaultGivesWayToTheHosts) {
   const std::pair<std::string, std::string> faults[] = {
       {"ticks", "events have no plausible times: those of stages are the host's"},
       {"short", "events have no plausible times: those of stages are the host's"},
+      {"late", "take far less time than the host waits for them: times of stages are the host's"},
       {"swap", "events end before they start: times of stages are the host's"},
       {"still", "events take no time: times of stages are the host's"}};
   for (const auto& [fault, said] : faults) {
     const auto outcome =
         test::run("LD_PRELOAD=" CLPV_OPENCL_SHIM " CLPV_SHIM_CLOCK=" + fault +
                   " " CLPV_PROGRAM " render " CLPV_SOURCE_DIR
-                  "/scenes/cornell.json --width 32 --height 18 --frames 2 --stats - -o " +
-                  (folder / "a.exr").string() + test::kSweepOfOne);
+                  "/scenes/cornell.json --width 32 --height 18 --frames 1 --stats - -o " +
+                  (folder / "a.exr").string());
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(said));
     const auto stats = nlohmann::json::parse(outcome.out);

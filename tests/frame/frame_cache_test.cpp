@@ -20,13 +20,6 @@
 namespace clpv::frame_cache_test {
 namespace {
 
-TEST(Cached, IsComputedForAnotherKey) {
-  Cached cached;
-  int computed = 0;
-  for (const CacheKey key : {0, 0, 7, 7, 0}) cached.update(key, [&] { ++computed; });
-  EXPECT_EQ(computed, 3) << "it holds the last result";
-}
-
 TEST(Cached, HoldsNothingAfterAFailure) {
   Cached cached;
   cached.update(1, [] {});
@@ -166,15 +159,6 @@ TEST_F(CachedFrame, IsTheSameAlongAPathAcrossCells) {
     if (i % 7 == 5) at.wall += 0.1;
     passes(at);
   }
-}
-
-TEST_F(CachedFrame, RecomputesInvalidatedResults) {
-  const Instants at;
-  passes(at);
-  frame_.invalidate_light();
-  EXPECT_EQ(passes(at), with(with(kOfEveryFrame, kOfView), kOfLight));
-  frame_.invalidate();
-  EXPECT_EQ(passes(at), with(with(with(kOfEveryFrame, kOfView), kOfLight), kOfCells));
 }
 
 TEST_F(CachedFrame, AnObserverReceivesSharedVolumes) {

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <numbers>
 
 #include "image/compare.hpp"
@@ -281,46 +280,6 @@ TEST(Frame, FogOfOneSizeDoesNotReachIntoAnother) {
   Frame after(test::test_session(), scene, tiny_options());
   draw(after, 48, 36);  // with as many numbers in a plane
   EXPECT_EQ(draw(after, 32, 48), expected);
-}
-
-/// Accumulated light of the finest cascade, seen from `eye`.
-std::vector<float> finest_light(const SceneData& scene, const RenderOptions& options,
-                                const glm::vec3& eye) {
-  Frame frame(test::test_session(), scene, options);
-  SceneCamera camera = scene.camera("");
-  camera.eye = eye;
-  std::vector<float> light;
-  frame.render(camera, [&](const CascadeVolumes& volumes) {
-    if (volumes.cascade == 0) light = volumes.accumulated.read(test::test_session());
-    for (float& value : light) value /= volumes.light_scale;
-  });
-  return light;
-}
-
-TEST(Frame, MovingByACellShiftsLightByOne) {
-  const SceneData scene = load_scene(scene_file("cornell.json"));
-  RenderOptions options = small_options(scene);
-  options.blockers = Blockers::none;
-  options.transport = TransportKind::sampled;
-  // Then cells in both grids have the same light, as none comes from outside.
-  options.iterations = 0;
-  const auto cell = static_cast<float>(options.cascade_size / options.grid);
-  const glm::vec3 eye = (glm::floor(scene.camera("").eye / cell) + 0.25f) * cell;
-  const auto here = finest_light(scene, options, eye),
-             there = finest_light(scene, options, eye + glm::vec3(cell, 0, 0));
-  const auto n = static_cast<std::size_t>(options.grid);
-  double total = 0, difference = 0;
-  for (std::size_t row = 0; row < here.size() / n; ++row) {
-    for (std::size_t x = 2; x + 1 < n; ++x) {
-      total += std::abs(here[row * n + x]);
-      difference += std::abs(here[row * n + x] - there[row * n + x - 1]);
-    }
-  }
-  ASSERT_GT(total, 0);
-  // Not to the bit: seen from elsewhere, float32 rounding turns single texels on the edges of the
-  // boxes to the other surface, one in 64 per cell. Light that did not move with the grid would
-  // differ by 100 %.
-  EXPECT_LT(difference, 2e-3 * total);
 }
 
 // Volumes of 16 bits: neither daylight in lux nor candle light exceeds their range.

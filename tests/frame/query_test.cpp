@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Light at points: irradiance equals the frame's at visible points, radiance the CPU reference's;
 // valid and invalid files of points; `clpv query`.
-#include <fmt/format.h>
 
 #include <cstdlib>
 
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/raster/view.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "reference/cascade_sample.hpp"
 #include "reference/view.hpp"
 #include "scene/input.hpp"
@@ -34,64 +33,6 @@ RenderOptions small_options(const SceneData& scene) {
   options.near = Near::off;  // points have none
   options.cascade_size = scene.cascade_size.value_or(options.cascade_size);
   return options;
-}
-
-struct PixelOfFrame {
-  glm::dvec3 position, normal, irradiance;
-};
-
-/// Every seventh surface in the frame's images.
-std::vector<PixelOfFrame> pixels_of(Frame& frame, const SceneCamera& camera) {
-  const int width = frame.options().width, height = frame.options().height;
-  const ClpvView view = camera_view(camera, width, height);
-  const std::vector<float> depth = frame.read(Show::depth), normal = frame.read(Show::normal),
-                           light = frame.read(Show::irradiance);
-  const auto rgb = [](const std::vector<float>& image, std::size_t pixel) {
-    return glm::dvec3(image[4 * pixel], image[4 * pixel + 1], image[4 * pixel + 2]);
-  };
-  std::vector<PixelOfFrame> pixels;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-       i += 7) {
-    if (depth[4 * i] <= 0) continue;
-    const auto x = static_cast<double>(i % static_cast<std::size_t>(width)),
-               y = static_cast<double>(i / static_cast<std::size_t>(width));
-    pixels.push_back(
-        {reference::surface_position(view, x, y, depth[4 * i]), rgb(normal, i), rgb(light, i)});
-  }
-  return pixels;
-}
-
-TEST(IrradianceAtPoints, EqualsTheCamerasIrradianceOffEdges) {
-  const SceneData scene = load_scene(kCornell);
-  const SceneCamera& camera = scene.camera("");
-  for (const TransportKind transport : {TransportKind::sampled, TransportKind::sweep}) {
-    RenderOptions options = small_options(scene);
-    options.transport = transport;
-    Session& session = test_session();
-    Frame frame(session, scene, options);
-    EXPECT_THROW(frame.irradiance_at({glm::vec4(0)}, {glm::vec4(0, 1, 0, 0)}), Error)
-        << "there is no light before a frame";
-    frame.render(camera);
-    const std::vector<PixelOfFrame> pixels = pixels_of(frame, camera);
-    ASSERT_GT(pixels.size(), 100u);
-    std::vector<glm::vec4> positions, normals;
-    for (const PixelOfFrame& pixel : pixels) {
-      positions.emplace_back(glm::vec3(pixel.position), 0);
-      normals.emplace_back(glm::vec3(pixel.normal), 0);
-      EXPECT_TRUE(reaches(frame.light().grids.back(), pixel.position));
-    }
-    const std::vector<glm::vec4> light = frame.irradiance_at(positions, normals);
-    double brightest = 0;
-    std::size_t others = 0;
-    for (const PixelOfFrame& pixel : pixels) brightest = std::max(brightest, pixel.irradiance.x);
-    // Positions are rounded to floats; light changes by much over a cell.
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-      others += glm::length(glm::dvec3(light[i]) - pixels[i].irradiance) > 1e-3 * brightest;
-    EXPECT_GT(brightest, 0.1) << name_of(transport);
-    // Near edges pixels leave out sample points behind walls, which takes an eye.
-    EXPECT_LT(static_cast<double>(others), 0.05 * static_cast<double>(pixels.size()))
-        << name_of(transport);
-  }
 }
 
 glm::dvec3 even(std::uint32_t i) {

@@ -8,12 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <random>
 
 #include "pipeline/frame/cascade.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "reference/blockers.hpp"
 #include "reference/gather.hpp"
 #include "support/error.hpp"
@@ -124,19 +123,6 @@ double along(double from, double to, std::size_t pixel) {
 }
 
 const glm::dvec3 kTilted = glm::normalize(glm::dvec3(1, -2, 0.5));
-
-TEST(Gather, UniformLightIsTheSameEverywhereInside) {
-  for (const char* name : {"sh2", "sh3", "srbf4", "srbf8v2"}) {
-    SCOPED_TRACE(name);
-    const std::unique_ptr<Basis> basis = make_basis(name);
-    const std::vector<double> c = times(1.75, basis->constant());
-    const SurfaceImage image = walk({-0.98, 0.9, -0.9}, {0.97, -0.98, 0.9}, kTilted);
-    const std::vector<glm::dvec3> found =
-        gather(*basis, TransportKind::sampled, {}, {uniform(c)}, image);
-    expect_all(found, 4 * basis->value(c, -kTilted) /
-                          (kCell * kCell));  // spherical harmonics: 4 . 1.75 / s^2
-  }
-}
 
 TEST(Gather, SweptUniformRadianceIsPiL) {
   const std::unique_ptr<Basis> basis = make_basis("sh2");

@@ -281,20 +281,6 @@ TEST(Medium, UniformLightIsAFixedPointOfASweep) {
   for (const double value : furnace.swept(medium).values) EXPECT_NEAR(value, area, 1e-12);
 }
 
-// With an optical depth of 1 across the medium ten scatterings suffice.
-TEST(Medium, RepeatedSweepsFillTheFurnace) {
-  Furnace furnace;
-  const ClpvMedium medium = medium_of({0.1, 0.25, 0.5}, {}, 0.3f, glm::vec3(-1), glm::vec3(1));
-  reference::Volume swept = furnace.swept(medium);
-  for (int scattering = 0; scattering < 10; ++scattering) {
-    furnace.scattered = reference::Volume(Furnace::kGrid, kSweepBins, 3);
-    reference::add_scattered(medium, swept, furnace.scattered);
-    swept = furnace.swept(medium);
-  }
-  const double area = double{Furnace::kCell} * Furnace::kCell;
-  for (const double value : swept.values) EXPECT_NEAR(value, area, 2e-3 * area);
-}
-
 /// A black floor below a sun, half of it in the shadow of a screen at 3 m, in a medium that absorbs
 /// more than it scatters.
 SceneData shafts() {

@@ -67,14 +67,6 @@ TEST(Options, EachConvertsFromTextToValueAndBack) {
   }
 }
 
-TEST(Options, DefaultsAreValidValues) {
-  RenderOptions options;
-  for (const OptionDescription& info : list_options(RenderOptions{})) {
-    if (info.name != "centres") set_option(options, info.name, info.value);
-  }
-  EXPECT_EQ(to_json(options), to_json(RenderOptions{}));
-}
-
 TEST(Options, InvalidValuesAreRejectedWithTheAllowedOnes) {
   for (const OptionDescription& info : list_options(RenderOptions{})) {
     SCOPED_TRACE(info.name);
@@ -142,28 +134,6 @@ TEST(Presets, BestIsTheDefaults) {
   set_option(options, "preset", "best");
   EXPECT_EQ(to_json(options), to_json(RenderOptions{}));
   EXPECT_EQ(to_json(options)["preset"], "best");
-}
-
-TEST(Presets, PaperIsThePublishedScheme) {
-  RenderOptions options;
-  options.basis = "sh3";
-  options.grid = 16, options.cascades = 2, options.cascade_size = 5, options.iterations = 24;
-  options.rsm_size = 64, options.width = 77, options.height = 33;
-  set_option(options, "preset", "paper");
-  const nlohmann::json found = to_json(options),
-                       published = {{"preset", "paper"},     {"basis", "srbf8v2"},
-                                    {"lambda", 0.25},        {"lobe", "rotate"},
-                                    {"lobe-time", "kernel"}, {"evaluate", "image"},
-                                    {"table-size", 256},     {"transport", "sampled"},
-                                    {"layout", "image"},     {"storage", "half"},
-                                    {"rsm-format", "paper"}, {"blocking", "one-sided"},
-                                    {"blockers", "seen"},    {"gather", "all"},
-                                    {"gather-offset", 0.5},  {"grid", 32},
-                                    {"cascades", 3},         {"cascade-size", 12.5},
-                                    {"rsm-size", 256},       {"iterations", 8},
-                                    {"near", "off"},         {"width", 960},
-                                    {"height", 540}};
-  for (const auto& [name, value] : published.items()) EXPECT_EQ(found[name], value) << name;
 }
 
 TEST(Presets, KeepOptionsThatTheyDoNotSet) {

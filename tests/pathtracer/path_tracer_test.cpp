@@ -260,21 +260,6 @@ TEST(PathTracer, SameBytesWhateverTheThreads) {
   EXPECT_NE(one.irradiance, other.irradiance);
 }
 
-TEST(PathTracer, BackgroundIsZero) {
-  SceneData scene = floor_scene(0.5);
-  scene.lights = {sun({0, -1, 0}, 1)};
-  PathTracerOptions options;
-  options.samples = 2;
-  const TracedImage image =
-      trace_paths(scene, view_of({0, 1, 0}, {0, 1, 0}, {0, 0, 1}, 1, 3, 3), options);
-  for (std::size_t i = 0; i < 9; ++i) {
-    EXPECT_EQ(image.depth[i], 0);
-    EXPECT_EQ(image.normal[i], glm::vec3(0));
-    EXPECT_EQ(image.direct[i], glm::vec3(0));
-    EXPECT_EQ(image.irradiance[i], glm::vec3(0));
-  }
-}
-
 /// A block of 1 x 2 x 1 m on a floor of 8 x 8 m, sun from the side, at `by`; with `far`, a triangle
 /// as far away.
 TracedImage trace_block(const glm::vec3& by, float far) {

@@ -13,13 +13,6 @@ def seen(renderer):
     return light, renderer.show("normal").array[..., :3], renderer.show("depth").array[..., 0]
 
 
-def test_a_frames_own_depths_give_its_irradiance(renderer, seen):
-    light, normals, depths = seen
-    found = renderer.light(normals, depths=depths, camera=FRONT)
-    assert found.shape == (27, 48, 3) and found.dtype == np.float32
-    assert found.tobytes() == np.ascontiguousarray(light).tobytes() and found.max() > 0
-
-
 def test_bad_arrays_are_named(renderer, seen):
     _, normals, depths = seen
     with pytest.raises(ValueError, match=r"depths: found shape \(48, 27\), allowed: \(27, 48\)"):

@@ -2,6 +2,7 @@
 """The package as users meet it: the program of the documentation, stubs, interrupts, import without
 the native module."""
 import inspect
+import json
 import os
 import re
 import signal
@@ -12,6 +13,7 @@ import time
 import pytest
 
 import clpv
+from clpv import _pocl
 from conftest import BUILD, CORNELL, ROOT
 
 
@@ -47,6 +49,29 @@ def test_draw_imports_without_the_native_module():
                 "from clpv import draw; import clpv.draw.style; print(draw.__name__)\n"
                 "import clpv\ntry:\n  clpv.Scene\nexcept ImportError:\n  print('no native module')")
     assert ended.stdout.split("\n")[:2] == ["clpv.draw", "no native module"], ended.stderr
+
+
+@pytest.mark.parametrize("drivers, supported, variable, used",
+                         [(0, [], "", True), (1, [], "", True), (1, [False], "", True),
+                          (1, [False, True], "", False), (1, [], "/elsewhere", False)])
+def test_pocl_of_pip_serves_systems_without_a_device(drivers, supported, variable, used, tmp_path,
+                                                     monkeypatch):
+    for name in ["pocl_binary_distribution/__init__.py", "pyopencl/.libs/libpocl-1.so",
+                 *["vendors/system.icd"] * drivers]:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    program = tmp_path / "clpv"
+    listed = json.dumps({"devices": [{"supported": each} for each in supported]})
+    program.write_text(f"#!/bin/sh\necho '{listed}'\nexit 4\n", encoding="utf-8")
+    program.chmod(0o700)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(_pocl, "VENDORS", tmp_path / "vendors")
+    monkeypatch.setattr(_pocl, "PROGRAM", program)
+    monkeypatch.setenv("OCL_ICD_VENDORS", variable)
+    _pocl.system_has_device.cache_clear()
+    driver = str(tmp_path / "pyopencl/.libs/libpocl-1.so") if used else None
+    assert _pocl.use() == driver
+    assert os.environ["OCL_ICD_VENDORS"] == (driver or variable)
 
 
 def test_the_gil_is_released():

@@ -13,7 +13,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 os.environ.setdefault("CLPV_BUILD_DIR", os.environ["CLPV_BUILD"])
 sys.path.insert(0, str(ROOT / "scripts"))
 pytest.importorskip("jinja2", reason="all of it: Jinja2 is not installed (Debian: apt install python3-jinja2)")
-from measured import expected, reproduce, verdicts  # noqa: E402
+from measured import reproduce, verdicts  # noqa: E402
 
 
 @pytest.mark.parametrize(
@@ -30,29 +30,6 @@ from measured import expected, reproduce, verdicts  # noqa: E402
 )
 def test_a_verdict_is_made_from_its_points(outcomes, sentence):
     assert verdicts.sentence("lambda", list(zip((0.1, 0.4, 0.6), outcomes, "abc"))) == sentence
-
-
-def test_an_interval_covers_both_kinds_of_blocks():
-    same = {f"{camera}-{sun}": 0.5 for camera in "abcd" for sun in "xyz"}
-    assert verdicts.interval(same) == (0.5, 0.5)
-    by_sun = {
-        name: 1.0 if name.endswith("x") else -0.1 for name in same
-    }  # cameras agree, suns do not
-    low, high = verdicts.interval(by_sun)
-    assert low < 0 < high and verdicts.signed(by_sun, 1)[0] is None
-    assert verdicts.signed(same, 1)[0] is True and verdicts.signed(same, -1)[0] is False
-
-
-def test_numbers_that_left_their_tolerance_are_named():
-    document = {"numbers": {"a/x": [1.0, 0.1], "b/x": [2.0, 0.1]}}
-    assert expected.left(document, {"a/x": 1.05}) == []
-    assert expected.left(document, {"a/x": 1.2, "c": 1, "b/x": None}, ["a", "b"]) == [
-        "a/x: found 1.2; allowed: 1 +- 0.1",
-        "c: found 1; allowed: a number of results/paper/expected.json",
-        "b/x: found null; allowed: 2",
-    ]
-    assert expected.left(document, {}, ["b"]) == ["b/x: found none; allowed: 2"]
-    assert len(expected.left(document, {"b/x": float("nan")})) == 1
 
 
 def test_the_key_of_a_part_has_the_content_that_it_depends_on(monkeypatch, tmp_path):

@@ -38,22 +38,6 @@ def test_pathtrace_is_the_programs_byte_for_byte(tmp_path, scene):
     assert clpv.read_image(tmp_path / "t.exr").array.tobytes() == traced.array.tobytes()
 
 
-def test_pathtrace_points_of_arrays(scene):
-    points = np.full((2, 3, 3), (0.28, 0.5, 0.3))
-    normals = np.broadcast_to([0.0, -2.0, 0.0], points.shape)  # strides of 0
-    light = scene.pathtrace_points(points, normals, samples=64)
-    assert light["indirect"].shape == points.shape and light["indirect"].min() > 0
-    assert light["direct"].max() == 0 and light["error"].max() < light["indirect"].min()
-    assert light["samples"] == 64 and 0 < light["noise"] < 0.5
-    one = scene.pathtrace_points(points, normals[0, 0], samples=64)
-    assert np.array_equal(one["indirect"], light["indirect"]), "one normal for all"
-    with pytest.raises(clpv.UsageError, match="6 positions and 2 normals"):
-        scene.pathtrace_points(points, normals[:1, :2])
-    with pytest.raises(clpv.UsageError, match="noise: found -1"):
-        scene.pathtrace_points(points, normals, noise=-1)
-    assert scene.pathtrace_points(np.zeros((0, 3)), np.zeros((0, 3)))["error"].shape == (0, 3)
-
-
 def test_arrays_do_not_copy_and_outlive_their_owners(scene):
     image = clpv.Renderer(scene, **SMALL).render()  # the renderer is gone
     array, same = image.array, np.asarray(image)

@@ -73,16 +73,6 @@ def test_a_view_that_rests_is_drawn_again_with_more_rays():
     assert view_frames.next_client([client], client.changed) is client and client.shown == 0
 
 
-def test_path_tracing_follows_the_last_level():
-    client = view_frames.Client(None)
-    client.changed, client.shown = 0, len(view_frames.LEVELS)
-    assert view_frames.next_client([client], 9) is None
-    assert view_frames.next_client([client], 9, traced=True) is client
-    assert view_frames.next_client([client], view_frames.TRACED_AFTER - 0.1, traced=True) is None
-    client.shown += 1
-    assert view_frames.next_client([client], 9, traced=True) is None
-
-
 def image_of(*pixels):
     """One row of R, G, B, A."""
     return clpv.Image(np.array([pixels], np.float32))
@@ -144,19 +134,6 @@ def test_bad_arguments(tmp_path):
     ended = run("/nowhere/scene.json", "--port", free_port(), **hollow)
     assert ended.returncode == 1 and "nowhere" in ended.stderr and "Traceback" not in ended.stderr
     assert run(CORNELL, "--port", 0).returncode == 2
-
-
-def test_the_frame_rate_is_of_the_last_second_of_motion():
-    rate = view_frames.Rate()
-    assert rate.shown == "-", "nothing moved yet"
-    for i in range(30):
-        rate.add(10 + i / 10)
-    assert rate.shown == "10"
-    for i in range(40):
-        rate.add(100 + i / 20)  # after a rest
-    assert rate.shown == "20"
-    rate.add(500)  # one frame of a new motion
-    assert rate.shown == "20"
 
 
 def camera_message(**changes):

@@ -131,16 +131,6 @@ TEST(QualityReport, UndefinedIsNeverBestAndInNoMean) {
   EXPECT_THAT(table, ::testing::Not(HasSubstr("nan")));
 }
 
-TEST(QualityReport, TableHasALineAVariant) {
-  const std::string table = quality_table({cell("sh2", "a", 0.9, 10), cell("sh2", "b", 0.5, 30),
-                                           rejected("sh4", "a"), rejected("sh4", "b")});
-  EXPECT_THAT(table, HasSubstr("room:a"));
-  EXPECT_THAT(table, HasSubstr("90.0"));
-  EXPECT_THAT(table, HasSubstr("70.0"));
-  EXPECT_THAT(table, HasSubstr("rejected"));
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
-}
-
 TEST_F(QualityCommand, ACacheThatCannotBeWrittenIsReported) {
   std::ofstream(file("cache")) << "a file, so that no folder of this name can be made";
   const test::Outcome outcome = quality("--basis sh2 --camera left --format json");

@@ -214,33 +214,11 @@ TEST(Shade, NothingIsLitBeyondTheRange) {
   }
 }
 
-TEST(Shade, SpotLightFadesAcrossItsCone) {
-  const double inner = std::cos(0.3), outer = std::cos(0.6);
-  MappedLight light{test::spot_light({0, 4, 0}, {0, -1, 0}, 0.3f, 0.6f), {}};
-  for (int c = 0; c < 3; ++c) light.light.intensity[c] = 50 * kChannels[c];
-  const auto expected = [&](const glm::dvec3& p) {
-    const double r = glm::length(glm::dvec3(0, 4, 0) - p), cosine = 4 / r;
-    const double cone = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
-    return 50 * cone * cone * cosine / (r * r);
-  };
-  expect_lit(floor_image(), light, expected, 4);
-}
-
 TEST(Shade, AnUnknownKindOfLightIsDarkAndTheReferenceRejectsIt) {
   MappedLight light = bulb({0, 2, 0}, 40);
   light.light.kind = 3;
   EXPECT_THAT(lit(floor_image(), {light}), ::testing::Each(0.0));
   EXPECT_THROW(reference::direct_irradiance({light}, floor_image()), Error);
-}
-
-TEST(Shade, LightsAddUp) {
-  const SurfaceImage image = floor_image();
-  const std::vector<MappedLight> lights = {sun({0.3, -1, 0}, 7), bulb({1, 2, 0}, 40)};
-  const std::vector<double> both = lit(image, lights), one = lit(image, {lights[0]}),
-                            other = lit(image, {lights[1]});
-  for (std::size_t pixel = 0; pixel < both.size(); ++pixel) {
-    ASSERT_NEAR(both[pixel], one[pixel] + other[pixel], 1e-5 * both[pixel]);
-  }
 }
 
 TEST(Shade, LightFromBehindIsDark) {

@@ -101,14 +101,6 @@ auto close(const std::vector<float>& values) {
   return ::testing::Pointwise(::testing::FloatNear(1e-5f), values);
 }
 
-TEST(Texture, TexelsSitWhereTheyShould) {
-  EXPECT_THAT(reds(image_of(textured(stripes(CLPV_WRAP_CLAMP)), 4, {0, 0}, {1, 1})),
-              close({0, 1, 0, 1}));
-  // Halfway between texel centres: the mean of both.
-  EXPECT_THAT(reds(image_of(textured(stripes(CLPV_WRAP_CLAMP)), 4, {0.0625f, 0}, {1.0625f, 1})),
-              close({0.25f, 0.75f, 0.25f, 1}));
-}
-
 TEST(Texture, TexelsOfEverySizeSitWhereTheyShould) {
   for (const auto& [width, height] :
        std::vector<std::pair<int, int>>{{1, 9}, {5, 3}, {4, 4}, {7, 8}, {13, 6}}) {

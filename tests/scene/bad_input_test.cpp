@@ -333,19 +333,6 @@ TEST_F(CameraByNumbers, RendersAndTraces) {
       1e-4);
 }
 
-TEST_F(CameraByNumbers, LightScaleMultipliesTheLightsOfTheFile) {
-  const std::string direct = kSmall + " --view direct";
-  const Image one = image("render " + kCornell + direct),
-              half = image("render " + kCornell + direct + " --light-scale 0.5"),
-              traced = image("pathtrace " + kCornell + " --light-scale 0.5 --spp 1 --width 32" +
-                             " --height 18 --view direct");
-  const std::size_t at = 4 * (9 * 32 + 3);
-  EXPECT_GT(one.pixels[at], 0);
-  EXPECT_EQ(half.pixels[at], 0.5f * one.pixels[at]);
-  EXPECT_NEAR(traced.pixels[at], half.pixels[at], 1e-3f * one.pixels[at]);
-  EXPECT_EQ(half.metadata.at("light_scale"), "0.5");
-}
-
 TEST_F(CameraByNumbers, FileNamesInAnotherEncodingAreWrittenInUtf8) {
   const std::string name = "caf\xe9.gltf";  // Latin-1
   GltfBuilder model;

@@ -13,20 +13,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-TEST_F(GltfTest, APlainTriangleComesOutAsItIs) {
-  model.triangle();
-  const SceneData scene = load();
-  ASSERT_EQ(scene.triangles.size(), 1u);
-  EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), kX, kY));
-  EXPECT_THAT(normal(scene, 0, 0), IsNear(kZ, kClose));
-  EXPECT_EQ(scene.lower, glm::vec3(0));
-  EXPECT_EQ(scene.upper, glm::vec3(1, 1, 0));
-  EXPECT_EQ(scene.name, "model");
-  ASSERT_EQ(scene.materials.size(), 1u);
-  EXPECT_EQ(scene.materials[0].texture, CLPV_NO_TEXTURE);
-  EXPECT_EQ(scene.materials[0].base_colour[3], 1);
-}
-
 TEST_F(GltfTest, TransformsMultiplyDownTheHierarchy) {
   model.triangle();
   // The root turns by 90 degrees about z and moves; its child scales; the mesh is the grandchild's,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scene files: keys, precedence over the model, defaults; and all of Sponza.
+// Scene files: keys, precedence over the model, defaults.
 
 #include "clpv/scene.hpp"
 
@@ -9,7 +9,6 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "scene/emission.hpp"
 #include "scene/load.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_file.hpp"
@@ -208,24 +207,6 @@ TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
   }
 }
 
-TEST(SponzaTest, IsWhatItsReadmeSays) {
-  const auto model = sponza();
-  if (model.empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA names it";
-  const SceneData scene = load_scene(scene_file("sponza_suns.json"), model);
-  EXPECT_EQ(scene.triangles.size(), 262267u);
-  EXPECT_EQ(scene.vertices.size(), 192870u);
-  EXPECT_EQ(scene.materials.size(), 25u);
-  const auto masked =
-      std::count_if(scene.materials.begin(), scene.materials.end(),
-                    [](const ClpvMaterial& m) { return (m.flags & CLPV_MATERIAL_MASKED) != 0; });
-  EXPECT_EQ(masked, 3);
-  EXPECT_EQ(scene.textures.size(), 25u);
-  // The README's box at the node scale, to the millimetre, made metres.
-  EXPECT_THAT(scene.lower, IsNear(1.25f * glm::vec3(-15.365f, -1.012f, -9.462f), 2e-3f));
-  EXPECT_THAT(scene.upper, IsNear(1.25f * glm::vec3(14.395f, 11.435f, 8.843f), 2e-3f));
-  EXPECT_THAT(scene.notes, IsEmpty());
-}
-
 }  // namespace
 
 }  // namespace clpv::test::scene_test
@@ -266,39 +247,6 @@ TEST_P(Generator, ReproducesTheCommittedFiles) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Generator, testing::Values("atrium", "cornell"),
                          [](const auto& info) { return std::string(info.param); });
-
-struct Card {
-  const char* file;
-  std::size_t triangles, lights;
-  glm::vec3 size;  ///< [m]
-  std::vector<std::string> cameras;
-};
-
-TEST(Scenes, MatchTheirDescriptions) {
-  const Card cards[] = {
-      {"atrium.json", 266672, 1, {30, 10, 14.15f}, {"nave", "curtains", "gallery"}},
-      {"cornell.json", 48, 2, {0.716f, 0.7088f, 0.6392f}, {"front", "published", "red", "green"}},
-      {"cornell_lamp.json", 56, 0, {0.716f, 0.7088f, 0.6392f}, {"front", "published"}},
-      {"empty_room.json",
-       28,
-       2,
-       {0.7128f, 0.7088f, 0.6392f},
-       {"front", "published", "red", "green"}}};
-  for (const Card& card : cards) {
-    SCOPED_TRACE(card.file);
-    const SceneData scene = load_scene(kScenes / card.file);
-    EXPECT_EQ(scene.triangles.size(), card.triangles);
-    EXPECT_EQ(scene.lights.size(), card.lights);
-    EXPECT_LT(glm::length(scene.upper - scene.lower - card.size), 0.02f);
-    std::vector<std::string> cameras;
-    for (const SceneCamera& camera : scene.cameras) cameras.push_back(camera.name);
-    EXPECT_EQ(cameras, card.cameras);
-    EXPECT_THAT(scene.notes, ::testing::IsEmpty());
-  }
-  const SceneData lamp = load_scene(kScenes / "cornell_lamp.json");
-  EXPECT_NEAR(max_emitted_flux(lamp, emissive_triangles(lamp), 1000), M_PI * 17.2 * 0.130 * 0.105,
-              1e-4);
-}
 
 TEST(Scenes, TheLivingAtriumIsTheAtriumWithABallAndACurtainThatMove) {
   const SceneData still = load_scene(kScenes / "atrium.json"),

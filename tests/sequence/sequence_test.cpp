@@ -11,6 +11,7 @@
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::test::sequence_test {
 namespace {
@@ -277,6 +278,9 @@ TEST_F(SequenceTest, AMissingFfmpegIsReportedBeforeTheWork) {
   EXPECT_THAT(outcome.err,
               HasSubstr("--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)"));
   EXPECT_FALSE(fs::exists(frame(0).parent_path()));
+  const Variable found("PATH", fake_ffmpeg("exit 0\n"));
+  EXPECT_THAT(sequence("--frames 3 --fps 25 --video none/film.mp4").err, HasSubstr("no folder"));
+  EXPECT_FALSE(fs::exists(frame(0).parent_path())) << "an empty folder";
 }
 
 TEST_F(SequenceTest, StabilityCoversAllFramesButTheFirst) {

@@ -41,17 +41,6 @@ TEST(Claims, EachJobIsTakenOnce) {
   EXPECT_EQ(taken, 50);
 }
 
-TEST(Claims, FinishedJobsHaveResults) {
-  const test::TemporaryFolder folder;
-  const Claims claims(folder.path());
-  EXPECT_TRUE(claims.take("a"));
-  EXPECT_FALSE(claims.finished("a"));
-  claims.finish("a", "result");
-  EXPECT_TRUE(claims.finished("a"));
-  EXPECT_EQ(claims.result("a"), "result");
-  EXPECT_EQ(claims.finished_count(), 1u);
-}
-
 TEST(Helpers, ALibraryHasNone) {
   EXPECT_EQ(helper_count(), 0u) << "only clpv's main names a program";
 }

@@ -63,6 +63,8 @@ TEST_F(OutputFile, RejectsPathsThatCannotBeFiles) {
     EXPECT_NE(message.find(path.string()), std::string::npos) << message;
   }
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  ::chmod((folder_ / "file").c_str(), 0444);
+  if (::geteuid() != 0) error_of(ExitCode::run_time, [&] { check_writable(folder_ / "file"); });
 }
 
 // A link to a missing file was once replaced by the file.

@@ -1,13 +1,235 @@
 // SPDX-License-Identifier: MIT
-// The program as a process: exit codes, help and errors of its output streams. Other tests run
-// commands in their own process (support/run_here.hpp).
+// Invalid command lines, row by row: bad arguments (exit code 2, before a scene is read or a device
+// is opened), devices that do not exist (4), outputs that cannot be written (1, before the work),
+// files that cannot be read (3). The message names option or file and the allowed values. No file
+// may remain.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "support/text.hpp"
 #include "tests/support/run_here.hpp"
 
+namespace clpv::test::hostile_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json",
+                  kTiny = "render " CLPV_SOURCE_DIR
+                          "/tests/oclgrind/tiny.gltf --width 12 --height 9 --grid 5 --cascades 1 "
+                          "--cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2 --transport "
+                          "sampled --gather all --blockers seen ";
+
+struct HostileInput {
+  std::string name;
+  std::string command;  ///< "render @/a.gltf": arguments of clpv; @ is the folder
+  int exit_code;
+  std::vector<std::string> words;                            ///< on stderr
+  std::vector<std::pair<std::string, std::string>> files{};  ///< made in the folder: name, bytes
+  std::function<void(const TemporaryFolder&)> prepare{};     ///< creates anything but regular files
+  /// "HOME=@ XDG_CACHE_HOME=", or the name of another program, before the program, through the
+  /// shell; without, the command runs in this process.
+  std::string surroundings{};
+  std::string program = CLPV_PROGRAM;  ///< with surroundings
+};
+
+std::string with_folder(std::string text, const TemporaryFolder& folder) {
+  for (std::size_t at = 0; (at = text.find('@', at)) != std::string::npos;)
+    text.replace(at, 1, folder.path().string());
+  return text;
+}
+
+/// Longer, and it hangs: all are rejected before anything is computed.
+constexpr const char* kPatience = "timeout 300 ";
+
+void expect_rejected(const HostileInput& input) {
+  SCOPED_TRACE(input.name);
+  const TemporaryFolder folder;
+  for (const auto& [name, bytes] : input.files) folder.write(name, bytes);
+  if (input.prepare) input.prepare(folder);
+  const std::string command = with_folder(input.command, folder);
+  const Outcome outcome = input.surroundings.empty()
+                              ? run_here(command, folder.path())
+                              : run(with_folder("cd @ && " + input.surroundings + " ", folder) +
+                                    kPatience + input.program + " " + command);
+  EXPECT_EQ(outcome.exit_code, input.exit_code) << outcome.err;
+  for (const std::string& word : input.words) EXPECT_THAT(outcome.err, ::testing::HasSubstr(word));
+  for (const char* foreign :
+       {"basic_", "std::", "what()", "terminate", "[json.exception.type_error"})
+    EXPECT_THAT(outcome.err, ::testing::Not(::testing::HasSubstr(foreign)));
+  EXPECT_EQ(outcome.err, printable(outcome.err)) << "moves the cursor";
+  EXPECT_LT(outcome.err.size(), 4000u) << "a flood of words";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(
+           folder.path(), std::filesystem::directory_options::skip_permission_denied)) {
+    const std::string left = entry.path().filename().string();
+    EXPECT_FALSE(left.ends_with(".part") || left.ends_with(".new") || left.starts_with("out"))
+        << left;
+  }
+}
+
+struct BadLine {
+  std::string arguments;  ///< @ is a folder
+  std::vector<std::string> words;
+};
+
+void expect_usage(const std::string& before, const std::vector<BadLine>& lines) {
+  for (const auto& [arguments, words] : lines)
+    expect_rejected({arguments, before + arguments, 2, words});
+}
+
+TEST(HostileCommandLines, OfFrames) {
+  expect_usage(
+      "render " + kCornell + " -o @/out.exr ",
+      {
+          {"--view inside", {"--view: found 'inside', allowed: full,direct,"}},
+          {"--grid 0x10", {"grid", "0x10", "1..512"}},
+          {"--cascade-size 1e-30 --view cells", {"cascade-size", "1e-06..10000000"}},
+          {"--eye 1e7,0,0 --target 0,0,0 --cascade-size 3", {"cascade-size: found 3", "or more"}},
+          {"--camera=", {"--camera"}},
+          {"--frobnicate 3", {"--frobnicate"}},
+          {"--iteration 3", {"'--iteration'", "did you mean --iterations?"}},
+          {"--iterations 24",
+           {"--iterations 24 has no effect with transport sweep (the default)",
+            "allowed with transport sampled or exact"}},
+          {"--lobe rotate --basis bins24", {"--lobe rotate has no effect with basis bins24;"}},
+          {"--directions 24 --preset paper",
+           {"--directions 24 has no effect with transport sampled (set by --preset paper)"}},
+          {"--near-rays 4 --transport sampled",
+           {"--near-rays 4 has no effect with transport sampled", "allowed with transport sweep"}},
+          {"--near traced --transport sampled", {"near: found 'traced' with transport 'sampled'"}},
+          {"--blocking areas --blockers none",
+           {"--blocking areas has no effect with blockers none;"}},
+          {"--preset paper --transport sweep", {"found 'kernel' (set by --preset paper)"}},
+          {"--grid 8 --grid 16", {"--grid"}},
+          {"--grid", {"--grid: found no value"}},
+          {"--stats --quiet", {"--stats: found the option --quiet, allowed: a value"}},
+          {"--samples 64", {"render: unknown option '--samples'; --help-all"}},
+          {"--eye 1,2,3", {"--target"}},
+          {"--eye 1,2,3 --target 1,2,3", {"the eye itself"}},
+          {"--eye 0,0,0 --target 0,1,0", {"parallel"}},
+          {"--eye 1,2,3 --target 0,0,0 --camera front", {"--camera"}},
+          {"--eye 0,0,0 --target 1,0,0 --fov 180", {"--fov"}},
+          {"--eye 0,0,0 --target 1,0,0 --near-plane 0", {"--near-plane"}},
+          {"--sun 0,0,0", {"--sun"}},
+          {"--medium ''", {"--medium"}},
+          {"--medium 1,1e7", {"--medium"}},
+          {"--light-scale 1e7", {"--light-scale", "1e-06..1000000"}},
+          {"--light-scale 2 --sun 0,-1,0", {"--sun"}},
+          {"--basis a\033[31mb", {"basis"}},
+          {"--basis \377\376", {"basis"}},
+      });
+}
+
+TEST(HostileCommandLines, OfCommands) {
+  const std::string film = "sequence " + kCornell + " -o @/out ",
+                    quality = "quality " + kCornell + " ", truth = "pathtrace " + kCornell + " ";
+  expect_usage("",
+               {
+                   {"render -o @/out.exr", {"SCENE"}},
+                   {"render " + kCornell, {"--output"}},
+                   {"render " + kCornell + " " + kCornell + " -o @/out.exr", {"cornell.json"}},
+                   {"render " + kCornell + " -o @/out.bmp", {"'.bmp'", ".exr, .png"}},
+                   {"paint it", {"'paint'", "render", "compare"}},
+                   {"--quiet renderr " + kCornell, {"'renderr'", "did you mean render?"}},
+                   {"qualtiy", {"did you mean quality?"}},
+                   {"report @/out", {"nothing to show"}},
+                   {"--quiet", {"subcommand"}},
+                   {"--device 99 devices2", {"devices"}},
+                   {"devices check", {"check"}},
+                   {"bench everything", {"SUITE: found 'everything', allowed: table1,"}},
+                   {"bench bases --filter (", {"--filter", "regular expression"}},
+                   {"bench bases --repetitions 0", {"--repetitions"}},
+                   {"bench bases --format xml", {"--format", "github-action"}},
+                   {"bench ceilings --fail-above 1.2", {"--compare"}},
+                   {"compare a.json b.json --fail-above 0.5", {"--fail-above"}},
+                   {"bench bases --model a.gltf", {"--model", "--scene"}},
+                   {"bench bases --format json --compare @/a.json", {"--compare", "stdout"}},
+                   {"check --stage cook", {"--stage", "gather"}},
+                   {"basis sh2 --axis 0,0,0", {"--axis"}},
+                   {"basis sh2 --axis up", {"--axis", "'up'"}},
+                   {"compare a.exr", {"B"}},
+                   {"compare a.exr b.exr --amplify -1", {"--amplify"}},
+                   {"report", {"DIR"}},
+                   {film + "--fps 24", {"--frames"}},
+                   {film + "--frames 2", {"--fps"}},
+                   {film + "--frames 0 --fps 24", {"--frames"}},
+                   {film + "--frames 2 --fps 0", {"--fps: found '0', allowed: more than 0"}},
+                   {film + "--frames 1000000 --fps 0.001", {"--frames", "1000000 s"}},
+                   {film + "--frames 2 --fps 1 --format gif", {"--format"}},
+                   {film + "--frames 2 --fps 1 --video @/out.gif", {"--video", "'.gif'", ".mp4"}},
+                   {film + "--frames 2 --fps 1 --traced 4", {"--traced", "--stability"}},
+                   {quality + "--vary width=8,16", {"--vary", "one size"}},
+                   {quality + "--view inside", {"--view", "inside"}},
+                   {quality + "--camera nobody --cache @/c", {"nobody", "allowed: front"}},
+                   {truth + "-o @/out.exr --spp 0", {"--spp"}},
+                   {truth + "-o @/out.exr --noise 0", {"--noise"}},
+                   {truth + "-o @/out.exr --spp 4 --noise 0.1", {"--spp", "--noise"}},
+                   {truth + "-o @/out.exr --bounces 0", {"--bounces"}},
+                   {truth + "-o @/out.exr --view cells", {"--view", "cells", "irradiance"}},
+                   {truth + "-o @/out.exr --camera none", {"none"}},
+                   {"--lanes 2 devices", {"--lanes", "auto,1,8"}},
+                   {"render " CLPV_SOURCE_DIR "/scenes/empty_room.glb -o @/out.exr --light-scale 2",
+                    {"has no lights"}},
+               });
+}
+
+TEST(HostileCommandLines, OfDevices) {
+  for (const std::string device : {"99", "'no such thing'", "7:7", "-1"})
+    expect_rejected(
+        {device, "--device=" + device + " check --stage sizes", 4, {words_of(device).front()}});
+  expect_rejected(
+      {"by the environment", "check --stage sizes", 4, {"'99'"}, {}, {}, "CLPV_DEVICE=99"});
+}
+
+TEST(HostileSurroundings, Outputs) {
+  const auto rejected = [](const std::string& command, const std::vector<std::string>& words) {
+    expect_rejected({command, command, 1, words, {{"file", ""}, {"points.csv", ""}}});
+  };
+  rejected("render " + kCornell + " -o @/" + std::string(300, 'a') + ".exr", {"cannot be written"});
+  for (const std::string& command :
+       {"render " + kCornell + " -o @/none/a.exr",
+        "render " + kCornell + " -o @/out.exr --stats @/none/a.json",
+        std::string("bench ceilings --output @/none/a.json"),
+        "pathtrace " + kCornell + " -o @/none/a.exr",
+        "pathtrace " + kCornell + " -o @/out.exr --stats @/none/a.json",
+        "quality " + kCornell + " --cache @/out --output @/none/a.json",
+        std::string("compare a.exr b.exr -o @/none/a.png"),
+        "query " + kCornell + " --points @/points.csv -o @/none/a.csv",
+        "bake " + kCornell + " -o @/none/a.npz"})
+    rejected(command, {"none/a.", "no folder"});
+  for (const std::string& command : {"sequence " + kCornell + " --frames 1 --fps 1 -o @/file",
+                                     std::string("report @/file/there " + kCornell),
+                                     std::string("basis sh2 --figures @/file/there"),
+                                     std::string("bench ceilings --plot @/file/there")})
+    rejected(command, {"file"});
+}
+
+TEST(HostileSurroundings, Variables) {
+  const auto rejected = [](const std::string& variables, int code,
+                           const std::vector<std::string>& words) {
+    expect_rejected(
+        {variables, kTiny + "-o @/out.exr", code, words, {{"file", ""}}, {}, variables});
+  };
+  rejected("CLPV_PROGRAM_CACHE=none", 2, {"CLPV_PROGRAM_CACHE: found 'none', allowed: on, off"});
+  rejected("CLPV_LANES=2", 2, {"CLPV_LANES: 2; allowed: auto, 1 or 8"});
+  rejected("CLPV_KERNEL_DIR=@/none", 2, {"CLPV_KERNEL_DIR: found", "a folder with kernel files"});
+  rejected("CLPV_PROGRAM_CACHE=off CLPV_PROGRAM_DUMP=@/none", 1, {"none/", "there is no folder"});
+  rejected("env POCL_CACHE_DIR=@/file/below", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
+}
+
+}  // namespace
+}  // namespace clpv::test::hostile_test
+
+// The program as a process: exit codes, help and errors of its output streams. Other tests run
+// commands in their own process (support/run_here.hpp).
 namespace clpv::command_line_test {
 namespace {
 

@@ -136,8 +136,8 @@ TEST_F(Killed, AnInterruptIsReported) {
     ASSERT_TRUE(child.running()) << read_file(said);
     EXPECT_EQ(child.end(signal), 128 + signal);
     EXPECT_THAT(read_file(said), HasSubstr("clpv: interrupted; "));
-    EXPECT_THAT(read_file(said), HasSubstr(" of 1000 frames are in " + film.string() +
-                                           "; the same command resumes"));
+    EXPECT_THAT(read_file(said),
+                HasSubstr(" of 1000; the same command resumes in " + film.string()));
     EXPECT_THAT(frames_with_times(film), IsSupersetOf(frames_in(film)));
     for (const auto& entry : fs::directory_iterator(film)) {
       EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();

@@ -7,11 +7,11 @@
 //   CLPV_SHIM_COMPILER=no    devices have no compiler
 //   CLPV_SHIM_CLOCK=ticks    events have ticks of 42 ns
 //   CLPV_SHIM_CLOCK=short    events last 1/42 of their time
+//   CLPV_SHIM_CLOCK=late     the same, once a kernel ran
 //   CLPV_SHIM_CLOCK=swap     events end before they start, once a kernel ran
 //   CLPV_SHIM_CLOCK=still    events end when they start, once a kernel ran
-//   CLPV_SHIM_KERNELS=no     kernels do not run, for the host's time alone: markers take their
-//   place CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory
-//   objects that
+//   CLPV_SHIM_KERNELS=no     kernels do not run, for the host's time alone: markers instead
+//   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that
 //                            were not released
 //
 // "memory" is a call's name for all that allocate, "enqueue" for all that put work on the queue,
@@ -108,7 +108,7 @@ cl_int clGetEventProfilingInfo(cl_event event, cl_profiling_info info, size_t si
   if (fault == "ticks" && code == CL_SUCCESS && value != nullptr)
     *static_cast<cl_ulong*>(value) /= 42;
   cl_ulong start = 0;
-  if (fault == "short" && info == CL_PROFILING_COMMAND_END && code == CL_SUCCESS &&
+  if ((fault == "short" || (fault == "late" && kernel_ran)) && info == CL_PROFILING_COMMAND_END && code == CL_SUCCESS &&
       value != nullptr &&
       call(event, CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) == CL_SUCCESS)
     *static_cast<cl_ulong*>(value) = start + (*static_cast<cl_ulong*>(value) - start) / 42;

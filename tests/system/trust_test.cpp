@@ -117,32 +117,6 @@ TEST_F(CacheTest, WhatOthersMayHaveWrittenIsNotUsed) {
   EXPECT_THAT(cache.write("entry", std::string_view("x")), HasSubstr("another user"));
 }
 
-TEST_F(CacheTest, ProgramsAndMarksAreEntries) {
-  const ProgramCache programs(cache.path());
-  const ProgramCache::Binary binary(10, 7);
-  ASSERT_TRUE(programs.store("key", binary));
-  fs::rename(programs.file_of("key"), folder / "moved");
-  fs::create_symlink(folder / "moved", programs.file_of("key"));
-  EXPECT_FALSE(programs.load("key"));
-  EXPECT_TRUE(programs.store("key", {1}));
-  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(programs.file_of("key"))));
-
-  const test::Variable variable("POCL_CACHE_DIR", (folder / "pocl").string());
-  Device device;
-  device.platform = "Portable Computing Language";
-  const CompiledMarks marks(device);
-  EXPECT_FALSE(marks.has("key"));
-  marks.add("key");
-  EXPECT_TRUE(marks.has("key"));
-  const fs::path mark = *fs::directory_iterator(folder / "pocl/clpv");
-  fs::remove(mark);
-  fs::create_symlink(other, mark);
-  EXPECT_FALSE(marks.has("key"));
-  marks.add("key");
-  EXPECT_TRUE(marks.has("key"));
-  EXPECT_EQ(read_file(other), "of others");
-}
-
 TEST_F(CacheTest, ADamagedCellIsMeasuredAgain) {
   log_to_stderr(LogLevel::error);
   QualityStore store(cache.path());
@@ -186,24 +160,6 @@ TEST_F(CacheTest, ADamagedTruthIsTracedAgain) {
     }
   }
   EXPECT_EQ(read_file(first.file), whole) << "and replaced";
-}
-
-/// `clpv quality` of one cell.
-std::string quality(const fs::path& cache) {
-  return " quality " + kTiny + kSmallSteps + "--spp 1 --frames 1 --format json --cache " +
-         cache.string();
-}
-
-TEST_F(CacheTest, TwoProcessesShareOneQualityCacheAndOutput) {
-  const std::string command = CLPV_PROGRAM + quality(folder / "kept") +
-                              " --vary iterations=1,2 -o " + (folder / "a.json").string();
-  const test::Outcome both =
-      test::run("( " + command + " ) & " + command + "; code=$?; wait $! && exit $code");
-  EXPECT_EQ(both.exit_code, 0) << both.err;
-  EXPECT_THAT(both.err, Not(HasSubstr("again")));
-  EXPECT_EQ(nlohmann::json::parse(read_file(folder / "a.json")).at("cells").size(), 2u);
-  const test::Outcome third = run_here(quality(folder / "kept") + " --vary iterations=1,2");
-  EXPECT_THAT(third.err, Not(HasSubstr("again")));
 }
 
 // -------------------------------------------------------------------------------------- temporary
@@ -325,10 +281,8 @@ struct Inputs : ::testing::Test {
 TEST_F(Inputs, AreReplacedByNoOutput) {
   const test::TemporaryFolder cache;
   const auto before = contents_of(folder.path());
-  std::string steps = kSmallSteps;  // --centres replaces --basis
-  steps.erase(steps.find("--basis sh2 "), std::string_view("--basis sh2 ").size());
   // A scene with a sky is swept.
-  const std::string scene = " my.json" + steps.substr(0, steps.find("--transport")),
+  const std::string scene = " my.json" + kSmallSteps.substr(0, kSmallSteps.find("--basis")),
                     film = "sequence" + scene + "--frames 3 --fps 1 --format png -o . ",
                     cached = " --spp 1 --frames 1 --cache " + cache.path().string();
   const test::Outcome kernel = [&] {
@@ -336,25 +290,18 @@ TEST_F(Inputs, AreReplacedByNoOutput) {
     return run_here("check --list --junit gather/gather.cl", folder.path());
   }();
   EXPECT_EQ(kernel.exit_code, 2) << kernel.err;
-  const std::string rendered = "render" + scene;
   const std::vector<std::string> commands{
-      rendered + "-o o.exr --stats o.exr",
-      rendered + "-o o.exr --stats my.json",
-      rendered + "-o o.exr --stats hard.json",
-      rendered + "-o 'a b.png'",
-      rendered + "-o unused.png",
-      rendered + "-o 'my sky.exr'",
-      rendered + "-o o.exr --centres centres.json --stats centres.json",
+      "render" + scene + "-o o.exr --stats my.json",
+      "render" + scene + "-o o.exr --stats hard.json",
+      "render" + scene + "-o 'a b.png'",
+      "render" + scene + "-o 'my sky.exr'",
       "pathtrace my.json -o o.exr --stats my.json",
       "query" + scene + "--points points.csv -o points.csv",
-      "query" + scene + "--points points.csv -o model.bin",
       film,
       "sequence" + scene + "--frames 3 --fps 1 --stability -o . --centres stability.json",
       "quality" + scene + cached + " -o my.json",
-      "quality" + scene + cached + " --centres centres.json -o centres.json",
       "quality" + scene + cached + " --vary centres=stability.json,centres.json -o centres.json",
       "bench bases --scene my.json -o hard.json",
-      "bench bases --scene my.json -o o.json --log model.gltf",
       "basis --centres figure3.png --figures .",
       "report . --quality index.html"};
   for (const std::string& command : commands) {
@@ -363,11 +310,6 @@ TEST_F(Inputs, AreReplacedByNoOutput) {
     EXPECT_THAT(outcome.err, HasSubstr("allowed: another file")) << command;
     EXPECT_TRUE(contents_of(folder.path()) == before) << command;
   }
-  const std::string centres = "--frames 3 --fps 1 --format png --centres frame-0002.png -o .";
-  fs::remove(folder / "frame-0001.png");
-  const test::Outcome outcome = run_here("sequence " + kTiny + steps + centres, folder.path());
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("frame-0002.png; allowed: another file"));
 }
 
 TEST_F(Inputs, AreNoneWhereOutputsOfEarlierRunsAreReplaced) {

@@ -156,20 +156,6 @@ TEST_F(LongReplay, RowsOfAllKindsAreOkAndWrongWithAnotherConstant) {
   for (const Row& row : kLongRows) expect_judged(row);
 }
 
-TEST_F(Replay, ACapsuleIsCleanUnderOclgrind) {
-  if (test::run("oclgrind --version").exit_code != 0)
-    GTEST_SKIP() << "oclgrind is not installed (Debian: apt install oclgrind)";
-  const fs::path capsule = capsule_of(std::end(kRows)[-1], folder_ / "rows");
-  const std::string log = (folder_ / "log").string();
-  const test::Outcome outcome = replay(capsule, "",
-                                       "oclgrind --data-races --uninitialized --build-options "
-                                       "'-cl-opt-disable -Dalways_inline=noinline' --log " +
-                                           log);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("\nok: "));
-  EXPECT_EQ(test::read_file(log), "");
-}
-
 TEST_F(Replay, PrintsTheFirstWrongPlace) {
   EXPECT_EQ(replay().exit_code, 0);
   folder_.write("small/a.cl",
@@ -186,34 +172,6 @@ TEST_F(Replay, AKernelThatNeverEndsFails) {
   const test::Outcome outcome = replay(folder_ / "small", "", "REPLAY_SECONDS=1");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.out, HasSubstr("failed: ended by signal 14 (14: did not end within"));
-}
-
-TEST_F(Replay, NamesDamagedLines) {
-  const std::string before = "buffer 0 16\nwrite 0 in\nprogram 0 a.cl\n";
-  const std::pair<std::string, std::string> kDamaged[] = {
-      {"{\"json\": 1}", "capsule.txt:1: found '{\"json\":', allowed: buffer, image3d"},
-      {"buffer 0", "capsule.txt:1: found the end of the line, allowed: bytes"},
-      {"buffer 0 -1", "capsule.txt:1: found '-1', allowed: bytes"},
-      {"buffer 99999 4", "capsule.txt:1: found '99999', allowed: a memory, at most 4095"},
-      {"write 3 in", "capsule.txt:1: found memory 3, allowed: one of an earlier line"},
-      {"buffer 0 4\nwrite 0 in",
-       "capsule.txt:2: in: found 16 bytes (-1: no file), allowed: at most 4"},
-      {"buffer 0 16\nwrite 0 no", "capsule.txt:2: no: found -1 bytes (-1: no file)"},
-      {before + "launch 1 twice 1 4 2 m0", "capsule.txt:4: found program 1, allowed"},
-      {before + "launch 0 none 1 4 2 m0", "capsule.txt:4: clCreateKernel: error -46"},
-      {before + "launch 0 twice 1 4 2 m0 v0000004", "capsule.txt:4: found 'v0000004', allowed"},
-      {before + "launch 0 twice 1 4 2 m0", "capsule.txt:4: launching: error -52"},
-      {before + "expect 0 double out", "capsule.txt:4: found 'double', allowed: float"},
-  };
-  for (const auto& [commands, words] : kDamaged) {
-    capsule(commands);
-    const test::Outcome outcome = replay();
-    EXPECT_EQ(outcome.exit_code, 1) << commands;
-    EXPECT_THAT(outcome.out, HasSubstr("failed: " + words)) << commands;
-  }
-  folder_.write("small/a.cl", "__kernel void twice(");
-  capsule(kSmall);
-  EXPECT_THAT(replay().out, HasSubstr("failed: capsule.txt:3: clBuildProgram with"));
 }
 
 TEST_F(Replay, EndsWith77WithoutTheDevice) {

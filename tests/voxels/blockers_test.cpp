@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Blockers from a scene's triangles against known areas.
 
-#include "pipeline/voxels/blockers.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,6 @@
 
 #include "basis/bounce.hpp"
 #include "kernels/shared/reflectors.h"
-#include "pipeline/voxels/reflectors.hpp"
-#include "pipeline/voxels/visibility.hpp"
-#include "pipeline/voxels/voxel_field.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "verify/check.hpp"

@@ -6,9 +6,7 @@
 
 #include "basis/bounce.hpp"
 #include "kernels/shared/reflectors.h"
-#include "pipeline/voxels/blockers.hpp"
-#include "pipeline/voxels/reflectors.hpp"
-#include "pipeline/voxels/visibility.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "support/fingerprint.hpp"
 
 namespace clpv {

@@ -4,7 +4,7 @@
 #include "kernels/shared/sort.h"
 #include "kernels/shared/thinned.h"
 #include "kernels/shared/view_injection.h"
-#include "pipeline/inject/lobe_literals.hpp"
+#include "pipeline/inject/lookup_table.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

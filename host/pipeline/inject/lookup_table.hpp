@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's look-up tables on the device, as a plain buffer or as a 1-D image of a buffer.
+// Literals of lobes, and the paper's look-up tables on the device, as a plain buffer or as a 1-D
+// image of a buffer.
 #pragma once
 
 #include <CL/opencl.hpp>
@@ -11,6 +12,7 @@
 #include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "options/choices.hpp"
+#include "support/literals.hpp"
 
 namespace clpv {
 
@@ -44,5 +46,9 @@ class LookupTable {
   Buffer buffer_;
   cl::Image1DBuffer image_;
 };
+
+/// Tables of the basis and of its lobes (kernels/basis/lobe.h). Call add_coefficient_literals() too
+/// and, for rotated lobes, LookupTable::add_literals().
+Literals lobe_literals(const Basis& basis, const LobeOptions& lobes);
 
 }  // namespace clpv

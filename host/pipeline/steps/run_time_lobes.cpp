@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pipeline/inject/lobe_literals.hpp"
+#include "pipeline/inject/lookup_table.hpp"
 #include "support/error.hpp"
 
 namespace clpv {

@@ -6,7 +6,7 @@
 #include "basis/bounce.hpp"
 #include "kernels/shared/reflectors.h"
 #include "pipeline/sweep/sweep_literals.hpp"
-#include "pipeline/voxels/reflectors.hpp"
+#include "pipeline/voxels/voxel_field.hpp"
 
 namespace clpv {
 namespace {
@@ -33,7 +33,8 @@ Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& optio
   inject_series_.emplace(session, program, "inject_series");
   const VolumeShape shape{options.grid, kCellFaces, kChannels};
   for (std::size_t c = 0; c < options.parts.size(); ++c)
-    series_.emplace_back(session, shape, "series of bounces", options.format);
+    series_.emplace_back(session, VolumeShape{options.grid, kCellFaces, CLPV_SERIES_CHANNELS},
+                         "series of bounces", options.format);
   returned_ = std::make_unique<Volume>(session, shape, "returned flux", options.format);
 }
 
@@ -70,8 +71,10 @@ void Bouncer::sum_series(std::size_t cascade, const Buffer& swept) {
 }
 
 void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, const Volume& injected,
-                               SweepSources& sources) {
-  inject_reflected_->set(swept, reflectors_[cascade].memory(), injected.memory(),
+                               SweepSources& sources, bool relaxed) {
+  const Volume& reflectance = (relaxed ? series_ : reflectors_)[cascade];
+  inject_reflected_->set(swept, reflectors_[cascade].memory(), reflectance.memory(),
+                         cl_int{relaxed ? CLPV_SERIES_FIRST : 0}, injected.memory(),
                          sources.coefficients, sources.lit);
   volumes_.launch(*inject_reflected_, 1);
 }

@@ -40,12 +40,12 @@ class Bouncer {
   const Volume& set_reflectors(std::size_t cascade, const Buffer& swept, const Volume& reflectors);
   /// Returns R X. `swept`: a sweep of inject_flux(R), whose incident flux is X.
   const Volume& reflect_returned(std::size_t cascade, const Buffer& swept);
-  /// Sets the series S of a cascade. `swept`: a sweep of inject_flux() of reflect_returned().
+  /// Sets the series S and E of a cascade. `swept`: a sweep of inject_flux() of reflect_returned().
   void sum_series(std::size_t cascade, const Buffer& swept);
 
-  /// Writes I + R D. `swept` gives the incident flux D.
+  /// Writes I + R D, `relaxed` I + E D. `swept` gives the incident flux D.
   void inject_reflected(std::size_t cascade, const Buffer& swept, const Volume& injected,
-                        SweepSources& sources);
+                        SweepSources& sources, bool relaxed);
   /// Writes I + R D_1 + S (D_2 - D_1).
   void inject_series(std::size_t cascade, const Buffer& first_swept, const Buffer& second_swept,
                      const Volume& injected, SweepSources& sources);
@@ -53,7 +53,7 @@ class Bouncer {
  private:
   SweepVolumes volumes_;
   std::vector<Volume> reflectors_;    ///< R of each cascade; empty with one bounce
-  std::vector<Volume> series_;        ///< S of each cascade; empty without a series
+  std::vector<Volume> series_;        ///< S and E of each cascade; empty without a series
   std::unique_ptr<Volume> returned_;  ///< R X; null without a series
   Kernel inject_flux_;
   std::optional<Kernel> normalise_reflectors_, inject_reflected_;

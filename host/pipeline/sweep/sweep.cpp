@@ -325,7 +325,9 @@ void Sweeper::set_sources(const SweepStep& step, const SweepInput& input) {
       source_.set(input.injected.memory(), sources_.coefficients, sources_.lit);
       return volumes_.launch(source_, 1);
     case SweptLight::reflected:
-      return bouncer_.inject_reflected(input.cascade, swept_, input.injected, sources_);
+    case SweptLight::relaxed:
+      return bouncer_.inject_reflected(input.cascade, swept_, input.injected, sources_,
+                                       step.light == SweptLight::relaxed);
     case SweptLight::series:
       return bouncer_.inject_series(input.cascade, last_swept_, swept_, input.injected, sources_);
   }

@@ -74,7 +74,8 @@ Literals bounce_literals(const Basis& basis) {
       .flag("CLPV_HARMONICS", basis.bands() > 0)
       .real("CLPV_LEAST_SHARE", kLeastShare)
       .real("CLPV_LEAST_WHITE", kLeastWhite)
-      .real("CLPV_MAX_RETURNED", kMaxReturned);
+      .real("CLPV_MAX_RETURNED", kMaxReturned)
+      .real("CLPV_RELAXATION", kRelaxation);
 }
 
 Literals scattering_literals(double anisotropy) {

@@ -11,6 +11,8 @@ std::vector<SweepStep> bounced_plan(int sweeps, SweptLight last, bool scattered)
   std::vector<SweepStep> plan{{.light = SweptLight::injected}};
   while (static_cast<int>(plan.size()) < sweeps)
     plan.push_back({.light = SweptLight::reflected, .scattered = scattered});
+  if (last == SweptLight::series && sweeps > kLeastSeriesSweeps)
+    plan[1].light = SweptLight::relaxed;
   plan.push_back({.light = last, .all_directions = true, .scattered = scattered});
   return plan;
 }

@@ -8,12 +8,13 @@
 
 namespace clpv {
 
-/// Light that a sweep starts from. I: injected light; R: reflectors; S: their series; D: incident
-/// flux of the last sweep, D_1 of the one before it. In a medium that scatters, each sweep adds one
-/// reflection and one scattering.
+/// Light that a sweep starts from. I: injected light; R: reflectors; S, E: their series
+/// (kernels/sweep/bounce.cl); D: incident flux of the last sweep, D_1 of the one before it. In a
+/// medium that scatters, each sweep adds one reflection and one scattering.
 enum class SweptLight {
   injected,   ///< I
   reflected,  ///< I + R D
+  relaxed,    ///< I + E D
   series,     ///< I + R D_1 + S (D - D_1)
 };
 

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "basis/bounce.hpp"
+#include "kernels/shared/blockers.h"
+#include "kernels/shared/reflectors.h"
+
 namespace clpv {
 namespace {
 
@@ -14,6 +18,8 @@ constexpr double kReach = 0.51;
 // Bases are this many grids apart; the base is constant while a cascade moves within that distance.
 constexpr int kGridsApart = 4;
 constexpr std::size_t kMaskGroup = 64;  // work-items per group
+constexpr std::size_t kPoints = 64;  // points per cube between cell centres, one byte each
+static_assert(kCellFaces == CLPV_CELL_FACES);
 
 /// Returns the position of a grid. Its first cell is at least two grids from the base along each
 /// axis, so that cell indices nearby are not negative.
@@ -230,6 +236,60 @@ void VoxelField::list_clusters(const ClpvRegion& region) {
   });
   near_ = near.size();
   session_.write(clusters_, near);
+}
+
+VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades,
+                        const VolumeFormat& format) {
+  VoxelKind kind{
+      .what = "masks of triangles that block",
+      .shape = {grid + 1, grid + 1, CLPV_BLOCKER_WORDS, static_cast<std::size_t>(cascades)},
+      .max_triangles = 1u << 20,
+      .program = {"voxels/blockers.cl"},
+      .kernel = "voxelize_blockers",
+      .volume_program = {"voxels/blocked_areas.cl"},
+      .volume_kernel = "blocked_areas"};
+  kind.program.literals.integer("CLPV_GRID", grid).flag("CLPV_MASKED", scene.masked);
+  add_volume_literals(kind.volume_program.literals, grid, format);
+  add_coefficient_literals(kind.volume_program.literals, 3);
+  return kind;
+}
+
+VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeFormat& format,
+                          bool white) {
+  VoxelKind kind{.what = "sides of triangles that reflect",
+                 .shape = {grid, grid, CLPV_CELL_FACES * CLPV_FACE_WORDS, 1},
+                 .max_triangles = 1u << 18,
+                 .program = {"voxels/reflectors.cl"},
+                 .kernel = "voxelize_reflectors",
+                 .indexed = false,
+                 .volume_program = {"voxels/face_albedo.cl"},
+                 .volume_kernel = "face_albedo"};
+  kind.program.literals.integer("CLPV_GRID", grid)
+      .flag("CLPV_MASKED", scene.masked)
+      .flag("CLPV_TEXTURED", scene.textured)
+      .flag("CLPV_COLOURED", scene.coloured)
+      .flag("CLPV_WHITE", white);
+  add_volume_literals(kind.volume_program.literals, grid, format);
+  add_coefficient_literals(kind.volume_program.literals, kCellFaces);
+  return kind;
+}
+
+VoxelKind visibility_masks(int grid, int cascades) {
+  // One cube between centres for each cell except the last ones.
+  const VoxelMaskShape shape{grid, grid - 1, kPoints / sizeof(cl_uint),
+                             static_cast<std::size_t>(cascades)};
+  VoxelKind kind{.what = "cells occluded by triangles",
+                 .shape = shape,
+                 .max_triangles = 1u << 20,
+                 .program = {"voxels/visibility.cl"},
+                 .kernel = "occlude_cells",
+                 .textured = false};
+  kind.program.literals.integer("CLPV_GRID", grid);
+  return kind;
+}
+
+std::size_t visibility_bytes(int grid) {
+  return visibility_masks(grid, 1).shape.bytes();
 }
 
 }  // namespace clpv

@@ -45,6 +45,29 @@ struct VoxelKind {
   std::string volume_kernel = {};
 };
 
+/// Stage `blockers` (kernels/voxels/blockers.cl; docs/method.md, 'Blockers'): geometry volumes of
+/// areas (Blocking::areas): (grid + 1)^3 samples of 3 numbers of `format`, one channel. Each is the
+/// share of a square that triangles cover. Overlapping triangles count once.
+VoxelKind blocker_masks(const SceneBuffers& scene, int grid, int cascades,
+                        const VolumeFormat& format);
+
+/// Stage `reflectors` (kernels/voxels/reflectors.cl; docs/method.md, 'More bounces'): reflectance
+/// of the faces of light cells: kCellFaces numbers in [0, 1] of `format` per channel, for +x, -x,
+/// +y, -y, +z, -z. Each is the covered share of the face times mean albedo; further channels:
+/// kernels/voxels/face_albedo.cl. `white`: no albedo, and backs count only where the material is
+/// double-sided. Masks are those of the last cascade: sums of integers, whose order does not
+/// matter.
+VoxelKind reflector_masks(const SceneBuffers& scene, int grid, const VolumeFormat& format,
+                          bool white = false);
+
+/// Stage `visibility` (kernels/voxels/visibility.cl; docs/method.md, 'Gathering'): occlusion bits
+/// of the eight cells around each of 64 points in every cube between cell centres. Each point has
+/// one byte, in the order of kernels/voxels/visibility.cl. No volume follows from them.
+VoxelKind visibility_masks(int grid, int cascades);
+
+/// Size of one cascade's bits of visibility_masks() [bytes].
+std::size_t visibility_bytes(int grid);
+
 /// Masks that triangles set in the cells of cascades, and the volumes that follow from them.
 /// Deterministic: the order of triangles does not matter.
 class VoxelField {

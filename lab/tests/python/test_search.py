@@ -148,24 +148,3 @@ def test_from_a_scenes_normals_to_a_set(tmp_path):
     assert basis["name"] == "mine" and basis["lambdas"] == made["lambda"] and len(
         made["centres"]) == 4
 
-
-def test_outputs_spare_the_weights_and_stay_links(tmp_path):
-    weights, link = tmp_path / "weights.json", tmp_path / "link.json"
-    weights.write_text('{"weights": [[0, 0, 1, 1]]}')
-    link.symlink_to(weights)
-    for target in weights, link:
-        found = run(1, "--starts", 1, "--weights", weights, "-o", target)
-        assert found.returncode == 2 and "allowed: another file" in found.stderr
-    assert weights.read_text() == '{"weights": [[0, 0, 1, 1]]}'
-    assert run(1, "--starts", 1, "-o", link).returncode == 0
-    assert link.is_symlink() and "centres" in weights.read_text()
-    found = run(4, "--starts", 100000, "-o", "/dev/null")  # ends before the work
-    assert found.returncode == 1 and "/dev/null: cannot be written: it is not a" in found.stderr
-
-
-def test_exit_codes(tmp_path):
-    assert run(0).returncode == 2 and "allowed: 1 to 64" in run(0).stderr
-    assert run(4, "--weights", tmp_path / "none.json").returncode == 3
-    assert run(4, "--over", "axes", "--weights", "a.json").returncode == 2
-    missing = run(1, "--starts", 1, "-o", tmp_path / "none/a.json")
-    assert missing.returncode == 1 and "Traceback" not in missing.stderr
