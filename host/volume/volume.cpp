@@ -60,9 +60,6 @@ Volume::Volume(Session& session, const VolumeShape& shape, const std::string& wh
     const cl::ImageFormat texel(CL_RGBA,
                                 format.storage == Storage::float16 ? CL_HALF_FLOAT : CL_FLOAT);
     image_ = session.image(texel, region(shape), bytes_, what);
-    if (session.device().lanes == 1)
-      zero_ =
-          std::make_shared<Kernel>(session, ProgramSource{"volume/zero_image.cl"}, "zero_image");
   } else {
     buffer_ = session.buffer(bytes_, what);
   }
@@ -78,10 +75,6 @@ void Volume::clear(Session& session) {
   if (format_.layout != Layout::image) {
     session.fill_zero(buffer_, bytes_);
     return;
-  }
-  if (zero_) {
-    const auto [x, y, z] = region(shape_);
-    return zero_->set(image_).launch({x, y, z}, {64, 1, 1});
   }
   session.timeline().enqueue([&](cl::Event* event) {
     named_errors([&] {

@@ -2,11 +2,9 @@
 // A volume on the device: N coefficients per cell and channel, in one buffer or one image.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "volume/volume_format.hpp"
 
@@ -54,10 +52,9 @@ class Volume {
   VolumeShape shape_;
   VolumeFormat format_;
   std::size_t bytes_ = 0, from_ = 0;
-  Buffer whole_;                  ///< of an array(), and from_ the volume's first byte
-  Buffer buffer_;                 ///< empty if the layout is `image`
-  Image3D image_;                 ///< empty otherwise
-  std::shared_ptr<Kernel> zero_;  ///< clears an image on a GPU: its host may wait for a fill
+  Buffer whole_;   ///< of an array(), and from_ the volume's first byte
+  Buffer buffer_;  ///< empty if the layout is `image`
+  Image3D image_;  ///< empty otherwise
 };
 
 /// Throws Error(run_time) unless `volume` has the shape and format that the stage `what` is built

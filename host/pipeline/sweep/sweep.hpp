@@ -113,7 +113,7 @@ class Sweeper {
   SweepVolumes volumes_;
   Buffer bins_;
   SweepSources sources_;
-  Buffer closed_;                ///< closed_links.cl; zeros close no link
+  Buffer closed_;  ///< closed_links.cl; zeros close no link
   /// Results of the last two sweeps; last_swept_: only for SweptLight::series.
   Buffer swept_, last_swept_;
   Buffer plane_buffer_, border_;
