@@ -15,6 +15,7 @@
 #include "shared/sweep.h"
 #include "shared/view.h"
 #include "shared/view_injection.h"
+#include "shared/view_light.h"
 
 __kernel void sizes(__global uint* bytes) {
   if (get_global_id(0) != 0) return;

@@ -38,7 +38,7 @@ inline constexpr auto kNames<Stage> = name_list("sizes", "rasterize", "emit", "i
 enum class Pass {
   rasterize_camera,
   rasterize_shadow,  ///< per light
-  rasterize_rsm,     ///< per cascade and light
+  rasterize_rsm,     ///< of all lights; per cascade, or of all
   emit,              ///< points of emissive surfaces
   inject_light,      ///< per cascade, or of all; the next five are per cascade
   inject_geometry,

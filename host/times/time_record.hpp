@@ -37,7 +37,7 @@ void from_json(const nlohmann::json& json, TimeRecord& record);
 /// Rules of records at a place, for example "/times/*"; from_json reads what passes them.
 std::vector<Rule> time_rules(const std::string& place);
 
-/// "gather", "gather/cascade:1", "rasterize-rsm/cascade:1/light:0"
+/// "gather", "gather/cascade:1", "rasterize-rsm/cascade:1", "rasterize-shadow/light:0"
 std::string name_of(const TimeRecord& record);
 
 }  // namespace clpv

@@ -19,6 +19,7 @@
 #include "kernels/shared/sweep.h"
 #include "kernels/shared/view.h"
 #include "kernels/shared/view_injection.h"
+#include "kernels/shared/view_light.h"
 #include "options/render_options.hpp"
 #include "options/stage_options.hpp"
 #include "verify/check.hpp"

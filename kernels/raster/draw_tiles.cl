@@ -9,7 +9,8 @@
 // rasterization'; docs/method.md, 'Rasterize'). A pixel keeps the smallest key, and of equal keys
 // the smallest triangle number: results do not depend on the order of the lists.
 //
-// In:      list          ClpvRasterTriangle of the view
+// In:      views         of one size, drawn together
+//          list          ClpvRasterTriangle of the views
 //          starts        index in `binned` of the first entry of each slice of each tile
 //          binned        entries: index in `list`, smallest key
 //          counts        CLPV_LISTED and so on. With more entries than most_entered, `starts` and
@@ -18,8 +19,8 @@
 //          only_depth    1: a shadow map, which needs no `seen`
 //          vertices, triangles, materials, textures, texels   the scene, for masked materials
 // In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers
-//                        per row of a tile, CLPV_TILE rows per tile, tiles row by row; INFINITY and
-//                        UINT_MAX for empty pixels
+//                        per row of a tile, CLPV_TILE rows per tile, tiles row by row, views one
+//                        after the other; INFINITY and UINT_MAX for empty pixels
 // Out:     farthest      largest key of the pixels of each tile
 // With W 8 a work-item draws a tile, with W 1 a pixel: a work-group has a tile.
 #include "lanes.h"
@@ -32,7 +33,7 @@
 #if W == 1
 __attribute__((reqd_work_group_size(CLPV_TILE, CLPV_TILE, 1)))
 #endif
-__kernel void draw_tiles(const ClpvView view, const uint fresh, const uint only_depth,
+__kernel void draw_tiles(__constant const ClpvView* views, const uint fresh, const uint only_depth,
                          __global const ClpvRasterTriangle* list, __global const uint* starts,
                          __global const uint2* binned, __global const uint* counts,
                          const uint most_entered, __global const ClpvVertex* vertices,
@@ -40,12 +41,13 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, const uint only_
                          __global const ClpvMaterial* materials, __global const float4* textures,
                          __global const uint* texels, __global realW* keys, __global uintW* seen,
                          __global float* farthest) {
-  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE,
+  const ClpvView view = views[get_group_id(2)];
+  const uint tiles_x = tiles_across(view),
              x = get_global_id(0) / CLPV_TILE_VECTORS, y = get_global_id(1) * CLPV_ROWS / CLPV_TILE,
              vector = get_global_id(0) % CLPV_TILE_VECTORS,
              first_row = get_global_id(1) * CLPV_ROWS % CLPV_TILE;
   if (x >= tiles_x || y * CLPV_TILE >= view.height) return;
-  const uint at = y * tiles_x + x;
+  const uint at = get_group_id(2) * tiles_in(view) + y * tiles_x + x;
   const bool sorted = counts[CLPV_ENTERED] <= most_entered && counts[CLPV_ENTERED_TOO_MANY] == 0;
   const uint start = starts[at * CLPV_SLICES], end = starts[(at + 1) * CLPV_SLICES];
   if (!fresh && sorted && start == end) return;
@@ -100,10 +102,11 @@ __kernel void draw_tiles(const ClpvView view, const uint fresh, const uint only_
 // Returns true if some tile of a cluster has pixels behind its nearest key.
 static inline bool may_be_seen(const ClpvView view, const ClpvViewCluster cluster,
                                __global const float* farthest) {
-  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE;
+  const uint tiles_x = tiles_across(view), first = cluster.view * tiles_in(view);
   const uint left = cluster.first & 0xffffu, right = cluster.last & 0xffffu;
   for (uint y = cluster.first >> 16; y <= cluster.last >> 16; ++y) {
-    for (uint at = y * tiles_x + left; at <= y * tiles_x + right; ++at) {
+    const uint row = first + y * tiles_x;
+    for (uint at = row + left; at <= row + right; ++at) {
       if (!(farthest[at] < cluster.nearest)) return true;
     }
   }
@@ -112,21 +115,23 @@ static inline bool may_be_seen(const ClpvView view, const ClpvViewCluster cluste
 
 // Among `count` clusters from `first` on, marks those that lie behind every pixel drawn so far in
 // the tiles of their box.
-__kernel void hide_clusters(const ClpvView view, const uint first, const uint count,
+__kernel void hide_clusters(__constant const ClpvView* views, const uint first, const uint count,
                             __global const float* farthest, __global ClpvViewCluster* clusters,
-                            __global uint* counts, __global uint* slice_counts) {
-  clear_counters(view, counts, slice_counts);
+                            const uint slices, __global uint* counts,
+                            __global uint* slice_counts) {
+  clear_counters(slices, counts, slice_counts);
   const uint i = get_global_id(0);
   if (i >= count) return;
   const ClpvViewCluster cluster = clusters[first + i];
-  if (!may_be_seen(view, cluster, farthest)) clusters[first + i].number = CLPV_HIDDEN;
+  if (!may_be_seen(views[cluster.view], cluster, farthest))
+    clusters[first + i].number = CLPV_HIDDEN;
 }
 
 // Only depths: a shadow map. A work-item stores W pixels of a row.
 __kernel void resolve_depth(const ClpvView view, __global const realW* keys,
-                            __global float* depths, __global uint* counts,
+                            __global float* depths, const uint slices, __global uint* counts,
                             __global uint* slice_counts) {
-  clear_counters(view, counts, slice_counts);
+  clear_counters(slices, counts, slice_counts);
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   store_depth(view, p, keys[p.row], depths);

@@ -4,6 +4,7 @@
 
 #include "raster/edges.h"
 #include "lanes.h"
+#include "raster/tile_row.h"
 #include "shared/raster.h"
 
 // W ClpvRasterTriangles, word by word.
@@ -20,7 +21,8 @@ typedef struct {
 typedef struct {
   __global uint* entries;
   volatile __global uint* slice_counts;
-  __global uint2* wide;
+  __global ClpvWideTriangle* wide;
+  uint view;  // number of the triangles' view
 } Entries;
 
 // Range of tiles that the box of a triangle overlaps.
@@ -75,14 +77,14 @@ static inline Edge side_of(const RasterWords* words, const int i, const int lane
 // Returns the index after the last one.
 static inline uint enter_all(const ClpvView view, const RasterWords* words, const int lane,
                              const uint index, uint at, const Entries to) {
-  const uint tiles_x = (view.width + CLPV_TILE - 1) / CLPV_TILE,
+  const uint tiles_x = tiles_across(view), first = to.view * tiles_in(view),
              nearest = (uint)words->word[CLPV_NEAREST_WORD][lane];
   const uint slice =
       slice_of(view, (uint)words->word[CLPV_TRIANGLE_WORD][lane], as_float(nearest));
   const TileRange tiles = tiles_of(words, lane);
   if (tiles.left == tiles.right && tiles.top == tiles.bottom) {
     enter(to.entries + CLPV_ENTRY_WORDS * at,
-          (tiles.top * tiles_x + tiles.left) * CLPV_SLICES + slice, index, nearest,
+          (first + tiles.top * tiles_x + tiles.left) * CLPV_SLICES + slice, index, nearest,
           to.slice_counts);
     return at + 1;
   }
@@ -96,8 +98,8 @@ static inline uint enter_all(const ClpvView view, const RasterWords* words, cons
     long a_here = a_left, b_here = b_left, c_here = c_left;
     for (int x = tiles.left; x <= tiles.right; ++x) {
       if ((a_here | b_here | c_here) >= 0) {
-        enter(to.entries + CLPV_ENTRY_WORDS * at++, (y * tiles_x + x) * CLPV_SLICES + slice, index,
-              nearest, to.slice_counts);
+        enter(to.entries + CLPV_ENTRY_WORDS * at++,
+              (first + y * tiles_x + x) * CLPV_SLICES + slice, index, nearest, to.slice_counts);
       }
       a_here += CLPV_TILE * a.step_x, b_here += CLPV_TILE * b.step_x,
           c_here += CLPV_TILE * c.step_x;
@@ -185,7 +187,10 @@ CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const
     if (room_for_entries && W == 1 && tiles > CLPV_FEW_TILES) {
       const uint slot = atomic_inc(counts + CLPV_WIDE);
       // Always true, unless a 32-bit counter has overflowed.
-      if (slot < capacity.entries / CLPV_FEW_TILES) entries.wide[slot] = (uint2)(index, at);
+      if (slot < capacity.entries / CLPV_FEW_TILES) {
+        const ClpvWideTriangle wide = {index, at, entries.view};
+        entries.wide[slot] = wide;
+      }
       at += tiles;
     } else if (room_for_entries) {
       at = enter_all(view, words, lane, index, at, entries);

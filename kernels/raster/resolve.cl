@@ -13,8 +13,7 @@
 // In:   keys, seen    depth key and triangle of each pixel (draw_tiles.cl)
 //       vertices, triangles, materials, textures, texels   the scene, in rows of float4
 //                                                          (shared/mesh.h)
-//       colour_scale  Surface::colour_scale: flux [W] of a stored 1
-//       first_texel   of an RSM: index of its first texel in depths, normals and fluxes
+//       views         of RSMs: of one size, in the same depths, normals and fluxes
 // Out:  depths        [m] along the view's forward axis, 0 for empty pixels
 //       normals       unit, towards the viewer: n_s and the number of n_g (shared/normal.h); RSMs:
 //                     n_g
@@ -29,6 +28,7 @@
 #include "raster/surface_row.h"
 #include "raster/tile_row.h"
 #include "raster/triangle.h"
+#include "shared/view_light.h"
 
 // Largest (n_s . w) / (n_g . w), for surfaces that the light grazes.
 __constant const float largest_weight = 10.0f;
@@ -108,9 +108,9 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
                              __global const float4* textures, __global const uint* texels,
                              __global float* depths, __global SurfaceTexel* normals,
                              __global SurfaceTexel* colours,
-                             __global float4* emissives, __global uint* counts,
-                             __global uint* slice_counts) {
-  clear_counters(view, counts, slice_counts);
+                             __global float4* emissives, const uint slices,
+                             __global uint* counts, __global uint* slice_counts) {
+  clear_counters(slices, counts, slice_counts);
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
@@ -139,27 +139,29 @@ CLPV_INLINE realW light_weight(const PixelSurface* surface, const Vec towards) {
   return same ? ONE : (weight < (realW)(largest_weight) ? weight : (realW)(largest_weight));
 }
 
-__kernel void resolve_rsm(const ClpvView view, const ClpvLight light, __global const realW* keys,
+__kernel void resolve_rsm(__constant const ClpvLitView* views, __global const realW* keys,
                           __global const uintW* seen, __global const float4* vertices,
                           __global const float4* triangles, __global const float4* materials,
                           __global const float4* textures, __global const uint* texels,
                           __global float* depths, __global SurfaceTexel* normals,
-                          __global SurfaceTexel* fluxes,
-                          const float colour_scale, const uint first_texel, __global uint* counts,
-                          __global uint* slice_counts) {
-  clear_counters(view, counts, slice_counts);
+                          __global SurfaceTexel* fluxes, const uint slices,
+                          __global uint* counts, __global uint* slice_counts) {
+  clear_counters(slices, counts, slice_counts);
+  const ClpvLitView lit = views[get_group_id(2)];
+  const ClpvView view = lit.view;
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
   PixelSurface surface;
-  resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths + first_texel, &hit, &surface);
+  resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths + lit.first, &hit, &surface);
   const realW depth = stored_depth(view, keys[p.row]);
   Vec towards;
-  const Vec incident = vec_times(light_irradiance(light, row_positions(view, p, depth), &towards),
-                                 row_footprints(view, p, depth) * light_weight(&surface, towards));
-  const uint first = first_texel + p.py * view.width + p.px;
+  const Vec arriving = light_irradiance(lit.light, row_positions(view, p, depth), &towards);
+  const Vec incident =
+      vec_times(arriving, row_footprints(view, p, depth) * light_weight(&surface, towards));
+  const uint first = lit.first + p.py * view.width + p.px;
   store_normals(p, vec_masked(hit, surface.geometric), ZERO, normals + first);
-  store_colours(p, vec_masked(hit, vec_product(surface.albedo, incident)), colour_scale,
+  store_colours(p, vec_masked(hit, vec_product(surface.albedo, incident)), lit.colour_scale,
                 fluxes + first);
 }
 

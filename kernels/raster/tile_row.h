@@ -22,14 +22,24 @@ static inline uint tile_row(const uint tile, const uint row, const uint vector) 
   return (tile * CLPV_TILE + row) * CLPV_TILE_VECTORS + vector;
 }
 
+// Tiles of a view along x, and all of them.
+static inline uint tiles_across(const ClpvView view) {
+  return (view.width + CLPV_TILE - 1) / CLPV_TILE;
+}
+static inline uint tiles_in(const ClpvView view) {
+  return tiles_across(view) * ((view.height + CLPV_TILE - 1) / CLPV_TILE);
+}
+
+// With several views of one size, the third id of the work-group is the number of the view: unlike
+// that of an item, compilers know it to be the same for the group.
 static inline PixelRow find_pixel_row(const ClpvView view) {
   PixelRow p;
-  const uint column = get_global_id(0), tiles = (view.width + CLPV_TILE - 1) / CLPV_TILE;
+  const uint column = get_global_id(0), first_tile = get_group_id(2) * tiles_in(view);
   p.px = column * W;
   p.py = get_global_id(1);
   p.count = p.px < view.width && p.py < view.height ? min(view.width - p.px, (uint)W) : 0;
-  p.row = tile_row(p.py / CLPV_TILE * tiles + column / CLPV_TILE_VECTORS, p.py % CLPV_TILE,
-                   column % CLPV_TILE_VECTORS);
+  p.row = tile_row(first_tile + p.py / CLPV_TILE * tiles_across(view) + column / CLPV_TILE_VECTORS,
+                   p.py % CLPV_TILE, column % CLPV_TILE_VECTORS);
   p.x = (float)p.px + to_realW(lane_numbers());
   p.y = (realW)((float)p.py);
   return p;
@@ -37,13 +47,12 @@ static inline PixelRow find_pixel_row(const ClpvView view) {
 
 // Zeroes the counters of rasterize.cl for its next launch, in place of two fills: all work-items of
 // a kernel that no longer reads them do so.
-static inline void clear_counters(const ClpvView view, __global uint* counts,
+static inline void clear_counters(const uint slices, __global uint* counts,
                                   __global uint* slice_counts) {
-  const uint item = get_global_id(1) * get_global_size(0) + get_global_id(0),
-             items = get_global_size(0) * get_global_size(1),
-             tiles = ((view.width + CLPV_TILE - 1) / CLPV_TILE) *
-                     ((view.height + CLPV_TILE - 1) / CLPV_TILE);
-  for (uint i = item; i <= tiles * CLPV_SLICES; i += items) slice_counts[i] = 0;
+  const uint row = get_global_id(2) * get_global_size(1) + get_global_id(1),
+             item = row * get_global_size(0) + get_global_id(0),
+             items = get_global_size(0) * get_global_size(1) * get_global_size(2);
+  for (uint i = item; i <= slices; i += items) slice_counts[i] = 0;
   if (item < CLPV_RASTER_COUNTERS) counts[item] = 0;
 }
 

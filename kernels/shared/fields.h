@@ -36,8 +36,11 @@
     FIELD(ClpvRasterTriangle, nearest) FIELD(ClpvRasterTriangle, farthest)                         \
     FIELD(ClpvRasterTriangle, first) FIELD(ClpvRasterTriangle, last)                               \
     FIELD(ClpvRasterTriangle, triangle)                                                            \
-  FIELD(ClpvViewCluster, number) FIELD(ClpvViewCluster, first) FIELD(ClpvViewCluster, last)        \
-    FIELD(ClpvViewCluster, nearest)                                                                \
+  FIELD(ClpvViewCluster, number) FIELD(ClpvViewCluster, view) FIELD(ClpvViewCluster, first)        \
+    FIELD(ClpvViewCluster, last) FIELD(ClpvViewCluster, nearest)                                   \
+  FIELD(ClpvWideTriangle, index) FIELD(ClpvWideTriangle, entry) FIELD(ClpvWideTriangle, view)      \
+  FIELD(ClpvLitView, view) FIELD(ClpvLitView, light) FIELD(ClpvLitView, colour_scale)              \
+    FIELD(ClpvLitView, first)                                                                      \
   FIELD(ClpvSweepBin, plane_sign) FIELD(ClpvSweepBin, row_sign) FIELD(ClpvSweepBin, column_sign)   \
     FIELD(ClpvSweepBin, plane_axis) FIELD(ClpvSweepBin, row_axis)                                  \
     FIELD(ClpvSweepBin, column_axis) FIELD(ClpvSweepBin, links) FIELD(ClpvSweepBin, transposed)    \

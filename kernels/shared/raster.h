@@ -50,14 +50,22 @@ typedef struct {
   unsigned int triangle;     // index and flags as above
 } ClpvRasterTriangle;
 
-// A triangle cluster in view. Its triangles lie within tiles `first` to `last`, x + 65536 y, and
+// A triangle cluster in a view. Its triangles lie within tiles `first` to `last`, x + 65536 y, and
 // have no key below `nearest`; of parallel views only.
 typedef struct {
   unsigned int number;  // CLPV_HIDDEN: nothing of it is visible
+  unsigned int view;    // among those that are drawn together
   unsigned int first, last;
   float nearest;
 } ClpvViewCluster;
 #define CLPV_HIDDEN 0xffffffffu
+
+// A triangle whose entries enter_wide writes.
+typedef struct {
+  unsigned int index;  // in the list
+  unsigned int entry;  // the first
+  unsigned int view;
+} ClpvWideTriangle;
 
 // Words of a ClpvRasterTriangle.
 enum {

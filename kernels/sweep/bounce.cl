@@ -26,13 +26,14 @@
 //                           per cell and channel, faces as in shared/reflectors.h; further
 //                           channels of R: face_albedo.cl
 //       injected          I: light volume [W/sr]
-// Out:  bounced           I': light volume [W/sr]
+// Out:  sources, lit      I' as the next sweep injects it (sources.h)
 // From the host (host/pipeline/sweep/sweep_literals.cpp): CLPV_LOBES, the lobe of 1 W about each
 // face's normal, CLPV_MAX_RETURNED, the largest q, CLPV_RELAXATION, the 2 / 3 of E, CLPV_INCIDENT,
 // the weights of D_a for each face and bin.
-// A work-item computes a tile of W x W cells of a slice and channel.
+// A work-item computes a tile of W x W cells of a slice, of one channel or for the sources of all.
 #include "volume/coefficients.h"
 #include "shared/reflectors.h"
+#include "sweep/sources.h"
 #include "sweep/sweep_tiles.h"
 #include "volume/light.h"
 
@@ -72,12 +73,6 @@ CLPV_INLINE FaceFluxes reflect_flux(const FaceFluxes incident, const FaceFluxes 
 #pragma unroll
   for (int a = 0; a < CLPV_CELL_FACES; ++a) flux.c[a] = incident.c[a] * reflectance.c[a];
   return flux;
-}
-
-// m of the faces of a cell.
-CLPV_INLINE FaceFluxes load_share(CLPV_VOLUME_IN reflectors, const int x, const int y,
-                                  const int z) {
-  return faces_load(reflectors, CLPV_REFLECTOR_SHARE, x, y, z);
 }
 
 CLPV_INLINE FaceFluxes add_fluxes(const FaceFluxes a, const FaceFluxes b) {
@@ -144,14 +139,17 @@ typedef struct {
   int rows;  // inside the grid; 0: the tile is outside
 } Tile;
 
-CLPV_INLINE Tile find_tile(void) {
+CLPV_INLINE Tile find_tile(const int channel) {
   Tile t;
   t.x = W * (int)get_global_id(0), t.y = W * (int)get_global_id(1);
-  t.z = (int)get_global_id(2) % CLPV_GRID, t.channel = (int)get_global_id(2) / CLPV_GRID;
+  t.z = (int)get_global_id(2) % CLPV_GRID, t.channel = channel;
   t.first = t.channel * CLPV_SWEEP_BINS * CLPV_SWEEP_VOLUME;
   t.rows = t.x < CLPV_GRID ? clamp(CLPV_GRID - t.y, 0, W) : 0;
   return t;
 }
+
+// Channel of a work-item that has one.
+CLPV_INLINE int own_channel(void) { return (int)get_global_id(2) / CLPV_GRID; }
 
 // Incident flux on the cells in row r of a tile of swept light.
 CLPV_INLINE FaceFluxes load_incident_flux(CLPV_BUFFER_IN swept, const SweepTile* x_bins,
@@ -159,56 +157,74 @@ CLPV_INLINE FaceFluxes load_incident_flux(CLPV_BUFFER_IN swept, const SweepTile*
   return incident_flux(load_bins(swept + t.first, x_bins, r, t.x, t.y + r, t.z));
 }
 
+// Light that leaves the faces of the cells in row r of a tile.
+CLPV_INLINE Coefficients row_light(const FaceFluxes flux, CLPV_VOLUME_IN reflectors, const Tile t,
+                                   const int r) {
+  return reflected_intensity(flux, faces_load(reflectors, CLPV_REFLECTOR_SHARE, t.x, t.y + r, t.z));
+}
+
 // `reflectance`: R or, from channel `first` on, E.
 __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
                                CLPV_VOLUME_IN reflectance, const int first,
-                               CLPV_VOLUME_IN injected, CLPV_VOLUME_OUT bounced) {
-  const Tile t = find_tile();
-  if (t.rows == 0) return;
+                               CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources,
+                               __global uchar* lit) {
+  TileLight light = dark_light();
   SweepTile bins[CLPV_AXIS_BINS];
-  load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
-  for (int r = 0; r < t.rows; ++r) {
-    const Coefficients reflected = reflected_intensity(
-        reflect_flux(load_incident_flux(swept, bins, t, r),
-                     faces_load(reflectance, first + t.channel, t.x, t.y + r, t.z)),
-        load_share(reflectors, t.x, t.y + r, t.z));
-    light_store(
-        bounced, t.channel, t.x, t.y + r, t.z,
-        add_coefficients(reflected, light_load(injected, t.channel, t.x, t.y + r, t.z)));
+  for (int channel = 0; channel < 3; ++channel) {
+    const Tile t = find_tile(channel);
+    if (t.rows == 0) return;
+    load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
+    for (int r = 0; r < t.rows; ++r) {
+      const FaceFluxes flux =
+          reflect_flux(load_incident_flux(swept, bins, t, r),
+                       faces_load(reflectance, first + channel, t.x, t.y + r, t.z));
+      set_light(&light, channel, r,
+                add_coefficients(row_light(flux, reflectors, t, r),
+                                 light_load(injected, channel, t.x, t.y + r, t.z)));
+    }
   }
+  write_sources(&light, sources, lit);
 }
 
 __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_swept,
                             CLPV_VOLUME_IN reflectors, CLPV_VOLUME_IN series,
-                            CLPV_VOLUME_IN injected, CLPV_VOLUME_OUT bounced) {
-  const Tile t = find_tile();
-  if (t.rows == 0) return;
+                            CLPV_VOLUME_IN injected, CLPV_BUFFER_OUT sources,
+                            __global uchar* lit) {
+  TileLight light = dark_light();
   SweepTile first[CLPV_AXIS_BINS], second[CLPV_AXIS_BINS];
-  load_x_bins(first_swept + t.first, t.x, t.y, t.z, first);
-  load_x_bins(second_swept + t.first, t.x, t.y, t.z, second);
-  for (int r = 0; r < t.rows; ++r) {
-    const FaceFluxes flux = series_flux(load_incident_flux(first_swept, first, t, r),
-                                        load_incident_flux(second_swept, second, t, r),
-                                        faces_load(reflectors, t.channel, t.x, t.y + r, t.z),
-                                        faces_load(series, t.channel, t.x, t.y + r, t.z));
-    light_store(bounced, t.channel, t.x, t.y + r, t.z,
-                add_coefficients(light_load(injected, t.channel, t.x, t.y + r, t.z),
-                                 reflected_intensity(
-                                     flux, load_share(reflectors, t.x, t.y + r, t.z))));
+  for (int channel = 0; channel < 3; ++channel) {
+    const Tile t = find_tile(channel);
+    if (t.rows == 0) return;
+    load_x_bins(first_swept + t.first, t.x, t.y, t.z, first);
+    load_x_bins(second_swept + t.first, t.x, t.y, t.z, second);
+    for (int r = 0; r < t.rows; ++r) {
+      const FaceFluxes flux = series_flux(load_incident_flux(first_swept, first, t, r),
+                                          load_incident_flux(second_swept, second, t, r),
+                                          faces_load(reflectors, channel, t.x, t.y + r, t.z),
+                                          faces_load(series, channel, t.x, t.y + r, t.z));
+      set_light(&light, channel, r,
+                add_coefficients(light_load(injected, channel, t.x, t.y + r, t.z),
+                                 row_light(flux, reflectors, t, r)));
+    }
   }
+  write_sources(&light, sources, lit);
 }
 
 // Every face emits the channels from `first` on of `flux` times `factor`; with `step` 0 all
 // channels emit the first.
 __kernel void inject_flux(CLPV_VOLUME_IN flux, CLPV_VOLUME_IN reflectors, const int first,
-                          const int step, const float factor, CLPV_VOLUME_OUT bounced) {
-  const Tile t = find_tile();
-  const int channel = first + step * t.channel;
-  for (int r = 0; r < t.rows; ++r)
-    light_store(bounced, t.channel, t.x, t.y + r, t.z,
-                scale_coefficients(
-                    factor, reflected_intensity(faces_load(flux, channel, t.x, t.y + r, t.z),
-                                                load_share(reflectors, t.x, t.y + r, t.z))));
+                          const int step, const float factor, CLPV_BUFFER_OUT sources,
+                          __global uchar* lit) {
+  TileLight light = dark_light();
+  const Tile t = find_tile(0);
+  for (int channel = 0; channel < 3; ++channel) {
+    for (int r = 0; r < t.rows; ++r) {
+      const FaceFluxes emitted = faces_load(flux, first + step * channel, t.x, t.y + r, t.z);
+      set_light(&light, channel, r,
+                scale_coefficients(factor, row_light(emitted, reflectors, t, r)));
+    }
+  }
+  write_sources(&light, sources, lit);
 }
 
 // As furnace_divisor() of gather/gather_packed.h.
@@ -221,7 +237,7 @@ CLPV_INLINE realW furnace_divisor(const realW f) {
 // divides R of albedo 1, so that R over it stays the albedo.
 __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
                                    const float white, CLPV_VOLUME_OUT normalised) {
-  Tile t = find_tile();
+  Tile t = find_tile(own_channel());
   if (t.rows == 0) return;
   t.first = 0;
   SweepTile bins[CLPV_AXIS_BINS];
@@ -238,7 +254,7 @@ __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflecto
 
 __kernel void reflect_returned(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
                                CLPV_VOLUME_OUT returned) {
-  const Tile t = find_tile();
+  const Tile t = find_tile(own_channel());
   if (t.rows == 0) return;
   SweepTile bins[CLPV_AXIS_BINS];
   load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
@@ -250,7 +266,7 @@ __kernel void reflect_returned(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
 
 __kernel void sum_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_VOLUME_IN returned,
                          CLPV_VOLUME_OUT series) {
-  const Tile t = find_tile();
+  const Tile t = find_tile(own_channel());
   if (t.rows == 0) return;
   SweepTile bins[CLPV_AXIS_BINS];
   load_x_bins(swept + t.first, t.x, t.y, t.z, bins);

@@ -29,8 +29,8 @@ CLPV_INLINE Coefficients project_bins(const Bins bins) {
 }
 
 // Joins two channels of a white furnace in the first: S, whose border is dark, and S + B with a
-// white one. The part of B that walls let through counts as closed. The limit is 1 where surfaces do
-// not block light, so that their light adds up.
+// white one. The part of B that walls let through counts as closed. The limit is 1 where surfaces
+// do not block light, so that their light adds up.
 //
 //   F = min(CLPV_MOST_WHITE, S + min(B, 2 max(0, B - CLPV_LEAST_OPEN)))
 __kernel void join_furnace(CLPV_BUFFER_OUT sums) {

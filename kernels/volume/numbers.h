@@ -24,6 +24,11 @@ typedef struct __attribute__((packed, aligned(2))) {
   ushort8 bits;
 } HalfRow;
 
+// W numbers after a store and a load.
+CLPV_INLINE realW stored_numbers(const realW values) {
+  const float8 eight = halves_to_floats(floats_to_halves((float8)(values)));
+  return *(const realW*)&eight;
+}
 CLPV_INLINE float read_number(CLPV_BUFFER_IN from, const int at) {
   return halves_to_floats((ushort8)(((__global const ushort*)from)[at])).s0;
 }
@@ -40,6 +45,7 @@ CLPV_INLINE void write_eight(CLPV_BUFFER_OUT to, const int at, const float8 valu
 #define CLPV_BUFFER_IN __global const float*
 #define CLPV_BUFFER_OUT __global float*
 
+CLPV_INLINE realW stored_numbers(const realW values) { return values; }
 CLPV_INLINE float read_number(CLPV_BUFFER_IN from, const int at) { return from[at]; }
 CLPV_INLINE void write_number(CLPV_BUFFER_OUT to, const int at, const float value) {
   to[at] = value;

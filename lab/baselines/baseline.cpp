@@ -329,9 +329,8 @@ BaselineBudget baseline_budget(Session& session, Frame& frame, const SceneCamera
   const FrameTimes times = measure_frames(session, frame, camera, frames, 1);
   BaselineBudget budget;
   budget.budget_ms = median(times.sums([&](const StageMark& mark) { return !shared(mark); }));
-  budget.rsm_ms = median(times.sums([&](const StageMark& mark) {
-    return mark.pass == Pass::rasterize_rsm && mark.cascade == coarsest;
-  }));
+  const auto of_rsms = [](const StageMark& mark) { return mark.pass == Pass::rasterize_rsm; };
+  budget.rsm_ms = median(times.sums(of_rsms)) / frame.options().cascades;
   budget.shared = times.pass_records();
   std::erase_if(budget.shared,
                 [&](const TimeRecord& time) { return !shared({named<Pass>("pass", time.stage)}); });

@@ -40,7 +40,7 @@ inline constexpr unsigned kConvergedFrames = 128;
 /// Time budget of baselines, and the inputs that they take from the measured frame.
 struct BaselineBudget {
   double budget_ms = 0;  ///< the frame without `shared`
-  double rsm_ms = 0;     ///< RSMs of the coarsest cascade
+  double rsm_ms = 0;     ///< RSMs of a cascade, on average
   /// Stages that every method needs: G-buffer, shadow maps, shading.
   std::vector<TimeRecord> shared;
   std::vector<SurfaceImage> rsms;  ///< RSMs of the coarsest cascade, flux in W

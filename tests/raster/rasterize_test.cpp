@@ -347,21 +347,38 @@ SceneData heaps() {
   return scene;
 }
 
-TEST(Rasterize, HiddenClustersChangeNothing) {
+// Clusters that are hidden, and views that the same launches draw, change nothing.
+TEST(Rasterize, MapsDrawnTogetherAreThoseDrawnAlone) {
+  constexpr int kSize = 61;
+  constexpr std::size_t kTexels = kSize * kSize;
   const SceneData scene = heaps();
+  const ClpvLight light = directional_light({0, 0, -1}, glm::vec3(3));
   Session& session = test_session();
-  for (const int size : {64, 61}) {
-    const ClpvView view = orthographic_square(4, size);
-    const std::size_t count = std::size_t{view.width} * view.height;
-    std::vector<std::vector<float>> depths;
-    for (const unsigned least_hidden : {UINT_MAX, 1u}) {
-      Rasterizer rasterizer(session, upload_scene(session, scene), Rasterizer::kMaxListed,
-                            least_hidden);
-      Buffer depth = session.buffer(count * sizeof(float), "depth");
-      rasterizer.rasterize_shadow(view, depth);
-      depths.push_back(session.read<float>(depth, count));
+  std::vector<ClpvView> views(5, orthographic_square(4, kSize));
+  views[1].eye[0] = 1, views[2].half_width = 0.5f, views[4] = small_camera(kSize, kSize);
+  for (const unsigned least_hidden : {UINT_MAX, 1u}) {
+    Rasterizer rasterizer(session, upload_scene(session, scene), Rasterizer::kMaxListed,
+                          least_hidden);
+    std::vector<Surface> maps(views.size(), make_surface(session, views[0], RsmFormat::float32,
+                                                         false, static_cast<int>(views.size())));
+    std::vector<Rasterizer::Rsm> drawn;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      maps[i].view = views[i], maps[i].first = i * kTexels;
+      drawn.push_back({light, &maps[i]});
     }
-    EXPECT_EQ(depths[0], depths[1]) << size;
+    rasterizer.rasterize_rsms(drawn);
+    Buffer depth = session.buffer(kTexels * sizeof(float), "depth");
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      SCOPED_TRACE(i);
+      const SurfaceImage together = read_surface(session, maps[i]),
+                         alone = rsm_image(scene, light, views[i]);
+      EXPECT_GT(covered(alone.depth), 0u);
+      EXPECT_EQ(together.depth, alone.depth);
+      EXPECT_EQ(together.normal, alone.normal);
+      EXPECT_EQ(together.colour, alone.colour);
+      rasterizer.rasterize_shadow(views[i], depth);
+      EXPECT_EQ(session.read<float>(depth, kTexels), alone.depth);
+    }
   }
 }
 

@@ -252,7 +252,7 @@ std::vector<glm::vec4> Frame::radiance_at(std::vector<glm::vec4> positions,
 
 std::vector<SurfaceImage> Frame::read_rsms(int cascade) {
   require_light("RSMs");
-  lights_.rasterize_rsms(cascade);  // cascades may share their memory
+  lights_.rasterize_rsms(cascade, cascade);  // cascades may share their memory
   std::vector<SurfaceImage> images;
   for (const Surface* rsm : lights_.rsms(cascade)) {
     SurfaceImage& image = images.emplace_back(read_surface(session_, *rsm));

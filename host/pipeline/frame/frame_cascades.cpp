@@ -127,7 +127,7 @@ void FrameCascades::inject(int cascade) {
 /// Injects the light of the cascades from `first` to `last` by the same launches, source by source.
 void FrameCascades::inject_light(int first, int last) {
   std::vector<std::vector<const Surface*>> sources;
-  for (int c = last; c >= first; --c) lights_.update_sources(c);
+  lights_.update_sources(first, last);
   for (int c = first; c <= last; ++c) sources.push_back(lights_.sources(c));
   const StageScope scope(session_,
                          {Pass::inject_light, first == last ? std::optional(first) : std::nullopt});
@@ -151,7 +151,7 @@ void FrameCascades::update_blockers(int cascade) {
 }
 
 void FrameCascades::inject_geometry(int cascade, Volume& geometry) {
-  lights_.rasterize_rsms(cascade);
+  lights_.rasterize_rsms(cascade, cascade);
   const StageScope scope(session_, {Pass::inject_geometry, cascade});
   geometry.clear(session_);
   for (const Surface* rsm : lights_.rsms(cascade))

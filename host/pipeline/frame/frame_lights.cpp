@@ -43,7 +43,7 @@ void FrameLights::prepare(const SceneCamera& camera, const std::vector<ClpvGrid>
         rsm_follows_cascade(lit.light) ? bounds_ : LightBounds{buffers_.bounds, buffers_.bounds};
     lit.shadow.light = lit.light;
     lit.shadow.views = shadow_views(lit.light, bounds.shadows, options_.shadow_size);
-    lit.rsms.resize(setup_.injected_volumes());
+    lit.rsms.resize(rsm_follows_cascade(lit.light) ? setup_.injected_volumes() : 1);
     lit.wanted.clear();
     for (const ClpvGrid& grid : grids) {
       std::vector<ClpvView> views = rsm_views(lit.light, grid, bounds.rsms, options_.rsm_size);
@@ -51,6 +51,7 @@ void FrameLights::prepare(const SceneCamera& camera, const std::vector<ClpvGrid>
       lit.wanted.push_back({std::move(views), key});
     }
   }
+  place_rsms();
   if (emission_) emission_->prepare(grids, scale_, epoch_);
 }
 
@@ -108,38 +109,66 @@ void FrameLights::rasterize_shadows() {
   }
 }
 
-void FrameLights::rasterize(Lit& lit, std::size_t slot, const std::vector<ClpvView>& views) {
-  std::vector<Surface>& surfaces = lit.rsms[slot].surfaces;
-  const int count = rsm_follows_cascade(lit.light) ? static_cast<int>(lit.rsms.size()) : 1;
-  surfaces.resize(views.size());
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    if (!surfaces[v].depth.exists()) {
-      if (!lit.together.depth.exists() || count == 1)
-        lit.together = make_surface(session_, views[v], options_.rsm_format, false, count);
-      surfaces[v] = lit.together;
-      surfaces[v].first = slot * views[v].width * views[v].height;
-    }
-    surfaces[v].view = views[v];
-    rasterizer_.rasterize_rsm(scaled(lit.light, scale_), surfaces[v]);
-  }
-}
-
-std::size_t FrameLights::slot(const Lit& lit, int cascade) {
-  return rsm_follows_cascade(lit.light) && lit.rsms.size() > 1 ? cascade : 0;
-}
-
-void FrameLights::rasterize_rsms(int cascade) {
+/// Gives each RSM its place in memory that many share, since the same launches draw those.
+void FrameLights::place_rsms() {
+  std::vector<Surface*> all;
   for (Lit& lit : lights_) {
-    const std::size_t which = slot(lit, cascade);
-    lit.rsms[which].cached.update(lit.wanted[cascade].key, [&] {
-      const StageScope scope(session_, {Pass::rasterize_rsm, cascade, lit.index});
-      rasterize(lit, which, lit.wanted[cascade].views);
-    });
+    for (Rsms& rsms : lit.rsms) {
+      rsms.surfaces.resize(lit.wanted[0].views.size());
+      for (Surface& surface : rsms.surfaces) all.push_back(&surface);
+    }
+  }
+  if (std::ranges::all_of(all, [](const Surface* s) { return s->depth.exists(); })) return;
+  forget_rsms();
+  for (Surface* surface : all) *surface = {};  // first: memory may not suffice for both
+  ClpvView view{};
+  view.width = view.height = options_.rsm_size;
+  const std::size_t most = setup_.rsms_together();
+  Surface together;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i % most == 0)
+      together = make_surface(session_, view, options_.rsm_format, false,
+                              static_cast<int>(std::min(most, all.size() - i)));
+    *all[i] = together;
+    all[i]->first = i % most * view.width * view.height;
   }
 }
 
-void FrameLights::update_sources(int cascade) {
-  rasterize_rsms(cascade);
+void FrameLights::forget_rsms() {
+  for (Lit& lit : lights_)
+    for (Rsms& rsms : lit.rsms) rsms.cached.invalidate();
+}
+
+FrameLights::Rsms& FrameLights::of_cascade(Lit& lit, int cascade) {
+  return lit.rsms[std::min<std::size_t>(cascade, lit.rsms.size() - 1)];
+}
+
+void FrameLights::rasterize_rsms(int first, int last) {
+  std::vector<Rasterizer::Rsm> stale;
+  for (Lit& lit : lights_) {
+    for (int cascade = first; cascade <= last; ++cascade) {
+      Rsms& rsms = of_cascade(lit, cascade);
+      rsms.cached.update(lit.wanted[cascade].key, [&] {
+        for (std::size_t v = 0; v < rsms.surfaces.size(); ++v) {
+          rsms.surfaces[v].view = lit.wanted[cascade].views[v];
+          stale.push_back({scaled(lit.light, scale_), &rsms.surfaces[v]});
+        }
+      });
+    }
+  }
+  if (stale.empty()) return;
+  const StageScope scope(
+      session_, {Pass::rasterize_rsm, first == last ? std::optional(first) : std::nullopt});
+  try {
+    rasterizer_.rasterize_rsms(stale);
+  } catch (...) {
+    forget_rsms();
+    throw;
+  }
+}
+
+void FrameLights::update_sources(int first, int last) {
+  rasterize_rsms(first, last);
   if (emission_) emission_->emit();
 }
 
@@ -153,15 +182,15 @@ CacheKey FrameLights::sources_key(int cascade) const {
   return Fingerprint().add(rsms_key(cascade)).add(emission_ ? emission_->key() : 0).value();
 }
 
-std::vector<const Surface*> FrameLights::rsms(int cascade) const {
+std::vector<const Surface*> FrameLights::rsms(int cascade) {
   std::vector<const Surface*> all;
-  for (const Lit& lit : lights_) {
-    for (const Surface& rsm : lit.rsms[slot(lit, cascade)].surfaces) all.push_back(&rsm);
+  for (Lit& lit : lights_) {
+    for (const Surface& rsm : of_cascade(lit, cascade).surfaces) all.push_back(&rsm);
   }
   return all;
 }
 
-std::vector<const Surface*> FrameLights::sources(int cascade) const {
+std::vector<const Surface*> FrameLights::sources(int cascade) {
   std::vector<const Surface*> all = rsms(cascade);
   if (emission_) all.push_back(&emission_->points());
   return all;

@@ -33,19 +33,19 @@ class FrameLights {
   /// Prepares the lights of `camera` at the scene's current time, for cascades at `grids`.
   void prepare(const SceneCamera& camera, const std::vector<ClpvGrid>& grids);
 
-  /// Update the shadow maps, the RSMs of a cascade, or its RSMs and the points on emissive
-  /// surfaces.
+  /// Update the shadow maps, the RSMs of the cascades from `first` to `last`, or these RSMs and the
+  /// points on emissive surfaces.
   void rasterize_shadows();
-  void rasterize_rsms(int cascade);
-  void update_sources(int cascade);
+  void rasterize_rsms(int first, int last);
+  void update_sources(int first, int last);
 
   /// RSMs of a cascade from rasterize_rsms(); valid until its next call for another cascade.
   CacheKey rsms_key(int cascade) const;
-  std::vector<const Surface*> rsms(int cascade) const;
+  std::vector<const Surface*> rsms(int cascade);
 
   /// Key of all light injected into a cascade: RSMs and points on emissive surfaces.
   CacheKey sources_key(int cascade) const;
-  std::vector<const Surface*> sources(int cascade) const;
+  std::vector<const Surface*> sources(int cascade);
 
   /// Shadow maps from rasterize_shadows().
   std::vector<ShadowedLight> shadowed() const;
@@ -68,19 +68,18 @@ class FrameLights {
   struct Lit {  ///< a light and its maps
     ClpvLight light;
     int index;                   ///< index in SceneData::lights
-    std::vector<Rsms> rsms;      ///< one per cascade, or one shared in turn
-    Surface together;            ///< memory of the RSMs that follow cascades
+    std::vector<Rsms> rsms;      ///< one per cascade, or one shared by all or in turn
     std::vector<Wanted> wanted;  ///< one per cascade
     ShadowedLight shadow;
     Cached shadow_cached;
   };
-  /// Views that do not follow a cascade are shared by all cascades.
-  static std::size_t slot(const Lit& lit, int cascade);
+  static Rsms& of_cascade(Lit& lit, int cascade);
   void find_lights(const SceneCamera& camera);
   void find_scale(const ClpvGrid& coarsest);
   void find_bounds(const ClpvGrid& coarsest);
   CacheKey key_of(const ClpvLight& light, const std::vector<ClpvView>& views) const;
-  void rasterize(Lit& lit, std::size_t slot, const std::vector<ClpvView>& views);
+  void place_rsms();
+  void forget_rsms();
 
   Session& session_;
   const SceneData& scene_;

@@ -41,10 +41,14 @@ void FrameSetup::require_own_blockers() const {
 }
 
 bool FrameSetup::injects_at_once() const {
-  const std::size_t texels = std::size_t(options.rsm_size) * options.rsm_size,
-                    bytes = stored_bytes(options.format(), injected_shape());
-  return sweeps() && options.layout != Layout::image &&
-         options.cascades * std::max(kRsmTexel * texels, bytes) <= kAtOnce;
+  const std::size_t cascades = options.cascades;
+  return sweeps() && options.layout != Layout::image && cascades <= rsms_together() &&
+         cascades * stored_bytes(options.format(), injected_shape()) <= kAtOnce;
+}
+
+std::size_t FrameSetup::rsms_together() const {
+  const std::size_t texels = std::size_t(options.rsm_size) * options.rsm_size;
+  return std::max<std::size_t>(kAtOnce / (kRsmTexel * texels), 1);
 }
 
 int FrameSetup::geometry_volumes() const {

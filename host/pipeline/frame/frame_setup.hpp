@@ -41,6 +41,8 @@ struct FrameSetup {
   /// Returns true if the same launches inject the light of all cascades: with a sweep, where their
   /// RSMs and volumes need little memory.
   bool injects_at_once() const;
+  /// Number of RSMs in the same memory.
+  std::size_t rsms_together() const;
   /// Number of stored volumes of injected light, and of stored RSMs that follow cascades. It is one
   /// per cascade if any frame may need all of them, else one that is recomputed for the current
   /// cascade.

@@ -8,6 +8,7 @@
 
 #include "kernels/shared/raster.h"
 #include "kernels/shared/region.h"
+#include "kernels/shared/view_light.h"
 #include "pipeline/raster/surface.hpp"
 #include "pipeline/raster/view.hpp"
 
@@ -19,22 +20,13 @@ constexpr std::size_t kRasterGroup = 64;
 constexpr std::size_t kClippers = 1024;
 constexpr std::size_t kWideGroupsPerUnit = 4;             // work-groups that enter wide triangles
 constexpr std::size_t kMostAhead = std::size_t{1} << 22;  // triangles (256 MiB); longer lists wait
+constexpr std::size_t kMostViews = 64;                    // that the same launches draw
 constexpr std::size_t kClippedParts = CLPV_CLIP_CORNERS - 2;  // triangles that one can become
 constexpr std::size_t kSpare = 4;      // lists grow by an extra 1/4, since cameras move
 constexpr unsigned kNearestShare = 6;  // 1/6 of the clusters hide others
 constexpr std::size_t kEntryBytes = CLPV_ENTRY_WORDS * sizeof(cl_uint);
 const ProgramSource kSetUp{"raster/rasterize.cl"}, kBin{"raster/bin_tiles.cl"},
     kDraw{"raster/draw_tiles.cl"};
-
-unsigned tile_count(const ClpvView& view) {
-  return tiles_along(view.width) * tiles_along(view.height);
-}
-unsigned slice_count(const ClpvView& view) {
-  return tile_count(view) * CLPV_SLICES;
-}
-unsigned padded_pixels(const ClpvView& view) {
-  return tile_count(view) * CLPV_TILE * CLPV_TILE;
-}
 
 /// Returns the largest possible flux of a texel of `view` [W]: albedo 1, at the centre, where
 /// texels subtend most.
@@ -58,6 +50,10 @@ unsigned move_nearest_first(std::vector<ClpvViewCluster>& clusters) {
 
 }  // namespace
 
+unsigned Rasterizer::Drawing::tiles() const {
+  return views.size() * tiles_along(views[0].width) * tiles_along(views[0].height);
+}
+
 Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t max_listed,
                        std::optional<unsigned> least_hidden)
     : session_(session),
@@ -76,9 +72,6 @@ Rasterizer::Rasterizer(Session& session, const SceneBuffers& scene, std::size_t 
       resolve_depth_(session, kDraw, "resolve_depth") {
   session_.reserve(counts_, CLPV_RASTER_COUNTERS * sizeof(cl_uint), "counters of the rasteriser");
   session_.reserve(in_slices_, sizeof(cl_uint), "entries in slices");
-  session_.reserve(to_clip_, scene.triangle_count * sizeof(cl_uint), "triangles to clip");
-  session_.reserve(clusters_, scene.clusters->bounds().size() * sizeof(ClpvViewCluster),
-                   "clusters of triangles in sight");
   reserve_list(scene.triangle_count / 2 + kRasterGroup);
   reserve_entries(scene.triangle_count + kRasterGroup);
 }
@@ -102,7 +95,8 @@ void Rasterizer::reserve_entries(std::size_t count) {
   count += count / kSpare;
   entries_ = {};  // until memory suffices for all
   session_.reserve(binned_, count * sizeof(cl_uint2), "triangles by tile");
-  session_.reserve(wide_, (count / CLPV_FEW_TILES + 1) * sizeof(cl_uint2), "wide triangles");
+  session_.reserve(wide_, (count / CLPV_FEW_TILES + 1) * sizeof(ClpvWideTriangle),
+                   "wide triangles");
   session_.reserve(entries_, count * kEntryBytes, "triangles by tile, unsorted");
 }
 
@@ -122,47 +116,61 @@ Kernel& Rasterizer::resolve(const Resolving& wanted) {
 }
 
 void Rasterizer::find_visible(const Drawing& drawing) {
-  const std::size_t pixels = padded_pixels(drawing.view);
-  const unsigned slices = slice_count(drawing.view);
+  const std::size_t tiles = drawing.tiles(), pixels = tiles * CLPV_TILE * CLPV_TILE;
   session_.reserve(keys_, pixels * sizeof(cl_float), "keys of the depth test");
   session_.reserve(seen_, pixels * sizeof(cl_uint), "triangles seen");
-  session_.reserve(farthest_, tile_count(drawing.view) * sizeof(cl_float),
-                   "farthest keys of tiles");
+  session_.reserve(farthest_, tiles * sizeof(cl_float), "farthest keys of tiles");
   const std::uint64_t before = slice_counts_.number();
-  session_.reserve(slice_counts_, (std::size_t{slices} + 1) * sizeof(cl_uint), "slices of tiles");
+  session_.reserve(slice_counts_, (std::size_t{drawing.slices()} + 1) * sizeof(cl_uint),
+                   "slices of tiles");
   cleared_ = cleared_ && slice_counts_.number() == before;
-  const std::vector<Range> ranges = list_clusters(drawing.view);
+  session_.reserve(views_, drawing.views.size() * sizeof(ClpvView), "views to draw");
+  session_.write(views_, drawing.views);
+  const std::vector<Range> ranges = list_clusters(drawing.views);
   draw_range(drawing, ranges[0], true);
   if (ranges.size() > 1) {
-    hide_clusters(drawing.view, ranges[1]);
+    hide_clusters(drawing, ranges[1]);
     draw_range(drawing, ranges[1], false);
   }
   drawn_.insert(drawing.kind);
 }
 
-/// Lists the triangle clusters that may be visible: all of them, or the nearest and the others.
-std::vector<Rasterizer::Range> Rasterizer::list_clusters(const ClpvView& view) {
+/// Lists the triangle clusters that may be visible: all of them, or the nearest of each view and
+/// the others.
+std::vector<Rasterizer::Range> Rasterizer::list_clusters(const std::vector<ClpvView>& views) {
   const HostPart part(session_.timeline().host().culling_ms);
   const Boxes& boxes = scene_.clusters->boxes();
-  const std::vector<BoxPlace> places = places_of(view, boxes);
-  std::vector<ClpvViewCluster> visible;
-  visible.reserve(places.size());
-  for (unsigned i = 0; i < places.size(); ++i) {
-    if (places[i] != BoxPlace::outside) visible.push_back({i, 0, 0, 0});
+  std::array<std::vector<ClpvViewCluster>, 2> listed;
+  std::vector<Range> ranges(2);
+  for (unsigned v = 0; v < views.size(); ++v) {
+    const std::vector<BoxPlace> places = places_of(views[v], boxes);
+    std::vector<ClpvViewCluster> visible;
+    visible.reserve(places.size());
+    for (unsigned i = 0; i < places.size(); ++i) {
+      if (places[i] != BoxPlace::outside) visible.push_back({i, v, 0, 0, 0});
+    }
+    const bool hides = views[v].orthographic != 0 && visible.size() >= least_hidden_;
+    // Only hide_clusters reads places.
+    for (ClpvViewCluster& cluster : std::span(visible).first(hides ? visible.size() : 0)) {
+      cluster = place_cluster(views[v], boxes, cluster.number);
+      cluster.view = v;
+    }
+    const unsigned nearest = hides ? move_nearest_first(visible) : visible.size();
+    for (unsigned i = 0; i < visible.size(); ++i) {
+      const std::size_t to = i < nearest ? 0 : 1;
+      listed[to].push_back(visible[i]);
+      ranges[to].clipped += places[visible[i].number] == BoxPlace::clipped ? 1 : 0;
+    }
   }
-  const unsigned count = visible.size();
-  const bool hides = view.orthographic != 0 && count >= least_hidden_;
-  // Only hide_clusters reads places.
-  for (unsigned i = 0; hides && i < count; ++i)
-    visible[i] = place_cluster(view, boxes, visible[i].number);
-  const unsigned nearest = hides ? move_nearest_first(visible) : count;
-  session_.write(clusters_, visible);
-  std::vector<Range> ranges{{0, nearest}};
-  if (nearest < count) ranges.push_back({nearest, count - nearest});
-  for (Range& range : ranges) {
-    for (unsigned i = 0; i < range.count; ++i)
-      range.clipped += places[visible[range.first + i].number] == BoxPlace::clipped ? 1 : 0;
-  }
+  ranges[0].count = ranges[1].first = listed[0].size();
+  ranges[1].count = listed[1].size();
+  listed[0].insert(listed[0].end(), listed[1].begin(), listed[1].end());
+  if (ranges[1].count == 0) ranges.pop_back();
+  session_.reserve(clusters_, (listed[0].size() + 1) * sizeof(ClpvViewCluster),
+                   "clusters of triangles in sight");
+  session_.reserve(to_clip_, (listed[0].size() + 1) * CLPV_CLUSTER * sizeof(cl_uint),
+                   "triangles to clip");
+  session_.write(clusters_, listed[0]);
   return ranges;
 }
 
@@ -179,9 +187,9 @@ void Rasterizer::count_set_up(const Range& range) {
 }
 
 /// Leaves out the clusters of a range that lie behind all that has been drawn.
-void Rasterizer::hide_clusters(const ClpvView& view, const Range& range) {
-  hide_clusters_.set(view, range.first, range.count, farthest_, clusters_);
-  add_counters(hide_clusters_).launch(range.count, kRasterGroup);
+void Rasterizer::hide_clusters(const Drawing& drawing, const Range& range) {
+  hide_clusters_.set(views_, range.first, range.count, farthest_, clusters_);
+  add_counters(hide_clusters_, drawing).launch(range.count, kRasterGroup);
 }
 
 /// Lists the triangles of a range of clusters that may cover a pixel, and adds them to the lists of
@@ -195,30 +203,29 @@ void Rasterizer::set_up(const Drawing& drawing, unsigned first, unsigned count) 
   cleared_ = false;
   if (count == 0) return;
   set_up_
-      .set(drawing.view, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices,
+      .set(views_, clusters_, first, count, scene_.triangle_count, cull, scene_.vertices,
            scene_.triangles, scene_.materials, counts_, list_room(), listed_, entry_room(),
            entries_, slice_counts_, wide_, to_clip_)
       .launch(count * (std::size_t{CLPV_CLUSTER} / session_.device().lanes), kRasterGroup);
   set_up_clipped_
-      .set(drawing.view, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
+      .set(views_, clusters_, cull, scene_.vertices, scene_.triangles, scene_.materials, counts_,
            list_room(), listed_, entry_room(), entries_, slice_counts_, wide_, to_clip_)
       .launch(kClippers, kRasterGroup);
   if (session_.device().lanes != 1) return;
   enter_wide_
-      .set(drawing.view, counts_, list_room(), entry_room(), listed_, wide_, entries_,
-           slice_counts_)
+      .set(views_, counts_, list_room(), entry_room(), listed_, wide_, entries_, slice_counts_)
       .launch(session_.device().compute_units * kWideGroupsPerUnit * kRasterGroup, kRasterGroup);
 }
 
 /// Adds the counters to a kernel that zeroes them for the next set_up().
-Kernel& Rasterizer::add_counters(Kernel& kernel) {
+Kernel& Rasterizer::add_counters(Kernel& kernel, const Drawing& drawing) {
   cleared_ = true;
-  return kernel.add(counts_, slice_counts_);
+  return kernel.add(drawing.slices(), counts_, slice_counts_);
 }
 
 /// Sorts the entries of set_up() by tile.
-void Rasterizer::bin(const ClpvView& view) {
-  prefix_sum_.run(slice_counts_, slice_count(view), in_slices_);
+void Rasterizer::bin(const Drawing& drawing) {
+  prefix_sum_.run(slice_counts_, drawing.slices(), in_slices_);
   const std::size_t groups = (entry_room() + CLPV_ENTRY_GROUP - 1) / CLPV_ENTRY_GROUP;
   bin_entries_.set(counts_, list_room(), entry_room(), entries_, slice_counts_, binned_)
       .launch(groups * kRasterGroup, kRasterGroup);
@@ -229,7 +236,7 @@ void Rasterizer::bin(const ClpvView& view) {
 bool Rasterizer::list(const Drawing& drawing, unsigned first, unsigned count) {
   for (;;) {
     set_up(drawing, first, count);
-    bin(drawing.view);
+    bin(drawing);
     const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
     const std::size_t listed = counts[CLPV_LISTED], entered = counts[CLPV_ENTERED];
     entered_ = std::max(entered_, entered);
@@ -250,7 +257,7 @@ bool Rasterizer::list_ahead(const Drawing& drawing, const Range& range) {
   reserve_list(most);
   reserve_entries(entered_);
   set_up(drawing, range.first, range.count);
-  bin(drawing.view);
+  bin(drawing);
   counting_.push_back(session_.read_later(counts_, CLPV_RASTER_COUNTERS));
   return true;
 }
@@ -273,9 +280,9 @@ void Rasterizer::draw(const Drawing& drawing, unsigned first, unsigned count, bo
 }
 
 /// Entries of the fullest tile, if the timeline counts chains.
-Chain Rasterizer::longest_list(const ClpvView& view) {
+Chain Rasterizer::longest_list(const Drawing& drawing) {
   if (!session_.timeline().counts_chains()) return {};
-  const auto starts = session_.read<cl_uint>(slice_counts_, slice_count(view) + 1);
+  const auto starts = session_.read<cl_uint>(slice_counts_, drawing.slices() + 1);
   std::size_t longest = 0;
   for (std::size_t i = 0; i + CLPV_SLICES < starts.size(); i += CLPV_SLICES)
     longest = std::max<std::size_t>(longest, starts[i + CLPV_SLICES] - starts[i]);
@@ -283,17 +290,16 @@ Chain Rasterizer::longest_list(const ClpvView& view) {
 }
 
 void Rasterizer::draw_tiles(const Drawing& drawing, bool fresh) {
-  const ClpvView& view = drawing.view;
+  const unsigned across = tiles_along(drawing.views[0].width),
+                 down = tiles_along(drawing.views[0].height);
   const bool only_depth = drawing.kind == Kind::shadow;
   draw_tiles_
-      .set(view, cl_uint{fresh}, cl_uint{only_depth}, listed_, slice_counts_, binned_, counts_,
+      .set(views_, cl_uint{fresh}, cl_uint{only_depth}, listed_, slice_counts_, binned_, counts_,
            entry_room(), scene_.vertices, scene_.triangles, scene_.materials, scene_.textures,
            scene_.texels, keys_, seen_, farthest_)
-      .launch(session_.device().lanes == 1
-                  ? cl::NDRange(tiles_along(view.width) * CLPV_TILE,
-                                tiles_along(view.height) * CLPV_TILE)
-                  : cl::NDRange(tiles_along(view.width), tiles_along(view.height)),
-              pixel_group(session_), longest_list(view));
+      .launch(session_.device().lanes == 1 ? drawing.items(across * CLPV_TILE, down * CLPV_TILE)
+                                           : drawing.items(across, down),
+              drawing.group(session_), longest_list(drawing));
   if (counted_ == nullptr) return;
   const std::vector<cl_uint> counts = session_.read<cl_uint>(counts_, CLPV_RASTER_COUNTERS);
   counted_->listed += counts[CLPV_LISTED];
@@ -316,7 +322,8 @@ void Rasterizer::rasterize_camera(Surface& surface) {
     session_.fill_zero(surface.emissive, std::size_t{view.width} * view.height * sizeof(cl_float4));
   }
   if (scene_.triangle_count == 0) return clear(surface);
-  find_visible({view, Kind::camera});
+  const Drawing drawing{{view}, Kind::camera};
+  find_visible(drawing);
   const bool emissive = has_emissive && scene_.emissive;
   Kernel& kernel = resolve({.orthographic = view.orthographic != 0,
                             .from_light = false,
@@ -325,28 +332,63 @@ void Rasterizer::rasterize_camera(Surface& surface) {
   kernel.set(view, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
              scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
              emissive ? surface.emissive : surface.colour);
-  add_counters(kernel).launch(items_of(session_, view), pixel_group(session_));
+  launch_resolve(kernel, drawing);
 }
 
-void Rasterizer::rasterize_rsm(const ClpvLight& light, Surface& surface) {
-  const ClpvView& view = surface.view;
-  if (surface.format == RsmFormat::paper) surface.colour_scale = largest_flux(light, view);
-  if (scene_.triangle_count == 0) return clear(surface);
-  find_visible({view, Kind::rsm});
-  Kernel& kernel = resolve({.orthographic = view.orthographic != 0,
+void Rasterizer::rasterize_rsms(std::span<const Rsm> rsms) {
+  const std::size_t most = std::clamp(kMostAhead / std::max<std::size_t>(scene_.triangle_count, 1),
+                                      std::size_t{1}, kMostViews);
+  while (!rsms.empty()) {
+    const Surface& first = *rsms[0].surface;
+    const auto end = std::ranges::find_if(rsms, [&](const Rsm& rsm) {
+      const Surface& s = *rsm.surface;
+      return s.depth.number() != first.depth.number() || s.view.width != first.view.width ||
+             s.view.height != first.view.height || s.view.orthographic != first.view.orthographic;
+    });
+    const std::size_t count = std::min<std::size_t>(end - rsms.begin(), most);
+    draw_rsms(rsms.first(count));
+    rsms = rsms.subspan(count);
+  }
+}
+
+/// Draws maps by the same launches.
+void Rasterizer::draw_rsms(std::span<const Rsm> rsms) {
+  Drawing drawing{{}, Kind::rsm};
+  std::vector<ClpvLitView> lit;
+  for (const auto& [light, surface] : rsms) {
+    if (surface->format == RsmFormat::paper)
+      surface->colour_scale = largest_flux(light, surface->view);
+    if (scene_.triangle_count == 0) clear(*surface);
+    drawing.views.push_back(surface->view);
+    lit.push_back({surface->view, light, surface->colour_scale, surface->first});
+  }
+  if (scene_.triangle_count == 0) return;
+  find_visible(drawing);
+  session_.reserve(lit_views_, lit.size() * sizeof(ClpvLitView), "views of lights");
+  session_.write(lit_views_, lit);
+  const Surface& surface = *rsms[0].surface;
+  Kernel& kernel = resolve({.orthographic = surface.view.orthographic != 0,
                             .from_light = true,
                             .paper = surface.format == RsmFormat::paper,
                             .emissive = false});
-  kernel.set(view, light, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
-             scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour,
-             surface.colour_scale, surface.first);
-  add_counters(kernel).launch(items_of(session_, view), pixel_group(session_));
+  kernel.set(lit_views_, keys_, seen_, scene_.vertices, scene_.triangles, scene_.materials,
+             scene_.textures, scene_.texels, surface.depth, surface.normal, surface.colour);
+  launch_resolve(kernel, drawing);
 }
 
 void Rasterizer::rasterize_shadow(const ClpvView& view, Buffer& depth) {
-  find_visible({view, Kind::shadow});
+  const Drawing drawing{{view}, Kind::shadow};
+  find_visible(drawing);
   resolve_depth_.set(view, keys_, depth);
-  add_counters(resolve_depth_).launch(items_of(session_, view), pixel_group(session_));
+  launch_resolve(resolve_depth_, drawing);
+}
+
+/// Launches a kernel over the pixels of all views.
+void Rasterizer::launch_resolve(Kernel& kernel, const Drawing& drawing) {
+  const ClpvView& view = drawing.views[0];
+  add_counters(kernel, drawing)
+      .launch(drawing.items(items_along(session_, view.width), view.height),
+              drawing.group(session_));
 }
 
 }  // namespace clpv

@@ -6,12 +6,15 @@
 // the triangle that comes first in the scene wins. Results are deterministic to the byte.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <deque>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
+#include <vector>
 
 #include "device/kernel.hpp"
 #include "device/session.hpp"
@@ -47,11 +50,19 @@ class Rasterizer {
   /// trilinearly.
   void rasterize_camera(Surface& surface);
 
-  /// Renders a reflective shadow map of `light` from `surface.view`: depth, normal, colour. Colour
+  struct Rsm {
+    ClpvLight light;
+    Surface* surface;
+  };
+  /// Renders reflective shadow maps from the views of their surfaces: depth, normal, colour. Colour
   /// is the flux [W] of the virtual point light of each texel: albedo x irradiance x footprint
   /// (kernels/raster/lighting.h). Both sides of every triangle are lit. In format paper it sets
-  /// Surface::colour_scale to the largest possible flux of a texel.
-  void rasterize_rsm(const ClpvLight& light, Surface& surface);
+  /// Surface::colour_scale to the largest possible flux of a texel. The same launches draw
+  /// successive maps of one size in the same buffers.
+  void rasterize_rsms(std::span<const Rsm> rsms);
+  void rasterize_rsm(const ClpvLight& light, Surface& surface) {
+    rasterize_rsms(std::array{Rsm{light, &surface}});
+  }
 
   /// Renders only depth [m], 0 without a surface, into view.width x view.height floats. Both sides
   /// cast shadows.
@@ -70,10 +81,19 @@ class Rasterizer {
 
  private:
   enum class Kind { camera, rsm, shadow };
-  struct Drawing {
-    ClpvView view;
+  struct Drawing {  ///< views of one size that the same launches draw
+    std::vector<ClpvView> views;
     Kind kind;
     bool culls_back_faces() const { return kind == Kind::camera; }
+    unsigned tiles() const;
+    unsigned slices() const { return tiles() * CLPV_SLICES; }
+    cl::NDRange items(unsigned along_x, unsigned along_y) const {
+      return {along_x, along_y, views.size()};
+    }
+    cl::NDRange group(const Session& session) const {
+      const cl::NDRange flat = pixel_group(session);
+      return {flat.get()[0], flat.get()[1], 1};
+    }
   };
 
   /// Variant of the resolve kernel.
@@ -94,18 +114,20 @@ class Rasterizer {
     unsigned first = 0, count = 0;
     unsigned clipped = 0;  ///< those whose triangles may need clipping
   };
-  std::vector<Range> list_clusters(const ClpvView& view);
+  std::vector<Range> list_clusters(const std::vector<ClpvView>& views);
+  void draw_rsms(std::span<const Rsm> rsms);
+  void launch_resolve(Kernel& kernel, const Drawing& drawing);
   void draw_range(const Drawing& drawing, const Range& range, bool fresh);
-  void hide_clusters(const ClpvView& view, const Range& range);
+  void hide_clusters(const Drawing& drawing, const Range& range);
   void count_set_up(const Range& range);
   void draw(const Drawing& drawing, unsigned first, unsigned count, bool fresh);
   bool list(const Drawing& drawing, unsigned first, unsigned count);
   bool list_ahead(const Drawing& drawing, const Range& range);
   void take_counts();
   void set_up(const Drawing& drawing, unsigned first, unsigned count);
-  Kernel& add_counters(Kernel& kernel);
-  void bin(const ClpvView& view);
-  Chain longest_list(const ClpvView& view);
+  Kernel& add_counters(Kernel& kernel, const Drawing& drawing);
+  void bin(const Drawing& drawing);
+  Chain longest_list(const Drawing& drawing);
   void draw_tiles(const Drawing& drawing, bool fresh);
 
   Session& session_;
@@ -122,6 +144,7 @@ class Rasterizer {
   std::size_t entered_ = 0;  ///< largest number of entries so far
   /// Counters of views drawn ahead.
   std::deque<std::shared_ptr<const Session::Arriving>> counting_;
+  Buffer views_, lit_views_;  ///< of the drawing
   Buffer clusters_, listed_, to_clip_, wide_, counts_, entries_, slice_counts_, in_slices_, binned_,
       keys_, seen_, farthest_;
 };

@@ -38,16 +38,16 @@ Bouncer::Bouncer(Session& session, const Basis& basis, const SweepOptions& optio
   returned_ = std::make_unique<Volume>(session, shape, "returned flux", options.format);
 }
 
-void Bouncer::inject_flux(const Volume& flux, const Volume& reflectors, Volume& bounced) {
+void Bouncer::inject_flux(const Volume& flux, const Volume& reflectors, SweepSources& sources) {
   inject_flux_.set(flux.memory(), reflectors.memory(), cl_int{0}, cl_int{1}, 1.0f,
-                   bounced.memory());
-  volumes_.launch(inject_flux_, kChannels);
+                   sources.coefficients, sources.lit);
+  volumes_.launch(inject_flux_, 1);
 }
 
-void Bouncer::inject_white(const Volume& reflectors, Volume& bounced) {
+void Bouncer::inject_white(const Volume& reflectors, SweepSources& sources) {
   inject_flux_.set(reflectors.memory(), reflectors.memory(), cl_int{CLPV_REFLECTOR_WHITE},
-                   cl_int{0}, std::numbers::pi_v<float>, bounced.memory());
-  volumes_.launch(inject_flux_, kChannels);
+                   cl_int{0}, std::numbers::pi_v<float>, sources.coefficients, sources.lit);
+  volumes_.launch(inject_flux_, 1);
 }
 
 const Volume& Bouncer::set_reflectors(std::size_t cascade, const Buffer& swept,
@@ -71,19 +71,21 @@ void Bouncer::sum_series(std::size_t cascade, const Buffer& swept) {
 }
 
 void Bouncer::inject_reflected(std::size_t cascade, const Buffer& swept, const Volume& injected,
-                               Volume& bounced, bool relaxed) {
+                               SweepSources& sources, bool relaxed) {
   const Volume& reflectance = (relaxed ? series_ : reflectors_)[cascade];
   inject_reflected_->set(swept, reflectors_[cascade].memory(), reflectance.memory(),
                          cl_int{relaxed ? CLPV_SERIES_FIRST : 0}, injected.memory(),
-                         bounced.memory());
-  volumes_.launch(*inject_reflected_, kChannels);
+                         sources.coefficients, sources.lit);
+  volumes_.launch(*inject_reflected_, 1);
 }
 
 void Bouncer::inject_series(std::size_t cascade, const Buffer& first_swept,
-                            const Buffer& second_swept, const Volume& injected, Volume& bounced) {
+                            const Buffer& second_swept, const Volume& injected,
+                            SweepSources& sources) {
   inject_series_->set(first_swept, second_swept, reflectors_[cascade].memory(),
-                      series_[cascade].memory(), injected.memory(), bounced.memory());
-  volumes_.launch(*inject_series_, kChannels);
+                      series_[cascade].memory(), injected.memory(), sources.coefficients,
+                      sources.lit);
+  volumes_.launch(*inject_series_, 1);
 }
 
 }  // namespace clpv

@@ -17,20 +17,23 @@
 
 namespace clpv {
 
+/// The light that a sweep injects (kernels/sweep/sources.h).
+struct SweepSources {
+  Buffer coefficients, lit;
+};
+
 /// Reflects swept light off the surfaces of cascades. `swept` has a volume of planes for each
-/// channel and bin; `injected` and `bounced` are light volumes of the basis. Deterministic to the
-/// bit.
+/// channel and bin; `injected` is a light volume of the basis. Deterministic to the bit.
 class Bouncer {
  public:
   /// `series`: evaluates the series of all bounces in every cascade. One bounce allows only
   /// inject_flux().
   Bouncer(Session& session, const Basis& basis, const SweepOptions& options, bool series);
 
-  /// Writes light of which each face emits this flux [W] to `bounced`. `reflectors`:
-  /// reflector_masks().
-  void inject_flux(const Volume& flux, const Volume& reflectors, Volume& bounced);
+  /// Writes light of which each face emits this flux [W]. `reflectors`: reflector_masks().
+  void inject_flux(const Volume& flux, const Volume& reflectors, SweepSources& sources);
   /// Writes light of faces that emit radiance 1, of cells of 1 m^2.
-  void inject_white(const Volume& reflectors, Volume& bounced);
+  void inject_white(const Volume& reflectors, SweepSources& sources);
 
   /// Sets the reflectors R of a cascade: reflector_masks() over the incident flux of a white
   /// furnace, whose sweep is `swept`.
@@ -42,10 +45,10 @@ class Bouncer {
 
   /// Writes I + R D, `relaxed` I + E D. `swept` gives the incident flux D.
   void inject_reflected(std::size_t cascade, const Buffer& swept, const Volume& injected,
-                        Volume& bounced, bool relaxed);
+                        SweepSources& sources, bool relaxed);
   /// Writes I + R D_1 + S (D_2 - D_1).
   void inject_series(std::size_t cascade, const Buffer& first_swept, const Buffer& second_swept,
-                     const Volume& injected, Volume& bounced);
+                     const Volume& injected, SweepSources& sources);
 
  private:
   SweepVolumes volumes_;

@@ -74,16 +74,14 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
           volumes_.program("sweep/sweep_collect.cl", sweep_collect_literals(options.most_white)),
           "join_furnace"),
       bouncer_(session, basis, options,
-               options.bounces == Bounces::all && !scatters(options.medium)),
-      bounced_(session, VolumeShape{options.grid, basis.size(), 3}, "injected and reflected light",
-               options.format) {
+               options.bounces == Bounces::all && !scatters(options.medium)) {
   const std::size_t plane = bordered_plane_size(options.grid) * sizeof(float);
   const std::size_t ordinates =
       3 * directions_of(*std::max_element(options.parts.begin(), options.parts.end()));
   bins_ = session.upload(sweep_bin_table(options.grid), "bins to sweep");
-  sources_ = volumes_.make(2 * 3 * basis.size(), "sources of the sweep");
-  lit_ = zeroed_buffer(session, 2 * sweep_volume_size(options.grid) / volumes_.lanes(),
-                       "lit rows of the sweep");
+  sources_.coefficients = volumes_.make(2 * 3 * basis.size(), "sources of the sweep");
+  sources_.lit = zeroed_buffer(session, 2 * sweep_volume_size(options.grid) / volumes_.lanes(),
+                               "lit rows of the sweep");
   swept_ = volumes_.make(3 * kSweepBins, "sums of the sweep");
   plane_buffer_ = zeroed_buffer(session, (form() == SweepForm::planes ? 2 : 1) * ordinates * plane,
                                 "plane buffer of the sweep");
@@ -240,8 +238,7 @@ void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry, const Bu
 void Sweeper::set_surfaces(std::size_t cascade, const std::vector<ClpvGrid>& grids,
                            const Volume& white, const Volume* reflectors, Volume& accumulated) {
   const auto sweep_faces = [&](const Volume& faces, bool all_directions) {
-    bouncer_.inject_white(faces, bounced_);
-    set_sources(bounced_);
+    bouncer_.inject_white(faces, sources_);
     sweep_white(all_directions, cascade, grids);
   };
   // Backs reflect, too: in their own furnace no light grows from bounce to bounce.
@@ -255,8 +252,7 @@ void Sweeper::set_surfaces(std::size_t cascade, const std::vector<ClpvGrid>& gri
   if (plan_.back().light != SweptLight::series) return;
   enter_medium(cascade, grids[cascade]);
   const auto sweep_reflected = [&](const Volume& flux) {
-    bouncer_.inject_flux(flux, *normalised, bounced_);
-    set_sources(bounced_);
+    bouncer_.inject_flux(flux, *normalised, sources_);
     launch(*cascades_[cascade].few, cascade, {}, false);
   };
   sweep_reflected(*normalised);
@@ -299,7 +295,7 @@ void Sweeper::run(const SweepStep& step, const SweepInput& input) {
   Cascade& cascade = cascades_[input.cascade];
   Directions& directions = step.all_directions ? cascade.all : *cascade.few;
   if (step.scattered) medium_->scatter_swept(swept_);
-  set_sources(light_of(step, input));
+  set_sources(step, input);
   const float cell = input.grids[input.cascade].cell;
   // Groups leave the boundary condition as it is: it serves all sweeps along the same directions.
   const bool stands = form() == SweepForm::groups && bordered_ == &directions;
@@ -322,27 +318,19 @@ ClpvSweepHalo Sweeper::prepare_halo(const Directions& directions, std::size_t ca
   return stored;
 }
 
-const Volume& Sweeper::light_of(const SweepStep& step, const SweepInput& input) {
-  const std::size_t c = input.cascade;
+/// Sets the light that the next sweep injects.
+void Sweeper::set_sources(const SweepStep& step, const SweepInput& input) {
   switch (step.light) {
     case SweptLight::injected:
-      return input.injected;
+      source_.set(input.injected.memory(), sources_.coefficients, sources_.lit);
+      return volumes_.launch(source_, 1);
     case SweptLight::reflected:
     case SweptLight::relaxed:
-      bouncer_.inject_reflected(c, swept_, input.injected, bounced_,
-                                step.light == SweptLight::relaxed);
-      break;
+      return bouncer_.inject_reflected(input.cascade, swept_, input.injected, sources_,
+                                       step.light == SweptLight::relaxed);
     case SweptLight::series:
-      bouncer_.inject_series(c, last_swept_, swept_, input.injected, bounced_);
-      break;
+      return bouncer_.inject_series(input.cascade, last_swept_, swept_, input.injected, sources_);
   }
-  return bounced_;
-}
-
-/// Sets the light that the next sweep injects.
-void Sweeper::set_sources(const Volume& light) {
-  source_.set(light.memory(), sources_, lit_);
-  volumes_.launch(source_, 1);
 }
 
 /// Sets the boundary condition of a cascade from the next coarser one, or from `sky` times
@@ -384,12 +372,12 @@ void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSwee
                      bool lit, bool scattered) {
   const auto set = [&](cl_int last) {
     directions.sweep.set(bins_, directions.table, directions.coefficients, directions.means,
-                         sources_, lit_, cascades_[cascade].links, border_, halo, plane_buffer_,
-                         swept_, directions.halo_light, last);
+                         sources_.coefficients, sources_.lit, cascades_[cascade].links, border_,
+                         halo, plane_buffer_, swept_, directions.halo_light, last);
     if (medium_)
       medium_->add_to(directions.sweep, cascade, scattered);
     else
-      directions.sweep.add(directions.table, sources_);  // not read
+      directions.sweep.add(directions.table, sources_.coefficients);  // not read
   };
   const std::size_t n = options_.grid;
   if (form() != SweepForm::planes) {

@@ -95,8 +95,7 @@ class Sweeper {
   ProgramSource sweep_program(int coefficients, const SweepMeans& means, int parts) const;
   void enter_medium(std::size_t cascade, const ClpvGrid& grid);
   void run(const SweepStep& step, const SweepInput& input);
-  const Volume& light_of(const SweepStep& step, const SweepInput& input);
-  void set_sources(const Volume& light);
+  void set_sources(const SweepStep& step, const SweepInput& input);
   void sweep_white(bool all_directions, std::size_t cascade, const std::vector<ClpvGrid>& grids);
   bool light_border(bool all_directions, std::size_t cascade, const std::vector<ClpvGrid>& grids,
                     const Buffer& sky, float sky_scale, cl_int first_lit = 0);
@@ -112,8 +111,9 @@ class Sweeper {
   Session& session_;
   SweepOptions options_;
   SweepVolumes volumes_;
-  Buffer bins_, sources_, lit_;  ///< sources_, lit_: sweep_source.cl
-  Buffer closed_;                ///< closed_links.cl; zeros close no link
+  Buffer bins_;
+  SweepSources sources_;
+  Buffer closed_;  ///< closed_links.cl; zeros close no link
   /// Results of the last two sweeps; last_swept_: only for SweptLight::series.
   Buffer swept_, last_swept_;
   Buffer plane_buffer_, border_;
@@ -124,7 +124,6 @@ class Sweeper {
   std::vector<SweepStep> plan_;
   std::vector<Cascade> cascades_;
   Bouncer bouncer_;
-  Volume bounced_;  ///< injected and reflected light
 };
 
 }  // namespace clpv
