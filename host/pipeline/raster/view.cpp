@@ -269,8 +269,7 @@ ClpvViewCluster place_cluster(const ClpvView& view, const Boxes& boxes, unsigned
   const auto [left, right] = span(view.right);
   const auto [bottom, top] = span(view.up);
   return {
-      number,
-      0,
+      number, 0,
       tile(left, view.half_width, width, -1) + (tile(-top, view.half_height, height, -1) << 16),
       tile(right, view.half_width, width, 1) + (tile(-bottom, view.half_height, height, 1) << 16),
       span(view.forward).first};
