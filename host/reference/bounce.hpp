@@ -28,7 +28,7 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
                                           Bounces bounces, double most_white = kNoLimitOfWhite);
 
 /// All further bounces inside one cascade. `all`: the series S, flux that a face, and the faces
-/// that its light meets, reflect of 1 W of incident flux; `first`: E, which stands for R in the
+/// that its light meets, reflect of 1 W of incident flux; `first`: E, in place of R in the
 /// first reflection.
 struct BounceSeries {
   Volume all, first;

@@ -63,7 +63,8 @@ inline constexpr Tolerance kTolerances[] = {
     // stores injected light, transmittance, sums and results; light inside the sweep is float32.
     {"sweep", 5e-6, 4e-3},
     // As sweep, for up to nine sweeps in a row and the series of bounces, each over a furnace that
-    // may be small; measured 1.4e-5 (nine sweeps in a medium), 4.8e-5 where the series multiplies the
+    // may be small; measured 1.4e-5 (nine sweeps in a medium), 4.8e-5 where the series multiplies
+    // the
     // difference of two sweeps that are nearly equal.
     {"bounce", 1e-4, 1e-2},
     // float32 trilinear weights and N products of mixed sign; srbf14 coefficients are ten times

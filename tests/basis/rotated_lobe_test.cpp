@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The paper's rotated lobes, with and without the table; and integrals of direction bins.
+#include "basis/rotated_lobe.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +13,6 @@
 #include "basis/basis.hpp"
 #include "basis/lobe_quality.hpp"
 #include "basis/quadrature.hpp"
-#include "basis/rotated_lobe.hpp"
 #include "basis/transport.hpp"
 #include "pipeline/inject/lookup_table.hpp"
 #include "support/error.hpp"

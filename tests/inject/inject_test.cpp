@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Injection against closed forms: position and flux of light, blockers, several surfaces,
 // repeatability.
+#include "pipeline/inject/inject.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +16,6 @@
 #include <vector>
 
 #include "kernels/shared/sort.h"
-#include "pipeline/inject/inject.hpp"
 #include "pipeline/inject/lookup_table.hpp"
 #include "pipeline/inject/sort_by_cell.hpp"
 #include "pipeline/steps/propagate.hpp"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Skies: maps, their mean radiance per direction, and the light on surfaces.
+#include "scene/sky.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +24,6 @@
 #include "reference/lighting.hpp"
 #include "scene/load.hpp"
 #include "scene/scene.hpp"
-#include "scene/sky.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
 #include "tests/support/numbers.hpp"

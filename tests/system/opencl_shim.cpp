@@ -108,8 +108,8 @@ cl_int clGetEventProfilingInfo(cl_event event, cl_profiling_info info, size_t si
   if (fault == "ticks" && code == CL_SUCCESS && value != nullptr)
     *static_cast<cl_ulong*>(value) /= 42;
   cl_ulong start = 0;
-  if ((fault == "short" || (fault == "late" && kernel_ran)) && info == CL_PROFILING_COMMAND_END && code == CL_SUCCESS &&
-      value != nullptr &&
+  if ((fault == "short" || (fault == "late" && kernel_ran)) && info == CL_PROFILING_COMMAND_END &&
+      code == CL_SUCCESS && value != nullptr &&
       call(event, CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) == CL_SUCCESS)
     *static_cast<cl_ulong*>(value) = start + (*static_cast<cl_ulong*>(value) - start) / 42;
   return code;

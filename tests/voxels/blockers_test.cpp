@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Blockers from a scene's triangles against known areas.
 
-#include "pipeline/voxels/voxel_field.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 
 #include "basis/bounce.hpp"
 #include "kernels/shared/reflectors.h"
+#include "pipeline/voxels/voxel_field.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "verify/check.hpp"

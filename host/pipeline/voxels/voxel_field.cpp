@@ -18,7 +18,7 @@ constexpr double kReach = 0.51;
 // Bases are this many grids apart; the base is constant while a cascade moves within that distance.
 constexpr int kGridsApart = 4;
 constexpr std::size_t kMaskGroup = 64;  // work-items per group
-constexpr std::size_t kPoints = 64;  // points per cube between cell centres, one byte each
+constexpr std::size_t kPoints = 64;     // points per cube between cell centres, one byte each
 static_assert(kCellFaces == CLPV_CELL_FACES);
 
 /// Returns the position of a grid. Its first cell is at least two grids from the base along each
