@@ -36,7 +36,6 @@ CLPV_INLINE void add_field(const PackedCascade cascade, const SamplePoints* poin
     if (!(weights[i] > 0.0f)) continue;
     Sampled sampled;
     const float scale = weights[i] * sample_cells(cascade, points, i, &sampled);
-#pragma unroll
     for (int j = 0; j < CLPV_PAIRS; ++j) field->at[i].pair[j] += scale * sampled.pair[j];
   }
 }
@@ -48,7 +47,6 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
                                  RadianceField* field) {
   realW remaining = wanted ? (realW)(unit) : ZERO;
   for (int i = 0; i < W; ++i) {
-#pragma unroll
     for (int j = 0; j < CLPV_PAIRS; ++j) field->at[i].pair[j] = 0.0f;
   }
   for (uint c = 0; c < cascades; ++c) {
