@@ -125,12 +125,23 @@ void FrameLights::place_rsms() {
   view.width = view.height = options_.rsm_size;
   const std::size_t most = setup_.rsms_together();
   Surface together;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (i % most == 0)
-      together = make_surface(session_, view, options_.rsm_format, false,
-                              static_cast<int>(std::min(most, all.size() - i)));
-    *all[i] = together;
-    all[i]->first = i % most * view.width * view.height;
+  std::size_t used = most, left = all.size();
+  for (Lit& lit : lights_) {
+    // The same launches inject a light's maps of all cascades, from the same memory.
+    if (lit.rsms.size() > 1 && used + lit.rsms.size() * lit.wanted[0].views.size() > most)
+      used = most;
+    for (Rsms& rsms : lit.rsms) {
+      for (Surface& surface : rsms.surfaces) {
+        if (used == most) {
+          together = make_surface(session_, view, options_.rsm_format, false,
+                                  static_cast<int>(std::min(most, left)));
+          used = 0;
+        }
+        surface = together;
+        surface.first = used * view.width * view.height;
+        ++used, --left;
+      }
+    }
   }
 }
 
