@@ -228,6 +228,33 @@ TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
   EXPECT_EQ(session.device_bytes(), 0u);
 }
 
+// Maps of many lights share buffers, which hold seven maps of 512 x 512: the third sun's cascades
+// were injected from the map of another.
+TEST(Frame, SunsInjectTheSumOfEach) {
+  SceneData scene = load_scene(scene_file("cornell.json"));
+  RenderOptions options = small_options(scene);
+  options.cascades = 3, options.rsm_size = 512;
+  const auto injected = [&](const std::vector<SceneLight>& lights) {
+    scene.lights = lights;
+    std::vector<double> sums;
+    Frame frame(test::test_session(), scene, options);
+    frame.render(scene.cameras.front(), [&](const CascadeVolumes& volumes) {
+      double& sum = sums.emplace_back(0);
+      for (const float value : volumes.injected.read(test::test_session()))
+        sum += double{value} / volumes.light_scale;
+    });
+    return sums;
+  };
+  std::vector<SceneLight> suns;
+  for (const float x : {-0.5f, 0.1f, 0.6f})
+    suns.push_back({"sun", test::directional_light({x, -0.6f, 0.6f})});
+  const std::vector<double> together = injected(suns);
+  std::vector<double> sum(together.size());
+  for (const SceneLight& sun : suns)
+    for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += injected({sun})[c];
+  for (std::size_t c = 0; c < sum.size(); ++c) EXPECT_NEAR(together[c] / sum[c], 1, 1e-3) << c;
+}
+
 /// The Cornell box full of fog, which hides 40 walls.
 SceneData foggy() {
   SceneData scene = load_scene(scene_file("cornell_fog.json"));
