@@ -26,11 +26,11 @@
 namespace clpv::baselines {
 
 struct RadianceCascadeSettings {
-  unsigned side = 1;          ///< cascade 0 has 12 side^2 directions
-  float spacing = 1;          ///< spacing of cascade 0 [cells]
-  float first = 2;            ///< length of the intervals of cascade 0 [its spacing]
-  float ratio = 2;            ///< ratio of intervals' lengths from cascade to cascade
-  unsigned cascades = 3;      ///< the last one's intervals have no end
+  unsigned side = 1;      ///< cascade 0 has 12 side^2 directions
+  float spacing = 1;      ///< spacing of cascade 0 [cells]
+  float first = 2;        ///< length of the intervals of cascade 0 [its spacing]
+  float ratio = 2;        ///< ratio of intervals' lengths from cascade to cascade
+  unsigned cascades = 3;  ///< the last one's intervals have no end
 };
 
 /// Directions of the pixels of HEALPix with `side`^2 in each of its 12 faces, of equal solid angles

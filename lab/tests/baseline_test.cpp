@@ -158,10 +158,8 @@ TEST(BaselineRadianceCascades, FurnaceIsEvenlyLit) {
   test::add_box(scene, {1.01f, 0.81f, 1.13f}, -0.7f, 0);
   const SceneCamera camera = camera_at({1, 1.5f, 1.8f}, {0, -0.6f, -1.5f});
   const baselines::View view(scene, camera, 16, 9, 1, 2);
-  for (const auto& [cell, side, cascades] : {std::tuple{0.375f, 1u, 1u},
-                                             {0.375f, 1u, 4u},
-                                             {0.125f, 1u, 3u},
-                                             {0.375f, 2u, 2u}}) {
+  for (const auto& [cell, side, cascades] :
+       {std::tuple{0.375f, 1u, 1u}, {0.375f, 1u, 4u}, {0.125f, 1u, 3u}, {0.375f, 2u, 2u}}) {
     const auto n = static_cast<std::uint32_t>(3 / cell);
     const ClpvGrid grid{{-0.513f, -0.507f, -0.491f}, cell, n, {1, 1, 1}};
     const baselines::CascadedImage image = baselines::radiance_cascades(
