@@ -13,7 +13,6 @@ constexpr unsigned kFaces = 12;        // faces of HEALPix
 constexpr unsigned kChildren = 4;      // directions of the next cascade in one of this
 constexpr float kVisibleFrom = 1e-3f;  // [spacings]: a probe on the surface of a pixel sees it
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kOverlap = 1e-3f;  // a ray's length beyond its end, for surfaces at the end
 constexpr std::uint64_t kAxisBits = 21, kAxisOffset = 1 << 20;
 
 std::uint64_t key_of(const glm::ivec3& cell) {
@@ -75,8 +74,6 @@ class RadianceCascades {
   Corners seen_from(const Cascade& cascade, std::size_t probe, const Cascade& next) const;
   std::optional<glm::vec3> merged(const Cascade& next, const Corners& corners,
                                   std::size_t direction) const;
-  glm::vec3 merged_by_fix(pathtracer::PathSampler& sampler, const glm::vec3& start,
-                          const Cascade& next, const Corners& corners, std::size_t direction) const;
   glm::vec3 sample(pathtracer::PathSampler& sampler, std::size_t pixel,
                    const Corners& corners) const;
 
@@ -141,26 +138,6 @@ std::optional<glm::vec3> RadianceCascades::merged(const Cascade& next, const Cor
   return sum.w > 0 ? std::optional(glm::vec3(sum) / sum.w) : std::nullopt;
 }
 
-/// The same with a ray from `start` to the start of each finer ray.
-glm::vec3 RadianceCascades::merged_by_fix(pathtracer::PathSampler& sampler, const glm::vec3& start,
-                                          const Cascade& next, const Corners& corners,
-                                          std::size_t direction) const {
-  const std::vector<glm::vec3>& finer = directions_[&next - cascades_.data()];
-  glm::vec3 sum(0);
-  for (int i = 0; i < 8; ++i) {
-    for (unsigned c = 0; c < kChildren; ++c) {
-      const std::size_t child = healpix_child(direction, next.side / 2, c);
-      const glm::vec3 way = position(next, corners.probe[i]) + next.from * finer[child] - start;
-      const float length = glm::length(way);
-      const auto hit = view_.radiance(sampler, start, way / length, (1 + kOverlap) * length);
-      sum +=
-          corners.weight[i] *
-          (hit ? hit->radiance : glm::vec3(next.radiance[corners.probe[i] * finer.size() + child]));
-    }
-  }
-  return sum / float(kChildren);
-}
-
 /// Traces a cascade's intervals and merges them with the next cascade, if there is one.
 void RadianceCascades::trace(Cascade& cascade, const Cascade* next) {
   const std::vector<glm::vec3>& directions = directions_[&cascade - cascades_.data()];
@@ -171,27 +148,19 @@ void RadianceCascades::trace(Cascade& cascade, const Cascade* next) {
       [&](pathtracer::PathSampler& sampler, std::size_t first, std::size_t last) {
         for (std::size_t probe = first; probe < last; ++probe) {
           const glm::vec3 at = position(cascade, probe);
-          const Corners corners = !next                    ? Corners()
-                                  : settings_.bilinear_fix ? cascade.above[probe]
-                                                           : seen_from(cascade, probe, *next);
+          const Corners corners = next ? seen_from(cascade, probe, *next) : Corners();
           for (std::size_t d = 0; d < directions.size(); ++d) {
             glm::vec4& radiance = cascade.radiance[probe * directions.size() + d];
-            const float start = settings_.bilinear_fix ? cascade.from : 0;
-            const glm::vec3 from = at + start * directions[d];
-            if (settings_.bilinear_fix && next) {
-              radiance = glm::vec4(merged_by_fix(sampler, from, *next, corners, d), 1);
-              continue;
-            }
-            auto hit = view_.radiance(sampler, from, directions[d], cascade.to - start);
+            auto hit = view_.radiance(sampler, at, directions[d], cascade.to);
             if (!hit && next) {
               if (const auto far = merged(*next, corners, d)) {
                 radiance = glm::vec4(*far, 1);
                 continue;
               }
-              hit = view_.radiance(sampler, from, directions[d], kInfinity);
+              hit = view_.radiance(sampler, at, directions[d], kInfinity);
             }
             radiance = glm::vec4(hit ? hit->radiance : view_.sky_radiance(directions[d]),
-                                 !hit || start + hit->distance >= cascade.from ? 1 : 0);
+                                 !hit || hit->distance >= cascade.from ? 1 : 0);
           }
         }
       });

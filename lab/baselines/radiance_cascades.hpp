@@ -12,7 +12,7 @@
 // directions, so a surface can lie between the end of the one and the start of the other. Such
 // light would be lost. Trilinear merging skips probes that the ray's own probe does not see, and
 // rays that a surface blocks before their interval begins; where none is left, the ray goes on
-// to its end. The bilinear fix traces a ray to the start of each of the 32 finer rays.
+// to its end.
 #pragma once
 
 #include <array>
@@ -26,12 +26,11 @@
 namespace clpv::baselines {
 
 struct RadianceCascadeSettings {
-  unsigned side = 1;          ///< cascade 0 has 12 side^2 directions
-  float spacing = 1;          ///< spacing of cascade 0 [cells]
-  float first = 2;            ///< length of the intervals of cascade 0 [its spacing]
-  float ratio = 2;            ///< ratio of intervals' lengths from cascade to cascade
-  unsigned cascades = 3;      ///< the last one's intervals have no end
-  bool bilinear_fix = false;  ///< 32 rays for each direction in place of one
+  unsigned side = 1;      ///< cascade 0 has 12 side^2 directions
+  float spacing = 1;      ///< spacing of cascade 0 [cells]
+  float first = 2;        ///< length of the intervals of cascade 0 [its spacing]
+  float ratio = 2;        ///< ratio of intervals' lengths from cascade to cascade
+  unsigned cascades = 3;  ///< the last one's intervals have no end
 };
 
 /// Directions of the pixels of HEALPix with `side`^2 in each of its 12 faces, of equal solid angles

@@ -26,6 +26,7 @@ from . import bake, native, output
 clpv = native()
 from clpv.draw import style  # noqa: E402
 
+HIGHEST = 120  # [%] errors above are worse than a black image
 MINIMUM = 1e-5  # smaller changes show as this on the logarithmic axis
 BASES = ("srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 FORMATS = ("sh2", "zh3", "sh3", "srbf8v2", "ambient-cube", "ambient-cube-mean")
@@ -36,6 +37,30 @@ def save(figure, target, dpi):
     figure.tight_layout()
     output.write(target, style.rendered(figure, "png", dpi=dpi))
     print(target)
+
+
+def draw_errors(files, target):
+    """Error over the time of a frame, for scripts/measure and lab/scripts/standing: a point for
+    each variant, a line for each series, or else for each file. `files`: (label, path)."""
+    lines = {}
+    for label, path in files:
+        for row in json.loads(pathlib.Path(path).read_text(encoding="utf-8"))["variants"]:
+            options = row["options"]
+            name = options.get("grid", "") if "series" in row else " ".join(options.values())
+            if not row["rejected"]:
+                lines.setdefault(row.get("series", label), []).append(
+                    (row["frame_ms"], 100 * row["nrmse"], name))
+    figure, (axis,) = style.panels(1, 1, (8, 4.5))
+    for i, (label, places) in enumerate(lines.items()):
+        times, errors, names = zip(*sorted(places))
+        axis.plot(times, errors, "o-", color=style.colour(i), label=label)
+        for x, y, name in zip(times, errors, names):
+            axis.annotate(name, (x, y), textcoords="offset points", xytext=(5, 5), fontsize="small")
+    highest = max(error for places in lines.values() for _, error, _ in places)
+    axis.set(ylim=(0, min(HIGHEST, 1.08 * highest)), xlabel="frame [ms]", ylabel="mean NRMSE [%]")
+    style.logarithmic(axis.xaxis)
+    axis.legend()
+    save(figure, target, 110)
 
 
 def described(name, bandwidth):
@@ -164,33 +189,27 @@ def draw_stability(folders, target):
     save(figure, target, 100)
 
 
-def labelled(given):
-    label, _, path = given.rpartition("=")
-    return label, path
+DRAWN = {"lambda": draw_lambda, "times": draw_times, "probes": draw_probes,
+         "stability": draw_stability}
+FILES = {"lambda": (0, 0), "times": (1, 1), "probes": (1, 1), "stability": (1, 999)}
+READ = {"times": "/times.jsonl", "stability": "/stability.json"}  # of a folder
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("chart", choices=("lambda", "times", "probes", "stability"))
+    parser.add_argument("chart", choices=DRAWN)
     parser.add_argument("files", nargs="*", metavar="[LABEL=]FILE")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="FILE.png")
     arguments = parser.parse_args()
-    files = [labelled(given) for given in arguments.files]
-    one = range(1, 2)
-    allowed = {"lambda": range(1), "times": one, "probes": one}.get(arguments.chart, range(1, 1000))
-    if len(files) not in allowed:
-        parser.error(
-            f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
-    read = {"times": "/times.jsonl", "stability": "/stability.json"}.get(arguments.chart, "")
-    output.target_of(arguments.output, *(path + read for _, path in files))
-    if arguments.chart == "lambda":
-        draw_lambda(arguments.output)
-    elif arguments.chart == "probes":
-        draw_probes(files[0][1], arguments.output)
-    elif arguments.chart == "times":
-        draw_times(files[0][1], arguments.output)
-    else:
+    chart, files = arguments.chart, [given.rpartition("=")[::2] for given in arguments.files]
+    least, most = FILES[chart]
+    if not least <= len(files) <= most:
+        parser.error(f"{chart}: found {len(files)} files; allowed: {least} to {most}")
+    output.target_of(arguments.output, *(path + READ.get(chart, "") for _, path in files))
+    if chart == "stability":
         draw_stability([(label or pathlib.Path(path).name, path) for label, path in files],
                        arguments.output)
+    else:
+        DRAWN[chart](*(path for _, path in files), arguments.output)
     return 0

@@ -284,6 +284,13 @@ FROM_THE_SUN = 1000  # distance of a camera whose picture is nearly parallel [m]
 OTHER_WAY = 0.5  # cosine of the angle beyond which two normals differ
 
 
+def from_the_sun(camera, direction, size):
+    """Nearly parallel, `size` [m] about the camera's eye."""
+    along = np.array(direction) / np.linalg.norm(direction)
+    return camera.replace(eye=camera.eye - FROM_THE_SUN * along, target=camera.eye, up=(0, 1, 0),
+                          near=0.05, fov=math.degrees(2 * math.atan(size / 2 / FROM_THE_SUN)))
+
+
 def texels(arguments):
     """For neighbouring texels: mean difference of their flux over its mean, and share of pairs with
     other normals."""
@@ -296,8 +303,7 @@ def texels(arguments):
     renderer = views_of.renderer(width=min(TEXELS), height=min(TEXELS))
     rows = []
     for size in sorted({size * 2 ** cascade for size in SIZES for cascade in range(3)}):
-        above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0),
-                               near=0.05, fov=math.degrees(2 * math.atan(size / 2 / FROM_THE_SUN)))
+        above = from_the_sun(camera, sun, size)
         albedo = renderer.render("albedo", above).array[..., :3].astype(float)
         normal = renderer.show("normal").array[..., :3].astype(float)
         flux = albedo.sum(axis=-1) * np.clip(-(normal @ sun), 0, None)

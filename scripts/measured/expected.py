@@ -4,6 +4,8 @@
 Only the standard library.
 """
 
+import json
+import pathlib
 import typing
 
 
@@ -13,27 +15,15 @@ class Part(typing.NamedTuple):
     `quick`: belongs to a quick run too."""
     file: str
     tolerances: dict | None
-    model: bool = True
-    quick: bool = True
+    model: bool
+    quick: bool
 
 
 # Lobes are computed in double on the host. Tables are read in float, where fused multiply-adds
 # decide single entries. Light: devices round differently, and the ground truth has a noise of 0.02
 # (views: 0.05).
-PARTS = {
-    "lobes": Part("claims", {"peak": (0.5, 0), "": (1e-3, 1e-2)}, model=False),
-    "tables": Part("claims", {"degrees": (0.5, 0), "": (1e-2, 1e-2)}, model=False),
-    "lambdas": Part("claims", {"error": (0.03, 0), "difference": (0.01, 0), "": (1e-3, 1e-2)}),
-    "light": Part("claims", {"difference": (0.01, 0), "": (0.03, 0.03)}),
-    "views": Part("claims", {"better": (1, 0), "mean": (0.01, 0), "standard_error": (0.01, 0),
-                             "": (0.05, 0.05)}, quick=False),
-    "texels": Part("claims", {"": (5e-3, 0.02)}),
-    "shadows": Part("claims", {"": (0.03, 0)}),
-    "arcade": Part("claims", {"": (0.02, 0)}),
-    "lit": Part("claims", {"": (5e-3, 0)}),
-    "figures": Part("figures", {"": (5e-3, 0.03)}, model=False),
-    "table1": Part("table1", None),
-}
+PARTS = {name: Part(**part) for name, part in json.loads(
+    pathlib.Path(__file__).with_name("parts.json").read_text(encoding="utf-8")).items()}
 CLAIMS = [name for name, part in PARTS.items() if part.file == "claims"]
 # Fields that name a row, and fields that are no results.
 IDENTITY = ("basis", "lobe", "transport", "n", "over", "lambdas", "lambda", "entries",

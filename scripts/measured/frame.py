@@ -8,11 +8,9 @@ First builds. Needs the packages of scripts/setup.
 """
 import argparse
 import io
-import math
 import pathlib
 import subprocess
 
-import numpy as np
 from matplotlib import pyplot
 
 from . import ROOT, native, output
@@ -32,15 +30,12 @@ PICTURES = {
     "full": ("full", 0, {"near": "traced"}),
 }
 CASCADE = 25  # edge of the finest cascade [m], in scenes/atrium.json
-FROM_THE_SUN = 1000  # distance of a camera whose picture is nearly parallel [m]
 
 
 def rsm(scene, camera):
     """Content of the sun's RSM of the finest cascade: the light that each texel reflects."""
-    sun = np.array(scene.lights[0].direction)
-    sun /= np.linalg.norm(sun)
-    above = camera.replace(eye=camera.eye - FROM_THE_SUN * sun, target=camera.eye, up=(0, 1, 0),
-                           near=0.05, fov=math.degrees(2 * math.atan(CASCADE / 2 / FROM_THE_SUN)))
+    from .claims import from_the_sun  # needs the native module
+    above = from_the_sun(camera, scene.lights[0].direction, CASCADE)
     return clpv.Renderer(scene, width=SIZE["height"], height=SIZE["height"]).render("direct", above)
 
 

@@ -12,6 +12,7 @@ are those of `clpv render`. Needs a build.
 """
 import argparse
 import itertools
+import json
 import math
 import pathlib
 import sys
@@ -20,6 +21,7 @@ import tempfile
 import numpy
 
 from . import ROOT, json_lines, native, output, rows as known
+from .cells import crossed, found
 
 sys.path.insert(0, str(ROOT / "scenes"))
 import generate_leaks as scenes  # noqa: E402  pylint: disable=wrong-import-position
@@ -96,15 +98,13 @@ def measure(shapes, columns, count, options):
 
 def lines(rows):
     """Cells of a table: a line for each shape."""
-    columns = list(dict.fromkeys((row["light"], row["bounces"]) for row in rows))
-    yield ["room", *(f"{light}, {bounces}" for light, bounces in columns)]
-    for shape in dict.fromkeys(row["shape"] for row in rows):
-        cells = {(row["light"], row["bounces"]): row for row in rows if row["shape"] == shape}
-        yield [shape] + [
-            "-" if row is None else f"{row['leak']:.2g}" +
-            (f" ({row['truth']:.2g})" if "truth" in row else "")
-            for row in map(cells.get, columns)
-        ]
+    def cell(shape, column):
+        row = found(rows, shape=shape, light=column[0], bounces=column[1])
+        truth = f" ({row['truth']:.2g})" if row and "truth" in row else ""
+        return f"{row['leak']:.2g}{truth}" if row else "-"
+
+    columns = {f"{row['light']}, {row['bounces']}": (row["light"], row["bounces"]) for row in rows}
+    return crossed("room", columns, {row["shape"]: row["shape"] for row in rows}, cell)
 
 
 def number_of(bounces):
@@ -112,12 +112,10 @@ def number_of(bounces):
 
 
 def value_of(text):
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            pass
-    return text
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
 
 
 def main():

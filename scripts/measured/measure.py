@@ -18,6 +18,7 @@ its packages.
 """
 import argparse
 import datetime
+import itertools
 import json
 import os
 import pathlib
@@ -69,7 +70,7 @@ def measure_device(folder):
               file=sys.stderr)
     write(folder, "check", json.loads(checks.stdout))
     for suite, options in rows.DEVICE_SUITES.items():
-        write(folder, suite, run("bench", suite, *options, "--output"))
+        write(folder, suite, run("bench", suite, *options.split(), "--output"))
 
 
 def scenes_of(arguments, model):
@@ -106,9 +107,10 @@ def measure_docs(folder, model, parts):
     for suite, options in rows.DOCS_SUITES.items():
         if suite not in parts:
             continue
-        if options[:1] == ["sponza"]:
-            options = ["--scene=scenes/sponza_suns.json", *sponza, *options[1:]]
-        document = run("bench", suite, *options, "--output")
+        words = options.split()
+        if words[:1] == ["sponza"]:
+            words = ["--scene=scenes/sponza_suns.json", *sponza, *words[1:]]
+        document = run("bench", suite, *words, "--output")
         write(folder, suite, {"measured": measured, **document})
     if "quality-centres" in parts:
         search_centres(sponza)
@@ -157,13 +159,12 @@ def measure_quality(folder, name, model, measured):
 
 def measure_media(folder, model, measured):
     cells = []
-    for medium, arguments, bounces, views in rows.MEDIA:
-        for count in bounces:
-            for view in views:
-                report = run("quality", *scenes_of(arguments, model), "--preset=best", "--spp=256",
-                             f"--bounces={count}", f"--view={view}", "--output")
-                cells += [{**cell, "medium": medium, "bounces": count, "view": view}
-                          for cell in report["cells"]]
+    for each in rows.MEDIA:
+        for count, view in itertools.product(each["bounces"], each["views"]):
+            report = run("quality", *scenes_of(each["given"].split(), model), "--preset=best",
+                         "--spp=256", f"--bounces={count}", f"--view={view}", "--output")
+            cells += [{**cell, "medium": each["medium"], "bounces": count, "view": view}
+                      for cell in report["cells"]]
     write(folder, "quality-media", {"measured": measured, "cells": cells})
 
 

@@ -11,7 +11,6 @@
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
 
 #include "cli/render_request.hpp"
@@ -271,20 +270,9 @@ TEST(Api, ARendererThatWasMovedFromIsNamed) {
   EXPECT_EQ(second.render().width, 48);
 }
 
-}  // namespace
-
-}  // namespace clpv::api_test
-
-namespace clpv::api_calls_test {
-
 // Calls of the public interface in any order, messages, and light without a frame.
 
-namespace {
-
 using ::testing::Contains;
-using ::testing::HasSubstr;
-
-using test::kCornell;
 
 const Vec3 kEye{0.3, 0.25, 0.2}, kElsewhere{-0.4, 0.5, 0.1};
 
@@ -452,5 +440,4 @@ TEST(ApiCalls, HelpersHaveTheOptionsOfTheFrames) {
 }
 
 }  // namespace
-
-}  // namespace clpv::api_calls_test
+}  // namespace clpv::api_test

@@ -54,33 +54,6 @@ struct Seen {
   GBuffer buffer() const {
     return {.width = width, .height = height, .normals = normals, .depths = depths};
   }
-  /// Positions of the depths, in double.
-  Vectors positions(const Camera& camera) const {
-    using Vector = std::array<double, 3>;
-    const auto cross = [](const Vector& a, const Vector& b) {
-      return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                    a[0] * b[1] - a[1] * b[0]};
-    };
-    const auto unit = [](const Vector& v) {
-      const double length = std::hypot(v[0], v[1], v[2]);
-      return Vector{v[0] / length, v[1] / length, v[2] / length};
-    };
-    Vector along;
-    for (int i = 0; i < 3; ++i) along[i] = camera.target[i] - camera.eye[i];
-    const Vector forward = unit(along), right = unit(cross(forward, camera.up)),
-                 up = cross(right, forward);
-    const double tangent = std::tan(camera.vertical_fov_degrees * M_PI / 360);
-    Vectors all;
-    for (std::size_t pixel = 0; pixel < depths.size(); ++pixel) {
-      const double sx = (2 * (pixel % width + 0.5) / width - 1) * tangent * width / height,
-                   sy = (1 - 2 * (pixel / width + 0.5) / height) * tangent;
-      auto& p = all.emplace_back();
-      for (int i = 0; i < 3; ++i)
-        p[i] = static_cast<float>(camera.eye[i] +
-                                  depths[pixel] * (forward[i] + sx * right[i] + sy * up[i]));
-    }
-    return all;
-  }
 };
 
 double greatest(const Vectors& a, const Vectors& minus) {
@@ -108,20 +81,6 @@ TEST(Light, OfAFramesDepthsIsItsIrradianceToTheByte) {
     EXPECT_GT(ms_of(other.stats().times, "near-trace"), 0);
     other.light(seen.buffer(), camera);
     EXPECT_EQ(ms_of(other.stats().times, "propagate"), 0) << "cached";
-  }
-}
-
-TEST(Light, OfPositionsIsThatOfDepths) {
-  const Scene scene(kCornell);
-  for (const char* size : {"full", "half"}) {
-    Renderer renderer(scene, small().set("near-size", size));
-    const Camera camera = camera_of(scene);
-    const Seen seen(renderer, camera);
-    const Vectors positions = seen.positions(camera);
-    const GBuffer points{seen.width, seen.height, seen.normals, positions};
-    EXPECT_LT(greatest(renderer.light(points, camera.eye), seen.irradiance),
-              1e-3 * greatest(seen.irradiance))
-        << size;
   }
 }
 
@@ -172,24 +131,22 @@ TEST(Light, PixelsWithoutASurfaceAreDarkAndChangeNoOther) {
   Renderer renderer(scene, small().set("near", "off"));
   const Camera camera = camera_of(scene);
   Seen seen(renderer, camera);
-  Vectors expected = seen.irradiance, positions = seen.positions(camera);
+  const Vec3 eye{0.278, 0.273, 0.2};
+  Panorama around(eye, scene.bounds());
+  Vectors expected = seen.irradiance, of_positions = renderer.light(around.buffer(), eye);
   const std::array<float, 3> none[] = {{0, 0, 0}, {kNan, 0, 1}, {0, kInfinity, 0}};
   for (int i = 0; i < 3; ++i) {
-    seen.normals[100 + i] = none[i];
-    expected[100 + i] = {};
+    seen.normals[100 + i] = around.normals[100 + i] = none[i];
+    expected[100 + i] = of_positions[100 + i] = {};
   }
   const float depths[] = {0, -1, kNan, kInfinity};
   for (int i = 0; i < 4; ++i) {
     seen.depths[200 + i] = depths[i];
-    positions[200 + i][i % 3] = i == 3 ? -kInfinity : kNan;
-    expected[200 + i] = {};
+    around.positions[200 + i][i % 3] = i == 3 ? -kInfinity : kNan;
+    expected[200 + i] = of_positions[200 + i] = {};
   }
   EXPECT_EQ(renderer.light(seen.buffer(), camera), expected);
-  const Vectors of_points =
-      renderer.light({seen.width, seen.height, seen.normals, positions}, camera.eye);
-  EXPECT_LT(greatest(of_points, expected), 1e-4 * greatest(expected));
-  for (const int dark : {100, 101, 102, 200, 201, 202, 203})
-    EXPECT_EQ(of_points[dark], (std::array<float, 3>{}));
+  EXPECT_EQ(renderer.light(around.buffer(), eye), of_positions);
   seen.normals[0] = {1e-30f * seen.normals[0][0], 1e-30f * seen.normals[0][1],
                      1e-30f * seen.normals[0][2]};
   EXPECT_NEAR(renderer.light(seen.buffer(), camera)[0][1], expected[0][1], 1e-4 * expected[0][1])

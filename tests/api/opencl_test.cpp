@@ -141,14 +141,6 @@ TEST(OpenCl, FramesAreEnqueuedAheadOfTheQueue) {
   }
 }
 
-TEST(OpenCl, AQueueWithoutProfilingHasNoTimes) {
-  Owned own;
-  own.queue = cl::CommandQueue(own.context, own.device);
-  Renderer renderer(Scene(kCornell), test::few_steps(), own.given());
-  renderer.render();
-  EXPECT_EQ(ms_of(renderer.stats().times, "gather"), 0);
-}
-
 TEST(OpenCl, LightFromAndToBuffersIsThatOfTheHost) {
   const Owned own;
   const Scene scene(kCornell);

@@ -166,26 +166,6 @@ TEST(Bake, LightThatIsNotFiniteIsAnError) {
   EXPECT_FALSE(std::filesystem::exists(folder / "bakes/key-0.block"));
 }
 
-TEST(Bake, BlocksOfAbandonedBakesAreRemoved) {
-  const TemporaryFolder folder;
-  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
-  std::filesystem::create_directory(folder / "bakes");
-  const auto now = std::filesystem::file_time_type::clock::now();
-  const std::pair<const char*, bool> files[] = {{"old-12.block", false},
-                                                {".old-3.block.7-0.part", false},
-                                                {"my.old-1.block", true},
-                                                {"notes", true}};
-  for (const auto& [name, stays] : files) {
-    std::ofstream(folder / "bakes" / name) << "x";
-    std::filesystem::last_write_time(folder / "bakes" / name, now - std::chrono::hours(24 * 31));
-  }
-  std::ofstream(folder / "bakes/new-0.block") << "x";
-  BlockCache(folder.path(), "key");
-  for (const auto& [name, stays] : files)
-    EXPECT_EQ(std::filesystem::exists(folder / "bakes" / name), stays) << name;
-  EXPECT_TRUE(std::filesystem::exists(folder / "bakes/new-0.block"));
-}
-
 // Cells of the finest cascade are not larger than the spacing, and the coarsest reaches as far.
 TEST(Bake, CascadesFitTheSpacing) {
   SceneData scene;
@@ -259,25 +239,6 @@ TEST(Bake, SweptProbesHaveTheLightOfTheVolumes) {
                                      tracer);
                        }),
               AllOf(HasSubstr("frames of cascades of 0.01 m"), HasSubstr("4096")));
-}
-
-// A room whose walls all have radiance 1, and cut cells; its probes lie close to them.
-TEST(Bake, SweptProbesNearWallsHaveTheLightOfTheRoom) {
-  SceneData scene;
-  scene.path = "room";
-  add_grey(scene, 0);
-  for (float& channel : scene.materials[0].emissive) channel = 1;
-  add_box(scene, glm::vec3(0.1f), 4, 0);
-  scene.lower = glm::vec3(0.1f), scene.upper = glm::vec3(4.1f);
-  RenderOptions options;
-  options.near = Near::off;
-  options.cascades = 1, options.cascade_size = 12.5;
-  pathtracer::PointTracer tracer(scene, {}, {});
-  const ProbeGrid grid{{3, 3, 3}, glm::dvec3(0.12), glm::dvec3(4.08)};
-  const ProbeFormat format = probe_format("ambient-cube-mean");
-  const SceneCamera camera = camera_at(glm::vec3(2), glm::vec3(1, 0, 0));
-  const auto source = swept_light(test_session(), scene, camera, options, grid, {format}, tracer);
-  for (const glm::vec3& mean : source->light(0).integrals) EXPECT_NEAR(mean.x, 1, 0.35);
 }
 
 struct BakeCommand : ::testing::Test {
@@ -426,32 +387,6 @@ TEST_F(BakeCommand, BadInputIsNamedBeforeTheWork) {
     EXPECT_THAT(outcome.err, HasSubstr(message)) << arguments;
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-}
-
-TEST_F(BakeCommand, SceneWithoutLightIsZeros) {
-  const Outcome outcome =
-      bake("--from pathtrace --spp 1 --probes 2,2,2 --bounds 0,0,50,1,1,51 -o a.ktx2");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("no light reaches a probe"));
-  const Outcome checked =
-      bake("--from pathtrace --spp 1 --probes 2,2,2 --bounds 0,0,50,1,1,51 --check 3");
-  ASSERT_EQ(checked.exit_code, 0) << checked.err;
-  EXPECT_THAT(checked.out, ::testing::Not(HasSubstr("nan")));
-  EXPECT_THAT(checked.err,
-              AllOf(HasSubstr("no points on surfaces"), HasSubstr("in the air is dark")));
-}
-
-TEST_F(BakeCommand, OneProbeAlongAnAxisAndAllInsideWalls) {
-  const Outcome outcome = bake(
-      "--from pathtrace --spp 1 --probes 2,1,2 --bounds 0.35,0.1,0.34,0.38,0.2,0.37 -o a.ktx2");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("all probes are inside walls"));
-  const nlohmann::json json = description("a.ktx2");
-  EXPECT_EQ(json["dilated"], false);
-  EXPECT_NEAR(json["bounds"][0][1], 0.15, 1e-9);
-  EXPECT_EQ(json["bounds"][0][1], json["bounds"][1][1]);
-  EXPECT_NEAR(json["bevy"]["scale"][1], 0.1, 1e-9) << "one texel";
-  EXPECT_NEAR(json["bevy"]["scale"][0], 0.06, 1e-9);
 }
 
 }  // namespace

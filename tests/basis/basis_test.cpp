@@ -24,7 +24,7 @@
 #include "tests/support/run_program.hpp"
 #include "tests/support/sphere_quadrature.hpp"
 
-namespace clpv::basis_test {
+namespace clpv::test::basis_test {
 
 namespace {
 
@@ -72,16 +72,6 @@ TEST_P(BasisOf, CosineIntegralsAreThoseOfTheClampedCosine) {
   }
 }
 
-TEST_P(BasisOf, ConstantHasTheEnergyOfItsBestFit) {
-  const std::vector<double> one = basis_->constant();
-  const double squared = integral(sphere(), [&](const glm::dvec3& w) {
-    const double difference = basis_->value(one, w) - 1;
-    return difference * difference;
-  });
-  // A best fit's error is orthogonal to the fit: |1 - f|^2 = |1|^2 - Int f dw.
-  EXPECT_NEAR(squared, 4 * kPi - basis_->energy(one), 1e-10);
-}
-
 TEST(Srbf, ConditionNumbers) {
   EXPECT_NEAR(make_basis("srbf4")->condition(), 14, 0.5);
   EXPECT_NEAR(make_basis("srbf6")->condition(), 1e2, 10);
@@ -93,18 +83,6 @@ TEST(Srbf, ConditionNumbers) {
   EXPECT_NEAR(make_basis("sh5")->condition(), 1, 1e-12);
 }
 
-TEST(Srbf, PoissonKernelIsItsSeries) {
-  for (const double t : {-1.0, -0.3, 0.0, 0.7, 1.0}) {
-    double before = 1, now = t, power = .4, sum = 1 + 3 * .4 * t;
-    for (int k = 2; k < 80; ++k) {
-      before = std::exchange(now, ((2 * k - 1) * t * now - (k - 1) * before) / k);
-      power *= .4;
-      sum += (2 * k + 1) * power * now;
-    }
-    EXPECT_NEAR(abel_poisson(t, .4), sum, 1e-12) << t;
-  }
-}
-
 TEST(LobeQuality, OfSh2IsKnownInClosedForm) {
   // 1/4 + 1/2 cos: minimum -1/4, flux pi, peak along the axis; |max(0,t)|^2 - |fit|^2 = 2 pi/3 - 7
   // pi/12.
@@ -114,42 +92,6 @@ TEST(LobeQuality, OfSh2IsKnownInClosedForm) {
   EXPECT_NEAR(quality.flux, std::numbers::pi, 1e-12);
   EXPECT_NEAR(quality.peak_error_degrees, 0, 1e-4);
   EXPECT_NEAR(quality.relative_l2, std::sqrt(1.0 / 8), 1e-12);
-}
-
-TEST(LobeQuality, OfAnSrbfLobePointByPoint) {
-  const auto basis = make_basis("srbf8v2");
-  const std::vector<double> c = basis->clamped_cosine(kOblique);
-  const LobeQuality quality = lobe_quality(*basis, c, kOblique);
-  const auto nodes = test::sphere(kOblique);
-  const double squared = test::integral(nodes, [&](const glm::dvec3& w) {
-    const double difference = basis->value(c, w) - std::max(0.0, glm::dot(w, kOblique));
-    return difference * difference;
-  });
-  EXPECT_NEAR(quality.relative_l2, std::sqrt(squared / (2 * std::numbers::pi / 3)), 1e-9);
-  double minimum = 0, maximum = 0;
-  for (const glm::dvec3& w : test::spread_axes(20000)) {
-    minimum = std::min(minimum, basis->value(c, w));
-    maximum = std::max(maximum, basis->value(c, w));
-  }
-  EXPECT_LE(quality.minimum, minimum + 1e-12);
-  EXPECT_NEAR(quality.minimum, minimum, 1e-3);
-  // Some direction at that distance from the axis is as high as the highest.
-  double highest = 0;
-  const auto [u, v] = test::across(kOblique);
-  const double tilt = quality.peak_error_degrees * std::numbers::pi / 180;
-  for (int i = 0; i < 720; ++i) {
-    const double phi = i * std::numbers::pi / 360;
-    highest = std::max(
-        highest, basis->value(c, std::cos(tilt) * kOblique +
-                                     std::sin(tilt) * (std::cos(phi) * u + std::sin(phi) * v)));
-  }
-  EXPECT_NEAR(highest, maximum, 1e-3);
-}
-
-TEST(ClampedCosine, Bands) {
-  const double expected[] = {kPi, 2 * kPi / 3, kPi / 4, 0, -kPi / 24};
-  for (int band = 0; band < 5; ++band)
-    EXPECT_NEAR(cosine_band(band), expected[band], 1e-15) << band;
 }
 
 std::string rejection(const std::string& name, double lambda) {
@@ -172,19 +114,7 @@ TEST(Rejected, LambdaOutsideItsRangeAndUnknownNames) {
   EXPECT_THAT(rejection("srbf7", .25), ::testing::HasSubstr("allowed: sh2, sh3, sh4, sh5, srbf4"));
 }
 
-TEST(Rejected, TwoEqualCentres) {
-  EXPECT_THROW(make_basis_from_centres("twice", {kUp, kUp}), Error);
-}
-
-}  // namespace
-
-}  // namespace clpv::basis_test
-
-namespace clpv::test::constants_test {
-
 // Tables for kernels as text, and the order of bins and links that kernels of the sweep rely on.
-
-namespace {
 
 TEST(Constants, RoundingErrorsOfZerosAreZeroAndNotCounted) {
   Matrix matrix(2, 2);
@@ -196,33 +126,9 @@ TEST(Constants, RoundingErrorsOfZerosAreZeroAndNotCounted) {
   EXPECT_EQ(products(matrix), 2);
 }
 
-}  // namespace
-
-}  // namespace clpv::test::constants_test
-
-namespace clpv::centres_file_test {
-
 // Sets of SRBF centres: files of them, and a lambda for each centre.
 
-namespace {
-
 using ::testing::HasSubstr;
-
-TEST(LambdaOfEachCentre, GramMatrixIsThatOfTheFunctions) {
-  const std::vector<double> lambdas{.2, .3, .25, .4, .33, .21};
-  const auto basis = make_basis_from_centres("set", even_directions(6), lambdas);
-  EXPECT_EQ(basis->lambda(), 0);
-  EXPECT_EQ(basis->lambda_text(), "0.2 to 0.4");
-  for (int i = 0; i < basis->size(); ++i) {
-    for (int j = 0; j < basis->size(); ++j) {
-      const double expected = test::integral(test::sphere({0, 0, 1}, 40), [&](const glm::dvec3& w) {
-        const std::vector<double> b = basis->evaluate(w);
-        return b[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)];
-      });
-      EXPECT_NEAR(basis->gram()(i, j), expected, 1e-9) << i << ' ' << j;
-    }
-  }
-}
 
 class CentresFile : public ::testing::Test {
  protected:
@@ -282,19 +188,7 @@ TEST_F(CentresFile, RejectsWithThePlace) {
   expect_rejected(folder_.path().string(), "a folder");
 }
 
-}  // namespace
-
-}  // namespace clpv::centres_file_test
-
-namespace clpv::transport_test {
-
 // Transports against quadrature done here: solid angles, face fluxes, energies.
-
-namespace {
-
-using test::integral;
-
-constexpr double kPi = std::numbers::pi;
 
 const FaceTransport& faces(const Transport& transport) {
   return std::get<FaceTransport>(transport.scheme);
@@ -340,13 +234,6 @@ TEST_P(TransportOf, FluxesAreSamplesOrIntegralsOverTheFace) {
   }
 }
 
-TEST_P(TransportOf, ExactFluxesConserveEnergy) {
-  const Transport transport = make_transport(TransportKind::exact, *basis_);
-  EXPECT_TRUE(transport.unit_flux_lobes);
-  EXPECT_NEAR(energy_after(*basis_, faces(transport), 8), 1, 1e-13);
-  EXPECT_NEAR(energy_after(*basis_, faces(transport), 24), 1, 1e-13);
-}
-
 TEST_P(TransportOf, LobesAreClampedCosinesAlongTheAxes) {
   const Transport sampled = make_transport(TransportKind::sampled, *basis_),
                   exact = make_transport(TransportKind::exact, *basis_);
@@ -364,26 +251,5 @@ TEST_P(TransportOf, LobesAreClampedCosinesAlongTheAxes) {
   }
 }
 
-struct Energies {
-  const char* name;
-  double after8, after24;
-};
-class SampledEnergy : public ::testing::TestWithParam<Energies> {};
-INSTANTIATE_TEST_SUITE_P(Names, SampledEnergy,
-                         ::testing::Values(Energies{"sh2", 1, 1}, Energies{"srbf4", 1.004, 1.012},
-                                           Energies{"srbf8v1", 1.011, 1.032},
-                                           Energies{"srbf8v2", .964, .897},
-                                           Energies{"srbf8v3", 1.043, 1.134},
-                                           Energies{"srbf14", .565, .153}),
-                         [](const auto& info) { return info.param.name; });
-
-TEST_P(SampledEnergy, DriftsAsTabled) {
-  const auto basis = make_basis(GetParam().name);
-  const Transport transport = make_transport(TransportKind::sampled, *basis);
-  EXPECT_NEAR(energy_after(*basis, faces(transport), 8), GetParam().after8, 5.1e-4);
-  EXPECT_NEAR(energy_after(*basis, faces(transport), 24), GetParam().after24, 5.1e-4);
-}
-
 }  // namespace
-
-}  // namespace clpv::transport_test
+}  // namespace clpv::test::basis_test

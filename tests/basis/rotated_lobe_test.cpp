@@ -27,7 +27,6 @@ namespace {
 using ::testing::DoubleNear;
 using ::testing::Pointwise;
 
-constexpr double kPi = std::numbers::pi;
 const glm::dvec3 kUp(0, 0, 1);
 const glm::dvec3 kOblique = glm::normalize(glm::dvec3(-2, 1, -3));
 const LobeOptions kRotated{LobeKind::rotate, 0};
@@ -101,51 +100,6 @@ TEST(ZonalTable, HoldsTheBasisFunctions) {
   EXPECT_EQ(evaluate(*harmonics, fine, kOblique), harmonics->evaluate(kOblique));
 }
 
-// Int over each bin of max(0, w . d), split at d's horizon.
-std::vector<double> bin_integrals(const Basis& bins, const glm::dvec3& d) {
-  std::vector<glm::dvec3> planes = bins.creases();
-  planes.push_back(d);
-  std::vector<double> alpha(static_cast<std::size_t>(bins.size()), 0.0);
-  for (const SphericalPolygon& part : split(octants(), planes)) {
-    glm::dvec3 middle(0);
-    for (const glm::dvec3& corner : part) middle += corner;
-    if (glm::dot(middle, d) < 0) continue;
-    const std::vector<double> b = bins.evaluate(glm::normalize(middle));
-    const auto bin = static_cast<std::size_t>(std::ranges::max_element(b) - b.begin());
-    for (const QuadratureNode& node : nodes_of(part))
-      alpha[bin] += node.weight * glm::dot(node.w, d);
-  }
-  return alpha;
-}
-
-TEST(DirectionBins, CosineIntegralsAreNearTheIntegrals) {
-  for (const auto& [name, largest, root_mean_square] :
-       {std::tuple{"bins24", .01, .0025}, {"bins96", .033, .0045}}) {
-    const auto bins = make_basis(name);
-    double worst = 0, squares = 0;
-    std::vector<glm::dvec3> directions = test::spread_axes(100);
-    directions.insert(
-        directions.end(),
-        {kUp, {1, 0, 0}, glm::normalize(glm::dvec3(1, 1, 0)), glm::normalize(glm::dvec3(1))});
-    for (const glm::dvec3& d : directions) {
-      const std::vector<double> expected = bin_integrals(*bins, d);
-      std::vector<double> alpha(expected.size());
-      bins->cosine_integrals(d, alpha);
-      double sum = 0;
-      for (std::size_t i = 0; i < alpha.size(); ++i) {
-        EXPECT_GE(alpha[i], 0);
-        sum += alpha[i];
-        const double difference = (alpha[i] - expected[i]) * bins->size() / kPi;
-        worst = std::max(worst, std::abs(difference));
-        squares += difference * difference / static_cast<double>(alpha.size() * directions.size());
-      }
-      EXPECT_NEAR(sum, kPi, 1e-12);
-    }
-    EXPECT_LT(worst, largest) << name;
-    EXPECT_LT(std::sqrt(squares), root_mean_square) << name;
-  }
-}
-
 TEST(DirectionBins, SplitDirectionsOnTheirEdges) {
   const auto basis = make_basis("bins24");
   const auto shares = [&](const glm::dvec3& w) {
@@ -159,12 +113,7 @@ TEST(DirectionBins, SplitDirectionsOnTheirEdges) {
   EXPECT_THAT(shares({1, 1, 1}), Pointwise(DoubleNear(1e-15), std::vector<double>(3, 1.0 / 3)));
 }
 
-}  // namespace
-}  // namespace clpv::rotated_lobe_test
-
 // Functions of kernels/basis/ on the device against those of host/basis/ in double.
-namespace clpv::basis_kernels_test {
-namespace {
 
 using test::test_session;
 
@@ -275,4 +224,4 @@ TEST(RadialKernels, RotatedLobes) {
 }
 
 }  // namespace
-}  // namespace clpv::basis_kernels_test
+}  // namespace clpv::rotated_lobe_test

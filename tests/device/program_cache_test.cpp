@@ -188,15 +188,7 @@ TEST_F(CachedSession, RebuildsWhatIsDamagedOrRejected) {
   EXPECT_NE(cache_.load(key(3)), rejected);
 }
 
-}  // namespace
-
-}  // namespace clpv::program_cache_test
-
-namespace clpv::program_test {
-
 // Kernel text: embedded files, includes, the folder that overrides them, and build errors.
-
-namespace {
 
 using ::testing::HasSubstr;
 
@@ -275,5 +267,4 @@ TEST(ProgramErrors, BuildFailureShowsLogOptionsAndTheLine) {
 }
 
 }  // namespace
-
-}  // namespace clpv::program_test
+}  // namespace clpv::program_cache_test

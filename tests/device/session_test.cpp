@@ -66,18 +66,11 @@ TEST(Session, FreedBuffersReleaseMemory) {
   }
   EXPECT_EQ(session.device_bytes(), 0u);
   EXPECT_EQ(session.peak_device_bytes(), 4u << 20);
-}
-
-TEST(Session, ABufferGrowsWhereThereIsNoRoomForTwo) {
-  Device device = choose_device();
-  device.memory_bytes = 6u << 20;
-  Session session(device);
   Buffer buffer;
-  session.reserve(buffer, 3u << 20, "grows");
-  session.reserve(buffer, 5u << 20, "grows");
-  EXPECT_EQ(session.device_bytes(), 5u << 20);
-  session.reserve(buffer, 1u << 20, "stays");
+  for (const std::size_t bytes : {3u << 20, 5u << 20, 1u << 20})
+    session.reserve(buffer, bytes, "grows where there is no room for two");
   EXPECT_EQ(buffer.bytes(), 5u << 20);
+  EXPECT_EQ(session.device_bytes(), 5u << 20);
 }
 
 TEST(Session, CommandsThatTheDriverRefusesAreNamed) {
@@ -180,33 +173,6 @@ TEST(Session, StagesAreTimedAndAddUpByMark) {
   }
 }
 
-TEST(Session, KernelsHaveTheTimeOfTheirStage) {
-  Session session(choose_device());
-  const Buffer numbers = session.upload(std::vector<cl_uint>(5000, 1), "numbers"),
-               total = session.buffer(sizeof(cl_uint), "total");
-  PrefixSum sums(session);
-  session.timeline().clear();
-  {
-    const StageScope gather(session, {Pass::gather});
-    session.fill_zero(numbers, 64);
-    for (int i = 0; i < 3; ++i) sums.run(numbers, 4000, total);
-  }
-  {
-    const StageScope shade(session, {Pass::shade});
-    session.fill_zero(numbers, 64);
-  }
-  const std::vector<KernelTime> kernels = session.timeline().kernel_times();
-  ASSERT_EQ(kernels.size(), 4u);
-  EXPECT_EQ(kernels[0].kernel, "fill and copy");
-  EXPECT_EQ(kernels[1].kernel, "sum_blocks");
-  EXPECT_EQ(kernels[1].launches, 3u);
-  EXPECT_EQ(kernels[2].kernel, "place_blocks");
-  EXPECT_EQ(kernels[3].mark, (StageMark{Pass::shade}));
-  const auto stages = session.timeline().times();
-  EXPECT_NEAR(kernels[0].ms + kernels[1].ms + kernels[2].ms, stages[0].ms, 1e-9);
-  EXPECT_GT(kernels[1].ms, 0);
-}
-
 // Both widths: one work-item a block, and 64 of them.
 TEST(PrefixSums, AreThoseOfTheHost) {
   for (const int lanes : {8, 1}) {
@@ -250,18 +216,7 @@ TEST(Session, LaunchesAndWaitsOfAFrameAreCounted) {
   EXPECT_EQ(session.timeline().host().waits, 0u);
 }
 
-}  // namespace
-
-}  // namespace clpv::session_test
-
 // Listing and choosing devices, on synthetic lists and on this machine's list.
-
-namespace clpv::device_test {
-
-namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 Device made_up(int index, int platform, int in_platform, const std::string& name) {
   Device device;
@@ -378,18 +333,8 @@ TEST(ClError, NamesCodeCallAndAdvice) {
   EXPECT_EQ(cl_error(cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs")).code(), ExitCode::device);
 }
 
-}  // namespace
-
-}  // namespace clpv::device_test
-
-namespace clpv::driver_files_test {
-
 // `clpv devices` names drivers that cannot be loaded, and lists the others.
 
-namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 using ::testing::Not;
 
 class DriverFiles : public ::testing::Test {
@@ -465,5 +410,4 @@ TEST_F(DriverFiles, ThatEndTheProcessAreNamedAndTheOthersListed) {
 }
 
 }  // namespace
-
-}  // namespace clpv::driver_files_test
+}  // namespace clpv::session_test

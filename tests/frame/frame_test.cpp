@@ -79,13 +79,7 @@ TEST(Frame, AFarTriangleChangesNothing) {
   const auto shown = [](bool far, const ClpvLight& light) {
     SceneData scene;
     scene.path = "far";
-    test::add_material(scene, glm::vec3(0.6f));
-    test::add_quad(scene, {-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, 0);
-    for (const glm::vec3 side : {glm::vec3(1, 0, 0), {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
-      const glm::vec3 across = glm::cross(glm::vec3(0, 1, 0), side);
-      test::add_quad(scene, 0.5f * (side - across), across, {0, 2, 0}, 0);
-    }
-    test::add_quad(scene, {-0.5f, 2, 0.5f}, {1, 0, 0}, {0, 0, -1}, 0);
+    test::add_block_on_floor(scene, {}, test::add_material(scene, glm::vec3(0.6f)));
     if (far) test::add_triangle(scene, {1e4f, 0, 0}, {1e4f, 1, 0}, {1e4f, 0, 1}, 0);
     scene.lights = {{"light", light}};
     scene.cameras = {test::camera_at({4, 4, 5}, {-4, -3.5f, -5})};
@@ -352,15 +346,7 @@ TEST(Frame, TooLargeAGridNamesOneThatCanFit) {
       ::testing::HasSubstr("kernels address at most 2147483647: grid 389"));
 }
 
-}  // namespace
-
-}  // namespace clpv::frame_test
-
-namespace clpv::cascade_test {
-
 // Cascades: nested grids around the camera, on whole cells.
-
-namespace {
 
 TEST(Cascade, EachIsTwiceTheFinerAndContainsIt) {
   const auto grids = cascade_grids({1.3f, -2.7f, 40.1f}, 4, 12.5, 32);
@@ -457,5 +443,4 @@ TEST(Cascade, ThoseThatDoNotReachTheSceneAreWarnedOf) {
 }
 
 }  // namespace
-
-}  // namespace clpv::cascade_test
+}  // namespace clpv::frame_test

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <random>
 
 #include "pipeline/frame/cascade.hpp"
@@ -23,7 +22,6 @@
 namespace clpv::gather_test {
 namespace {
 
-using std::numbers::pi;
 using namespace test;
 
 constexpr int kGrid = 12;        // cells of a cascade along each axis
@@ -123,17 +121,6 @@ double along(double from, double to, std::size_t pixel) {
 }
 
 const glm::dvec3 kTilted = glm::normalize(glm::dvec3(1, -2, 0.5));
-
-TEST(Gather, SweptUniformRadianceIsPiL) {
-  const std::unique_ptr<Basis> basis = make_basis("sh2");
-  const double radiance = 2.5;
-  const std::vector<double> c = times(radiance * kCell * kCell, basis->constant());
-  for (const glm::dvec3& n : {kTilted, glm::dvec3(0, 0, 1), glm::dvec3(-1, 0, 0)}) {
-    const std::vector<glm::dvec3> found =
-        gather(*basis, TransportKind::sweep, {}, {uniform(c)}, walk({-1, 0, 0}, {1, 0, 0}, n));
-    expect_all(found, pi * radiance);
-  }
-}
 
 TEST(Gather, SweptLightIsIntegratedOverTheClampedCosine) {
   const std::unique_ptr<Basis> basis = make_basis("srbf8v2");

@@ -115,16 +115,6 @@ TEST(Near, EvenLightWithoutSurfacesStays) {
   }
 }
 
-TEST(Near, EvenLightWithEmittersAsBrightStays) {
-  SceneData scene;
-  const unsigned emitter = add_emitter(scene, CLPV_MATERIAL_DOUBLE_SIDED);
-  add_quad(scene, {0.3f, -1, -2}, {0, 3, 0}, {0, 0, 4}, emitter);
-  for (const int step : {1, 2, 4, 8}) {
-    for (const glm::dvec3& e : near(scene, EvenLight(kRadiance), options_for(4, step), {}, 0.4f))
-      ASSERT_NEAR(e.x, pi * kRadiance, 1e-5);
-  }
-}
-
 TEST(Near, InsideAnEmissiveBoxIsPiL) {
   SceneData scene;
   const unsigned emitter = add_emitter(scene, CLPV_MATERIAL_DOUBLE_SIDED);
@@ -254,18 +244,8 @@ TEST(LongNear, FramesAreEqualToTheBit) {
   expect_equal_frames({NearSize::full, NearSize::eighth});
 }
 
-}  // namespace
-
-}  // namespace clpv::near_test
-
-namespace clpv::triangle_tree_test {
-
 // The tree of triangles: its boxes cover each triangle, and it follows moving ones.
 // tests/gather/near_test.cpp has rays.
-
-namespace {
-
-using namespace test;
 
 /// Triangles of a tree, and the boxes of the leaves that hold them.
 struct TreeWalk {
@@ -381,5 +361,4 @@ TEST(TriangleTree, OfNothingIsEmpty) {
 }
 
 }  // namespace
-
-}  // namespace clpv::triangle_tree_test
+}  // namespace clpv::near_test

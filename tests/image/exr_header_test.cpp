@@ -240,15 +240,7 @@ TEST(ExrHeader, AFileMayEndAnywhere) {
   }
 }
 
-}  // namespace
-
-}  // namespace clpv::exr_header_test
-
-namespace clpv::image_header_test {
-
 // Headers of PNG and JPEG files, and the chunks of a PNG that are passed on to the decoder.
-
-namespace {
 
 std::span<const std::uint8_t> bytes_in(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -336,5 +328,4 @@ TEST(ImageHeader, AWebpIsLeftWithWhatItsPixelsNeed) {
 }
 
 }  // namespace
-
-}  // namespace clpv::image_header_test
+}  // namespace clpv::exr_header_test

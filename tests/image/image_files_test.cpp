@@ -103,16 +103,8 @@ TEST(PlainCodec, NamesWhatItLacks) {
   }
 }
 
-}  // namespace
-
-}  // namespace clpv::plain_codec_test
-
-namespace clpv::radiance_picture_test {
-
 // Radiance pictures: orientations, exposures, primaries and encodings; what cannot be honoured is
 // rejected by name.
-
-namespace {
 
 using ::testing::HasSubstr;
 using namespace std::string_literals;
@@ -244,5 +236,4 @@ TEST(RadiancePictures, LinesThatCannotBeHonouredAreRejected) {
 }
 
 }  // namespace
-
-}  // namespace clpv::radiance_picture_test
+}  // namespace clpv::plain_codec_test

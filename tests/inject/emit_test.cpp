@@ -206,44 +206,5 @@ TEST(EmissiveFrame, LightsAFloorAsPathTracingDoes) {
   EXPECT_NEAR(mean(found, 2), mean(found, 0) / 4, 1e-3 * wanted);
 }
 
-TEST(EmissiveFrame, KeepsItsPointsUntilAnEmitterMovesOrACellIsCrossed) {
-  SceneData scene = lamp_over_floor();
-  const auto passes = [](Frame& frame, const SceneCamera& camera) {
-    frame.render(camera);
-    int emitted = 0, injected = 0;
-    for (const StageTime& time : test_session().timeline().times()) {
-      emitted += time.mark.pass == Pass::emit;
-      injected += time.mark.pass == Pass::inject_light;
-    }
-    return std::pair(emitted, injected);
-  };
-  scene.moving = {{4, 4, 2, 2}};  // the lamp
-  Frame frame(test_session(), scene, small_frame());
-  SceneCamera camera = scene.cameras[0];
-  EXPECT_EQ(passes(frame, camera), std::pair(1, 1));
-  EXPECT_EQ(passes(frame, camera), std::pair(0, 0));
-  for (std::size_t i = 4; i < 8; ++i) scene.vertices[i].position[1] -= 0.3f;
-  frame.scene_moved();
-  EXPECT_EQ(passes(frame, camera), std::pair(1, 1));
-  const std::vector<float> moved = frame.read(Show::irradiance);
-  Frame fresh(test_session(), scene, small_frame());
-  fresh.render(camera);
-  EXPECT_TRUE(fresh.read(Show::irradiance) == moved);
-  camera.eye.x += 0.2f;  // cells of 1/8 and 1/4 m, and the lamp as near as before
-  EXPECT_EQ(passes(frame, camera).first, 0);
-}
-
-TEST(EmissiveFrame, StaticEmittersKeepTheirPoints) {
-  SceneData scene = lamp_over_floor();
-  scene.moving = {{0, 4, 0, 2}};  // the floor
-  Frame frame(test_session(), scene, small_frame());
-  frame.render(scene.cameras[0]);
-  for (std::size_t i = 0; i < 4; ++i) scene.vertices[i].position[1] -= 0.1f;
-  frame.scene_moved();
-  frame.render(scene.cameras[0]);
-  for (const StageTime& time : test_session().timeline().times())
-    EXPECT_NE(time.mark.pass, Pass::emit);
-}
-
 }  // namespace
 }  // namespace clpv::emit_test

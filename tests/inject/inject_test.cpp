@@ -23,7 +23,6 @@
 #include "tests/support/error_of.hpp"
 #include "tests/support/numbers.hpp"
 #include "tests/support/on_device.hpp"
-#include "tests/support/run_program.hpp"
 
 namespace clpv::inject_test {
 namespace {
@@ -161,30 +160,25 @@ TEST_P(EachBasis, TotalEnergyIsTheFluxOfAllTexels) {
   EXPECT_EQ(basis->energy(light.total(2)), 0);
 }
 
+TEST(LookupTable, RejectsImagesThatTheDeviceLacks) {
+  Device without = choose_device();
+  without.images = false;
+  Session other(without);
+  const auto basis = make_basis("srbf4");
+  EXPECT_THAT(test::error_of(ExitCode::device,
+                             [&] {
+                               LookupTable(other, *basis, {.kind = LobeKind::rotate},
+                                           TableStorage::image, TableUse::lobes);
+                             }),
+              ::testing::HasSubstr("no images"));
+}
+
 TEST_P(EachBasis, UnitFluxLobesCarryExactlyTheFlux) {
   const SurfaceImage texel = one_texel({0.1f, 0.1f, 0.1f}, {1, 2, 3}, {1, 2, 3});
   const Injection light = light_of(*basis, texel, {.unit_flux_lobes = true});
   for (int channel = 0; channel < 3; ++channel) {
     EXPECT_NEAR(basis->energy(light.total(channel)), channel + 1, 3 * kRounding);
   }
-}
-
-TEST_P(EachBasis, ACellDependsOnItsOwnTexelsAlone) {
-  const SurfaceImage floor = plane(from_above(64, 64, 1.0f / 32), 0.3f, {1.0f / 3, 0.1f, 0.7f});
-  // Without the left half, and so with other texels in every chunk and segment.
-  SurfaceImage part = floor;
-  for (std::size_t i = 0; i < part.depth.size(); ++i) {
-    if (i % 64 < 32) part.depth[i] = 0;
-  }
-  const Injection all = light_of(*basis, floor), half = light_of(*basis, part);
-  int occupied = 0;
-  for (int z = 0; z < kGrid; ++z) {
-    for (int x = kGrid / 2; x < kGrid; ++x) {
-      EXPECT_EQ(all.cell(0, x, 5, z), half.cell(0, x, 5, z));
-      occupied += half.cell(0, x, 5, z)[0] != 0;
-    }
-  }
-  EXPECT_EQ(occupied, 2 * 4) << "a square metre in cells of half a metre";
 }
 
 TEST(Inject, WhatIsOutsideTheGridIsDropped) {
@@ -264,19 +258,6 @@ TEST(Inject, SlantedSurfelsCoverMoreUpToALimit) {
   EXPECT_NEAR(mean(0.01), across / 0.1 / 4, across * 1e-4);
 }
 
-TEST(Inject, PerspectiveFootprintsTileTheWall) {
-  const auto basis = make_basis("sh2");
-  // A camera 3 m above a floor, 90 degrees wide: the floor's squares in view are covered once,
-  // however slanted.
-  ClpvView camera = from_above(240, 240, 1);
-  camera.orthographic = 0, camera.eye[1] = 3.1f, camera.half_width = camera.half_height = 1;
-  const Injection blocked = geometry_of(*basis, {plane(camera, 0.1f)});
-  for (const int x : {1, 4, 6}) {
-    // Squares hold 40 x 40 pixels, cut by pixel centres.
-    EXPECT_NEAR(basis->value(blocked.cell(0, x, 4, 3), {0, 1, 0}), 0.75, 0.02) << x;
-  }
-}
-
 TEST(Inject, SurfacesThatSeeTheSameWallDoNotAddUp) {
   const auto basis = make_basis("sh2");
   ClpvView camera = from_above(200, 200, 1);
@@ -346,89 +327,16 @@ TEST(Inject, ASmallerSurfaceOfMoreSegmentsFollowsALargerOne) {
   EXPECT_EQ(found, light(fresh, smaller));
 }
 
-}  // namespace
-}  // namespace clpv::inject_test
+// Lobes that the propagation kernel computes from tables or in closed form.
 
-// The paper's look-up tables on the device, and lobes that the propagation kernel computes from
-// them. clpv check compares such lobes with the CPU reference; these tests cover the rest.
-namespace clpv::lookup_table_test {
-
-namespace {
-
-using test::test_session;
-using ::testing::HasSubstr;
-
-TEST(LookupTable, RejectsImagesThatTheDeviceLacks) {
-  Device without = choose_device();
-  without.images = false;
-  Session other(without);
-  const auto basis = make_basis("srbf4");
-  EXPECT_THAT(test::error_of(ExitCode::device,
-                             [&] {
-                               LookupTable(other, *basis, {.kind = LobeKind::rotate},
-                                           TableStorage::image, TableUse::lobes);
-                             }),
-              HasSubstr("no images"));
-}
-
-/// Entries 0 .. size - 1 as a kernel reads them, which is the same one for tables of a size.
-std::vector<float> entries(const LookupTable& table, const LobeOptions& options) {
-  Session& session = test_session();
-  const test::TemporaryFolder folder;
-  folder.write("entries.cl",
-               "#include \"basis/lobe.h\"\n"
-               "__kernel void entries(__global float* out CLPV_AND_H) {\n"
-               "  const int i = (int)get_global_id(0);\n"
-               "  out[i] = table_entry(singular_table, i);\n}\n");
-  const test::Variable kernels("CLPV_KERNEL_DIR", folder.path().string());
-  const auto basis = make_basis("srbf8v2");
-  ProgramSource source{"entries.cl", lobe_literals(*basis, options)};
-  add_coefficient_literals(source.literals, basis->size(), "float");
-  table.add_literals(source.literals);
-  const auto size = static_cast<std::size_t>(options.table_size);
-  Kernel kernel(session, source, "entries");
-  const Buffer out = session.buffer(size * sizeof(float), "entries");
-  table.add_to(kernel.set(out));
-  kernel.launch(size, 1);
-  return session.read<float>(out, size);
-}
-
-class EachStorage : public ::testing::TestWithParam<TableStorage> {};
-INSTANTIATE_TEST_SUITE_P(LookupTable, EachStorage,
-                         ::testing::Values(TableStorage::buffer, TableStorage::image),
-                         [](const auto& info) {
-                           return info.param == TableStorage::buffer ? "Buffer" : "Image";
-                         });
-
-// A new stage creates its table again. Memory freed by the tables of former stages must not be this
-// table's. Tables of one size share their kernel, and lie where a former one did.
-TEST_P(EachStorage, TablesKeepTheirEntriesWhileOthersAreFreed) {
-  if (GetParam() == TableStorage::image && !test_session().device().images)
-    GTEST_SKIP() << "the device has no images";
-  const LobeOptions options{.kind = LobeKind::rotate, .table_size = 200};
-  constexpr int kLambdas = 12;
-  for (int round = 0; round < 3; ++round) {
-    for (int i = 0; i < kLambdas; ++i) {
-      const auto basis = make_basis("srbf8v2", 0.25 + 0.001 * i);
-      const auto gone = std::make_unique<LookupTable>(test_session(), *basis, options, GetParam(),
-                                                      TableUse::lobes);
-      const std::vector<float> rubbish(static_cast<std::size_t>(options.table_size), 1e15f);
-      const LookupTable table(test_session(), *basis, options, GetParam(), TableUse::lobes);
-      test_session().upload(rubbish, "what takes a freed table's place");
-      EXPECT_EQ(entries(table, options), gram_tables(*basis, options.table_size).values())
-          << "round " << round << ", table " << i;
-    }
-  }
-}
-
-constexpr int kGrid = 5, kSteps = 4;
+constexpr int kSmallGrid = 5, kSteps = 4;
 
 /// The sums after some steps, of two lamps in a corner of the grid.
 std::vector<float> accumulated(const Basis& basis, const Transport& transport,
                                const PropagateOptions& options) {
-  const VolumeShape shape{kGrid, basis.size(), 3};
+  const VolumeShape shape{kSmallGrid, basis.size(), 3};
   Volume injected(test_session(), shape, "injected"), sum(test_session(), shape, "sum");
-  const std::size_t plane = kGrid * kGrid * kGrid;
+  const std::size_t plane = kSmallGrid * kSmallGrid * kSmallGrid;
   std::vector<float> light(plane * static_cast<std::size_t>(basis.size()) * 3, 0.0f);
   const std::vector<double> lobe = basis.clamped_cosine(glm::normalize(glm::dvec3(3, 2, 1)));
   for (std::size_t row = 0; row < 3 * lobe.size(); ++row) {
@@ -447,27 +355,19 @@ TEST(RunTimeLobes, OfUnevenLambdasGiveTheLightOfConstantOnes) {
   for (const LobeKind kind : {LobeKind::exact, LobeKind::rotate}) {
     const Transport transport =
         make_transport(TransportKind::sampled, *basis, {.kind = kind, .table_functions = true});
-    const std::vector<float> constant = accumulated(*basis, transport, {.grid = kGrid}),
-                             computed = accumulated(*basis, transport,
-                                                    {.grid = kGrid, .lobe_time = LobeTime::kernel});
+    const std::vector<float> constant = accumulated(*basis, transport, {.grid = kSmallGrid}),
+                             computed =
+                                 accumulated(*basis, transport,
+                                             {.grid = kSmallGrid, .lobe_time = LobeTime::kernel});
     const float largest = std::ranges::max(constant);
     for (std::size_t i = 0; i < constant.size(); ++i)
       ASSERT_NEAR(computed[i], constant[i], 1e-5 * double{largest}) << name_of(kind) << " " << i;
   }
 }
 
-}  // namespace
-
-}  // namespace clpv::lookup_table_test
-
-namespace clpv::sort_by_cell_test {
-
 // The sort by cell against the standard library's stable sort: every texel that has a cell once,
 // cell by cell, each cell's in their own order.
 
-namespace {
-
-using test::test_session;
 using Keys = std::vector<cl_uint>;
 using Entry = std::array<cl_uint, 2>;  // cell, texel
 
@@ -535,5 +435,4 @@ TEST(SortByCell, RejectsMoreTexelsThanRunsCanName) {
 }
 
 }  // namespace
-
-}  // namespace clpv::sort_by_cell_test
+}  // namespace clpv::inject_test

@@ -115,26 +115,6 @@ TEST(PathTracer, EmissiveBacksAreDarkUnlessDoubleSided) {
   EXPECT_NEAR(both, front, 0.005 * front);
 }
 
-TEST(PathTracer, AnEmissiveTextureLightsByItsTexels) {
-  double found[2] = {};
-  for (const unsigned lit : {0u, 1u}) {
-    found[lit] = received(
-        [&](SceneData& scene, unsigned material) {
-          Texture half{
-              .width = 2, .height = 1, .rgba = {0, 0, 0, 255, 0, 0, 0, 255}, .name = "half"};
-          half.wrap_u = half.wrap_v = CLPV_WRAP_CLAMP;
-          for (int i = 0; i < 3; ++i) half.rgba[4 * lit + i] = 255;
-          scene.textures.push_back(half);
-          scene.materials[material].emissive_texture = 0;
-          add_ceiling(scene, material);
-        },
-        3, 0, 512);
-  }
-  const double all = received(add_ceiling, 3, 0, 256);
-  EXPECT_NEAR(found[0], all / 2, 0.01 * all);
-  EXPECT_NEAR(found[1], all / 2, 0.01 * all);
-}
-
 TEST(PathTracer, PointLightOverAFloorFallsOffAsItShould) {
   SceneData scene = floor_scene(0.5);
   scene.lights = {lamp({0.3f, 1.5f, -0.2f}, 7)};
@@ -211,36 +191,6 @@ TEST(PathTracer, StopsAtTheNoiseAskedFor) {
   EXPECT_NEAR(mean(image.irradiance), plates_expected(), 0.01 * plates_expected());
 }
 
-// One reported share is the paths traced over those that the noise needs, within the estimate's
-// error; it never falls, and it is 1 only at the end.
-TEST(PathTracer, ReportsTheShareOfThePathsThatTheNoiseNeeds) {
-  const SceneData scene = furnace(0.5f, 1);
-  const ClpvView view = view_of({0.4, 0.5, 0.6}, {0.3, 0.1, -1}, {0, 1, 0}, 1, 32, 32);
-  PathTracerOptions options;
-  options.bounces = PathTracerOptions::kAllBounces;
-  options.noise = trace_paths(scene, view,
-                              [&] {
-                                PathTracerOptions few = options;
-                                few.samples = 512;
-                                return few;
-                              }())
-                      .noise *
-                  1.01;
-  std::vector<double> shares;
-  const TracedImage image = pathtracer::trace_paths(scene, scene.lights, view, options,
-                                                    [&](double share) { shares.push_back(share); });
-  ASSERT_GE(image.samples, 384u);
-  ASSERT_FALSE(shares.empty());
-  EXPECT_TRUE(std::ranges::is_sorted(shares));
-  EXPECT_EQ(shares.front(), 0) << "also while the share rests";
-  EXPECT_LE(*std::ranges::upper_bound(shares, 0), 2 * 64.0 / image.samples);
-  EXPECT_EQ(shares.back(), 1);
-  EXPECT_LT(shares[shares.size() - 2], 1);
-  // As many tiles report in the second half of the paths as in the first.
-  const auto half = std::ranges::lower_bound(shares, 0.5) - shares.begin();
-  EXPECT_GT(half, static_cast<std::ptrdiff_t>(shares.size()) / 4);
-}
-
 TEST(PathTracer, SameBytesWhateverTheThreads) {
   SceneData scene = furnace(0.7f, 0);
   scene.lights = {lamp({0.5f, 0.9f, 0.5f}, 1)};
@@ -265,13 +215,7 @@ TEST(PathTracer, SameBytesWhateverTheThreads) {
 TracedImage trace_block(const glm::vec3& by, float far) {
   SceneData scene;
   scene.path = "block";
-  add_grey(scene, 0.6f);
-  add_quad(scene, glm::vec3(-4, 0, 4) + by, {8, 0, 0}, {0, 0, -8}, 0);
-  for (const glm::vec3 side : {glm::vec3(1, 0, 0), {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
-    const glm::vec3 across = glm::cross(glm::vec3(0, 1, 0), side);
-    add_quad(scene, 0.5f * (side - across) + by, across, {0, 2, 0}, 0);
-  }
-  add_quad(scene, glm::vec3(-0.5f, 2, 0.5f) + by, {1, 0, 0}, {0, 0, -1}, 0);
+  add_block_on_floor(scene, by, add_grey(scene, 0.6f));
   if (far > 0) add_triangle(scene, {far, 0, 0}, {far, 8, 0}, {far, 0, 8}, 0);
   scene.lights = {sun({1, -1, -0.5f}, 10)};
   PathTracerOptions options;

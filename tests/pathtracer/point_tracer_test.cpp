@@ -80,40 +80,6 @@ TEST(PointTracer, FurnaceHasOneRadiance) {
   for (std::size_t i = 1; i < 9; ++i) EXPECT_NEAR(probe.indirect[i].x, 0, 0.02 * 3.5449 * radiance);
 }
 
-// On walls, edges and corners too: a probe there lies on the walls' fronts.
-TEST(PointTracer, ProbesOnEmissiveWalls) {
-  const SceneData scene = furnace(0.5f, 2);
-  const std::vector<glm::dvec3> positions{{0.3, 0, 0.6}, {1, 0.5, 0.5}, {0, 0, 0.4}, {1, 1, 0}};
-  PointTracer tracer(scene, {}, paths(8192, PathTracerOptions::kAllBounces));
-  const pathtracer::TracedProbes probes = tracer.probes(positions, nine());
-  const double wanted = std::sqrt(4 * pi) * 4;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    EXPECT_NEAR(probes.indirect[9 * i].x, wanted, 0.03 * wanted) << i;
-    EXPECT_NEAR(tracer.surroundings(positions)[i].backs, 0, 1e-9) << i;
-  }
-  EXPECT_GT(probes.noise, 0);
-  for (const glm::dvec3& normal : {glm::dvec3(0, 1, 0), {1, 0, 0}, {0, 0, 1}}) {
-    const PointLight light =
-        light_at(scene, {{0, 0, 0.4}, normal}, paths(8192, PathTracerOptions::kAllBounces));
-    EXPECT_NEAR(light.indirect.x, 4 * pi, 0.03 * 4 * pi);
-  }
-}
-
-// A normal along a floor sees half of the sky; one into it sees none.
-TEST(PointTracer, NormalsAlongSurfacesSeeTheirFront) {
-  SceneData scene = floor_scene(0);
-  scene.sky = std::make_shared<const Sky>(constant_sky(glm::vec3(1)));
-  scene.lights = {sun({-1, -1, 0}, 2)};
-  const PointLight along = light_at(scene, {{0.1, 0, 0.2}, {1, 0, 0}}, paths(1024));
-  EXPECT_NEAR(along.indirect.x, pi / 2, 0.03);
-  EXPECT_NEAR(along.direct.x, 2 * std::sqrt(0.5), 1e-4);
-  const glm::dvec3 position(0.1, 0, 0.2);
-  PointTracer tracer(scene, scene.lights, paths(1024));
-  const double half = 2 * pi * std::sqrt(1 / (4 * pi));
-  EXPECT_NEAR(tracer.probes(std::span(&position, 1), nine()).indirect[0].x, half, 0.03 * half);
-  EXPECT_GT(tracer.direct(std::span(&position, 1), nine())[0].x, 0);
-}
-
 // A sun straight down on a large grey floor: a E from all directions below.
 TEST(PointTracer, SunlitPatch) {
   SceneData scene = floor_scene(0.5f);
@@ -166,22 +132,6 @@ TEST(PointTracer, EqualsTheImageAtItsPixels) {
   }
   EXPECT_LT(std::sqrt(squares / all), 0.05);
   EXPECT_LE(shadows, 1) << "at an edge of a shadow";
-}
-
-TEST(PointTracer, ErrorsAreTheDeviationsOfOtherSeeds) {
-  const SceneData scene = furnace(0.8f, 1);
-  const SurfacePoint point{{0.1, 0.2, 0.3}, {0, 1, 0}};
-  constexpr int kRuns = 40;
-  double sum = 0, squares = 0, told = 0;
-  for (int run = 0; run < kRuns; ++run) {
-    PathTracerOptions options = paths(64, PathTracerOptions::kAllBounces);
-    options.seed = static_cast<std::uint64_t>(run);
-    const PointLight light = light_at(scene, point, options);
-    sum += light.indirect.x, squares += light.indirect.x * light.indirect.x;
-    told += light.error.x * light.error.x / kRuns;
-  }
-  const double variance = (squares - sum * sum / kRuns) / (kRuns - 1);
-  EXPECT_NEAR(std::sqrt(told / variance), 1, 0.35);
 }
 
 // Tiles, threads and the number of points do not change a point's paths.
@@ -245,16 +195,8 @@ TEST(PathtracePoints, OfTheLibraryAreThoseOfTheCommand) {
   EXPECT_EQ(query("--truth --grid 16").exit_code, 2);
 }
 
-}  // namespace
-
-}  // namespace clpv::point_tracer_test
-
-namespace clpv::pathtrace_test {
-
 // Ground truth: the files of `clpv pathtrace`; and cached images of `clpv quality`, which are
 // traced again only when an input changes or their file is damaged.
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -370,5 +312,4 @@ TEST_F(CachedReference, KeyDependsOnEveryInput) {
 }
 
 }  // namespace
-
-}  // namespace clpv::pathtrace_test
+}  // namespace clpv::point_tracer_test

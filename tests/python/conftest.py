@@ -4,6 +4,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 
 import pytest
 
@@ -32,6 +33,12 @@ def pytest_configure(config):
 def program(*arguments):
     words = [str(BUILD / "clpv"), *map(str, arguments)]
     return subprocess.run(words, check=True, capture_output=True, text=True).stdout
+
+
+def run_python(code, **more):
+    """A process of its own in the root, or elsewhere."""
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False,
+                          **{"cwd": ROOT, "timeout": 300, **more})
 
 
 @pytest.fixture(scope="session")

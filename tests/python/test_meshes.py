@@ -3,8 +3,6 @@
 installed."""
 import gc
 import re
-import subprocess
-import sys
 import threading
 
 import numpy
@@ -12,7 +10,7 @@ import pytest
 
 import clpv
 import clpv._trimesh
-from conftest import ROOT, SMALL
+from conftest import ROOT, SMALL, run_python
 
 SQUARE = numpy.array([[0, 1, 2], [0, 2, 3]])
 WALL = numpy.array([[-2, 0, -2], [2, 0, -2], [2, 3, -2], [-2, 3, -2]], dtype=float)
@@ -160,8 +158,7 @@ def test_the_example_of_arrays_runs(tmp_path):
                            "width=32, height=18").replace(
         "grid=32", "grid=16, directions=24, coarser_directions=24")
     assert small != script
-    ended = subprocess.run([sys.executable, "-c", small], capture_output=True, text=True,
-                           check=False, cwd=tmp_path)
+    ended = run_python(small, cwd=tmp_path)
     assert ended.returncode == 0, ended.stderr
     means = [float(line.split()[-2]) for line in ended.stdout.splitlines() if "W/m^2" in line]
     assert len(means) == 5 and len(set(means)) == 5, "the wall's place changes the light"

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """Verdicts from outcomes, tolerances, and the rows of scripts/reproduce that need no model."""
-import argparse
 import json
 import os
 import pathlib
@@ -30,33 +29,6 @@ from measured import reproduce, verdicts  # noqa: E402
 )
 def test_a_verdict_is_made_from_its_points(outcomes, sentence):
     assert verdicts.sentence("lambda", list(zip((0.1, 0.4, 0.6), outcomes, "abc"))) == sentence
-
-
-def test_the_key_of_a_part_has_the_content_that_it_depends_on(monkeypatch, tmp_path):
-    arguments = argparse.Namespace(model=None, quick=True)
-    kernels = tmp_path / "kernels"
-    kernels.mkdir()
-    monkeypatch.setenv("CLPV_KERNEL_DIR", str(kernels))
-    keys = [reproduce.key_of(arguments)]
-    assert reproduce.key_of(arguments) == keys[0]
-    (kernels / "gather.cl").write_text("a")
-    keys.append(reproduce.key_of(arguments))
-    (kernels / "gather.cl").write_text("b")
-    keys.append(reproduce.key_of(arguments))
-    monkeypatch.setenv("CLPV_LANES", "1")
-    keys.append(reproduce.key_of(arguments))
-    model = tmp_path / "model.gltf"
-    texture = tmp_path / "a b.png"
-    model.write_text('{"images": [{"uri": "a%20b.png"}]}')
-    for content in "cd":
-        texture.write_text(content)
-        keys.append(reproduce.key_of(argparse.Namespace(model=str(model), quick=True)))
-    monkeypatch.setattr(reproduce, "ROOT", tmp_path)  # other sources, another program
-    keys.append(reproduce.key_of(arguments))
-    (tmp_path / "scripts/measured").mkdir(parents=True)
-    (tmp_path / "scripts/measured/new.py").write_text("")
-    keys.append(reproduce.key_of(arguments))
-    assert len({json.dumps(key) for key in keys}) == len(keys)
 
 
 def reproduce_parts(*words):

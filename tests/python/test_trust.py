@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import clpv
-from conftest import CORNELL, FRONT, ROOT, STEPS
+from conftest import CORNELL, FRONT, ROOT, STEPS, run_python
 
 START = f"""
 import os, sys, threading, time, clpv
@@ -25,11 +25,6 @@ renderer.render()
 """
 
 
-def run(code, seconds=300):
-    return subprocess.run([sys.executable, "-c", START + code], capture_output=True, text=True,
-                          check=False, cwd=ROOT, timeout=seconds)
-
-
 # Each once aborted with 'terminate called'.
 @pytest.mark.parametrize("work", [
     "renderer.render()", "clpv.pathtrace(scene, samples=1 << 20)", "renderer.render().save(path)",
@@ -37,10 +32,10 @@ def run(code, seconds=300):
     "basis = clpv.Basis('sh4'); basis.project(basis.directions()[:, 0])"
 ])
 def test_exit_while_a_daemon_thread_works(tmp_path, work):
-    ended = run(f"path = {str(tmp_path / 'a.exr')!r}\n"
-                f"def work():\n  while True: {work}\n"
-                "for _ in range(2): threading.Thread(target=work, daemon=True).start()\n"
-                "time.sleep(0.2)\nprint('leaving', flush=True)")
+    ended = run_python(START + f"path = {str(tmp_path / 'a.exr')!r}\n"
+                       f"def work():\n  while True: {work}\n"
+                       "for _ in range(2): threading.Thread(target=work, daemon=True).start()\n"
+                       "time.sleep(0.2)\nprint('leaving', flush=True)")
     assert ended.returncode == 0 and ended.stdout == "leaving\n", ended.stderr
     assert "terminate" not in ended.stderr and "Traceback" not in ended.stderr, ended.stderr
 
@@ -50,15 +45,14 @@ def test_first_arrays_of_two_threads():  # each once waited for the other withou
             "work = lambda: clpv.Basis('sh2').directions()\n"
             "threads = [threading.Thread(target=work) for _ in range(8)]\n"
             "[t.start() for t in threads]; [t.join() for t in threads]")
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, timeout=60)
+    assert run_python(code, timeout=60).returncode == 0
 
 
 def test_calls_during_exit_are_refused():
-    ended = subprocess.run([
-        sys.executable, "-c", "import atexit\n"
+    ended = run_python(
+        "import atexit\n"
         "def late():\n  try: clpv.Scene('a.json')\n  except clpv.Error as e: print(e)\n"
-        "atexit.register(late)\n" + START
-    ], capture_output=True, text=True, check=False, cwd=ROOT)
+        "atexit.register(late)\n" + START)
     assert ended.stdout == "clpv: Python is exiting\n" and ended.returncode == 0, ended.stderr
 
 
@@ -74,7 +68,7 @@ IN_A_CHILD = ("renderer.render()", "clpv.Renderer(scene)", "renderer.stats", "sc
 
 
 def test_a_forked_child_is_refused_by_name():  # a render there once hung
-    ended = run("".join(
+    ended = run_python(START + "".join(
         FORK.format(f"try: {work}\n  except clpv.Error as e: print(e, flush=True)\n  os._exit(0)")
         for work in IN_A_CHILD) + "renderer.render()\n")
     lines = ended.stdout.splitlines()
@@ -87,9 +81,7 @@ def test_a_fork_before_any_render_works():
     code = FORK.format(
         f"print(clpv.Renderer(scene, **{STEPS!r}).render().width, flush=True)\n  os._exit(0)"
     )  # as multiprocessing ends
-    ended = subprocess.run(
-        [sys.executable, "-c", START.split("renderer =")[0] + code], capture_output=True, text=True,
-        check=False, cwd=ROOT, timeout=300)
+    ended = run_python(START.split("renderer =")[0] + code)
     assert ended.stdout == "48\nchild 0\n", ended.stderr
 
 

@@ -173,13 +173,5 @@ TEST(Texture, HolesShowTheSurfaceBehind) {
   }
 }
 
-TEST(Texture, EmissionIsSeen) {
-  SceneData scene = textured(texture(1, 1, {255, 255, 255, 255}));
-  scene.materials[0].emissive[0] = 3;
-  scene.materials[0].emissive[1] = 2;
-  for (const glm::vec4& emitted : image_of(scene, 4, {0, 0}, {1, 1}).emissive)
-    EXPECT_EQ(glm::vec3(emitted), glm::vec3(3, 2, 0));
-}
-
 }  // namespace
 }  // namespace clpv::texture_test

@@ -3,7 +3,6 @@
 
 #include "pipeline/raster/view.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +18,7 @@
 #include "tests/support/scene_builder.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace clpv::view_test {
+namespace clpv::test::view_test {
 
 namespace {
 
@@ -216,15 +215,7 @@ TEST(View, LightBoundsLeaveOutWhatIsFarBehindAGap) {
   EXPECT_TRUE(rsms.lower.y < -26 && rsms.upper.z > 26) << "cover the cascade";
 }
 
-}  // namespace
-
-}  // namespace clpv::view_test
-
-namespace clpv::test::cells_test {
-
 // View `cells`: which sphere a pixel shows, and its light.
-
-namespace {
 
 /// One ray along +x through the centres of a row of cells of 2 m, from outside of the grid.
 ClpvView one_ray() {
@@ -265,39 +256,5 @@ TEST(CellSpheres, NoneBesideThemAndNextToTheEye) {
   EXPECT_TRUE(visible_spheres(view, {0}, small_grid()).pixels.empty()) << "behind the eye";
 }
 
-TEST(CellSpheres, AreShadedByTheirIrradiance) {
-  const SceneData scene = load_scene(kCornell);
-  RenderOptions options = small_sweep();
-  options.width = 64;
-  options.height = 36;
-  options.rsm_size = 64;
-  options.cascade_size = 1;
-  options.near = Near::off;  // cells have none
-  Frame frame(test_session(), scene, options);
-  const SceneCamera& camera = scene.camera("");
-  frame.render(camera);
-  const std::vector<float> depth = frame.read(Show::depth), walls = frame.read(Show::irradiance),
-                           cells = frame.read(Show::cells);
-  std::vector<float> depths;
-  for (std::size_t i = 0; i < depth.size(); i += 4) depths.push_back(depth[i]);
-  const CellSpheres spheres =
-      visible_spheres(camera_view(camera, 64, 36), depths, frame.light().grids.front());
-  ASSERT_GT(spheres.pixels.size(), 50u);
-  std::vector<bool> covered(depths.size(), false);
-  double lit = 0;
-  for (const std::size_t pixel : spheres.pixels) {
-    covered[pixel] = true;
-    lit += cells[4 * pixel];
-    EXPECT_EQ(cells[4 * pixel + 3], 1);
-  }
-  EXPECT_GT(lit, 0);
-  for (std::size_t pixel = 0; pixel < covered.size(); ++pixel) {
-    if (covered[pixel]) continue;
-    EXPECT_EQ(cells[4 * pixel], walls[4 * pixel]) << pixel;
-  }
-  EXPECT_EQ(frame.read(Show::irradiance), walls);
-}
-
 }  // namespace
-
-}  // namespace clpv::test::cells_test
+}  // namespace clpv::test::view_test

@@ -91,15 +91,6 @@ TEST_F(AnimationTest, CamerasAndLightsFollowTheirNodes) {
   EXPECT_THAT(scene.lights[1].data.position, ::testing::ElementsAre(1, 1, 1));
 }
 
-TEST_F(AnimationTest, APoseDoesNotDependOnEarlierOnes) {
-  animate<float>(0, "translation", {0, 1}, {0, 0, 0, 1, 2, 3});
-  animate<float>(0, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, kHalf, kHalf});
-  MovingScene straight = load(), wandering = load();
-  straight.pose(0.3);
-  for (const double seconds : {0.9, 0.1, 0.3}) wandering.pose(seconds);
-  EXPECT_EQ(bytes_of(straight.scene().vertices), bytes_of(wandering.scene().vertices));
-}
-
 TEST_F(AnimationTest, FittedCascadesUseTheFirstPose) {
   animate<float>(0, "translation", {0, 1}, {0, 0, 0, 500, 0, 0});
   MovingScene moving = load();
@@ -131,15 +122,7 @@ TEST_F(AnimationTest, UnsupportedAnimationsGetANote) {
   EXPECT_THAT(load().scene().notes, Not(Contains(HasSubstr("/animations/0"))));
 }
 
-}  // namespace
-
-}  // namespace clpv::test::animation_test
-
-namespace clpv::curve_test {
-
 // Curves through keys against their closed forms.
-
-namespace {
 
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
@@ -217,19 +200,7 @@ TEST(Curve, SplinesOfRotationsAreMadeUnit) {
   EXPECT_NEAR(half.y, std::sin(0.25), kExact) << "half of two unit quaternions points half way";
 }
 
-}  // namespace
-
-}  // namespace clpv::curve_test
-
-namespace clpv::test::deformation_test {
-
 // Skins and morph targets against closed forms, static and animated.
-
-namespace {
-
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr float kNear = 1e-6f;
 
@@ -375,5 +346,4 @@ TEST_F(MorphTest, WeightsMove) {
 }
 
 }  // namespace
-
-}  // namespace clpv::test::deformation_test
+}  // namespace clpv::test::animation_test

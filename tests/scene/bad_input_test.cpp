@@ -289,18 +289,8 @@ TEST_F(BadSceneFileTest, KeysOfLights) {
       });
 }
 
-}  // namespace
-
-}  // namespace clpv::test::bad_input_test
-
-namespace clpv::test::view_values_test {
-
 // Cameras and suns by numbers on the command line.
 
-namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string kFront = " --eye 0.278,0.273,-0.18 --target 0.278,0.273,0.28 --fov 75";
@@ -371,5 +361,4 @@ TEST_F(CameraByNumbers, TheSunReplacesAllLights) {
 }
 
 }  // namespace
-
-}  // namespace clpv::test::view_values_test
+}  // namespace clpv::test::bad_input_test

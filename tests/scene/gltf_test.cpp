@@ -120,21 +120,6 @@ TEST_F(GltfTest, StripsAndFansFaceOneWay) {
   }
 }
 
-TEST_F(GltfTest, InterleavedAttributes) {
-  std::vector<float> rows;  // position, normal, of 24 bytes
-  for (const glm::vec3 p : {glm::vec3(0), kX, kY})
-    rows.insert(rows.end(), {p.x, p.y, p.z, 0, 0, -1});
-  const int view = model.view(bytes_of(rows), 24);
-  const json base = {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}};
-  json normals = base;
-  normals["byteOffset"] = 12;
-  const int first = model.add("accessors", base), second = model.add("accessors", normals);
-  model.mesh({{"POSITION", first}, {"NORMAL", second}});
-  const SceneData scene = load();
-  EXPECT_THAT(corners(scene, 0), ElementsAre(glm::vec3(0), kX, kY));
-  EXPECT_THAT(normal(scene, 0, 2), IsNear(-kZ, kClose));
-}
-
 TEST_F(GltfTest, SparseAccessorsReplaceElementsOfAViewOrOfZeros) {
   model.triangle();
   model.make_sparse(0, {0, 2}, {0, 0, 7, 0, 5, 7});

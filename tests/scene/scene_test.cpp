@@ -107,7 +107,7 @@ TEST_F(SceneTest, LightScaleMultipliesTheLightsOfModelAndFile) {
   EXPECT_EQ(intensity(scene.scene()), 1) << "a caller's lights are not scaled";
 }
 
-TEST_F(SceneTest, AllKeysOfASceneFile) {
+TEST_F(SceneTest, AllKeysOfASceneFileInMetres) {
   const SceneData scene = load(kFull);
   EXPECT_EQ(scene.name, "test");
   EXPECT_EQ(scene.exposure, -1.5f);
@@ -115,18 +115,6 @@ TEST_F(SceneTest, AllKeysOfASceneFile) {
   EXPECT_EQ(scene.cascade_size, 8.0f);
   EXPECT_EQ(scene.upper, glm::vec3(0.5f, 0.5f, 0)) << "half a metre per unit";
   EXPECT_THAT(scene.notes, IsEmpty());
-}
-
-// It renders black.
-TEST_F(SceneTest, ASceneTooSmallForLampsIsNoted) {
-  std::string small = kFull;
-  small.replace(small.find("0.5,"), 4, "1e-6,");
-  EXPECT_THAT(load(small).notes,
-              Contains(AllOf(HasSubstr("1e-06 m wide"), HasSubstr("metres_per_unit 1e-06"))));
-}
-
-TEST_F(SceneTest, CamerasAreScaledToMetres) {
-  const SceneData scene = load(kFull);
   ASSERT_EQ(scene.cameras.size(), 2u);
   const SceneCamera& a = scene.cameras[0];
   EXPECT_EQ(a.eye, glm::vec3(1, 2, 3));
@@ -136,10 +124,6 @@ TEST_F(SceneTest, CamerasAreScaledToMetres) {
   const SceneCamera& b = scene.cameras[1];
   EXPECT_THAT(b.up, IsNear(glm::vec3(0, 0, 1), kClose)) << "made perpendicular";
   EXPECT_NEAR(b.vertical_fov, glm::pi<float>() / 3, kClose) << "60 degrees by default";
-}
-
-TEST_F(SceneTest, LightsAreScaledButNotTheirIntensities) {
-  const SceneData scene = load(kFull);
   ASSERT_EQ(scene.lights.size(), 3u);
   const ClpvLight &sun = scene.lights[0].data, &lamp = scene.lights[1].data,
                   &torch = scene.lights[2].data;
@@ -151,14 +135,18 @@ TEST_F(SceneTest, LightsAreScaledButNotTheirIntensities) {
   EXPECT_EQ(torch.kind, static_cast<unsigned>(CLPV_LIGHT_SPOT));
   EXPECT_NEAR(std::cos(glm::radians(20.f)) * torch.cone_scale + torch.cone_offset, 1, 1e-5);
   EXPECT_NEAR(std::cos(glm::radians(60.f)) * torch.cone_scale + torch.cone_offset, 0, 1e-5);
-}
-
-TEST_F(SceneTest, ACameraMayNameItsLight) {
-  const SceneData scene = load(kFull);
   const auto only = scene.lights_for(scene.camera("a"));
   ASSERT_EQ(only.size(), 1u);
   EXPECT_EQ(only[0].name, "sun");
   EXPECT_EQ(scene.lights_for(scene.camera("b")).size(), 3u);
+}
+
+// It renders black.
+TEST_F(SceneTest, ASceneTooSmallForLampsIsNoted) {
+  std::string small = kFull;
+  small.replace(small.find("0.5,"), 4, "1e-6,");
+  EXPECT_THAT(load(small).notes,
+              Contains(AllOf(HasSubstr("1e-06 m wide"), HasSubstr("metres_per_unit 1e-06"))));
 }
 
 TEST_F(SceneTest, TheModelsCamerasAndLightsAreTheDefault) {
@@ -207,16 +195,8 @@ TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
   }
 }
 
-}  // namespace
-
-}  // namespace clpv::test::scene_test
-
-namespace clpv::scenes_test {
-
 // This project's scenes: their generators reproduce the committed files, which match their
 // descriptions.
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -257,22 +237,9 @@ TEST(Scenes, TheLivingAtriumIsTheAtriumWithABallAndACurtainThatMove) {
   EXPECT_EQ(living.upper, still.upper);
 }
 
-}  // namespace
-
-}  // namespace clpv::scenes_test
-
-namespace clpv::test::scene_keys_test {
-
 // Cameras and lights of scene files that move by keys.
 
-namespace {
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
 using ::testing::FloatNear;
-using ::testing::HasSubstr;
-
-constexpr float kClose = 1e-6f;
 
 struct SceneKeysTest : BadInputTest {
   /// A scene file with the triangle, and these members.
@@ -354,5 +321,4 @@ TEST_F(SceneKeysTest, CurvesThatLeaveTheAllowedRange) {
 }
 
 }  // namespace
-
-}  // namespace clpv::test::scene_keys_test
+}  // namespace clpv::test::scene_test

@@ -33,7 +33,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/traced_scenes.hpp"
 
-namespace clpv::sky_test {
+namespace clpv::test::sky_test {
 namespace {
 
 using namespace test;
@@ -292,18 +292,12 @@ TEST_F(SkyFile, RejectsInvalidSkies) {
   EXPECT_THAT(rejection(map, 1, {"R", "G"}), HasSubstr("no channel B"));
 }
 
-}  // namespace
-}  // namespace clpv::sky_test
-
 // Cones of spot lights: of a degree and less, up to 90 degrees, with a hard edge, and without
 // values in the model. A lamp of 8 pi cd, 2 m above a floor of albedo 0.5, whose radiance below it
 // is 1.
-namespace clpv::test::spot_cone_test {
-namespace {
 
 using ::testing::AllOf;
 using ::testing::Contains;
-using ::testing::HasSubstr;
 
 constexpr double kIntensity = 8 * glm::pi<double>(), kHeight = 2;
 
@@ -411,29 +405,5 @@ TEST_F(SpotCone, ConesThatTheFormatExcludesAreRejected) {
   EXPECT_THAT(rejected("wide"), HasSubstr("lights/0/spot: found \"wide\""));
 }
 
-TEST_F(SpotCone, BothRenderersShowAConeOfADegree) {
-  floor_and_lamp(json()).write(folder);
-  for (const char* angles : {R"("inner_cone_degrees": 0.9, "outer_cone_degrees": 1)",
-                             R"("inner_cone_degrees": 1, "outer_cone_degrees": 1)"}) {
-    folder.write("narrow.json", fmt::format(R"({{"model": "model.gltf",
-      "cameras": [{{"name": "above", "eye": [0, 1.5, 0], "target": [0, 0, 0], "up": [0, 0, -1],
-                    "vertical_fov_degrees": 4}}],
-      "lights": [{{"kind": "spot", "position": [0, 2, 0], "direction": [0, -1, 0],
-                   "intensity_candela": {}, {}}}]}})",
-                                            kIntensity, angles));
-    for (const std::string& command :
-         {"render" + test::kSweepOfOne + "--rsm-size 32", std::string("pathtrace")}) {
-      const Outcome outcome =
-          must_run_here(command + " narrow.json --view direct --width 33 --height 33 -o image.exr",
-                        folder.path());
-      const Image image = read_image(folder / "image.exr");
-      // 4 degrees from 1.5 m show 0.105 m; the cone has a radius of 0.035 m.
-      EXPECT_NEAR(image.pixels[image.channels.size() * (16 * 33 + 16)], 1, 2e-3) << command;
-      EXPECT_NEAR(image.pixels[image.channels.size() * (16 * 33 + 24)], 1, 4e-3) << command;
-      EXPECT_EQ(image.pixels[image.channels.size() * (16 * 33 + 29)], 0) << command;
-    }
-  }
-}
-
 }  // namespace
-}  // namespace clpv::test::spot_cone_test
+}  // namespace clpv::test::sky_test

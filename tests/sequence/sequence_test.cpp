@@ -99,20 +99,6 @@ TEST_F(SequenceTest, ARunResumesWhereAnotherEnded) {
   EXPECT_EQ(summary()["steady"], 2) << "the first frame of each run aside";
 }
 
-TEST_F(SequenceTest, NoTimesAreLostOrMixed) {
-  ASSERT_EQ(sequence("--frames 4 --fps 10").exit_code, 0);
-  const json whole = summary();
-  ASSERT_EQ(sequence("--frames 2 --fps 10").exit_code, 0);
-  EXPECT_EQ(summary()["frames"], 2);
-  ASSERT_EQ(sequence("--frames 1 --fps 10 --iterations 3").exit_code, 0);
-  EXPECT_EQ(summary()["frames"], 1);
-  EXPECT_EQ(summary()["options"]["iterations"], 3);
-  ASSERT_EQ(sequence("--frames 4 --fps 10").exit_code, 0);
-  EXPECT_EQ(summary()["frames"], 4);
-  EXPECT_EQ(summary()["steady"], 3);
-  EXPECT_EQ(summary()["times"], whole["times"]) << "of the first run, but for frame 0";
-}
-
 TEST_F(SequenceTest, InvalidLinesOfTimesAreSkipped) {
   ASSERT_EQ(sequence("--frames 3 --fps 10").exit_code, 0);
   const json before = summary(), line = lines("frame")[1];
@@ -140,45 +126,35 @@ TEST_F(SequenceTest, InvalidLinesOfTimesAreSkipped) {
 }
 
 TEST_F(SequenceTest, FilesOfOthersAreNamedBeforeTheWorkAndStay) {
-  for (const char* text : {"{\"mine\": 1}\n", "x"}) {
-    folder.write("out/times.jsonl", text);
-    const Outcome outcome = sequence("--frames 1 --fps 10");
+  const auto refused = [&](const fs::path& file, const std::string& why) {
+    const Outcome outcome = sequence("--frames 3 --fps 10 --stability");
     EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_THAT(outcome.err, HasSubstr("times.jsonl: found a file that clpv did not write"));
-    EXPECT_EQ(read_file(times), text);
+    EXPECT_THAT(outcome.err, HasSubstr(file.filename().string() + ": " + why));
     EXPECT_FALSE(fs::exists(frame(0)));
-  }
-  fs::remove(times);
-  folder.write("out/times.json", "mine");
-  fs::create_directory(frame(2));
-  const Outcome outcome = sequence("--frames 3 --fps 10");
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, HasSubstr("frame-0002.exr: cannot be written: it is a folder"));
-  EXPECT_FALSE(fs::exists(frame(0)));
-  fs::remove(frame(2));
+  };
   folder.write("mine", "my diary");
-  for (const fs::path& link : {frame(1), times, folder / "out/stability.json"}) {
-    for (const char* target :
-         {"../mine", "../none"}) {  // beside times.jsonl a frame's was replaced
-      fs::remove(link);
-      fs::create_symlink(target, link);
-      const Outcome linked = sequence("--frames 3 --fps 10 --stability");
-      EXPECT_EQ(linked.exit_code, 1);
-      EXPECT_THAT(linked.err,
-                  HasSubstr(link.filename().string() + ": cannot be written: it is a symb"));
+  for (const fs::path& file : {frame(1), times, folder / "out/stability.json"}) {
+    for (const char* target : {"../mine", "../none"}) {
+      fs::create_directories(file.parent_path());
+      fs::create_symlink(target, file);
+      refused(file, "cannot be written: it is a symb");
       EXPECT_EQ(read_file(folder / "mine"), "my diary");
       EXPECT_FALSE(fs::exists(folder / "none"));
+      fs::remove(file);
     }
-    fs::remove(link);
   }
-  fs::remove(times);
-  folder.write("out/frame-0001.exr", "my diary");
-  const Outcome foreign = sequence("--frames 3 --fps 10");
-  EXPECT_EQ(foreign.exit_code, 1);
-  EXPECT_THAT(foreign.err, HasSubstr("frame-0001.exr: found a file that clpv did not write"));
-  EXPECT_EQ(read_file(frame(1)), "my diary");
-  EXPECT_FALSE(fs::exists(frame(0)));
-  fs::remove(frame(1));
+  for (const fs::path& file : {frame(1), times}) {
+    for (const std::string text : {"{\"mine\": 1}\n", "x"}) {
+      folder.write(fs::relative(file, folder.path()).string(), text);
+      refused(file, "found a file that clpv did not write");
+      EXPECT_EQ(read_file(file), text);
+    }
+    fs::remove(file);
+  }
+  fs::create_directory(frame(2));
+  refused(frame(2), "cannot be written: it is a folder");
+  fs::remove(frame(2));
+  folder.write("out/times.json", "mine");
   ASSERT_EQ(sequence("--frames 1 --fps 10").exit_code, 0);
   EXPECT_EQ(read_file(folder / "out/times.json"), "mine");
 }

@@ -69,17 +69,6 @@ TEST(Propagate, AxisLobeGainsByClampingOnceAndKeepsIt) {
   EXPECT_NEAR(exact[1] / exact[0], 1.115, 1e-3);
 }
 
-TEST(Propagate, AUniformFieldIsConstantAwayFromTheBorder) {
-  const auto basis = make_basis("sh2");
-  const Transport transport = make_transport(TransportKind::sampled, *basis);
-  reference::Volume light(9, basis->size());
-  const auto c = isotropic(*basis);
-  for (std::size_t i = 0; i < light.values.size(); ++i) light.values[i] = c[i / 729 % c.size()];
-  const auto end = reference::propagate(transport, light, nullptr, 3);
-  for (int i = 0; i < basis->size(); ++i)
-    EXPECT_NEAR(end.travelling.value(0, i, 4, 4, 4), c[static_cast<std::size_t>(i)], 1e-14);
-}
-
 TEST(Propagate, LittleLightArrivesBehindAWallOfFullBlockers) {
   const auto basis = make_basis("sh2");
   const Transport transport = make_transport(TransportKind::sampled, *basis);
@@ -114,15 +103,7 @@ TEST(Propagate, OnlyLightThatLeavesTheGridIsLost) {
   EXPECT_GT(reference::escaping_energy(*basis, transport, light)[0], 0.1);
 }
 
-}  // namespace
-
-}  // namespace clpv::propagate_test
-
-namespace clpv::transmittance_test {
-
 // Transmittance past blockers against closed forms, by the CPU reference.
-
-namespace {
 
 using test::times;
 
@@ -277,5 +258,4 @@ TEST(Transmittance, AWallClosesLinks) {
 }
 
 }  // namespace
-
-}  // namespace clpv::transmittance_test
+}  // namespace clpv::propagate_test

@@ -61,6 +61,16 @@ inline void add_box(SceneData& scene, const glm::vec3& low, float edge, unsigned
   }
 }
 
+/// A block of 1 x 2 x 1 m on a floor of 8 x 8 m, at `by`.
+inline void add_block_on_floor(SceneData& scene, const glm::vec3& by, unsigned material) {
+  add_quad(scene, glm::vec3(-4, 0, 4) + by, {8, 0, 0}, {0, 0, -8}, material);
+  for (const glm::vec3 side : {glm::vec3(1, 0, 0), {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}}) {
+    const glm::vec3 across = glm::cross(glm::vec3(0, 1, 0), side);
+    add_quad(scene, 0.5f * (side - across) + by, across, {0, 2, 0}, material);
+  }
+  add_quad(scene, glm::vec3(-0.5f, 2, 0.5f) + by, {1, 0, 0}, {0, 0, -1}, material);
+}
+
 /// A camera with y up.
 inline SceneCamera camera_at(const glm::vec3& eye, const glm::vec3& along) {
   SceneCamera camera;

@@ -234,17 +234,7 @@ TEST(InheritedState, IsUndone) {
             0);
 }
 
-}  // namespace
-
-}  // namespace clpv::support_test
-
-namespace clpv::numbers_test {
-
 // Numbers on the command line: one parser reads those of all options of all commands.
-
-namespace {
-
-using ::testing::HasSubstr;
 
 TEST(ParseNumber, IsDecimalAndFinite) {
   for (const auto& [text, value] : {std::pair("1", 1.0),
@@ -334,5 +324,4 @@ TEST(Numbers, OfVectors) {
 }
 
 }  // namespace
-
-}  // namespace clpv::numbers_test
+}  // namespace clpv::support_test

@@ -16,17 +16,12 @@
 
 #include "support/text.hpp"
 #include "tests/support/run_here.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace clpv::test::hostile_test {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string kCornell = CLPV_SOURCE_DIR "/scenes/cornell.json",
-                  kTiny = "render " CLPV_SOURCE_DIR
-                          "/tests/oclgrind/tiny.gltf --width 12 --height 9 --grid 5 --cascades 1 "
-                          "--cascade-size 5 --rsm-size 8 --shadow-size 8 --basis sh2 --transport "
-                          "sampled --gather all --blockers seen ";
 
 struct HostileInput {
   std::string name;
@@ -215,8 +210,13 @@ TEST(HostileSurroundings, Outputs) {
 TEST(HostileSurroundings, Variables) {
   const auto rejected = [](const std::string& variables, int code,
                            const std::vector<std::string>& words) {
-    expect_rejected(
-        {variables, kTiny + "-o @/out.exr", code, words, {{"file", ""}}, {}, variables});
+    expect_rejected({variables,
+                     "render " + kTiny + kSmallSteps + "-o @/out.exr",
+                     code,
+                     words,
+                     {{"file", ""}},
+                     {},
+                     variables});
   };
   rejected("CLPV_PROGRAM_CACHE=none", 2, {"CLPV_PROGRAM_CACHE: found 'none', allowed: on, off"});
   rejected("CLPV_LANES=2", 2, {"CLPV_LANES: 2; allowed: auto, 1 or 8"});
@@ -225,13 +225,8 @@ TEST(HostileSurroundings, Variables) {
   rejected("env POCL_CACHE_DIR=@/file/below", 4, {"no OpenCL device found", "POCL_CACHE_DIR"});
 }
 
-}  // namespace
-}  // namespace clpv::test::hostile_test
-
 // The program as a process: exit codes, help and errors of its output streams. Other tests run
 // commands in their own process (support/run_here.hpp).
-namespace clpv::command_line_test {
-namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -334,4 +329,4 @@ TEST(CommandLine, StartsWithoutImageCodecs) {
 }
 
 }  // namespace
-}  // namespace clpv::command_line_test
+}  // namespace clpv::test::hostile_test

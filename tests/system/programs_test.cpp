@@ -134,21 +134,12 @@ TEST(Programs, ANameWithAColonOrADashIsAFileToFfmpeg) {
   }
 }
 
-}  // namespace
-
-}  // namespace clpv::programs_test
-
-namespace clpv::drawing_test {
-
 // Commands that draw with python/clpv/draw: `clpv report`, `clpv basis --figures` and `clpv bench
 // --plot`, and their errors where Python or a module is missing. tests/draw has the charts and the
 // page.
 
-namespace {
-
 using test::must_run_here;
 using test::run_here;
-using ::testing::HasSubstr;
 
 class Drawing : public ::testing::Test {
  protected:
@@ -233,5 +224,4 @@ TEST_F(Drawing, AReportRejectsWithItsOwnExitCode) {
 }
 
 }  // namespace
-
-}  // namespace clpv::drawing_test
+}  // namespace clpv::programs_test

@@ -25,17 +25,13 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kFrame =
-    " render " CLPV_SOURCE_DIR
-    "/tests/oclgrind/tiny.gltf --cascades 1 --cascade-size 5 --rsm-size 8 --shadow-size 8 --basis "
-    "sh2 --transport sampled --gather all --blockers seen --grid 5 ";
-const std::string kTiny = kFrame + "--width 12 --height 9 ";
+const std::string kFrame = " render " + test::kTiny + kSmallSteps;
 
 class Starved : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     cache_ = new TemporaryFolder;
-    run(program() + kTiny + "-o " +
+    run(program() + kFrame + "-o " +
         (*cache_ / "first.exr").string());  // compiles, where no test before it did
   }
   static void TearDownTestSuite() { delete cache_; }
@@ -67,7 +63,7 @@ class Starved : public ::testing::Test {
     SCOPED_TRACE(call + " " + std::to_string(n));
     const fs::path image = folder_ / "a.exr";
     const Outcome outcome = run("CLPV_SHIM=" + call + ":" + std::to_string(n) + ":" + code + " " +
-                                program() + kTiny + "-o " + image.string());
+                                program() + kFrame + "-o " + image.string());
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(name));
     EXPECT_THAT(outcome.err, Not(HasSubstr("terminate")));
@@ -78,7 +74,7 @@ class Starved : public ::testing::Test {
   /// Each `step`-th call of a frame in turn; CLPV_STARVED_STEP replaces the step (1: every call).
   void expect_reported_at_some(const std::string& call, long step, const std::string& code,
                                const std::string& name) {
-    const Outcome sound = run(program() + kTiny + "-o " + (folder_ / "sound.exr").string());
+    const Outcome sound = run(program() + kFrame + "-o " + (folder_ / "sound.exr").string());
     ASSERT_EQ(sound.exit_code, 0) << sound.err;
     ASSERT_EQ(report()["live"], 0);
     const long count = report()[call];
@@ -113,7 +109,7 @@ TEST_F(Starved, OfACompiler) {
     return run("CLPV_SHIM=clBuildProgram:" + builds +
                ":-11 CLPV_SHIM_REPORT= LD_PRELOAD=" CLPV_OPENCL_SHIM
                " CLPV_PROGRAM_CACHE=off timeout 600 " CLPV_PROGRAM +
-               kTiny + "-o " + image.string());
+               kFrame + "-o " + image.string());
   };
   const Outcome always = render("*");
   EXPECT_EQ(always.exit_code, 1);
@@ -141,8 +137,7 @@ class Limited : public Starved {
 TEST_F(Limited, FileSizes) {
   folder_.write("a.exr", "old");
   const Outcome outcome =
-      limited("ulimit -f 16", " pathtrace " CLPV_SOURCE_DIR
-                              "/tests/oclgrind/tiny.gltf --width 120 --height 90 --spp 1 ");
+      limited("ulimit -f 16", " pathtrace " + test::kTiny + " --width 120 --height 90 --spp 1 ");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("a.exr: cannot be written: File too large"));
   EXPECT_THAT(outcome.err, Not(HasSubstr(".part")));
@@ -168,12 +163,7 @@ TEST_F(Starved, OfASmallDiskForTheDriversCache) {
   EXPECT_THAT(read_only.err, HasSubstr("cannot write its cache"));
 }
 
-}  // namespace
-}  // namespace clpv::test::starved_test
-
 // Many frames of changing options in one process: memory stays flat.
-namespace clpv::soak_test {
-namespace {
 
 constexpr double kFlat = 1.01;  // over frames()
 
@@ -233,4 +223,4 @@ TEST(Soak, MemoryStaysFlatOverFramesOfChangingOptions) {
 }
 
 }  // namespace
-}  // namespace clpv::soak_test
+}  // namespace clpv::test::starved_test

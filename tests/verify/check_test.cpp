@@ -14,7 +14,7 @@
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_here.hpp"
 
-namespace clpv::check_test {
+namespace clpv::verify::comparison_test {
 
 namespace {
 
@@ -74,15 +74,7 @@ TEST(LongCheck, KernelsAgreeInTheOtherNumberOfLanes) {
     expect_agreement(verify::cases_of(stage), session);
 }
 
-}  // namespace
-
-}  // namespace clpv::check_test
-
-namespace clpv::verify::comparison_test {
-
 // Comparison of results with the CPU reference, and its JUnit report.
-
-namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -172,5 +164,4 @@ TEST(Junit, IsWrittenByTheCheck) {
 }
 
 }  // namespace
-
 }  // namespace clpv::verify::comparison_test

@@ -16,57 +16,75 @@
 #include "tests/support/scene_builder.hpp"
 #include "verify/check.hpp"
 
-namespace clpv::blockers_test {
+namespace clpv::voxels_test {
 
 namespace {
 
 using namespace test;
 
-// The grid of `clpv check`: the same programs.
-constexpr int kGrid = 9, kCorners = kGrid + 1;
-constexpr std::size_t kAll = kCorners * kCorners * kCorners;
-const ClpvGrid kCells = {
-    {0, 0, 0}, 1, kGrid, {}};  // corners at 0..9, their cells half a metre round them
+constexpr int kGrid = 9;  // as in `clpv check`: the same programs
+constexpr float kColour = 1.0f / 4096;
+const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // corners at 0 to 9, centres at 0.5 to 8.5
 
-/// Shares [axis][z][y][x], by the kernels.
-struct Shares {
+/// A wall across x that reaches through the grid, its front towards +x.
+void add_wall(SceneData& scene, float x, unsigned material) {
+  add_quad(scene, {x, -9, -9}, {0, 20, 0}, {0, 0, 20}, material);
+}
+
+/// A scene with an opaque and a transparent texel side by side.
+SceneData scene_with_stripes() {
+  SceneData scene;
+  scene.textures.push_back(
+      {.width = 2, .height = 1, .rgba = {255, 255, 255, 255, 0, 0, 0, 0}, .name = "stripes"});
+  return scene;
+}
+
+/// Numbers [channel][z][y][x], by the kernels.
+struct Field {
+  int n;
   std::vector<float> values;
-  float at(int axis, int x, int y, int z) const {
-    return values[static_cast<std::size_t>(((axis * kCorners + z) * kCorners + y) * kCorners + x)];
+  float at(int channel, int x, int y, int z) const {
+    return values[static_cast<std::size_t>(((channel * n + z) * n + y) * n + x)];
+  }
+  float sum(int channel) const {
+    const std::ptrdiff_t all = std::ptrdiff_t{n} * n * n;
+    const auto first = values.begin() + all * channel;
+    return std::accumulate(first, first + all, 0.0f);
   }
 };
 
-Shares blocked(const SceneData& scene) {
+/// Shares of faces that are blocked, by axis, at corners.
+Field blocked(const SceneData& scene) {
   Volume geometry(test_session(), {kGrid + 1, 3, 1}, "test: blockers");
   const SceneBuffers buffers = upload_scene(test_session(), scene);
   VoxelField(test_session(), buffers, blocker_masks(buffers, kGrid, 1, {}))
       .update(0, kCells, geometry);
-  return {geometry.read(test_session())};
+  return {kGrid + 1, geometry.read(test_session())};
 }
 
-float sum(const Shares& shares, int axis) {
-  const auto first = shares.values.begin() + static_cast<std::ptrdiff_t>(kAll) * axis;
-  return std::accumulate(first, first + static_cast<std::ptrdiff_t>(kAll), 0.0f);
+/// Areas times albedo, by colour (of CLPV_REFLECTOR_CHANNELS) and side, at cells.
+Field reflected(const SceneData& scene, bool white = false) {
+  const SceneBuffers buffers = upload_scene(test_session(), scene);
+  Volume reflectors(test_session(), {kGrid, kCellFaces, CLPV_REFLECTOR_CHANNELS},
+                    "test: reflectors");
+  VoxelField(test_session(), buffers, reflector_masks(buffers, kGrid, {}, white))
+      .update(0, kCells, reflectors);
+  return {kGrid, reflectors.read(test_session())};
+}
+constexpr int channel_of(int side, int colour) {
+  return colour * kCellFaces + side;
 }
 
 TEST(Blockers, AWallBlocksExactlyTheSquaresItCovers) {
   SceneData scene;
-  add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
-  const Shares shares = blocked(scene);
+  add_wall(scene, 1.7f, add_material(scene));
+  const Field shares = blocked(scene);
   for (int y = 0; y <= kGrid; ++y) {
     for (int z = 0; z <= kGrid; ++z) EXPECT_EQ(shares.at(0, 2, y, z), 1) << y << ' ' << z;
   }
-  EXPECT_EQ(sum(shares, 0), kCorners * kCorners) << "one layer of corners alone";
-  EXPECT_EQ(sum(shares, 1), 0);
-  EXPECT_EQ(sum(shares, 2), 0);
-}
-
-TEST(Blockers, OverlappingWallsCountOnce) {
-  SceneData scene;
-  const unsigned material = add_material(scene);
-  for (const float x : {1.6f, 1.9f, 2.3f})
-    add_quad(scene, {x, -9, -9}, {0, 20, 0}, {0, 0, 20}, material);
-  EXPECT_EQ(sum(blocked(scene), 0), kCorners * kCorners);
+  EXPECT_EQ(shares.sum(0), (kGrid + 1) * (kGrid + 1)) << "one layer of corners alone";
+  EXPECT_EQ(shares.sum(1), 0);
+  EXPECT_EQ(shares.sum(2), 0);
 }
 
 TEST(Blockers, BlockingIsProportionalToCoveredArea) {
@@ -74,99 +92,38 @@ TEST(Blockers, BlockingIsProportionalToCoveredArea) {
   add_quad(scene, {1.5f, 2.1f, 1.5f}, {0.5f, 0, 0}, {0, 0, -0.25f},
            add_material(scene));  // beyond the corner's cell
   add_quad(scene, {2.5f, 2.1f, 1.5f}, {0.5f, 0, 0}, {0, 0, 0.25f}, 0);
-  const Shares shares = blocked(scene);
+  const Field shares = blocked(scene);
   EXPECT_EQ(shares.at(1, 3, 2, 2), 0.125f);
   EXPECT_EQ(shares.at(1, 2, 2, 2), 0);
   EXPECT_EQ(shares.at(1, 2, 2, 1), 0.125f);
-  EXPECT_EQ(sum(shares, 1), 0.25f);
-}
-
-TEST(Blockers, ASlantedWallBlocksAlongEachAxisItCrosses) {
-  SceneData scene;
-  add_quad(scene, {-5, -5, -5}, {20, 20, 0}, {0, 0, 20}, add_material(scene));  // x = y
-  const Shares shares = blocked(scene);
-  for (int i = 0; i <= kGrid; ++i) {
-    EXPECT_EQ(shares.at(0, i, i, 2), 1) << i;
-    EXPECT_EQ(shares.at(1, i, i, 2), 1) << i;
-  }
-  EXPECT_EQ(sum(shares, 2), 0) << "seen edge-on";
+  EXPECT_EQ(shares.sum(1), 0.25f);
 }
 
 TEST(Blockers, HolesOfMaskedMaterialsLetLightPass) {
-  SceneData scene;
-  Texture stripes{
-      .width = 2, .height = 1, .rgba = {255, 255, 255, 255, 255, 255, 255, 0}, .name = "stripes"};
-  scene.textures.push_back(stripes);
+  SceneData scene = scene_with_stripes();
   const unsigned material = add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED);
   scene.materials[material].texture = 0;
   scene.materials[material].alpha_cutoff = 0.5f;
   add_quad(scene, {1.5f, 2, 1.5f}, {1, 0, 0}, {0, 0, 1},
            material);  // opaque from u 0 to 1/2, repeated beyond
-  EXPECT_EQ(sum(blocked(scene), 1), 0.5f);
+  EXPECT_EQ(blocked(scene).sum(1), 0.5f);
   scene.materials[material].flags = 0;
-  EXPECT_EQ(sum(blocked(scene), 1), 1) << "opaque materials ignore alpha";
-}
-
-TEST(Blockers, AHugeTriangleIsAWall) {
-  SceneData scene;
-  add_triangle(scene, {-3e7f, 2, -1e7f}, {3e7f, 2, -1e7f}, {0, 2, 5e7f}, add_material(scene));
-  EXPECT_EQ(sum(blocked(scene), 1), kCorners * kCorners);
-}
-
-}  // namespace
-
-}  // namespace clpv::blockers_test
-
-namespace clpv::reflectors_test {
-
-// Face albedo of voxelised triangles against known areas.
-
-namespace {
-
-using namespace test;
-
-constexpr int kGrid = 9;  // as in `clpv check`: the same programs
-constexpr int kCells = kGrid * kGrid * kGrid;
-constexpr float kColour = 1.0f / 4096;
-const ClpvGrid kGridCells = {{0, 0, 0}, 1, kGrid, {}};
-
-/// Areas [channel][side][z][y][x], by the kernels.
-struct Areas {
-  std::vector<float> values;
-  float at(int side, int x, int y, int z, int channel = 0) const {
-    return values[static_cast<std::size_t>((channel * kCellFaces + side) * kCells +
-                                           (z * kGrid + y) * kGrid + x)];
-  }
-  float sum(int side, int channel = 0) const {
-    float total = 0;
-    for (int i = 0; i < kCells; ++i)
-      total += at(side, i % kGrid, i / kGrid % kGrid, i / kGrid / kGrid, channel);
-    return total;
-  }
-};
-
-Areas reflected(const SceneData& scene, bool white = false) {
-  const SceneBuffers buffers = upload_scene(test_session(), scene);
-  Volume reflectors(test_session(), {kGrid, kCellFaces, CLPV_REFLECTOR_CHANNELS},
-                    "test: reflectors");
-  VoxelField(test_session(), buffers, reflector_masks(buffers, kGrid, {}, white))
-      .update(0, kGridCells, reflectors);
-  return {reflectors.read(test_session())};
+  EXPECT_EQ(blocked(scene).sum(1), 1) << "opaque materials ignore alpha";
 }
 
 TEST(Reflectors, AWallHasItsAlbedoOnBothSides) {
+  const float albedo[] = {0.8f, 0.5f, 0.25f}, cells = kGrid * kGrid;
   SceneData scene;
-  add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene, {0.8f, 0.5f, 0.25f}));
-  const Areas areas = reflected(scene);
+  add_wall(scene, 1.7f, add_material(scene, {albedo[0], albedo[1], albedo[2]}));
+  const Field areas = reflected(scene);
   for (int i = 0; i < kGrid * kGrid; ++i) {
-    EXPECT_NEAR(areas.at(0, 2, i % kGrid, i / kGrid), 0.8f, kColour) << i;  // 1.7 + 0.5
-    EXPECT_NEAR(areas.at(1, 1, i % kGrid, i / kGrid), 0.8f, kColour) << i;  // 1.7 - 0.5
+    EXPECT_NEAR(areas.at(0, 2, i % kGrid, i / kGrid), albedo[0], kColour) << i;  // 1.7 + 0.5
+    EXPECT_NEAR(areas.at(1, 1, i % kGrid, i / kGrid), albedo[0], kColour) << i;  // 1.7 - 0.5
   }
-  const float cells = kGrid * kGrid;
-  for (int channel = 0; channel < 3; ++channel) {
-    const float albedo = channel == 0 ? 0.8f : (channel == 1 ? 0.5f : 0.25f);
+  for (int colour = 0; colour < 3; ++colour) {
     for (int side = 0; side < kCellFaces; ++side)
-      EXPECT_NEAR(areas.sum(side, channel), side < 2 ? albedo * cells : 0, kColour * cells) << side;
+      EXPECT_NEAR(areas.sum(channel_of(side, colour)), side < 2 ? albedo[colour] * cells : 0,
+                  kColour * cells);
   }
 }
 
@@ -176,7 +133,7 @@ TEST(Reflectors, AlbedoIsWeightedByCoveredArea) {
   add_quad(scene, {2, 1.2f, 1}, {0.5f, 0, 0}, {0, 0, -0.25f}, material);
   EXPECT_NEAR(reflected(scene).sum(2), 0.125f * 0.5f, kColour);
   add_quad(scene, {2, 1.3f, 1}, {0.5f, 0, 0}, {0, 0, -0.25f}, add_material(scene, glm::vec3(1)));
-  const Areas both = reflected(scene);
+  const Field both = reflected(scene);
   EXPECT_NEAR(both.sum(2), 0.125f * 0.75f, kColour) << "one area, of the mean albedo";
   EXPECT_NEAR(both.sum(3), 0.125f * 0.75f, kColour);
 }
@@ -186,25 +143,21 @@ TEST(Reflectors, ASlantedWallSplitsIntoAreasPerAxis) {
   SceneData scene;
   add_quad(scene, {1.5f, 1.0f, 1}, {1, 1, 0}, {0, 0, 1},
            add_material(scene, glm::vec3(0.5f)));  // towards (1, -1, 0)
-  const Areas areas = reflected(scene);
+  const Field areas = reflected(scene);
   const float whole = 0.5f * std::sqrt(2.0f);
   for (const int side : {0, 1, 2, 3}) EXPECT_NEAR(areas.sum(side), 0.5f * whole, kColour) << side;
   EXPECT_EQ(areas.sum(4) + areas.sum(5), 0);
 }
 
 TEST(Reflectors, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
-  SceneData scene;
-  scene.textures.push_back({.width = 2,
-                            .height = 1,
-                            .rgba = {255, 255, 255, 255, 0, 0, 0, 0},
-                            .name = "white, and a black hole"});
+  SceneData scene = scene_with_stripes();
   const unsigned material = add_material(scene, glm::vec3(0.5f));
   scene.materials[material].texture = 0;
   add_quad(scene, {1, 2.2f, 1}, {0, 0, 1}, {1, 0, 0}, material);  // up
   EXPECT_NEAR(reflected(scene).sum(2), 0.25f, 0.02f) << "half of it white";
   for (Vertex& vertex : scene.vertices) vertex.colour[1] = 0.5f;
-  const Areas tinted = reflected(scene);
-  EXPECT_NEAR(tinted.sum(2, 1), 0.5f * tinted.sum(2, 0), 2 * kColour);
+  const Field tinted = reflected(scene);
+  EXPECT_NEAR(tinted.sum(channel_of(2, 1)), 0.5f * tinted.sum(2), 2 * kColour);
   scene.materials[material].flags = CLPV_MATERIAL_MASKED;
   scene.materials[material].alpha_cutoff = 0.5f;
   EXPECT_NEAR(reflected(scene).sum(2), 0.25f, 0.06f) << "black texels are holes";
@@ -214,39 +167,27 @@ TEST(Reflectors, TexturesAndVertexColoursTintAndHolesDoNotReflect) {
 TEST(Reflectors, OnlyFrontsOfTheFurnaceEmit) {
   SceneData scene;
   const unsigned dark = add_material(scene, glm::vec3(0));
-  add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, dark);  // towards +x
-  const Areas one = reflected(scene, true);
+  add_wall(scene, 1.7f, dark);
+  const Field one = reflected(scene, true);
   scene.materials[dark].flags |= CLPV_MATERIAL_DOUBLE_SIDED;
-  const Areas both = reflected(scene, true);
-  constexpr int kWhite = CLPV_REFLECTOR_WHITE;
-  EXPECT_NEAR(one.at(0, 2, 1, 1, kWhite), 1, kColour);
-  EXPECT_EQ(one.sum(1, kWhite), 0);
-  EXPECT_NEAR(both.at(0, 2, 1, 1, kWhite), 1, kColour);
-  EXPECT_NEAR(both.at(1, 1, 1, 1, kWhite), 1, kColour);
+  const Field both = reflected(scene, true);
+  constexpr int kFront = channel_of(0, CLPV_REFLECTOR_WHITE),
+                kBack = channel_of(1, CLPV_REFLECTOR_WHITE);
+  EXPECT_NEAR(one.at(kFront, 2, 1, 1), 1, kColour);
+  EXPECT_EQ(one.sum(kBack), 0);
+  EXPECT_NEAR(both.at(kFront, 2, 1, 1), 1, kColour);
+  EXPECT_NEAR(both.at(kBack, 1, 1, 1), 1, kColour);
 }
 
 TEST(Reflectors, AlbedoIsAtMostOne) {
   SceneData scene;
-  add_quad(scene, {1.7f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene, {3, -1, 0.5f}));
-  const Areas areas = reflected(scene);
-  EXPECT_EQ(areas.at(0, 2, 1, 1, 0), 1);
-  EXPECT_EQ(areas.at(0, 2, 1, 1, 1), 0);
+  add_wall(scene, 1.7f, add_material(scene, {3, -1, 0.5f}));
+  const Field areas = reflected(scene);
+  EXPECT_EQ(areas.at(channel_of(0, 0), 2, 1, 1), 1);
+  EXPECT_EQ(areas.at(channel_of(0, 1), 2, 1, 1), 0);
 }
 
-}  // namespace
-
-}  // namespace clpv::reflectors_test
-
-namespace clpv::visibility_test {
-
 // Visibility between cells against closed forms: walls hide exactly the cells behind them.
-
-namespace {
-
-using namespace test;
-
-constexpr int kGrid = 9;                            // as in `clpv check`: the same programs
-const ClpvGrid kCells = {{0, 0, 0}, 1, kGrid, {}};  // centres at 0.5 to 8.5
 
 /// Bytes of all points, by the kernel.
 std::vector<std::uint8_t> occluded(const SceneData& scene, const ClpvGrid& grid = kCells) {
@@ -257,39 +198,19 @@ std::vector<std::uint8_t> occluded(const SceneData& scene, const ClpvGrid& grid 
                                            visibility_bytes(static_cast<int>(grid.n)));
 }
 
-/// Cube and point of a byte.
-glm::ivec3 cube_of(std::size_t at) {
-  const int cube = static_cast<int>(at / 64);
-  return {cube % kGrid, cube / kGrid % kGrid, cube / kGrid / kGrid};
-}
-glm::ivec3 point_of(std::size_t at) {
-  const int point = static_cast<int>(at % 64);
-  return {point % 4, point / 4 % 4, point / 16};
-}
-bool between_centres(std::size_t at) {
-  const glm::ivec3 cube = cube_of(at);
-  return std::max({cube.x, cube.y, cube.z}) < kGrid - 1;
-}
-
-constexpr unsigned kCornersWithX = 0b10101010;
-
 TEST(Visibility, AWallHidesExactlyTheCellsBehindIt) {
+  constexpr unsigned kCornersWithX = 0b10101010;
   SceneData scene;
-  add_quad(scene, {2.0f, -9, -9}, {0, 20, 0}, {0, 0, 20},
-           add_material(scene));  // between centres at 1.5 and 2.5
+  add_wall(scene, 2.0f, add_material(scene));  // between centres at 1.5 and 2.5
   const std::vector<std::uint8_t> found = occluded(scene);
   for (std::size_t at = 0; at < found.size(); ++at) {
+    const int cube = static_cast<int>(at / 64), point = static_cast<int>(at % 64);
+    const glm::ivec3 cell(cube % kGrid, cube / kGrid % kGrid, cube / kGrid / kGrid);
     unsigned expected = 0;
-    if (between_centres(at) && cube_of(at).x == 1)
-      expected = point_of(at).x < 2 ? kCornersWithX : 0xff & ~kCornersWithX;
+    if (std::max({cell.x, cell.y, cell.z}) < kGrid - 1 && cell.x == 1)
+      expected = point % 4 < 2 ? kCornersWithX : 0xff & ~kCornersWithX;
     ASSERT_EQ(found[at], expected) << at;
   }
-}
-
-TEST(Visibility, AWallThroughCentresHidesNothing) {
-  SceneData scene;
-  add_quad(scene, {1.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
-  for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
 }
 
 TEST(Visibility, ASmallTriangleHidesOnlyWhatLiesBehindIt) {
@@ -303,44 +224,17 @@ TEST(Visibility, ASmallTriangleHidesOnlyWhatLiesBehindIt) {
   for (std::size_t at = 64; at < found.size(); ++at) ASSERT_EQ(found[at], 0) << at;
 }
 
-TEST(Visibility, TrianglesOfOneSurfaceLeaveNoGap) {
+TEST(Visibility, MaskedMaterialsAndGridsOfOneCellHideNothing) {
   SceneData scene;
-  const unsigned material = add_material(scene);
-  for (int i = 0; i < 40; ++i) {
-    for (int j = 0; j < 40; ++j)
-      add_quad(scene, {2.0f, 0.1f * i, 0.1f * j}, {0, 0.1f, 0}, {0, 0, 0.1f}, material);
-  }
-  SceneData whole;
-  add_quad(whole, {2.0f, 0, 0}, {0, 4, 0}, {0, 0, 4}, add_material(whole));
-  EXPECT_EQ(occluded(scene), occluded(whole));
-}
-
-TEST(Visibility, MaskedMaterialsHideNothing) {
-  SceneData scene;
-  add_quad(scene, {2, -9, -9}, {0, 20, 0}, {0, 0, 20},
-           add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED));
+  add_wall(scene, 2, add_material(scene, glm::vec3(1), CLPV_MATERIAL_MASKED));
   for (const std::uint8_t bits : occluded(scene)) ASSERT_EQ(bits, 0);
+  scene.materials[0].flags = 0;
+  for (const std::uint8_t bits : occluded(scene, {{1.5f, 0, 0}, 1, 1, {}})) ASSERT_EQ(bits, 0);
 }
-
-TEST(Visibility, NothingIsHiddenInAGridOfOneCell) {
-  SceneData scene;
-  add_quad(scene, {0.5f, -9, -9}, {0, 20, 0}, {0, 0, 20}, add_material(scene));
-  for (const std::uint8_t bits : occluded(scene, {{0, 0, 0}, 1, 1, {}})) ASSERT_EQ(bits, 0);
-}
-
-}  // namespace
-
-}  // namespace clpv::visibility_test
-namespace clpv::voxel_field_test {
 
 // Voxelised triangles are the same whether computed from nothing or updated as cascades and
 // triangles move.
 
-namespace {
-
-using namespace test;
-
-constexpr int kGrid = 9;  // as in `clpv check`: the same programs
 constexpr float kCell = 0.4f;
 
 /// A grid whose first cell is `first` cells from the world's origin along each axis.
@@ -472,5 +366,4 @@ TEST(VoxelField, FollowMovingObjects) {
 }
 
 }  // namespace
-
-}  // namespace clpv::voxel_field_test
+}  // namespace clpv::voxels_test

@@ -23,33 +23,13 @@ import numpy
 from measured import CLPV, ROOT, model_files, output
 
 SCHEMA, SIZE, NOISE = 1, (240, 135), 0.03
-SCENES = {
-    "sponza": ["curtains", "atrium", "columns"], "cornell": ["front"],
-    "atrium": ["nave", "curtains", "gallery"], "atrium_living": ["walk"], "sponza_other_suns": []
-}  # cameras; none: all
-FILES = {"sponza": "sponza_suns"}  # scenes whose files have other names
-TIMES = {"atrium_living": 4}  # [s]
-LAYERS = "indirect", "direct", "irradiance", "depth", "normal", "albedo"
+# Scenes and their cameras (none: all), files of other names, instants [s], layers of truths, and
+# what suite.json says of units and conventions.
+DATA = json.loads(pathlib.Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
+SCENES, FILES, TIMES, LAYERS = (DATA[name] for name in ("scenes", "files", "times", "layers"))
 LARGEST = 64 * 2**20  # bytes of the tar
 SCORER = (("python", "clpv/output.py", "clpv/draw/viewer.*"),
           ("lab/python", "clpv_lab/score/*.py", "clpv_lab/score/*.html"))  # files by their root
-UNITS = {
-    "indirect": "radiance after one bounce: albedo / pi x indirect irradiance [W/m^2/sr]",
-    "direct": "radiance: albedo / pi x irradiance from the lights [W/m^2/sr]",
-    "irradiance": "indirect [W/m^2]", "depth": "along the camera's forward axis [m]",
-    "normal": "world space, towards the viewer, -1 to 1", "albedo": "0 to 1, linear",
-    "illuminance": "1 lux is 1 W/m^2", "length": "metres",
-    "exposure": "[EV]: FLIP compares radiance x 2^exposure after the tone curve ACES"
-}
-CONVENTIONS = {
-    "colour": "linear, Rec. 709 primaries", "rows": "the first is the uppermost",
-    "axes": "right-handed, y upwards",
-    "pixels": "one ray through the centre, no antialiasing; textures with mipmaps by the pixel's footprint",
-    "surfaces": "diffuse, also where the model has metal; they block and reflect light on both sides; cameras see "
-    "no back face of a single-sided material",
-    "lights": "of no size; of a camera only those in its `lights`",
-    "alpha": "1 where there is a surface, else all channels are 0", "bounces": 1
-}
 
 
 def at_time(thing, time):
@@ -210,7 +190,7 @@ def write_suite(folder, tar, sponza, cache, names):
     whole = hashlib.sha256("".join(view["name"] + view["sha256"]
                                    for view in views).encode()).hexdigest()[:16]
     document = {
-        "schema": SCHEMA, "hash": whole, "units": UNITS, "conventions": CONVENTIONS,
+        "schema": SCHEMA, "hash": whole, "units": DATA["units"], "conventions": DATA["conventions"],
         "scenes": scenes, "views": views
     }
     folder.write("suite.json", json.dumps(document, indent=1) + "\n")

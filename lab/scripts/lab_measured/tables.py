@@ -4,8 +4,8 @@ import json
 
 from clpv import ms_of
 from measured import ROOT, bake as probes
-from measured.tables.cells import found, load, number, percent, shown, table
-from measured.verdicts.judge import sentence
+from measured.cells import found, load, number, percent, shown, table
+from measured.verdicts import sentence
 
 from . import standing as benchmark
 

@@ -7,20 +7,27 @@ from results/docs.
     scripts/tables --check    changes nothing; fails if one of them differs from results/docs
     scripts/tables --list     names of all tables
 
-scripts/measure writes results/docs. Only the standard library.
+scripts/measure writes results/docs. tables.json has the tables whose columns are data: titles,
+forms, and the rows: a list in results/docs, or a function of rows and its arguments. Only the
+standard library.
 """
+import functools
+import json
+import pathlib
 import re
 import sys
 
 from .. import ROOT, RESULTS, expected, json_lines, output, verdicts
-from . import bake, benchmarks, quality, paper, tutorial  # they fill TABLES
-from .cells import LOADED, MEASURED, TABLES, read, result
+from . import of_light, of_paper  # they fill TABLES and ROWS
+from ..cells import LOADED, MEASURED, TABLES, of_data, read, result
 
-__all__ = [
-    "MEASURED", "TABLES", "bake", "benchmarks", "main", "pages", "paper", "quality", "read",
-    "result", "tutorial"
-]
+__all__ = ["MEASURED", "TABLES", "main", "of_light", "of_paper", "pages", "read", "result"]
 BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+for name, each in json.loads(
+        (pathlib.Path(__file__).parent / "tables.json").read_text(encoding="utf-8")).items():
+    TABLES[name] = functools.partial(of_data, each["columns"], *each["rows"])
+
+
 def drawn(lines):
     text = ["| " + " | ".join(line) + " |" for line in lines]
     return "\n".join([text[0], "|" + "---|" * len(lines[0]), *text[1:]]) + "\n"

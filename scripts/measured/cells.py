@@ -1,19 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""Rows of results/ and cells of tables."""
+"""Rows of results/ and cells of tables. Only the standard library."""
 import functools
 import json
 import string
 import sys
 
-from .. import RESULTS
+from . import RESULTS
 
 TABLES = {}  # by name: function that returns lines of cells, the head first
+ROWS = {}  # by name: function that returns the rows of a table whose columns are data
 MEASURED = {}  # by name: documents in place of files of results/docs
 LOADED = set()  # files that tables of the current page use
 
 
 def table(function):
     TABLES[function.__name__.replace("_", "-")] = function
+    return function
+
+
+def rows(function):
+    ROWS[function.__name__] = function
     return function
 
 
@@ -89,7 +95,22 @@ class Form(string.Formatter):
         return super().format_field(value, format_spec)
 
 
-def shown(columns, rows):
+def shown(columns, lines):
     """Lines of a table. `columns`: {title: form of a row}."""
-    return [[*columns]] + [[Form().format(form, **row) for form in columns.values()]
-                           for row in rows]
+    return [[*columns]] + [[Form().format(form, **line) for form in columns.values()]
+                           for line in lines]
+
+
+def of_data(columns, given, *arguments):
+    """A table whose columns are data. `given`: a list in results/docs, "claims/lambdas", or the name
+    of a function of rows."""
+    if "/" in given:
+        file, member = given.split("/")
+        return shown(columns, load(file)[member])
+    return shown(columns, ROWS[given](*arguments))
+
+
+def crossed(head, columns, lines, cell):
+    """A line for each of `lines` and a cell for each of `columns`; both {title: key}."""
+    return [[head, *columns]] + [[title, *(cell(line, column) for column in columns.values())]
+                                 for title, line in lines.items()]
