@@ -38,6 +38,22 @@ def save(figure, target, dpi):
     print(target)
 
 
+def draw_errors(series, target):
+    """Error over the time of a frame. `series`: variants of `clpv quality` by label."""
+    figure, (axis,) = style.panels(1, 1, (8, 4.5))
+    for i, (label, rows) in enumerate(series.items()):
+        points = sorted((row["frame_ms"], 100 * row["nrmse"], row["options"].get("grid", ""))
+                        for row in rows if row["rejected"] == 0)
+        axis.plot(*list(zip(*points))[:2], marker="os^Dv"[i % 5], color=style.colour(i), label=label)
+        for j, (*place, grid) in enumerate(points):
+            axis.annotate(grid, place, textcoords="offset points", ha="center",
+                          xytext=(0, -13 if j % 2 else 6))
+    axis.set(ylim=(0, 110), xlabel="frame [ms]", ylabel="mean NRMSE [%]")
+    style.logarithmic(axis.xaxis)
+    axis.legend()
+    save(figure, target, 110)
+
+
 def described(name, bandwidth):
     """Returns the numbers of a basis; None if clpv rejects this lambda."""
     try:
@@ -48,11 +64,9 @@ def described(name, bandwidth):
             "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)}
 
 
-def draw_lambda(target):
-    curves = {
-        name: [point for point in (described(name, value) for value in LAMBDAS) if point]
-        for name in BASES
-    }
+def draw_lambda(_, target):
+    curves = {name: [point for point in (described(name, value) for value in LAMBDAS) if point]
+              for name in BASES}
     figure, panels = style.panels(3, 3, (4.27, 4.2))
     titles = {"condition": "condition number of A",
               "mean_relative_l2": "clamped cosine: relative L2 error, mean over all axes",
@@ -78,14 +92,8 @@ def draw_lambda(target):
 def stage_samples(frames):
     """Returns {stage: ms of each frame}; 0 for a frame that skipped the stage."""
     stages = list(dict.fromkeys(entry["stage"] for frame in frames for entry in frame["stages"]))
-    return {
-        stage: [sum(e["ms"] for e in frame["stages"] if e["stage"] == stage) for frame in frames]
-        for stage in stages
-    }
-
-
-def read(folder, name):
-    return json.loads((pathlib.Path(folder) / name).read_text(encoding="utf-8"))
+    return {stage: [sum(e["ms"] for e in frame["stages"] if e["stage"] == stage) for frame in frames]
+            for stage in stages}
 
 
 def steady_frames(file):
@@ -100,15 +108,13 @@ def steady_frames(file):
     summaries = [line["summary"] for line in lines if "summary" in line]
     if not summaries:
         sys.exit(f"{file}: no summary: the run did not end")
-    frames = {
-        line["frame"]: line
-        for line in lines if line.get("settings") == summaries[-1]["settings"]
-    }
+    frames = {line["frame"]: line for line in lines
+              if line.get("settings") == summaries[-1]["settings"]}
     return [frames[number] for number in sorted(frames) if not frames[number]["first"]]
 
 
-def draw_times(folder, target):
-    file = pathlib.Path(folder) / "times.jsonl"
+def draw_times(files, target):
+    (_, file), = files
     frames = steady_frames(file)
     if not frames:
         sys.exit(f"{file}: only first frames of runs")
@@ -129,9 +135,9 @@ def draw_times(folder, target):
     save(figure, target, 100)
 
 
-def draw_probes(file, target):
+def draw_probes(files, target):
     """Errors of light probes by format, from coarse to fine spacing, over bytes of the volume."""
-    rows = json.loads(pathlib.Path(file).read_text(encoding="utf-8"))["rows"]
+    rows = json.loads(files[0][1].read_text(encoding="utf-8"))["rows"]
     figure, panels = style.panels(4, 2, (5.2, 3.6))
     places = [(source, place) for source in bake.SOURCES for place in ("surface", "air")]
     for panel, (source, place) in zip(panels, places):
@@ -146,16 +152,16 @@ def draw_probes(file, target):
     save(figure, target, 90)
 
 
-def draw_stability(folders, target):
+def draw_stability(files, target):
     figure, (axis,) = style.panels(1, 1, (8.6, 3.4))
-    documents_of = {label: read(folder, "stability.json") for label, folder in folders}
-    for i, (label, document) in enumerate(documents_of.items()):
+    for i, (label, file) in enumerate(files):
+        document = json.loads(file.read_text(encoding="utf-8"))
         frames = [f for f in document["frames"] if f["change"] is not None]
         axis.plot([f["time"] for f in frames], [100 * max(f["change"], MINIMUM) for f in frames],
                   lw=1, marker=".", ms=3, color=style.colour(i), label=label)
         traced = [(f["time"], 100 * f["traced"]) for f in frames if f["traced"] is not None]
         if traced:
-            axis.plot(*zip(*traced), lw=1, ls="--", color=style.colour(len(folders) + i),
+            axis.plot(*zip(*traced), lw=1, ls="--", color=style.colour(len(files) + i),
                       label=f"path tracing, {document['traced_spp']} paths per pixel: noise")
     axis.set(xlabel="s", ylabel="change of irradiance [% of its mean]",
              title="Change between frames, on surfaces that do not move (lowest line: none)")
@@ -164,33 +170,24 @@ def draw_stability(folders, target):
     save(figure, target, 100)
 
 
-def labelled(given):
-    label, _, path = given.rpartition("=")
-    return label, path
+# How many files each chart reads, and the file of a folder.
+CHARTS = {"lambda": (draw_lambda, range(1), ""), "times": (draw_times, range(1, 2), "times.jsonl"),
+          "probes": (draw_probes, range(1, 2), ""),
+          "stability": (draw_stability, range(1, 1000), "stability.json")}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("chart", choices=("lambda", "times", "probes", "stability"))
+    parser.add_argument("chart", choices=CHARTS)
     parser.add_argument("files", nargs="*", metavar="[LABEL=]FILE")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="FILE.png")
     arguments = parser.parse_args()
-    files = [labelled(given) for given in arguments.files]
-    one = range(1, 2)
-    allowed = {"lambda": range(1), "times": one, "probes": one}.get(arguments.chart, range(1, 1000))
+    files = [given.rpartition("=") for given in arguments.files]
+    draw, allowed, name = CHARTS[arguments.chart]
     if len(files) not in allowed:
-        parser.error(
-            f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
-    read = {"times": "/times.jsonl", "stability": "/stability.json"}.get(arguments.chart, "")
-    output.target_of(arguments.output, *(path + read for _, path in files))
-    if arguments.chart == "lambda":
-        draw_lambda(arguments.output)
-    elif arguments.chart == "probes":
-        draw_probes(files[0][1], arguments.output)
-    elif arguments.chart == "times":
-        draw_times(files[0][1], arguments.output)
-    else:
-        draw_stability([(label or pathlib.Path(path).name, path) for label, path in files],
-                       arguments.output)
+        parser.error(f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
+    files = [(label or pathlib.Path(path).name, pathlib.Path(path) / name) for label, _, path in files]
+    output.target_of(arguments.output, *(path for _, path in files))
+    draw(files, arguments.output)
     return 0

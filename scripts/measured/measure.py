@@ -119,16 +119,17 @@ def measure_docs(folder, model, parts):
     if "bake" in parts:
         write(folder, "bake", {"measured": measured, "rows": bake.measure(model),
                                "part": bake.measure_part()})
-        charts.draw_probes(folder / "bake.json", ROOT / "docs/images/probes.png")
+        charts.draw_probes([("", folder / "bake.json")], ROOT / "docs/images/probes.png")
     if "bake-leaks" in parts:
         write(folder, "bake-leaks", {"measured": measured, "rows": bake.measure_leaks()})
     if "leaks" in parts:
         write(folder, "leaks", {"measured": measured, "leaks": leaks.measure(**rows.LEAKS)})
     if "quality-grid" in parts or "quality-grid-published" in parts:
-        charts.draw_errors(
-            [("clpv, --preset fast", folder / "quality-grid.json"),
-             ("published scheme, sh2 in buffers", folder / "quality-grid-published.json")],
-            ROOT / "docs/images/front.png")
+        charts.draw_errors({
+            label: json.loads((folder / f"{name}.json").read_text())["variants"]
+            for label, name in (("clpv, --preset fast", "quality-grid"),
+                                ("published scheme, sh2 in buffers", "quality-grid-published"))
+        }, ROOT / "docs/images/front.png")
 
 
 def search_centres(sponza):
