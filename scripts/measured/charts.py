@@ -10,8 +10,7 @@
                                                                 of each stage; time of every frame
     scripts/charts probes FILE.json -o FILE.png                 results/docs/bake.json: error of light
                                                                 probes over bytes
-    scripts/charts stability [LABEL=]DIR ... -o FILE.png        stability.json of `clpv sequence
-                                                                --stability`
+    scripts/charts stability [LABEL=]DIR ... -o FILE.png        of `clpv sequence --stability`
 
 Needs Debian's Python and the packages of scripts/setup."""
 import argparse
