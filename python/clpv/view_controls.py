@@ -95,7 +95,7 @@ class Controls:
         self.view = choice("view", views, "full")
         self.basis = choice("basis", clpv.bases(), defaults["basis"])
         self.transport = choice("transport", ("sweep", "exact", "sampled"), defaults["transport"])
-        self.bounces = choice("bounces", ("1", "2", "all"), defaults["bounces"])
+        self.bounces = choice("bounces", ("1", "2", "all"), "all")  # as auto of a sweep
         self.near = checkbox("near field", True)
         self.traced = checkbox("path tracing beside")
         self.automatic = scene.exposure is None  # until the first image sets the exposure
