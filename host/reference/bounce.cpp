@@ -52,7 +52,7 @@ Volume emitted(const Basis& basis, const Volume& flux, const Volume& reflectors)
 
 /// A cascade as sweeps for incident flux take it: along 24 directions.
 SweptCascade along_24(SweptCascade cascade) {
-  cascade.parts = 1, cascade.completed = false;
+  cascade.parts = 1, cascade.completed = false, cascade.open = true;
   return cascade;
 }
 

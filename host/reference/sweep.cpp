@@ -139,7 +139,7 @@ class Sweep {
                 ? 1
                 : transmittance(*cascade_.geometry, p, -link.offset, link.blocked_by);
         if (cascade_.geometry != nullptr && cascade_.occluded != nullptr)
-          t = open_share(t, *cascade_.occluded, n_, p, -link.offset);
+          t = open_share(t, *cascade_.occluded, cascade_.open, n_, p, -link.offset);
       });
     }
   }

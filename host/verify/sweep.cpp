@@ -362,7 +362,7 @@ Cases sweep_cases(const CheckScope& scope) {
 Cases bounce_cases(const CheckScope& scope) {
   const Bounces all = Bounces::all;
   std::vector<SweepCase> cases = {
-      {.basis = "sh3", .grid = 9, .parts = {2, 1}, .bounces = all},
+      {.basis = "sh3", .grid = 9, .parts = {2, 1}, .bounces = all, .closed = true},
       {.basis = "sh3",
        .grid = 9,
        .parts = {1, 3},

@@ -6,6 +6,7 @@
 //   T = 0                       if the link is closed
 //   T = max(0, (T - w) / (1 - w))   instead of 0, if a centre at an end of the closed link is
 //                               enclosed; w: CLPV_WALL_TRANSMITTANCE
+//   T = 1                       with `open`, if the link is not closed: for sweeps of bounces
 //
 // In:   blockers       geometry volume, samples at the cells' corners
 //       closed         closed pairs of centres in each cube between cells (closed_links.cl)
@@ -37,8 +38,8 @@ static inline bool crosses(const int o, const int sx, const int sy, const int sz
 
 // Reduces T on links that are closed in all cubes that they cross. A cell's centre is number 7 - o
 // in the cube at its octant o.
-CLPV_INLINE Links close_links(Links links, __global const int* closed, const int x, const int y,
-                              const int z) {
+CLPV_INLINE Links close_links(Links links, __global const int* closed, const int open,
+                              const int x, const int y, const int z) {
   intW cubes[8];
 #pragma unroll
   for (int o = 0; o < 8; ++o)
@@ -59,13 +60,13 @@ CLPV_INLINE Links close_links(Links links, __global const int* closed, const int
     const intW enclosed = (cubes[7] | neighbour) >> CLPV_ENCLOSED_BIT & bits;
     const float wall = CLPV_WALL_TRANSMITTANCE;
     const realW t = links.c[link], reduced = fmax((t - wall) * (1.0f / (1.0f - wall)), ZERO);
-    links.c[link] = to_realW(1 - bits) * t + to_realW(enclosed) * reduced;
+    links.c[link] = to_realW(1 - bits) * (open ? ONE : t) + to_realW(enclosed) * reduced;
   }
   return links;
 }
 
 __kernel void sweep_links(CLPV_VOLUME_IN blockers, __global const int* closed,
-                          CLPV_BUFFER_OUT transmittance) {
+                          const int open, CLPV_BUFFER_OUT transmittance) {
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1);
   const int z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
@@ -75,7 +76,7 @@ __kernel void sweep_links(CLPV_VOLUME_IN blockers, __global const int* closed,
   }
   for (int r = 0; r < W && y + r < CLPV_GRID; ++r) {
     const Links links =
-        close_links(find_transmittance(blockers, x, y + r, z), closed, x, y + r, z);
+        close_links(find_transmittance(blockers, x, y + r, z), closed, open, x, y + r, z);
 #pragma unroll
     for (int v = 0; v < CLPV_AXIS_LINKS; ++v) {
       const int across_y = v + CLPV_AXIS_LINKS, across_z = v + 2 * CLPV_AXIS_LINKS;

@@ -253,11 +253,11 @@ TEST_P(EachTransport, AreasBlockTheirShareOfEachFace) {
 /// Transmittance of a link into the middle one of 3^3 cells. `hidden`: centres that the two points
 /// at lower x in each row of a cube do not see, and those that the others do not see.
 double open_share(double transmittance, const std::array<std::uint8_t, 2>& hidden,
-                  const glm::ivec3& side) {
+                  const glm::ivec3& side, bool open = false) {
   constexpr int kCells = 3;
   std::vector<std::uint8_t> occluded(std::size_t{64} * kCells * kCells * kCells);
   for (std::size_t i = 0; i < occluded.size(); ++i) occluded[i] = hidden[i % 4 / 2];
-  return reference::open_share(transmittance, occluded, kCells, glm::ivec3(1), side);
+  return reference::open_share(transmittance, occluded, open, kCells, glm::ivec3(1), side);
 }
 
 TEST(Transmittance, AWallClosesLinks) {
@@ -265,6 +265,8 @@ TEST(Transmittance, AWallClosesLinks) {
   for (const glm::ivec3 side : {glm::ivec3(1, 0, 0), {-1, 1, 0}, {1, 1, -1}}) {
     EXPECT_EQ(open_share(0.3, kNone, side), 0.3);
     EXPECT_EQ(open_share(0.3, kWall, side), 0);
+    EXPECT_EQ(open_share(0.3, kNone, side, true), 1) << "a bounce's";
+    EXPECT_EQ(open_share(0.3, kWall, side, true), 0) << "a bounce's";
     EXPECT_EQ(open_share(1, kWall, side), 0);
     // Enclosed centres see nothing.
     EXPECT_EQ(open_share(0.42, kAll, side), 0) << "a full wall along a corner";

@@ -107,14 +107,11 @@ Sweeper::Sweeper(Session& session, const Basis& basis, const Transport& transpor
 
 void Sweeper::make_cascades(const Basis& basis) {
   const std::size_t count = options_.parts.size();
-  const std::size_t links = options_.blocking ? link_volumes().count() : 1;
   plan_ = sweep_plan(options_.bounces, scatters(options_.medium), options_.bounce_sweeps);
   const bool has_few = !std::ranges::all_of(plan_, &SweepStep::all_directions);
   for (std::size_t c = 0; c < count; ++c) {
     const int coarser = c + 1 == count ? 0 : options_.parts[c + 1];
-    Cascade cascade{make_directions(basis, options_.parts[c], coarser, c > 0),
-                    {},
-                    volumes_.make(links, "transmittance of the sweep's links")};
+    Cascade cascade{make_directions(basis, options_.parts[c], coarser, c > 0), {}};
     if (has_few)
       cascade.few = make_directions(basis, kBounceParts,
                                     coarser == 0 || last_light_enters() ? coarser : kBounceParts,
@@ -183,6 +180,8 @@ Sweeper::Directions Sweeper::make_directions(const Basis& basis, int parts, int 
                   session_.upload(table, "directions of the furnace"),
                   session_.upload(means.coefficients, "coefficients of the sweep's bins"),
                   session_.upload(means.means, "means of the basis's functions"),
+                  volumes_.make(options_.blocking ? link_volumes().count() : 1,
+                                "transmittance of the sweep's links"),
                   Kernel(session_, sweep_program(basis.size(), means, parts),
                          form() == SweepForm::bins     ? "sweep_bin"
                          : form() == SweepForm::groups ? "sweep_group"
@@ -231,8 +230,12 @@ void Sweeper::set_blockers(std::size_t cascade, const Volume& geometry, const Bu
     find_closed_links_.value().set(occluded, static_cast<cl_uint>(cascade), closed_);
     find_closed_links_->launch({n, n, n}, {std::min(n, kRowGroup), 1, 1});
   }
-  transmittance_.value().set(geometry.memory(), closed_, cascades_[cascade].links);
-  volumes_.launch(*transmittance_, 1);
+  const auto set_links = [&](const Directions& directions, bool open) {
+    transmittance_.value().set(geometry.memory(), closed_, cl_int{open}, directions.links);
+    volumes_.launch(*transmittance_, 1);
+  };
+  set_links(cascades_[cascade].all, false);
+  if (cascades_[cascade].few) set_links(*cascades_[cascade].few, occluded.exists());
 }
 
 void Sweeper::set_surfaces(std::size_t cascade, const std::vector<ClpvGrid>& grids,
@@ -372,8 +375,8 @@ void Sweeper::launch(Directions& directions, std::size_t cascade, const ClpvSwee
                      bool lit, bool scattered) {
   const auto set = [&](cl_int last) {
     directions.sweep.set(bins_, directions.table, directions.coefficients, directions.means,
-                         sources_.coefficients, sources_.lit, cascades_[cascade].links, border_,
-                         halo, plane_buffer_, swept_, directions.halo_light, last);
+                         sources_.coefficients, sources_.lit, directions.links, border_, halo,
+                         plane_buffer_, swept_, directions.halo_light, last);
     if (medium_)
       medium_->add_to(directions.sweep, cascade, scattered);
     else

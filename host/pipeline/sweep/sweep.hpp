@@ -75,6 +75,7 @@ class Sweeper {
     Buffer table;        ///< ClpvSweepDirection
     Buffer white_table;  ///< the same for the white furnace, whose light has the unit s^2
     Buffer coefficients, means;  ///< SweepMeans
+    Buffer links;                ///< transmittance
     Kernel sweep;
     Buffer halo_light;             ///< border light of the next finer cascade
     std::optional<Kernel> border;  ///< border light from the coarser cascade; none for the coarsest
@@ -86,7 +87,6 @@ class Sweeper {
   struct Cascade {
     Directions all;
     std::optional<Directions> few;  ///< one per bin; none if no step of the plan has them
-    Buffer links;                   ///< transmittance
   };
   /// `few`: for incident flux alone, from the basis's functions as they are.
   Directions make_directions(const Basis& basis, int parts, int coarser, bool feeds_finer,
