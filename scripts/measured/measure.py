@@ -39,10 +39,8 @@ def run(*arguments, program=CLPV):
     fails and leaves a file, as `clpv bench` does, goes on."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "result.json"
-        command = [
-            str(program), *(argument.replace("FOLDER", folder) for argument in arguments),
-            str(file)
-        ]
+        command = [str(program), *(argument.replace("FOLDER", folder) for argument in arguments),
+                   str(file)]
         print("scripts/measure: clpv", *arguments, file=sys.stderr)
         code = subprocess.run(command, stdout=subprocess.DEVNULL, check=False, cwd=ROOT).returncode
         if code != 0:
@@ -171,9 +169,8 @@ def measure_media(folder, model, measured):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument(
-        "name", metavar="NAME", help=
-        "folder in results/; docs: all that the docs' tables show")
+    parser.add_argument("name", metavar="NAME",
+                        help="folder in results/; docs: all that the docs' tables show")
     parser.add_argument("device", metavar="DEVICE", nargs="?",
                         help="as --device of clpv takes it (default: the first)")
     parser.add_argument("--model",
