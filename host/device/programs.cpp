@@ -148,8 +148,8 @@ void Programs::compile_with_helpers() {
     kernels += program->kernels.size();
   }
   if (programs < 2) return;
-  log_info("compiling {} kernels for {}, which keeps them: the first run with this size and scene",
-           kernels, device_.name);
+  log_info("compiling {} kernels for {}, whose cache lacks those of this size and scene", kernels,
+           device_.name);
   const auto start = std::chrono::steady_clock::now();
   Progress progress("compiling kernels", kernels);
   helped_ = true;

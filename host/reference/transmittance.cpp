@@ -79,8 +79,8 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
   return 1.0 - std::clamp(blocked, 0.0, 1.0);
 }
 
-double open_share(double transmittance, const std::vector<std::uint8_t>& occluded, bool open,
-                  int n, const glm::ivec3& cell, const glm::ivec3& side) {
+double open_share(double transmittance, const std::vector<std::uint8_t>& occluded, bool open, int n,
+                  const glm::ivec3& cell, const glm::ivec3& side) {
   if (!closed_link(occluded, n, cell, side)) return open ? 1 : transmittance;
   if (!enclosed_centre(occluded, n, cell) && !enclosed_centre(occluded, n, cell + side)) return 0;
   constexpr double kWall = double{CLPV_WALL_TRANSMITTANCE};

@@ -35,11 +35,11 @@ std::string distrust(const fs::path& folder) {
   return {};
 }
 
-/// Creates a folder and those above it, for their owner only. distrust() reports failures.
-void make_private_folders(const fs::path& folder) {
-  if (folder.empty() || ::mkdir(folder.c_str(), 0700) == 0 || errno != ENOENT) return;
-  make_private_folders(folder.parent_path());
-  ::mkdir(folder.c_str(), 0700);
+/// Creates a folder and those above it, for their owner only. Returns 0, or the first failure.
+int make_private_folders(const fs::path& folder) {
+  if (folder.empty() || ::mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST) return 0;
+  const int failed = errno == ENOENT ? make_private_folders(folder.parent_path()) : errno;
+  return failed != 0 || ::mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST ? failed : errno;
 }
 
 /// A file descriptor, closed by the destructor.
@@ -74,9 +74,9 @@ std::optional<std::string> CacheFolder::read(const std::string& name, std::uintm
 /// Creates an entry's temporary file and calls use(file). Returns the reason of a failure, else "".
 template <typename Use>
 std::string CacheFolder::with_file(const std::string& name, const Use& use) const {
-  make_private_folders(path_);
-  if (const std::string why = distrust(path_); !why.empty())
-    return fmt::format("{}: not used as a cache: {}", path_.string(), why);
+  const int failed = make_private_folders(path_);
+  const std::string why = failed == 0 ? distrust(path_) : std::generic_category().message(failed);
+  if (!why.empty()) return fmt::format("{}: not used as a cache: {}", path_.string(), why);
   try {
     OutputFile file(path_ / name, OutputFile::Kind::entry);
     use(file);

@@ -139,6 +139,8 @@ class Viewer:
         size, view = size_of(height, handle.camera.aspect), self.controls.view.value
         self.update_lights()
         renderer = self.renderers.get(size, self.controls.options(rays))
+        if self.controls.automatic:  # a page's first camera may be anywhere
+            self.controls.expose(renderer.render("full", self.scene.cameras[0]))
         image = renderer.render(view, camera_of(handle), time=self.controls.time.value)
         shown = self.send(client, image, view)
         self.frames += 1
@@ -152,7 +154,7 @@ class Viewer:
     def send(self, client, image, view, right=None):
         """Shows an image, in its right half `right` of half the size."""
         diagonal = math.dist(*self.scene.bounds)
-        exposure = self.controls.exposure_of(image)
+        exposure = self.controls.exposure.value
         shown = view_controls.displayed(image, view, exposure, diagonal)
         if right:
             other = view_controls.displayed(right, view, exposure, diagonal)

@@ -95,10 +95,10 @@ class Controls:
         self.view = choice("view", views, "full")
         self.basis = choice("basis", clpv.bases(), defaults["basis"])
         self.transport = choice("transport", ("sweep", "exact", "sampled"), defaults["transport"])
-        self.bounces = choice("bounces", ("1", "2", "all"), defaults["bounces"])
+        self.bounces = choice("bounces", ("1", "2", "all"), "all")  # as auto of a sweep
         self.near = checkbox("near field", True)
         self.traced = checkbox("path tracing beside")
-        self.automatic = scene.exposure is None  # until the first image sets the exposure
+        self.automatic = scene.exposure is None  # until the first frame sets the exposure
         self.exposure = slider("exposure [EV]", -10, 10, 0.25,
                                max(-10, min(10, scene.exposure or 0)))
         self.time = slider("time [s]", 0, 20, 0.05, 0, visible=scene.moves)
@@ -125,12 +125,10 @@ class Controls:
             sweep = {"bounces": self.bounces.value, **near}
         return {"basis": self.basis.value, "transport": self.transport.value, **sweep}
 
-    def exposure_of(self, image):
-        """Exposure [EV] of the slider, which a first image sets where the scene has none."""
-        if self.automatic:
-            self.automatic = False
-            self.exposure.value = round(4 * max(-10, min(10, image.automatic_exposure()))) / 4
-        return self.exposure.value
+    def expose(self, image):
+        """Sets the exposure to the image's automatic one."""
+        self.automatic = False
+        self.exposure.value = round(4 * max(-10, min(10, image.automatic_exposure()))) / 4
 
     def sun_light(self):
         """The sun, or None."""

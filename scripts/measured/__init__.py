@@ -69,14 +69,10 @@ def model_files(model):
     if model.suffix == ".glb":
         return [model]
     document = json.loads(model.read_text())
-    uris = [
-        entry["uri"] for entry in [*document.get("buffers", []), *document.get("images", [])]
-        if "uri" in entry
-    ]
-    return [
-        model, *(model.parent / urllib.parse.unquote(uri) for uri in uris
-                 if not uri.startswith("data:"))
-    ]
+    uris = [entry["uri"] for entry in [*document.get("buffers", []), *document.get("images", [])]
+            if "uri" in entry]
+    return [model, *(model.parent / urllib.parse.unquote(uri) for uri in uris
+                     if not uri.startswith("data:"))]
 
 
 def json_lines(document):

@@ -10,8 +10,7 @@
                                                                 of each stage; time of every frame
     scripts/charts probes FILE.json -o FILE.png                 results/docs/bake.json: error of light
                                                                 probes over bytes
-    scripts/charts stability [LABEL=]DIR ... -o FILE.png        stability.json of `clpv sequence
-                                                                --stability`
+    scripts/charts stability [LABEL=]DIR ... -o FILE.png        of `clpv sequence --stability`
 
 Needs Debian's Python and the packages of scripts/setup."""
 import argparse
@@ -26,7 +25,6 @@ from . import bake, native, output
 clpv = native()
 from clpv.draw import style  # noqa: E402
 
-HIGHEST = 120  # [%] errors above are worse than a black image
 MINIMUM = 1e-5  # smaller changes show as this on the logarithmic axis
 BASES = ("srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 FORMATS = ("sh2", "zh3", "sh3", "srbf8v2", "ambient-cube", "ambient-cube-mean")
@@ -39,25 +37,17 @@ def save(figure, target, dpi):
     print(target)
 
 
-def draw_errors(files, target):
-    """Error over the time of a frame, for scripts/measure and lab/scripts/standing: a point for
-    each variant, a line for each series, or else for each file. `files`: (label, path)."""
-    lines = {}
-    for label, path in files:
-        for row in json.loads(pathlib.Path(path).read_text(encoding="utf-8"))["variants"]:
-            options = row["options"]
-            name = options.get("grid", "") if "series" in row else " ".join(options.values())
-            if not row["rejected"]:
-                lines.setdefault(row.get("series", label), []).append(
-                    (row["frame_ms"], 100 * row["nrmse"], name))
+def draw_errors(series, target):
+    """Error over the time of a frame. `series`: variants of `clpv quality` by label."""
     figure, (axis,) = style.panels(1, 1, (8, 4.5))
-    for i, (label, places) in enumerate(lines.items()):
-        times, errors, names = zip(*sorted(places))
-        axis.plot(times, errors, "o-", color=style.colour(i), label=label)
-        for x, y, name in zip(times, errors, names):
-            axis.annotate(name, (x, y), textcoords="offset points", xytext=(5, 5), fontsize="small")
-    highest = max(error for places in lines.values() for _, error, _ in places)
-    axis.set(ylim=(0, min(HIGHEST, 1.08 * highest)), xlabel="frame [ms]", ylabel="mean NRMSE [%]")
+    for i, (label, rows) in enumerate(series.items()):
+        points = sorted((row["frame_ms"], 100 * row["nrmse"], row["options"].get("grid", ""))
+                        for row in rows if row["rejected"] == 0)
+        axis.plot(*list(zip(*points))[:2], marker="os^Dv"[i % 5], color=style.colour(i), label=label)
+        for j, (*place, grid) in enumerate(points):
+            axis.annotate(grid, place, textcoords="offset points", ha="center",
+                          xytext=(0, -13 if j % 2 else 6))
+    axis.set(ylim=(0, 110), xlabel="frame [ms]", ylabel="mean NRMSE [%]")
     style.logarithmic(axis.xaxis)
     axis.legend()
     save(figure, target, 110)
@@ -73,11 +63,9 @@ def described(name, bandwidth):
             "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)}
 
 
-def draw_lambda(target):
-    curves = {
-        name: [point for point in (described(name, value) for value in LAMBDAS) if point]
-        for name in BASES
-    }
+def draw_lambda(_, target):
+    curves = {name: [point for point in (described(name, value) for value in LAMBDAS) if point]
+              for name in BASES}
     figure, panels = style.panels(3, 3, (4.27, 4.2))
     titles = {"condition": "condition number of A",
               "mean_relative_l2": "clamped cosine: relative L2 error, mean over all axes",
@@ -103,14 +91,8 @@ def draw_lambda(target):
 def stage_samples(frames):
     """Returns {stage: ms of each frame}; 0 for a frame that skipped the stage."""
     stages = list(dict.fromkeys(entry["stage"] for frame in frames for entry in frame["stages"]))
-    return {
-        stage: [sum(e["ms"] for e in frame["stages"] if e["stage"] == stage) for frame in frames]
-        for stage in stages
-    }
-
-
-def read(folder, name):
-    return json.loads((pathlib.Path(folder) / name).read_text(encoding="utf-8"))
+    return {stage: [sum(e["ms"] for e in frame["stages"] if e["stage"] == stage) for frame in frames]
+            for stage in stages}
 
 
 def steady_frames(file):
@@ -125,15 +107,13 @@ def steady_frames(file):
     summaries = [line["summary"] for line in lines if "summary" in line]
     if not summaries:
         sys.exit(f"{file}: no summary: the run did not end")
-    frames = {
-        line["frame"]: line
-        for line in lines if line.get("settings") == summaries[-1]["settings"]
-    }
+    frames = {line["frame"]: line for line in lines
+              if line.get("settings") == summaries[-1]["settings"]}
     return [frames[number] for number in sorted(frames) if not frames[number]["first"]]
 
 
-def draw_times(folder, target):
-    file = pathlib.Path(folder) / "times.jsonl"
+def draw_times(files, target):
+    (_, file), = files
     frames = steady_frames(file)
     if not frames:
         sys.exit(f"{file}: only first frames of runs")
@@ -154,9 +134,9 @@ def draw_times(folder, target):
     save(figure, target, 100)
 
 
-def draw_probes(file, target):
+def draw_probes(files, target):
     """Errors of light probes by format, from coarse to fine spacing, over bytes of the volume."""
-    rows = json.loads(pathlib.Path(file).read_text(encoding="utf-8"))["rows"]
+    rows = json.loads(files[0][1].read_text(encoding="utf-8"))["rows"]
     figure, panels = style.panels(4, 2, (5.2, 3.6))
     places = [(source, place) for source in bake.SOURCES for place in ("surface", "air")]
     for panel, (source, place) in zip(panels, places):
@@ -171,16 +151,16 @@ def draw_probes(file, target):
     save(figure, target, 90)
 
 
-def draw_stability(folders, target):
+def draw_stability(files, target):
     figure, (axis,) = style.panels(1, 1, (8.6, 3.4))
-    documents_of = {label: read(folder, "stability.json") for label, folder in folders}
-    for i, (label, document) in enumerate(documents_of.items()):
+    for i, (label, file) in enumerate(files):
+        document = json.loads(file.read_text(encoding="utf-8"))
         frames = [f for f in document["frames"] if f["change"] is not None]
         axis.plot([f["time"] for f in frames], [100 * max(f["change"], MINIMUM) for f in frames],
                   lw=1, marker=".", ms=3, color=style.colour(i), label=label)
         traced = [(f["time"], 100 * f["traced"]) for f in frames if f["traced"] is not None]
         if traced:
-            axis.plot(*zip(*traced), lw=1, ls="--", color=style.colour(len(folders) + i),
+            axis.plot(*zip(*traced), lw=1, ls="--", color=style.colour(len(files) + i),
                       label=f"path tracing, {document['traced_spp']} paths per pixel: noise")
     axis.set(xlabel="s", ylabel="change of irradiance [% of its mean]",
              title="Change between frames, on surfaces that do not move (lowest line: none)")
@@ -189,27 +169,24 @@ def draw_stability(folders, target):
     save(figure, target, 100)
 
 
-DRAWN = {"lambda": draw_lambda, "times": draw_times, "probes": draw_probes,
-         "stability": draw_stability}
-FILES = {"lambda": (0, 0), "times": (1, 1), "probes": (1, 1), "stability": (1, 999)}
-READ = {"times": "/times.jsonl", "stability": "/stability.json"}  # of a folder
+# How many files each chart reads, and the file of a folder.
+CHARTS = {"lambda": (draw_lambda, range(1), ""), "times": (draw_times, range(1, 2), "times.jsonl"),
+          "probes": (draw_probes, range(1, 2), ""),
+          "stability": (draw_stability, range(1, 1000), "stability.json")}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("chart", choices=DRAWN)
+    parser.add_argument("chart", choices=CHARTS)
     parser.add_argument("files", nargs="*", metavar="[LABEL=]FILE")
     parser.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="FILE.png")
     arguments = parser.parse_args()
-    chart, files = arguments.chart, [given.rpartition("=")[::2] for given in arguments.files]
-    least, most = FILES[chart]
-    if not least <= len(files) <= most:
-        parser.error(f"{chart}: found {len(files)} files; allowed: {least} to {most}")
-    output.target_of(arguments.output, *(path + READ.get(chart, "") for _, path in files))
-    if chart == "stability":
-        draw_stability([(label or pathlib.Path(path).name, path) for label, path in files],
-                       arguments.output)
-    else:
-        DRAWN[chart](*(path for _, path in files), arguments.output)
+    files = [given.rpartition("=") for given in arguments.files]
+    draw, allowed, name = CHARTS[arguments.chart]
+    if len(files) not in allowed:
+        parser.error(f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
+    files = [(label or pathlib.Path(path).name, pathlib.Path(path) / name) for label, _, path in files]
+    output.target_of(arguments.output, *(path for _, path in files))
+    draw(files, arguments.output)
     return 0

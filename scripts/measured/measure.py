@@ -40,10 +40,8 @@ def run(*arguments, program=CLPV):
     fails and leaves a file, as `clpv bench` does, goes on."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "result.json"
-        command = [
-            str(program), *(argument.replace("FOLDER", folder) for argument in arguments),
-            str(file)
-        ]
+        command = [str(program), *(argument.replace("FOLDER", folder) for argument in arguments),
+                   str(file)]
         print("scripts/measure: clpv", *arguments, file=sys.stderr)
         code = subprocess.run(command, stdout=subprocess.DEVNULL, check=False, cwd=ROOT).returncode
         if code != 0:
@@ -121,16 +119,17 @@ def measure_docs(folder, model, parts):
     if "bake" in parts:
         write(folder, "bake", {"measured": measured, "rows": bake.measure(model),
                                "part": bake.measure_part()})
-        charts.draw_probes(folder / "bake.json", ROOT / "docs/images/probes.png")
+        charts.draw_probes([("", folder / "bake.json")], ROOT / "docs/images/probes.png")
     if "bake-leaks" in parts:
         write(folder, "bake-leaks", {"measured": measured, "rows": bake.measure_leaks()})
     if "leaks" in parts:
         write(folder, "leaks", {"measured": measured, "leaks": leaks.measure(**rows.LEAKS)})
     if "quality-grid" in parts or "quality-grid-published" in parts:
-        charts.draw_errors(
-            [("clpv, --preset fast", folder / "quality-grid.json"),
-             ("published scheme, sh2 in buffers", folder / "quality-grid-published.json")],
-            ROOT / "docs/images/front.png")
+        charts.draw_errors({
+            label: json.loads((folder / f"{name}.json").read_text())["variants"]
+            for label, name in (("clpv, --preset fast", "quality-grid"),
+                                ("published scheme, sh2 in buffers", "quality-grid-published"))
+        }, ROOT / "docs/images/front.png")
 
 
 def search_centres(sponza):
@@ -171,9 +170,8 @@ def measure_media(folder, model, measured):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument(
-        "name", metavar="NAME", help=
-        "folder in results/; docs: all that the docs' tables show")
+    parser.add_argument("name", metavar="NAME",
+                        help="folder in results/; docs: all that the docs' tables show")
     parser.add_argument("device", metavar="DEVICE", nargs="?",
                         help="as --device of clpv takes it (default: the first)")
     parser.add_argument("--model",

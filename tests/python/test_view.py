@@ -5,12 +5,14 @@ import http.client
 import json
 import math
 import os
+import pathlib
 import socket
 import subprocess
 import sys
 import threading
 import time
 import types
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -27,10 +29,7 @@ def free_port():
 
 
 def has_ipv6():
-    with contextlib.suppress(OSError), socket.socket(socket.AF_INET6) as probe:
-        probe.bind(("::1", 0))
-        return True
-    return False
+    return any(" lo" in file.read_text() for file in pathlib.Path("/proc/net").glob("if_inet6"))
 
 
 def test_a_device_that_does_not_exist_ends_it_before_there_is_a_page():
@@ -49,6 +48,13 @@ def test_the_camera_of_a_browser():
     assert ahead.fov == pytest.approx(60)
     turned = view_frames.camera_of(handle((math.sqrt(0.5), 0, math.sqrt(0.5), 0)))  # by 90 degrees about y
     assert np.allclose(np.subtract(turned.target, turned.eye), (1, 0, 0))
+
+
+def test_each_choice_offers_its_default():
+    server = mock.MagicMock()
+    view_controls.Controls(server, mock.Mock(), clpv.Scene(CORNELL), True, None)
+    for choice in server.gui.add_dropdown.call_args_list:
+        assert choice.kwargs["initial_value"] in choice.args[1], choice
 
 
 def test_sizes_and_suns():
@@ -137,22 +143,18 @@ def test_bad_arguments(tmp_path):
 
 
 def camera_message(**changes):
-    return types.SimpleNamespace(
-        **{
-            "wxyz": (1, 0, 0, 0), "position": (0, 1, 2), "look_at": (0, 1, 3),
-            "up_direction": (0, 1, 0), "fov": 1.0, "near": 0.01, "far": 1000.0,
-            "image_height": 600, "image_width": 960, **changes
-        })
+    return types.SimpleNamespace(**{
+        "wxyz": (1, 0, 0, 0), "position": (0, 1, 2), "look_at": (0, 1, 3), "up_direction": (0, 1, 0),
+        "fov": 1.0, "near": 0.01, "far": 1000.0, "image_height": 600, "image_width": 960, **changes})
 
 
 # The first two once ended the viewer for all.
-@pytest.mark.parametrize(
-    "change",
-    [{"image_height": 0}, {"position": (1, )}, {"position": 3}, {"position": ("a", "b", "c")},
-     {"position": (0, 0, math.nan)}, {"position": (0, 0, 1e30)}, {"wxyz": (0, 0, 0, 0)},
-     {"wxyz": (1, 0, 0)}, {"fov": 0}, {"fov": math.pi}, {"fov": None}, {"image_width": 10**9},
-     {"image_width": 1.5}, {"image_height": True}, {"look_at": None}, {"up_direction": []},
-     {"near": math.inf}, {"far": "x"}])
+@pytest.mark.parametrize("change", [
+    {"image_height": 0}, {"position": (1, )}, {"position": 3}, {"position": ("a", "b", "c")},
+    {"position": (0, 0, math.nan)}, {"position": (0, 0, 1e30)}, {"wxyz": (0, 0, 0, 0)},
+    {"wxyz": (1, 0, 0)}, {"fov": 0}, {"fov": math.pi}, {"fov": None}, {"image_width": 10**9},
+    {"image_width": 1.5}, {"image_height": True}, {"look_at": None}, {"up_direction": []},
+    {"near": math.inf}, {"far": "x"}])
 def test_cameras_from_which_no_frame_can_be_rendered_are_ignored(change):
     assert view_gate.is_camera(camera_message())
     assert not view_gate.is_camera(camera_message(**change))
