@@ -62,18 +62,10 @@ std::string_view compared_as(const GatherOptions& options, TransportKind transpo
 /// Expected irradiance of the compared pixels, four numbers each.
 std::vector<double> expected_pixels(const GatherWork& p) {
   const GatherProblem& q = p.problem;
-  const SurfaceImage& image = *q.image;
   std::vector<double> values;
-  for (std::size_t i = 0; i < image.depth.size(); i += q.every) {
-    const glm::dvec3 at = reference::surface_position(image.view, i, double{image.depth[i]});
-    const glm::dvec3 e =
-        image.depth[i] > 0
-            ? reference::gather(*q.basis, q.transport, q.options, p.light.cascades, at,
-                                glm::dvec3(image.normal[i]), lift_normal(image.normal[i]),
-                                reference::towards_eye(image.view, at))
-            : glm::dvec3(0);
-    append_pixel(values, e, 0);
-  }
+  for (const glm::dvec3& irradiance :
+       reference::gather(*q.basis, q.transport, q.options, p.light.cascades, *q.image, q.every))
+    append_pixel(values, irradiance, 0);
   return values;
 }
 
