@@ -165,7 +165,7 @@ Suite ceilings_suite() {
   return {"ceilings",
           "ceilings of this device: fused multiply-adds, bandwidth, launch time",
           [](Session& session, const SuiteOptions&) {
-            return std::vector<Group>{{[&session] { return ceiling_cases(session); }}};
+            return std::vector<Group>{ceiling_cases(session)};
           },
           {}};
 }

@@ -197,11 +197,10 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases,
 
 Results run_suite(Session& session, const Suite& suite, const BenchOptions& options) {
   // Own what cases refer to.
-  const std::vector<Group> groups = suite.groups(session, options.suite);
-  std::vector<std::vector<Case>> selected;
+  std::vector<Group> selected;
   std::size_t count = 0;
-  for (const Group& group : groups) {
-    selected.push_back(filtered(group(), options.filter));
+  for (Group& group : suite.groups(session, options.suite)) {
+    selected.push_back(filtered(std::move(group), options.filter));
     count += selected.back().size();
   }
   if (count == 0) throw Error(ExitCode::usage, "--filter: matches no row of suite {}", suite.name);
@@ -217,7 +216,7 @@ Results run_suite(Session& session, const Suite& suite, const BenchOptions& opti
     results.ceilings = ceilings_of(run_cases(session, ceilings, runner));
     runner.ceilings = &results.ceilings;
   }
-  for (std::vector<Case>& cases : selected) {
+  for (Group& cases : selected) {
     std::ranges::move(run_cases(session, cases, runner), std::back_inserter(results.rows));
     cases.clear();
   }

@@ -140,11 +140,11 @@ Problem with_sweep(Problem problem) {
   return problem;
 }
 
-Case stage_case(Bench& bench, const std::string& suite, const StageJob& job,
+Case stage_case(const std::shared_ptr<Bench>& bench, const std::string& suite, const StageJob& job,
                 const Problem& problem) {
   const Problem timed = job.stage == Stage::sweep ? with_sweep(problem) : problem;
   return {make_row(suite, job.name(), timed),
-          [&bench, make = job.make, timed] { return make(bench, timed); }};
+          [bench, make = job.make, timed] { return make(*bench, timed); }};
 }
 
 namespace {

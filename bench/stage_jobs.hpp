@@ -133,10 +133,9 @@ inline constexpr StageJob kInject{Stage::inject, inject_job},
     kInjectGeometry{Stage::inject, inject_geometry_job, Pass::inject_geometry},
     kPropagate{Stage::propagate, propagate_job, Pass::propagate}, kSweep{Stage::sweep, sweep_job},
     kGather{Stage::gather, gather_job, Pass::gather};
-inline constexpr StageJob kStageJobs[] = {kInject, kPropagate, kSweep, kGather};
 
 /// A case of `job` with `problem`, or with with_sweep(problem) for the sweep.
-Case stage_case(Bench& bench, const std::string& suite, const StageJob& job,
+Case stage_case(const std::shared_ptr<Bench>& bench, const std::string& suite, const StageJob& job,
                 const Problem& problem);
 
 }  // namespace clpv::bench

@@ -126,15 +126,6 @@ RenderOptions published_options(const RenderOptions& sizes, const std::string& b
   return options;
 }
 
-std::vector<Group> groups_by_basis(
-    const std::vector<std::string>& bases,
-    const std::function<std::vector<Case>(const std::string& basis)>& cases) {
-  std::vector<Group> groups;
-  for (const std::string& basis : bases)
-    groups.push_back({[cases, basis] { return cases(basis); }});
-  return groups;
-}
-
 std::vector<Row> pass_rows(const FrameTimes& times, const Row& frame) {
   std::vector<Row> rows;
   for (const auto& [pass, ms] : times.passes()) {

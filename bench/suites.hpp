@@ -26,7 +26,7 @@ struct SuiteOptions {
 
 /// Cases that are timed interleaved with each other. Groups run one after another, and each
 /// releases its memory.
-using Group = std::function<std::vector<Case>()>;
+using Group = std::vector<Case>;
 
 struct Suite {
   std::string name, help;
@@ -51,12 +51,6 @@ Problem basis_problem(const SuiteOptions& options, const std::string& basis);
 
 /// The paper's settings (`--preset paper`) with `basis`, and sizes and cascades from `sizes`.
 RenderOptions published_options(const RenderOptions& sizes, const std::string& basis);
-
-/// One group per basis, with the cases that `cases` returns: all bases at once would need
-/// gigabytes.
-std::vector<Group> groups_by_basis(
-    const std::vector<std::string>& bases,
-    const std::function<std::vector<Case>(const std::string& basis)>& cases);
 
 /// A row for each pass of timed frames: the row of the frame with the times of the pass.
 std::vector<Row> pass_rows(const FrameTimes& times, const Row& frame);

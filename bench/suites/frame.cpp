@@ -170,14 +170,11 @@ Suite frame_suite() {
             options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
         std::vector<Group> groups;
         for (const PresetName preset : {PresetName::best, PresetName::paper}) {
-          groups.push_back({[&session, options, bases, preset] {
-            std::vector<Case> cases;
-            for (const std::string& basis : bases) {
-              for (const Recompute recompute : values_of<Recompute>())
-                cases.push_back(frame_case(session, options, preset, basis, recompute));
-            }
-            return cases;
-          }});
+          Group& cases = groups.emplace_back();
+          for (const std::string& basis : bases) {
+            for (const Recompute recompute : values_of<Recompute>())
+              cases.push_back(frame_case(session, options, preset, basis, recompute));
+          }
         }
         return groups;
       },

@@ -24,9 +24,9 @@ struct StageSetup {
 };
 
 /// One stage of one basis in every format.
-std::vector<Case> cases(Bench& bench, const SuiteOptions& options, const std::string& basis,
-                        const StageSetup& setup) {
-  std::vector<Case> cases;
+Group cases(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
+            const std::string& basis, const StageSetup& setup) {
+  Group cases;
   for (const VolumeFormat& format : all_formats()) {
     Problem problem = basis_problem(options, basis);
     problem.options.layout = format.layout, problem.options.storage = format.storage;
@@ -82,11 +82,8 @@ Suite layouts_suite() {
                 options.bases.empty() ? std::vector<std::string>{"sh2", "srbf8v2"} : options.bases;
             std::vector<Group> groups;
             const auto add = [&](const StageSetup& setup, const std::vector<std::string>& names) {
-              std::ranges::move(groups_by_basis(names,
-                                                [=](const std::string& basis) {
-                                                  return cases(*bench, options, basis, setup);
-                                                }),
-                                std::back_inserter(groups));
+              for (const std::string& basis : names)
+                groups.push_back(cases(bench, options, basis, setup));
             };
             for (const StageSetup& setup :
                  {StageSetup{kInject, false}, {kPropagate, false}, {kPropagate, true}})
@@ -106,21 +103,21 @@ Suite layouts_suite() {
 
 namespace {
 
-std::vector<Case> cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
-                           const std::string& basis) {
-  std::vector<Case> cases;
+Group cases_of(const std::shared_ptr<Bench>& bench, const SuiteOptions& options,
+               const std::string& basis) {
+  Group cases;
   const Problem usual = basis_problem(options, basis);
-  cases.push_back(stage_case(*bench, "bases", kInject, usual));
+  cases.push_back(stage_case(bench, "bases", kInject, usual));
   Problem problem = usual;
   for (const LobeKind lobe : values_of<LobeKind>()) {
     for (const bool occlusion : {false, true}) {
       problem.options.lobe = lobe, problem.options.blockers = blockers_if(occlusion);
-      cases.push_back(stage_case(*bench, "bases", kPropagate, problem));
+      cases.push_back(stage_case(bench, "bases", kPropagate, problem));
     }
   }
   // The sweep's blockers are areas and do not depend on the basis: no case with occlusion.
-  cases.push_back(stage_case(*bench, "bases", kSweep, usual));
-  cases.push_back(stage_case(*bench, "bases", kGather, usual));
+  cases.push_back(stage_case(bench, "bases", kSweep, usual));
+  cases.push_back(stage_case(bench, "bases", kGather, usual));
   return cases;
 }
 
@@ -131,10 +128,10 @@ Suite bases_suite() {
           "every basis with both lobes: injection, propagation, sweep, gathering",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
-            return groups_by_basis(options.bases.empty() ? basis_names() : options.bases,
-                                   [bench, options](const std::string& basis) {
-                                     return cases_of(bench, options, basis);
-                                   });
+            std::vector<Group> groups;
+            for (const std::string& basis : options.bases.empty() ? basis_names() : options.bases)
+              groups.push_back(cases_of(bench, options, basis));
+            return groups;
           },
           {}};
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "bench/published.hpp"
 #include "bench/suites.hpp"
@@ -46,19 +47,8 @@ constexpr TablePass kTablePasses[] = {{Pass::inject_light, "injection", true},
                                       {Pass::propagate, "propagation", true},
                                       {Pass::gather, "light buffer", false}};
 
-/// Key of a time in the table.
-struct TimeKey {
-  Settings settings;
-  bool shadows;
-  Pass pass;
-  int cascade;  ///< -1: all cascades
-  std::string basis;
-  auto operator<=>(const TimeKey&) const = default;
-};
-
-Settings settings_of(const RenderOptions& options) {
-  return options.lobe_time == LobeTime::kernel ? Settings::published : Settings::constant_lobes;
-}
+/// Key of a time in the table: settings, indirect shadows, pass, cascade (-1: all), basis.
+using TimeKey = std::tuple<Settings, bool, Pass, int, std::string>;
 
 /// Times of one basis [ms], and the status of a row that was not timed.
 struct Times {
@@ -66,42 +56,35 @@ struct Times {
   std::string status = "-";
 };
 
-class TimeTable {
- public:
+struct TimeTable {
+  std::map<TimeKey, Times> times;
+  std::vector<std::string> bases;
+  int cascades = 0;
+
   explicit TimeTable(const std::vector<Row>& rows) {
     for (const Row& row : rows) {
       if (!row.problem) continue;
       const RenderOptions& o = row.problem->options;
       for (const TablePass& pass : kTablePasses) {
         if (row.stage != name_of(pass.pass)) continue;
-        const TimeKey key{settings_of(o), o.blocked(), pass.pass, row.problem->cascade.value_or(-1),
-                          o.basis};
+        const Settings settings =
+            o.lobe_time == LobeTime::kernel ? Settings::published : Settings::constant_lobes;
+        const int cascade = row.problem->cascade.value_or(-1);
         const bool timed = row.status == Status::ok;
-        times_[key] = {row.published_ms, timed ? std::optional(row.times.median) : std::nullopt,
-                       std::string(name_of(row.status))};
-        if (std::count(bases_.begin(), bases_.end(), o.basis) == 0) bases_.push_back(o.basis);
-        cascades_ = std::max(cascades_, key.cascade + 1);
+        times[{settings, o.blocked(), pass.pass, cascade, o.basis}] = {
+            row.published_ms, timed ? std::optional(row.times.median) : std::nullopt,
+            std::string(name_of(row.status))};
+        if (std::count(bases.begin(), bases.end(), o.basis) == 0) bases.push_back(o.basis);
+        cascades = std::max(cascades, cascade + 1);
       }
     }
   }
-  const std::vector<std::string>& bases() const { return bases_; }
-  int cascades() const { return cascades_; }
-  bool has(Settings settings, bool shadows) const {
-    return std::ranges::any_of(times_, [&](const auto& entry) {
-      return entry.first.settings == settings && entry.first.shadows == shadows;
-    });
-  }
   Times at(const TimeKey& key) const {
-    const auto entry = times_.find(key);
-    if (entry != times_.end()) return entry->second;
-    const auto cascade = key.cascade < 0 ? std::nullopt : std::optional(key.cascade);
-    return {published_ms(key.pass, key.basis, key.shadows, cascade), std::nullopt};
+    if (const auto entry = times.find(key); entry != times.end()) return entry->second;
+    const auto& [settings, shadows, pass, cascade, basis] = key;
+    return {published_ms(pass, basis, shadows, cascade < 0 ? std::nullopt : std::optional(cascade)),
+            std::nullopt};
   }
-
- private:
-  std::map<TimeKey, Times> times_;
-  std::vector<std::string> bases_;
-  int cascades_ = 0;
 };
 
 std::string cell(const std::optional<double>& value, int digits,
@@ -149,14 +132,14 @@ void add(Times& sum, const Times& times) {
 std::string section_text(const TimeTable& table, Settings settings, bool shadows) {
   std::string text =
       fmt::format("\n{}, {} indirect shadows\n", title(settings), shadows ? "with" : "without");
-  std::vector<Times> sums(table.bases().size(), {0.0, 0.0}), with_geometry = sums;
+  std::vector<Times> sums(table.bases.size(), {0.0, 0.0}), with_geometry = sums;
   for (const TablePass& pass : kTablePasses) {
     if (pass.pass == Pass::inject_geometry && !shadows) continue;
-    for (int cascade = 0; cascade < (pass.per_cascade ? table.cascades() : 1); ++cascade) {
+    for (int cascade = 0; cascade < (pass.per_cascade ? table.cascades : 1); ++cascade) {
       std::vector<Times> columns;
-      for (std::size_t b = 0; b < table.bases().size(); ++b) {
+      for (std::size_t b = 0; b < table.bases.size(); ++b) {
         columns.push_back(table.at(
-            {settings, shadows, pass.pass, pass.per_cascade ? cascade : -1, table.bases()[b]}));
+            {settings, shadows, pass.pass, pass.per_cascade ? cascade : -1, table.bases[b]}));
         add(with_geometry[b], columns.back());
         if (pass.pass != Pass::inject_geometry) add(sums[b], columns.back());
       }
@@ -171,10 +154,13 @@ std::string section_text(const TimeTable& table, Settings settings, bool shadows
 
 std::string table1_table(const std::vector<Row>& rows) {
   const TimeTable table(rows);
-  std::string text = head(table.bases());
+  std::string text = head(table.bases);
   for (const Settings settings : {Settings::published, Settings::constant_lobes}) {
     for (const bool shadows : {true, false}) {
-      if (table.has(settings, shadows)) text += section_text(table, settings, shadows);
+      const auto first = table.times.lower_bound({settings, shadows, {}, {}, {}});
+      if (first != table.times.end() && std::get<0>(first->first) == settings &&
+          std::get<1>(first->first) == shadows)
+        text += section_text(table, settings, shadows);
     }
   }
   return text + "\npaper: Table 1, on a Radeon HD 6870; clpv: medians on this device.\n";
@@ -186,9 +172,9 @@ Problem problem_of(const SuiteOptions& options, Settings settings, const std::st
   return problem;
 }
 
-std::vector<Case> cases(Bench& bench, const SuiteOptions& options, Settings settings,
-                        bool shadows) {
-  std::vector<Case> cases;
+Group cases(const std::shared_ptr<Bench>& bench, const SuiteOptions& options, Settings settings,
+            bool shadows) {
+  Group cases;
   for (const StageJob& job : {kInjectLight, kInjectGeometry, kPropagate, kGather}) {
     if (job.pass == Pass::inject_geometry && !shadows) continue;
     const bool all_cascades = job.stage == Stage::gather;
@@ -218,9 +204,7 @@ Suite table1_suite() {
               const auto bench =
                   make_bench(session, options, problem_of(options, settings, kFirstBasis).options);
               for (const bool shadows : {true, false})
-                groups.push_back({[bench, options, settings, shadows] {
-                  return cases(*bench, options, settings, shadows);
-                }});
+                groups.push_back(cases(bench, options, settings, shadows));
             }
             return groups;
           },

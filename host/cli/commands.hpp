@@ -21,6 +21,8 @@ namespace clpv {
 // and commands.
 
 struct Shared;
+/// Adds a command to the program.
+using AddCommand = void(CLI::App& app, Shared& shared);
 
 /// Cells that stand beside the variants of `clpv quality`. The calls come in this order, once each.
 class QualityAddition {
@@ -41,8 +43,8 @@ class QualityAddition {
 };
 
 struct Additions {
-  std::shared_ptr<QualityAddition> quality;                  ///< null: none
-  void (*command)(CLI::App& app, Shared& shared) = nullptr;  ///< adds a command; null: none
+  std::shared_ptr<QualityAddition> quality;  ///< null: none
+  AddCommand* command = nullptr;             ///< null: none
 };
 
 /// State shared by all commands.
@@ -58,7 +60,7 @@ struct Shared {
 
 struct Command {
   const char *name, *group;  ///< group: in --help
-  void (*add)(CLI::App& app, Shared& shared);
+  AddCommand* add;
 };
 
 /// All commands, in the order of --help.
@@ -78,19 +80,9 @@ int run_program(int argc, const char* const* argv, const Additions& additions = 
 
 // Each command is in cli/NAME.cpp. The callbacks throw clpv::Error; run_program turns it into an
 // exit code.
-void add_devices(CLI::App& app, Shared& shared);
-void add_render(CLI::App& app, Shared& shared);
-void add_sequence(CLI::App& app, Shared& shared);
-void add_query(CLI::App& app, Shared& shared);
-void add_bake(CLI::App& app, Shared& shared);
-void add_check(CLI::App& app, Shared& shared);
-void add_compare(CLI::App& app, Shared& shared);
-void add_pathtrace(CLI::App& app, Shared& shared);
-void add_quality(CLI::App& app, Shared& shared);
-void add_basis(CLI::App& app, Shared& shared);
-void add_bench(CLI::App& app, Shared& shared);
-void add_report(CLI::App& app, Shared& shared);
-void add_prepare(CLI::App& app, Shared& shared);  // hidden: a helper process of the others
+AddCommand add_devices, add_render, add_sequence, add_query, add_bake, add_check, add_compare,
+    add_pathtrace, add_quality, add_basis, add_bench, add_report;
+AddCommand add_prepare;  // hidden: a helper process of the others
 
 // main() of clpv, without the parser's headers, which take five seconds to compile.
 

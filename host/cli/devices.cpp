@@ -29,32 +29,16 @@
 
 namespace clpv {
 
+namespace {
+
+namespace fs = std::filesystem;
+
 // The .icd files that name OpenCL drivers, and those among them that cannot be loaded.
 
 /// A driver that the loader leaves out silently, or that ends or stops the process.
 struct FaultyDriver {
   std::string file, reason;
 };
-
-/// Returns the .icd files of OCL_ICD_VENDORS (a file, a folder, or a driver's library in their
-/// place), by default of /etc/OpenCL/vendors, in the order of their names.
-std::vector<std::filesystem::path> driver_files();
-
-/// Loads each driver in a child process and returns those that fail. Without set_helper_program()
-/// it loads none, and returns only drivers whose file is missing, no library, or for another
-/// machine.
-std::vector<FaultyDriver> faulty_drivers();
-
-/// The work of that child process. Throws Error(device) with the linker's words.
-void load_driver(const std::filesystem::path& icd_file);
-
-/// From now on the OpenCL loader finds all drivers except `faulty`: links their .icd files into
-/// `folder`, which has none before.
-void leave_out(const std::vector<FaultyDriver>& faulty, const std::filesystem::path& folder);
-
-namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kVendors = "/etc/OpenCL/vendors";
 constexpr std::uintmax_t kMostBytes = 4096;         // an .icd file holds one path
@@ -121,8 +105,8 @@ std::string fault_when_loaded(const fs::path& icd_file) {
                      result.output.empty() ? "" : ": ", result.output);
 }
 
-}  // namespace
-
+/// Returns the .icd files of OCL_ICD_VENDORS (a file, a folder, or a driver's library in their
+/// place), by default of /etc/OpenCL/vendors, in the order of their names.
 std::vector<fs::path> driver_files() {
   const char* set = std::getenv("OCL_ICD_VENDORS");
   const fs::path where = set != nullptr && *set != '\0' ? set : kVendors;
@@ -135,6 +119,9 @@ std::vector<fs::path> driver_files() {
   return files;
 }
 
+/// Loads each driver in a child process and returns those that fail. Without set_helper_program()
+/// it loads none, and returns only drivers whose file is missing, no library, or for another
+/// machine.
 std::vector<FaultyDriver> faulty_drivers() {
   std::vector<FaultyDriver> faulty;
   for (const fs::path& file : driver_files()) {
@@ -145,6 +132,7 @@ std::vector<FaultyDriver> faulty_drivers() {
   return faulty;
 }
 
+/// The work of that child process. Throws Error(device) with the linker's words.
 void load_driver(const fs::path& icd_file) {
   // As the loader does: of symbols that nobody calls, none need exist.
   if (::dlopen(library_of(icd_file).c_str(), RTLD_LAZY | RTLD_LOCAL) == nullptr)
@@ -156,12 +144,16 @@ void load_driver(const fs::path& icd_file) {
   print_data("{}", kLoaded);
 }
 
+/// From now on the OpenCL loader finds all drivers except `faulty`: links their .icd files into
+/// `folder`, which has none before.
 void leave_out(const std::vector<FaultyDriver>& faulty, const fs::path& folder) {
   for (const fs::path& file : driver_files())
     if (std::ranges::count(faulty, file.string(), &FaultyDriver::file) == 0)
       fs::create_symlink(fs::absolute(file), folder / file.filename());
   ::setenv("OCL_ICD_VENDORS", folder.c_str(), 1);
 }
+
+}  // namespace
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Device, index, platform_index, device_index, platform, name,
                                    driver, version, type, compute_units, max_alloc_bytes, images,

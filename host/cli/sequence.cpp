@@ -27,33 +27,7 @@
 
 namespace clpv {
 
-// Encodes frames into a video with ffmpeg.
-
-/// H.264 video in an MP4 file, an OutputFile.
-class Video {
- public:
-  /// Throws Error(run_time) if ffmpeg is not in the path (with what to install). Construct before
-  /// the work.
-  Video(std::filesystem::path file, double frames_per_second);
-  ~Video();  ///< without finish(): no video
-  Video(const Video&) = delete;
-  Video& operator=(const Video&) = delete;
-
-  /// Adds a frame: display-encoded RGB or RGBA, of the size of earlier frames. This and finish()
-  /// throw Error(run_time) with ffmpeg's message on failure.
-  void add(const Image& shown);
-  void finish();
-
- private:
-  [[noreturn]] void fail(const Process::Result& ended) const;
-
-  std::filesystem::path file_, ffmpeg_;
-  double frames_per_second_;
-  std::optional<OutputFile> part_;
-  std::unique_ptr<Process> process_;
-};
-
-namespace {
+namespace sequence_command {
 
 namespace fs = std::filesystem;
 
@@ -75,49 +49,57 @@ std::vector<std::string> words_of(const std::string& text) {
   return {std::istream_iterator<std::string>(in), {}};
 }
 
-}  // namespace
-
-Video::Video(fs::path file, double frames_per_second)
-    : file_(std::move(file)), frames_per_second_(frames_per_second) {
-  const auto found = find_program("ffmpeg");
-  if (!found)
-    throw Error(ExitCode::run_time, "--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)");
-  ffmpeg_ = *found;
-}
-
-Video::~Video() {
-  process_.reset();  // before part_, which it writes
-}
-
-void Video::fail(const Process::Result& ended) const {
-  stop_if_interrupted(fmt::format("{} was not written", file_.string()));
-  throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(),
-              ended.code, ended.output);
-}
-
-void Video::add(const Image& shown) {
-  if (!process_) {
-    std::vector<std::string> words =
-        words_of(fmt::format("-hide_banner -loglevel error -f rawvideo -pixel_format rgb24 "
-                             "-video_size {}x{} -framerate {} -i pipe:0 {}",
-                             shown.width, shown.height, frames_per_second_, kEncoding));
-    part_.emplace(file_);
-    words.push_back("file:" +
-                    part_->temporary().string());  // a name with a colon would be a protocol
-    process_ = std::make_unique<Process>(ffmpeg_, words, true);
+/// Encodes frames with ffmpeg: H.264 video in an MP4 file, an OutputFile.
+class Video {
+ public:
+  /// Throws Error(run_time) if ffmpeg is not in the path (with what to install). Construct before
+  /// the work.
+  Video(fs::path file, double frames_per_second)
+      : file_(std::move(file)), frames_per_second_(frames_per_second) {
+    const auto found = find_program("ffmpeg");
+    if (!found)
+      throw Error(ExitCode::run_time,
+                  "--video needs ffmpeg, which is not in PATH (Debian: ffmpeg)");
+    ffmpeg_ = *found;
   }
-  const std::vector<std::uint8_t> bytes = rgb_bytes(shown);
-  if (!process_->feed(std::as_bytes(std::span(bytes)))) fail(process_->end());
-}
 
-void Video::finish() {
-  const Process::Result ended = process_->end();
-  process_.reset();
-  if (ended.code != 0) fail(ended);
-  part_->commit();
-}
+  /// Adds a frame: display-encoded RGB or RGBA, of the size of earlier frames. This and finish()
+  /// throw Error(run_time) with ffmpeg's message on failure.
+  void add(const Image& shown) {
+    if (!process_) {
+      std::vector<std::string> words =
+          words_of(fmt::format("-hide_banner -loglevel error -f rawvideo -pixel_format rgb24 "
+                               "-video_size {}x{} -framerate {} -i pipe:0 {}",
+                               shown.width, shown.height, frames_per_second_, kEncoding));
+      part_.emplace(file_);
+      // a name with a colon would be a protocol
+      words.push_back("file:" + part_->temporary().string());
+      process_ = std::make_unique<Process>(ffmpeg_, words, true);
+    }
+    const std::vector<std::uint8_t> bytes = rgb_bytes(shown);
+    if (!process_->feed(std::as_bytes(std::span(bytes)))) fail(process_->end());
+  }
 
-namespace sequence_command {
+  /// Without it, there is no video.
+  void finish() {
+    const Process::Result ended = process_->end();
+    process_.reset();
+    if (ended.code != 0) fail(ended);
+    part_->commit();
+  }
+
+ private:
+  [[noreturn]] void fail(const Process::Result& ended) const {
+    stop_if_interrupted(fmt::format("{} was not written", file_.string()));
+    throw Error(ExitCode::run_time, "{}: {} ended with {}: {}", file_.string(), ffmpeg_.string(),
+                ended.code, ended.output);
+  }
+
+  fs::path file_, ffmpeg_;
+  double frames_per_second_;
+  std::optional<OutputFile> part_;
+  std::unique_ptr<Process> process_;  ///< ends before part_, which it writes
+};
 
 constexpr int kMaxFrames = 1000000;
 constexpr double kMaxFramesPerSecond = 1000;

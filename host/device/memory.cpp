@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Memory of a session.
 #include "device/memory.hpp"
 
 #include <fmt/ranges.h>
@@ -6,6 +7,7 @@
 #include <algorithm>
 
 #include "device/cl_error.hpp"
+#include "device/session.hpp"
 
 namespace clpv {
 namespace {
@@ -16,13 +18,13 @@ double mib(std::size_t bytes) {
 
 }  // namespace
 
-std::size_t Memory::largest_buffer() const {
+std::size_t Session::largest_buffer() const {
   const std::uint64_t left =
       device_.memory_bytes > use_->now ? device_.memory_bytes - use_->now : 0;
   return std::min<std::uint64_t>(device_.max_alloc_bytes, left);
 }
 
-void Memory::require_room(std::size_t bytes, const std::string& what) const {
+void Session::require_room(std::size_t bytes, const std::string& what) const {
   if (bytes <= largest_buffer()) return;
   const auto share = [](std::uint64_t allowed, std::size_t needed) {
     return static_cast<double>(allowed) / static_cast<double>(needed);
@@ -37,7 +39,7 @@ void Memory::require_room(std::size_t bytes, const std::string& what) const {
                           share(device_.memory_bytes, use_->now + bytes)));
 }
 
-Buffer Memory::buffer(std::size_t bytes, const std::string& what) {
+Buffer Session::buffer(std::size_t bytes, const std::string& what) {
   bytes = std::max<std::size_t>(bytes, 4);
   require_room(bytes, what);
   try {
@@ -53,21 +55,21 @@ Buffer Memory::buffer(std::size_t bytes, const std::string& what) {
   }
 }
 
-Buffer Memory::part(const Buffer& whole, std::size_t from, std::size_t bytes) const {
+Buffer Session::part(const Buffer& whole, std::size_t from, std::size_t bytes) const {
   const cl_buffer_region region{from, bytes};
   cl::Buffer buffer = whole.handle();
   return {buffer.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region),
           std::make_shared<MemoryShare>(use_, 0)};
 }
 
-void Memory::reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {
+void Session::reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {
   if (buffer.exists() && buffer.bytes() >= bytes) return;
   buffer = {};  // first: memory may not suffice for both
   buffer = this->buffer(bytes, what);
 }
 
-Image3D Memory::image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
-                      std::size_t bytes, const std::string& what) {
+Image3D Session::image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
+                       std::size_t bytes, const std::string& what) {
   require_room(bytes, what);
   try {
     return {cl::Image3D(context_, CL_MEM_READ_WRITE, texel, extent[0], extent[1], extent[2]),

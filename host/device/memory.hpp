@@ -97,38 +97,4 @@ class TooLarge : public Error {
   double share;  ///< allowed by the device / needed (in use + requested), below 1
 };
 
-/// Allocates memory on one device, and counts it.
-class Memory {
- public:
-  /// `zeroed`: all buffers start with zeros. The other arguments must outlive this object.
-  Memory(const Device& device, const cl::Context& context, const cl::CommandQueue& queue,
-         bool zeroed)
-      : device_(device), context_(context), queue_(queue), zeroed_(zeroed) {}
-
-  /// As the functions of Session.
-  Buffer buffer(std::size_t bytes, const std::string& what);
-  Buffer given(cl_mem memory, std::size_t bytes, const char* what) const {
-    return {given_buffer(context_, memory, bytes, what), std::make_shared<MemoryShare>(use_, 0)};
-  }
-  Buffer part(const Buffer& whole, std::size_t from, std::size_t bytes) const;
-  void reserve(Buffer& buffer, std::size_t bytes, const std::string& what);
-  Image3D image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
-                std::size_t bytes, const std::string& what);
-  std::size_t largest_buffer() const;
-  const MemoryUse& use() const { return *use_; }
-
-  /// Lets all later buffers start with zeros.
-  void zero_buffers() { zeroed_ = true; }
-
- private:
-  void require_room(std::size_t bytes, const std::string& what) const;
-
-  const Device& device_;
-  const cl::Context& context_;
-  const cl::CommandQueue& queue_;
-  bool zeroed_;
-  std::vector<Buffer> retained_;  ///< for Oclgrind, see buffer()
-  std::shared_ptr<MemoryUse> use_ = std::make_shared<MemoryUse>();
-};
-
 }  // namespace clpv

@@ -22,40 +22,15 @@ namespace {
 constexpr std::size_t kKept = 256;  // programs of about ten sets of options
 
 /// Contexts and programs of the process.
-class SharedPrograms {
- public:
-  cl::Context context_of(const cl::Device& device) {
-    const std::scoped_lock lock(mutex_);
-    cl::Context& context = contexts_[device()];
-    if (context() == nullptr) context = cl::Context(device);
-    return context;
-  }
-  cl::Program find(const cl::Context& context, const std::string& key) {
-    const std::scoped_lock lock(mutex_);
-    const auto found = programs_.find({context(), key});
-    if (found == programs_.end()) return {};
-    found->second.used = ++uses_;
-    return found->second.built;
-  }
-  void add(const cl::Context& context, const std::string& key, const cl::Program& built) {
-    const std::scoped_lock lock(mutex_);
-    if (std::ranges::none_of(contexts_, [&](const auto& e) { return e.second() == context(); }))
-      return;
-    programs_[{context(), key}] = {built, ++uses_};
-    if (programs_.size() <= kKept) return;
-    programs_.erase(std::ranges::min_element(programs_, {},
-                                             [](const auto& entry) { return entry.second.used; }));
-  }
-
- private:
+struct SharedPrograms {
   struct Kept {
     cl::Program built;
     std::size_t used = 0;
   };
-  std::mutex mutex_;
-  std::map<cl_device_id, cl::Context> contexts_;
-  std::map<std::pair<cl_context, std::string>, Kept> programs_;
-  std::size_t uses_ = 0;
+  std::mutex mutex;
+  std::map<cl_device_id, cl::Context> contexts;
+  std::map<std::pair<cl_context, std::string>, Kept> programs;
+  std::size_t uses = 0;
 };
 
 /// Never released: a driver's own statics may be gone before those of this library.
@@ -67,15 +42,31 @@ SharedPrograms& shared_programs() {
 }  // namespace
 
 cl::Context shared_context(const cl::Device& device) {
-  return shared_programs().context_of(device);
+  SharedPrograms& shared = shared_programs();
+  const std::scoped_lock lock(shared.mutex);
+  cl::Context& context = shared.contexts[device()];
+  if (context() == nullptr) context = cl::Context(device);
+  return context;
 }
 
 cl::Program shared_program(const cl::Context& context, const std::string& key) {
-  return shared_programs().find(context, key);
+  SharedPrograms& shared = shared_programs();
+  const std::scoped_lock lock(shared.mutex);
+  const auto found = shared.programs.find({context(), key});
+  if (found == shared.programs.end()) return {};
+  found->second.used = ++shared.uses;
+  return found->second.built;
 }
 
 void share_program(const cl::Context& context, const std::string& key, const cl::Program& built) {
-  shared_programs().add(context, key, built);
+  SharedPrograms& shared = shared_programs();
+  const std::scoped_lock lock(shared.mutex);
+  const auto has = [&](const auto& entry) { return entry.second() == context(); };
+  if (std::ranges::none_of(shared.contexts, has)) return;
+  shared.programs[{context(), key}] = {built, ++shared.uses};
+  if (shared.programs.size() <= kKept) return;
+  shared.programs.erase(std::ranges::min_element(
+      shared.programs, {}, [](const auto& entry) { return entry.second.used; }));
 }
 
 namespace {

@@ -36,7 +36,7 @@ Session::Session(Device device, std::optional<ProgramCache> cache, Compilation c
       queue_(context_, device_.handle,
              times && device_.profiling_valid ? CL_QUEUE_PROFILING_ENABLE : 0),
       timeline_(times && device_.profiling_valid, times),
-      memory_(device_, context_, queue_, compilation.claims.has_value()),
+      zeroed_(compilation.claims.has_value()),
       programs_(device_, context_, std::move(cache), std::move(compilation)) {
   if (times && !device_.profiling_valid)
     log_warning("the device's events have no plausible times: those of stages are the host's");
@@ -47,7 +47,6 @@ Session::Session(GivenQueue given, std::optional<ProgramCache> cache)
       context_(std::move(given.context)),
       queue_(std::move(given.queue)),
       timeline_(device_.profiling_valid, false),
-      memory_(device_, context_, queue_, false),
       programs_(device_, context_, std::move(cache), {}) {}
 
 // After an error, commands may be unfinished. Without this wait PoCL's threads continue to run and
@@ -62,7 +61,7 @@ Session::~Session() {
 
 void Session::record(const std::filesystem::path& folder) {
   recorder_ = std::make_unique<Recorder>(folder, queue_);
-  memory_.zero_buffers();
+  zeroed_ = true;
   programs_.record(*recorder_);
 }
 

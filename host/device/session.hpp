@@ -58,26 +58,20 @@ class Session {
   /// Allocates a buffer of max(bytes, 4) bytes with undefined contents. `what` names it in errors.
   /// Throws Error(run_time), before allocating, if the device's memory does not suffice; it states
   /// the limit.
-  Buffer buffer(std::size_t bytes, const std::string& what) { return memory_.buffer(bytes, what); }
+  Buffer buffer(std::size_t bytes, const std::string& what);
   /// A caller's buffer, whose memory does not count as the session's. Throws as given_buffer().
   Buffer given(cl_mem memory, std::size_t bytes, const char* what) const {
-    return memory_.given(memory, bytes, what);
+    return {given_buffer(context_, memory, bytes, what), std::make_shared<MemoryShare>(use_, 0)};
   }
   /// Part of a buffer from byte `from` on, a multiple of CL_DEVICE_MEM_BASE_ADDR_ALIGN. Kernels see
   /// what others wrote to the whole, and the reverse.
-  Buffer part(const Buffer& whole, std::size_t from, std::size_t bytes) const {
-    return memory_.part(whole, from, bytes);
-  }
+  Buffer part(const Buffer& whole, std::size_t from, std::size_t bytes) const;
   /// Replaces `buffer` by a new one with undefined contents if it has fewer than `bytes` bytes.
-  void reserve(Buffer& buffer, std::size_t bytes, const std::string& what) {
-    memory_.reserve(buffer, bytes, what);
-  }
+  void reserve(Buffer& buffer, std::size_t bytes, const std::string& what);
   /// Allocates an image of `extent` texels and `bytes` bytes with undefined contents. Throws like
   /// buffer().
   Image3D image(const cl::ImageFormat& texel, const std::array<std::size_t, 3>& extent,
-                std::size_t bytes, const std::string& what) {
-    return memory_.image(texel, extent, bytes, what);
-  }
+                std::size_t bytes, const std::string& what);
 
   /// Runs `kernel` over `global` work-items, rounded up to whole work-groups of `local` in each
   /// dimension (OpenCL 1.2 has no non-uniform work-groups; kernels guard their range). Timed under
@@ -133,10 +127,10 @@ class Session {
   const cl::Image1DBuffer& table_image(const std::vector<float>& values, const std::string& what);
 
   /// Size of the largest buffer that can be allocated now [bytes].
-  std::size_t largest_buffer() const { return memory_.largest_buffer(); }
+  std::size_t largest_buffer() const;
 
-  std::size_t device_bytes() const { return memory_.use().now; }        ///< device memory in use
-  std::size_t peak_device_bytes() const { return memory_.use().peak; }  ///< maximum so far
+  std::size_t device_bytes() const { return use_->now; }        ///< device memory in use
+  std::size_t peak_device_bytes() const { return use_->peak; }  ///< maximum so far
 
  private:
   Device device_;
@@ -145,8 +139,12 @@ class Session {
   Timeline timeline_;
   void write_bytes(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t at);
 
+  void require_room(std::size_t bytes, const std::string& what) const;
+
   std::unique_ptr<Recorder> recorder_;
-  Memory memory_;
+  bool zeroed_ = false;           ///< new buffers start with zeros
+  std::vector<Buffer> retained_;  ///< for Oclgrind, see buffer()
+  std::shared_ptr<MemoryUse> use_ = std::make_shared<MemoryUse>();
   Programs programs_;
   struct Write {  ///< bytes on their way to the device
     std::vector<std::byte> bytes;

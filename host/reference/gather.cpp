@@ -74,13 +74,14 @@ bool rounding_decides(const GatherOptions& options, const std::vector<Cascade>& 
 
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,
                                const GatherOptions& options, const std::vector<Cascade>& cascades,
-                               const SurfaceImage& camera) {
-  std::vector<glm::dvec3> image(camera.depth.size(), glm::dvec3(0));
-  for (std::size_t pixel = 0; pixel < image.size(); ++pixel) {
+                               const SurfaceImage& camera, std::size_t every) {
+  std::vector<glm::dvec3> image;
+  for (std::size_t pixel = 0; pixel < camera.depth.size(); pixel += every) {
+    glm::dvec3& irradiance = image.emplace_back(0);
     const double depth = camera.depth[pixel];
     if (depth <= 0) continue;
     const glm::dvec3 position = surface_position(camera.view, pixel, depth);
-    image[pixel] =
+    irradiance =
         gather(basis, transport, options, cascades, position, glm::dvec3(camera.normal[pixel]),
                lift_normal(camera.normal[pixel]), towards_eye(camera.view, position));
   }

@@ -37,10 +37,10 @@ bool rounding_decides(const GatherOptions& options, const std::vector<Cascade>& 
                       const glm::dvec3& position, double offset, const glm::dvec3& lift,
                       const glm::dvec3& clear);
 
-/// Returns the irradiance of every pixel of a G-buffer, row 0 first; 0 for pixels without a
+/// Returns the irradiance of every `every`-th pixel of a G-buffer, row 0 first; 0 where it shows no
 /// surface.
 std::vector<glm::dvec3> gather(const Basis& basis, TransportKind transport,
                                const GatherOptions& options, const std::vector<Cascade>& cascades,
-                               const SurfaceImage& camera);
+                               const SurfaceImage& camera, std::size_t every = 1);
 
 }  // namespace clpv::reference

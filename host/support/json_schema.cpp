@@ -14,43 +14,6 @@ namespace clpv {
 
 using nlohmann::json;
 
-namespace rule {
-Rule object(std::string place) {
-  return {std::move(place), Shape::object};
-}
-Rule list(std::string place, std::size_t minimum, std::size_t maximum) {
-  return {std::move(place), Shape::list, static_cast<double>(minimum),
-          static_cast<double>(maximum)};
-}
-Rule text(std::string place, std::vector<std::string> words) {
-  Rule made{std::move(place), Shape::text};
-  made.words = std::move(words);
-  return made;
-}
-Rule flag(std::string place) {
-  return {std::move(place), Shape::flag};
-}
-Rule integer(std::string place, double minimum, double maximum) {
-  return {std::move(place), Shape::integer, minimum, maximum};
-}
-Rule choice(std::string place, std::vector<std::int64_t> choices) {
-  Rule made{std::move(place), Shape::integer};
-  made.choices = std::move(choices);
-  return made;
-}
-Rule number(std::string place, double minimum, double maximum) {
-  return {std::move(place), Shape::number, minimum, maximum};
-}
-Rule vector(std::string place, std::size_t size, double minimum, double maximum) {
-  return {std::move(place), Shape::vector, minimum, maximum, size};
-}
-Rule index(std::string place, std::string into) {
-  Rule made{std::move(place), Shape::index};
-  made.into = std::move(into);
-  return made;
-}
-}  // namespace rule
-
 namespace {
 
 std::size_t list_size(const json& document, const std::string& place) {
@@ -229,47 +192,20 @@ void check_keys(const json& value, const std::string& pattern, const std::string
   }
 }
 
-/// Rejects JSON nested too deep or with too many values, without recursion and before a parser
-/// allocates.
-void check_extent(std::string_view text, const std::string& file) {
-  int depth = 0;
-  std::uint64_t values = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      if (c == '"') quoted = false;
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > bounds::kJsonNesting) {
-        reject(file, {},
-               fmt::format("JSON nested more than {} deep at byte {}", bounds::kJsonNesting, i),
-               fmt::format("at most {} levels", bounds::kJsonNesting));
-      }
-    } else if (c == ']' || c == '}') {
-      --depth;
-    } else if (c == ',' && ++values > bounds::kJsonValues) {
-      reject(file, {}, fmt::format("more than {} JSON values", bounds::kJsonValues),
-             fmt::format("at most {}", bounds::kJsonValues));
-    }
-  }
-}
-
-/// Rejects a key that an object has twice: parsers would keep one of its values. Reads events: with
-/// a callback, the parser of nlohmann 3.11 looks through all elements of a list at the end of each.
-class UniqueKeys : public nlohmann::json_sax<json> {
+/// Rejects JSON nested too deep or with too many values, before a parser allocates, and a key that
+/// an object has twice: parsers would keep one of its values. Reads events: with a callback, the
+/// parser of nlohmann 3.11 looks through all elements of a list at the end of each.
+class Extent : public nlohmann::json_sax<json> {
  public:
-  explicit UniqueKeys(const std::string& file) : file_(file) {}
+  explicit Extent(const std::string& file) : file_(file) {}
 
   bool start_object(std::size_t) override {
     objects_.emplace_back();
-    return true;
+    return enter();
   }
   bool end_object() override {
     objects_.pop_back();
-    return true;
+    return leave();
   }
   bool key(std::string& name) override {
     if (!objects_.back().insert(name).second)
@@ -277,23 +213,42 @@ class UniqueKeys : public nlohmann::json_sax<json> {
              "unique keys of an object");
     return true;
   }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(std::int64_t) override { return true; }
-  bool number_unsigned(std::uint64_t) override { return true; }
-  bool number_float(double, const std::string&) override { return true; }
-  bool string(std::string&) override { return true; }
-  bool binary(json::binary_t&) override { return true; }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_array() override { return leave(); }
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(std::int64_t) override { return count(); }
+  bool number_unsigned(std::uint64_t) override { return count(); }
+  bool number_float(double, const std::string&) override { return count(); }
+  bool string(std::string&) override { return count(); }
+  bool binary(json::binary_t&) override { return count(); }
   /// The parser that follows says what is wrong.
   bool parse_error(std::size_t, const std::string&, const json::exception&) override {
     return false;
   }
 
  private:
+  bool enter() {
+    if (++depth_ > bounds::kJsonNesting)
+      reject(file_, {}, fmt::format("JSON nested more than {} deep", bounds::kJsonNesting),
+             fmt::format("at most {} levels", bounds::kJsonNesting));
+    return count();
+  }
+  bool leave() {
+    --depth_;
+    return true;
+  }
+  bool count() {
+    if (++values_ > bounds::kJsonValues)
+      reject(file_, {}, fmt::format("more than {} JSON values", bounds::kJsonValues),
+             fmt::format("at most {}", bounds::kJsonValues));
+    return true;
+  }
+
   const std::string& file_;
   std::vector<std::set<std::string>> objects_;
+  int depth_ = 0;
+  std::uint64_t values_ = 0;
 };
 
 }  // namespace
@@ -312,10 +267,9 @@ json parse_json(std::string_view text, const std::string& file) {
     reject(file, {}, fmt::format("{} bytes of JSON", text.size()),
            fmt::format("at most {}", bounds::kJsonBytes));
   }
-  check_extent(text, file);
-  UniqueKeys unique(file);
+  Extent extent(file);
   try {
-    json::sax_parse(text, &unique);
+    json::sax_parse(text, &extent);
     return json::parse(text);
   } catch (const json::exception& error) {  // its text has line, column and what was expected
     // "[json.exception.parse_error.101] parse error at line 1, column 2: ...".

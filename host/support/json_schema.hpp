@@ -49,15 +49,33 @@ struct Rule {
 };
 
 namespace rule {
-Rule object(std::string place);
-Rule list(std::string place, std::size_t minimum, std::size_t maximum);
-Rule text(std::string place, std::vector<std::string> words = {});
-Rule flag(std::string place);
-Rule integer(std::string place, double minimum, double maximum);
-Rule choice(std::string place, std::vector<std::int64_t> choices);
-Rule number(std::string place, double minimum, double maximum);
-Rule vector(std::string place, std::size_t size, double minimum, double maximum);
-Rule index(std::string place, std::string into);
+inline Rule object(std::string place) {
+  return {std::move(place), Shape::object};
+}
+inline Rule list(std::string place, std::size_t minimum, std::size_t maximum) {
+  return {std::move(place), Shape::list, double(minimum), double(maximum)};
+}
+inline Rule text(std::string place, std::vector<std::string> words = {}) {
+  return {.place = std::move(place), .shape = Shape::text, .words = std::move(words)};
+}
+inline Rule flag(std::string place) {
+  return {std::move(place), Shape::flag};
+}
+inline Rule integer(std::string place, double minimum, double maximum) {
+  return {std::move(place), Shape::integer, minimum, maximum};
+}
+inline Rule choice(std::string place, std::vector<std::int64_t> choices) {
+  return {.place = std::move(place), .shape = Shape::integer, .choices = std::move(choices)};
+}
+inline Rule number(std::string place, double minimum, double maximum) {
+  return {std::move(place), Shape::number, minimum, maximum};
+}
+inline Rule vector(std::string place, std::size_t size, double minimum, double maximum) {
+  return {std::move(place), Shape::vector, minimum, maximum, size};
+}
+inline Rule index(std::string place, std::string into) {
+  return {.place = std::move(place), .shape = Shape::index, .into = std::move(into)};
+}
 }  // namespace rule
 
 /// Throws Error(bad_input) at the first value that violates a rule. Values without a rule are

@@ -23,6 +23,7 @@
 #include "options/render_options.hpp"
 #include "options/stage_options.hpp"
 #include "verify/check.hpp"
+#include "verify/inputs.hpp"
 #include "verify/jobs.hpp"
 #include "verify/tolerances.hpp"
 
@@ -102,7 +103,7 @@ Deviation compare_sizes(Session& session) {
 
   Ranges ranges;
   for (const Place& place : kHost) ranges.push_back({double(place.bytes), double(place.bytes)});
-  if (session.recorder() != nullptr) session.recorder()->expect(bytes.handle(), "uint", ranges);
+  expect(session, bytes, "uint", ranges);
   Deviation result{0, tolerance("sizes")};
   for (std::size_t i = 0; i < count; ++i) {
     const double error =

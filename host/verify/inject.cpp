@@ -347,9 +347,9 @@ void expect_points(Session& session, const Surface& points,
     append(fluxes, double{kScale} * point.flux,
            double{kScale} * (2 * point.tolerance + allowed * largest));
   }
-  session.recorder()->expect(points.position.handle(), "float", places);
-  session.recorder()->expect(points.normal.handle(), "float", normals);
-  session.recorder()->expect(points.colour.handle(), "float", fluxes);
+  expect(session, points.position, "float", places);
+  expect(session, points.normal, "float", normals);
+  expect(session, points.colour, "float", fluxes);
 }
 
 Deviation compare_scene(Session& session, const SceneData& scene) {
@@ -365,7 +365,7 @@ Deviation compare_scene(Session& session, const SceneData& scene) {
   for (const reference::EmittedPoint& point : expected)
     largest = std::max({largest, point.flux.x, point.flux.y, point.flux.z});
   Deviation result{0, tolerance("emit")};
-  if (session.recorder() != nullptr) expect_points(session, emitter.points(), expected, largest);
+  expect_points(session, emitter.points(), expected, largest);
   for (std::size_t i = 0; i < found.normal.size(); ++i) {
     const reference::EmittedPoint wanted =
         i < expected.size() ? expected[i] : reference::EmittedPoint{};

@@ -33,9 +33,10 @@ SurfaceImage random_surfaces(std::mt19937& random);
 
 /// Compares red, green, blue and alpha of every `every`-th pixel with the CPU reference: `expected`
 /// has four numbers for each. Errors are relative to the largest expected value. `width`: image
-/// width, to report an error's pixel.
-Deviation compare_pixels(const std::vector<cl_float4>& device, std::span<const double> expected,
-                         unsigned width, double allowed, std::size_t every = 1);
+/// width, to report an error's pixel. Any value is allowed in pixels that are `uncertain`.
+Deviation compare_pixels(Session& session, const Buffer& pixels, std::span<const double> expected,
+                         unsigned width, double allowed, std::size_t every = 1,
+                         const std::vector<bool>& uncertain = {});
 
 /// Appends red, green and blue of `colour`, and `alpha`.
 void append_pixel(std::vector<double>& values, const glm::dvec3& colour, double alpha);
@@ -104,9 +105,8 @@ Ranges ranges_about(std::span<const double> expected, double allowed);
 /// `ranges` in Volume's host order.
 void expect(Session& session, const Volume& volume, const Ranges& ranges);
 
-/// As compare_pixels().
-void expect_pixels(Session& session, const Buffer& pixels, std::span<const double> expected,
-                   double allowed, std::size_t every = 1);
+/// The numbers of a buffer of this `type`.
+void expect(Session& session, const Buffer& buffer, const char* type, const Ranges& ranges);
 
 /// As compare_functions(): a coefficient outside its range makes the function differ by more than
 /// allowed in one of the compared directions. Coefficients that the directions do not determine may

@@ -115,8 +115,7 @@ Deviation compare_visibility(Session& session) {
   Ranges ranges(kCascade * bytes);
   for (std::size_t point = 0; point < bytes; ++point)
     ranges.push_back({double(expected.lower[point]), double(expected.upper[point])});
-  if (session.recorder() != nullptr)
-    session.recorder()->expect(visibility.masks().handle(), "bits", ranges);
+  expect(session, visibility.masks(), "bits", ranges);
   Deviation result{0, tolerance("visibility")};
   for (std::size_t point = 0; point < bytes; ++point) {
     const std::uint8_t bits = found[kCascade * bytes + point], lower = expected.lower[point],
@@ -220,10 +219,9 @@ Deviation compare_view(Session& session, Show show, std::optional<std::size_t> c
   ShadeInputs inputs = random_inputs();
   if (chosen) inputs.lights = {inputs.lights[*chosen]};
   const SurfaceImage& image = inputs.image;
-  const std::size_t pixels = image.depth.size();
   const Surface camera = upload_surface(session, image);
   const Buffer gathered = session.upload(inputs.irradiance, "check: irradiance");
-  Buffer shown = session.buffer(pixels * sizeof(cl_float4), "check: image");
+  Buffer shown = session.buffer(image.depth.size() * sizeof(cl_float4), "check: image");
   Shader shader(session);
   shader.light(camera, on_device(session, inputs.lights));
   shader.show(show, camera, gathered, shown);
@@ -233,9 +231,7 @@ Deviation compare_view(Session& session, Show show, std::optional<std::size_t> c
   for (const glm::dvec4& pixel :
        reference::shade(show, image, reference::direct_irradiance(inputs.lights, image), indirect))
     append_pixel(expected, glm::dvec3(pixel), pixel.w);
-  expect_pixels(session, shown, expected, tolerance("shade"));
-  return compare_pixels(session.read<cl_float4>(shown, pixels), expected, image.view.width,
-                        tolerance("shade"));
+  return compare_pixels(session, shown, expected, image.view.width, tolerance("shade"));
 }
 
 }  // namespace

@@ -28,8 +28,8 @@
 typedef struct {
   intW hit;
   uintW radiance;        // place among the radiances
-  Vec position, normal, geometric;  // [m]; unit, towards the ray's origin (shared/normal.h)
-  Vec albedo, emitted;   // [W/m^2/sr]
+  Vec position;          // [m]
+  SurfaceLanes surface;  // towards the ray's origin
 } HitSurface;
 
 // Number of a tile's hits from this work-item's first one on.
@@ -60,36 +60,29 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   const realW reach = (realW)CLPV_GATHER(points + CLPV_NEAR_REACH * plane, pixel);
   TriangleLanes t;
   load_triangles(CLPV_PASS_SCENE, triangle, false, &t);
-  const VertexAttributes a = t.a, b = t.b, c = t.c;
-  const MaterialLanes material = t.material;
-  const Vec w = vec(1.0f - u - v, u, v);
-  const Vec edge1 = vec_minus(b.position, a.position), edge2 = vec_minus(c.position, a.position);
-  const Vec across = vec_cross(edge1, edge2);
+  const Vec at = t.a.position, w = vec(1.0f - u - v, u, v);
+  const Vec across = vec_cross(vec_minus(t.b.position, at), vec_minus(t.c.position, at));
   const realW area2 = sqrt(vec_dot(across, across)),
-              height = vec_dot(vec_minus(origin, a.position), across);
+              height = vec_dot(vec_minus(origin, at), across);
   const intW back = height < ZERO;
   // Leaves out hits on the ray's own triangle: its plane holds the pixel that the ray starts from.
   s->hit = listed & (fabs(height) > 2.0f * CLPV_NEAR_LIFT * reach * area2);
-  s->position = vec_interpolated(w, a.position, b.position, c.position);
+  s->position = vec_interpolated(w, at, t.b.position, t.c.position);
   const Vec front = vec_times(across, back ? (realW)(-1.0f) : ONE);
-  s->normal = normal_towards(front, vec_interpolated(w, a.normal, b.normal, c.normal));
-  s->geometric = geometric_towards(front, s->normal);
-  s->albedo = material.base_colour;
-  if (CLPV_COLOURED)
-    s->albedo = vec_product(s->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
-  const intW emits = (back == 0) | ((material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);
-  s->emitted = vec(ZERO, ZERO, ZERO);
-  if (CLPV_EMISSIVE) s->emitted = vec_masked(emits, material.emissive);
+  surface_at(&t, w, front, &s->surface);
+  const intW emits = (back == 0) | ((t.material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);
+  if (CLPV_EMISSIVE) s->surface.emissive = vec_masked(emits, s->surface.emissive);
   if (!CLPV_TEXTURED) return true;
-  const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
-  const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
+  const Uv uv1 = uv_edge(t.a, t.b), uv2 = uv_edge(t.a, t.c);
   const realW uv_area2 = fabs(uv1.u * uv2.v - uv1.v * uv2.u);
   const realW step = distance * CLPV_NEAR_CONE * sqrt(uv_area2 / area2);
   const Uv step_x = {step, ZERO}, step_y = {ZERO, step};
-  apply_texture(textures, texels, material.texture, uv, step_x, step_y, &s->albedo);
-  if (CLPV_EMISSIVE)
-    apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y, &s->emitted);
+  apply_textures(textures, texels, &t, w, step_x, step_y, &s->surface);
   return true;
+}
+
+static inline Vec reflected(const HitSurface s, const Vec irradiance) {
+  return vec_times(vec_product(s.surface.albedo, irradiance), (realW)(M_1_PI_F));
 }
 
 // Adds radiance, 0 outside the mask `lit`.
@@ -122,15 +115,14 @@ __kernel void near_light(CLPV_NEAR_HITS, const ClpvLight light, __global const C
   const ShadowMap shadow = {views, count, which, map};
   intW lit = s.hit;
   const Vec irradiance =
-      shadowed_irradiance(light, shadow, s.position, s.normal, s.geometric, &lit);
-  add_radiance(view, s, lit, vec_times(vec_product(s.albedo, irradiance), (realW)(M_1_PI_F)), fresh,
-               counts, radiances);
+      shadowed_irradiance(light, shadow, s.position, s.surface.normal, s.surface.geometric, &lit);
+  add_radiance(view, s, lit, reflected(s, irradiance), fresh, counts, radiances);
 }
 
 __kernel void near_emit(CLPV_NEAR_HITS) {
   HitSurface s;
   if (load_hit_surfaces(CLPV_PASS_HITS, &s))
-    add_radiance(view, s, s.hit, s.emitted, fresh, counts, radiances);
+    add_radiance(view, s, s.hit, s.surface.emissive, fresh, counts, radiances);
 }
 
 #else
@@ -139,18 +131,17 @@ __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
   HitSurface s;
   if (!load_hit_surfaces(CLPV_PASS_HITS, &s)) return;
   RadianceField field;
-  const Vec lift = lift_normal(s.geometric, s.normal);
+  const Vec lift = lift_normal(s.surface.geometric, s.surface.normal);
   sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), lift,
                   vec(ZERO, ZERO, ZERO), s.hit, &field);
-  const VecLanes n = unpack(s.hit, s.normal);
+  const VecLanes n = unpack(s.hit, s.surface.normal);
   float x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {
     const float4 e = field_irradiance(&field.at[i], n.x[i], n.y[i], n.z[i]);
     x[i] = e.x, y[i] = e.y, z[i] = e.z;
   }
   const Vec irradiance = vec(load_lanes(x), load_lanes(y), load_lanes(z));
-  add_radiance(view, s, s.hit, vec_times(vec_product(s.albedo, irradiance), (realW)(M_1_PI_F)),
-               fresh, counts, radiances);
+  add_radiance(view, s, s.hit, reflected(s, irradiance), fresh, counts, radiances);
 }
 
 #endif

@@ -33,66 +33,47 @@
 // Largest (n_s . w) / (n_g . w), for surfaces that the light grazes.
 __constant const float largest_weight = 10.0f;
 
-typedef struct {
-  Vec normal, geometric;  // n_s and n_g: unit, towards the viewer
-  Vec albedo;
-  Vec emissive;  // [W/m^2/sr]
-} PixelSurface;
-
 // Change of uv on a face for a step of `by` [m] across the view, from pixel to pixel.
 static inline Uv uv_step(const Face face, const Weights weights, const Vec along, const Vec by,
                          const Uv uv1, const Uv uv2) {
   const Vec on_face = vec_add_scaled(by, -vec_dot(face.normal, by), along);
   const realW w1 = vec_dot(on_face, weights.gradient1), w2 = vec_dot(on_face, weights.gradient2);
-  const Uv step = {w1 * uv1.u + w2 * uv2.u, w1 * uv1.v + w2 * uv2.v};
-  return step;
+  return uv_along(w1, w2, uv1, uv2);
 }
 
 // Evaluates the surface of each lane's triangle at `depth` [m] behind its pixel.
 CLPV_INLINE void evaluate_surface(const ClpvView view, const PixelRow p, const realW depth,
-                                  const uintW triangle, CLPV_SCENE, PixelSurface* surface) {
+                                  const uintW triangle, CLPV_SCENE, SurfaceLanes* surface) {
   TriangleLanes t;
   if (W > 1 && no_lane(triangle != (uintW)(first_lane(triangle)))) {
     load_triangles(CLPV_PASS_SCENE, triangle, true, &t);
   } else {
     load_triangles(CLPV_PASS_SCENE, triangle, false, &t);
   }
-  const VertexAttributes a = t.a, b = t.b, c = t.c;
-  const MaterialLanes material = t.material;
-  const Face face = make_face(view, a.position, b.position, c.position);
+  const Face face = make_face(view, t.a.position, t.b.position, t.c.position);
   const Weights weights = find_weights(face);
   const Vec w = weights_at(view, face, weights, p.x, p.y, depth);
   const Vec ray = along_ray(view, p.x, p.y);
   const realW facing = vec_dot(face.normal, ray);
 
   const Vec front = vec_times(face.normal, facing > ZERO ? (realW)(-1.0f) : ONE);
-  surface->normal = normal_towards(front, vec_interpolated(w, a.normal, b.normal, c.normal));
-  surface->geometric = geometric_towards(front, surface->normal);
-  surface->albedo = material.base_colour;
-  if (CLPV_EMISSIVE) surface->emissive = material.emissive;
-  if (CLPV_COLOURED)
-    surface->albedo =
-        vec_product(surface->albedo, vec_interpolated(w, a.colour, b.colour, c.colour));
+  surface_at(&t, w, front, surface);
   if (!CLPV_TEXTURED) return;
-  const Uv uv1 = {b.uv.u - a.uv.u, b.uv.v - a.uv.v}, uv2 = {c.uv.u - a.uv.u, c.uv.v - a.uv.v};
-  const Uv uv = {a.uv.u + w.y * uv1.u + w.z * uv2.u, a.uv.v + w.y * uv1.v + w.z * uv2.v};
+  const Uv uv1 = uv_edge(t.a, t.b), uv2 = uv_edge(t.a, t.c);
   const realW scale = is_orthographic(view) ? ONE : depth;
   const Vec along = vec_times(ray, 1.0f / facing);
   const Vec right = vec_times(vec_of(view.right), scale * pixel_step_x(view));
   const Vec down = vec_times(vec_of(view.up), scale * pixel_step_y(view));
   const Uv step_x = uv_step(face, weights, along, right, uv1, uv2);
   const Uv step_y = uv_step(face, weights, along, down, uv1, uv2);
-  apply_texture(textures, texels, material.texture, uv, step_x, step_y, &surface->albedo);
-  if (CLPV_EMISSIVE)
-    apply_texture(textures, texels, material.emissive_texture, uv, step_x, step_y,
-                  &surface->emissive);
+  apply_textures(textures, texels, &t, w, step_x, step_y, surface);
 }
 
 // Evaluates the surfaces of W pixels and stores their depths. `hit`: mask of the pixels that are
 // not empty.
 CLPV_INLINE void resolve(const ClpvView view, const PixelRow p, __global const realW* keys,
                          __global const uintW* seen, CLPV_SCENE, __global float* depths, intW* hit,
-                         PixelSurface* surface) {
+                         SurfaceLanes* surface) {
   const realW key = keys[p.row];
   *hit = key < (realW)(INFINITY);
   evaluate_surface(view, p, hit_depth(view, key), *hit ? seen[p.row] : (uintW)(0u), CLPV_PASS_SCENE,
@@ -114,7 +95,7 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
-  PixelSurface surface;
+  SurfaceLanes surface;
   resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths, &hit, &surface);
   const uint first = p.py * view.width + p.px;
   const realW geometric = pack_geometric_normal(surface.geometric, surface.normal);
@@ -130,7 +111,7 @@ __kernel void resolve_camera(const ClpvView view, __global const realW* keys,
 
 // (n_s . towards) / (n_g . towards); 1 where both normals are equal, at most largest_weight, 0 on
 // the dark side.
-CLPV_INLINE realW light_weight(const PixelSurface* surface, const Vec towards) {
+CLPV_INLINE realW light_weight(const SurfaceLanes* surface, const Vec towards) {
   const realW shading = vec_dot(surface->normal, towards),
               geometric = vec_dot(surface->geometric, towards);
   const intW lit = (shading > ZERO) & (geometric > ZERO);
@@ -152,7 +133,7 @@ __kernel void resolve_rsm(__constant const ClpvLitView* views, __global const re
   const PixelRow p = find_pixel_row(view);
   if (p.count == 0) return;
   intW hit;
-  PixelSurface surface;
+  SurfaceLanes surface;
   resolve(view, p, keys, seen, CLPV_PASS_SCENE, depths + lit.first, &hit, &surface);
   const realW depth = stored_depth(view, keys[p.row]);
   Vec towards;

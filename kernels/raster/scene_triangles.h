@@ -114,3 +114,44 @@ CLPV_INLINE void apply_texture(__global const float4* textures, __global const u
   sample_trilinear(textures, texels, texture, uv, step_x, step_y, &factor);
   *colour = vec_product(*colour, factor);
 }
+
+// A point of W triangles.
+typedef struct {
+  Vec normal, geometric;  // unit, towards the viewer: interpolated, and of the triangle
+  Vec albedo;
+  Vec emissive;  // [W/m^2/sr]; only with CLPV_EMISSIVE
+} SurfaceLanes;
+
+// The surface at weights `w` of the corners, without textures. `front`: normal towards the viewer.
+CLPV_INLINE void surface_at(const TriangleLanes* t, const Vec w, const Vec front,
+                            SurfaceLanes* s) {
+  s->normal =
+      normal_towards(front, vec_interpolated(w, t->a.normal, t->b.normal, t->c.normal));
+  s->geometric = geometric_towards(front, s->normal);
+  s->albedo = t->material.base_colour;
+  if (CLPV_EMISSIVE) s->emissive = t->material.emissive;
+  if (CLPV_COLOURED)
+    s->albedo =
+        vec_product(s->albedo, vec_interpolated(w, t->a.colour, t->b.colour, t->c.colour));
+}
+
+// Change of uv from the first corner to the second or third one.
+static inline Uv uv_edge(const VertexAttributes from, const VertexAttributes to) {
+  return (Uv){to.uv.u - from.uv.u, to.uv.v - from.uv.v};
+}
+
+static inline Uv uv_along(const realW w1, const realW w2, const Uv uv1, const Uv uv2) {
+  return (Uv){w1 * uv1.u + w2 * uv2.u, w1 * uv1.v + w2 * uv2.v};
+}
+
+// Multiplies the surface by its textures at weights `w`, filtered over two steps of uv.
+CLPV_INLINE void apply_textures(__global const float4* textures, __global const uint* texels,
+                                const TriangleLanes* t, const Vec w, const Uv step_x,
+                                const Uv step_y, SurfaceLanes* s) {
+  const Uv uv1 = uv_edge(t->a, t->b), uv2 = uv_edge(t->a, t->c);
+  const Uv uv = {t->a.uv.u + w.y * uv1.u + w.z * uv2.u, t->a.uv.v + w.y * uv1.v + w.z * uv2.v};
+  apply_texture(textures, texels, t->material.texture, uv, step_x, step_y, &s->albedo);
+  if (CLPV_EMISSIVE)
+    apply_texture(textures, texels, t->material.emissive_texture, uv, step_x, step_y,
+                  &s->emissive);
+}

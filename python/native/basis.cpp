@@ -26,8 +26,9 @@ glm::dvec3 unit(const double* v) {
 std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth,
                             const py::object& centres) {
   if (centres.is_none())
-    return make_basis(
-        name, argument<std::optional<double>>("bandwidth", bandwidth).value_or(kDefaultLambda));
+    return make_basis(name,
+                      argument<std::optional<double>>("bandwidth", bandwidth, "a number or None")
+                          .value_or(kDefaultLambda));
   const DoubleArray given = vectors<DoubleArray>(centres, "centres");
   std::vector<glm::dvec3> all;
   for (py::ssize_t i = 0; i < given.size() / 3; ++i) all.push_back(unit(given.data() + 3 * i));

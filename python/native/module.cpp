@@ -36,79 +36,13 @@ bool is_masked(py::handle given) {
          py::isinstance(given, py::module_::import("numpy.ma").attr("MaskedArray"));
 }
 
-bool is_real(py::handle given) {
-  if (PyComplex_Check(given.ptr()) || is_masked(given)) return false;
-  const py::object type = py::getattr(given, "dtype", py::none());
-  if (py::isinstance<py::dtype>(type) && type.cast<py::dtype>().kind() == 'c') return false;
-  PyFloat_AsDouble(given.ptr());
-  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
-  return true;
-}
-
-py::object plain(const py::object& given, int levels) {
-  if (levels == 0 || !PySequence_Check(given.ptr())) return given;
-  if (py::hasattr(given, "tolist")) return given.attr("tolist")();
-  if (!py::isinstance<py::list>(given) && !py::isinstance<py::tuple>(given)) return given;
-  py::list all;
-  for (const py::object item : py::reinterpret_borrow<py::sequence>(given))
-    all.append(plain(item, levels - 1));
-  return all;
-}
-
-void check_call(const std::string& function, const std::vector<Parameter>& parameters, bool open,
-                py::list& args, py::dict& kwargs) {
-  const auto positional =
-      static_cast<std::size_t>(std::ranges::count(parameters, false, &Parameter::keyword));
-  if (args.size() > positional) {
-    const std::size_t self =
-        !parameters.empty() && parameters[0].name == std::string_view("self") ? 1 : 0;
-    throw Error(ExitCode::usage, "{}: found {} arguments by position, allowed: at most {}",
-                function, args.size() - self, positional - self);
-  }
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const Parameter& parameter = parameters[i];
-    const bool placed = i < args.size(), by_name = kwargs.contains(parameter.name);
-    if (placed && by_name)
-      throw Error(ExitCode::usage, "{}: {}: found two values, allowed: one", function,
-                  parameter.name);
-    if (parameter.takes == nullptr) continue;
-    if (i > 0 || parameter.name != std::string_view("self")) names.emplace_back(parameter.name);
-    if (!placed && !by_name && parameter.required)
-      throw Error(ExitCode::usage, "{}: {}: found none, allowed: {}", function, parameter.name,
-                  parameter.allowed());
-    if (!placed && !by_name) continue;
-    const py::object given = placed ? py::object(args[i]) : py::object(kwargs[parameter.name]);
-    const py::object values = parameter.any ? given : plain(given);
-    if (placed)
-      args[i] = values;
-    else
-      kwargs[parameter.name] = values;
-    if (!parameter.takes(values))
-      throw Error(ExitCode::usage, "{}: {}: found {}, allowed: {}", function, parameter.name,
-                  found(given), parameter.allowed());
-  }
-  for (const auto& [key, value] : kwargs) {
-    if (!takes<std::string>(key))  // lone surrogates
-      throw Error(ExitCode::usage, "{}: found argument {}, allowed: a name in UTF-8", function,
-                  found(key));
-    if (!open && std::ranges::count(names, key.cast<std::string>()) == 0)
-      throw Error(ExitCode::usage, "{}: found argument '{}', allowed: {}", function,
-                  key.cast<std::string>(), fmt::join(names, ", "));
-  }
-}
-
-void check_arguments(const py::object& scope, const char* name, Self self,
-                     const std::pair<std::vector<Parameter>, bool>& parameters) {
+void name_errors(const py::object& scope, const char* name, Self self) {
   const py::object function = scope.attr(name);
   const std::string label =
       self == Self::untyped ? scope.attr("__name__").cast<std::string>() : name;
   const std::string doc = py::str(function.attr("__doc__"));
-  const auto call = [=](const py::args& given, const py::kwargs& named) {
+  const auto call = [=](const py::args& args, const py::kwargs& kwargs) {
     const CallInProgress in_progress;
-    py::list args(given);
-    py::dict kwargs(**named);
-    check_call(label, parameters.first, parameters.second, args, kwargs);
     try {
       return py::object(function(*args, **kwargs));
     } catch (const py::error_already_set& error) {
@@ -132,10 +66,6 @@ void check_arguments(const py::object& scope, const char* name, Self self,
     scope.attr(name) = py::staticmethod(
         py::cpp_function(call, py::name(name), py::scope(scope), py::doc(doc.c_str())));
 }
-
-}  // namespace clpv::python
-
-namespace clpv::python {
 
 namespace {
 
@@ -225,19 +155,12 @@ void end_running_calls() {
   }
 }
 
-/// Makes copy, pickle and calls of classes without a constructor name the class; Python's own
-/// pickling of some protocols makes objects without a value.
-void reject_making(py::module_& module) {
+/// Makes copy and pickle name the class; Python's own pickling of some protocols makes objects
+/// without a value.
+void reject_copies(py::module_& module) {
   for (const auto& [key, value] : py::dict(module.attr("__dict__"))) {
     if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
     const auto name = "clpv." + key.cast<std::string>();
-    if (Py_TYPE(value.attr("__init__").ptr()) == &PyWrapperDescr_Type)  // pybind11's own
-      value.attr("__init__") = py::cpp_function(
-          [name](const py::object&, const py::args&, const py::kwargs&) {
-            throw Error(ExitCode::usage, "{}: found a call, allowed: objects that clpv returns",
-                        name);
-          },
-          py::name("__init__"), py::is_method(value));
     if (value.attr("__dict__").contains("__reduce_ex__")) continue;
     value.attr("__reduce_ex__") = py::cpp_function(
         [name](const py::object&, int) -> py::object {
@@ -251,7 +174,16 @@ void reject_making(py::module_& module) {
 }  // namespace
 
 std::string usage_message(const py::error_already_set& error) {
-  return error.matches(errors.usage) ? std::string(py::str(error.value())) : std::string();
+  constexpr std::string_view kAllowed = "    1. ", kFound = "Invoked with: ";
+  constexpr std::size_t kLongest = 200;
+  if (error.matches(errors.usage)) return py::str(error.value());
+  if (!error.matches(PyExc_TypeError)) return {};
+  const std::string text = py::str(py::str(error.value()).attr("replace")("clpv._native", "clpv"));
+  const std::size_t allowed = text.find(kAllowed), found = text.find(kFound);
+  if (allowed == std::string::npos || found == std::string::npos) return {};
+  return fmt::format(
+      "found {}, allowed: {}", text.substr(found + kFound.size(), kLongest),
+      text.substr(allowed + kAllowed.size(), text.find('\n', allowed) - allowed - kAllowed.size()));
 }
 
 CallInProgress::CallInProgress() {
@@ -381,7 +313,7 @@ PYBIND11_MODULE(_native, module) {
   add_renderer(module);
   add_opencl(module);
   add_basis(module);
-  reject_making(module);
+  reject_copies(module);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_running_calls));
   define(module, "options", &all_options,
          "options() -> list of dict: name, help, allowed values and default of each option of "

@@ -91,8 +91,7 @@ void add_opencl(py::module_& module) {
   const py::object type = module.attr("Renderer");
   const auto add = [&](const char* name, const auto& function, const auto&... extra) {
     type.attr(name) = py::cpp_function(function, py::name(name), py::is_method(type), extra...);
-    check_arguments(type, name, Self::typed,
-                    parameters_of<std::decay_t<decltype(function)>>(Self::typed, extra...));
+    name_errors(type, name, Self::typed);
   };
   add(
       "enqueue",

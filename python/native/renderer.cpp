@@ -29,13 +29,11 @@ struct ReleaseUnlessForked {
 };
 
 std::string option_text(const std::string& name, const py::handle& value) {
-  if (takes<bool>(value)) return value.cast<bool>() ? "on" : "off";
-  if (py::hasattr(value, "__fspath__")) {
-    if (takes<std::filesystem::path>(value)) return value.cast<std::filesystem::path>().string();
-  } else if (takes<std::string>(value) || py::isinstance<py::int_>(value) ||
-             (!py::isinstance<py::str>(value) && takes<double>(value))) {
-    return py::str(value);
-  }
+  py::detail::make_caster<bool> flag;
+  if (flag.load(value, false)) return static_cast<bool>(flag) ? "on" : "off";
+  if (py::hasattr(value, "__fspath__")) return py::str(value.attr("__fspath__")());
+  const bool number = PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr());
+  if (number || py::isinstance<py::str>(value)) return py::str(value);
   throw Error(ExitCode::usage, "Renderer: {}: found {}, allowed: a text, a number, True or False",
               name, found(value));
 }
@@ -44,7 +42,7 @@ std::string option_text(const std::string& name, const py::handle& value) {
 Options options_of(const py::kwargs& given) {
   Options options;
   for (const auto& [key, value] : given) {
-    std::string name = key.cast<std::string>();
+    std::string name = py::str(key);
     if (name.ends_with('_')) name.pop_back();  // lambda_, since lambda is a keyword
     std::replace(name.begin(), name.end(), '_', '-');
     options.set(name, option_text(key.cast<std::string>(), value));

@@ -148,7 +148,7 @@ void add_copies(const py::object& type, const std::vector<const char*>& members)
         return py::type::of(self)(**all);
       },
       "replace(**changes): a copy with other values of some arguments.");
-  check_arguments(type, "replace", Self::typed, {{{"self", true, false, nullptr, nullptr}}, true});
+  name_errors(type, "replace", Self::typed);
   add(
       "__reduce_ex__",
       [members](const py::object& self, int) {
@@ -198,14 +198,16 @@ void add_scene(py::module_& module) {
   type.def_property(
       "cameras", [](const Scene& scene) { return py::tuple(py::cast(scene.cameras())); },
       [](Scene& scene, const py::object& given) {
-        const auto cameras = argument<std::vector<Camera>>("cameras", given);
+        const auto cameras =
+            argument<std::vector<Camera>>("cameras", given, "a sequence of clpv.Camera");
         without_gil([&] { scene.set_cameras(cameras); });
       },
       "Tuple of all Cameras, at 0 s if animated. Assign a sequence to replace them.");
   type.def_property(
       "lights", [](const Scene& scene) { return py::tuple(py::cast(scene.lights())); },
       [](Scene& scene, const py::object& given) {
-        const auto lights = argument<std::vector<Light>>("lights", given);
+        const auto lights =
+            argument<std::vector<Light>>("lights", given, "a sequence of clpv.Light");
         without_gil([&] { scene.set_lights(lights); });
       },
       "Tuple of all Lights, at 0 s if animated. Assign a sequence to replace them: the next frame\n"
@@ -213,7 +215,7 @@ void add_scene(py::module_& module) {
   type.def_property(
       "medium", &Scene::medium,
       [](Scene& scene, const py::object& given) {
-        const auto medium = argument<std::optional<Medium>>("medium", given);
+        const auto medium = argument<std::optional<Medium>>("medium", given, "clpv.Medium or None");
         without_gil([&] { scene.set_medium(medium); });
       },
       "Its Medium, or None. Assign to replace it: the next frame of every renderer of this scene "

