@@ -88,7 +88,7 @@ inline constexpr double kClockTolerance = 0.1;
 /// Events may not take less than this share of what the host waited for them: gaps between launches
 /// take the rest (seen: 0.97 on PoCL, busy or not). Shorter waits than kLeastWaitMs are no
 /// evidence: a busy host takes as long to wake up.
-inline constexpr double kLeastShareOfWait = 0.25, kLeastWaitMs = 10;
+inline constexpr double kLeastShareOfWait = 0.25, kLeastWaitMs = 50;
 
 /// Collects the events of launches, by stage, and counts launches and waits.
 class Timeline {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "basis/bounce.hpp"
 
@@ -60,22 +61,41 @@ std::array<double, 8> visible_shares(const glm::dvec3& t, const std::uint8_t* po
 
 constexpr unsigned kAllPoints = 511;  // cells that none lacks: every sample point counts
 
-/// Cells of the cube, a bit each, of which a sample point must see one to count. `shift` is added
-/// to the point along `clear` [quarters of a cell].
-unsigned clear_cells(const glm::dvec3& at, const glm::ivec3& cube, const glm::dvec3& clear, int n,
-                     const std::uint8_t* occluded, double shift = 0) {
-  if (clear == glm::dvec3(0)) return kAllPoints;
+/// A sample point, by its cube and its place there, and the cells of the cube that it sees, a bit
+/// each.
+struct ClearPoint {
+  glm::ivec3 cube, place;
+  unsigned seen = 0;
+};
+
+/// The sample point a cell along `clear` [cells] from `at`, or at its end; nothing without a way.
+/// `shift` is added to it [quarters of a cell].
+std::optional<ClearPoint> clear_point(const glm::dvec3& at, const glm::dvec3& clear, int n,
+                                      const std::uint8_t* occluded, double shift = 0) {
+  constexpr double kMost = 0.99;  // [cells]: the point is at most one cube away
+  const double length = glm::length(clear);
+  if (length == 0) return std::nullopt;
   const int last = std::max(kPoints * (n - 1) - 1, 0);
-  const glm::dvec3 way = double{kPoints} * glm::clamp(at, 0.0, n - 1.0) + clear + shift;
-  const glm::ivec3 point(glm::clamp(way, 0.0, double(last))), there = point / kPoints;
-  const std::uint8_t bits = occluded[number_of(there, n) * kPoints * kPoints * kPoints +
-                                     number_of(point % kPoints, kPoints)];
+  const glm::dvec3 way = glm::clamp(at, 0.0, n - 1.0) + clear * std::min(1.0, kMost / length);
+  const glm::ivec3 point(glm::clamp(double{kPoints} * way + shift, 0.0, double(last)));
+  ClearPoint found{point / kPoints, point % kPoints};
+  if (occluded != nullptr)
+    found.seen = ~unsigned{occluded[number_of(found.cube, n) * kPoints * kPoints * kPoints +
+                                    number_of(found.place, kPoints)]} &
+                 255U;
+  return found;
+}
+
+/// The cells that it sees as cells of `cube`: a sample point must see one to count.
+unsigned clear_cells(const std::optional<ClearPoint>& point, const glm::ivec3& cube) {
+  if (!point) return kAllPoints;
   unsigned cells = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::ivec3 in_cube = there - cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+    const glm::ivec3 in_cube =
+        point->cube - cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
     const bool shared = glm::all(glm::greaterThanEqual(in_cube, glm::ivec3(0))) &&
                         glm::all(glm::lessThanEqual(in_cube, glm::ivec3(1)));
-    if (shared && (bits >> corner & 1) == 0) cells |= 1u << number_of(in_cube, 2);
+    if (shared && (point->seen >> corner & 1) != 0) cells |= 1u << number_of(in_cube, 2);
   }
   return cells != 0 ? cells : kAllPoints;
 }
@@ -98,12 +118,11 @@ TrilinearSample trilinear_sample(const glm::dvec3& at, int n) {
   return sample;
 }
 
-bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n,
-                      const std::uint8_t* occluded) {
+bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n) {
   constexpr double kUnsure = 1e-4;  // above single precision's error at the coordinates of a grid
-  const glm::ivec3 cube = trilinear_sample(at, n).cell[0];
-  return clear_cells(at, cube, clear, n, occluded, -kUnsure) !=
-         clear_cells(at, cube, clear, n, occluded, kUnsure);
+  const std::optional<ClearPoint> below = clear_point(at, clear, n, nullptr, -kUnsure),
+                                  above = clear_point(at, clear, n, nullptr, kUnsure);
+  return below && (below->cube != above->cube || below->place != above->place);
 }
 
 void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::dvec3& clear, int n,
@@ -111,12 +130,21 @@ void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::
   const glm::ivec3 cube = sample.cell[0];
   const glm::dvec3 t = glm::clamp(at, 0.0, n - 1.0) - glm::dvec3(cube);
   const int number = number_of(cube, n) * kPoints * kPoints * kPoints;
-  const std::array<double, 8> visible =
-      visible_shares(t, occluded + number, clear_cells(at, cube, clear, n, occluded));
+  const std::optional<ClearPoint> point = clear_point(at, clear, n, occluded);
+  std::array<double, 8> visible = visible_shares(t, occluded + number, clear_cells(point, cube));
   double total = 0;
   for (std::size_t corner = 0; corner < 8; ++corner)
     total += visible[corner] * sample.weight[corner];
-  if (total <= kMinVisibleShare) return;
+  if (total <= kMinVisibleShare) {
+    if (!point || point->seen == 0) return;
+    sample = trilinear_sample(
+        glm::dvec3(point->cube) + (glm::dvec3(point->place) + 0.5) / double{kPoints}, n);
+    total = 0;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      visible[corner] = point->seen >> corner & 1;
+      total += visible[corner] * sample.weight[corner];
+    }
+  }
   for (std::size_t corner = 0; corner < 8; ++corner)
     sample.weight[corner] *= visible[corner] / total;
 }
@@ -154,7 +182,7 @@ RadianceField radiance_field(const GatherOptions& options, const std::vector<Cas
         (position - vector(grid.origin)) / double{grid.cell} + offset * lift - 0.5;
     TrilinearSample sample = trilinear_sample(at, options.grid);
     if (options.gather == Gathering::visible)
-      apply_visibility(sample, at, clear, options.grid, cascade.occluded);
+      apply_visibility(sample, at, clear / double{grid.cell}, options.grid, cascade.occluded);
     for (int channel = 0; channel < 4 && share * rest > 0; ++channel) {
       const double weight = share * rest / (channel < 3 ? double{grid.cell} * grid.cell : 1);
       const std::vector<double> c = interpolated(*cascade.accumulated, channel, sample);

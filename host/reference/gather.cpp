@@ -52,7 +52,7 @@ glm::dvec3 gather(const Basis& basis, TransportKind transport, const GatherOptio
     const double area = double{grid.cell} * grid.cell;
     TrilinearSample sample = trilinear_sample(point, options.grid);
     if (options.gather == Gathering::visible)
-      apply_visibility(sample, point, clear, options.grid, cascade.occluded);
+      apply_visibility(sample, point, clear / double{grid.cell}, options.grid, cascade.occluded);
     e += share * rest / glm::dvec4(area, area, area, 1) *
          irradiance(*cascade.accumulated, sample, weights);
     rest *= 1 - share;
@@ -68,7 +68,8 @@ bool rounding_decides(const GatherOptions& options, const std::vector<Cascade>& 
          std::ranges::any_of(cascades, [&](const Cascade& cascade) {
            const glm::dvec3 at =
                (position - vector(cascade.grid.origin)) / double{cascade.grid.cell};
-           return rounding_decides(at + offset * lift - 0.5, clear, options.grid, cascade.occluded);
+           return rounding_decides(at + offset * lift - 0.5, clear / double{cascade.grid.cell},
+                                   options.grid);
          });
 }
 

@@ -81,7 +81,9 @@ double transmittance(const Volume& geometry, const glm::ivec3& cell, const glm::
 
 double open_share(double transmittance, const std::vector<std::uint8_t>& occluded, bool open, int n,
                   const glm::ivec3& cell, const glm::ivec3& side) {
-  if (!closed_link(occluded, n, cell, side)) return open ? 1 : transmittance;
+  const bool closed = closed_link(occluded, n, cell, side);
+  if (open) return closed ? 0 : 1;
+  if (!closed) return transmittance;
   if (!enclosed_centre(occluded, n, cell) && !enclosed_centre(occluded, n, cell + side)) return 0;
   constexpr double kWall = double{CLPV_WALL_TRANSMITTANCE};
   return std::max(0.0, (transmittance - kWall) / (1 - kWall));

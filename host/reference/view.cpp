@@ -15,8 +15,8 @@ glm::dvec3 surface_position(const ClpvView& view, double px, double py, double d
 
 glm::dvec3 towards_eye(const ClpvView& view, const glm::dvec3& position) {
   if (view.half_width <= 0) return glm::dvec3(0);
-  if (view.orthographic != 0) return -vector(view.forward);
-  return glm::normalize(vector(view.eye) - position);
+  const glm::dvec3 way = vector(view.eye) - position, forward = vector(view.forward);
+  return view.orthographic != 0 ? forward * glm::dot(way, forward) : way;
 }
 
 ProjectedPoint project(const ClpvView& view, const glm::dvec3& point) {

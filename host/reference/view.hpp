@@ -25,7 +25,7 @@ inline glm::dvec3 surface_position(const ClpvView& view, std::size_t pixel, doub
   return surface_position(view, pixel % view.width, pixel / view.width, depth);
 }
 
-/// Returns the unit vector from `position` [m] to the eye; 0 for points without a view.
+/// Returns the way [m] from `position` to the eye, or to its plane; 0 for points without a view.
 glm::dvec3 towards_eye(const ClpvView& view, const glm::dvec3& position);
 
 /// Projection of a point: pixel coordinates (pixel centres are integers) and depth [m]. In

@@ -5,9 +5,10 @@
 //   w_i' = w_i v_i / sum_j w_j v_j,   w trilinear weights of the eight cells, v their visible
 //                                     shares
 //
-// Where a direction is known along which nothing stands, such as that to the eye, only those sample
-// points count that see a cell which the sample point a quarter of a cell along it sees, too: no
-// point behind a wall beside the surface does.
+// Where a way is known on which nothing stands, such as that to the eye, only those sample points
+// count that see a cell which the sample point a cell along it, or at its end, sees, too: no point
+// behind a wall beside the surface does. If fewer than 1/64 of the weights remain, the cells count
+// that this point sees, or all eight without such a way.
 // docs/method.md, 'Gathering'.
 // A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b f)(r g b f). The eight
 // cells about a point are read as whole vectors. f is swept light of the white furnace, 0 after
@@ -53,15 +54,16 @@ typedef struct {
   int clear_point[W];
 } SamplePoints;
 
-// Finds the sample points a quarter of a cell along `clear` from p [cells], whose cube is (x, y,
-// z).
+// Finds the sample points a cell along `clear` from p [cells], or at its end. (x, y, z): cube of p.
 CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, const intW z,
                                    const Vec clear, SamplePoints* points) {
-  const float past = 4.0f * (float)(CLPV_GRID - 1);
+  const float past = 4.0f * (float)(CLPV_GRID - 1), most = 0.99f;  // [cells]: not two cubes away
+  const realW square = vec_dot(clear, clear), scale =
+      square > (realW)(most * most) ? 4.0f * most * rsqrt(square) : (realW)(4.0f);
   const intW highest = (intW)(CLPV_GRID > 1 ? 4 * CLPV_GRID - 5 : 0);
-  const intW a = min(to_intW(clamp_to(fma(p.x, (realW)(4.0f), clear.x), past)), highest),
-             b = min(to_intW(clamp_to(fma(p.y, (realW)(4.0f), clear.y), past)), highest),
-             c = min(to_intW(clamp_to(fma(p.z, (realW)(4.0f), clear.z), past)), highest);
+  const intW a = min(to_intW(clamp_to(fma(clear.x, scale, 4.0f * p.x), past)), highest),
+             b = min(to_intW(clamp_to(fma(clear.y, scale, 4.0f * p.y), past)), highest),
+             c = min(to_intW(clamp_to(fma(clear.z, scale, 4.0f * p.z), past)), highest);
   const intW cube = ((c >> 2) * CLPV_GRID + (b >> 2)) * CLPV_GRID + (a >> 2);
   const intW point = ((c & 3) * 4 + (b & 3)) * 4 + (a & 3);
   const intW steps = ((a >> 2) - x) + 4 * ((b >> 2) - y) + 16 * ((c >> 2) - z) + 21;
@@ -71,7 +73,7 @@ CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, cons
 }
 
 // At the last centre the eight cells are the last ones, so that offsets between them are literals.
-// `clear`: unit vectors along which nothing stands, or 0.
+// `clear`: ways [cells] on which nothing stands, or 0.
 CLPV_INLINE void find_sample_points(const Vec at, const Vec clear, SamplePoints* points) {
   const float last = (float)(CLPV_GRID - 1);
   const intW highest = (intW)(CLPV_GRID > 1 ? CLPV_GRID - 2 : 0);
@@ -106,7 +108,7 @@ CLPV_INLINE float8 corner_weights(const float x, const float y, const float z) {
   return along_x * along_y * along_z;
 }
 
-// Below this visible share of the weight, visibility is ignored and all eight cells count.
+// Least visible share of the weights for which they count.
 __constant const float min_visible = 1.0f / 64.0f;
 
 // Cells of a cube, a bit each, as cells of the cube that `steps` lead away from.
@@ -129,12 +131,13 @@ CLPV_INLINE int clear_cells(__global const uchar* occluded, const SamplePoints* 
   return cells != 0 ? cells : CLPV_ALL_POINTS;
 }
 
+__constant const int8 cell_bits = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+
 // Visible shares of the eight cells: their bits at those of eight sample points that see one of
 // `clear`, interpolated trilinearly so that light is continuous, and constant beyond the outermost
 // points.
 CLPV_INLINE float8 visible_shares(__global const uchar* at, const float8 weights,
                                   const int clear) {
-  const int8 bit = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
   float8 visible = 0.0f;
   float sum = 0.0f;
 #pragma unroll
@@ -142,33 +145,54 @@ CLPV_INLINE float8 visible_shares(__global const uchar* at, const float8 weights
     const int seen = ~(int)at[(i & 1) + 4 * (i >> 1 & 1) + 16 * (i >> 2)];
     const float weight = (seen & clear) != 0 ? ((const float*)&weights)[i] : 0.0f;
     sum += weight;
-    visible += ((int8)(seen) & bit) != 0 ? (float8)(weight) : (float8)(0.0f);
+    visible += ((int8)(seen) & cell_bits) != 0 ? (float8)(weight) : (float8)(0.0f);
   }
   return sum > 0.0f ? visible * (1.0f / sum) : visible;
 }
 
+CLPV_INLINE float sum_weights(const float8 weights) {
+  const float4 four = weights.lo + weights.hi;
+  return four.x + four.y + four.z + four.w;
+}
+
+// Weights of the cells that the point along `clear` sees, trilinear there, and their first cell;
+// returns the factor that normalises them. If it sees none, or is not known, nothing changes.
+CLPV_INLINE float use_clear_point(const PackedCascade cascade, const SamplePoints* points,
+                                  const int i, float8* weights, int* number) {
+  const int cube = points->clear_cube[i], point = points->clear_point[i] >> 6;
+  if (cube < 0) return 1.0f;
+  const int seen = ~(int)cascade.occluded[(size_t)cube * 64 + point] & 255;
+  if (seen == 0) return 1.0f;
+  const float8 from = corner_weights(0.25f * (float)(point & 3) + 0.125f,
+                                     0.25f * (float)(point >> 2 & 3) + 0.125f,
+                                     0.25f * (float)(point >> 4) + 0.125f);
+  *weights = ((int8)(seen) & cell_bits) != 0 ? from : (float8)(0.0f);
+  *number = cube;
+  return 1.0f / sum_weights(*weights);
+}
+
 // Multiplies the weights of cells by their visible shares and returns the factor that normalises
-// them. If less than min_visible is visible, the weights do not change.
+// them. If less than min_visible is visible, the point along `clear` takes the place of this one.
 CLPV_INLINE float apply_visibility(const PackedCascade cascade, const SamplePoints* points,
-                                   const int i, float8* weights) {
+                                   const int i, float8* weights, int* number) {
   __global const uchar* at =
       cascade.occluded + (size_t)points->number[i] * 64 + points->visibility_point[i];
   const float8 from =
       corner_weights(points->visibility_x[i], points->visibility_y[i], points->visibility_z[i]);
   const float8 visible =
       *weights * visible_shares(at, from, clear_cells(cascade.occluded, points, i));
-  const float4 four = visible.lo + visible.hi;
-  const float total = four.x + four.y + four.z + four.w;
-  if (!(total > min_visible)) return 1.0f;
+  const float total = sum_weights(visible);
+  if (!(total > min_visible)) return use_clear_point(cascade, points, i, weights, number);
   *weights = visible;
   return 1.0f / total;
 }
 
 CLPV_INLINE float sample_cells(const PackedCascade cascade, const SamplePoints* points, const int i,
                                Sampled* r) {
-  __global const float8* v = cascade.cells + (size_t)points->number[i] * CLPV_PAIRS;
+  int number = points->number[i];
   float8 w = corner_weights(points->x[i], points->y[i], points->z[i]);
-  const float scale = CLPV_VISIBLE ? apply_visibility(cascade, points, i, &w) : 1.0f;
+  const float scale = CLPV_VISIBLE ? apply_visibility(cascade, points, i, &w, &number) : 1.0f;
+  __global const float8* v = cascade.cells + (size_t)number * CLPV_PAIRS;
 #pragma unroll
   for (int j = 0; j < CLPV_PAIRS; ++j)
     r->pair[j] = w.s0 * v[j] + w.s1 * v[j + CLPV_DX] + w.s2 * v[j + CLPV_DY] +

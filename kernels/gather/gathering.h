@@ -38,7 +38,7 @@ CLPV_INLINE float4 volume_irradiance(CLPV_GATHERED volume, const SamplePoints* p
 // W pixels: surfaces, and the irradiance summed so far.
 typedef struct {
   Surfaces surfaces;
-  Vec clear;        // towards the eye, or 0
+  Vec clear;        // way to the eye [m], or 0
   realW remaining;  // weight that finer cascades leave
   Coefficients weights[W];
   float4 sums[W];
@@ -55,8 +55,8 @@ CLPV_INLINE void add_cascade(Gathering* g, __global const ClpvGrid* of, CLPV_GAT
   SamplePoints points;
   const Vec lift = lift_normal(g->surfaces.geometric, g->surfaces.normal);
   find_sample_points(
-      find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), lift), g->clear,
-      &points);
+      find_cascade_points(grid, g->surfaces.position, (realW)(CLPV_GATHER_OFFSET), lift),
+      vec_times(g->clear, (realW)(per_cell)), &points);
   float shares[W];
   store_lanes(weight, shares);
   for (int i = 0; i < W; ++i) {

@@ -41,7 +41,7 @@ CLPV_INLINE void add_field(const PackedCascade cascade, const SamplePoints* poin
 }
 
 // C at the points position + offset * s * lift of each cascade, s its cell; cascades have their
-// shares at `position`. `clear`: gather_packed.h. 0 outside the mask `wanted`.
+// shares at `position`. `clear`: as in gather_packed.h, [m]. 0 outside the mask `wanted`.
 CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW offset,
                                  const Vec lift, const Vec clear, const intW wanted,
                                  RadianceField* field) {
@@ -56,7 +56,8 @@ CLPV_INLINE void sample_radiance(CLPV_RADIANCE, const Vec position, const realW 
     remaining *= 1.0f - share;
     if (no_lane(weight > ZERO)) continue;
     SamplePoints points;
-    find_sample_points(find_cascade_points(grid, position, offset, lift), clear, &points);
+    find_sample_points(find_cascade_points(grid, position, offset, lift),
+                       vec_times(clear, (realW)(1.0f / grid.cell)), &points);
     add_field(packed_cascade(c CLPV_PASS_VOLUMES), &points, weight, field);
   }
   float outside[W];

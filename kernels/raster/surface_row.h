@@ -77,12 +77,11 @@ static inline void load_points(const ClpvView view, const PixelRow p, __global c
   s->geometric = unpack_geometric_normal(CLPV_COLUMN(rows, w), s->normal);
 }
 
-// Unit vectors from positions [m] to the eye; 0 for points without a view.
+// Ways [m] from positions to the eye, or to its plane; 0 for points without a view.
 static inline Vec towards_eye(const ClpvView view, const Vec position) {
-  if (view.orthographic != 0.0f) return vec_times(vec_of(view.forward), (realW)(-1.0f));
-  const Vec way = vec_minus(vec_of(view.eye), position);
-  const realW scale = view.half_width > 0.0f ? rsqrt(vec_dot(way, way)) : ZERO;
-  return vec_times(way, scale);
+  const Vec way = vec_minus(vec_of(view.eye), position), forward = vec_of(view.forward);
+  if (view.orthographic != 0.0f) return vec_times(forward, vec_dot(way, forward));
+  return vec_times(way, view.half_width > 0.0f ? ONE : ZERO);
 }
 
 // Place of a surface: its depth in the view, or with CLPV_POINTS 1 a point without a view.

@@ -247,7 +247,8 @@ TEST(Transmittance, AWallClosesLinks) {
     EXPECT_EQ(open_share(0.3, kNone, side), 0.3);
     EXPECT_EQ(open_share(0.3, kWall, side), 0);
     EXPECT_EQ(open_share(0.3, kNone, side, true), 1) << "a bounce's";
-    EXPECT_EQ(open_share(0.3, kWall, side, true), 0) << "a bounce's";
+    EXPECT_EQ(open_share(1, kWall, side, true), 0) << "a bounce's";
+    EXPECT_EQ(open_share(1, kAll, side, true), 0) << "a bounce's";
     EXPECT_EQ(open_share(1, kWall, side), 0);
     // Enclosed centres see nothing.
     EXPECT_EQ(open_share(0.42, kAll, side), 0) << "a full wall along a corner";

@@ -192,7 +192,7 @@ double furnace_series(float albedo) {
 // furnace is white and shines in at edges.
 TEST(BouncedFrame, FurnacesOfThreeCascadesMatchTheirClosedForm) {
   EXPECT_NEAR(furnace_series(0.2f) * 0.8, 1, 0.02);
-  EXPECT_NEAR(furnace_series(0.5f) * 0.5, 1, 0.04);
+  EXPECT_NEAR(furnace_series(0.5f) * 0.5, 1, 0.06);
   EXPECT_NEAR(furnace_series(0.8f) * 0.2, 1, 0.12);
   const double white = furnace_series(0.95f) * 0.05;
   EXPECT_LE(white, 1);
