@@ -27,7 +27,7 @@ inline constexpr double kMaxReturned = 0.98;
 
 /// Share of that ratio q by which the first of three and more sweeps' light is relaxed. Light that
 /// decays by l from bounce to bounce has the error l^n (l - 2 q / 3) (l - q) / ((1 - 2 q / 3)
-/// (1 - q)): with q = 0.8 and n = 2 below 0.11 for all l up to q, without the second factor 0.22.
+/// (1 - q)): with q = 0.8 and n = 2 below 0.12 for all l up to q, without the second factor 0.22.
 inline constexpr double kRelaxation = 2. / 3;
 
 /// 6 x 24: incident flux [W] on each face of a cell from a sweep's bins (radiance times s^2):
