@@ -44,8 +44,8 @@ class CallInProgress {
   CallInProgress& operator=(const CallInProgress&) = delete;
 };
 
-/// What a UsageError says, and what pybind11 says of arguments that do not fit a function, as value
-/// found and value allowed; empty for other exceptions.
+/// Returns the message of a UsageError, or pybind11's for arguments that do not fit a function, as
+/// value found and value allowed; empty for other exceptions.
 std::string usage_message(const py::error_already_set& error);
 
 /// A column of a table as a list in the order of its items, since its subscripts may be labels.

@@ -36,7 +36,7 @@ def row(rows, **fields):
                 if all(each.get(key) == value for key, value in fields.items()))
 
 
-# What expressions use.
+# Functions that the expressions of verdicts.json call.
 
 
 def similar(a, b):
