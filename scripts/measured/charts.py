@@ -10,25 +10,37 @@
                                                                 of each stage; time of every frame
     scripts/charts probes FILE.json -o FILE.png                 results/docs/bake.json: error of light
                                                                 probes over bytes
+    scripts/charts spheres -o FILE.jpg                          moving spheres that baked probes
+                                                                light, and the same by path tracing.
+                                                                Needs a build
     scripts/charts stability [LABEL=]DIR ... -o FILE.png        of `clpv sequence --stability`
 
 Needs Debian's Python and the packages of scripts/setup."""
 import argparse
 import json
+import math
 import pathlib
 import sys
 
 import numpy
 
-from . import bake, native, output
+from . import CLPV, ROOT, bake, native, output
 
 clpv = native()
 from clpv.draw import style  # noqa: E402
+
+sys.path.insert(0, str(ROOT / "examples"))
+import probes  # noqa: E402  pylint: disable=wrong-import-position
 
 MINIMUM = 1e-5  # smaller changes show as this on the logarithmic axis
 BASES = ("srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 FORMATS = ("sh2", "zh3", "sh3", "srbf8v2", "ambient-cube", "ambient-cube-mean")
 LAMBDAS = [round(0.05 * i, 2) for i in range(1, 15)]
+
+# Moving objects of draw_spheres: centres and radius [m], reflectance; probes; size of a picture.
+SPHERES = [(x, y, z) for x in (-6.5, -4, -1.5, 1.5) for z, y in ((-2.9, 1.2), (-0.3, 2.6), (1.9, 1.2))]
+RADIUS, WHITE, SPACING, SHOWN = 0.45, 0.8, 1, (400, 225)
+PATHS = 256
 
 
 def save(figure, target, dpi):
@@ -151,6 +163,58 @@ def draw_probes(files, target):
     save(figure, target, 90)
 
 
+def seen_spheres(camera, depth):
+    """Pixels (height, width) that show a sphere before `depth`, then its points and normals there."""
+    eye, target, up = map(numpy.array, (camera.eye, camera.target, camera.up))
+    z = (target - eye) / numpy.linalg.norm(target - eye)
+    x = numpy.cross(z, up)
+    x /= numpy.linalg.norm(x)
+    half = math.tan(math.radians(camera.fov / 2))
+    height, width = depth.shape
+    v, u = (numpy.mgrid[:height, :width] + 0.5) * 2 - numpy.array([height, width])[:, None, None]
+    rays = z + half / height * (u[..., None] * x - v[..., None] * numpy.cross(x, z))
+    points, normals, nearest = numpy.zeros_like(rays), numpy.zeros_like(rays), depth.copy()
+    for centre in SPHERES:
+        a, b = (rays**2).sum(axis=-1), (rays * (eye - centre)).sum(axis=-1)
+        root = b * b - a * (((eye - centre)**2).sum() - RADIUS**2)
+        t = numpy.where(root > 0, (-b - numpy.sqrt(abs(root))) / a, 0)
+        hit = (t > 0) & ((t < nearest) | (nearest == 0))
+        nearest[hit], points[hit] = t[hit], eye + t[hit, None] * rays[hit]
+        normals[hit] = (points[hit] - centre) / RADIUS
+    shown = (normals != 0).any(axis=-1)
+    return shown, points[shown], normals[shown]
+
+
+def draw_spheres(_, target):
+    """The atrium with spheres that the scene does not have, by probes and by path tracing."""
+    file = ROOT / "scenes/atrium.json"
+    scene = clpv.Scene(file)
+    camera = next(each for each in scene.cameras if each.name == "nave")
+    with clpv.Renderer(scene) as renderer:
+        picture = renderer.render("full", camera, size=SHOWN)
+        depth = renderer.show("depth").array[..., 0].astype(float)
+    shown, points, normals = seen_spheres(camera, depth)
+    truth = scene.pathtrace_points(points, normals, samples=PATHS)
+    light = {}
+    for title, source in (("swept probes", "sweep"), ("path-traced probes", "pathtrace")):
+        baked = probes.bake(CLPV, file, ("--format=ambient-cube-mean", f"--spacing={SPACING}",
+                                         f"--from={source}", f"--bounds={bake.BOXES['atrium']}",
+                                         *([bake.PATHS] if source == "pathtrace" else [])))
+        light[title] = probes.irradiance(baked, points, normals)
+    light["path traced"] = truth["indirect"]
+    made = style.Sheet([f"Spheres in the atrium, lit by probes {SPACING} m apart"], len(light), len(light),
+                       tuple(length / 100 for length in SHOWN), above=True)
+    for i, (title, indirect) in enumerate(light.items()):
+        array = picture.array.copy()
+        array[shown, :3] = WHITE / math.pi * (truth["direct"] + indirect)
+        array[shown, 3] = 1
+        if title != "path traced":
+            error = clpv.compare(indirect[None], truth["indirect"][None]).nrmse
+            title += f": NRMSE {100 * error:.0f} %"
+        made.tile(i, title).imshow(clpv.Image(array, ("R", "G", "B", "A")).display(scene.exposure))
+    made.save(target, 100)
+
+
 def draw_stability(files, target):
     figure, (axis,) = style.panels(1, 1, (8.6, 3.4))
     for i, (label, file) in enumerate(files):
@@ -171,7 +235,7 @@ def draw_stability(files, target):
 
 # How many files each chart reads, and the file of a folder.
 CHARTS = {"lambda": (draw_lambda, range(1), ""), "times": (draw_times, range(1, 2), "times.jsonl"),
-          "probes": (draw_probes, range(1, 2), ""),
+          "probes": (draw_probes, range(1, 2), ""), "spheres": (draw_spheres, range(1), ""),
           "stability": (draw_stability, range(1, 1000), "stability.json")}
 
 

@@ -28,11 +28,11 @@ import sys
 import tempfile
 
 from . import (CLPV, LAB, RESULTS, ROOT, bake, charts, described, json_lines, lab, leaks, output,
-               rows)
+               rooms, rows)
 
 FRAME_COUNT = 9
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a folder in results/
-PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "bake", "bake-leaks", "leaks"]
+PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "bake", "bake-leaks", "leaks", "rooms"]
 
 
 def run(*arguments, program=CLPV):
@@ -120,10 +120,14 @@ def measure_docs(folder, model, parts):
         write(folder, "bake", {"measured": measured, "rows": bake.measure(model),
                                "part": bake.measure_part()})
         charts.draw_probes([("", folder / "bake.json")], ROOT / "docs/images/probes.png")
+        charts.draw_spheres([], ROOT / "docs/images/spheres.jpg")
     if "bake-leaks" in parts:
         write(folder, "bake-leaks", {"measured": measured, "rows": bake.measure_leaks()})
     if "leaks" in parts:
         write(folder, "leaks", {"measured": measured, "leaks": leaks.measure(**rows.LEAKS)})
+    if "rooms" in parts:
+        write(folder, "rooms", {"measured": measured, "rows": rooms.measure()})
+        rooms.draw(ROOT / "docs/images/rooms.jpg")
     if "quality-grid" in parts or "quality-grid-published" in parts:
         charts.draw_errors({
             label: json.loads((folder / f"{name}.json").read_text())["variants"]

@@ -4,17 +4,22 @@ tracing.
 
     lab/scripts/standing --model PATH/Sponza.gltf [DEVICE]    13 minutes on two cores, as much again
                                                               for truths
+    lab/scripts/standing --picture --model PATH/Sponza.gltf   two minutes
 
-Writes a file of lab/results/quality, named after device and commit, and the chart of
-lab/docs/other_methods.md; lab/scripts/tables then writes the tables of lab/docs/results.md. DEVICE:
+Writes a file of lab/results/quality, named after device and commit, and the pictures of
+lab/docs/other_methods.md, --picture only the one of images; lab/scripts/tables then writes the tables of lab/docs/results.md. DEVICE:
 as --device of clpv takes it; default: the first. Commit and build first (scripts/build), and keep
 the machine free of other work. """
 import argparse
 import os
 import pathlib
 import re
+import tempfile
+
+import numpy
 
 from measured import LAB, ROOT, charts
+from measured.charts import clpv, style
 from measured.measure import FRAME_COUNT, measured_with, run, scenes_of, write
 from measured.rows import VIEWS
 
@@ -42,6 +47,10 @@ FRONT_GRIDS = {
     "clpv, near off": ["--near=off", "--vary=grid=16,24,32,48,64"]
 }
 FRONT_TIMES = 5, 20, 80
+# The picture: views that clpv wins and loses, and methods beside clpv.
+SHOWN_VIEWS = "curtains", "columns"
+SHOWN = {"ddgi-converged": "DDGI, converged", "vpl-interleaved": "virtual point lights",
+         "paths-filtered": "path tracing, filtered"}
 
 
 def method_of(cell, options):
@@ -115,15 +124,60 @@ def measure_front(model):
     return variants
 
 
+def indirect_of(file):
+    """That layer of a ground truth."""
+    image = clpv.read_image(file)
+    return clpv.Image(image.array[..., [image.channels.index(f"indirect.{c}") for c in "RGBA"]],
+                      tuple("RGBA"))
+
+
+def draw_methods(model):
+    """Light of clpv, of other methods with its time, and path tracing; below, the differences from
+    path tracing over its root mean square."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = run("quality", *scenes_of(["sponza_suns"], model), "--preset=best", "--noise=0.06",
+                     *(f"--camera={view}" for view in SHOWN_VIEWS), f"--baseline={','.join(SHOWN)}",
+                     f"--frames={STANDING_COUNT}", "--fresh", f"--images={folder}", "--output",
+                     program=LAB)
+        images = {(name, view): clpv.read_image(f"{folder}/{name}/sponza_suns-{view}.exr")
+                  for name in SHOWN for view in SHOWN_VIEWS}
+    truths = {truth["camera"]: indirect_of(truth["file"]) for truth in report["ground_truths"]}
+    exposure = truths[SHOWN_VIEWS[0]].automatic_exposure()
+    scene = clpv.Scene(ROOT / "scenes/sponza_suns.json", model)
+    height, width = next(iter(images.values())).array.shape[:2]
+    made = style.Sheet(["Indirect light of one bounce in equal time, and 0 to 100 % error below"],
+                       len(SHOWN) + 2, 4 * (len(SHOWN) + 2), (width / 100, height / 100), above=True)
+    for row, view in enumerate(SHOWN_VIEWS):
+        truth = truths[view]
+        with clpv.Renderer(scene, width=width, height=height, bounces=1) as renderer:
+            line = {"clpv": renderer.render("indirect", view),
+                    **{title: images[name, view] for name, title in SHOWN.items()},
+                    "path traced": truth}
+        level = float(numpy.sqrt((truth.array[..., :3]**2).mean()))
+        for column, (title, image) in enumerate(line.items()):
+            place = 2 * row * len(line) + column
+            error = 100 * clpv.compare(image, truth).nrmse_valid
+            caption = f"{title}: NRMSE {error:.0f} %" if image is not truth else f"{view}: {title}"
+            made.tile(place, caption).imshow(image.display(exposure))
+            if image is not truth:
+                away = abs(image.array - truth.array)[..., :3].mean(axis=2) / level
+                made.tile(place + len(line), "").imshow(away, cmap="inferno", vmin=0, vmax=1)
+    made.save(ROOT / "docs/images/equal-time.jpg", 100)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("device", metavar="DEVICE", nargs="?")
     parser.add_argument("--model", type=pathlib.Path, required=True,
                         help="Sponza's glTF, of the Khronos sample models")
+    parser.add_argument("--picture", action="store_true", help="the picture of images alone")
     arguments = parser.parse_args()
     if arguments.device:
         os.environ["CLPV_DEVICE"] = arguments.device
+    if arguments.picture:
+        draw_methods(arguments.model.resolve())
+        return 0
     measure_standing(FOLDER, arguments.model.resolve())
     print("lab/results/quality is written; lab/scripts/tables writes lab/docs/results.md")
     return 0

@@ -137,6 +137,21 @@ def leaks_open():
                    {title: shape for shape, title in known.OPEN_ROOMS.items()}, cell)
 
 
+@table
+def rooms():
+    """Energies at both angles, by one bounce and by all, and the most dark pixels."""
+    lines = load("rooms")["rows"]
+
+    def cell(title, column):
+        turned, bounces = column
+        row = [row for row in lines if (row["room"], row["bounces"]) == (title, bounces)][turned:]
+        return f"{row[0]['energy']:.2f}" if row else "-"
+
+    columns = {"straight, one": (0, 1), "all": (0, "all"), "turned, one": (1, 1), "turned, all": (1, "all")}
+    return crossed("room", columns, {f"{room['title']}; {room['degrees']} degrees": room["title"]
+                                     for room in known.ROOMS}, cell)
+
+
 @rows
 def frames_and_errors():
     """Frame times beside errors, of the same frames."""
