@@ -64,6 +64,8 @@ void reject_misspelt_command(const CLI::App& app) {
   }
   if (const std::string meant = nearest(*word, names); !meant.empty())
     throw Error(ExitCode::usage, "unknown command '{}'; did you mean {}?", *word, meant);
+  if (*word == "view")
+    throw Error(ExitCode::usage, "unknown command 'view': the viewer is python3 -m clpv.view");
   throw Error(ExitCode::usage, "unknown command '{}'; allowed: {}", *word, fmt::join(names, ", "));
 }
 
@@ -171,6 +173,13 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
 
 void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
   try {
+    if (argc > 1 && std::string_view(argv[1]) == "help") {  // `help render` is `render --help`
+      std::vector<const char*> words(argv, argv + argc);
+      words.erase(words.begin() + 1);
+      words.push_back("--help");
+      app.parse(static_cast<int>(words.size()), words.data());
+      return;
+    }
     app.parse(argc, argv);
   } catch (const CLI::ExtrasError&) {
     reject_unknown_option(app);

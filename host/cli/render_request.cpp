@@ -59,6 +59,8 @@ void add_display_options(CLI::App& command, DisplayRequest& display) {
 
 void DisplayRequest::resolve(const SceneData& scene, bool shown,
                              const std::function<Image()>& full) {
+  if (exposure && exposure != scene.exposure && !shown && full)
+    log_info("--exposure has no effect on EXR files and on views without light");
   if (!exposure) exposure = scene.exposure;
   if (exposure || !shown) return;
   automatic = true;

@@ -133,7 +133,9 @@ def picture(pictures):
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
 
     header = struct.pack(">2I5B", len(rows[0]) // 3, len(rows), 8, 2, 0, 0, 0)
-    pixels = zlib.compress(b"".join(b"\0" + row for row in rows), 9)
+    above = [bytes(len(rows[0])), *rows]  # filter 2: differences from the row above
+    pixels = zlib.compress(b"".join(b"\2" + bytes(a - b & 255 for a, b in zip(*both))
+                                    for both in zip(rows, above)), 9)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", pixels) + chunk(b"IEND", b"")
 
 

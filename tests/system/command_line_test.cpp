@@ -135,6 +135,7 @@ TEST(HostileCommandLines, OfCommands) {
                    {"paint it", {"'paint'", "render", "compare"}},
                    {"--quiet renderr " + kCornell, {"'renderr'", "did you mean render?"}},
                    {"qualtiy", {"did you mean quality?"}},
+                   {"view " + kCornell, {"python3 -m clpv.view"}},
                    {"report @/out", {"nothing to show"}},
                    {"--quiet", {"subcommand"}},
                    {"--device 99 devices2", {"devices"}},
@@ -261,6 +262,7 @@ TEST(CommandLine, HelpIsShortAndHelpAllIsWhole) {
   const test::Outcome bare = clpv("");
   EXPECT_EQ(bare.exit_code, 0);
   EXPECT_EQ(bare.out, clpv("--help").out);
+  EXPECT_EQ(clpv("help render").out, clpv("render --help").out);
   EXPECT_EQ(bare.err, "");
   const std::string brief = clpv("render --help").out, whole = clpv("render --help-all").out;
   for (const char* common : {"--basis", "--grid", "--transport", "--near", "--output"})
