@@ -19,9 +19,9 @@
 // For functions that seldom run. CPUs: not inlined, to leave registers to the common path. GPUs:
 // inlined, since calls keep their stack in scratch memory.
 #if W == 1
-#define CLPV_RARE CLPV_INLINE
+#define CLPV_OUT_OF_LINE_ON_CPUS CLPV_INLINE
 #else
-#define CLPV_RARE __attribute__((noinline))
+#define CLPV_OUT_OF_LINE_ON_CPUS __attribute__((noinline))
 #endif
 
 // Vectors of W numbers, conversions between them, and load and store of W numbers that follow one

@@ -208,7 +208,7 @@ void DirectionBins::evaluate(const glm::dvec3& w, std::span<double> b) const {
     return above - (i + 1 == side ? 0 : step(t - lines_[i] * n));
   };
   std::array<double, 6> of_face{};
-  double sum = 0;  // 1, or 3/4 in a corner of the cube
+  double sum = 0;  // of six faces: 1, or 3/4 towards a corner of the cube
   for (int face = 0; face < 6; ++face) {
     const FaceAxes axes = axes_of(face);
     const double n = axes.sign * w[axes.n];

@@ -264,7 +264,7 @@ Normals visible_normals(const SceneData& scene, const Candidate& candidate,
   return {shading, apart ? glm::normalize(front) : shading};
 }
 
-/// Light from the unit direction `towards` that a surface receives, by that of its triangle.
+/// (n_s . towards) / (n_g . towards), bounded: light on the surface over that on its triangle.
 double light_weight(const Normals& normals, const glm::dvec3& towards) {
   if (normals.shading == normals.geometric) return 1;
   const double shading = glm::dot(normals.shading, towards),

@@ -266,7 +266,8 @@ MovingScene::MovingScene(const std::filesystem::path& path,
     scene_ = load_gltf(model, 1.0, motion_, notes);
     scene_.path = model.string();
   } else {
-    reject(path.string(), {}, extension.empty() ? "no extension" : "the extension '" + extension + "'",
+    reject(path.string(), {},
+           extension.empty() ? "no extension" : "the extension '" + extension + "'",
            ".json (a scene file), .gltf or .glb");
   }
   if (motion_.empty()) motion_.tree = {};  // frees its memory

@@ -83,7 +83,8 @@ static inline uint lowest_bit(const uint bits) {
 }
 
 // Mask of the lanes where a masked material has a hole at weights (u, v).
-CLPV_RARE intW find_holes(const uintW triangle, const realW u, const realW v, CLPV_SCENE) {
+CLPV_OUT_OF_LINE_ON_CPUS
+intW find_holes(const uintW triangle, const realW u, const realW v, CLPV_SCENE) {
   Rows indices, a, b, c, base, factors, maps;
   gather_rows(triangles, triangle, &indices);
   const uintW ia = as_uintW(CLPV_COLUMN(indices, x)), ib = as_uintW(CLPV_COLUMN(indices, y)),

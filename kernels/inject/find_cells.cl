@@ -12,7 +12,7 @@
 //       places   depths [m]; with CLPV_POINTS positions [m] instead (emit.cl)
 //       normals; colours: flux [W], see surface.h for colour_scale
 //       stride   blocking: subsampling; a texel represents stride x stride texels
-//                (shared/thinned.h)
+//                (shared/subsampling.h)
 // Out:  keys    key of the cell of each texel of each surface (cell_keys.h); CLPV_NO_CELL for
 //               texels that are empty, dark, outside the grid or not finite
 //       shares  blocking: B of each texel
@@ -21,7 +21,7 @@
 // light, 1 blocking), CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER.
 #include "inject/cell_keys.h"
 #include "shared/grid.h"
-#include "shared/thinned.h"
+#include "shared/subsampling.h"
 #include "raster/surface.h"
 #include "shared/view_injection.h"
 
@@ -65,15 +65,16 @@ __kernel void find_cells(__global const ClpvInjection* restrict injections,
   const ClpvView view = injections[surface].view;
   const ClpvGrid grid = injections[surface].grid;
   const float colour_scale = injections[surface].colour_scale;
-  const uint width = taken_texels(view.width, stride), height = taken_texels(view.height, stride);
+  const uint width = sampled_texels(view.width, stride),
+             height = sampled_texels(view.height, stride);
   const uint first = get_global_id(0) * CLPV_STRIP, row = get_global_id(1);
   if (first >= width || row >= height) return;
   const uint last = min(first + CLPV_STRIP, width);
-  const uint py = taken_texel(row, stride);
+  const uint py = sampled_texel(row, stride);
   const uint n = grid.n + CLPV_GEOMETRY, first_key = surface * n * n * n;
   const float per_metre = 1.0f / grid.cell;
   for (uint column = first; column < last; ++column) {
-    const uint px = taken_texel(column, stride), texel = first_texel + py * view.width + px,
+    const uint px = sampled_texel(column, stride), texel = first_texel + py * view.width + px,
                i = (surface * height + row) * width + column;
     const float3 normal = load_normal(normals, texel);
     const float depth = CLPV_POINTS ? 1.0f : places[texel];

@@ -17,7 +17,7 @@
 //          sorted, count  (key, texel) of the sorted texels, and their number (sort_by_cell.cl)
 //          normals        of every texel of the surface (surface.h)
 //          shares         B of each sampled texel: every stride-th of every stride-th row
-//                         (thinned.h)
+//                         (subsampling.h)
 // In, out: volume         geometry volume
 //          partials, firsts   sums and first texels of the corners with several segments
 // From the host: CLPV_GRID, CLPV_SURFACE_PAPER, and the literals of blocking.h.
@@ -26,7 +26,7 @@
 #include "raster/surface.h"
 #include "shared/grid.h"
 #include "shared/view_injection.h"
-#include "shared/thinned.h"
+#include "shared/subsampling.h"
 #include "volume/geometry.h"
 
 enum {
@@ -47,17 +47,17 @@ typedef struct {
   uint number;
 } Texels;
 
-// Index of the i-th texel taken from the surfaces.
-static inline uint taken_index(const Texels texels, const uint i) {
-  const uint width = texels.surface->view.width, of_row = taken_texels(width, texels.stride),
+// Index of the i-th sampled texel of the surfaces.
+static inline uint sampled_index(const Texels texels, const uint i) {
+  const uint width = texels.surface->view.width, of_row = sampled_texels(width, texels.stride),
              row = i / of_row - texels.number *
-                                    taken_texels(texels.surface->view.height, texels.stride);
-  return texels.surface->first + taken_texel(row, texels.stride) * width +
-         taken_texel(i % of_row, texels.stride);
+                                    sampled_texels(texels.surface->view.height, texels.stride);
+  return texels.surface->first + sampled_texel(row, texels.stride) * width +
+         sampled_texel(i % of_row, texels.stride);
 }
 
 static inline Sums add_texel(Sums sums, const uint texel, const Texels texels CLPV_AND_H) {
-  const float3 n = load_normal(texels.normals, taken_index(texels, texel));
+  const float3 n = load_normal(texels.normals, sampled_index(texels, texel));
   sums.channel[0] = add_scaled(sums.channel[0], texels.shares[texel],
                                surfel_blocker(n.x, n.y, n.z CLPV_PASS_H));
   return sums;

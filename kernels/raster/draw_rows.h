@@ -58,9 +58,10 @@ CLPV_INLINE void draw(const ClpvView view, const Tile tile, __global const ClpvR
   }
 }
 
-CLPV_RARE void draw_masked(const ClpvView view, const Tile tile,
-                           __global const ClpvRasterTriangle* r, const uint kind,
-                           const Scene scene) {
+CLPV_OUT_OF_LINE_ON_CPUS
+void draw_masked(const ClpvView view, const Tile tile,
+                 __global const ClpvRasterTriangle* r, const uint kind,
+                 const Scene scene) {
   Mask mask;
   draw(view, tile, r, kind, true, &mask, tile.only_depth, scene);
 }
@@ -88,9 +89,10 @@ CLPV_INLINE void draw_listed(const ClpvView view, const Tile tile,
 }
 
 // Draws the `count` triangles of the list whose boxes overlap the tile.
-CLPV_RARE void draw_whole_list(const ClpvView view, const Tile tile,
-                               __global const ClpvRasterTriangle* list, const uint count,
-                               const Scene scene) {
+CLPV_OUT_OF_LINE_ON_CPUS
+void draw_whole_list(const ClpvView view, const Tile tile,
+                     __global const ClpvRasterTriangle* list, const uint count,
+                     const Scene scene) {
   const int right = tile.x + W - 1, bottom = tile.y + CLPV_ROWS - 1;
   for (uint first = 0; first < count; first += CLPV_LONGEST_LOOP) {
     const uint stop = min(count - first, CLPV_LONGEST_LOOP) + first;

@@ -34,7 +34,7 @@ static inline float2 guard_band(const ClpvView view) {
 }
 
 // Outcodes of the points: CLPV_LEFT and so on.
-static inline intW where_is(const ClpvView view, const ViewPoint p) {
+static inline intW outcodes_of(const ClpvView view, const ViewPoint p) {
   const float2 guard = guard_band(view);
   const realW width = view.half_width * p.w, height = view.half_height * p.w;
   intW where = (all_bits(p.x < -width) & CLPV_LEFT) | (all_bits(p.x > width) & CLPV_RIGHT) |

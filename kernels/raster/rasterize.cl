@@ -87,7 +87,7 @@ __kernel void set_up(__constant const ClpvView* views, __global const ClpvViewCl
                      as_uintW(CLPV_COLUMN(rows, z)));
   const ViewPoint p = view_point(view, at.a), q = view_point(view, at.b),
                   r = view_point(view, at.c);
-  const intW p_is = where_is(view, p), q_is = where_is(view, q), r_is = where_is(view, r);
+  const intW p_is = outcodes_of(view, p), q_is = outcodes_of(view, q), r_is = outcodes_of(view, r);
   const intW visible = (number < last) & ((p_is & q_is & r_is & CLPV_OUT_OF_SIGHT) == 0);
   if (W > 1 && no_lane(visible)) return;
   const intW clipped = visible & (((p_is | q_is | r_is) & CLPV_NEEDS_CLIPPING) != 0);

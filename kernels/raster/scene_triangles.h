@@ -17,10 +17,10 @@
       __global const uint *texels
 #define CLPV_PASS_SCENE vertices, triangles, materials, textures, texels
 
-// Loads a row per lane or, if `alike` (a literal), one row for all lanes.
-CLPV_INLINE void load_rows(__global const float4* from, const uintW at, const bool alike,
+// Loads a row per lane or, if `same_triangle` (a literal), one row for all lanes.
+CLPV_INLINE void load_rows(__global const float4* from, const uintW at, const bool same_triangle,
                            Rows* rows) {
-  if (alike) {
+  if (same_triangle) {
     spread_row(from, first_lane(at), rows);
   } else {
     gather_rows(from, at, rows);
@@ -35,18 +35,18 @@ typedef struct {
 } VertexAttributes;
 
 CLPV_INLINE void load_corner(__global const float4* vertices, const uintW index,
-                             const bool alike, VertexAttributes* corner) {
+                             const bool same_triangle, VertexAttributes* corner) {
   Rows first, second;
   const uintW row = CLPV_VERTEX_ROWS * index;
-  load_rows(vertices + CLPV_VERTEX_POSITION, row, alike, &first);
-  load_rows(vertices + CLPV_VERTEX_UV, row, alike, &second);
+  load_rows(vertices + CLPV_VERTEX_POSITION, row, same_triangle, &first);
+  load_rows(vertices + CLPV_VERTEX_UV, row, same_triangle, &second);
   corner->position = vec(CLPV_COLUMN(first, x), CLPV_COLUMN(first, y), CLPV_COLUMN(first, z));
   corner->normal = vec(CLPV_COLUMN(first, w), CLPV_COLUMN(second, x), CLPV_COLUMN(second, y));
   corner->uv.u = CLPV_COLUMN(second, z);
   corner->uv.v = CLPV_COLUMN(second, w);
   if (!CLPV_COLOURED) return;
   Rows third;
-  load_rows(vertices + CLPV_VERTEX_COLOUR, row, alike, &third);
+  load_rows(vertices + CLPV_VERTEX_COLOUR, row, same_triangle, &third);
   corner->colour = vec(CLPV_COLUMN(third, x), CLPV_COLUMN(third, y), CLPV_COLUMN(third, z));
 }
 
@@ -56,17 +56,17 @@ typedef struct {
 } MaterialLanes;
 
 CLPV_INLINE void load_material(__global const float4* materials, const uintW index,
-                               const bool alike, MaterialLanes* material) {
+                               const bool same_triangle, MaterialLanes* material) {
   Rows base, textures;
   const uintW row = CLPV_MATERIAL_ROWS * index;
-  load_rows(materials + CLPV_MATERIAL_COLOUR, row, alike, &base);
-  load_rows(materials + CLPV_MATERIAL_TEXTURES, row, alike, &textures);
+  load_rows(materials + CLPV_MATERIAL_COLOUR, row, same_triangle, &base);
+  load_rows(materials + CLPV_MATERIAL_TEXTURES, row, same_triangle, &textures);
   material->base_colour = vec(CLPV_COLUMN(base, x), CLPV_COLUMN(base, y), CLPV_COLUMN(base, z));
   material->texture = as_uintW(CLPV_COLUMN(textures, x));
   material->flags = as_uintW(CLPV_COLUMN(textures, z));
   if (!CLPV_EMISSIVE) return;
   Rows emissive;
-  load_rows(materials + CLPV_MATERIAL_EMISSIVE, row, alike, &emissive);
+  load_rows(materials + CLPV_MATERIAL_EMISSIVE, row, same_triangle, &emissive);
   material->emissive =
       vec(CLPV_COLUMN(emissive, x), CLPV_COLUMN(emissive, y), CLPV_COLUMN(emissive, z));
   material->emissive_texture = as_uintW(CLPV_COLUMN(textures, y));
@@ -78,15 +78,15 @@ typedef struct {
   MaterialLanes material;
 } TriangleLanes;
 
-// `alike`: all lanes have the same triangle.
-CLPV_INLINE void load_triangles(CLPV_SCENE, const uintW number, const bool alike,
+// `same_triangle`: all lanes have the same triangle.
+CLPV_INLINE void load_triangles(CLPV_SCENE, const uintW number, const bool same_triangle,
                                 TriangleLanes* t) {
   Rows indices;
-  load_rows(triangles, number, alike, &indices);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, x)), alike, &t->a);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, y)), alike, &t->b);
-  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, z)), alike, &t->c);
-  load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), alike, &t->material);
+  load_rows(triangles, number, same_triangle, &indices);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, x)), same_triangle, &t->a);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, y)), same_triangle, &t->b);
+  load_corner(vertices, as_uintW(CLPV_COLUMN(indices, z)), same_triangle, &t->c);
+  load_material(materials, as_uintW(CLPV_COLUMN(indices, w)), same_triangle, &t->material);
 }
 
 // Interpolated normal of length 1, flipped to the side of `front`. Near a silhouette the

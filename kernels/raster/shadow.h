@@ -40,7 +40,7 @@ typedef struct {
 } Receivers;
 
 // Sets up receivers. `offset`: from the light's eye to the surfaces [m]; `normal`: the triangle's;
-// `cosine`: between it and the direction to the light.
+// `cosine`: of the angle between `normal` and the direction to the light.
 CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec normal,
                                 const realW cosine, Receivers* r) {
   const Vec right = vec_of(view.right), up = vec_of(view.up), forward = vec_of(view.forward);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Filtered look-ups in the scene's textures (shared/mesh.h), W at a time: bilinear and trilinear,
-// with sRGB decoded before filtering. All levels of a texture wrap alike.
+// with sRGB decoded before filtering. All levels of a texture wrap in the same way.
 #pragma once
 
 #include "lanes.h"

@@ -34,7 +34,8 @@ CLPV_INLINE void edges_at(__global const ClpvRasterTriangle* r, const int px, co
 }
 
 // Mask of the W pixels from (px, py) on that a giant triangle covers. Giants are few.
-CLPV_RARE intW covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
+CLPV_OUT_OF_LINE_ON_CPUS
+intW covered_by_giant(__global const ClpvRasterTriangle* r, const int px, const int py) {
   const longW lane = to_longW(lane_numbers());
   const Edge e0 = edge_at(r, 0, px, py), e1 = edge_at(r, 1, px, py), e2 = edge_at(r, 2, px, py);
   const longW v0 = e0.value + lane * e0.step_x, v1 = e1.value + lane * e1.step_x,

@@ -104,15 +104,16 @@ def draw(path):
     """All bounces above, path tracing below, at one exposure for both."""
     rooms = [(room, degrees) for room in ROOMS if "shown" in room
              for degrees in (0, room["degrees"])]
-    made = style.Sheet(["All bounces, by clpv above and by path tracing below (means of 3 x 3 pixels)"],
-                       len(rooms), 2 * len(rooms), tuple(length / 100 for length in SHOWN), above=True)
+    title = "All bounces, by clpv above and by path tracing below (means of 3 x 3 pixels)"
+    made = style.Sheet([title], len(rooms), 2 * len(rooms),
+                       tuple(length / 100 for length in SHOWN), above=True)
     for i, (room, degrees) in enumerate(rooms):
         scene = scene_of(room, degrees)
         truth = clpv.pathtrace(scene, "full", None, *SHOWN, samples=room["paths"])
         with clpv.Renderer(scene, **CASCADES) as renderer:
             image = renderer.render("full", size=SHOWN)
         energy = clpv.compare(image, truth).energy_ratio
-        exposure, caption = truth.automatic_exposure(), f"{room['shown']}, turned by {degrees} degrees"
+        exposure, caption = truth.automatic_exposure(), f"{room['shown']}, {degrees} degrees"
         for k, (shown, text) in enumerate(
             ((image, f"{caption}: energy {energy:.2f}"), (smooth(truth), "path traced"))):
             made.tile(i + k * len(rooms), text).imshow(shown.display(exposure))

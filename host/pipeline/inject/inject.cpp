@@ -2,7 +2,7 @@
 #include "pipeline/inject/inject.hpp"
 
 #include "kernels/shared/sort.h"
-#include "kernels/shared/thinned.h"
+#include "kernels/shared/subsampling.h"
 #include "kernels/shared/view_injection.h"
 #include "pipeline/inject/lookup_table.hpp"
 #include "support/error.hpp"
@@ -103,8 +103,8 @@ void Injector::inject_cells(Kind kind, const std::vector<Target>& targets, int s
   const bool light = kind == Kind::light;
   const Surface& surface = targets.front().surface;
   const unsigned step = stride;
-  const std::size_t width = taken_texels(surface.view.width, step),
-                    height = taken_texels(surface.view.height, step), count = targets.size(),
+  const std::size_t width = sampled_texels(surface.view.width, step),
+                    height = sampled_texels(surface.view.height, step), count = targets.size(),
                     texels = width * height * count;
   if (texels == 0) return;
   const cl_uint length = segment_length(width * height), blocks = (texels + length - 1) / length;
