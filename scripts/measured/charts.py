@@ -1,21 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Charts of what clpv wrote.
+"""Charts and pictures of the docs.
 
-    scripts/charts lambda -o FILE.png                           condition, error and energy of SRBF
-                                                                bases over the bandwidth; lambdas
-                                                                that clpv rejects are missing. Needs
-                                                                a build
-    scripts/charts times DIR -o FILE.png                        times.jsonl of `clpv sequence`:
-                                                                median, 95th percentile and maximum
-                                                                of each stage; time of every frame
-    scripts/charts probes FILE.json -o FILE.png                 results/docs/bake.json: error of light
-                                                                probes over bytes
-    scripts/charts spheres -o FILE.jpg                          moving spheres that baked probes
-                                                                light, and the same by path tracing.
-                                                                Needs a build
-    scripts/charts stability [LABEL=]DIR ... -o FILE.png        of `clpv sequence --stability`
+    scripts/charts lambda -o FILE.png     condition, error and energy of SRBF bases over the
+                                          bandwidth; lambdas that clpv rejects are missing
+    scripts/charts probes -o FILE.png     results/docs/bake.json: error of light probes over bytes
+    scripts/charts spheres -o FILE.jpg    spheres that baked probes light, and by path tracing
 
-Needs Debian's Python and the packages of scripts/setup."""
+Needs a build, Debian's Python and the packages of scripts/setup."""
 import argparse
 import json
 import math
@@ -24,7 +15,7 @@ import sys
 
 import numpy
 
-from . import CLPV, ROOT, bake, native, output
+from . import CLPV, RESULTS, ROOT, bake, native, output
 
 clpv = native()
 from clpv.draw import style  # noqa: E402
@@ -32,7 +23,6 @@ from clpv.draw import style  # noqa: E402
 sys.path.insert(0, str(ROOT / "examples"))
 import probes  # noqa: E402  pylint: disable=wrong-import-position
 
-MINIMUM = 1e-5  # smaller changes show as this on the logarithmic axis
 BASES = ("srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 FORMATS = ("sh2", "zh3", "sh3", "srbf8v2", "ambient-cube", "ambient-cube-mean")
 LAMBDAS = [round(0.05 * i, 2) for i in range(1, 15)]
@@ -75,7 +65,7 @@ def described(name, bandwidth):
             "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)}
 
 
-def draw_lambda(_, target):
+def draw_lambda(target):
     curves = {name: [point for point in (described(name, value) for value in LAMBDAS) if point]
               for name in BASES}
     figure, panels = style.panels(3, 3, (4.27, 4.2))
@@ -100,55 +90,9 @@ def draw_lambda(_, target):
     save(figure, target, 80)
 
 
-def stage_samples(frames):
-    """Returns {stage: ms of each frame}; 0 for a frame that skipped the stage."""
-    stages = list(dict.fromkeys(entry["stage"] for frame in frames for entry in frame["stages"]))
-    return {stage: [sum(e["ms"] for e in frame["stages"] if e["stage"] == stage) for frame in frames]
-            for stage in stages}
-
-
-def steady_frames(file):
-    """Lines of times.jsonl: the last of each frame with the settings of the last summary, without
-    first frames of a process."""
-    lines = []
-    for line in file.read_text(encoding="utf-8").splitlines():
-        try:
-            lines.append(json.loads(line))
-        except ValueError:
-            pass  # torn by a crash
-    summaries = [line["summary"] for line in lines if "summary" in line]
-    if not summaries:
-        sys.exit(f"{file}: no summary: the run did not end")
-    frames = {line["frame"]: line for line in lines
-              if line.get("settings") == summaries[-1]["settings"]}
-    return [frames[number] for number in sorted(frames) if not frames[number]["first"]]
-
-
-def draw_times(files, target):
-    (_, file), = files
-    frames = steady_frames(file)
-    if not frames:
-        sys.exit(f"{file}: only first frames of runs")
-    samples = stage_samples(frames)
-    samples["frame (wall)"] = [frame["frame_ms"] for frame in frames]
-    figure, (left, right) = style.panels(2, 2, (4.6, 3.4))
-    names = list(samples)[::-1]
-    left.barh(names, [numpy.quantile(samples[n], 0.5) for n in names], color=style.colour(0),
-              label="median")
-    for marker, share, label in (("|", 0.95, "95th percentile"), ("x", 1.0, "maximum")):
-        left.plot([numpy.quantile(samples[n], share) for n in names], names, marker,
-                  color=style.INK, ls="", label=label)
-    left.set(xlabel="ms", title=f"Stages of {len(frames)} frames")
-    left.legend(fontsize=7)
-    right.plot([frame["time"] for frame in frames], samples["frame (wall)"], lw=1,
-               color=style.colour(0))
-    right.set(xlabel="s", ylabel="ms", title="Every frame (wall)", ylim=(0, None))
-    save(figure, target, 100)
-
-
-def draw_probes(files, target):
+def draw_probes(target):
     """Errors of light probes by format, from coarse to fine spacing, over bytes of the volume."""
-    rows = json.loads(files[0][1].read_text(encoding="utf-8"))["rows"]
+    rows = json.loads((RESULTS / "docs/bake.json").read_text(encoding="utf-8"))["rows"]
     figure, panels = style.panels(4, 2, (5.2, 3.6))
     places = [(source, place) for source in bake.SOURCES for place in ("surface", "air")]
     for panel, (source, place) in zip(panels, places):
@@ -185,7 +129,7 @@ def seen_spheres(camera, depth):
     return shown, points[shown], normals[shown]
 
 
-def draw_spheres(_, target):
+def draw_spheres(target):
     """The atrium with spheres that the scene does not have, by probes and by path tracing."""
     file = ROOT / "scenes/atrium.json"
     scene = clpv.Scene(file)
@@ -215,42 +159,14 @@ def draw_spheres(_, target):
     made.save(target, 100)
 
 
-def draw_stability(files, target):
-    figure, (axis,) = style.panels(1, 1, (8.6, 3.4))
-    for i, (label, file) in enumerate(files):
-        document = json.loads(file.read_text(encoding="utf-8"))
-        frames = [f for f in document["frames"] if f["change"] is not None]
-        axis.plot([f["time"] for f in frames], [100 * max(f["change"], MINIMUM) for f in frames],
-                  lw=1, marker=".", ms=3, color=style.colour(i), label=label)
-        traced = [(f["time"], 100 * f["traced"]) for f in frames if f["traced"] is not None]
-        if traced:
-            axis.plot(*zip(*traced), lw=1, ls="--", color=style.colour(len(files) + i),
-                      label=f"path tracing, {document['traced_spp']} paths per pixel: noise")
-    axis.set(xlabel="s", ylabel="change of irradiance [% of its mean]",
-             title="Change between frames, on surfaces that do not move (lowest line: none)")
-    style.logarithmic(axis.yaxis)
-    axis.legend(fontsize=7, ncol=3, loc="upper center", bbox_to_anchor=(0.5, -0.18))
-    save(figure, target, 100)
-
-
-# How many files each chart reads, and the file of a folder.
-CHARTS = {"lambda": (draw_lambda, range(1), ""), "times": (draw_times, range(1, 2), "times.jsonl"),
-          "probes": (draw_probes, range(1, 2), ""), "spheres": (draw_spheres, range(1), ""),
-          "stability": (draw_stability, range(1, 1000), "stability.json")}
+CHARTS = {"lambda": draw_lambda, "probes": draw_probes, "spheres": draw_spheres}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("chart", choices=CHARTS)
-    parser.add_argument("files", nargs="*", metavar="[LABEL=]FILE")
-    parser.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="FILE.png")
+    parser.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="FILE")
     arguments = parser.parse_args()
-    files = [given.rpartition("=") for given in arguments.files]
-    draw, allowed, name = CHARTS[arguments.chart]
-    if len(files) not in allowed:
-        parser.error(f"{arguments.chart}: found {len(files)} files; allowed: {allowed[0]} to {allowed[-1]}")
-    files = [(label or pathlib.Path(path).name, pathlib.Path(path) / name) for label, _, path in files]
-    output.target_of(arguments.output, *(path for _, path in files))
-    draw(files, arguments.output)
+    CHARTS[arguments.chart](output.target_of(arguments.output))
     return 0

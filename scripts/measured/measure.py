@@ -119,8 +119,8 @@ def measure_docs(folder, model, parts):
     if "bake" in parts:
         write(folder, "bake", {"measured": measured, "rows": bake.measure(model),
                                "part": bake.measure_part()})
-        charts.draw_probes([("", folder / "bake.json")], ROOT / "docs/images/probes.png")
-        charts.draw_spheres([], ROOT / "docs/images/spheres.jpg")
+        charts.draw_probes(ROOT / "docs/images/probes.png")
+        charts.draw_spheres(ROOT / "docs/images/spheres.jpg")
     if "bake-leaks" in parts:
         write(folder, "bake-leaks", {"measured": measured, "rows": bake.measure_leaks()})
     if "leaks" in parts:

@@ -157,7 +157,7 @@ def frames_and_errors():
     """Frame times beside errors, of the same frames."""
     return [{**found(load("quality")["variants"], options=options), "name": name}
             for name, options in (("the defaults", known.BEST), ("`--preset fast`", known.FAST),
-                                  ("published scheme, sh2", known.PAPER))]
+                                  ("published scheme, sh2, in images", known.PAPER))]
 
 
 @rows
