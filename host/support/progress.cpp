@@ -73,8 +73,7 @@ std::string progress_words(const std::string& title, std::uint64_t done, std::ui
                            double elapsed_seconds) {
   const double share = share_of(done, total);
   const std::string left = time_left(share, elapsed_seconds);
-  return fmt::format("{}: {} of {}, {:.0f} %{}{}", title, done, total, 100 * share,
-                     left.empty() ? "" : ", ", left);
+  return fmt::format("{}: {:.0f} %{}{}", title, 100 * share, left.empty() ? "" : ", ", left);
 }
 
 std::string progress_line(const std::string& title, std::uint64_t done, std::uint64_t total,

@@ -43,7 +43,7 @@ class Progress {
   std::mutex mutex_;
 };
 
-/// Returns the log line of a Progress: "quality: 118 of 360, 33 %, 2:10 left".
+/// Returns the log line of a Progress: "quality: 33 %, 2:10 left".
 std::string progress_words(const std::string& title, std::uint64_t done, std::uint64_t total,
                            double elapsed_seconds);
 
