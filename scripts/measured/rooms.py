@@ -16,8 +16,6 @@ from clpv.draw import style  # noqa: E402
 SIZE, PATHS = (120, 68), 256  # of a row of the table; paths a pixel
 SHOWN = 240, 135  # pixels of a tile of the picture
 CASCADES = {"cascades": 3, "cascade_size": 12.5}
-DARK = 0.7  # a pixel below this share of the median around it counts as dark
-AROUND = 9  # edge of the square of that median [pixels]
 
 
 def turned(points, degrees):
@@ -38,8 +36,6 @@ def quads(air, solid):
         u, v = (axis + 1) % 3, (axis + 2) % 3
         step = np.diff(full.astype(int), axis=axis)
         for cell in np.argwhere(step):
-            if cell[u] == 0 or cell[v] == 0:
-                continue  # outside of all boxes
             corners = np.empty((4, 3))
             corners[:, axis] = planes[axis][cell[axis]]
             corners[:, u] = planes[u][cell[u] - 1 + np.array([0, 1, 1, 0])]
@@ -66,14 +62,6 @@ def irradiance(scene, bounces, size, options):
         return renderer.render("irradiance", size=size)
 
 
-def dark(image):
-    """Share of pixels that are much darker than those around them."""
-    green, half = image.array[..., 1], AROUND // 2
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(green, half, mode="edge"),
-                                                      (AROUND, AROUND))
-    return float((green < DARK * np.median(around, axis=(2, 3))).mean())
-
-
 def row_of(room, degrees, bounces):
     scene = scene_of(room, degrees)
     image = irradiance(scene, bounces, SIZE, room.get("options", {}))
@@ -84,7 +72,7 @@ def row_of(room, degrees, bounces):
         truth = clpv.pathtrace(scene, "irradiance", None, *SIZE, bounces=bounces, samples=PATHS)
     compared = clpv.compare(image.array[..., :3], truth.array[..., :3])
     return {"room": room["title"], "degrees": degrees, "bounces": bounces,
-            "energy": compared.energy_ratio, "nrmse": compared.nrmse, "dark": dark(image)}
+            "energy": compared.energy_ratio, "nrmse": compared.nrmse}
 
 
 def measure():

@@ -5,12 +5,15 @@ tracing.
     lab/scripts/standing --model PATH/Sponza.gltf [DEVICE]    13 minutes on two cores, as much again
                                                               for truths
     lab/scripts/standing --picture --model PATH/Sponza.gltf   two minutes
+    lab/scripts/standing --own --model PATH/Sponza.gltf       three minutes, and ten for truths
 
 Writes a file of lab/results/quality, named after device and commit, and the pictures of
-lab/docs/other_methods.md, --picture only the one of images; lab/scripts/tables then writes the tables of lab/docs/results.md. DEVICE:
+lab/docs/other_methods.md; --picture only the one of images; --own renews the errors of clpv and
+of the published scheme at 240x135 in each file there; lab/scripts/tables then writes the tables of lab/docs/results.md. DEVICE:
 as --device of clpv takes it; default: the first. Commit and build first (scripts/build), and keep
 the machine free of other work. """
 import argparse
+import json
 import os
 import pathlib
 import re
@@ -19,6 +22,7 @@ import tempfile
 import numpy
 
 from measured import LAB, ROOT, charts
+from measured.cells import found
 from measured.charts import clpv, style
 from measured.measure import FRAME_COUNT, measured_with, run, scenes_of, write
 from measured.rows import VIEWS
@@ -39,6 +43,7 @@ METHODS = ("paths", "paths-filtered", "vpl", "vpl-interleaved", "ddgi-first", "d
 BASELINES = ["--preset=best", f"--baseline={','.join(METHODS)}"]
 OF_A_TIME = ["--preset=best", f"--baseline={','.join(METHODS[:-1])}"]  # the last takes its own time
 SIZES = {"small": ["--noise=0.03"], "large": ["--width=960", "--height=540", "--noise=0.06"]}
+ERRORS = "nrmse", "nrmse_best_gain", "best_gain", "energy_ratio", "flip"
 SHARED = "rasterize-camera", "rasterize-shadow", "shade"  # stages whose time baselines do not get
 # Error against time, for the chart: clpv by grid, other methods by their time [ms].
 FRONT = [*VIEWS, "--noise=0.03"]
@@ -88,6 +93,7 @@ def measure_standing(folder, model):
                              "--fresh", f"--frames={STANDING_COUNT}", "--output", program=LAB)
                 for cell in report["cells"]:
                     cell["method"] = method_of(cell, options)
+                    cell["scene"] = cell["scene"].removesuffix("_suns")
                 document[name] += [cell for cell in report["cells"] if cell["method"]]
             document["ground_truths"] += [
                 {**truth, "file": pathlib.Path(truth["file"]).name, "size": size}
@@ -103,6 +109,25 @@ def measure_standing(folder, model):
         if row["series"] != "paths":  # above the chart
             series.setdefault(row["series"], []).append(row)
     charts.draw_errors(series, ROOT / "docs/images/baselines.png")
+
+
+def renew_own(model):
+    """Errors of the frames that are clpv's own, beside times and other methods as they are."""
+    report = [(options, run("quality", *scenes_of(arguments, model), *SIZES["small"], *options,
+                            "--frames=1", "--output", program=LAB))
+              for arguments in STANDING for options in STANDING_FRAMES]
+    measured = measured_with(report[0][1]["device"])
+    for path in FOLDER.glob("*.json"):
+        document = json.loads(path.read_text(encoding="utf-8"))
+        for options, each in report:
+            for cell in each["cells"]:
+                row = found(document["small"], scene=cell["scene"].removesuffix("_suns"),
+                            camera=cell["camera"], method=method_of(cell, options))
+                row.update({name: cell[name] for name in ERRORS})
+        document["measured"]["except"] = (
+            "errors of clpv and the published scheme at 240x135, of "
+            f"{measured['commit']} on {measured['device']}")
+        write(FOLDER, path.stem, document)
 
 
 def measure_front(model):
@@ -172,11 +197,12 @@ def main():
     parser.add_argument("--model", type=pathlib.Path, required=True,
                         help="Sponza's glTF, of the Khronos sample models")
     parser.add_argument("--picture", action="store_true", help="the picture of images alone")
+    parser.add_argument("--own", action="store_true", help="errors of clpv's own frames alone")
     arguments = parser.parse_args()
     if arguments.device:
         os.environ["CLPV_DEVICE"] = arguments.device
-    if arguments.picture:
-        draw_methods(arguments.model.resolve())
+    if arguments.picture or arguments.own:
+        (draw_methods if arguments.picture else renew_own)(arguments.model.resolve())
         return 0
     measure_standing(FOLDER, arguments.model.resolve())
     print("lab/results/quality is written; lab/scripts/tables writes lab/docs/results.md")

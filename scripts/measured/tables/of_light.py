@@ -139,7 +139,7 @@ def leaks_open():
 
 @table
 def rooms():
-    """Energies at both angles, by one bounce and by all, and the most dark pixels."""
+    """Energies at both angles, by one bounce and by all."""
     lines = load("rooms")["rows"]
 
     def cell(title, column):
