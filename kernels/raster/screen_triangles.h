@@ -71,7 +71,7 @@ static inline TinyEdge tiny_edge(const ScreenCorner p, const ScreenCorner q, con
 
 // Mask of the triangles with a box of at most 2 x 2 pixels that cover no pixel centre. Exact; about
 // a third of such triangles are dropped.
-static inline intW misses(const ScreenTriangles t, const Box box) {
+static inline intW covers_no_centre(const ScreenTriangles t, const Box box) {
   const intW tiny = all_bits(box.small & (box.right - box.left <= 1) & (box.bottom - box.top <= 1));
   const TinyEdge e0 = tiny_edge(t.a, t.b, box, tiny), e1 = tiny_edge(t.b, t.c, box, tiny),
                  e2 = tiny_edge(t.c, t.a, box, tiny);
@@ -124,7 +124,7 @@ CLPV_INLINE intW find_words(const ClpvView view, ScreenTriangles t, intW mask, c
   const ScreenCorner b = t.b, c = t.c;
   t.b.x = wound < 0 ? c.x : b.x, t.b.y = wound < 0 ? c.y : b.y;
   t.c.x = wound < 0 ? b.x : c.x, t.c.y = wound < 0 ? b.y : c.y;
-  mask &= misses(t, box) == 0;
+  mask &= covers_no_centre(t, box) == 0;
   if (!no_lane(mask)) write_words(view, t, box, words);
   return mask;
 }

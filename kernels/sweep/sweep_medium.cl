@@ -30,7 +30,7 @@
 typedef struct {
   realW irradiance[3];
   realW x, y, z;
-} LitRow;
+} LightRow;
 
 // Mean irradiance of the part of cell (x, y, z) in the medium, for each channel. Points nearer to a
 // spot or point light than a quarter of a cell's edge count as that far away.
@@ -70,7 +70,7 @@ CLPV_INLINE void cell_irradiance(const ClpvGrid grid, const ClpvLight light, con
 // Computes the light of each row of the tile from cell (x, y, z) on. Returns true if any cell
 // receives light.
 CLPV_INLINE bool light_tile(const ClpvGrid grid, const ClpvLight light, const ShadowMap shadow,
-                            const int x, const int y, const int z, LitRow* rows) {
+                            const int x, const int y, const int z, LightRow* rows) {
   float brightest = 0.0f;
   for (int r = 0; r < W; ++r) {
     float red[W], green[W], blue[W], along_x[W], along_y[W],
@@ -89,7 +89,7 @@ CLPV_INLINE bool light_tile(const ClpvGrid grid, const ClpvLight light, const Sh
       cell_irradiance(grid, light, shadow, x + i, y + r, z, red + i, green + i, blue + i);
       brightest += red[i] + green[i] + blue[i];
     }
-    const LitRow row = {{load_lanes(red), load_lanes(green), load_lanes(blue)},
+    const LightRow row = {{load_lanes(red), load_lanes(green), load_lanes(blue)},
                         load_lanes(along_x), load_lanes(along_y), load_lanes(along_z)};
     rows[r] = row;
   }
@@ -97,7 +97,7 @@ CLPV_INLINE bool light_tile(const ClpvGrid grid, const ClpvLight light, const Sh
 }
 
 // p_b for light along a row's directions, up to a factor.
-CLPV_INLINE realW phase_to(const LitRow row, const float g, const float4 bin) {
+CLPV_INLINE realW phase_to(const LightRow row, const float g, const float4 bin) {
   const realW d = 1.0f + g * g - 2.0f * g * (bin.x * row.x + bin.y * row.y + bin.z * row.z);
   return 1.0f / (d * sqrt(d));
 }
@@ -126,7 +126,7 @@ __kernel void scatter_lights(const ClpvGrid grid, const ClpvLight light,
   const int x = W * (int)get_global_id(0), y = W * (int)get_global_id(1), z = (int)get_global_id(2);
   if (x >= CLPV_GRID || y >= CLPV_GRID) return;
   const ShadowMap shadow = {views, count, which, map};
-  LitRow rows[W];
+  LightRow rows[W];
   if (!light_tile(grid, light, shadow, x, y, z, rows)) return;
   const float g = light.medium.anisotropy, area = grid.cell * grid.cell;
   for (int r = 0; r < W; ++r) {
