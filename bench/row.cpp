@@ -16,7 +16,6 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "bench/ceilings.hpp"
 #include "bench/git_describe.h"
 #include "bench/suites.hpp"
 #include "clpv/version.hpp"
@@ -26,11 +25,6 @@
 #include "times/time_record.hpp"
 
 namespace clpv {
-
-namespace verify {
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cost, flops, bytes, working_set, reads_per_cell, writes_per_cell,
-                                   launches, fills, waits, arguments, written)
-}
 
 namespace bench {
 namespace {
@@ -78,14 +72,6 @@ std::string lobes_of(const RenderOptions& options) {
   return fmt::format("{}{}", name_of(options.lobe), in_kernel ? "-kernel" : "");
 }
 
-double Row::gflops() const {
-  return times.median > 0 ? cost.flops / times.median * 1e-6 : 0;
-}
-
-double Row::gbps() const {
-  return times.median > 0 ? cost.bytes / times.median * 1e-6 : 0;
-}
-
 nlohmann::json to_json(const Row& row, int index) {
   nlohmann::json json = {{"name", row.name},
                          {"run_name", row.name},
@@ -117,11 +103,11 @@ nlohmann::json to_json(const Row& row, int index) {
   if (row.problem) record.cascade = row.problem->cascade;
   json.update(nlohmann::json(record));
   json["p95"] = row.times.p95;
-  json.update(nlohmann::json(row.cost));
-  json.update({{"gflops", row.gflops()},
-               {"gbps", row.gbps()},
-               {"ceiling", text_or_null(row.ceiling)},
-               {"ceiling_share", row.ceiling_share},
+  json.update({{"launches", row.host.launches},
+               {"fills", row.host.fills},
+               {"waits", row.host.waits},
+               {"arguments", row.host.arguments},
+               {"written", row.host.written},
                {"max_rel_error", number_or_null(row.max_rel_error)},
                {"tolerance", row.tolerance},
                {"published_ms", number_or_null(row.published_ms)}});
@@ -137,10 +123,6 @@ namespace clpv::bench {
 // Writes benchmark results as JSON and tables.
 
 namespace {
-
-std::string or_dash(bool available, const std::string& text) {
-  return available ? text : "-";
-}
 
 /// The processor's name from /proc/cpuinfo, else "unknown".
 std::string host_cpu() {
@@ -169,9 +151,6 @@ std::string now() {
 
 }  // namespace
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Bandwidth, working_set, gbps)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Ceilings, gflops, bandwidths, launch_ms)
-
 nlohmann::json context_json(const Session& session) {
   const Device& device = session.device();
   std::array<char, 256> host{};
@@ -197,13 +176,11 @@ nlohmann::json context_json(const Session& session) {
           {"kernel_hash", kernel_hash()}};
 }
 
-nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
-                           const std::vector<Row>& rows) {
-  nlohmann::json list = nlohmann::json::array(), with_ceilings = context;
+nlohmann::json report_json(const nlohmann::json& context, const std::vector<Row>& rows) {
+  nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = 0; i < rows.size(); ++i)
     list.push_back(to_json(rows[i], static_cast<int>(i)));
-  with_ceilings["ceilings"] = ceilings;
-  return {{"context", with_ceilings}, {"benchmarks", list}};
+  return {{"context", context}, {"benchmarks", list}};
 }
 
 std::string report_github_action(const std::vector<Row>& rows) {
@@ -218,48 +195,14 @@ std::string report_github_action(const std::vector<Row>& rows) {
   return list.dump(2) + "\n";
 }
 
-namespace {
-
-/// Reasons of rows above 100 % of a ceiling, one line each.
-std::string notes_above_ceilings(const std::vector<Row>& rows) {
-  static constexpr std::pair<std::string_view, const char*> kReasons[] = {
-      {"bandwidth",
-       "caches serve some of the counted bytes, or the machine was slower for the ceiling"},
-      {"fma",
-       "the compiler removes some of the counted operations, or the machine was slower for the "
-       "ceiling"},
-      {"launch", "the machine was slower for the ceiling"}};
-  std::string text;
-  for (const auto& [ceiling, reason] : kReasons) {
-    const auto above = [&, name = ceiling](const Row& row) {
-      return row.ceiling == name && std::round(100 * row.ceiling_share) > 100;
-    };
-    if (std::ranges::any_of(rows, above))
-      text += fmt::format("above 100% {}: {}\n", ceiling, reason);
-  }
-  return text;
-}
-
-}  // namespace
-
 std::string report_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
-  const std::string head =
-      fmt::format("{:<{}} {:>10} {:>8} {:>10} {:>9} {:>8} {:>16} {:>9}\n", "row", width,
-                  "median ms", "mad", "wall ms", "GFLOP/s", "GB/s", "of ceiling", "error");
-  return head +
-         row_lines(rows, width,
-                   [](const Row& row) {
-                     return fmt::format(
-                         "{:>10.4f} {:>8.4f} {:>10.4f} {:>9} {:>8} {:>16} {:>9}", row.times.median,
-                         row.times.mad, row.wall_ms,
-                         or_dash(row.cost.flops > 0, fmt::format("{:.1f}", row.gflops())),
-                         or_dash(row.cost.bytes > 0, fmt::format("{:.1f}", row.gbps())),
-                         or_dash(!row.ceiling.empty(),
-                                 fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling)),
-                         error_text(row));
-                   }) +
-         notes_above_ceilings(rows);
+  return fmt::format("{:<{}} {:>10} {:>8} {:>10} {:>9}\n", "row", width, "median ms", "mad",
+                     "wall ms", "error") +
+         row_lines(rows, width, [](const Row& row) {
+           return fmt::format("{:>10.4f} {:>8.4f} {:>10.4f} {:>9}", row.times.median, row.times.mad,
+                              row.wall_ms, error_text(row));
+         });
 }
 
 }  // namespace clpv::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One row of a benchmark's results: the timed problem, its times, cost and error.
+// One row of a benchmark's results: the timed problem, its times and error.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace clpv::bench {
 
-using verify::Cost, verify::Status;
+using verify::Status;
 
 /// Default settings of timed stages: transport, lobes and blocking as published, volumes of layout
 /// `soa` in float, no occlusion.
@@ -41,7 +41,7 @@ std::string lobes_of(const RenderOptions& options);
 struct Row {
   std::string suite, stage, name;
   int coefficients = 0;            ///< functions of the basis
-  std::optional<Problem> problem;  ///< empty for rows without volumes: rasterising and ceilings
+  std::optional<Problem> problem;  ///< of the stage's volumes
   Status status = Status::ok;
   std::string reason;  ///< reason for `unsupported`, or place of the error for `wrong`
   std::string preset;  ///< suite frame
@@ -56,16 +56,10 @@ struct Row {
   double first_launch_ms = 0, build_ms = 0;
   /// Peaks of the run so far: buffers, process memory.
   std::size_t device_bytes = 0, host_bytes = 0;
-  Cost cost;
-  std::string ceiling;  ///< binding ceiling: "fma", "bandwidth" or "launch"; empty without measured
-                        ///< ceilings
-  double ceiling_share = 0;
+  HostWork host;                        ///< suite frame
   std::optional<double> max_rel_error;  ///< against the CPU reference; empty without one
   double tolerance = 0;
   std::optional<double> published_ms;  ///< time in the paper's Table 1
-
-  double gflops() const;
-  double gbps() const;
 };
 
 /// JSON with Google Benchmark's keys and clpv's (bench/README.md lists them). `iterations` is
@@ -82,8 +76,8 @@ struct Job : verify::Job {
   bool own_stages = false;
   /// Called after each run, warm-up included; may be null.
   std::function<void(const std::vector<StageTime>&)> after_run = {};
-  /// Adds numbers that only a run gives; called once, after all runs; may be null.
-  std::function<void(Cost&)> count = {};
+  /// The host's work of the last run; may be null.
+  std::function<HostWork()> count = {};
   /// Returns further rows, after the job's own; may be null.
   std::function<std::vector<Row>(const Row&)> more_rows = {};
 };
@@ -97,24 +91,19 @@ struct Case {
 
 // Results of a benchmark as text: JSON with Google Benchmark's keys, or a table.
 
-struct Ceilings;
-
 /// Context of a run: Google Benchmark's keys (date, host_name, num_cpus, load_avg ...) and clpv's
 /// (schema, clpv_version, git_describe, host_cpu, platform, device, driver, compute_units,
 /// build_options, kernel_hash).
 nlohmann::json context_json(const Session& session);
 
-/// {"context": ..., "benchmarks": [row, ...]}; `ceilings` becomes context/ceilings: gflops,
-/// bandwidths[], launch_ms.
-nlohmann::json report_json(const nlohmann::json& context, const Ceilings& ceilings,
-                           const std::vector<Row>& rows);
+/// {"context": ..., "benchmarks": [row, ...]}.
+nlohmann::json report_json(const nlohmann::json& context, const std::vector<Row>& rows);
 
 /// [{"name", "unit": "ms", "value", "range"}, ...]: medians and MADs of the rows of status ok, in
 /// the form that GitHub's benchmark actions read (smaller is better).
 std::string report_github_action(const std::vector<Row>& rows);
 
-/// Table with a line per row: name, median, MAD, wall time, GFLOP/s, GB/s, share of the ceiling,
-/// error.
+/// Table with a line per row: name, median, MAD, wall time, error.
 std::string report_table(const std::vector<Row>& rows);
 
 }  // namespace clpv::bench

@@ -103,16 +103,14 @@ void verify(CaseRun& run) {
   run.row.reason = deviation.place;
 }
 
-void complete_row(CaseRun& run, const RunnerOptions& options) {
+void complete_row(CaseRun& run) {
   Row& row = run.row;
   if (!row.from_events) row.samples_ms = run.wall_ms;  // also where the first were events
   row.times = statistics_of(row.samples_ms);
   row.wall_ms = statistics_of(run.wall_ms).median;
   row.cpu_ms /= static_cast<double>(row.samples_ms.size());
-  row.cost = run.job.cost;
-  if (run.job.count) run.job.count(row.cost);
+  if (run.job.count) row.host = run.job.count();
   row.host_bytes = peak_host_bytes();
-  if (options.ceilings != nullptr) set_ceiling(*options.ceilings, row);
   verify(run);
 }
 
@@ -187,7 +185,7 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases,
   };
   for (CaseRun& run : runs) {
     run.row.device_bytes = session.peak_device_bytes();
-    if (run.row.status == Status::ok) complete_row(run, options);
+    if (run.row.status == Status::ok) complete_row(run);
     add(run.row);
     if (run.row.status != Status::ok || !run.job.more_rows) continue;
     for (const Row& row : run.job.more_rows(run.row)) add(row);
@@ -195,7 +193,7 @@ std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases,
   return rows;
 }
 
-Results run_suite(Session& session, const Suite& suite, const BenchOptions& options) {
+std::vector<Row> run_suite(Session& session, const Suite& suite, const BenchOptions& options) {
   // Own what cases refer to.
   std::vector<Group> selected;
   std::size_t count = 0;
@@ -204,24 +202,16 @@ Results run_suite(Session& session, const Suite& suite, const BenchOptions& opti
     count += selected.back().size();
   }
   if (count == 0) throw Error(ExitCode::usage, "--filter: matches no row of suite {}", suite.name);
-  const bool is_ceilings_suite = suite.name == "ceilings";
-  const std::vector<Case> ceilings =
-      is_ceilings_suite ? std::vector<Case>{} : ceiling_cases(session);
   Progress progress("bench " + suite.name,
-                    (count + ceilings.size()) * static_cast<std::size_t>(options.repetitions + 1));
-  Results results;
+                    count * static_cast<std::size_t>(options.repetitions + 1));
   RowLog log(options.log);
-  RunnerOptions runner{options.repetitions, nullptr, &progress, &log};
-  if (!is_ceilings_suite) {
-    results.ceilings = ceilings_of(run_cases(session, ceilings, runner));
-    runner.ceilings = &results.ceilings;
-  }
+  std::vector<Row> rows;
   for (Group& cases : selected) {
-    std::ranges::move(run_cases(session, cases, runner), std::back_inserter(results.rows));
+    std::ranges::move(run_cases(session, cases, {options.repetitions, &progress, &log}),
+                      std::back_inserter(rows));
     cases.clear();
   }
-  if (is_ceilings_suite) results.ceilings = ceilings_of(results.rows);
-  return results;
+  return rows;
 }
 
 }  // namespace clpv::bench

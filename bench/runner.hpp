@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "bench/ceilings.hpp"
 #include "bench/row.hpp"
 #include "bench/suites.hpp"
 #include "support/progress.hpp"
@@ -43,7 +42,6 @@ class RowLog {
 
 struct RunnerOptions {
   int repetitions = 15;
-  const Ceilings* ceilings = nullptr;  ///< sets the rows' ceiling_share; null: not set
   /// Advances once per case set up and once per repetition; may be null.
   Progress* progress = nullptr;
   RowLog* log = nullptr;  ///< may be null
@@ -56,11 +54,6 @@ struct RunnerOptions {
 std::vector<Row> run_cases(Session& session, const std::vector<Case>& cases,
                            const RunnerOptions& options);
 
-struct Results {
-  Ceilings ceilings;
-  std::vector<Row> rows;
-};
-
 struct BenchOptions {
   std::optional<std::regex> filter;  ///< searched in row names; empty: all rows
   int repetitions = 15;
@@ -68,7 +61,7 @@ struct BenchOptions {
   std::filesystem::path log;  ///< file of the RowLog; empty: no log
 };
 
-/// Measures the ceilings, then the suite's rows. Throws Error(usage) if the filter matches no row.
-Results run_suite(Session& session, const Suite& suite, const BenchOptions& options);
+/// Measures the suite's rows. Throws Error(usage) if the filter matches no row.
+std::vector<Row> run_suite(Session& session, const Suite& suite, const BenchOptions& options);
 
 }  // namespace clpv::bench

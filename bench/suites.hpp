@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "bench/ceilings.hpp"
 #include "bench/stage_jobs.hpp"
 #include "scene/scene.hpp"
 #include "times/frame_times.hpp"
@@ -17,9 +16,9 @@ namespace clpv::bench {
 
 /// Scene, camera, bases and settings for a suite.
 struct SuiteOptions {
-  std::shared_ptr<const SceneData> scene;  ///< null: the hall
-  std::string camera;                      ///< by name; empty: the scene's first
-  std::vector<std::string> bases;          ///< empty: the suite's default bases
+  std::shared_ptr<const SceneData> scene;
+  std::string camera;              ///< by name; empty: the scene's first
+  std::vector<std::string> bases;  ///< empty: the suite's default bases
   /// Settings of all rows, apart from those that the suite varies.
   RenderOptions settings = timed_options();
 };
@@ -33,17 +32,14 @@ struct Suite {
   std::function<std::vector<Group>(Session&, const SuiteOptions&)> groups;
   /// Formats the rows as a table; null: report_table().
   std::function<std::string(const std::vector<Row>&)> table;
-  /// Default scene file, relative to the project's folder; empty: the hall.
-  std::string default_scene = {};
 };
 
 const std::vector<Suite>& suites();
 
-// Defined in suites/NAME.cpp, and in ceilings.cpp.
+// Defined in suites/NAME.cpp.
 Suite table1_suite();
 Suite layouts_suite();
 Suite bases_suite();
-Suite ceilings_suite();
 Suite frame_suite();
 
 /// The suite's settings with `basis`.
@@ -65,9 +61,7 @@ std::size_t name_width(const std::vector<Row>& rows);
 std::string row_lines(const std::vector<Row>& rows, std::size_t width,
                       const std::function<std::string(const Row&)>& columns);
 
-/// The scene of the options, else the hall.
-std::shared_ptr<const SceneData> scene_of(const SuiteOptions& options);
-/// A Bench whose inputs are rasterised from scene_of(options) with `settings`.
+/// A Bench whose inputs are rasterised from the scene of `options` with `settings`.
 std::shared_ptr<Bench> make_bench(Session& session, const SuiteOptions& options,
                                   const RenderOptions& settings);
 

@@ -109,19 +109,15 @@ Deviation compare_uncached(FrameSequence& sequence, Session& session) {
 
 Job frame_job(Session& session, const SuiteOptions& options, const RenderOptions& render,
               Recompute recompute) {
-  const auto sequence = std::make_shared<FrameSequence>(session, scene_of(options), options.camera,
-                                                        render, recompute);
+  const auto sequence =
+      std::make_shared<FrameSequence>(session, options.scene, options.camera, render, recompute);
   Job job;
   job.own_stages = true;
   job.reset = [sequence] { sequence->invalidate(); };
   job.run = [sequence] { sequence->frame.render(sequence->camera(sequence->next++)); };
   job.after_run = [sequence](const std::vector<StageTime>& times) { sequence->add(times); };
   job.more_rows = [sequence](const Row& row) { return pass_rows(sequence->times, row); };
-  job.count = [&session](Cost& cost) {
-    const HostWork& host = session.timeline().host();
-    cost.launches = host.launches, cost.fills = host.fills, cost.waits = host.waits,
-    cost.arguments = host.arguments, cost.written = static_cast<double>(host.written);
-  };
+  job.count = [&session] { return session.timeline().host(); };
   job.compare = [sequence, &session] { return compare_uncached(*sequence, session); };
   return job;
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Suite `layouts`: every stage with every layout and storage of its volumes, and its numbers of
-// reads and writes, by which the paper explains its times.
+// Suite `layouts`: every stage with every layout and storage of its volumes.
 
 #include <fmt/format.h>
 
@@ -52,30 +51,24 @@ const Row* paper_row(const std::vector<Row>& rows, const Row& row) {
 
 std::string layouts_table(const std::vector<Row>& rows) {
   const std::size_t width = name_width(rows);
-  const std::string text = fmt::format(
-      "{:<{}} {:>10} {:>9} {:>12} {:>12} {:>8} {:>16} {:>16} {:>9}\n", "row", width, "median ms",
-      "mad", "reads/cell", "writes/cell", "GB/s", "of ceiling", "vs image/half", "error");
+  const std::string text = fmt::format("{:<{}} {:>10} {:>9} {:>16} {:>9}\n", "row", width,
+                                       "median ms", "mad", "vs image/half", "error");
   const auto columns = [&](const Row& row) {
     const Row* paper = paper_row(rows, row);
     return fmt::format(
-        "{:>10.3f} {:>9.3f} {:>12.0f} {:>12.0f} {:>8.1f} {:>16} {:>16} {:>9}", row.times.median,
-        row.times.mad, row.cost.reads_per_cell, row.cost.writes_per_cell, row.gbps(),
-        fmt::format("{:.0f}% {}", 100 * row.ceiling_share, row.ceiling),
+        "{:>10.3f} {:>9.3f} {:>16} {:>9}", row.times.median, row.times.mad,
         paper != nullptr ? fmt::format("{:.1f}x", paper->times.median / row.times.median) : "-",
         error_text(row));
   };
   return text + row_lines(rows, width, columns) +
-         "\nreads, writes: numbers, or texels of 4 numbers, per cell and step over all channels, "
-         "after the first step; sweep: per cell in total; gather: per pixel in one cascade.\nvs "
-         "image/half: speed-up over half-float images.\n";
+         "\nvs image/half: speed-up over half-float images.\n";
 }
 
 }  // namespace
 
 Suite layouts_suite() {
   return {"layouts",
-          "each stage with each layout and storage of volumes: reads, writes, speed-up over "
-          "half-float images",
+          "each stage with each layout and storage of volumes: speed-up over half-float images",
           [](Session& session, const SuiteOptions& options) {
             const auto bench = make_bench(session, options, options.settings);
             const auto bases =

@@ -208,7 +208,7 @@ Suite table1_suite() {
             }
             return groups;
           },
-          table1_table, "scenes/atrium.json"};
+          table1_table};
 }
 
 }  // namespace clpv::bench

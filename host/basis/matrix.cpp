@@ -82,16 +82,4 @@ Matrix transposed(const Matrix& matrix) {
   return result;
 }
 
-int products(const Matrix& matrix) {
-  double largest = 0;
-  for (int r = 0; r < matrix.rows(); ++r) {
-    for (const double number : matrix.row(r)) largest = std::max(largest, std::abs(number));
-  }
-  int count = 0;
-  for (int r = 0; r < matrix.rows(); ++r) {
-    for (const double number : matrix.row(r)) count += is_negligible(number, largest) ? 0 : 1;
-  }
-  return count;
-}
-
 }  // namespace clpv

@@ -43,10 +43,6 @@ class Matrix {
 
 Matrix transposed(const Matrix& matrix);
 
-/// Number of entries that Literals::matrix() does not set to 0: multiply-adds of a product with
-/// `matrix`.
-int products(const Matrix& matrix);
-
 /// Returns sum_i a_i b_i over the elements of `a`; `b` has at least as many.
 double dot(std::span<const double> a, std::span<const double> b);
 

@@ -23,9 +23,11 @@
 namespace clpv {
 namespace bench_command {
 
+constexpr const char* kDefaultScene = "scenes/atrium.json";
+
 struct Options {
   double fail_above = 0;  ///< 0: not given
-  std::string suite, scene, model, filter, format, output, compare, plot, log;
+  std::string suite, scene = kDefaultScene, model, filter, format, output, compare, plot, log;
   SceneChanges changes;
   bench::BenchOptions bench;
 };
@@ -41,23 +43,23 @@ std::regex parse_filter(const std::string& text) {
 
 /// Name of the timed scene and camera: "sponza, camera curtains".
 std::string subject_of(const bench::SuiteOptions& options) {
-  const auto scene = bench::scene_of(options);
-  return fmt::format("{}, camera {}", scene->name, scene->camera(options.camera).name);
+  return fmt::format("{}, camera {}", options.scene->name,
+                     options.scene->camera(options.camera).name);
 }
 
 nlohmann::json report_of(const Options& options, const Session& session,
-                         const bench::Results& results) {
+                         const std::vector<bench::Row>& rows) {
   nlohmann::json context = bench::context_json(session);
   context["scene"] = subject_of(options.bench.suite);
-  return bench::report_json(context, results.ceilings, results.rows);
+  return bench::report_json(context, rows);
 }
 
 std::string as_text(const Options& options, std::string_view format, const bench::Suite& suite,
-                    const Session& session, const bench::Results& results) {
-  if (format == "json") return report_of(options, session, results).dump(2) + "\n";
-  if (format == "github-action") return bench::report_github_action(results.rows);
+                    const Session& session, const std::vector<bench::Row>& rows) {
+  if (format == "json") return report_of(options, session, rows).dump(2) + "\n";
+  if (format == "github-action") return bench::report_github_action(rows);
   return fmt::format("scene: {}\n", subject_of(options.bench.suite)) +
-         (suite.table ? suite.table(results.rows) : bench::report_table(results.rows));
+         (suite.table ? suite.table(rows) : bench::report_table(rows));
 }
 
 /// Reads the report of an earlier run before the benchmark starts. Null if not requested.
@@ -80,24 +82,14 @@ nlohmann::json earlier_run(const Options& options) {
 std::vector<NamedFile> outputs_of(const Options& options) {
   std::vector<NamedFile> outputs{{"--output", options.output}, {"--log", options.log}};
   if (options.plot.empty()) return outputs;
-  for (const char* chart : {"layouts", "roofline", "bases", "frame"})
-    for (const char* suffix : {"svg", "png"})
-      outputs.push_back(
-          {"--plot", std::filesystem::path(options.plot) / fmt::format("{}.{}", chart, suffix)});
+  for (const char* chart : {"layouts.svg", "layouts.png"})
+    outputs.push_back({"--plot", std::filesystem::path(options.plot) / chart});
   return outputs;
 }
 
-/// Loads the scene of --scene, or the default scene of the suite, into the options.
-void load_suite_scene(Options& options, const bench::Suite& suite) {
-  if (options.scene.empty() && !options.model.empty())
-    throw Error(ExitCode::usage, "--model {}: needs --scene", options.model);
-  if (options.scene.empty() && suite.default_scene.empty()) return;
-  if (options.scene.empty() && !std::filesystem::exists(suite.default_scene)) {
-    log_warning("{} does not exist: {} uses the generated hall", suite.default_scene, suite.name);
-    return;
-  }
-  const std::string file = options.scene.empty() ? suite.default_scene : options.scene;
-  MovingScene loaded(file, options.model);
+/// Loads the scene of --scene into the options.
+void load_suite_scene(Options& options) {
+  MovingScene loaded(options.scene, options.model);
   options.changes.apply(loaded);
   const auto scene = std::make_shared<const SceneData>(std::move(loaded).take());
   options.bench.suite.scene = scene;
@@ -127,6 +119,9 @@ void run(Options options, const Shared& shared) {
   std::optional<const Drawing> plot;  // before the benchmark, to report whether charts can be drawn
   std::optional<const OutputFolder> charts;
   if (!options.plot.empty()) {
+    if (options.suite != "layouts")
+      throw Error(ExitCode::usage, "--plot: suite {} has no chart; allowed: layouts",
+                  options.suite);
     plot.emplace("bench", "--plot");
     charts.emplace("--plot", options.plot);
   }
@@ -134,16 +129,16 @@ void run(Options options, const Shared& shared) {
   const nlohmann::json before = earlier_run(options);
   const bench::Suite& suite =
       *std::ranges::find(bench::suites(), options.suite, &bench::Suite::name);
-  load_suite_scene(options, suite);
+  load_suite_scene(options);
   check_outputs(outputs_of(options));
   const Device device = choose_device(shared.device);
   // Cached programs have no build time.
   Session session(device, ProgramCache::of_user(device));
   log_info("{} ({}), driver {}", session.device().name, session.device().platform,
            session.device().driver);
-  const bench::Results results = bench::run_suite(session, suite, options.bench);
+  const std::vector<bench::Row> rows = bench::run_suite(session, suite, options.bench);
   const auto text = [&](std::string_view format) {
-    return as_text(options, format, suite, session, results);
+    return as_text(options, format, suite, session, rows);
   };
   if (!options.output.empty()) write_file(options.output, text("json"));
   if (options.format == "table")
@@ -153,18 +148,18 @@ void run(Options options, const Shared& shared) {
   flush_data();
   bench::ReportChanges changes;
   if (!before.is_null()) {
-    changes = bench::compare_runs(before, report_of(options, session, results), options.compare);
+    changes = bench::compare_runs(before, report_of(options, session, rows), options.compare);
     std::erase_if(changes.lost, [&](const bench::LostRow& row) {
       return options.bench.filter && !std::regex_search(row.name, *options.bench.filter);
     });
     print_data("\n{}", bench::changes_table(changes));
   }
   if (plot) {
-    plot->add("bench.json", report_of(options, session, results));
+    plot->add("bench.json", report_of(options, session, rows));
     plot->draw(options.plot);
   }
   session.programs().store();
-  require_right_results(results.rows);
+  require_right_results(rows);
   if (!before.is_null()) bench::require_ratios(changes, options.fail_above);
 }
 
@@ -183,7 +178,7 @@ void add_bench(CLI::App& app, Shared& shared) {
   }
   command->add_option("SUITE", options->suite, suites)->required()->check(CLI::IsMember(names));
   add(*command, "--scene", "SCENE", options->scene,
-      "scene file or model (default: a generated hall; for table1: scenes/atrium.json)");
+      fmt::format("scene file or model (default: {})", kDefaultScene));
   add(*command, "--model", "PATH", options->model, "model file instead of the scene file's");
   CLI::Option* camera = add(*command, "--camera", "NAME", options->bench.suite.camera,
                             "name of the camera (default: the scene's first)");
@@ -203,7 +198,7 @@ void add_bench(CLI::App& app, Shared& shared) {
       "JSON of an earlier run, for a table of changes and their spread");
   add_fail_above(*command, options->fail_above);
   add(*command, "--plot", "DIR", options->plot,
-      "output folder for SVG and PNG charts; needs matplotlib");
+      "output folder for SVG and PNG charts of suite layouts; needs matplotlib");
   command->callback([options, &shared] { run(*options, shared); });
 }
 

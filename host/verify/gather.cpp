@@ -69,35 +69,11 @@ std::vector<double> expected_pixels(const GatherWork& p) {
   return values;
 }
 
-Cost cost_of(const GatherWork& p) {
-  const GatherOptions& o = p.problem.options;
-  const int n = p.problem.basis->size();
-  const auto pixels = static_cast<double>(p.pixels());
-  Cost cost;
-  cost.bytes = pixels * (sizeof(float) + 2 * sizeof(cl_float4));
-  for (const Volume& volume :
-       p.light.stored)  // images are read once; buffers are packed: read, written, read again
-    cost.bytes += static_cast<double>(volume.bytes()) * (o.format.layout == Layout::image ? 1 : 3);
-  cost.working_set = cost.bytes;
-  // Reads per pixel in one cascade: eight cells, or one filtered texel. A read of packed buffers
-  // has two coefficients of three channels.
-  const double texels = kChannels * accesses_per_cell(o.format, n);
-  cost.reads_per_cell = o.format.layout != Layout::image ? 8.0 * ((n + 1) / 2)
-                        : o.filtered                     ? texels
-                                                         : 8 * texels;
-  // Per coefficient and channel: 8 multiply-adds of the trilinear interpolation, unless the filter
-  // does them, and one of the dot product g(n) . c.
-  cost.flops =
-      pixels * kChannels * n * (filtered_by_device(o, p.problem.transport) ? 2 : 2 * 8 + 2);
-  return cost;
-}
-
 }  // namespace
 
 Job gather_job(Session& session, const GatherProblem& problem, const Share& share) {
   const auto p = std::make_shared<GatherWork>(session, problem);
   Job job;
-  job.cost = cost_of(*p);
   job.reset = [p, &session] { session.fill_zero(p->irradiance, p->bytes()); };
   job.run = [p] { p->gatherer.gather(p->problem.camera, p->light.gathered(), p->irradiance); };
   job.compare = [p, &session, share] {

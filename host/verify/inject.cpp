@@ -179,24 +179,6 @@ Deviation compare(Session& session, const InjectWork& p, const std::vector<doubl
   return result;
 }
 
-/// Bytes of each texel's depth and normal, and of its colour for the light volume. Clearing volumes
-/// is not timed.
-Cost cost_of(const InjectWork& p) {
-  const auto bytes = [](const Surface& surface, int fields) {
-    const std::size_t field =
-        surface.format == RsmFormat::paper ? sizeof(cl_uint) : sizeof(cl_float4);
-    return static_cast<double>(surface.view.width) * surface.view.height *
-           static_cast<double>(sizeof(float) + fields * field);
-  };
-  Cost cost;
-  if (p.problem.light) cost.bytes += bytes(p.problem.light->surface, 2);
-  for (const InjectedSurface& blocker : p.problem.blockers) cost.bytes += bytes(blocker.surface, 1);
-  cost.working_set = cost.bytes;
-  for (const std::optional<Volume>* volume : {&p.light, &p.geometry})
-    if (*volume) cost.working_set += static_cast<double>((*volume)->bytes());
-  return cost;
-}
-
 /// One case of injected light, or of geometry with blockers.
 struct InjectCase {
   InjectOptions options = {};
@@ -258,7 +240,6 @@ InjectedSurface upload_injected(Session& session, const SurfaceImage& image, Rsm
 Job inject_job(Session& session, const InjectProblem& problem, const Share& share) {
   const auto p = std::make_shared<InjectWork>(session, problem);
   Job job;
-  job.cost = cost_of(*p);
   job.reset = [p, &session] { p->clear(session); };
   job.run = [p] { p->run(); };
   job.compare = [p, &session, share] {

@@ -48,25 +48,11 @@ struct Deviation {
   }
 };
 
-/// Operations and bytes of the work, counted and not measured.
-struct Cost {
-  double flops = 0;  ///< executed by the kernels; a fused multiply-add counts as 2
-  /// Compulsory traffic: each input of a launch read once, each output written once.
-  double bytes = 0;
-  double working_set = 0;  ///< bytes touched in total; selects the bandwidth ceiling
-  /// Values (or texels) read from volumes per cell, over all channels and steps.
-  double reads_per_cell = 0;
-  double writes_per_cell = 0;
-  /// For a frame: HostWork.
-  double launches = 0, fills = 0, waits = 0, arguments = 0, written = 0;
-};
-
 struct Job {
   std::function<void()> reset = {};  ///< clears outputs before a repetition; may be null
   std::function<void()> run = {};    ///< enqueues the work
   std::function<Deviation()> compare =
       {};  ///< checks the last repetition's output; null: no reference
-  Cost cost = {};
 };
 
 inline constexpr double kChannels = 3;  ///< red, green, blue

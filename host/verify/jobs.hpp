@@ -110,8 +110,6 @@ struct SweepProblem {
   std::vector<std::vector<std::uint8_t>> occluded = {};
 };
 
-/// `cost` is that of one cascade with a dark border, one bounce and no medium; its time includes
-/// the links' transmittance.
 Job sweep_job(Session& session, const SweepProblem& problem, const Share& share = not_shared);
 
 /// A problem with random light, blockers and reflectors, and lights in the medium if the options

@@ -45,52 +45,6 @@ struct PropagateWork {
   }
 };
 
-/// Bytes and memory accesses to read or write `coefficients` numbers of a cell in a format.
-struct Access {
-  VolumeFormat format;
-  double bytes(int coefficients) const {
-    return static_cast<double>(bytes_per_cell(format, coefficients));
-  }
-  double count(int coefficients) const { return accesses_per_cell(format, coefficients); }
-};
-
-/// Adds the cost of one step. Bytes count each value once; reads count every access.
-/// `separate_sum`: the step reads the sum so far besides its source.
-void add_step(Cost& cost, const PropagateWork& p, bool blocked, bool separate_sum) {
-  const double cells = std::pow(p.problem.options.grid, 3);
-  const Access access{p.problem.options.format};
-  const int n = p.problem.basis->size();
-  const LinkTransmittance* transmitter = p.propagator.transmitter();
-  const int links =
-      blocked && transmitter != nullptr ? transmitter->transmittance().shape().coefficients : 0;
-  cost.bytes +=
-      cells * (kChannels * (3 + (separate_sum ? 1 : 0)) * access.bytes(n) + access.bytes(links));
-  cost.flops += cells * kChannels * (step_operations(p.problem.transport, blocked).flops() + n);
-  cost.reads_per_cell = kChannels * 7 * access.count(n) + access.count(links);
-  cost.writes_per_cell = kChannels * 2 * access.count(n);
-}
-
-/// Cost of the kernels, after a first run has built them. Reads and writes per cell are those of a
-/// later step.
-Cost cost_of(const PropagateWork& p) {
-  const PropagateOptions& o = p.problem.options;
-  const int n = p.problem.basis->size();
-  const double cells = std::pow(o.grid, 3), corners = std::pow((o.grid + 1.0) / o.grid, 3);
-  const Access access{o.format};
-  Cost cost;
-  for (int step = 1; step <= p.problem.steps; ++step)
-    add_step(cost, p, p.geometry.has_value(), step > 1);
-  double links = 0;
-  if (const LinkTransmittance* transmitter = p.propagator.transmitter()) {
-    links = access.bytes(transmitter->transmittance().shape().coefficients);
-    cost.bytes += cells * (corners * access.bytes(n) + links);
-    cost.flops += cells * transmitter->operations().flops();
-  }
-  if (o.lobe_time == LobeTime::kernel) cost.flops = 0;  // lobes rotated at run time are not counted
-  cost.working_set = cells * (3 * kChannels * access.bytes(n) + links);
-  return cost;
-}
-
 /// One case: a basis, its transport, and options of the kernels.
 struct PropagateCase {
   TransportKind kind;
@@ -166,9 +120,7 @@ void add_run_time_lobes(const std::string& basis, bool full, const Add& add_case
 
 Job propagate_job(Session& session, const PropagateProblem& problem, const Share& share) {
   const auto p = std::make_shared<PropagateWork>(session, problem);
-  p->run(std::min(2, problem.steps));  // builds the kernels for cost_of()
   Job job;
-  job.cost = cost_of(*p);
   job.reset = [p, &session] { p->accumulated.clear(session); };
   job.run = [p] { p->run(p->problem.steps); };
   job.compare = [p, &session, share] {

@@ -128,44 +128,6 @@ std::vector<double> expected_light(const SweepProblem& p) {
   return values;
 }
 
-/// Cost of the kernels in use, without sources: few rows hold light. Plane buffers and sums have
-/// the sweep's layout, not that of the volumes.
-Cost cost_of(const SweepWork& p) {
-  const SweepProblem& q = p.problem;
-  const VolumeFormat& format = q.options.format;
-  const double n = q.options.grid, cells = n * n * n, corners = (n + 1) * (n + 1) * (n + 1);
-  const double directions = kSweepBins * std::pow(q.options.parts.front(), 2);
-  const int coefficients = q.basis->size(), harmonics = swept_basis()->size();
-  const double bins = kChannels * kSweepBins,
-               links = q.options.blocking ? link_volumes().count() : 0;
-  const double swept = kChannels * directions, sides = 2 * swept * n * n;
-  const auto number = static_cast<double>(number_bytes(format.storage));
-  const double light = kChannels * static_cast<double>(bytes_per_cell(format, coefficients) +
-                                                       bytes_per_cell(format, harmonics));
-  // With a launch per plane, each launch reads one plane of every direction and writes the next;
-  // the dark border is read.
-  const bool by_planes = p.sweeper.form() == SweepForm::planes;
-  const double planes = by_planes ? 1 + 2 * n : 1, dark = by_planes ? 2 * sides : 0;
-  Cost cost;
-  cost.bytes = cells * (light + (2 * bins + links) * number) + dark * number +
-               swept * n * n * sizeof(float) * planes;
-  const double flops_per_direction = kChannels * (4 + 1) * 2 + (q.options.blocking ? 4 : 0);
-  cost.flops =
-      cells * (kChannels * sweep_collect_operations().flops() + directions * flops_per_direction);
-  cost.reads_per_cell = kChannels * accesses_per_cell(format, coefficients) + bins;
-  cost.writes_per_cell = kChannels * accesses_per_cell(format, harmonics) + bins;
-  cost.working_set =
-      cells * (light + (bins + links) * number) + dark * number / 2 + swept * n * n * sizeof(float);
-  if (!q.options.blocking) return cost;
-  const int areas = blocking_size(q.transport.blocking, *q.basis);
-  cost.bytes +=
-      corners * static_cast<double>(bytes_per_cell(format, areas)) + cells * links * number;
-  cost.flops += cells * link_constants(*q.basis, q.transport).operations.flops();
-  cost.reads_per_cell += 8 * accesses_per_cell(format, areas) + 4 * kSweepBins;
-  cost.writes_per_cell += links;
-  return cost;
-}
-
 struct SweepCase {
   std::string basis;
   int grid;
@@ -294,7 +256,6 @@ Cases named_cases(Stage stage, const std::vector<SweepCase>& all) {
 Job sweep_job(Session& session, const SweepProblem& problem, const Share& share) {
   const auto p = std::make_shared<SweepWork>(session, problem);
   Job job;
-  job.cost = cost_of(*p);
   job.reset = [p, &session] {
     for (Volume& volume : p->swept) volume.clear(session);
   };

@@ -111,16 +111,6 @@ void add_coefficient_literals(Literals& literals, int coefficients, const std::s
   literals.integer("CLPV_N", coefficients).word("CLPV_COEFFICIENT", number);
 }
 
-int accesses_per_cell(const VolumeFormat& format, int coefficients) {
-  return format.layout == Layout::image ? texels_per_cell(coefficients) : coefficients;
-}
-
-std::size_t bytes_per_cell(const VolumeFormat& format, int coefficients) {
-  const int numbers =
-      format.layout == Layout::image ? kTexel * texels_per_cell(coefficients) : coefficients;
-  return size(numbers) * number_bytes(format.storage);
-}
-
 ImageExtent image_extent(const VolumeShape& shape) {
   const auto stacked = [&](int slabs) { return size(slabs) * size(shape.n + 1) - 1; };
   return {size(shape.n), stacked(shape.channels), stacked(texels_per_cell(shape.coefficients))};

@@ -47,11 +47,6 @@ void add_volume_literals(Literals& literals, int grid, const VolumeFormat& forma
 void add_coefficient_literals(Literals& literals, int coefficients,
                               const std::string& number = "realW");
 
-/// Number of loads or stores for one cell of one channel: texels for images, numbers for buffers.
-int accesses_per_cell(const VolumeFormat& format, int coefficients);
-/// Bytes moved by accesses_per_cell().
-std::size_t bytes_per_cell(const VolumeFormat& format, int coefficients);
-
 /// Extent in texels of the image that holds a volume, as in kernels/volume/image.h.
 struct ImageExtent {
   std::size_t x, y, z;

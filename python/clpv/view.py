@@ -39,7 +39,7 @@ class Interrupted(Exception):
 class Viewer:
     """`load`: makes the scene again, as it is in its file."""
 
-    def __init__(self, server, gate, scene, device="", load=None):
+    def __init__(self, server, scene, device="", load=None):
         self.server, self.scene, self.load = server, scene, load
         self.renderers = Renderers(scene, device)
         self.clients, self.lock, self.wake = {}, threading.Lock(), threading.Event()
@@ -50,7 +50,7 @@ class Viewer:
         self.place(server.initial_camera, scene.cameras[0])
         # Lights that move cannot be assigned: a sun in their place needs a way back.
         has_sun = load is not None or not scene.moves
-        self.controls = view_controls.Controls(server, gate, scene, has_sun, self.touch_all)
+        self.controls = view_controls.Controls(server, scene, has_sun, self.touch_all)
         self.controls.camera.on_update(self.jump)
         self.controls.back.on_click(self.jump)
         self.controls.copied.on_click(self.copy_camera)
@@ -235,9 +235,8 @@ def show(scene: "clpv.Scene | str | os.PathLike[str]", *,
         load = functools.partial(clpv.Scene, scene, model)
         scene = load()
     clpv.Renderer(scene, device, width=16, height=16).release()  # no page where none can render
-    gate = view_gate.Gate(host)
-    server = gate.open(host, port)
-    viewer = Viewer(server, gate, scene, device, load)
+    server = view_gate.Gate(host).open(host, port)
+    viewer = Viewer(server, scene, device, load)
     print(f"clpv.view: http://{f'[{host}]' if ':' in host else host}:{port}", flush=True)
     try:
         while True:

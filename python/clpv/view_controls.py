@@ -6,7 +6,6 @@ import math
 import numpy
 
 import clpv
-from clpv import view_gate
 
 VIEWS = "full", "direct", "indirect", "irradiance", "albedo", "normal", "depth", "cells"
 UNITS = {"irradiance": "W/m^2", "cells": "W/m^2", "albedo": "", "normal": "", "depth": "m"}
@@ -71,23 +70,17 @@ class Controls:
     """The panel beside the image. Clients share it. Above the controls is one line; what changes
     its height lies at the end, so that no control moves."""
 
-    def __init__(self, server, gate, scene, has_sun, changed):
+    def __init__(self, server, scene, has_sun, changed):
         gui = server.gui
 
         def choice(name, values, initial):
-            return gate.allow(gui.add_dropdown(name, values, initial_value=initial),
-                              lambda value: value in values)
+            return gui.add_dropdown(name, values, initial_value=initial)
 
         def checkbox(name, initial=False):
-            return gate.allow(gui.add_checkbox(name, initial_value=initial),
-                              lambda value: isinstance(value, bool))
+            return gui.add_checkbox(name, initial_value=initial)
 
         def slider(name, low, high, step, initial, **more):
-            return gate.allow(gui.add_slider(name, low, high, step, initial_value=initial, **more),
-                              lambda value: view_gate.is_number(value, low, high))
-
-        def button(name):
-            return gate.allow(gui.add_button(name), lambda value: isinstance(value, bool))
+            return gui.add_slider(name, low, high, step, initial_value=initial, **more)
 
         defaults = {option["name"]: option["value"] for option in clpv.options()}
         views = VIEWS if scene.medium is None else (*VIEWS, "medium")
@@ -109,7 +102,7 @@ class Controls:
             self.lux = slider("illuminance [lx]", 0, 50, 0.5, 10)
         names = [camera.name for camera in scene.cameras]
         self.camera = choice("camera", names, names[0])
-        self.back, self.copied, self.saved = (button(name) for name in (
+        self.back, self.copied, self.saved = (gui.add_button(name) for name in (
             "return to the camera (R)", "camera as text", "save the image"))
         gui.add_markdown("W A S D Q E walk, through walls too; a click shows a pixel's values.")
         self.said, self.times = gui.add_markdown(""), gui.add_markdown("")

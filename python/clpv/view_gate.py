@@ -1,50 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Gate of the viewer (clpv.view): admits requests of its own page, and its messages with valid
-values.
+"""Gate of the viewer (clpv.view): admits requests of its own page, and the messages that it sends.
 
 viser itself accepts any Host and Origin, sets any attribute of a control, and opens a public tunnel
-on a client's request. The gate depends on viser's inner parts, hence on its version.
+on a client's request. Values are checked where they are used. The gate depends on viser's inner
+parts, hence on its version.
 """
 import http
 import ipaddress
 import logging
-import math
 import socket
 import unittest.mock
 
 VISER = "1.1.1"          # tested version
 MAX_BYTES = 1 << 16      # limit of one message; a page sends less than 1 KiB
-MAX_SIDE = 16384         # side of a window [pixels]
-FARTHEST = 1e7           # distance of a camera [m]
-
-
-def is_number(value, low=-FARTHEST, high=FARTHEST):
-    """True for a number within the range; NaN is in none."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and low <= value <= high
-
-
-def is_vector(value, count):
-    return (isinstance(value, (list, tuple)) and len(value) == count
-            and all(is_number(x) for x in value))
-
-
-def is_camera(message):
-    """True for a pose from which a frame can be rendered."""
-    return (is_vector(message.wxyz, 4) and abs(math.hypot(*message.wxyz) - 1) < 1e-3
-            and all(is_vector(value, 3)
-                    for value in (message.position, message.look_at, message.up_direction))
-            and is_number(message.fov, 1e-3, math.pi - 1e-3)
-            and all(is_number(value, 0) for value in (message.near, message.far))
-            and all(isinstance(side, int) and is_number(side, 1, MAX_SIDE)
-                    for side in (message.image_width, message.image_height)))
-
-
-def is_click(message):
-    """True for a click on the image."""
-    return (message.event_type == "click" and is_vector(message.ray_origin, 3)
-            and is_vector(message.ray_direction, 3) and isinstance(message.screen_pos, (list, tuple))
-            and len(message.screen_pos) == 1 and is_vector(message.screen_pos[0], 2)
-            and all(is_number(x, 0, 1) for x in message.screen_pos[0]) and message.modifier is None)
 
 
 def is_loopback(host):
@@ -67,12 +35,6 @@ class Gate:
         self.names = {"localhost", "127.0.0.1", "::1", host.lower()}
         if self.any_address:
             self.names |= {socket.gethostname().lower(), socket.getfqdn().lower()}
-        self.controls = {}  # uuid -> True for a value that the control may have
-
-    def allow(self, control, is_value):
-        """Lets clients set a control to values for which `is_value` is true."""
-        self.controls[control._impl.uuid] = is_value
-        return control
 
     def refusal(self, headers):
         """Returns why a request is refused, or None: header, value found, values allowed."""
@@ -104,21 +66,13 @@ class Gate:
         from websockets.exceptions import ConnectionClosedError
         try:
             message = _messages.Message.deserialize(raw)
+            sets = [*message.updates] if isinstance(message, _messages.GuiUpdateMessage) else []
         except Exception as error:  # whatever the decoders raise
             raise ConnectionClosedError(None, None) from error
-        kind = type(message)
-        allowed = (kind is _messages.ViewerCameraMessage and is_camera(message)
-                   or kind is _messages.ScenePointerMessage and is_click(message)
-                   or kind is _messages.CommandTriggerMessage and isinstance(message.uuid, str)
-                   or kind is _messages.GuiUpdateMessage and self.is_update(message))
+        allowed = sets == ["value"] or isinstance(message, (
+            _messages.ViewerCameraMessage, _messages.ScenePointerMessage,
+            _messages.CommandTriggerMessage))
         return message if allowed else Ignored()
-
-    def is_update(self, message):
-        if not isinstance(message.uuid, str) or message.uuid not in self.controls:
-            return False
-        updates = message.updates
-        return (isinstance(updates, dict) and list(updates) == ["value"]
-                and self.controls[message.uuid](updates["value"]))
 
     def serve(self, handler, host, port, **options):
         """websockets' serve() behind this gate."""

@@ -5,9 +5,9 @@
                 [--first STAGE,...] [--minutes 9] [--quick]
 
 Devices; frames of the defaults, 1920x1080, `fine`, `paper`, one bounce and a camera that only
-moves, also of an older program; hashes of the images of two runs; ceilings and launches; `clpv
-check`, thorough, stages of --first first. A step that the time left does not hold is cut off or
-left out, and FILE.json says so. Prints a table of the frames. Scene: Sponza's `curtains` with
+moves, also of an older program; hashes of the images of two runs; `clpv check`,
+thorough, stages of --first first. A step that the time left does not hold is cut off or left out,
+and FILE.json says so. Prints a table of the frames. Scene: Sponza's `curtains` with
 --model, else the atrium. --quick: small frames and the short check, for tests.
 """
 import argparse
@@ -76,7 +76,7 @@ def bench(clock, program, suite, device, *options):
     text, why = clock.run([program, *device, "bench", suite, "--format", "json", *options])
     if why:
         return [{"failed": why}]
-    keys = "name", "status", "median", "gflops", "gbps", *COUNTS
+    keys = "name", "status", "median", *COUNTS
     return [{key: row.get(key) for key in keys} for row in json.loads(text)["benchmarks"]]
 
 
@@ -152,8 +152,6 @@ def measure(options, folder):
         "frames": frames,
         "moving": bench(clock, this, "frame", device, "--filter",
                         "^frame/sh2.*/best/recompute:nothing", *few),
-        "ceilings": bench(clock, this, "ceilings", device, *few,
-                          *(["--filter", "launch"] if options.quick else [])),
     }
     thorough = [] if options.quick else ["--thorough"]
     stages = [stage for stage in options.first.split(",") if stage]

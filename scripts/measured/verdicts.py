@@ -307,6 +307,9 @@ def of_sh3(read):
             {"scheme": "sweep, lobes completed", **means(read)}]
 
 
+CHANNELS_AND_LINKS = 3 * 7  # a cell and its six neighbours, of each channel
+
+
 def of_layouts(read):
     """Reads per cell of images and of buffers, and the ratio of their times."""
     rows = [each for each in read("docs/layouts")["benchmarks"]
@@ -314,8 +317,9 @@ def of_layouts(read):
     for basis in dict.fromkeys(each["basis"] for each in rows):
         image, buffers = (row(rows, basis=basis, layout=layout, storage=storage)
                           for layout, storage in (("image", "half"), ("soa", "float")))
-        yield {"basis": basis, "image": image["reads_per_cell"],
-               "buffers": buffers["reads_per_cell"], "times": image["median"] / buffers["median"]}
+        numbers = image["coefficients"]
+        yield {"basis": basis, "image": CHANNELS_AND_LINKS * math.ceil(numbers / 4),
+               "buffers": CHANNELS_AND_LINKS * numbers, "times": image["median"] / buffers["median"]}
 
 
 # Verdicts.

@@ -191,14 +191,6 @@ TEST(Api, AMediumCanBeSetAndRemoved) {
   rejected("box", {.box = std::array{Vec3{0, 0, 0}, Vec3{1, 0, 1}}});
 }
 
-TEST(Api, ARendererOutlivesItsSceneHandle) {
-  auto scene = std::make_unique<Scene>(kCornell);
-  Renderer renderer(*scene, test::small_options());
-  const Image before = renderer.render();
-  scene.reset();
-  EXPECT_EQ(renderer.render().pixels, before.pixels);
-}
-
 TEST(Api, VolumesHoldTheLight) {
   Renderer renderer(Scene(kCornell), test::small_options());
   EXPECT_THROW(renderer.volumes(), Error) << "before the first frame";

@@ -14,8 +14,7 @@ def row(suite, stage, **fields):
         "name": "a name", "suite": suite, "stage": stage, "status": "ok", "reason": None,
         "basis": "sh2", "coefficients": 4, "layout": "soa", "storage": "float", "lobe": "exact",
         "occlusion": False, "cascade": None, "filtered": True,
-        "median": 4.25, "min": 4.0, "p95": 5.0, "flops": 1e9,
-        "bytes": 1e8, "gflops": 20.0, **fields
+        "median": 4.25, "min": 4.0, "p95": 5.0, **fields
     }
 
 
@@ -31,7 +30,6 @@ def bench_document(*rows):
     return {
         "context": {
             "device": "a device", "platform": "a platform", "driver": "1", "git_describe": "abc",
-            "clpv_version": "1.2.3",
-            "ceilings": {"gflops": 200.0, "bandwidths": [{"working_set": 2**20, "gbps": 100.0}]}
+            "clpv_version": "1.2.3"
         }, "benchmarks": list(rows)
     }

@@ -30,7 +30,6 @@ class Charts(unittest.TestCase):
     def test_rows_that_failed_are_left_out(self):
         failed = row("layouts", "gather", status="unsupported", median=0, min=0, p95=0)
         self.assertIsNone(bench.layouts([failed]))
-        self.assertIsNone(bench.roofline([failed], {"gflops": 100.0, "bandwidths": []}))
 
     def test_files_are_those_the_rows_allow_and_the_same_twice(self):
         rows = [row("layouts", "propagate"), row("layouts", "propagate", occlusion=True)]
@@ -41,8 +40,7 @@ class Charts(unittest.TestCase):
             for target in (one, two):
                 target.mkdir()
                 bench.draw(source, target)
-            self.assertEqual(sorted(p.name for p in one.iterdir()),
-                             ["layouts.png", "layouts.svg", "roofline.png", "roofline.svg"])
+            self.assertEqual(sorted(p.name for p in one.iterdir()), ["layouts.png", "layouts.svg"])
             for made in one.iterdir():
                 self.assertEqual(made.read_bytes(), (two / made.name).read_bytes(), made.name)
 

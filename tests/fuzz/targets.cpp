@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Fuzz targets, by name: each has a corpus/NAME. libFuzzer calls them with generated inputs
-// (scripts/fuzz); without it, this program gives a target each file of a folder, then mutants of
-// them for some seconds (a test of every build):
+// (scripts/fuzz); without it, this program gives a target each file of a folder (a test of every
+// build):
 //
-//   fuzz FOLDER SECONDS       the target is CLPV_FUZZ_TARGET
+//   fuzz FOLDER       the target is CLPV_FUZZ_TARGET
 //
 // An input is read or rejected. Whatever else happens is a finding: a crash, a sanitizer's report,
 // an exception of another kind, or an error of another exit code than those a target allows. The
-// mutants are the same in every run: a test that failed fails again. The current input is a file,
-// which remains when it ends the program.
+// input's name is printed before it is read.
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -19,7 +16,6 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <span>
 #include <string>
 #include <string_view>
@@ -357,107 +353,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 }
 
 #ifndef CLPV_LIBFUZZER
-namespace clpv::fuzz {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-using Random = std::mt19937_64;
-
-/// As binary files and as texts write them.
-constexpr std::array<std::string_view, 14> kEdges = {
-    {std::string_view("\0", 1), "\x7f", "\x80", "\xff", std::string_view("\0\0\0\0", 4),
-     "\xff\xff\xff\xff", "\xff\xff\xff\x7f", std::string_view("\0\0\0\x80", 4), "-1", "0", "1e999",
-     "nan", "4294967296", "18446744073709551615"}};
-constexpr std::size_t kMaxSpan = 64;
-
-std::size_t below(std::size_t end, Random& random) {
-  return end == 0 ? 0 : random() % end;
-}
-
-std::string_view span_of(std::string_view text, Random& random) {
-  const std::size_t start = below(text.size() + 1, random);
-  return text.substr(start, 1 + below(kMaxSpan, random));
-}
-
-/// In place of as many bytes, or of those of a number in digits, or of none.
-void put(std::string& text, std::string_view piece, Random& random) {
-  const std::size_t start = below(text.size() + 1, random);
-  const std::size_t digits =
-      std::min(text.find_first_not_of("0123456789", start), text.size()) - start;
-  const std::array<std::size_t, 3> lengths = {piece.size(), digits, 0};
-  text.replace(start, lengths[below(lengths.size(), random)], piece);
-}
-
-void change(std::string& text, std::span<const std::string> inputs, Random& random) {
-  switch (below(5, random)) {
-    case 0:
-      if (!text.empty())
-        text[below(text.size(), random)] ^= static_cast<char>(1 << below(8, random));
-      break;
-    case 1:
-      put(text, kEdges[below(kEdges.size(), random)], random);
-      break;
-    case 2: {
-      const std::string_view left_out = span_of(text, random);
-      text.erase(static_cast<std::size_t>(left_out.data() - text.data()), left_out.size());
-      break;
-    }
-    case 3:
-      put(text, std::string(span_of(text, random)), random);
-      break;
-    default:
-      put(text, span_of(inputs[below(inputs.size(), random)], random), random);
-  }
-}
-
-/// One of `inputs`, changed in up to four places: bits, numbers on the edge, pieces left out,
-/// repeated or of another input.
-std::string mutant(std::span<const std::string> inputs, Random& random) {
-  std::string text = inputs[below(inputs.size(), random)];
-  for (std::size_t changes = 1 + below(4, random); changes > 0; --changes)
-    change(text, inputs, random);
-  return text;
-}
-
-constexpr const char* kInHand = "in_hand";
-
-std::vector<std::string> corpus_in(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder))
-    files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  std::vector<std::string> corpus;
-  for (const std::filesystem::path& file : files) corpus.push_back(test::read_file(file));
-  return corpus;
-}
-
-void try_input(const std::string& bytes) {
-  folder().write(kInHand, bytes);
-  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-}
-
-}  // namespace
-}  // namespace clpv::fuzz
-
 int main(int argc, char** argv) {
-  using namespace clpv::fuzz;
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: %s FOLDER SECONDS\n", argv[0]);
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s FOLDER\n", argv[0]);
     return 2;
   }
-  const std::vector<std::string> corpus = corpus_in(argv[1]);
-  if (corpus.empty()) {
-    std::fprintf(stderr, "%s: no inputs\n", argv[1]);
-    return 1;
+  std::size_t inputs = 0;
+  for (const auto& file : std::filesystem::directory_iterator(argv[1])) {
+    std::printf("%s\n", file.path().c_str());
+    std::fflush(stdout);
+    const std::string bytes = clpv::test::read_file(file.path());
+    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    ++inputs;
   }
-  std::printf("the input in hand: %s\n", folder().write(kInHand, "").c_str());
-  std::fflush(stdout);
-  const auto end = Clock::now() + std::chrono::duration<double>(std::stod(argv[2]));
-  for (const std::string& input : corpus) try_input(input);
-  std::mt19937_64 random;  // with the usual seed
-  std::size_t mutants = 0;
-  for (; Clock::now() < end; ++mutants) try_input(mutant(corpus, random));
-  std::printf("%zu inputs, %zu mutants\n", corpus.size(), mutants);
-  return 0;
+  return inputs == 0 ? 1 : 0;
 }
 #endif

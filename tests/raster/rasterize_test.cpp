@@ -64,25 +64,6 @@ SceneData wall(float distance = 4) {
   return scene;
 }
 
-TEST(Rasterize, WallFillsEveryPixel) {
-  const SurfaceImage image = drawn(wall(), small_camera(45, 31));
-  for (const float depth : image.depth) EXPECT_FLOAT_EQ(depth, 4);
-  for (const glm::vec4& normal : image.normal) EXPECT_EQ(glm::vec3(normal), glm::vec3(0, 0, 1));
-  for (const glm::vec4& colour : image.colour)
-    for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(colour[c], 0.25f * static_cast<float>(c + 1));
-}
-
-TEST(Rasterize, BackFacesAreCulledUnlessDoubleSided) {
-  SceneData scene;
-  const unsigned material = add_material(scene);
-  add_quad(scene, {20, -20, -4}, {-40, 0, 0}, {0, 40, 0}, material);
-  EXPECT_EQ(covered(drawn(scene, small_camera()).depth), 0u);
-  scene.materials[material].flags = CLPV_MATERIAL_DOUBLE_SIDED;
-  const SurfaceImage image = drawn(scene, small_camera());
-  EXPECT_EQ(covered(image.depth), image.depth.size());
-  for (const glm::vec4& normal : image.normal) EXPECT_EQ(glm::vec3(normal), glm::vec3(0, 0, 1));
-}
-
 TEST(Rasterize, LightSeesBothSides) {
   for (const float side : {1.0f, -1.0f}) {
     SceneData scene;
@@ -240,18 +221,6 @@ TEST(Rasterize, OrthographicDepthsBeforeTheNearOneClampToItAndFarOnesDrop) {
   EXPECT_THAT(shadow_depth(wall(1), view), ::testing::Each(2.0f));   // before the near depth
   EXPECT_THAT(shadow_depth(wall(-3), view), ::testing::Each(2.0f));  // behind the eye
   EXPECT_THAT(shadow_depth(wall(11), view), ::testing::Each(0.0f));
-}
-
-TEST(Rasterize, FluxOfAWhitePlaneIsIrradianceTimesArea) {
-  SceneData scene;
-  add_quad(scene, {-10, 0, 10}, {20, 0, 0}, {0, 0, -20}, add_material(scene));
-  const ClpvLight light = directional_light({0.3f, -1, 0.2f}, {1, 2, 3});
-  const ClpvView view =
-      directional_rsm_view(light, {{-2, -2, -2}, 0.5f, 8, {}}, {{-10, 0, -10}, {10, 0, 10}}, 32);
-  glm::dvec3 sum(0);
-  for (const glm::vec4& flux : rsm_image(scene, light, view).colour) sum += glm::dvec3(flux);
-  const double area = 4.0 * view.half_width * view.half_height;
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], (c + 1) * area, 1e-6 * area * (c + 1));
 }
 
 TEST(Rasterize, FluxInAWhiteRoomIsThatOfThePointLight) {

@@ -173,15 +173,6 @@ void expect_lit(const SurfaceImage& image, const MappedLight& light,
   }
 }
 
-TEST(Shade, DirectionalLightFollowsTheCosine) {
-  for (const double degrees : {0.0, 35.0, 80.0}) {
-    const double angle = degrees / 180 * pi;
-    const MappedLight light = sun({std::sin(angle), -std::cos(angle), 0}, 7);
-    expect_lit(
-        floor_image(), light, [&](const glm::dvec3&) { return 7 * std::cos(angle); }, 7);
-  }
-}
-
 TEST(Shade, PointLightFollowsCosineAndSquaredDistance) {
   const glm::dvec3 at(1, 2, -0.5);
   expect_lit(

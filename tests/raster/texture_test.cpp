@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Textures in the rasteriser: mip chains, wrap modes, filters, holes.
+// Textures in the rasteriser: mip chains, wrap modes, filters.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -159,18 +159,6 @@ TEST(Texture, SmallTexelsAreAveragedByMipLevels) {
   // A level and a half down a pixel takes the mean of both levels; here they are the same grey.
   for (const glm::vec4& colour : image_of(textured(fine), 23, {0, 0}, {1, 1}).colour)
     EXPECT_NEAR(colour.x, 0.5, 0.003);
-}
-
-TEST(Texture, HolesShowTheSurfaceBehind) {
-  SceneData scene = textured(texture(2, 1, {255, 0, 0, 255, 255, 0, 0, 0}), CLPV_MATERIAL_MASKED);
-  scene.textures[0].wrap_u = CLPV_WRAP_CLAMP;
-  const unsigned green = add_material(scene, {0, 1, 0});
-  add_quad(scene, {0, 0, -2}, {1, 0, 0}, {0, 1, 0}, green);
-  const SurfaceImage image = image_of(scene, 8, {0, 0}, {1, 1});
-  for (unsigned at = 0; at < 64; ++at) {  // alpha crosses 0.5 in the middle
-    EXPECT_EQ(image.depth[at], at % 8 < 4 ? 1 : 2) << at;
-    EXPECT_FLOAT_EQ(image.colour[at].y, at % 8 < 4 ? 0 : 1) << at;
-  }
 }
 
 }  // namespace

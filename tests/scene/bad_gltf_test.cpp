@@ -125,8 +125,11 @@ TEST_F(BadGltfTest, Documents) {
       {{{camera, nullptr}}, {"/cameras/0"}},
       {{{kLights + "/0/spot", 7}}, {kLights + "/0/spot", "found 7"}},
       {{{kLights + "/0/type", "area"}}, {"lights/0/type", "\"area\"", "directional, spot, point"}},
-      {{{kLights + "/0/spot", {{"innerConeAngle", 1}, {"outerConeAngle", 0.5}}}},
+      {{{kLights + "/0/spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5 - 1e-12}}}},
        {kLights + "/0/spot", "inner less"}},
+      {{{kLights + "/0/spot/innerConeAngle", 1.5708}}, {"innerConeAngle: found 1.5708"}},
+      {{{kLights + "/0/spot/outerConeAngle", 1.5708}}, {"outerConeAngle: found 1.5708"}},
+      {{{kLights + "/0/spot/outerConeAngle", 0}}, {"outerConeAngle: found 0"}},
   });
 }
 

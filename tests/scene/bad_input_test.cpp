@@ -174,14 +174,12 @@ TEST_F(BadSceneFileTest, EachMember) {
           {R"("": 1)", {"unknown key"}},
           {R"("cascades": {"size": 3})", {"/cascades/size", "size_metres"}},
           {R"("metres_per_unit": 0)", {"/metres_per_unit", "found 0"}},
-          {R"("metres_per_unit": -1)", {"/metres_per_unit"}},
           {R"("metres_per_unit": "big")", {"/metres_per_unit"}},
           {R"("exposure": 100)", {"/exposure", "-64 to 64"}},
           {R"("light_scale": 0)", {"/light_scale", "1e-06 to 1000000"}},
           {R"("cascades": {"count": 0})", {"/cascades/count"}},
           {R"("cascades": {"count": 9})", {"/cascades/count"}},
           {R"("cascades": {"count": 1.5})", {"/cascades/count"}},
-          {R"("cascades": {"count": 17})", {"/cascades/count"}},
       });
   expect_rejected("", {"/model", "nothing"});
   expect_rejected(R"("model": 7)", {"/model", "found 7"});

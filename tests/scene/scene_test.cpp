@@ -228,15 +228,6 @@ TEST_P(Generator, ReproducesTheCommittedFiles) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Generator, testing::Values("atrium", "cornell"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST(Scenes, TheLivingAtriumIsTheAtriumWithABallAndACurtainThatMove) {
-  const SceneData still = load_scene(kScenes / "atrium.json"),
-                  living = load_scene(kScenes / "atrium_living.json");
-  ASSERT_EQ(living.moving.size(), 2u);
-  EXPECT_EQ(living.triangles.size(), still.triangles.size() + living.moving.back().triangles);
-  EXPECT_EQ(living.lower, still.lower);
-  EXPECT_EQ(living.upper, still.upper);
-}
-
 // Cameras and lights of scene files that move by keys.
 
 using ::testing::FloatNear;

@@ -392,18 +392,5 @@ TEST_F(SpotCone, DefaultsAreZeroAndFortyFiveDegrees) {
   }
 }
 
-TEST_F(SpotCone, ConesThatTheFormatExcludesAreRejected) {
-  const auto rejected = [&](const json& spot) {
-    model = floor_and_lamp(spot);
-    return rejection(model.write(folder));
-  };
-  EXPECT_THAT(rejected(cone(0.5, 0.4)), HasSubstr("inner less than outer"));
-  EXPECT_THAT(rejected(cone(0.5, 0.5 - 1e-12)), HasSubstr("inner less than outer"));
-  EXPECT_THAT(rejected(cone(0, 1.5708)), HasSubstr("outerConeAngle: found 1.5708"));
-  EXPECT_THAT(rejected(cone(1.5708, 1.5708)), HasSubstr("innerConeAngle: found 1.5708"));
-  EXPECT_THAT(rejected(cone(0, 0)), HasSubstr("outerConeAngle: found 0"));
-  EXPECT_THAT(rejected("wide"), HasSubstr("lights/0/spot: found \"wide\""));
-}
-
 }  // namespace
 }  // namespace clpv::test::sky_test

@@ -71,23 +71,6 @@ class Outputs(InFolder):
 class Tree(InFolder):
     """The tree's own gates."""
 
-    def test_a_home_stays_empty(self):
-        home = self.folder / "home"
-        home.mkdir()
-        self.assertEqual(run("charts", "--help", HOME=str(home), MPLCONFIGDIR="").returncode, 0)
-        self.assertEqual(list(home.iterdir()), [])
-
-    def test_help_is_the_comment_and_unknown_arguments_are_rejected(self):
-        for name in sorted(file.name for file in (ROOT / "scripts").iterdir() if file.is_file()):
-            if not os.access(ROOT / "scripts" / name, os.X_OK) or name == "stubs":  # needs the module
-                continue
-            self.assertIn(f"  scripts/{name}", run(name, "--help").stdout)
-        for name, *arguments in (("build", "--fast"), ("test", "gather"), ("test", "--lng"),
-                                 ("fuzz", "none"), ("sanitize", "--fast"), ("check_intel", "x"),
-                                 ("gpu", "x"), ("setup", "x"), ("format", "x"), ("tables", "x"),
-                                 ("bare", "-x")):
-            self.assertEqual(run(name, *arguments).returncode, output.USAGE, name)
-
     def test_the_key_of_ground_truths_has_the_tracers_sources(self):
         subprocess.run(["cmake", f"-DROOT={ROOT}", f"-DOUTPUT={self.file}", "-P",
                         ROOT / "cmake/ground_truth_sources.cmake"], check=True)
@@ -106,12 +89,6 @@ class Tree(InFolder):
                       for member in MEMBER.findall(body) if member != "unused"}
         self.assertGreater(len(found), 90)
         self.assertEqual(found, listed)
-
-    def test_files_with_an_interpreter_are_executable_and_no_others(self):
-        for folder in "examples", "lab", "scripts", "tests":
-            for file in sorted((ROOT / folder).rglob("*")):
-                if file.is_file() and "__pycache__" not in file.parts:
-                    self.assertEqual(os.access(file, os.X_OK), file.read_bytes()[:2] == b"#!", file)
 
 
 if __name__ == "__main__":

@@ -213,7 +213,6 @@ struct BadInputTest : GltfTest {
   }
 
   json& primitive() { return model.document["meshes"][0]["primitives"][0]; }
-  json& accessor() { return model.document["accessors"][0]; }
 };
 
 /// The triangle of BadInputTest at node 0, with animations.
@@ -236,10 +235,6 @@ struct AnimationTest : BadInputTest {
   }
 
   MovingScene load() { return MovingScene(model.write(folder)); }
-  json& sampler() { return model.document["animations"][0]["samplers"][0]; }
-  json& accessor_of(const char* which) {
-    return model.document["accessors"][sampler()[which].get<std::size_t>()];
-  }
 };
 
 /// A small scene in which everything moves from 0 s to 1 s: a wall over a floor, a sun, a lamp and

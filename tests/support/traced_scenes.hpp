@@ -12,8 +12,6 @@ namespace clpv::test {
 using pathtracer::PathTracerOptions;
 using pathtracer::TracedImage;
 
-inline constexpr float kOpen = std::numeric_limits<float>::infinity();
-
 /// A view along `forward`, its half extents the tangents of half the fields of view.
 inline ClpvView view_of(glm::vec3 eye, glm::vec3 forward, glm::vec3 up, float half, unsigned width,
                         unsigned height) {
@@ -24,7 +22,7 @@ inline ClpvView view_of(glm::vec3 eye, glm::vec3 forward, glm::vec3 up, float ha
     view.eye[i] = eye[i], view.right[i] = r[i], view.up[i] = u[i], view.forward[i] = f[i];
   }
   view.half_width = half, view.half_height = half * height / width;
-  view.near_depth = 0.001f, view.far_depth = kOpen;
+  view.near_depth = 0.001f, view.far_depth = std::numeric_limits<float>::infinity();
   view.width = width, view.height = height;
   return view;
 }

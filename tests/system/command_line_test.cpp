@@ -144,9 +144,9 @@ TEST(HostileCommandLines, OfCommands) {
                    {"bench bases --filter (", {"--filter", "regular expression"}},
                    {"bench bases --repetitions 0", {"--repetitions"}},
                    {"bench bases --format xml", {"--format", "github-action"}},
-                   {"bench ceilings --fail-above 1.2", {"--compare"}},
+                   {"bench bases --fail-above 1.2", {"--compare"}},
                    {"compare a.json b.json --fail-above 0.5", {"--fail-above"}},
-                   {"bench bases --model a.gltf", {"--model", "--scene"}},
+                   {"bench bases --plot @/out", {"--plot", "allowed: layouts"}},
                    {"bench bases --format json --compare @/a.json", {"--compare", "stdout"}},
                    {"check --stage cook", {"--stage", "gather"}},
                    {"basis sh2 --axis 0,0,0", {"--axis"}},
@@ -193,7 +193,7 @@ TEST(HostileSurroundings, Outputs) {
   for (const std::string& command :
        {"render " + kCornell + " -o @/none/a.exr",
         "render " + kCornell + " -o @/out.exr --stats @/none/a.json",
-        std::string("bench ceilings --output @/none/a.json"),
+        std::string("bench bases --output @/none/a.json"),
         "pathtrace " + kCornell + " -o @/none/a.exr",
         "pathtrace " + kCornell + " -o @/out.exr --stats @/none/a.json",
         "quality " + kCornell + " --cache @/out --output @/none/a.json",
@@ -204,7 +204,7 @@ TEST(HostileSurroundings, Outputs) {
   for (const std::string& command : {"sequence " + kCornell + " --frames 1 --fps 1 -o @/file",
                                      std::string("report @/file/there " + kCornell),
                                      std::string("basis sh2 --figures @/file/there"),
-                                     std::string("bench ceilings --plot @/file/there")})
+                                     std::string("bench layouts --plot @/file/there")})
     rejected(command, {"file"});
 }
 

@@ -42,16 +42,6 @@ Literals constant_lobes(const FaceTransport& scheme) {
 
 }  // namespace
 
-OperationCount step_operations(const Transport& transport, bool blocking) {
-  const auto& scheme = std::get<FaceTransport>(transport.scheme);
-  const int faces = static_cast<int>(scheme.faces.size());
-  OperationCount count;
-  count.fused = products(fluxes(scheme)) + products(scheme.lobes);
-  count.additions = faces;  // max(0, F)
-  (blocking ? count.fused : count.additions) += faces;
-  return count;
-}
-
 Propagator::Propagator(Session& session, const Basis& basis, const Transport& transport,
                        const PropagateOptions& options)
     : session_(session),

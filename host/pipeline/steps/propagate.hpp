@@ -28,9 +28,6 @@ struct PropagateVolumes {
   Volume& accumulated;  ///< output: injected field plus the output of every step [W/sr]
 };
 
-/// Operations per cell and channel of a step with constant lobes.
-OperationCount step_operations(const Transport& transport, bool blocking);
-
 /// Runs the propagation steps of one basis and transport, for volumes of one grid size.
 class Propagator {
  public:
@@ -43,9 +40,6 @@ class Propagator {
   /// The first step does not block light, since light starts on the surfaces that it was injected
   /// at.
   void propagate(const PropagateVolumes& volumes, int iterations, const Observer& after_step = {});
-
-  /// Transmittance; null before the first propagate() with blockers.
-  const LinkTransmittance* transmitter() const { return transmitter_.get(); }
 
  private:
   Kernel& step(bool blocking);

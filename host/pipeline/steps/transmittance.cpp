@@ -40,12 +40,9 @@ LinkConstants link_constants(const Basis& basis, const Transport& transport) {
     for (int axis = 0; axis < 3; ++axis) sides.push_back(links[l].side[axis]);
     for (int i = 0; i < weights.columns(); ++i) {
       weights(l, i) = links[l].blocked_by[i] / links[l].corners();
-      if (weights(l, i) != 0) result.operations.additions += links[l].corners() - 1;
     }
   }
   result.links = count;
-  result.operations.additions += 3 * count;  // 1 - clamp(B, 0, 1)
-  result.operations.fused = products(weights);
   add_coefficient_literals(result.literals, weights.columns());
   result.literals.integer("CLPV_LINKS", count)
       .integers("CLPV_LINK_SIDES", sides)
@@ -61,7 +58,6 @@ LinkTransmittance::LinkTransmittance(Session& session, const Basis& basis,
 LinkTransmittance::LinkTransmittance(Session& session, const LinkConstants& constants, int grid,
                                      const VolumeFormat& format)
     : stencil_(grid, format, lanes_of(session.device(), format)),
-      operations_(constants.operations),
       kernel_(session, {"steps/transmittance.cl", stencil_.literals().add(constants.literals)},
               "transmit"),
       transmittance_(session, {grid, constants.links, 1}, "transmittance", format) {}

@@ -5,7 +5,6 @@
 #include "basis/basis.hpp"
 #include "basis/transport.hpp"
 #include "device/session.hpp"
-#include "pipeline/steps/operations.hpp"
 #include "pipeline/steps/stencil.hpp"
 #include "volume/volume.hpp"
 
@@ -14,9 +13,8 @@ namespace clpv {
 /// Constants of kernels/steps/link_transmittance.h for one transport and blocking mode. Links are
 /// numbered like FaceTransport::faces or sweep_links().
 struct LinkConstants {
-  Literals literals;          ///< the geometry volume's coefficients, CLPV_LINKS, CLPV_LINK_SIDES
-                              ///< and CLPV_LINK_BLOCKED
-  OperationCount operations;  ///< per cell, each sum over corners counted for each link
+  Literals literals;  ///< the geometry volume's coefficients, CLPV_LINKS, CLPV_LINK_SIDES
+                      ///< and CLPV_LINK_BLOCKED
   int links = 0;
 };
 LinkConstants link_constants(const Basis& basis, const Transport& transport);
@@ -33,14 +31,12 @@ class LinkTransmittance {
 
   /// grid^3 cells, one number in [0, 1] per link, one channel.
   const Volume& transmittance() const { return transmittance_; }
-  const OperationCount& operations() const { return operations_; }
 
  private:
   LinkTransmittance(Session& session, const LinkConstants& constants, int grid,
                     const VolumeFormat& format);
 
   Stencil stencil_;
-  OperationCount operations_;
   Kernel kernel_;
   Volume transmittance_;
 };

@@ -63,10 +63,6 @@ Literals sweep_collect_literals(double most_white) {
       .real("CLPV_MOST_WHITE", most_white);
 }
 
-OperationCount sweep_collect_operations() {
-  return {.additions = kSweepBins * kFolds, .fused = products(folded(swept_projection()))};
-}
-
 Literals bounce_literals(const Basis& basis) {
   return source_literals(basis)
       .matrix("CLPV_INCIDENT", incident_flux())

@@ -4,7 +4,6 @@
 
 #include "basis/basis.hpp"
 #include "basis/sweep.hpp"
-#include "pipeline/steps/operations.hpp"
 #include "support/literals.hpp"
 
 namespace clpv {
@@ -18,8 +17,6 @@ Literals sweep_links_literals(const Basis& basis, const Transport& transport);
 /// For sweep_collect.cl: those of coefficients of swept_basis(), and CLPV_PROJECTION, 24 x 9:
 /// swept_projection() by folded bins.
 Literals sweep_collect_literals(double most_white);
-/// Operations per cell and channel.
-OperationCount sweep_collect_operations();
 
 /// For bounce.cl: those of coefficients of `basis`, CLPV_INCIDENT, 6 x 24, CLPV_LOBES, 6 x N, and
 /// CLPV_MAX_RETURNED.

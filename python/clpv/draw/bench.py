@@ -1,14 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Charts of `clpv bench`: layouts and a roofline.
-
-Each function turns rows into a figure, or returns None if no row belongs to its chart. It reads
-fields of rows, not names. """
-import itertools
-import math
+"""Charts of `clpv bench`: times of suite `layouts`. They go by fields of rows, not by
+names."""
 import pathlib
-
-from matplotlib import pyplot
-from matplotlib.lines import Line2D
 
 from clpv import output
 from clpv.draw import documents, style
@@ -17,8 +10,6 @@ from clpv.draw.documents import NUMBER, TEXT_OR_NULL
 ROW = {"suite": str, "stage": str, "status": str, "basis": TEXT_OR_NULL, "layout": TEXT_OR_NULL,
        "storage": TEXT_OR_NULL, "occlusion": bool, "median": NUMBER, "min": NUMBER, "p95": NUMBER}
 DEVICE_CHARS = 70
-# Maximum ratio to the previous labelled bandwidth; closer labels would overlap.
-CLOSEST_LABELS = 0.7
 
 
 def of_suite(rows, suite):
@@ -63,54 +54,6 @@ def layouts(rows):
     return figure
 
 
-def roofline(rows, ceilings):
-    points = [
-        r for r in rows
-        if r["status"] == "ok" and r["flops"] > 0 and r["bytes"] > 0 and r["median"] > 0
-    ]
-    if not points or not ceilings.get("gflops"):
-        return None
-    figure, axis = pyplot.subplots(figsize=(7.5, 5))
-    lowest = min(0.1, min(r["flops"] / r["bytes"] for r in points) / 2)
-    highest = max(50.0, max(r["flops"] / r["bytes"] for r in points) * 2)
-    labelled = math.inf
-    for bandwidth in sorted(ceilings["bandwidths"], key=lambda b: -b["gbps"]):
-        knee = ceilings["gflops"] / bandwidth["gbps"]
-        axis.plot([lowest, knee], [lowest * bandwidth["gbps"], ceilings["gflops"]],
-                  color=style.SOFT, lw=0.8)
-        if bandwidth["gbps"] > CLOSEST_LABELS * labelled:
-            continue
-        labelled = bandwidth["gbps"]
-        axis.annotate(f"{bandwidth['gbps']:.0f} GB/s at {bandwidth['working_set'] / 2**20:.3g} MiB",
-                      (lowest, lowest * bandwidth["gbps"]), size=6, color=style.SOFT, rotation=30,
-                      rotation_mode="anchor", textcoords="offset points", xytext=(2, 2))
-    axis.axhline(ceilings["gflops"], color=style.INK, lw=1)
-    axis.annotate(f"{ceilings['gflops']:.0f} GFLOP/s fused multiply-adds",
-                  (highest, ceilings["gflops"]), size=7, ha="right", va="bottom")
-    stages, kinds = distinct(r["stage"] for r in points), distinct(r["layout"] for r in points)
-    markers = dict(zip(stages, itertools.cycle("osD^vPX*")))
-    colours = {layout: style.colour(i) for i, layout in enumerate(kinds)}
-    for stage, layout in distinct((r["stage"], r["layout"]) for r in points):
-        members = [r for r in points if (r["stage"], r["layout"]) == (stage, layout)]
-        axis.scatter([r["flops"] / r["bytes"] for r in members], [r["gflops"] for r in members],
-                     s=18, color=colours[layout], marker=markers[stage], zorder=3)
-    key = [
-        Line2D([], [], ls="", marker=markers[stage], color=style.SOFT, label=stage)
-        for stage in stages
-    ]
-    key += [
-        Line2D([], [], ls="", marker="s", ms=8, color=colours[layout], label=layout)
-        for layout in kinds if layout
-    ]
-    axis.set(xlabel="operations per byte", ylabel="GFLOP/s", xlim=(lowest, highest),
-             title="Roofline")
-    style.logarithmic(axis.xaxis)
-    style.logarithmic(axis.yaxis)
-    axis.legend(handles=key, fontsize=7, loc="upper left", bbox_to_anchor=(1.01, 1),
-                borderaxespad=0)
-    return figure
-
-
 def save(figure, folder, name, context):
     """Writes the chart with a footer below it, which the margins include."""
     device = f"{context['device']} ({context['platform']} {context['driver']})"[:DEVICE_CHARS]
@@ -128,7 +71,5 @@ def draw(source: pathlib.Path, folder: pathlib.Path) -> None:
     document = documents.read(source / "bench.json")
     rows, context = documents.checked(document, "bench.json", "benchmarks",
                                       ROW), document["context"]
-    charts = {"layouts": layouts(rows), "roofline": roofline(rows, context["ceilings"])}
-    for name, figure in charts.items():
-        if figure:
-            save(figure, folder, name, context)
+    if figure := layouts(rows):
+        save(figure, folder, "layouts", context)

@@ -198,16 +198,6 @@ def bases():
 
 
 @table
-def ceilings():
-    measured = load("layouts")["context"]["ceilings"]
-    cells = {"multiply-adds [GFLOP/s]": measured["gflops"]}
-    for bandwidth in measured["bandwidths"]:
-        cells[f"{bandwidth['working_set'] / 2**20:.3g} MiB [GB/s]"] = bandwidth["gbps"]
-    cells["a launch [us]"] = 1e3 * measured["launch_ms"]
-    return [[*cells], [number(value) for value in cells.values()]]
-
-
-@table
 def frames():
     def cell(given, stage):
         frame = found(load("frames")["frames"], given=given)
