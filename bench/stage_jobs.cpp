@@ -35,11 +35,11 @@ bool near_boundary(const glm::dvec3& point) {
 }
 
 /// Returns `image` without texels near a boundary of a light cell or a geometry cell.
-SurfaceImage without_boundary_texels(SurfaceImage image, const ClpvGrid& grid) {
+SurfaceImage without_boundary_texels(SurfaceImage image, const ClpvGrid& grid, bool in_front) {
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     if (image.depth[i] <= 0) continue;
-    const bool light = near_boundary(reference::grid_point(image, i, grid, true));
-    if (light || near_boundary(reference::grid_point(image, i, grid, false) + 0.5))
+    const bool light = near_boundary(reference::light_point(image, i, grid, in_front));
+    if (light || near_boundary(reference::grid_point(image, i, grid) + 0.5))
       image.depth[i] = 0;
   }
   return image;
@@ -57,6 +57,7 @@ Inputs::Inputs(Session& session, const SceneData& scene, const SceneCamera& came
                                  RsmFormat::float32, false);
   rasterizer.rasterize_camera(surface);
   const SurfaceImage image = read_surface(session, surface);
+  const bool in_front = inject_options(options, false).in_front;
   for (const ClpvGrid& grid :
        cascade_grids(camera.eye, options.cascades, options.cascade_size, options.grid)) {
     Surface rsm = make_surface(
@@ -65,9 +66,9 @@ Inputs::Inputs(Session& session, const SceneData& scene, const SceneCamera& came
     rasterizer.rasterize_rsm(lights.front().data, rsm);
     views_.push_back(
         {grid,
-         verify::upload_injected(session, without_boundary_texels(read_surface(session, rsm), grid),
+         verify::upload_injected(session, without_boundary_texels(read_surface(session, rsm), grid, in_front),
                                  options.rsm_format, rsm.colour_scale),
-         verify::upload_injected(session, without_boundary_texels(image, grid),
+         verify::upload_injected(session, without_boundary_texels(image, grid, in_front),
                                  RsmFormat::float32)});
   }
 }

@@ -9,6 +9,7 @@ InjectOptions inject_options(const RenderOptions& options, bool unit_flux_lobes)
   return {.grid = options.grid,
           .blocking = options.blocking,
           .unit_flux_lobes = unit_flux_lobes,
+          .in_front = !has_faces(options.transport),
           .lobes = options.lobes(),
           .table = options.table(),
           .format = options.format()};

@@ -21,6 +21,9 @@ struct InjectOptions {
   int grid = 32;  ///< cells along each axis
   Blocking blocking = Blocking::one_sided;
   bool unit_flux_lobes = false;  ///< scales lobes to a flux of pi, as transport `exact` requires
+  /// Light starts in cells whose centre is in front of its surface; false: half a cell off the
+  /// surface, as by Kaplanyan and Dachsbacher.
+  bool in_front = true;
   LobeOptions lobes = {};        ///< `rotate`: by a table in the kernel
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};  ///< format of light and geometry volumes

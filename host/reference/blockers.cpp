@@ -36,11 +36,11 @@ class AxisTriangle {
     if (area_ != 0) normal_ = glm::normalize(across);
   }
 
-  /// Selects the side that faces up or down the axis, and moves the triangle half a cell to that
-  /// side.
+  /// Selects the side that faces up or down the axis, and moves the triangle so far to that side
+  /// that centres of its cells are in front of it.
   void lift(bool up) {
     if (up != this->up()) normal_ = -normal_;
-    const glm::dvec3 aside = normal_ / 2.0;
+    const glm::dvec3 aside = normal_ / (2 * weight());
     for (glm::dvec3& c : corners_)
       c += glm::dvec3(std::rint(kSamples * aside.x) / kSamples,
                       std::rint(kSamples * aside.y) / kSamples, aside.z);
@@ -208,8 +208,7 @@ BlockerBounds voxelize_blockers(const SceneData& scene, const ClpvGrid& grid) {
 }
 
 // R_a: covered share of face a times mean albedo; channel 3: the mean share m of its triangles,
-// channel 4: R of albedo 1; by 8 x 8 samples per face, half a cell off the
-// surface. A triangle of normal n counts towards the three axes next to n with weights |n_a| /
+// channel 4: R of albedo 1; by 8 x 8 samples per face, off the surface. A triangle of normal n counts towards the three axes next to n with weights |n_a| /
 // (|n_x| + |n_y| + |n_z|).
 
 namespace {

@@ -68,11 +68,11 @@ struct ClearPoint {
   unsigned seen = 0;
 };
 
-/// The sample point a cell along `clear` [cells] from `at`, or at its end; nothing without a way.
+/// The sample point 0.85 cells along `clear` [cells] from `at`, or at its end; nothing without a way.
 /// `shift` is added to it [quarters of a cell].
 std::optional<ClearPoint> clear_point(const glm::dvec3& at, const glm::dvec3& clear, int n,
                                       const std::uint8_t* occluded, double shift = 0) {
-  constexpr double kMost = 0.99;  // [cells]: the point is at most one cube away
+  constexpr double kMost = 0.85;  // [cells]; below 1: the point is at most one cube away
   const double length = glm::length(clear);
   if (length == 0) return std::nullopt;
   const int last = std::max(kPoints * (n - 1) - 1, 0);
@@ -88,7 +88,7 @@ std::optional<ClearPoint> clear_point(const glm::dvec3& at, const glm::dvec3& cl
 
 /// The cells that it sees as cells of `cube`: a sample point must see one to count.
 unsigned clear_cells(const std::optional<ClearPoint>& point, const glm::ivec3& cube) {
-  if (!point) return kAllPoints;
+  if (!point || point->seen == 0) return kAllPoints;
   unsigned cells = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 in_cube =
@@ -97,7 +97,7 @@ unsigned clear_cells(const std::optional<ClearPoint>& point, const glm::ivec3& c
                         glm::all(glm::lessThanEqual(in_cube, glm::ivec3(1)));
     if (shared && (point->seen >> corner & 1) != 0) cells |= 1u << number_of(in_cube, 2);
   }
-  return cells != 0 ? cells : kAllPoints;
+  return cells;
 }
 
 }  // namespace

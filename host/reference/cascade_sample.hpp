@@ -29,12 +29,12 @@ TrilinearSample trilinear_sample(const glm::dvec3& at, int n);
 
 /// Multiplies weights by the visible shares of the cells from `at`, and normalises them. `clear`: a
 /// way [cells] on which nothing stands, or 0. Only those sample points count that see a cell which
-/// the sample point a cell along it, or at its end, sees, too. Where too little is visible, the
-/// cells count that this point sees, or all without such a way.
+/// the sample point 0.85 cells along it, or at its end, sees, too. Where too little is visible, the
+/// cells count that this point sees, or all where it sees none or without such a way.
 void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::dvec3& clear, int n,
                       const std::uint8_t* occluded);
 
-/// Returns true if rounding decides which sample point lies a cell along `clear`.
+/// Returns true if rounding decides which sample point lies along `clear`.
 bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n);
 
 /// Interpolated coefficients of one channel.

@@ -71,7 +71,7 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
                          footprint(surface.view, pixel % surface.view.width,
                                    pixel / surface.view.width, surface.depth[pixel]) /
                          (double{grid.cell} * grid.cell * cosine);
-    const glm::ivec3 corner(glm::floor(grid_point(surface, pixel, grid, false) + 0.5));
+    const glm::ivec3 corner(glm::floor(grid_point(surface, pixel, grid) + 0.5));
     if (!blocks_by_lobes(options.blocking)) {
       add(blocking, 0, corner, share, {std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
       continue;
@@ -83,13 +83,18 @@ Volume blocking_of(const SurfaceImage& surface, const ClpvGrid& grid, const Basi
 
 }  // namespace
 
-glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid,
-                      bool light) {
+glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid) {
   const glm::dvec3 p = surface.position.empty()
                            ? surface_position(surface.view, pixel, surface.depth[pixel])
                            : xyz(surface.position[pixel]);
-  return (p - vector(grid.origin)) / double{grid.cell} +
-         (light ? 0.5 : 0.0) * xyz(surface.normal[pixel]);
+  return (p - vector(grid.origin)) / double{grid.cell};
+}
+
+glm::dvec3 light_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid,
+                       bool in_front) {
+  const glm::dvec3 n = xyz(surface.normal[pixel]), sides = glm::abs(n);
+  return grid_point(surface, pixel, grid) +
+         (in_front ? (sides.x + sides.y + sides.z) / 2 : 0.5) * n;
 }
 
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
@@ -100,7 +105,7 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
     if (!has_surface(rsm, pixel) || !finite(flux)) continue;
     const std::vector<double> c =
         lobe(basis, lobes, xyz(rsm.normal[pixel]), options.unit_flux_lobes);
-    const glm::dvec3 point = grid_point(rsm, pixel, grid, true);
+    const glm::dvec3 point = light_point(rsm, pixel, grid, options.in_front);
     for (int channel = 0; channel < 3; ++channel) {
       add(light, channel, glm::ivec3(glm::floor(point)), flux[channel] / std::numbers::pi, c);
     }

@@ -35,10 +35,12 @@ void merge_geometry(const Volume& found, const Basis& basis, Blocking blocking, 
 /// only. merge_geometry() and this function bound the result of a device.
 Volume merged_against_ties(const Volume& a, const Volume& b, const Basis& basis, Blocking blocking);
 
-/// Returns the position of a pixel's surface in cells from the grid's origin. `light`: moved by
-/// half a cell along the normal.
-glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid,
-                      bool light);
+/// Returns the position of a pixel's surface in cells from the grid's origin.
+glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid);
+
+/// Returns where a pixel's virtual point light lies. `in_front`: InjectOptions.
+glm::dvec3 light_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid,
+                       bool in_front);
 
 // CPU reference of stage `emit` (kernels/inject/emit.cl): virtual point lights of emissive
 // triangles, in double (docs/method.md, 'Emissive surfaces').

@@ -105,9 +105,14 @@ glm::dvec3 NearField::radiance_of(const NearHit& hit, const NearPoint& point,
   const glm::dvec3 geometric = glm::normalize(front);
   for (const MappedLight& light : scene.lights)
     irradiance += direct_irradiance(light, position, n, geometric);
-  if (options.reflects)
-    irradiance += field_irradiance(
-        basis, field_at(position, options.gather.gather_offset, lift_normal(n, geometric)), n);
+  if (options.reflects) {
+    const double offset = options.gather.gather_offset, far = glm::length(point.clear);
+    const glm::dvec3 lift = lift_normal(n, geometric),
+                     seen = point.position + point.clear * std::min(1.0, point.reach / far),
+                     clear = far > 0 ? seen - position : glm::dvec3(0);
+    irradiance += field_irradiance(basis, field_at(position, offset, lift, clear), n);
+    uncertain = uncertain || unsure(position, offset, lift, clear);
+  }
   const bool emitting = !back || double_sided(scene.scene.materials[triangle.material]);
   const glm::dvec3 emitted =
       emitting ? glm::dvec3(scene.materials.emissive(hit.point, footprint)) : glm::dvec3(0);
@@ -141,8 +146,11 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
     if (hit) {
       point.difference += radiance_of(*hit, point, w, point.uncertain) - v;
     } else {
-      const glm::dvec3 end = point.position + point.reach * (offset * point.lift + w);
-      point.difference += share * (radiance(basis, field_at(end, 0, point.normal), -w) - v);
+      const glm::dvec3 end = point.position + point.reach * (offset * point.lift + w),
+                       clear = (point.position - end) / 2.0;
+      const RadianceField there = field_at(end, 0, point.normal, clear);
+      point.difference += share * (radiance(basis, there, -w) - v);
+      point.uncertain = point.uncertain || (share > 0 && unsure(end, 0, point.normal, clear));
     }
   }
   point.difference *= std::numbers::pi / static_cast<double>(directions.size());

@@ -56,7 +56,7 @@ bool near_border(const glm::dvec3& point) {
 
 /// Random depths, colours and normals towards the viewer, with holes and values that are not
 /// finite. Excludes normals whose lobe depends on rounding.
-SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool orthographic,
+SurfaceImage random_surface(const Basis& basis, const InjectOptions& options, bool orthographic,
                             bool light, RsmFormat format, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(-1, 1);
@@ -72,10 +72,11 @@ SurfaceImage random_surface(const Basis& basis, const LobeOptions& lobes, bool o
     surface.normal[i] = glm::vec4(glm::normalize(1.2f * around - forward), 0);
     surface.colour[i] =
         0.5f + 0.5f * glm::vec4(uniform(random), uniform(random), uniform(random), 0);
-    const glm::dvec3 point = reference::grid_point(surface, i, kCells, light);
-    const bool unsure = lobes.kind == LobeKind::rotate &&
-                        rounding_decides(basis, lobes, glm::dvec3(surface.normal[i]));
-    if (unsure || near_border(light ? point : point + 0.5)) surface.depth[i] = 0;
+    const glm::dvec3 point = light ? reference::light_point(surface, i, kCells, options.in_front)
+                                   : reference::grid_point(surface, i, kCells) + 0.5;
+    const bool unsure = options.lobes.kind == LobeKind::rotate &&
+                        rounding_decides(basis, options.lobes, glm::dvec3(surface.normal[i]));
+    if (unsure || near_border(point)) surface.depth[i] = 0;
   }
   surface.depth[3] = std::numeric_limits<float>::infinity();
   if (format == RsmFormat::paper) return surface;  // 8 bits hold no NaN
@@ -224,7 +225,8 @@ std::vector<InjectCase> cases_of_basis(const Basis& basis, bool thorough) {
   }
   if (basis.size() > 4 || (!thorough && !basis.centres().empty())) return cases;
   cases.push_back({.options = {.unit_flux_lobes = true}, .orthographic = false});
-  cases.push_back({.orthographic = false, .format = RsmFormat::paper});
+  cases.push_back(
+      {.options = {.in_front = false}, .orthographic = false, .format = RsmFormat::paper});
   cases.push_back({.light = false, .orthographic = false, .format = RsmFormat::paper});
   return cases;
 }
@@ -254,7 +256,7 @@ InjectProblem random_injection(Session& session, const std::shared_ptr<const Bas
   InjectProblem problem{basis, options, kCells, {}, {}};
   problem.options.grid = kInjectGrid;
   const auto surface = [&](bool above, unsigned seed) {
-    SurfaceImage image = random_surface(*basis, options.lobes, above, light, format, seed);
+    SurfaceImage image = random_surface(*basis, options, above, light, format, seed);
     if (points) image = as_points(std::move(image));
     return upload_injected(session, image, format);
   };

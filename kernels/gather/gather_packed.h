@@ -6,9 +6,9 @@
 //                                     shares
 //
 // Where a way is known on which nothing stands, such as that to the eye, only those sample points
-// count that see a cell which the sample point a cell along it, or at its end, sees, too: no point
-// behind a wall beside the surface does. If fewer than 1/64 of the weights remain, the cells count
-// that this point sees, or all eight without such a way.
+// count that see a cell which the sample point 0.85 cells along it, or at its end, sees, too: no
+// point behind a wall beside the surface does. If fewer than 1/64 of the weights remain, the cells
+// count that this point sees, or all eight where it sees none or without such a way.
 // docs/method.md, 'Gathering'.
 // A record is CLPV_PAIRS float8 per cell, each with two coefficients: (r g b f)(r g b f). The eight
 // cells about a point are read as whole vectors. f is swept light of the white furnace, 0 after
@@ -54,10 +54,10 @@ typedef struct {
   int clear_point[W];
 } SamplePoints;
 
-// Finds the sample points a cell along `clear` from p [cells], or at its end. (x, y, z): cube of p.
+// Finds the sample points 0.85 cells along `clear` from p [cells], or at its end. (x, y, z): cube of p.
 CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, const intW z,
                                    const Vec clear, SamplePoints* points) {
-  const float past = 4.0f * (float)(CLPV_GRID - 1), most = 0.99f;  // [cells]: not two cubes away
+  const float past = 4.0f * (float)(CLPV_GRID - 1), most = 0.85f;  // [cells]; below 1: not two cubes away
   const realW square = vec_dot(clear, clear), scale =
       square > (realW)(most * most) ? 4.0f * most * rsqrt(square) : (realW)(4.0f);
   const intW highest = (intW)(CLPV_GRID > 1 ? 4 * CLPV_GRID - 5 : 0);
@@ -127,8 +127,7 @@ CLPV_INLINE int clear_cells(__global const uchar* occluded, const SamplePoints* 
   const int cube = points->clear_cube[i], point = points->clear_point[i];
   if (cube < 0) return CLPV_ALL_POINTS;
   const int seen = ~occluded[(size_t)cube * 64 + (point >> 6)] & 255;
-  const int cells = cells_from(seen, point & 63);
-  return cells != 0 ? cells : CLPV_ALL_POINTS;
+  return seen != 0 ? cells_from(seen, point & 63) : CLPV_ALL_POINTS;
 }
 
 __constant const int8 cell_bits = (int8)(1, 2, 4, 8, 16, 32, 64, 128);

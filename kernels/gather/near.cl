@@ -9,6 +9,7 @@
 //   d(w) = q (L(p' + R w, -w) - L(p', -w))   else, q the weight of the correction (miss_weight)
 //   p' = p + h s n_g                         n_g: lift_normal() (shared/normal.h)
 //
+// Nothing stands on the way from p' + R w to the middle between it and p (gather_packed.h).
 // h: CLPV_GATHER_OFFSET. R and s: edge of a cell of the cascades at p, blended like their light.
 // near_trace.cl finds hits, near_light.cl their radiance; radiance.h has L. near_filter.cl adds D
 // to the irradiance E that is gathered at p.
@@ -72,8 +73,9 @@ __kernel void near(const ClpvView view, __global const float* points,
     const Vec w = find_near_directions(directions, r, &p, k);
     const intW hit = load_lanes(distances + k * r.plane + r.at) < (realW)(INFINITY);
     const intW missed = lit & (hit == 0) & (trust > ZERO);
-    sample_radiance(CLPV_PASS_RADIANCE, vec_add_scaled(lifted, p.reach, w), ZERO, p.normal,
-                    vec(ZERO, ZERO, ZERO), missed, &there);
+    const Vec end = vec_add_scaled(lifted, p.reach, w),
+              clear = vec_times(vec_minus(p.position, end), (realW)(0.5f));
+    sample_radiance(CLPV_PASS_RADIANCE, end, ZERO, p.normal, clear, missed, &there);
     const VecLanes back = unpack(lit, vec_times(w, (realW)(-1.0f)));
     float shares[W];
     store_lanes(lit ? (hit ? ONE : trust) : ZERO, shares);

@@ -20,6 +20,7 @@
 #include "gather/near_layout.h"
 #include "raster/scene_triangles.h"
 #include "raster/shadow.h"
+#include "raster/surface_row.h"
 #include "raster/tile_row.h"
 #if CLPV_NEAR_REFLECT
 #include "gather/radiance.h"
@@ -29,6 +30,7 @@ typedef struct {
   intW hit;
   uintW radiance;        // place among the radiances
   Vec position;          // [m]
+  Vec clear;             // way [m] to the point a cell from the ray's origin towards the eye, or 0
   SurfaceLanes surface;  // towards the ray's origin
 } HitSurface;
 
@@ -68,6 +70,9 @@ CLPV_INLINE bool load_hit_surfaces(const ClpvView view, __global const float* po
   // Leaves out hits on the ray's own triangle: its plane holds the pixel that the ray starts from.
   s->hit = listed & (fabs(height) > 2.0f * CLPV_NEAR_LIFT * reach * area2);
   s->position = vec_interpolated(w, at, t.b.position, t.c.position);
+  const Vec eye = towards_eye(view, origin);
+  const realW far = sqrt(vec_dot(eye, eye)), part = far > reach ? reach / far : ONE;
+  s->clear = vec_masked(far > ZERO, vec_minus(vec_add_scaled(origin, part, eye), s->position));
   const Vec front = vec_times(across, back ? (realW)(-1.0f) : ONE);
   surface_at(&t, w, front, &s->surface);
   const intW emits = (back == 0) | ((t.material.flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0u);
@@ -133,7 +138,7 @@ __kernel void near_reflect(CLPV_NEAR_HITS, CLPV_RADIANCE) {
   RadianceField field;
   const Vec lift = lift_normal(s.surface.geometric, s.surface.normal);
   sample_radiance(CLPV_PASS_RADIANCE, s.position, (realW)(CLPV_GATHER_OFFSET), lift,
-                  vec(ZERO, ZERO, ZERO), s.hit, &field);
+                  s.clear, s.hit, &field);
   const VecLanes n = unpack(s.hit, s.surface.normal);
   float x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {

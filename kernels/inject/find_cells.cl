@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Finds the cell of each texel of `injections`: the first step of injection (light.cl, surfels.cl).
 //
-//   light:     cell of p + n s / 2       half a cell off the surface, so that a surface does not
-//                                        light itself
+//   light:     cell of p + h n s         h = (|n_x| + |n_y| + |n_z|) / 2: the cell's centre is in
+//                                        front of the surface, so that light does not start
+//                                        behind it; 1/2 without CLPV_IN_FRONT
 //   blocking:  corner nearest to p       B = A / (max(|n.w|, 0.1) s^2): blocked share of a surfel;
 //                                        its footprint A along w is that of stride x stride texels
 //
@@ -18,7 +19,7 @@
 //       shares  blocking: B of each texel
 // A work-item processes a strip of CLPV_STRIP texels of a row. Compilers vectorise this loop on
 // CPUs, if it accesses memory by scalars and calls no floor(). From the host: CLPV_GEOMETRY (0
-// light, 1 blocking), CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER.
+// light, 1 blocking), CLPV_IN_FRONT, CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER.
 #include "inject/cell_keys.h"
 #include "shared/grid.h"
 #include "shared/subsampling.h"
@@ -89,7 +90,9 @@ __kernel void find_cells(__global const ClpvInjection* restrict injections,
 #if CLPV_GEOMETRY
     shares[i] = blocked_share(view, grid, (float)px, (float)py, depth, normal, stride);
 #else
-    x += 0.5f * normal.x, y += 0.5f * normal.y, z += 0.5f * normal.z;
+    const float sides = fabs(normal.x) + fabs(normal.y) + fabs(normal.z),
+                h = CLPV_IN_FRONT ? 0.5f * sides : 0.5f;
+    x += h * normal.x, y += h * normal.y, z += h * normal.z;
     const float3 flux = load_colour(colours, texel, colour_scale);
     valid = valid & all_finite(flux.x, flux.y, flux.z) & not_zero(flux.x, flux.y, flux.z);
 #endif

@@ -8,8 +8,9 @@
 //
 // A triangle counts towards the three faces nearest to n, and its back towards the three opposite
 // ones. With CLPV_WHITE albedo is not summed, and backs count only where the material is
-// double-sided. As virtual point lights do, faces emit and receive half a cell off the surface
-// along its normal; along u and v, this offset is rounded to whole samples.
+// double-sided. As virtual point lights do (inject/find_cells.cl), faces emit and receive off the
+// surface, in cells whose centre is in front of it; along u and v, this offset is rounded to whole
+// samples.
 //
 // Each axis is a raster of 8 x 8 samples per face (voxelize_triangle.h). Albedo is looked up once
 // per row of samples, at the centre of the covered ones. Sums are integers, by atomic_add and
@@ -101,14 +102,13 @@ CLPV_INLINE void add_triangle(const ClpvRegion* region, const ProjectedTriangle*
   }
 }
 
-// Moves a triangle half a cell along `normal`, and from cells about corners, which
-// voxelize_triangle.h counts, to light cells.
-static inline ProjectedTriangle offset_triangle(const ProjectedTriangle* from,
-                                                const float3 normal) {
+// Moves a triangle `by` cells, and from cells about corners, which voxelize_triangle.h counts, to
+// light cells.
+static inline ProjectedTriangle offset_triangle(const ProjectedTriangle* from, const float3 by) {
   ProjectedTriangle t = *from;
-  const float u = rint(0.5f * CLPV_VOXEL_SAMPLES * normal.x) - CLPV_VOXEL_SAMPLES / 2;
-  const float v = rint(0.5f * CLPV_VOXEL_SAMPLES * normal.y) - CLPV_VOXEL_SAMPLES / 2;
-  const float w = 0.5f * normal.z - 0.5f;
+  const float u = rint(CLPV_VOXEL_SAMPLES * by.x) - CLPV_VOXEL_SAMPLES / 2;
+  const float v = rint(CLPV_VOXEL_SAMPLES * by.y) - CLPV_VOXEL_SAMPLES / 2;
+  const float w = by.z - 0.5f;
   for (int i = 0; i < 3; ++i) {
     t.u[i] += u;
     t.v[i] += v;
@@ -143,7 +143,8 @@ __kernel void voxelize_reflectors(const ClpvRegion region, __global const uint* 
     const float length = sqrt(1.0f + slope_u * slope_u + slope_v * slope_v);
     const float3 normal = (float3)(-slope_u, -slope_v, 1.0f) / length;  // along u, v and the axis
     const float weight = 1.0f / (fabs(normal.x) + fabs(normal.y) + normal.z);
-    const ProjectedTriangle up = offset_triangle(&t, normal), down = offset_triangle(&t, -normal);
+    const float3 off = 0.5f / weight * normal;
+    const ProjectedTriangle up = offset_triangle(&t, off), down = offset_triangle(&t, -off);
     const bool both = !CLPV_WHITE || (surface.material->flags & CLPV_MATERIAL_DOUBLE_SIDED) != 0;
     if (both || t.inverse_area > 0.0f)
       add_triangle(&region, &up, &surface, axis, 0, weight, faces);

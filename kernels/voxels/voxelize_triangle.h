@@ -32,7 +32,7 @@ typedef struct {
   float at[3][3];  // [axis][corner]
 } GridCorners;
 
-// Returns false for a triangle outside the region, extended by half a cell on every side.
+// Returns false for a triangle outside the region, extended by 3/4 of a cell on every side.
 static inline bool find_grid_corners(const ClpvRegion* region,
                                      __global const ClpvVertex* const corner[3],
                                      GridCorners* corners) {
@@ -47,8 +47,10 @@ static inline bool find_grid_corners(const ClpvRegion* region,
     }
     const int first = region->first[axis] + region->all.low[axis],
               end = region->first[axis] + region->all.high[axis] + 2;
-    within = within && fmax(at[0], fmax(at[1], at[2])) >= (float)(CLPV_VOXEL_SAMPLES * first) &&
-             fmin(at[0], fmin(at[1], at[2])) < (float)(CLPV_VOXEL_SAMPLES * end);
+    const float lowest = CLPV_VOXEL_SAMPLES * (first - 0.25f),
+                highest = CLPV_VOXEL_SAMPLES * (end + 0.25f);
+    within = within && fmax(at[0], fmax(at[1], at[2])) >= lowest &&
+             fmin(at[0], fmin(at[1], at[2])) < highest;
   }
   return within;
 }

@@ -68,6 +68,7 @@ Injector::Kernels Injector::make_kernels(const Variant& variant) const {
   ProgramSource find{"inject/find_cells.cl", both},
       sum{light ? "inject/light.cl" : "inject/surfels.cl", both};
   find.literals.flag("CLPV_GEOMETRY", !light)
+      .flag("CLPV_IN_FRONT", options_.in_front)
       .number("CLPV_STRIP", strip_)
       .flag("CLPV_POINTS", variant.points);
   sum.literals.add(light ? light_literals() : blocking_literals());

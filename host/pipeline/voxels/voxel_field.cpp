@@ -12,9 +12,10 @@
 namespace clpv {
 namespace {
 
-// Reach of triangles beyond a box of cells [cells]. Lit points, corner cells and cubes between
-// centres are offset by half a cell; the rest is a margin for rounding.
-constexpr double kReach = 0.51;
+// Reach of triangles beyond a box of cells [cells]. Corner cells and cubes between centres are
+// offset by half a cell, lit points along an axis by up to 0.683 (n_x (|n_x| + |n_y| + |n_z|) / 2);
+// the rest is a margin for rounding.
+constexpr double kReach = 0.7;
 // Bases are this many grids apart; the base is constant while a cascade moves within that distance.
 constexpr int kGridsApart = 4;
 constexpr std::size_t kMaskGroup = 64;  // work-items per group
