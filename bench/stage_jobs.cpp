@@ -39,8 +39,7 @@ SurfaceImage without_boundary_texels(SurfaceImage image, const ClpvGrid& grid, b
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     if (image.depth[i] <= 0) continue;
     const bool light = near_boundary(reference::light_point(image, i, grid, in_front));
-    if (light || near_boundary(reference::grid_point(image, i, grid) + 0.5))
-      image.depth[i] = 0;
+    if (light || near_boundary(reference::grid_point(image, i, grid) + 0.5)) image.depth[i] = 0;
   }
   return image;
 }
@@ -66,8 +65,9 @@ Inputs::Inputs(Session& session, const SceneData& scene, const SceneCamera& came
     rasterizer.rasterize_rsm(lights.front().data, rsm);
     views_.push_back(
         {grid,
-         verify::upload_injected(session, without_boundary_texels(read_surface(session, rsm), grid, in_front),
-                                 options.rsm_format, rsm.colour_scale),
+         verify::upload_injected(
+             session, without_boundary_texels(read_surface(session, rsm), grid, in_front),
+             options.rsm_format, rsm.colour_scale),
          verify::upload_injected(session, without_boundary_texels(image, grid, in_front),
                                  RsmFormat::float32)});
   }

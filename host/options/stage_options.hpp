@@ -24,7 +24,7 @@ struct InjectOptions {
   /// Light starts in cells whose centre is in front of its surface; false: half a cell off the
   /// surface, as by Kaplanyan and Dachsbacher.
   bool in_front = true;
-  LobeOptions lobes = {};        ///< `rotate`: by a table in the kernel
+  LobeOptions lobes = {};  ///< `rotate`: by a table in the kernel
   TableStorage table = TableStorage::buffer;
   VolumeFormat format = {};  ///< format of light and geometry volumes
 };

@@ -208,8 +208,8 @@ BlockerBounds voxelize_blockers(const SceneData& scene, const ClpvGrid& grid) {
 }
 
 // R_a: covered share of face a times mean albedo; channel 3: the mean share m of its triangles,
-// channel 4: R of albedo 1; by 8 x 8 samples per face, off the surface. A triangle of normal n counts towards the three axes next to n with weights |n_a| /
-// (|n_x| + |n_y| + |n_z|).
+// channel 4: R of albedo 1; by 8 x 8 samples per face, off the surface. A triangle of normal n
+// counts towards the three axes next to n with weights |n_a| / (|n_x| + |n_y| + |n_z|).
 
 namespace {
 

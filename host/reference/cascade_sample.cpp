@@ -68,8 +68,8 @@ struct ClearPoint {
   unsigned seen = 0;
 };
 
-/// The sample point 0.85 cells along `clear` [cells] from `at`, or at its end; nothing without a way.
-/// `shift` is added to it [quarters of a cell].
+/// The sample point 0.85 cells along `clear` [cells] from `at`, or at its end; nothing without a
+/// way. `shift` is added to it [quarters of a cell].
 std::optional<ClearPoint> clear_point(const glm::dvec3& at, const glm::dvec3& clear, int n,
                                       const std::uint8_t* occluded, double shift = 0) {
   constexpr double kMost = 0.85;  // [cells]; below 1: the point is at most one cube away

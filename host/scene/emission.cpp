@@ -37,7 +37,7 @@ class Planner {
   std::vector<ClpvEmitter> take() { return std::move(parts_); }
 
  private:
-  /// The finest grid that light from a box can enter, as light starts less than a cell off its surface;
+  /// The finest grid that light from a box can enter, as light starts half a cell off its surface;
   /// null if there is none.
   const ClpvGrid* reached(const glm::dvec3& lower, const glm::dvec3& upper) const {
     const auto overlaps = [&](const ClpvGrid& grid) {

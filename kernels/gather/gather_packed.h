@@ -54,10 +54,11 @@ typedef struct {
   int clear_point[W];
 } SamplePoints;
 
-// Finds the sample points 0.85 cells along `clear` from p [cells], or at its end. (x, y, z): cube of p.
+// Finds the sample points 0.85 cells along `clear` from p [cells], or at its end. (x, y, z): p's
+// cube.
 CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, const intW z,
                                    const Vec clear, SamplePoints* points) {
-  const float past = 4.0f * (float)(CLPV_GRID - 1), most = 0.85f;  // [cells]; below 1: not two cubes away
+  const float past = 4.0f * (float)(CLPV_GRID - 1), most = 0.85f;  // below 1: not two cubes away
   const realW square = vec_dot(clear, clear), scale =
       square > (realW)(most * most) ? 4.0f * most * rsqrt(square) : (realW)(4.0f);
   const intW highest = (intW)(CLPV_GRID > 1 ? 4 * CLPV_GRID - 5 : 0);

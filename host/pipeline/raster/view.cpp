@@ -289,7 +289,7 @@ LightBounds light_bounds(const std::vector<Vertex>& vertices, const Bounds& all,
     if (used[k]) last = k;
   }
   if (std::find(used.begin() + last + 1, used.end(), true) == used.end()) return {all, all};
-  const double outer = half + double{coarsest.cell};  // virtual point lights move by less than a cell
+  const double outer = half + double{coarsest.cell};  // virtual point lights move by half a cell
   const Bounds cube{glm::vec3(middle - outer), glm::vec3(middle + outer)};
   Bounds near{cube.upper, cube.lower};  // nothing yet
   for (const Vertex& v : vertices) {
