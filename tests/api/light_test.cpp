@@ -114,13 +114,13 @@ TEST(Light, OfAPanoramaWithoutTheNearFieldIsTheIrradianceOfItsPointsOffEdges) {
   const Scene scene(kCornell);
   Renderer renderer(scene, small().set("near", "off"));
   const Vec3 eye{0.278, 0.273, 0.2};
-  const Panorama seen(eye, scene.bounds());
+  const Panorama seen(eye, {{{0, 0, 0}, {0.556, 0.5488, 0.5592}}});  // the inner faces of the walls
   const Vectors light = renderer.light(seen.buffer(), eye);
   EXPECT_GT(greatest(light), 0);
   const Vectors of_points = renderer.irradiance(seen.positions, seen.normals);
-  std::size_t others = 0;  // within a cell of edges and blocks, where points have no eye
+  std::size_t others = 0;  // behind the blocks and at their edges, where points have no eye
   for (std::size_t i = 0; i < light.size(); ++i) others += light[i] != of_points[i];
-  EXPECT_LT(others, light.size() / 2) << "of the cascades about the eye";
+  EXPECT_LT(others, light.size() / 4) << "of the cascades about the eye";
   Renderer traced(scene, small());
   EXPECT_GT(greatest(traced.light(seen.buffer(), eye), light), 0.01 * greatest(light))
       << "the near field";
