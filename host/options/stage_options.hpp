@@ -21,8 +21,7 @@ struct InjectOptions {
   int grid = 32;  ///< cells along each axis
   Blocking blocking = Blocking::one_sided;
   bool unit_flux_lobes = false;  ///< scales lobes to a flux of pi, as transport `exact` requires
-  /// Light starts in cells whose centre is in front of its surface; false: half a cell off the
-  /// surface, as by Kaplanyan and Dachsbacher.
+  /// Light starts in cells whose centre is in front of its surface; else half a cell off it.
   bool in_front = true;
   LobeOptions lobes = {};  ///< `rotate`: by a table in the kernel
   TableStorage table = TableStorage::buffer;

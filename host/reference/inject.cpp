@@ -92,9 +92,8 @@ glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const Clpv
 
 glm::dvec3 light_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid,
                        bool in_front) {
-  const glm::dvec3 n = xyz(surface.normal[pixel]), sides = glm::abs(n);
-  return grid_point(surface, pixel, grid) +
-         (in_front ? (sides.x + sides.y + sides.z) / 2 : 0.5) * n;
+  const glm::dvec3 n = xyz(surface.normal[pixel]), part = glm::abs(n) / 2.0;
+  return grid_point(surface, pixel, grid) + (in_front ? part.x + part.y + part.z : 0.5) * n;
 }
 
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,

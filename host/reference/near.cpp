@@ -148,8 +148,7 @@ void NearField::trace(NearPoint& point, const std::vector<glm::vec3>& directions
     } else {
       const glm::dvec3 end = point.position + point.reach * (offset * point.lift + w),
                        clear = (point.position - end) / 2.0;
-      const RadianceField there = field_at(end, 0, point.normal, clear);
-      point.difference += share * (radiance(basis, there, -w) - v);
+      point.difference += share * (radiance(basis, field_at(end, 0, point.normal, clear), -w) - v);
       point.uncertain = point.uncertain || (share > 0 && unsure(end, 0, point.normal, clear));
     }
   }

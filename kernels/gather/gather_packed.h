@@ -54,8 +54,7 @@ typedef struct {
   int clear_point[W];
 } SamplePoints;
 
-// Finds the sample points 0.85 cells along `clear` from p [cells], or at its end. (x, y, z): p's
-// cube.
+// Finds sample points 0.85 cells along `clear` from p [cells], or at its end. (x, y, z): p's cube.
 CLPV_INLINE void find_clear_points(const Vec p, const intW x, const intW y, const intW z,
                                    const Vec clear, SamplePoints* points) {
   const float past = 4.0f * (float)(CLPV_GRID - 1), most = 0.85f;  // below 1: not two cubes away
