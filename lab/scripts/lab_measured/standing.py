@@ -8,10 +8,10 @@ tracing.
     lab/scripts/standing --own --model PATH/Sponza.gltf       three minutes, and ten for truths
 
 Writes a file of lab/results/quality, named after device and commit, and the pictures of
-lab/docs/other_methods.md; --picture only the one of images; --own renews the errors of clpv and
-of the published scheme at 240x135 in each file there; lab/scripts/tables then writes the tables of lab/docs/results.md. DEVICE:
-as --device of clpv takes it; default: the first. Commit and build first (scripts/build), and keep
-the machine free of other work. """
+lab/docs/other_methods.md; --picture only the one of images; --own renews the errors of clpv and of
+the published scheme at 240x135 in each file there. lab/scripts/tables then writes the tables of
+lab/docs/results.md. DEVICE: as --device of clpv takes it; default: the first. Commit and build
+first (scripts/build), and keep the machine free of other work."""
 import argparse
 import json
 import os
