@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One bounce: Phi_a = R_a sum_b Omega_b max(0, -w_b . a) L_b s^2, emitted by the cosine about a.
+// One bounce: Phi_a = R_a sum_b Omega_b max(0, -w_b . n_a) L_b s^2, emitted by the cosine about a;
+// n_a: normal of the face's triangles.
 // All bounces without a medium: light = I + R D_1 + S (D_2 - D_1) in every cascade, coarsest first;
 // with three sweeps and more, the second starts from I + E D.
 #include "reference/bounce.hpp"
@@ -56,16 +57,50 @@ SweptCascade along_24(SweptCascade cascade) {
   return cascade;
 }
 
-/// Incident flux of swept light.
-FaceFlux incident_flux_of(const Volume& swept) {
-  return [flux = incident_flux(), &swept](int channel, const glm::ivec3& p) {
-    return flux * swept.cell(channel, p);
+/// Normal of the triangles of a face (kernels/sweep/bounce.cl). `share`, `white`: of all faces.
+glm::dvec3 face_normal(const std::vector<double>& share, const std::vector<double>& white,
+                       int face) {
+  const auto tilt = [&](int side) {
+    const double t = share[side] > 0 ? 1 / share[side] - 1 : 0;
+    return t > double{CLPV_LEAST_TILT} ? t : 0;
+  };
+  const int axis = face / 2;
+  const double t = tilt(face);
+  glm::dvec3 along(0), v(0);
+  along[axis] = face % 2 == 0 ? 1 : -1;
+  if (t == 0) return along;
+  for (int side = 0; side < kCellFaces; ++side)
+    v[side / 2] += (side % 2 == 0 ? 1 : -1) * white[side] * std::min(tilt(side) / t, 1.0);
+  v[axis] = std::max(white[face], 1e-6) * along[axis];
+  v = glm::normalize(v);
+  const double sides = std::abs(v.x) + std::abs(v.y) + std::abs(v.z) - 1,
+               part = t < sides ? t / sides : 1;
+  return glm::normalize((1 - part) * along + part * v);
+}
+
+/// Incident flux of swept light about the normals of the faces' triangles.
+FaceFlux incident_flux_of(const Volume& swept, const Volume& reflectors) {
+  return [flux = incident_flux(), &swept, &reflectors](int channel, const glm::ivec3& p) {
+    const std::vector<double> bins = swept.cell(channel, p),
+                              share = reflectors.cell(CLPV_REFLECTOR_SHARE, p),
+                              white = reflectors.cell(CLPV_REFLECTOR_WHITE, p);
+    std::vector<double> incident(kCellFaces);
+    for (int side = 0; side < kCellFaces; ++side) {
+      const glm::dvec3 n = face_normal(share, white, side);
+      for (std::size_t b = 0; b < bins.size(); ++b) {
+        double weight = 0;
+        for (int axis = 0; axis < 3; ++axis)
+          weight += n[axis] * (flux(2 * axis, b) - flux(2 * axis + 1, b));
+        incident[side] += std::max(weight, 0.0) * bins[b];
+      }
+    }
+    return incident;
   };
 }
 
 /// `reflectance` times the incident flux of swept light.
-FaceFlux reflected_flux(const Volume& reflectance, const Volume& swept) {
-  return [&, incident = incident_flux_of(swept)](int channel, const glm::ivec3& p) {
+FaceFlux reflected_flux(const Volume& reflectance, const Volume& swept, const Volume& reflectors) {
+  return [&, incident = incident_flux_of(swept, reflectors)](int channel, const glm::ivec3& p) {
     std::vector<double> flux = incident(channel, p);
     for (int side = 0; side < kCellFaces; ++side)
       flux[side] *= reflectance.value(channel, side, p.x, p.y, p.z);
@@ -80,7 +115,8 @@ void add_one_bounce(const Basis& basis, const Transport& transport,
   for (SweptCascade& cascade : cascades) cascade = along_24(cascade);
   const std::vector<Volume> swept = sweep(basis, transport, cascades);
   for (std::size_t c = 0; c < cascades.size(); ++c)
-    inject_flux(basis, reflected_flux(*reflectors[c], swept[c]), *reflectors[c], light[c]);
+    inject_flux(basis, reflected_flux(*reflectors[c], swept[c], *reflectors[c]), *reflectors[c],
+                light[c]);
 }
 
 /// light += R D_1 + S (D_2 - D_1), not below 0, in every cascade; D_2 is of the last sweep for
@@ -99,14 +135,15 @@ void add_all_bounces(const Basis& basis, const Transport& transport,
     for (int done = 1; done < sweeps; ++done) {
       before = after, light[c] = injected;
       const bool relaxed = done == 1 && sweeps > kLeastSeriesSweeps;
-      inject_flux(basis, reflected_flux(relaxed ? series.first : *reflectors[c], before),
+      inject_flux(basis,
+                  reflected_flux(relaxed ? series.first : *reflectors[c], before, *reflectors[c]),
                   *reflectors[c], light[c]);
       after = sweep(basis, transport, nested)[0];
     }
     light[c] = injected;
-    const FaceFlux known = reflected_flux(*reflectors[c], before),
-                   earlier = reflected_flux(series.all, before),
-                   later = reflected_flux(series.all, after);
+    const FaceFlux known = reflected_flux(*reflectors[c], before, *reflectors[c]),
+                   earlier = reflected_flux(series.all, before, *reflectors[c]),
+                   later = reflected_flux(series.all, after, *reflectors[c]);
     inject_flux(
         basis,
         [&](int channel, const glm::ivec3& p) {
@@ -150,7 +187,8 @@ Sources bounce_in_medium(const Basis& basis, const Transport& transport,
       swept.light[c] = result.light[c], swept.scattered[c] = result.scattered[c];
       const Volume found = sweep(basis, transport, swept.of(few, c))[0];
       result.light[c] = *cascades[c].injected;
-      inject_flux(basis, reflected_flux(*reflectors[c], found), *reflectors[c], result.light[c]);
+      inject_flux(basis, reflected_flux(*reflectors[c], found, *reflectors[c]), *reflectors[c],
+                  result.light[c]);
       result.scattered[c] = *cascades[c].scattered;
       add_scattered(*cascades[c].medium, found, result.scattered[c]);
     }
@@ -168,7 +206,7 @@ BounceSeries bounce_series(const Basis& basis, const Transport& transport,
     SweptCascade few = along_24(cascade);
     few.injected = &light;
     const Volume swept = sweep(basis, transport, {few})[0];
-    const FaceFlux leaving = reflected_flux(reflectors, swept);
+    const FaceFlux leaving = reflected_flux(reflectors, swept, reflectors);
     Volume reflected = reflectors;
     for_each_cell(flux.n, [&](const glm::ivec3& p) {
       for (int channel = 0; channel < 3; ++channel)
@@ -245,7 +283,7 @@ std::vector<Volume> normalised_reflectors(const Basis& basis, const Transport& t
     for (std::size_t i = 0; i < nested.size() && (i == 0 || !all); ++i)
       nested[i] = along_24(nested[i]), emitting[i] = reflectors[c + i];
     const Volume even = furnace(basis, transport, nested, emitting, most_white)[0];
-    const FaceFlux incident = incident_flux_of(even);
+    const FaceFlux incident = incident_flux_of(even, *reflectors[c]);
     Volume& result = normalised.emplace_back(*reflectors[c]);
     for_each_cell(result.n, [&](const glm::ivec3& p) {
       const std::vector<double> arriving = incident(0, p);

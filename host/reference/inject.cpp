@@ -96,8 +96,35 @@ glm::dvec3 light_point(const SurfaceImage& surface, std::size_t pixel, const Clp
   return grid_point(surface, pixel, grid) + (in_front ? part.x + part.y + part.z : 0.5) * n;
 }
 
+std::optional<glm::ivec3> nearest_in_sight(const glm::dvec3& point, int n,
+                                           const std::uint8_t* occluded) {
+  const glm::dvec3 at = point - 0.5;  // [cells] from the first centre
+  const glm::ivec3 base(glm::floor(4.0 * at - 0.5));
+  const auto sees = [&](const glm::ivec3& cell) {
+    for (int i = 0; i < 8; ++i) {
+      const glm::ivec3 sample = glm::clamp(base + glm::ivec3(i & 1, i >> 1 & 1, i >> 2),
+                                           glm::ivec3(0), glm::ivec3(4 * n - 5)),
+                       cube = sample / 4, place = sample % 4, corner = cell - cube;
+      if (glm::any(glm::greaterThan(glm::abs(2 * corner - 1), glm::ivec3(1)))) return false;
+      const int number = (cube.z * n + cube.y) * n + cube.x,
+                bit = corner.x + 2 * corner.y + 4 * corner.z;
+      if ((occluded[64 * number + 16 * place.z + 4 * place.y + place.x] >> bit & 1) != 0)
+        return false;
+    }
+    return true;
+  };
+  std::optional<glm::ivec3> nearest;
+  double least = 3;
+  for_each_cell(n, [&](const glm::ivec3& cell) {
+    const glm::dvec3 off = glm::dvec3(cell) - at;
+    if (glm::dot(off, off) > least || !sees(cell)) return;
+    least = glm::dot(off, off), nearest = cell;
+  });
+  return nearest;
+}
+
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
-                  const InjectOptions& options, Volume& light) {
+                  const InjectOptions& options, const std::uint8_t* occluded, Volume& light) {
   const Lobes lobes(basis, options.lobes);
   for (std::size_t pixel = 0; pixel < rsm.normal.size(); ++pixel) {
     const glm::dvec3 flux = xyz(rsm.colour[pixel]);
@@ -105,9 +132,15 @@ void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& ba
     const std::vector<double> c =
         lobe(basis, lobes, xyz(rsm.normal[pixel]), options.unit_flux_lobes);
     const glm::dvec3 point = light_point(rsm, pixel, grid, options.in_front);
-    for (int channel = 0; channel < 3; ++channel) {
-      add(light, channel, glm::ivec3(glm::floor(point)), flux[channel] / std::numbers::pi, c);
+    glm::ivec3 cell(glm::floor(point));
+    if (!light.inside(cell.x, cell.y, cell.z)) continue;
+    if (occluded != nullptr) {
+      const std::optional<glm::ivec3> seen = nearest_in_sight(point, light.n, occluded);
+      if (!seen && rsm.position.empty()) continue;
+      cell = seen.value_or(cell);
     }
+    for (int channel = 0; channel < 3; ++channel)
+      add(light, channel, cell, flux[channel] / std::numbers::pi, c);
   }
 }
 

@@ -3,7 +3,9 @@
 // surfels of an RSM or G-buffer into volumes (docs/method.md, 'Injection', 'Blockers').
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "basis/basis.hpp"
@@ -17,9 +19,9 @@
 namespace clpv::reference {
 
 /// Adds the virtual point lights of `rsm` to `light` (grid.n^3 cells, 3 channels): c += (P / pi)
-/// c(n) in each light's cell.
+/// c(n) in each light's cell. `occluded`: bits of visibility_masks(), or null.
 void inject_light(const SurfaceImage& rsm, const ClpvGrid& grid, const Basis& basis,
-                  const InjectOptions& options, Volume& light);
+                  const InjectOptions& options, const std::uint8_t* occluded, Volume& light);
 
 /// Merges the surfels of `surface` into `geometry` (grid.n + 1 samples along each axis, 1 channel).
 /// Uses every `stride`-th pixel along each axis, the middle one of stride^2, with stride^2 times
@@ -41,6 +43,11 @@ glm::dvec3 grid_point(const SurfaceImage& surface, std::size_t pixel, const Clpv
 /// Returns where a pixel's virtual point light lies. `in_front`: InjectOptions.
 glm::dvec3 light_point(const SurfaceImage& surface, std::size_t pixel, const ClpvGrid& grid,
                        bool in_front);
+
+/// Returns the nearest cell to `point` [cells] of those that all eight sample points about it see,
+/// in a grid of n^3 cells; nothing if there is none.
+std::optional<glm::ivec3> nearest_in_sight(const glm::dvec3& point, int n,
+                                           const std::uint8_t* occluded);
 
 // CPU reference of stage `emit` (kernels/inject/emit.cl): virtual point lights of emissive
 // triangles, in double (docs/method.md, 'Emissive surfaces').

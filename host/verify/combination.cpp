@@ -36,8 +36,9 @@ constexpr int kGrid = 9;  // small; no multiple of a work-group
 Job inject_job_of(Session& session, const RenderOptions& o, bool light) {
   const std::shared_ptr<const Basis> basis = make_basis(o);
   const bool unit_flux = make_transport(o, *basis).unit_flux_lobes;
-  InjectProblem problem =
-      random_injection(session, basis, inject_options(o, unit_flux), light, true, o.rsm_format);
+  const bool sees = light && !has_faces(o.transport) && o.gather == Gathering::visible;
+  InjectProblem problem = random_injection(session, basis, inject_options(o, unit_flux), light,
+                                           true, o.rsm_format, false, sees);
   problem.stride = o.blocker_stride;
   return inject_job(session, problem);
 }

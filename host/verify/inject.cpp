@@ -54,6 +54,20 @@ bool near_border(const glm::dvec3& point) {
   return std::min({off.x, off.y, off.z}) < kMargin;
 }
 
+/// Leaves out texels whose cell in sight rounding may decide.
+void leave_out_unsure(const std::vector<std::uint8_t>& occluded, const InjectOptions& options,
+                      SurfaceImage& surface) {
+  const std::uint8_t* bits = occluded.data() + occluded.size() / 2;
+  for (std::size_t i = 0; i < surface.depth.size(); ++i) {
+    const glm::dvec3 at = reference::light_point(surface, i, kCells, options.in_front);
+    const auto cell = reference::nearest_in_sight(at, kInjectGrid, bits);
+    for (int o = 0; o < 8; ++o) {
+      const glm::dvec3 off = kMargin * (2.0 * glm::dvec3(o & 1, o >> 1 & 1, o >> 2) - 1.0);
+      if (reference::nearest_in_sight(at + off, kInjectGrid, bits) != cell) surface.depth[i] = 0;
+    }
+  }
+}
+
 /// Random depths, colours and normals towards the viewer, with holes and values that are not
 /// finite. Excludes normals whose lobe depends on rounding.
 SurfaceImage random_surface(const Basis& basis, const InjectOptions& options, bool orthographic,
@@ -102,6 +116,7 @@ SurfaceImage as_points(SurfaceImage surface) {
 struct InjectWork {
   InjectProblem problem;
   std::optional<Volume> light, geometry;
+  Buffer occluded;
   Injector injector;
 
   InjectWork(Session& session, const InjectProblem& p)
@@ -112,6 +127,7 @@ struct InjectWork {
     if (!p.blockers.empty())
       geometry.emplace(session, VolumeShape{o.grid + 1, blocking_size(o.blocking, *p.basis), 1},
                        "geometry volume", o.format);
+    if (!p.occluded.empty()) occluded = session.upload(p.occluded, "occluded cells");
   }
 
   void clear(Session& session) {
@@ -119,7 +135,7 @@ struct InjectWork {
     if (geometry) geometry->clear(session);
   }
   void run() {
-    if (light) injector.inject_light(problem.light->surface, problem.grid, *light);
+    if (light) injector.inject_light({{problem.light->surface, problem.grid, *light, 1}}, occluded);
     for (const InjectedSurface& blocker : problem.blockers)
       injector.inject_geometry(blocker.surface, problem.grid, *geometry, problem.stride);
   }
@@ -132,7 +148,9 @@ std::vector<double> expected_volumes(const InjectProblem& p) {
   std::vector<double> values;
   if (p.light) {
     reference::Volume light(o.grid, p.basis->size(), 3);
-    reference::inject_light(*p.light->image, p.grid, *p.basis, o, light);
+    reference::inject_light(
+        *p.light->image, p.grid, *p.basis, o,
+        p.occluded.empty() ? nullptr : p.occluded.data() + p.occluded.size() / 2, light);
     values = std::move(light.values);
   }
   if (p.blockers.empty()) return values;
@@ -183,7 +201,7 @@ Deviation compare(Session& session, const InjectWork& p, const std::vector<doubl
 /// One case of injected light, or of geometry with blockers.
 struct InjectCase {
   InjectOptions options = {};
-  bool light = true, orthographic = true, points = false;
+  bool light = true, orthographic = true, points = false, sees = false;
   RsmFormat format = RsmFormat::float32;
   int stride = 1;
 
@@ -198,6 +216,7 @@ struct InjectCase {
     if (options.unit_flux_lobes) name += "/unit-flux";
     if (options.lobes.kind == LobeKind::rotate) name += "/rotate";
     if (options.table == TableStorage::image) name += "/image";
+    if (sees) name += "/visible";
     if (options.format != VolumeFormat{}) name += fmt::format("/{}", format_name(options.format));
     return stride == 1 ? name : name + fmt::format("/stride {}", stride);
   }
@@ -252,11 +271,18 @@ Job inject_job(Session& session, const InjectProblem& problem, const Share& shar
 
 InjectProblem random_injection(Session& session, const std::shared_ptr<const Basis>& basis,
                                const InjectOptions& options, bool light, bool orthographic,
-                               RsmFormat format, bool points) {
+                               RsmFormat format, bool points, bool sees) {
   InjectProblem problem{basis, options, kCells, {}, {}};
   problem.options.grid = kInjectGrid;
+  if (sees) {
+    std::mt19937 random(14);
+    problem.occluded = random_occlusion(2, kInjectGrid, random);
+    for (std::uint8_t& bits : problem.occluded) bits &= random();  // 1 of 3 cells is in sight
+    for (std::uint8_t& bits : problem.occluded) bits &= random();
+  }
   const auto surface = [&](bool above, unsigned seed) {
     SurfaceImage image = random_surface(*basis, options, above, light, format, seed);
+    if (sees) leave_out_unsure(problem.occluded, problem.options, image);
     if (points) image = as_points(std::move(image));
     return upload_injected(session, image, format);
   };
@@ -272,7 +298,7 @@ Cases inject_cases(const CheckScope& scope) {
   const auto add = [&](const std::string& basis, const InjectCase& c) {
     cases.push_back(job_case(Stage::inject, c.name(basis), [basis, c](Session& session) {
       InjectProblem problem = random_injection(session, make_basis(basis), c.options, c.light,
-                                               c.orthographic, c.format, c.points);
+                                               c.orthographic, c.format, c.points, c.sees);
       problem.stride = c.stride;
       return inject_job(session, problem);
     }));
@@ -282,7 +308,9 @@ Cases inject_cases(const CheckScope& scope) {
   // Independent of the basis: areas, points without a view, and all other volume formats.
   const InjectOptions areas{.blocking = Blocking::areas};
   add("sh2", {.options = areas, .light = false});
-  add("sh2", {.orthographic = false, .points = true});
+  for (const bool sees : {false, true})
+    add("sh2", {.orthographic = false, .points = true, .sees = sees});
+  add("sh2", {.sees = true});
   for (const int stride : {1, 2, 3})
     add("sh2", {.options = areas, .light = false, .orthographic = false, .stride = stride});
   for (const VolumeFormat& format : scope.formats) {

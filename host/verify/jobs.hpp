@@ -80,6 +80,8 @@ struct InjectProblem {
   std::vector<InjectedSurface> blockers;  ///< empty: no geometry volume
   int stride = 1;                         ///< stride of the blockers' pixels
   bool on_entries = false;  ///< rounding may decide entries of tables (rounding_decides)
+  /// Bits of visibility_masks() of two cascades, of which `grid` is the second; empty: none.
+  std::vector<std::uint8_t> occluded = {};
 };
 
 Job inject_job(Session& session, const InjectProblem& problem, const Share& share = not_shared);
@@ -87,7 +89,7 @@ Job inject_job(Session& session, const InjectProblem& problem, const Share& shar
 /// A problem with random surfaces: one of light, or two of blockers, to test merging.
 InjectProblem random_injection(Session& session, const std::shared_ptr<const Basis>& basis,
                                const InjectOptions& options, bool light, bool orthographic,
-                               RsmFormat format, bool points = false);
+                               RsmFormat format, bool points = false, bool sees = false);
 
 // Job of stages `sweep` and `bounce`: injected light of nested cascades to swept light.
 

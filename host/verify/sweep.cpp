@@ -176,7 +176,8 @@ SharedVolume sparse_light(const Basis& basis, int n, std::mt19937& random) {
   return light;
 }
 
-/// 1 of 3 faces reflects, with an albedo of up to 0.5 and a share of 0.6 to 1.
+/// 1 of 3 faces reflects, with an albedo of up to 0.5 and a share of 0.6 to 1; 1 of 3 cells lie
+/// along the grid.
 SharedVolume random_reflectors(int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-2, 1);
   auto volume = std::make_shared<reference::Volume>(n, kCellFaces, CLPV_REFLECTOR_CHANNELS);
@@ -184,7 +185,7 @@ SharedVolume random_reflectors(int n, std::mt19937& random) {
   reference::for_each_cell(n, [&](const glm::ivec3& p) {
     for (int side = 0; side < kCellFaces; ++side) {
       volume->at(CLPV_REFLECTOR_SHARE, side, p.x, p.y, p.z) =
-          0.6f + 0.2f * std::abs(uniform(random));
+          p.z % 3 == 0 ? 1 : 0.6f + 0.2f * std::abs(uniform(random));
       const double white = volume->value(CLPV_REFLECTOR_WHITE, side, p.x, p.y, p.z);
       for (int channel = 0; channel < 3; ++channel) {
         double& reflected = volume->at(channel, side, p.x, p.y, p.z);

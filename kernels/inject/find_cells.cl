@@ -3,7 +3,9 @@
 //
 //   light:     cell of p + h n s         h = (|n_x| + |n_y| + |n_z|) / 2: the cell's centre is in
 //                                        front of the surface, so that light does not start
-//                                        behind it; 1/2 without CLPV_IN_FRONT
+//                                        behind it; 1/2 without CLPV_IN_FRONT. With CLPV_VISIBLE
+//                                        the nearest cell that all eight sample points about it
+//                                        see, so that it does not start behind another surface
 //   blocking:  corner nearest to p       B = A / (max(|n.w|, 0.1) s^2): blocked share of a surfel;
 //                                        its footprint A along w is that of stride x stride texels
 //
@@ -14,12 +16,14 @@
 //       normals; colours: flux [W], see surface.h for colour_scale
 //       stride   blocking: subsampling; a texel represents stride x stride texels
 //                (shared/subsampling.h)
+//       occluded CLPV_VISIBLE: occlusion bits of all cascades (voxels/visibility.cl)
 // Out:  keys    key of the cell of each texel of each surface (cell_keys.h); CLPV_NO_CELL for
-//               texels that are empty, dark, outside the grid or not finite
+//               texels that are empty, dark, outside the grid, not finite or, but for points,
+//               see no cell
 //       shares  blocking: B of each texel
 // A work-item processes a strip of CLPV_STRIP texels of a row. Compilers vectorise this loop on
 // CPUs, if it accesses memory by scalars and calls no floor(). From the host: CLPV_GEOMETRY (0
-// light, 1 blocking), CLPV_IN_FRONT, CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER.
+// light, 1 blocking), CLPV_IN_FRONT, CLPV_VISIBLE, CLPV_POINTS, CLPV_STRIP, CLPV_SURFACE_PAPER.
 #include "inject/cell_keys.h"
 #include "shared/grid.h"
 #include "shared/subsampling.h"
@@ -49,6 +53,46 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
          (fmax(cosine, CLPV_MIN_COSINE) * grid.cell * grid.cell);
 }
 
+#if CLPV_VISIBLE
+// Cells of a cube, a bit each, as cells of the cube that the steps (x, y, z), each -1, 0 or 1, lead
+// away from.
+static inline uint cells_from(uint cells, const int x, const int y, const int z) {
+  cells = x > 0 ? (cells & 0x55u) << 1 : x < 0 ? (cells & 0xaau) >> 1 : cells;
+  cells = y > 0 ? (cells & 0x33u) << 2 : y < 0 ? (cells & 0xccu) >> 2 : cells;
+  return z > 0 ? (cells & 0x0fu) << 4 : z < 0 ? (cells & 0xf0u) >> 4 : cells;
+}
+
+// Of the cells that all eight sample points about `at` see, the key of the nearest one. `at`:
+// [cells] from the first centre, in a grid of n^3 cells.
+static inline uint nearest_in_sight(__global const uchar* occluded, const int n, const float3 at) {
+  const int highest = max(n - 2, 0), end = 4 * highest + 3;
+  const float3 p = clamp(at, 0.0f, (float)(n - 1));
+  const int x = min((int)p.x, highest), y = min((int)p.y, highest), z = min((int)p.z, highest);
+  const int a = (int)(4.0f * p.x + 0.5f) - 1, b = (int)(4.0f * p.y + 0.5f) - 1,
+            c = (int)(4.0f * p.z + 0.5f) - 1;
+  uint seen = 255u;
+  for (int i = 0; i < 8; ++i) {
+    const int u = clamp(a + (i & 1), 0, end), v = clamp(b + (i >> 1 & 1), 0, end),
+              w = clamp(c + (i >> 2), 0, end);
+    const int cube = ((w >> 2) * n + (v >> 2)) * n + (u >> 2),
+              point = ((w & 3) * 4 + (v & 3)) * 4 + (u & 3);
+    seen &= cells_from(~(uint)occluded[64 * (size_t)cube + point] & 255u, (u >> 2) - x,
+                       (v >> 2) - y, (w >> 2) - z);
+  }
+  float least = MAXFLOAT;
+  uint key = CLPV_NO_CELL;
+  for (int i = 0; i < 8; ++i) {
+    const int cx = x + (i & 1), cy = y + (i >> 1 & 1), cz = z + (i >> 2);
+    const float dx = at.x - (float)cx, dy = at.y - (float)cy, dz = at.z - (float)cz,
+                square = dx * dx + dy * dy + dz * dz;
+    const bool nearest = (seen >> i & 1u) != 0 && square <= least;  // ties: as floor()
+    least = nearest ? square : least;
+    key = nearest ? cell_key((uint)n, (uint)cx, (uint)cy, (uint)cz) : key;
+  }
+  return key;
+}
+#endif
+
 __kernel void find_cells(__global const ClpvInjection* restrict injections,
                          __global const float* restrict places,
                          __global const SurfaceTexel* restrict normals,
@@ -57,6 +101,10 @@ __kernel void find_cells(__global const ClpvInjection* restrict injections,
 #if CLPV_GEOMETRY
                          ,
                          __global float* restrict shares, const uint stride
+#endif
+#if CLPV_VISIBLE
+                         ,
+                         __global const uchar* restrict occluded
 #endif
 ) {
 #if !CLPV_GEOMETRY
@@ -100,6 +148,14 @@ __kernel void find_cells(__global const ClpvInjection* restrict injections,
     x += shift, y += shift, z += shift;
     valid = valid & in_grid((float)n, x, y, z);  // false for points that are not finite
     const uint cx = valid ? (uint)x : 0, cy = valid ? (uint)y : 0, cz = valid ? (uint)z : 0;
-    keys[i] = valid ? first_key + cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
+    uint key = valid ? cell_key(n, cx, cy, cz) : CLPV_NO_CELL;
+#if CLPV_VISIBLE
+    if (valid) {
+      __global const uchar* of = occluded + 64 * (size_t)injections[surface].cascade * n * n * n;
+      const uint seen = nearest_in_sight(of, (int)n, (float3)(x, y, z) - 0.5f);
+      key = CLPV_POINTS && seen == CLPV_NO_CELL ? key : seen;
+    }
+#endif
+    keys[i] = key == CLPV_NO_CELL ? key : first_key + key;
   }
 }

@@ -17,6 +17,10 @@ enum {
 // Channels of reflectors after red, green and blue (face_albedo.cl).
 enum { CLPV_REFLECTOR_SHARE = 3, CLPV_REFLECTOR_WHITE = 4, CLPV_REFLECTOR_CHANNELS = 5 };
 
+// Least tilt 1 / m - 1 of triangles against the grid that is no rounding of their share m
+// (sweep/bounce.cl).
+#define CLPV_LEAST_TILT 2e-3f
+
 // Channels of the series S of all bounces: red, green, blue; then those of E, which reflects the
 // first light (sweep/bounce.cl).
 enum { CLPV_SERIES_FIRST = 3, CLPV_SERIES_CHANNELS = 6 };

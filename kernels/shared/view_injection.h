@@ -9,5 +9,5 @@ typedef struct {
   float colour_scale;   // of the surface (raster/surface.h)
   unsigned int first;   // index of the surface's first texel in its buffers
   unsigned int volume;  // index of its volume's first number
-  unsigned int unused;
+  unsigned int cascade; // whose occlusion bits belong to the grid (voxels/visibility.cl)
 } ClpvInjection;

@@ -17,6 +17,11 @@
 // cell's largest albedo] is T_2 / T_1. S and E depend on the surfaces, not on light. A face of
 // normal a that receives D_a emits, projected on the basis,
 //   I(w) = Phi_a max(0, w.a) / pi,   Phi_a = R_a D_a
+// D_a is the flux about the normal n_a of the face's triangles, else they would receive what they
+// emit (face_normal):
+//   n_a = (1 - t) a + t v, normalised      t = min(1, (1 / m_a - 1) / (|v|_1 - 1))
+//   v = V / |V|, V = W_a a + sum_c min(1, (1 / m_c - 1) / (1 / m_a - 1)) W_c c
+// c: the four faces across a; W: R of albedo 1.
 // With CLPV_HARMONICS, light of all bands but the first is divided by the share m_a of the face's
 // triangles: |n_a| = m_a (|n_x| + |n_y| + |n_z|), so that the faces of a surface emit the clamped
 // cosine about its normal n in bands 0 and 1.
@@ -31,22 +36,24 @@
 // face's normal, CLPV_MAX_RETURNED, the largest q, CLPV_RELAXATION, the 2 / 3 of E, CLPV_INCIDENT,
 // the weights of D_a for each face and bin.
 // A work-item computes a tile of W x W cells of a slice, of one channel or for the sources of all.
+#include "vec.h"
 #include "volume/coefficients.h"
 #include "shared/reflectors.h"
 #include "sweep/sources.h"
 #include "sweep/sweep_tiles.h"
 #include "volume/light.h"
 
-// Fluxes [W] on the six faces of W cells, in the order of shared/reflectors.h.
-//
-//   D_a = 0.956 sum_b Omega_b max(0, -w_b.a) L_b s^2, pi of even light 1
+// Numbers of the six faces of W cells, in the order of shared/reflectors.h.
 typedef struct {
   realW c[CLPV_CELL_FACES];
 } FaceFluxes;
 
 __constant const float incident_weights[CLPV_CELL_FACES][CLPV_SWEEP_BINS] = CLPV_INCIDENT;
 
-CLPV_INLINE FaceFluxes incident_flux(const Bins bins) {
+// Flux [W] on each face, pi of even light 1, of triangles along the grid:
+//
+//   D_a = 0.956 sum_b Omega_b max(0, -w_b.a) L_b s^2
+CLPV_INLINE FaceFluxes flux_along_grid(const Bins bins) {
   FaceFluxes flux;
 #pragma unroll
   for (int a = 0; a < CLPV_CELL_FACES; ++a) {
@@ -56,6 +63,71 @@ CLPV_INLINE FaceFluxes incident_flux(const Bins bins) {
       if (incident_weights[a][b] != 0.0f)
         flux.c[a] = fma((realW)(incident_weights[a][b]), bins.c[b], flux.c[a]);
   }
+  return flux;
+}
+
+// The same with the normal n in place of a.
+CLPV_INLINE realW flux_about(const Vec n, const Bins bins) {
+  realW flux = ZERO;
+#pragma unroll
+  for (int b = 0; b < CLPV_SWEEP_BINS; ++b) {
+    const realW x = (realW)(incident_weights[0][b] - incident_weights[1][b]),
+                y = (realW)(incident_weights[2][b] - incident_weights[3][b]),
+                z = (realW)(incident_weights[4][b] - incident_weights[5][b]);
+    flux = fma(fmax(fma(n.x, x, fma(n.y, y, n.z * z)), ZERO), bins.c[b], flux);
+  }
+  return flux;
+}
+
+// Tilts 1 / m - 1 of the faces' triangles against the grid; 0 along it, and on faces without one.
+CLPV_INLINE FaceFluxes find_tilts(const FaceFluxes share) {
+  FaceFluxes tilt;
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) {
+    const realW t = 1.0f / share.c[a] - 1.0f;
+    tilt.c[a] = (share.c[a] > ZERO) & (t > (realW)(CLPV_LEAST_TILT)) ? t : ZERO;
+  }
+  return tilt;
+}
+
+// Part of the surface of face a, of tilt t, that lies on the faces +b and -b: their difference.
+CLPV_INLINE realW across(const FaceFluxes white, const FaceFluxes tilt, const realW per_tilt,
+                         const int b) {
+  return white.c[2 * b] * fmin(tilt.c[2 * b] * per_tilt, ONE) -
+         white.c[2 * b + 1] * fmin(tilt.c[2 * b + 1] * per_tilt, ONE);
+}
+
+// Normal of the triangles of face a: a along the grid, else towards the vector area v of those that
+// are tilted as much.
+CLPV_INLINE Vec face_normal(const FaceFluxes white, const FaceFluxes tilt, const int a) {
+  const int axis = a / 2, b = (axis + 1) % 3, c = (axis + 2) % 3;
+  const realW t = tilt.c[a], per_tilt = t > ZERO ? 1.0f / t : ZERO;
+  const realW v_a = fmax(white.c[a], (realW)(1e-6f)), v_b = across(white, tilt, per_tilt, b),
+              v_c = across(white, tilt, per_tilt, c);
+  const realW per_length = rsqrt(v_a * v_a + v_b * v_b + v_c * v_c),
+              sides = per_length * (v_a + fabs(v_b) + fabs(v_c)) - 1.0f,
+              part = t < sides ? t / sides : ONE;
+  const realW n_a = 1.0f - part + part * per_length * v_a, n_b = part * per_length * v_b,
+              n_c = part * per_length * v_c, unit = rsqrt(n_a * n_a + n_b * n_b + n_c * n_c);
+  realW n[3];
+  n[axis] = (a % 2 == 0 ? unit : -unit) * n_a;
+  n[b] = unit * n_b;
+  n[c] = unit * n_c;
+  return vec(n[0], n[1], n[2]);
+}
+
+// Fluxes on the faces: about the normals of their triangles, which do not receive what leaves them.
+CLPV_INLINE FaceFluxes incident_flux(const Bins bins, const FaceFluxes share,
+                                     const FaceFluxes white) {
+  const FaceFluxes tilt = find_tilts(share);
+  realW most = ZERO;
+#pragma unroll
+  for (int a = 0; a < CLPV_CELL_FACES; ++a) most = fmax(most, tilt.c[a]);
+  if (no_lane(most > ZERO)) return flux_along_grid(bins);
+  FaceFluxes flux;
+#pragma unroll 1
+  for (int a = 0; a < CLPV_CELL_FACES; ++a)
+    flux.c[a] = flux_about(face_normal(white, tilt, a), bins);
   return flux;
 }
 
@@ -152,9 +224,11 @@ CLPV_INLINE Tile find_tile(const int channel) {
 CLPV_INLINE int own_channel(void) { return (int)get_global_id(2) / CLPV_GRID; }
 
 // Incident flux on the cells in row r of a tile of swept light.
-CLPV_INLINE FaceFluxes load_incident_flux(CLPV_BUFFER_IN swept, const SweepTile* x_bins,
-                                          const Tile t, const int r) {
-  return incident_flux(load_bins(swept + t.first, x_bins, r, t.x, t.y + r, t.z));
+CLPV_INLINE FaceFluxes load_incident_flux(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
+                                          const SweepTile* x_bins, const Tile t, const int r) {
+  return incident_flux(load_bins(swept + t.first, x_bins, r, t.x, t.y + r, t.z),
+                       faces_load(reflectors, CLPV_REFLECTOR_SHARE, t.x, t.y + r, t.z),
+                       faces_load(reflectors, CLPV_REFLECTOR_WHITE, t.x, t.y + r, t.z));
 }
 
 // Light that leaves the faces of the cells in row r of a tile.
@@ -176,7 +250,7 @@ __kernel void inject_reflected(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
     load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
     for (int r = 0; r < t.rows; ++r) {
       const FaceFluxes flux =
-          reflect_flux(load_incident_flux(swept, bins, t, r),
+          reflect_flux(load_incident_flux(swept, reflectors, bins, t, r),
                        faces_load(reflectance, first + channel, t.x, t.y + r, t.z));
       set_light(&light, channel, r,
                 add_coefficients(row_light(flux, reflectors, t, r),
@@ -198,8 +272,9 @@ __kernel void inject_series(CLPV_BUFFER_IN first_swept, CLPV_BUFFER_IN second_sw
     load_x_bins(first_swept + t.first, t.x, t.y, t.z, first);
     load_x_bins(second_swept + t.first, t.x, t.y, t.z, second);
     for (int r = 0; r < t.rows; ++r) {
-      const FaceFluxes flux = series_flux(load_incident_flux(first_swept, first, t, r),
-                                          load_incident_flux(second_swept, second, t, r),
+      const FaceFluxes before = load_incident_flux(first_swept, reflectors, first, t, r),
+                       after = load_incident_flux(second_swept, reflectors, second, t, r);
+      const FaceFluxes flux = series_flux(before, after,
                                           faces_load(reflectors, channel, t.x, t.y + r, t.z),
                                           faces_load(series, channel, t.x, t.y + r, t.z));
       set_light(&light, channel, r,
@@ -244,7 +319,7 @@ __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflecto
   load_x_bins(swept, t.x, t.y, t.z, bins);
   for (int r = 0; r < t.rows; ++r) {
     FaceFluxes faces = faces_load(reflectors, t.channel, t.x, t.y + r, t.z);
-    const FaceFluxes furnace = load_incident_flux(swept, bins, t, r);
+    const FaceFluxes furnace = load_incident_flux(swept, reflectors, bins, t, r);
 #pragma unroll
     for (int a = 0; a < CLPV_CELL_FACES && t.channel != CLPV_REFLECTOR_SHARE; ++a)
       faces.c[a] = faces.c[a] / furnace_divisor(furnace.c[a] * (1.0f / white));
@@ -260,7 +335,7 @@ __kernel void reflect_returned(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors,
   load_x_bins(swept + t.first, t.x, t.y, t.z, bins);
   for (int r = 0; r < t.rows; ++r)
     faces_store(returned, t.channel, t.x, t.y + r, t.z,
-                reflect_flux(load_incident_flux(swept, bins, t, r),
+                reflect_flux(load_incident_flux(swept, reflectors, bins, t, r),
                              faces_load(reflectors, t.channel, t.x, t.y + r, t.z)));
 }
 
@@ -273,7 +348,8 @@ __kernel void sum_series(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflectors, CLPV_V
   for (int r = 0; r < t.rows; ++r) {
     const FaceFluxes reflectance = faces_load(reflectors, t.channel, t.x, t.y + r, t.z),
                      first = faces_load(returned, t.channel, t.x, t.y + r, t.z),
-                     second = reflect_flux(load_incident_flux(swept, bins, t, r), reflectance),
+                     incident = load_incident_flux(swept, reflectors, bins, t, r),
+                     second = reflect_flux(incident, reflectance),
                      white = faces_load(reflectors, CLPV_REFLECTOR_WHITE, t.x, t.y + r, t.z),
                      ratio = find_ratios(first, second, reflectance, white);
     faces_store(series, t.channel, t.x, t.y + r, t.z,

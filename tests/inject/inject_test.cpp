@@ -297,7 +297,7 @@ TEST(Inject, SeveralSurfacesAtOnceAreEachAsAlone) {
     targets.push_back({halves[i], grids[i], volumes[2 - i]});
   }
   injector.inject_light(targets);
-  for (const auto& [surface, grid, volume] : targets) {
+  for (const auto& [surface, grid, volume, cascade] : targets) {
     Volume alone(session, shape, "light", format);
     injector.inject_light(surface, grid, alone);
     EXPECT_EQ(volume.read(session), alone.read(session));

@@ -18,6 +18,7 @@
 #include "pipeline/frame/frame.hpp"
 #include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
+#include "scene/sky.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "tests/support/scenes.hpp"
@@ -197,6 +198,17 @@ TEST(LongTurnedRooms, ALampsRoomHasItsLight) {
   }
 }
 
+// Surfaces that lie askew do not receive the light that leaves them.
+TEST(TurnedRooms, AnOpenRoomUnderASkyHasItsLight) {
+  const Room room{.degrees = 45, .skew = true, .sheet = true};
+  SceneData scene = room.scene(0.8f, 0);
+  scene.triangles.erase(scene.triangles.begin(), scene.triangles.begin() + 2);
+  scene.sky = std::make_shared<Sky>(constant_sky(glm::vec3(1)));
+  const double share = mean(irradiance(scene, room.camera(), Bounces::all)) /
+                       traced_mean(scene, room.camera(), Bounces::all);
+  EXPECT_NEAR(share, 1, 0.1);
+}
+
 }  // namespace
 
 }  // namespace clpv::turned_rooms_test
@@ -302,15 +314,15 @@ using namespace test;
 constexpr float kEdge = 4, kCell = 0.5f;
 const glm::vec3 kSun(0.4f, -1, 0.3f);
 
-/// A room of sheets 1.5 m above a ground, turned about an axis and moved. `gap`: distance of an
+/// A room of sheets `above` a ground [m], turned about an axis and moved. `gap`: distance of an
 /// outer sheet; 0: none.
 SceneData sealed_room(float degrees, const glm::vec3& offset, float gap = 0,
-                      const glm::vec3& axis = {0, 1, 0}) {
+                      const glm::vec3& axis = {0, 1, 0}, float above = 1.5f) {
   SceneData scene;
   const unsigned grey = add_material(scene, glm::vec3(0.8f), CLPV_MATERIAL_DOUBLE_SIDED);
   add_box(scene, glm::vec3(-kEdge / 2, 0, -kEdge / 2), kEdge, grey);
   if (gap > 0) add_box(scene, glm::vec3(-kEdge / 2, 0, -kEdge / 2) - gap, kEdge + 2 * gap, grey);
-  add_quad(scene, {-8, -1.5f, -8}, {0, 0, 16}, {16, 0, 0}, grey);
+  add_quad(scene, {-8, -above, -8}, {0, 0, 16}, {16, 0, 0}, grey);
   const glm::mat4 turn = glm::rotate(glm::mat4(1), glm::radians(degrees), axis);
   for (ClpvVertex& vertex : scene.vertices) {
     const glm::vec4 at(vertex.position[0], vertex.position[1], vertex.position[2], 1),
@@ -352,6 +364,16 @@ TEST(Leaks, ASealedRoomOfSheetsIsDark) {
       EXPECT_LT(leak(scene, offset + eye, Bounces::all, Near::traced), 0.025) << shift;
     }
     EXPECT_LT(leak(sealed_room(degrees, {}, kCell, axis), eye, Bounces::all), 0.004) << degrees;
+  }
+}
+
+// Light of ground beside a wall starts in no cell whose centre is behind it.
+TEST(Leaks, ASealedRoomOnTheGroundIsDark) {
+  for (const float shift : {0.0f, 0.19f, 0.38f}) {
+    const glm::vec3 offset = kCell * glm::vec3(shift, 0, -shift);
+    const SceneData scene = sealed_room(0, offset, 0, {0, 1, 0}, 0);
+    for (const Bounces bounces : {Bounces::one, Bounces::all})
+      EXPECT_LT(leak(scene, offset + glm::vec3(-1, 1.6f, -1.2f), bounces), 1e-4) << shift;
   }
 }
 

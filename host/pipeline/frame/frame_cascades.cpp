@@ -91,7 +91,10 @@ FrameCascades::Keys FrameCascades::keys_of(int cascade) const {
   const CacheKey place = Fingerprint().add(grid.origin).add(grid.cell).value();
   Keys keys;
   keys.triangles = Fingerprint().add(place).add(buffers_.clusters->instant()).value();
-  keys.injected = Fingerprint().add(place).add(lights_.sources_key(cascade)).value();
+  keys.injected = Fingerprint()
+                      .add(visibility_ && sweeper_ ? keys.triangles : place)
+                      .add(lights_.sources_key(cascade))
+                      .value();
   if (!geometry_.empty()) keys.geometry = keys.triangles;
   if (!geometry_.empty() && !blockers_)
     keys.geometry =
@@ -128,6 +131,11 @@ void FrameCascades::inject(int cascade) {
 void FrameCascades::inject_light(int first, int last) {
   std::vector<std::vector<const Surface*>> sources;
   lights_.update_sources(first, last);
+  Buffer occluded;
+  if (visibility_ && sweeper_) {
+    for (int c = first; c <= last; ++c) update_visibility(c);
+    occluded = visibility_->masks();
+  }
   for (int c = first; c <= last; ++c) sources.push_back(lights_.sources(c));
   const StageScope scope(session_,
                          {Pass::inject_light, first == last ? std::optional(first) : std::nullopt});
@@ -135,8 +143,9 @@ void FrameCascades::inject_light(int first, int last) {
   for (std::size_t i = 0; i < sources[0].size(); ++i) {
     std::vector<Injector::Target> targets;
     for (int c = first; c <= last; ++c)
-      targets.push_back({*sources[c - first][i], grids_[c], *of_cascade(injected_, c).volume});
-    injector_.inject_light(targets);
+      targets.push_back({*sources[c - first][i], grids_[c], *of_cascade(injected_, c).volume,
+                         static_cast<cl_uint>(c)});
+    injector_.inject_light(targets, occluded);
   }
 }
 

@@ -70,6 +70,7 @@ Injector::Kernels Injector::make_kernels(const Variant& variant) const {
   find.literals.flag("CLPV_GEOMETRY", !light)
       .flag("CLPV_IN_FRONT", options_.in_front)
       .number("CLPV_STRIP", strip_)
+      .flag("CLPV_VISIBLE", variant.sees)
       .flag("CLPV_POINTS", variant.points);
   sum.literals.add(light ? light_literals() : blocking_literals());
   add_volume_literals(sum.literals, options_.grid, Accumulator::cells_format(options_.format));
@@ -92,15 +93,16 @@ void Injector::reserve(std::size_t texels, std::size_t blocks) {
   session_.reserve(firsts_, blocks * sizeof(cl_uint), "injection, segments");
 }
 
-void Injector::inject(Kind kind, const std::vector<Target>& targets, int stride) {
+void Injector::inject(Kind kind, const std::vector<Target>& targets, int stride,
+                      const Buffer& occluded) {
   accumulator_.add_to_cells(targets.front().volume, [&](const Volume& cells) {
-    inject_cells(kind, targets, stride, cells.whole());
+    inject_cells(kind, targets, stride, occluded, cells.whole());
   });
 }
 
 /// `volumes`: buffer of the targets' volumes.
 void Injector::inject_cells(Kind kind, const std::vector<Target>& targets, int stride,
-                            const Buffer& volumes) {
+                            const Buffer& occluded, const Buffer& volumes) {
   const bool light = kind == Kind::light;
   const Surface& surface = targets.front().surface;
   const unsigned step = stride;
@@ -111,15 +113,16 @@ void Injector::inject_cells(Kind kind, const std::vector<Target>& targets, int s
   const cl_uint length = segment_length(width * height), blocks = (texels + length - 1) / length;
   reserve(texels, blocks);
   std::vector<ClpvInjection> injections;
-  for (const auto& [from, grid, volume] : targets)
-    injections.push_back(
-        {from.view, grid, from.colour_scale, from.first, static_cast<cl_uint>(volume.place()), 0});
+  for (const auto& [from, grid, volume, cascade] : targets)
+    injections.push_back({from.view, grid, from.colour_scale, from.first,
+                          static_cast<cl_uint>(volume.place()), cascade});
   session_.reserve(injections_, count * sizeof(ClpvInjection), "surfaces to inject");
   session_.write(injections_, injections);
-  Kernels& kernel = kernels({kind, surface.format, surface.points()});
+  Kernels& kernel = kernels({kind, surface.format, surface.points(), occluded.exists()});
   kernel.find_cells.set(injections_, surface.places(), surface.normal, surface.colour,
                         sorter_.keys());
   if (!light) kernel.find_cells.add(shares_, step);
+  if (occluded.exists()) kernel.find_cells.add(occluded);
   kernel.find_cells.launch(cl::NDRange((width + strip_ - 1) / strip_, height, count),
                            strip_ > 1 ? cl::NDRange(1, 16, 1) : cl::NDRange(64, 1, 1));
   const std::size_t keys = options_.grid + (light ? 0 : 1);
@@ -141,11 +144,11 @@ void Injector::inject_cells(Kind kind, const std::vector<Target>& targets, int s
       .launch(cl::NDRange(blocks), kSegments);
 }
 
-void Injector::inject_light(const std::vector<Target>& targets) {
+void Injector::inject_light(const std::vector<Target>& targets, const Buffer& occluded) {
   for (const Target& target : targets)
     require_fit(target.volume, {options_.grid, basis_.size(), 3}, options_.format,
                 "injection of light");
-  inject(Kind::light, targets, 1);
+  inject(Kind::light, targets, 1, occluded);
 }
 
 void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Volume& geometry,
@@ -153,7 +156,7 @@ void Injector::inject_geometry(const Surface& surface, const ClpvGrid& grid, Vol
   if (stride < 1) throw Error(ExitCode::usage, "inject: stride {} is not at least 1", stride);
   require_fit(geometry, {options_.grid + 1, blocking_size(options_.blocking, basis_), 1},
               options_.format, "injection of blockers");
-  inject(Kind::geometry, {{surface, grid, geometry}}, stride);
+  inject(Kind::geometry, {{surface, grid, geometry}}, stride, {});
 }
 
 }  // namespace clpv

@@ -32,11 +32,13 @@ class Injector {
     const Surface& surface;
     const ClpvGrid& grid;
     Volume& volume;
+    cl_uint cascade = 0;  ///< whose bits of `occluded` belong to `grid`
   };
   /// Adds the virtual point lights of an RSM or an Emitter to a volume [W/sr]: `grid` cells, 3
   /// channels. Texels that are empty, dark, not finite or outside the grid add nothing. Several
-  /// targets have surfaces of one size in the same buffers, and volumes of one array().
-  void inject_light(const std::vector<Target>& targets);
+  /// targets have surfaces of one size in the same buffers, and volumes of one array(). `occluded`:
+  /// bits of visibility_masks(); with them, light starts in cells that its surface sees.
+  void inject_light(const std::vector<Target>& targets, const Buffer& occluded = {});
   void inject_light(const Surface& rsm, const ClpvGrid& grid, Volume& light) {
     inject_light({{rsm, grid, light}});
   }
@@ -58,6 +60,7 @@ class Injector {
     Kind kind;
     RsmFormat format;
     bool points;  ///< points that no view contains
+    bool sees;    ///< chooses among cells by visibility
     auto operator<=>(const Variant&) const = default;
   };
   Literals light_literals() const;
@@ -66,9 +69,9 @@ class Injector {
   Kernels& kernels(const Variant& variant);
   bool looks_up(Kind kind) const;  ///< true if the kernel uses a look-up table
   void reserve(std::size_t texels, std::size_t blocks);
-  void inject(Kind kind, const std::vector<Target>& targets, int stride);
+  void inject(Kind kind, const std::vector<Target>& targets, int stride, const Buffer& occluded);
   void inject_cells(Kind kind, const std::vector<Target>& targets, int stride,
-                    const Buffer& volumes);
+                    const Buffer& occluded, const Buffer& volumes);
 
   Session& session_;
   const Basis& basis_;
