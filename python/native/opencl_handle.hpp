@@ -64,7 +64,7 @@ Handle handle_of(const py::object& given, const char* what, const char* pyopencl
   if (address == 0) {
     throw Error(ExitCode::usage,
                 "{}: found {}, allowed: an object of pyopencl's class {}, or its int_ptr", what,
-                found(given), pyopencl_class);
+                std::string(py::str(py::type::of(given))), pyopencl_class);
   }
   return reinterpret_cast<Handle>(address);
 }

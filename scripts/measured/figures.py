@@ -12,7 +12,6 @@ srbf14             srbf14 with rotated lobes and sampled transport, and with exa
 
 These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md
 describes them. """
-import io
 import itertools
 import pathlib
 import subprocess
@@ -57,7 +56,7 @@ class Frames:
         self.scene, self.camera = scene, camera
         self.size = {"width": arguments.width, "height": arguments.height}
         self.view = f"Sponza, camera {camera}, exposure {EXPOSURE:+g} EV"
-        self.rendered, self.pairs = {}, []
+        self.rendered = {}
         self.always = {}  # options of all frames of a preset with steps
 
     def frame(self, view, **options):
@@ -97,9 +96,6 @@ def sheet(path, title, columns, tiles):
 def pair(frames, view="full", **options):
     """Returns captioned tiles of both bases and of their difference."""
     images = [frames.image(view, basis=basis, **options) for basis in BASES]
-    frames.pairs.append(
-        (f"{frames.view}, {view}: " + ", ".join(f"{name} {value}"
-                                                for name, value in options.items()), images))
     return [*zip(images, BASES), (difference(*images), f"difference x{AMPLIFY}")]
 
 
@@ -196,8 +192,8 @@ def basis_figures(out):
 
 
 def paper(arguments):
-    """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness.
-    Without a model Figures 2, 3 and 6 alone."""
+    """Files of Figures 1, 4 and 5, and of 2, 3 and 6, and brightness. Without a model Figures 2, 3 and
+    6 alone."""
     out = arguments.out
     lobe_files = basis_figures(out)
     if not arguments.model:
@@ -209,33 +205,13 @@ def paper(arguments):
     shadowed = Frames(nave, arguments, "arcade")
     if arguments.quick:  # the light of run-time lobes within 2e-4, five times as fast
         frames.always = shadowed.always = {"lobe_time": "host"}
-    sheets = []
-    for name, made, draw in (
-        ("figure1", frames, lambda: figure1(frames, out)),
-        ("answer", frames, lambda: answer(frames, out)),
-            *((f"figure4-{preset}", frames, lambda preset=preset: figure4(frames, out, preset))
-              for preset in PRESETS),
-            *((f"figure5-{preset}", shadowed, lambda preset=preset: figure5(shadowed, out, preset))
-              for preset in PRESETS)):
-        made.pairs = []
-        draw()
-        sheets.append({
-            "name": name, "file": f"{name}.jpg",
-            "pairs": [saved(out, f"{name}-{i}", *pair) for i, pair in enumerate(made.pairs)]
-        })
-    if arguments.quick:
-        return {"sheets": sheets, "lobes": lobe_files, "rows": []}
-    srbf14(along, out)
-    sheets.append({"name": "srbf14", "file": "srbf14.jpg", "pairs": []})
-    return {"sheets": sheets, "lobes": lobe_files, "rows": brightness(along)}
-
-
-def saved(out, name, caption, images):
-    """Writes both images of a pair as JPEG."""
-    files = []
-    for basis, pixels in zip(BASES, images):
-        files.append(f"{name}-{basis}.jpg")
-        made = io.BytesIO()
-        pyplot.imsave(made, pixels[..., :3], format="jpg", pil_kwargs={"quality": 88})
-        out.write(files[-1], made.getvalue())
-    return {"caption": caption, "left": files[0], "right": files[1]}
+    figure1(frames, out)
+    answer(frames, out)
+    for preset in PRESETS:
+        figure4(frames, out, preset)
+        figure5(shadowed, out, preset)
+    if not arguments.quick:
+        srbf14(along, out)
+    sheets = [name for name in out.written if "/" not in name]
+    return {"sheets": sheets, "lobes": lobe_files,
+            "rows": [] if arguments.quick else brightness(along)}

@@ -32,24 +32,3 @@ def test_own_centres():
     basis = clpv.Basis("mine", bandwidth=0.3, centres=centres)
     assert len(basis) == 4 and basis.name == "mine"
     assert np.allclose(basis.centres[3], [0, -1, 0]) and np.allclose(basis.bandwidths, 0.3)
-
-
-@pytest.mark.parametrize("make, error", [
-    (lambda: clpv.Basis("nothing"), clpv.UsageError),
-    (lambda: clpv.Basis("srbf4", bandwidth=1.5), clpv.UsageError),
-    (lambda: clpv.Basis("mine", centres=[[0, 0, 0]]), clpv.UsageError),
-    (lambda: clpv.Basis("mine", centres=[[1, 0]]), ValueError),
-    (lambda: clpv.Basis().energy(8, "sweep"), clpv.UsageError),
-    (lambda: clpv.Basis().energy(-1), clpv.UsageError),
-    (lambda: clpv.Basis().energy(10**9), clpv.UsageError),
-    (lambda: clpv.Basis("srbf4").energy(8, table_size=1), clpv.UsageError),
-    (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], 2**21), clpv.UsageError),
-    (lambda: clpv.Basis("srbf4").clamped_cosine([0, 0, 1], "many"), TypeError),
-    (lambda: clpv.Basis().evaluate([[1, 0]]), ValueError),
-    (lambda: clpv.Basis().evaluate([0, 0, 0]), clpv.UsageError),
-    (lambda: clpv.Basis().lobe([0, 0, 1], [1, 2]), ValueError),
-    (lambda: clpv.Basis().project([1, 2]), ValueError),
-])
-def test_bad_input(make, error):
-    with pytest.raises(error):
-        make()

@@ -36,20 +36,14 @@ def test_arrays_are_those_of_their_file(tmp_path):
     ({"positions": WALL[:, :2]}, clpv.InputError, "positions: found shape (4, 2); allowed: (n, 3)"),
     ({"positions": WALL[0]}, clpv.InputError, "positions: found shape (3,)"),
     ({"positions": WALL * numpy.nan}, clpv.InputError, "positions[0]: found nan in component 0"),
-    ({"positions": WALL.astype(complex)}, TypeError, "positions: found an array of complex128"),
-    ({"positions": [[0, 0, 0], "x"]}, (TypeError, ValueError), ""),
-    ({"triangles": SQUARE.astype(float)
-      }, TypeError, "triangles: found an array of float64, allowed: integers"),
+    ({"positions": WALL.astype(complex)}, TypeError, "positions: ArrayLike"),
+    ({"triangles": SQUARE.astype(float)}, TypeError, "triangles: ArrayLike"),
     ({"triangles": SQUARE - 1}, clpv.InputError, "triangles[0]: found index -1"),
     ({"triangles": SQUARE + 2**32}, clpv.InputError, "triangles[0]: found index 4294967296"),
     ({"triangles": SQUARE + 1}, clpv.InputError, "triangles[1]: found index 4; allowed: 0 to 3"),
-    ({"triangles": numpy.broadcast_to(numpy.uint8(0), (2**31, 3))
-      }, clpv.InputError, "triangles: found 2147483648 rows"),
-    ({"colours": numpy.zeros(
-        (4, 3), numpy.uint8)}, TypeError, "colours: found an array of uint8, allowed: floats"),
+    ({"colours": WALL[:, :2]}, clpv.InputError, "colours: found shape (4, 2); allowed: (n, 4) or (n, 3)"),
     ({"normals": WALL[:3]}, clpv.InputError, "normals: found 3 elements; allowed: 4"),
-    ({"transform": numpy.eye(3)
-      }, clpv.InputError, "transform: found shape (3, 3); allowed: (4, 4)"),
+    ({"transform": numpy.eye(3)}, TypeError, "transform: "),
 ])
 def test_bad_arrays_are_rejected_by_name(change, error, words):
     with pytest.raises(error, match=re.escape(words)):

@@ -16,7 +16,7 @@ MISSING = "pyopencl is not installed (Debian: apt install python3-pyopencl)"
 def test_handles_of_another_kind_are_named(scene):
     with pytest.raises(
             TypeError,
-            match="queue: found 'queue', allowed: an object of pyopencl's class CommandQueue, or its int_ptr"):
+            match="queue: found .*str.*, allowed: an object of pyopencl's class CommandQueue, or its int_ptr"):
         clpv.Renderer(scene, queue="queue", **SMALL)
 
     class Context:  # as pyopencl's, whose handle a driver would take for a queue and crash
@@ -29,8 +29,6 @@ def test_handles_of_another_kind_are_named(scene):
             clpv.Renderer(scene, **{name: given}, **SMALL)
     with pytest.raises(ValueError, match="device: found one and a context or queue"):
         clpv.Renderer(scene, "0", queue=1, **SMALL)
-    with pytest.raises(TypeError, match="__init__ was not called"):
-        clpv.DeviceEvent.__new__(clpv.DeviceEvent).wait()
 
 
 def test_frames_and_light_in_pyopencls_queue(scene, renderer):

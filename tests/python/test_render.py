@@ -103,18 +103,6 @@ def test_threads_share_a_renderer(renderer):
     assert len(found) == 4 and all(np.array_equal(each, expected) for each in found)
 
 
-def test_errors_have_their_kind(tmp_path, scene, renderer):
-    with pytest.raises(clpv.InputError, match="nowhere"):
-        clpv.Scene("/nowhere/scene.json")
-    with pytest.raises(clpv.UsageError, match="unknown option 'no-such'"):
-        clpv.Renderer(scene, no_such=1)
-    with pytest.raises(clpv.UsageError, match="lambda: found '7'"):
-        clpv.Renderer(scene, lambda_=7)
-    with pytest.raises(clpv.DeviceError):
-        clpv.Renderer(scene, device="no device of this name")
-    with pytest.raises(clpv.ResourceError):
-        renderer.render().save(tmp_path / "no folder" / "image.exr")
-    with pytest.raises(clpv.UsageError, match="channels: found 1 names"):
-        clpv.Image(np.zeros((2, 2, 3)), channels=["R"])
+def test_a_comparison_has_gain_and_identity(renderer):
     errors = clpv.compare(renderer.render().array * 2, renderer.render())
     assert errors.best_gain == pytest.approx(0.5) and not errors.identical
