@@ -18,8 +18,8 @@ class Failure(Exception):
 
 
 def target_of(path, *inputs):
-    """The file that a link leads to. Raises Failure, before long work, if it cannot be written, or is
-    an input."""
+    """The file that a link leads to. Raises Failure, before long work, if it cannot be written, or
+    is an input."""
     target = pathlib.Path(os.path.realpath(path))
     for name in inputs:
         both = target.exists() and os.path.exists(name)
@@ -31,8 +31,8 @@ def target_of(path, *inputs):
 
 
 def write(path, data):
-    """Writes bytes or text to a file beside, then renames it. Raises Failure; the old file then is as
-    it was."""
+    """Writes bytes or text to a file beside, then renames it. Raises Failure; the old file then is
+    as it was."""
     target = target_of(path)
     made = target.with_name(f".{os.getpid()}.part")
     try:

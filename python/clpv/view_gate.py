@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Gate of the viewer (clpv.view): requests need the token in the page's address, so that no other page
-and no other user of the machine reaches the viewer. viser itself takes any request.
+"""Gate of the viewer (clpv.view): requests need the token in the page's address, so that no other
+page and no other user of the machine reaches the viewer. viser itself takes any request.
 
 The gate depends on viser's inner parts, hence on its version."""
 import functools

@@ -210,7 +210,8 @@ def views(arguments):
                 rows.append({"camera": camera, "basis": name, "cascade-size": str(size),
                              "iterations": str(steps), "nrmse": found.nrmse,
                              "energy_ratio": found.energy_ratio})
-        apart = {camera: error - errors["srbf8v2"][camera] for camera, error in errors["sh2"].items()}
+        apart = {camera: error - errors["srbf8v2"][camera]
+                 for camera, error in errors["sh2"].items()}
         differences = np.array(list(apart.values()))
         summary.append({"cascade_size": size, "iterations": steps, "mean": differences.mean(),
                         "standard_error": differences.std(ddof=1) / math.sqrt(len(apart)),

@@ -108,17 +108,20 @@ def figure1(frames, out):
         tile for preset in PRESETS
         for tile in with_caption(pair(frames, preset=preset), f"--preset {preset}")
     ]
-    sheet(out.file("figure1.jpg"), f"Figure 1: two bases by either preset ({frames.view})", 3, tiles)
+    sheet(out.file("figure1.jpg"), f"Figure 1: two bases by either preset ({frames.view})", 3,
+          tiles)
 
 
 def answer(frames, out):
-    truth, tiles = clpv.pathtrace(frames.scene, "indirect", frames.camera, **frames.size, noise=NOISE), []
+    tiles, truth = [], clpv.pathtrace(frames.scene, "indirect", frames.camera, **frames.size,
+                                      noise=NOISE)
     for preset, basis in itertools.product(PRESETS, BASES):
         image = frames.frame("indirect", basis=basis, preset=preset, bounces=1)
         error = f"NRMSE {100 * clpv.compare(image, truth).nrmse:.0f} %"
         tiles.append((image.display(EXPOSURE + 1), f"{basis}, --preset {preset}: {error}"))
     tiles.insert(len(BASES), (truth.display(EXPOSURE + 1), "path traced"))
-    sheet(out.file("answer.jpg"), f"Indirect light of one bounce: Sponza, {frames.camera}", 3, tiles)
+    sheet(out.file("answer.jpg"), f"Indirect light of one bounce: Sponza, {frames.camera}", 3,
+          tiles)
 
 
 def figure4(frames, out, preset):
@@ -130,8 +133,8 @@ def figure4(frames, out, preset):
                               f"{size:g} m, {steps} iterations")
     sheet(
         out.file(f"figure4-{preset}.jpg"),
-        f"Figure 4 by --preset {preset}: edge of the smallest cascade, propagation steps ({frames.view})",
-        3, tiles)
+        f"Figure 4 by --preset {preset}: edge of the smallest cascade, propagation steps "
+        f"({frames.view})", 3, tiles)
 
 
 def figure5(frames, out, preset):
@@ -192,8 +195,8 @@ def basis_figures(out):
 
 
 def paper(arguments):
-    """Files of Figures 1, 4 and 5, and of 2, 3 and 6, and brightness. Without a model Figures 2, 3 and
-    6 alone."""
+    """Files of Figures 1, 4 and 5, and of 2, 3 and 6, and brightness. Without a model Figures 2, 3
+    and 6 only."""
     out = arguments.out
     lobe_files = basis_figures(out)
     if not arguments.model:

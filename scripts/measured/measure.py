@@ -86,8 +86,8 @@ def measured_with(device):
 
 def search_centres(sponza):
     (ROOT / "out").mkdir(exist_ok=True)
-    subprocess.run([str(LAB), "normals", "scenes/sponza_suns.json", *sponza, "-o", "out/normals.json"],
-                   stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
+    subprocess.run([str(LAB), "normals", "scenes/sponza_suns.json", *sponza, "-o",
+                    "out/normals.json"], stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
     lab("clpv_lab.search", "8", "-o", rows.SEARCHED)
     lab("clpv_lab.search", "8", "-o", rows.SEARCHED_NORMALS, "--weights=out/normals.json")
 
@@ -148,7 +148,8 @@ def draw_front():
     }, IMAGES / "front.png")
 
 
-# Files of results/docs, each with a function of Sponza's model that measures it, and what is then drawn.
+# Files of results/docs, each with a function of Sponza's model that measures it; and what is drawn
+# after them.
 PARTS = {
     "frames": measure_frames,
     **{name: functools.partial(measure_suite, name) for name in rows.DOCS_SUITES},
@@ -171,12 +172,13 @@ def measure_docs(model, parts):
     """`parts`: names of files in results/docs."""
     tiny = run("render", "scenes/cornell.json", "--width=16", "--height=9",
                "--output=FOLDER/frame.png", "--stats")
+    measured = measured_with(tiny["device"])
     for name in parts:
         if name in rows.OF_LAB and not LAB.exists():
             print(f"scripts/measure: skipped: {name}: the lab is not built (-DCLPV_LAB=ON)",
                   file=sys.stderr)
             continue
-        write(RESULTS / "docs", name, {"measured": measured_with(tiny["device"]), **PARTS[name](model)})
+        write(RESULTS / "docs", name, {"measured": measured, **PARTS[name](model)})
         for draw in DRAWN.get(name, []):
             draw()
 
@@ -205,7 +207,7 @@ def main():
     folder = RESULTS / arguments.name
     if arguments.name == "docs":
         measure_docs(pathlib.Path(arguments.model).resolve(), arguments.part or PARTS)
-        print("results/docs is written; scripts/tables and lab/scripts/tables write the tables of the docs")
+        print("results/docs is written; scripts/tables and lab/scripts/tables write the tables")
     else:
         measure_device(output.Folder(folder, "scripts/measure"))
         print(f"results/{arguments.name} is written; results/README.md says how to send it")

@@ -56,7 +56,7 @@ def result_of(name, arguments):
 def parts_of(arguments):
     """Names of the parts that can be measured."""
     return [name for name, part in PARTS.items()
-            if (arguments.model or not part.model) and (part.quick or not arguments.quick)]
+            if (arguments.model or not part["model"]) and (part["quick"] or not arguments.quick)]
 
 
 def devices():

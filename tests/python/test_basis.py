@@ -12,8 +12,8 @@ from conftest import program
 def test_lobes_of_the_paper_are_those_of_the_program():
     for name, size in (("srbf4", 256), ("srbf14", 257), ("sh2", 256)):
         basis = clpv.Basis(name)
-        words = "basis", name, "--lobe", "rotate", "--table-size", size, "--axis=-2,1,-3", "--format=json"
-        expected = json.loads(program(*words))["bases"][0]
+        words = "--lobe", "rotate", "--table-size", size, "--axis=-2,1,-3", "--format=json"
+        expected = json.loads(program("basis", name, *words))["bases"][0]
         c = basis.clamped_cosine((-2, 1, -3), size)
         assert np.allclose(c, expected["coefficients"], rtol=1e-12, atol=1e-12)
         assert basis.lobe((-2, 1, -3), c)["minimum"] == pytest.approx(expected["minimum"])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Wrong values are named; numbers may come in any container. What fits no function is pybind11's TypeError."""
+"""Wrong values are named; numbers may come in any container. What fits no function is pybind11's
+TypeError."""
 import math
 import os
 import subprocess
@@ -21,6 +22,9 @@ MASKED = numpy.ma.masked_array(NUMBERS, NUMBERS == 0)
 THING = object()
 SQUARE, TRIANGLE = [[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 1, 2]]
 TEXTURE = [[[0.0, 1, 0, 1], [0, 1.5, 0, 1]]]
+ENDLESS = numpy.broadcast_to(numpy.zeros(3), (10**13, 3))
+NO_TEXTURES = "x", NUMBERS, numpy.zeros((1, 1, 4), int), numpy.ma.zeros((1, 1, 4))
+PIXELS = numpy.ones((2, 1, 3))
 BASIS = clpv.Basis("sh2")
 
 
@@ -39,8 +43,8 @@ def traced(scene, **changes):
     ("Camera: eye", lambda v: camera(eye=v), ["123", None, 3, (1, 2), (1, 2, "x"), THING]),
     ("Light: intensity", lambda v: clpv.Light(intensity=v), ["x", None, (1, 2), THING]),
     ("Medium: box", lambda v: clpv.Medium(box=v), ["x", (1, 2, 3), THING]),
-    ("Material: base_colour", lambda v: clpv.Material(base_colour=v), ["x", (1, 2), (1, 2, 3, 4, 5)]),
-    ("Material: texture", lambda v: clpv.Material(texture=v), ["x", NUMBERS, numpy.zeros((1, 1, 4), int), numpy.ma.zeros((1, 1, 4))]),
+    ("Material: base_colour", lambda v: clpv.Material(base_colour=v), ["x", (1, 2), range(5)]),
+    ("Material: texture", lambda v: clpv.Material(texture=v), NO_TEXTURES),
 ])  # yapf: disable
 def test_fields_of_another_kind_are_named(name, make, values):
     for wrong in values:
@@ -92,15 +96,28 @@ def test_errors_are_those_of_python_too():
 
 @pytest.mark.parametrize("error, match, call", [
     (clpv.UsageError, "points: found shape", lambda s, r: r.irradiance([[1, 2]], (0, 1, 0))),
-    (clpv.UsageError, r"normals: found shape \(2, 3\)", lambda s, r: r.irradiance(SQUARE, SQUARE[:2])),
+    (clpv.UsageError, r"normals: found shape \(2, 3\)",
+     lambda s, r: r.irradiance(SQUARE, SQUARE[:2])),
+    (clpv.UsageError, r"depths: found shape \(1, 2\), allowed: \(2, 1\)",
+     lambda s, r: r.light(PIXELS, depths=[[1, 1]])),
+    (clpv.UsageError, "normals: found shape", lambda s, r: r.light(PIXELS[0], depths=[[1]])),
+    (clpv.UsageError, "positions: found shape",
+     lambda s, r: r.light(PIXELS, positions=PIXELS[:1], eye=FRONT.eye)),
+    (clpv.UsageError, "found neither, allowed: one of them", lambda s, r: r.light(PIXELS)),
+    (clpv.UsageError, "found eye and camera",
+     lambda s, r: r.light(PIXELS, positions=PIXELS, camera=FRONT, eye=FRONT.eye)),
+    (clpv.UsageError, "found depths and an eye",
+     lambda s, r: r.light(PIXELS, depths=[[1], [1]], eye=FRONT.eye)),
     (clpv.UsageError, "time: found nan", lambda s, r: r.render(time=math.nan)),
     (clpv.UsageError, "camera: target: found .*the eye itself",
      lambda s, r: r.render(camera=FRONT.replace(target=FRONT.eye))),
     (clpv.UsageError, "view: found 'nothing', allowed: full", lambda s, r: r.show("nothing")),
-    (clpv.UsageError, "centres: found .* allowed: a text", lambda s, r: clpv.Renderer(s, centres=numpy.eye(3))),
+    (clpv.UsageError, "centres: found .* allowed: a text",
+     lambda s, r: clpv.Renderer(s, centres=numpy.eye(3))),
     (clpv.UsageError, "unknown option 'no-such'", lambda s, r: clpv.Renderer(s, no_such=1)),
     (clpv.UsageError, "lambda: found '7'", lambda s, r: clpv.Renderer(s, lambda_=7)),
-    (clpv.UsageError, "camera: eye: found", lambda s, r: traced(s, camera=FRONT.replace(eye=(0, math.nan, 0)))),
+    (clpv.UsageError, "camera: eye: found",
+     lambda s, r: traced(s, camera=FRONT.replace(eye=(0, math.nan, 0)))),
     (clpv.UsageError, "bounces: found 'x'", lambda s, r: traced(s, bounces="x")),
     (clpv.UsageError, "view", lambda s, r: traced(s, view=["full", "full"])),
     (clpv.UsageError, "kind: found 'sun', allowed: directional",
@@ -110,12 +127,13 @@ def test_errors_are_those_of_python_too():
     (clpv.UsageError, "size", lambda s, r: r.render(size=(0, 5))),
     (clpv.UsageError, "from_trimesh: given: found int", lambda s, r: clpv.Scene.from_trimesh(3)),
     (clpv.InputError, "nowhere", lambda s, r: clpv.Scene("/nowhere/scene.json")),
-    (clpv.InputError, r"texture: \[0, 1\]: found 1.5; allowed: 0 to 1", lambda s, r: clpv.Material(texture=TEXTURE)),
+    (clpv.InputError, r"texture: \[0, 1\]: found 1.5; allowed: 0 to 1",
+     lambda s, r: clpv.Material(texture=TEXTURE)),
     (clpv.InputError, "triangles", lambda s, r: clpv.Scene.from_arrays(SQUARE, [])),
     (clpv.InputError, "allowed: none without vertices", lambda s, r: s.add_mesh([], [[0, 1, 2]])),
-    (clpv.DeviceError, "no device of", lambda s, r: clpv.Renderer(s, device="no device of this name")),
+    (clpv.DeviceError, "no such one", lambda s, r: clpv.Renderer(s, device="no such one")),
     (clpv.ResourceError, "none/a.exr", lambda s, r: r.render().save("/none/a.exr")),
-    (MemoryError, "", lambda s, r: r.irradiance(*[numpy.broadcast_to(numpy.zeros(3), (10**13, 3))] * 2)),
+    (MemoryError, "", lambda s, r: r.irradiance(ENDLESS, ENDLESS)),
     (TypeError, "cannot pickle", lambda s, r: __import__("copy").copy(s)),
     *((clpv.UsageError, f"normals: found .*, allowed: an object of pyopencl's class",
        lambda s, r, wrong=wrong: r.enqueue_light(1, 1, normals=wrong, irradiance=None))

@@ -12,6 +12,7 @@ import clpv
 import clpv._trimesh
 from conftest import ROOT, SMALL, run_python
 
+NO_TRIMESH = "trimesh is not installed (pip install trimesh)"
 SQUARE = numpy.array([[0, 1, 2], [0, 2, 3]])
 WALL = numpy.array([[-2, 0, -2], [2, 0, -2], [2, 3, -2], [-2, 3, -2]], dtype=float)
 
@@ -41,7 +42,7 @@ def test_arrays_are_those_of_their_file(tmp_path):
     ({"triangles": SQUARE - 1}, clpv.InputError, "triangles[0]: found index -1"),
     ({"triangles": SQUARE + 2**32}, clpv.InputError, "triangles[0]: found index 4294967296"),
     ({"triangles": SQUARE + 1}, clpv.InputError, "triangles[1]: found index 4; allowed: 0 to 3"),
-    ({"colours": WALL[:, :2]}, clpv.InputError, "colours: found shape (4, 2); allowed: (n, 4) or (n, 3)"),
+    ({"colours": WALL[:, :2]}, clpv.InputError, "found shape (4, 2); allowed: (n, 4) or (n, 3)"),
     ({"normals": WALL[:3]}, clpv.InputError, "normals: found 3 elements; allowed: 4"),
     ({"transform": numpy.eye(3)}, TypeError, "transform: "),
 ])
@@ -97,7 +98,7 @@ def test_a_saved_scene_is_the_same(name, tmp_path):
 
 
 def test_scene_of_trimesh():
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
+    trimesh = pytest.importorskip("trimesh", reason=NO_TRIMESH)
     box = trimesh.creation.box((1, 1, 1))
     given = trimesh.Scene()
     given.add_geometry(box, geom_name="box")
@@ -112,7 +113,7 @@ def test_scene_of_trimesh():
 
 
 def test_colours_of_trimesh():
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
+    trimesh = pytest.importorskip("trimesh", reason=NO_TRIMESH)
     look = clpv._trimesh._arguments  # pylint: disable=protected-access
     box = trimesh.creation.box((1, 1, 1))
     box.visual.face_colors = [[10 * face, 255, 0, 255] for face in range(12)]
@@ -134,15 +135,16 @@ def test_colours_of_trimesh():
     (None, {"base_colour": (1, 1, 1, 0.3), "alpha_cutoff": 0.2}),
     (None, {"emission": (0.2, 0.4, 0.6), "double_sided": True})])
 def test_a_scene_of_trimesh_is_its_file(colour, material, tmp_path):
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
+    trimesh = pytest.importorskip("trimesh", reason=NO_TRIMESH)
     file = tmp_path / "a.glb"
     clpv.Scene.from_arrays(WALL, SQUARE, normals=WALL * 0 + (0.6, 0, 0.8),
                            colours=colour and numpy.array([colour] * len(WALL)),
                            material=clpv.Material(**material)).save(file)
     camera = clpv.Camera(eye=(0.2, 1, 3), target=(0, 1.5, -2))
     for view in "albedo", "normal", "direct":
+        scenes = clpv.Scene.from_trimesh(trimesh.load(file)), clpv.Scene(file)
         found, expected = (clpv.pathtrace(each, view, camera, width=9, height=9, samples=1).array
-                           for each in (clpv.Scene.from_trimesh(trimesh.load(file)), clpv.Scene(file)))
+                           for each in scenes)
         numpy.testing.assert_allclose(found, expected, atol=0.005)  # rounding of 8 bits
 
 

@@ -74,19 +74,6 @@ def test_stats(scene):
     assert all(time["min"] == time["median"] == time["max"] > time["mad"] == 0 for time in light)
 
 
-def test_irradiance_takes_arrays_of_any_layout(renderer):
-    renderer.render()
-    points = np.random.default_rng(1).uniform(0.1, 0.4, (5, 7, 3))
-    normals = np.broadcast_to([0.0, -2.0, 0.0], points.shape)  # strides of 0
-    light = renderer.irradiance(points, normals)
-    assert light.shape == points.shape and light.dtype == np.float32 and light.max() > 0
-    assert np.array_equal(renderer.irradiance(np.asfortranarray(points), normals), light)
-    assert np.array_equal(renderer.irradiance(points[::2, ::3], normals[::2, ::3]), light[::2, ::3])
-    assert np.array_equal(renderer.irradiance(points.astype(np.float32).tolist(), normals), light)
-    assert renderer.irradiance([0.2, 0.2, 0.2], [0, 1, 0]).shape == (3,)
-    assert renderer.irradiance(np.zeros((0, 3)), np.zeros((0, 3))).shape == (0, 3)
-
-
 def test_threads_share_a_renderer(renderer):
     renderer.render()
     points = np.random.default_rng(1).uniform(0.1, 0.4, (3000, 3))
@@ -106,3 +93,11 @@ def test_threads_share_a_renderer(renderer):
 def test_a_comparison_has_gain_and_identity(renderer):
     errors = clpv.compare(renderer.render().array * 2, renderer.render())
     assert errors.best_gain == pytest.approx(0.5) and not errors.identical
+
+
+def test_sizes_and_release(scene):
+    with clpv.Renderer(scene, **SMALL) as renderer:
+        assert renderer.render(size=(30, 20)).array.shape == (20, 30, 4)
+    assert renderer.stats["device_bytes"] < 1e6
+    both = clpv.pathtrace(scene, ["indirect", "albedo"], width=4, height=3, samples=1)
+    assert both.channels[:2] == ("indirect.R", "indirect.G") and both.array.shape == (3, 4, 8)

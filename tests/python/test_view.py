@@ -41,7 +41,8 @@ def test_the_camera_of_a_browser():
     ahead = view_frames.camera_of(handle((1, 0, 0, 0)))
     assert ahead.eye == (1, 2, 3) and ahead.target == (1, 2, 4) and ahead.up == (0, -1, 0)
     assert ahead.fov == pytest.approx(60)
-    turned = view_frames.camera_of(handle((math.sqrt(0.5), 0, math.sqrt(0.5), 0)))  # by 90 degrees about y
+    half = math.sqrt(0.5)
+    turned = view_frames.camera_of(handle((half, 0, half, 0)))  # by 90 degrees about y
     assert np.allclose(np.subtract(turned.target, turned.eye), (1, 0, 0))
 
 
@@ -137,12 +138,6 @@ def test_bad_arguments(tmp_path):
     assert "0-65535" in run(CORNELL, "--port", 65536, **hollow).stderr
 
 
-def camera_message(**changes):
-    return types.SimpleNamespace(**{
-        "wxyz": (1, 0, 0, 0), "position": (0, 1, 2), "look_at": (0, 1, 3), "up_direction": (0, 1, 0),
-        "fov": 1.0, "near": 0.01, "far": 1000.0, "image_height": 600, "image_width": 960, **changes})
-
-
 @pytest.fixture(scope="module")
 def viewer():
     """A viewer of the scene that draws on its own thread; the address of its page."""
@@ -186,8 +181,10 @@ def message(kind, **fields):
 
 
 def moved(**changes):
-    return message("ViewerCameraMessage",
-                   **vars(camera_message(**{"position": (0.278, 0.273, -0.18), **changes})))
+    return message("ViewerCameraMessage", **{
+        "wxyz": (1, 0, 0, 0), "position": (0.278, 0.273, -0.18), "look_at": (0, 1, 3),
+        "up_direction": (0, 1, 0), "fov": 1.0, "near": 0.01, "far": 1000.0, "image_height": 600,
+        "image_width": 960, **changes})
 
 
 def holds(condition, seconds=60):

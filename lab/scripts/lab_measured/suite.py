@@ -184,7 +184,7 @@ def add_scene(folder, name, sponza, cache):
 
 
 def packed_files(folder):
-    """Bytes of a tar of the files that were written into an output.Folder, without owners and times."""
+    """Bytes of a tar of the files written into an output.Folder, without owners and times."""
     packed = io.BytesIO()
     with tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as archive:
         for name in sorted(set(folder.written)):
