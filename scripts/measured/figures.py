@@ -18,7 +18,6 @@ import subprocess
 import tempfile
 
 import numpy as np
-from matplotlib import pyplot
 
 from . import CLPV, ROOT, native
 from . import claims
