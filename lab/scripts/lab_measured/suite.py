@@ -58,26 +58,16 @@ def at_time(thing, time):
     return values
 
 
-def facing(direction, up=(0, 1, 0)):
-    """Returns the quaternion x, y, z, w that turns -z to a direction, and y towards `up`."""
+def facing(direction, eye=(0, 0, 0), up=(0, 1, 0)):
+    """Returns a node's matrix, column by column, that turns -z to a direction, and y towards `up`, and
+    moves to `eye`."""
     z = -numpy.array(direction, float) / numpy.linalg.norm(direction)
     x = numpy.cross(up, z)
     if numpy.linalg.norm(x) < 1e-6:
         x = numpy.cross((0, 0, 1), z)
     x /= numpy.linalg.norm(x)
-    m = numpy.stack([x, numpy.cross(z, x), z], axis=1)
-    w = math.sqrt(max(0, 1 + m[0, 0] + m[1, 1] + m[2, 2])) / 2
-    if w > 1e-3:
-        return [
-            *(numpy.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]]) / (4 * w)), w
-        ]
-    i = int(numpy.argmax(numpy.diag(m)))
-    j, k = (i + 1) % 3, (i + 2) % 3
-    q = [0.0, 0.0, 0.0, 0.0]
-    q[i] = math.sqrt(max(0, 1 + m[i, i] - m[j, j] - m[k, k])) / 2
-    q[j], q[k], q[3] = (m[i, j] + m[j, i]) / (4 * q[i]), (m[i, k] + m[k, i]) / (4 * q[i]), (
-        m[k, j] - m[j, k]) / (4 * q[i])
-    return q
+    axes = [[*x, 0], [*numpy.cross(z, x), 0], [*z, 0], [*eye, 1]]
+    return [float(number) for column in axes for number in column]
 
 
 def views_gltf(scene, time=0):
@@ -86,8 +76,8 @@ def views_gltf(scene, time=0):
     for camera in (at_time(camera, time) for camera in scene["cameras"]):
         eye, target = numpy.array(camera["eye"], float), numpy.array(camera["target"], float)
         nodes.append({
-            "name": camera["name"], "camera": len(cameras), "translation": (unit * eye).tolist(),
-            "rotation": [float(q) for q in facing(target - eye)]
+            "name": camera["name"], "camera": len(cameras),
+            "matrix": facing(target - eye, unit * eye)
         })
         cameras.append({
             "name": camera["name"], "type": "perspective", "perspective": {
@@ -100,7 +90,7 @@ def views_gltf(scene, time=0):
             raise ValueError(
                 f"light {light.get('name')}: found {light['kind']}; allowed: directional")
         nodes.append({
-            "name": light["name"], "rotation": [float(q) for q in facing(light["direction"])],
+            "name": light["name"], "matrix": facing(light["direction"]),
             "extensions": {"KHR_lights_punctual": {"light": len(lights)}}
         })
         lights.append({
