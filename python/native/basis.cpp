@@ -138,7 +138,7 @@ void add_basis(py::module_& module) {
       "bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre;\n"
       "centres: array (N, 3), for radial functions of one's own. Directions may have any length.");
   type.def(py::init(&make), py::arg("name") = "sh2", py::arg("bandwidth") = py::none(),
-              py::arg("centres") = py::none());
+           py::arg("centres") = py::none());
   type.def_property_readonly("name", &Basis::name);
   type.def("__len__", &Basis::size);
   type.def_property_readonly("condition", &Basis::condition,
@@ -160,13 +160,15 @@ void add_basis(py::module_& module) {
   type.def_property_readonly(
       "bandwidths", [](const Basis& b) { return vector_array(b.lambdas()); },
       "Array (N,); (0,) without centres.");
-  type.def("evaluate",
+  type.def(
+      "evaluate",
       [](const Basis& basis, const DoubleArray& directions) {
         return at_each("directions", directions, basis.size(),
                        [&](const glm::dvec3& w, std::span<double> out) { basis.evaluate(w, out); });
       },
       py::arg("directions"), "b_i(w) of directions (..., 3), as an array (..., N).");
-  type.def("clamped_cosine",
+  type.def(
+      "clamped_cosine",
       [](const Basis& basis, const DoubleArray& axes, const std::optional<int>& table_size) {
         const Lobes lobes(basis, lobe_options(table_size));
         return at_each("axes", axes, basis.size(), [&](const glm::dvec3& d, std::span<double> out) {
@@ -175,26 +177,27 @@ void add_basis(py::module_& module) {
         });
       },
       py::arg("axes"), py::arg("table_size") = py::none(),
-      "Projection of max(0, w . axis) for axes (..., 3), as an array (..., N): exact, or along +z and rotated through a table of that many entries as\n"
+      "Projection of max(0, w . axis) for axes (..., 3), as an array (..., N): exact, or along +z "
+      "and rotated through a table of that many entries as\n"
       "in the paper (0: without a table).");
   type.def_property_readonly(
       "mean_error", [](const Basis& b) { return mean_relative_l2(b, Lobes(b, {})); },
       "Mean relative L2 error of exactly projected clamped cosines over all axes.");
   type.def("energy", &energy, py::arg("steps"), py::arg("transport") = "sampled",
-         py::arg("table_size") = py::none(),
-         "Energy of an isotropic source\n"
-         "after `steps` steps of propagation over its initial one; transport: 'sampled' or\n"
-         "'exact'; table_size as for clamped_cosine().");
+           py::arg("table_size") = py::none(),
+           "Energy of an isotropic source\n"
+           "after `steps` steps of propagation over its initial one; transport: 'sampled' or\n"
+           "'exact'; table_size as for clamped_cosine().");
   type.def("directions", &directions,
-         "Array (K, 3): directions at which project() takes values of a "
-         "function.");
+           "Array (K, 3): directions at which project() takes values of a "
+           "function.");
   type.def("project", &project, py::arg("values"),
-         "Array (N,): least-squares projection of a function that\n"
-         "has these values at directions().");
+           "Array (N,): least-squares projection of a function that\n"
+           "has these values at directions().");
   type.def("lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
-         "Errors of a lobe (None: clamped_cosine(axis)) "
-         "against the clamped\n"
-         "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
+           "Errors of a lobe (None: clamped_cosine(axis)) "
+           "against the clamped\n"
+           "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
 }
 
 }  // namespace clpv::python

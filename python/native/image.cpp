@@ -96,7 +96,8 @@ void add_comparison(py::module_& module) {
                        c.nrmse ? fmt::format("{}", *c.nrmse) : "None",
                        c.identical ? "True" : "False");
   });
-  module.def("compare",
+  module.def(
+      "compare",
       [](const ImageOrArray& image, const ImageOrArray& reference, float exposure) {
         const Image a = given_image("image", image), b = given_image("reference", reference);
         return interruptible([&] { return compare(a, b, exposure); });
@@ -115,12 +116,11 @@ void add_image(py::module_& module) {
       "A copy of an array (height, width, channels) of real numbers.\n\n"
       "numpy.asarray(image) and image.array are float32 views of its pixels, row 0 on top,\n"
       "without a copy; they keep the image alive.");
-  type.def(
-      py::init([](const FloatArray& array, std::optional<std::vector<std::string>> channels,
-                  const std::string& encoding) {
-        return image_from("array", array, std::move(channels), encoding);
-      }),
-      py::arg("array"), py::arg("channels") = py::none(), py::arg("encoding") = "linear");
+  type.def(py::init([](const FloatArray& array, std::optional<std::vector<std::string>> channels,
+                       const std::string& encoding) {
+             return image_from("array", array, std::move(channels), encoding);
+           }),
+           py::arg("array"), py::arg("channels") = py::none(), py::arg("encoding") = "linear");
   type.def_buffer([](Image& image) {
     const auto shape = shape_of(image);
     const py::ssize_t value = sizeof(float);
@@ -147,7 +147,8 @@ void add_image(py::module_& module) {
       "encoding",
       [](const Image& image) { return image.encoding == Encoding::srgb ? "srgb" : "linear"; },
       "'linear' in light, or 'srgb'.");
-  type.def("save",
+  type.def(
+      "save",
       [](const Image& image, const std::filesystem::path& path, std::optional<float> exposure) {
         without_gil([&] { save_image(path, image, exposure); });
       },
@@ -155,11 +156,11 @@ void add_image(py::module_& module) {
       "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with\n"
       "metadata, .png tone-mapped (photographic) after multiplication by 2^exposure [EV], on a\n"
       "black background. exposure=None: automatic_exposure().");
+  type.def("automatic_exposure", &automatic_exposure,
+           "Exposure [EV] that brings the logarithmic mean of the luminance of "
+           "lit pixels to 0.14.");
   type.def(
-      "automatic_exposure", &automatic_exposure,
-      "Exposure [EV] that brings the logarithmic mean of the luminance of "
-      "lit pixels to 0.14.");
-  type.def("display",
+      "display",
       [](const Image& image, std::optional<float> exposure) {
         Image shown = display_image(image, exposure ? *exposure : automatic_exposure(image),
                                     kDisplayCurve, Background::transparent);
@@ -189,7 +190,8 @@ void add_image(py::module_& module) {
                        fmt::join(image.channels, " "),
                        image.encoding == Encoding::srgb ? "srgb" : "linear");
   });
-  module.def("read_image",
+  module.def(
+      "read_image",
       [](const std::filesystem::path& path) {
         return interruptible([&] { return read_image(path); });
       },

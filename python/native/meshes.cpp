@@ -14,8 +14,9 @@ std::vector<std::array<T, n>> rows(const char* name, const std::optional<Array<G
   if (!given || (given->ndim() == 1 && given->size() == 0)) return all;
   const auto columns = given->ndim() == 2 ? static_cast<std::size_t>(given->shape(1)) : 0;
   if (columns != n && !(last_column_may_lack && columns == n - 1))
-    reject(name, "", "shape " + shape_text(*given),
-           fmt::format("(n, {}){}", n, last_column_may_lack ? fmt::format(" or (n, {})", n - 1) : ""));
+    reject(
+        name, "", "shape " + shape_text(*given),
+        fmt::format("(n, {}){}", n, last_column_may_lack ? fmt::format(" or (n, {})", n - 1) : ""));
   all.resize(static_cast<std::size_t>(given->shape(0)));
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t k = 0; k < n; ++k) {
@@ -69,28 +70,28 @@ void add_meshes(py::module_& module, py::class_<Scene>& type) {
            py::arg("material") = py::none(), py::arg("transform") = py::none(),
            py::arg("moves") = false, doc);
   };
-  mesh_arguments([&](const auto&... all) { type.def("add_mesh", all...); }, &add_mesh,
-                 "Returns a number for the mesh, which is not used again.\n\n"
-                 "positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise\n"
-                 "seen from the front; normals (n, 3), of any length; uvs: texture coordinates\n"
-                 "(n, 2), v = 0 in the first row; colours: linear (n, 3) or (n, 4), 0 to 1. Without\n"
-                 "normals: flat ones, as in glTF, or, if smooth, means of the triangles' normals,\n"
-                 "weighted by angle. material: None for white; transform: array (4, 4) to the\n"
-                 "world, which multiplies columns (x, y, z, 1). moves: it will move, so its first\n"
-                 "move needs no new memory (set_positions()). The arrays are copied. Raises\n"
-                 "InputError with array, index, value found and value allowed.");
   mesh_arguments(
-      [&](const auto&... all) { type.def_static("from_arrays", all...); },
-      [](const FloatArray& positions, const Array<std::int64_t>& triangles, const Floats& normals,
-         const Floats& uvs, const Floats& colours, bool smooth,
-         const std::optional<Material>& material, const std::optional<Transform>& transform,
-         bool moves) {
-        Scene scene;
-        add_mesh(scene, positions, triangles, normals, uvs, colours, smooth, material, transform,
-                 moves);
-        return scene;
-      },
-      "A scene of one mesh, number 0, as add_mesh() describes it.");
+      [&](const auto&... all) { type.def("add_mesh", all...); }, &add_mesh,
+      "Returns a number for the mesh, which is not used again.\n\n"
+      "positions: array (n, 3) [m], y up; triangles: integers (m, 3), counter-clockwise\n"
+      "seen from the front; normals (n, 3), of any length; uvs: texture coordinates\n"
+      "(n, 2), v = 0 in the first row; colours: linear (n, 3) or (n, 4), 0 to 1. Without\n"
+      "normals: flat ones, as in glTF, or, if smooth, means of the triangles' normals,\n"
+      "weighted by angle. material: None for white; transform: array (4, 4) to the\n"
+      "world, which multiplies columns (x, y, z, 1). moves: it will move, so its first\n"
+      "move needs no new memory (set_positions()). The arrays are copied. Raises\n"
+      "InputError with array, index, value found and value allowed.");
+  mesh_arguments([&](const auto&... all) { type.def_static("from_arrays", all...); },
+                 [](const FloatArray& positions, const Array<std::int64_t>& triangles,
+                    const Floats& normals, const Floats& uvs, const Floats& colours, bool smooth,
+                    const std::optional<Material>& material,
+                    const std::optional<Transform>& transform, bool moves) {
+                   Scene scene;
+                   add_mesh(scene, positions, triangles, normals, uvs, colours, smooth, material,
+                            transform, moves);
+                   return scene;
+                 },
+                 "A scene of one mesh, number 0, as add_mesh() describes it.");
   type.def_static(
       "from_trimesh",
       [](const py::object& given) {
@@ -107,8 +108,7 @@ void add_meshes(py::module_& module, py::class_<Scene>& type) {
       py::arg("mesh"), py::arg("transform"),
       "The same mesh at another place; its vertices are shared.");
   type.def(
-      "remove_mesh",
-      [](Scene& scene, int mesh) { without_gil([&] { scene.remove_mesh(mesh); }); },
+      "remove_mesh", [](Scene& scene, int mesh) { without_gil([&] { scene.remove_mesh(mesh); }); },
       py::arg("mesh"), "Removes a mesh from one of its places.");
   type.def(
       "set_positions",

@@ -45,8 +45,8 @@ class CallInProgress {
   CallInProgress& operator=(const CallInProgress&) = delete;
 };
 
-/// The class of renderers. In a forked child the driver's threads are missing: releasing its objects
-/// there could wait for them without end.
+/// The class of renderers. In a forked child the driver's threads are missing: releasing its
+/// objects there could wait for them without end.
 struct ReleaseUnlessForked {
   void operator()(Renderer* renderer) const;
 };
@@ -265,13 +265,21 @@ struct pyobject_caster<clpv::python::Array<T>> {
   clpv::python::CallInProgress in_progress_;  // NumPy's copies release the GIL
 };
 
+/// A column of a table counts in the order of its items: its subscripts may be labels.
 template <>
 struct type_caster<clpv::Vec3> : array_caster<clpv::Vec3, double, false, 3> {
   static constexpr auto name = const_name("Vector");
+
+  bool load(handle given, bool convert) {
+    const bool column = hasattr(given, "tolist");
+    const auto items = column ? given.attr("tolist")() : reinterpret_borrow<object>(given);
+    return array_caster::load(items, convert);
+  }
 };
 
 template <>
-struct type_caster<clpv::Transform> : array_caster<clpv::Transform, std::array<double, 4>, false, 4> {
+struct type_caster<clpv::Transform>
+    : array_caster<clpv::Transform, std::array<double, 4>, false, 4> {
   static constexpr auto name = const_name("ArrayLike");
 };
 
@@ -282,8 +290,8 @@ struct type_caster<E> {
 
   bool load(handle given, bool) {
     if (!isinstance<str>(given)) return false;
-    value = clpv::named<E>(std::is_same_v<E, clpv::View> ? "view" : "kind",
-                           given.cast<std::string>());
+    value =
+        clpv::named<E>(std::is_same_v<E, clpv::View> ? "view" : "kind", given.cast<std::string>());
     return true;
   }
   static handle cast(E given, return_value_policy, handle) {
@@ -320,9 +328,7 @@ struct type_caster<T> {
   PYBIND11_TYPE_CASTER(T, clpv::python::Fields<T>::kName);
   using Fields = clpv::python::Fields<T>;
 
-  static object python_class() {
-    return module_::import("clpv.values").attr(Fields::kName.text);
-  }
+  static object python_class() { return module_::import("clpv.values").attr(Fields::kName.text); }
   bool load(handle given, bool) {
     if (!isinstance(given, python_class())) return false;
     const auto set = [&](const char* name, auto& member) {

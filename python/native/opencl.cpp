@@ -36,8 +36,7 @@ void add_classes(py::module_& module) {
       "int_ptr", [](const opencl::Event& e) { return number_of(e.get()); },
       "The cl_event, for pyopencl.Event.from_int_ptr(int_ptr, retain=True). It lives as long as "
       "this object.");
-  event.def("wait", &wait_for,
-         "Waits for the commands. Raises ResourceError if they failed.");
+  event.def("wait", &wait_for, "Waits for the commands. Raises ResourceError if they failed.");
 
   py::class_<PythonFrame> frame(
       module, "DeviceFrame",
@@ -61,13 +60,15 @@ void add_classes(py::module_& module) {
   frame.def_property_readonly(
       "int_ptr", [](const PythonFrame& f) { return number_of(f.frame.done.get()); },
       "The cl_event of the whole frame.");
-  frame.def("wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
+  frame.def(
+      "wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
       "Waits for the frame. Raises ResourceError if it failed.");
 
   py::class_<opencl::Volumes> volumes(module, "DeviceVolumes",
                                       "Light for a kernel: arguments CLPV_RADIANCE of "
                                       "Renderer.lookup_source(), in the order of arguments().");
-  volumes.def("arguments",
+  volumes.def(
+      "arguments",
       [](const opencl::Volumes& v) {
         const py::module_ numpy = py::module_::import("numpy");
         py::list all;

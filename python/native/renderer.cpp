@@ -167,25 +167,26 @@ void add_renderer(py::module_& module) {
       "options() lists them. bool is on or off. Results that do not change are cached from frame\n"
       "to frame. Calls from several threads run one after the other. Raises UsageError,\n"
       "DeviceError, ResourceError.");
+  type.def(py::init([](const Scene& scene, const std::string& device, const py::object& context,
+                       const py::object& queue, const py::kwargs& given) {
+             const Options options = options_of(given);
+             const bool own = context.is_none() && queue.is_none();
+             if (!own && !device.empty())
+               throw Error(ExitCode::usage,
+                           "device: found one and a context or queue, allowed: one of both");
+             const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
+                                       handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
+             note_device_use();
+             return interruptible([&] {
+               return own ? Renderer(scene, options, device) : Renderer(scene, options, where);
+             });
+           }),
+           py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
+           py::arg("queue") = py::none());
   type.def(
-      py::init([](const Scene& scene, const std::string& device, const py::object& context,
-                  const py::object& queue, const py::kwargs& given) {
-        const Options options = options_of(given);
-        const bool own = context.is_none() && queue.is_none();
-        if (!own && !device.empty())
-          throw Error(ExitCode::usage,
-                      "device: found one and a context or queue, allowed: one of both");
-        const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
-                                  handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
-        note_device_use();
-        return interruptible([&] {
-          return own ? Renderer(scene, options, device) : Renderer(scene, options, where);
-        });
-      }),
-      py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
-      py::arg("queue") = py::none());
-  type.def("render",
-      [](Renderer& renderer, View view, const std::optional<CameraChoice>& camera, double time, const ImageSize& size) {
+      "render",
+      [](Renderer& renderer, View view, const std::optional<CameraChoice>& camera, double time,
+         const ImageSize& size) {
         return interruptible(
             [&] { return renderer.render(view, camera_choice(camera), time, size); });
       },
@@ -196,7 +197,8 @@ void add_renderer(py::module_& module) {
       "depth [m], or cells: irradiance with the finest cascade's cells as spheres; camera: a\n"
       "Camera, or the name of one of the scene (None: its first); time [s] of an animated scene;\n"
       "size: (width, height), None for options width and height.");
-  type.def("update",
+  type.def(
+      "update",
       [](Renderer& renderer, const Vec3& eye, double time) {
         interruptible([&] { renderer.update(eye, time); });
       },
@@ -205,17 +207,18 @@ void add_renderer(py::module_& module) {
       "radiance(), volumes() and device_volumes().");
   const auto release = [](Renderer& renderer) { interruptible([&] { renderer.release(); }); };
   type.def("release", release,
-         "Frees the device's memory; the next call that lights or renders allocates it "
-         "again. A `with` block ends with it.");
+           "Frees the device's memory; the next call that lights or renders allocates it "
+           "again. A `with` block ends with it.");
   type.def("__enter__", [](Renderer& self) -> Renderer& { return self; });
   type.def("__exit__", [release](Renderer& renderer, const py::args&) { release(renderer); });
-  type.def("show",
+  type.def(
+      "show",
       [](Renderer& renderer, View view) {
         return interruptible([&] { return renderer.show(view); });
       },
-      py::arg("view"),
-      "Another view of the last frame, without rendering it again.");
-  type.def("light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
+      py::arg("view"), "Another view of the last frame, without rendering it again.");
+  type.def(
+      "light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
       py::arg("depths") = py::none(), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
       py::arg("time") = 0.0,
       "Irradiance of indirect light [W/m^2] on the pixels of a G-buffer, with the near field, as\n"
@@ -223,7 +226,8 @@ void add_renderer(py::module_& module) {
       "shape, or depths (height, width) [m] of `camera`, a Camera or a name (None: the scene's\n"
       "first). Cascades surround `eye`, or the camera's. Pixels with a normal of 0, a depth that\n"
       "is not positive or a number that is not finite have no surface, and no light.");
-  type.def("irradiance",
+  type.def(
+      "irradiance",
       [](Renderer& renderer, const FloatArray& points, const FloatArray& normals) {
         return at_points(renderer, &Renderer::irradiance, points, normals, "normals");
       },
@@ -232,7 +236,8 @@ void add_renderer(py::module_& module) {
       "points [m] and normals (of any length): arrays (..., 3), or one normal. Of the volumes of\n"
       "the last frame, light() or update(), without option near; 0 outside of the cascades.\n"
       "Computed on the device.");
-  type.def("radiance",
+  type.def(
+      "radiance",
       [](Renderer& renderer, const FloatArray& points, const FloatArray& directions) {
         return at_points(renderer, &Renderer::radiance, points, directions, "directions");
       },
@@ -244,8 +249,7 @@ void add_renderer(py::module_& module) {
       "with gather 'all'.");
   type.def("__repr__",
            [](const Renderer& renderer) { return "Renderer(" + renderer.description() + ")"; });
-  type.def("volumes", &volumes,
-         "Light of the last frame, finest cascade first.");
+  type.def("volumes", &volumes, "Light of the last frame, finest cascade first.");
   type.def_property_readonly(
       "stats",
       [](const Renderer& renderer) {
@@ -258,7 +262,8 @@ void add_renderer(py::module_& module) {
       "and copies) and of 'waits' for the device; 'device_bytes', 'peak_device_bytes'.");
   add_opencl(module, type);
   module.def("_views", &names_of<View>, "Names of all views.");
-  module.def("pathtrace",
+  module.def(
+      "pathtrace",
       [](const Scene& scene, const std::variant<View, std::vector<View>>& view,
          const std::optional<CameraChoice>& camera, int width, int height,
          const std::variant<int, std::string>& bounces, std::uint32_t samples, double noise,

@@ -27,6 +27,12 @@ def test_lobes_of_the_paper_are_those_of_the_program():
     assert clpv.Basis("srbf4").energy(0) == pytest.approx(1)
 
 
+def test_a_function_of_the_basis_is_its_own_projection():
+    basis = clpv.Basis("sh3")
+    values = basis.evaluate(basis.directions())
+    assert np.allclose([basis.project(column) for column in values.T], np.eye(9), atol=1e-9)
+
+
 def test_own_centres():
     centres = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -2, 0]]
     basis = clpv.Basis("mine", bandwidth=0.3, centres=centres)

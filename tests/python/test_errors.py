@@ -9,11 +9,6 @@ import sys
 import numpy
 import pytest
 
-try:
-    import pandas
-except ImportError:  # no package of scripts/setup
-    pandas = None
-
 import clpv
 from conftest import CORNELL, FRONT
 
@@ -61,30 +56,37 @@ def test_arrays_have_real_numbers(wrong):
         clpv.Scene.from_arrays(SQUARE, [[0.0, 1, 2]])
 
 
+class Column(list):
+    """As a column of pandas, whose subscripts are labels."""
+
+    def __getitem__(self, label):
+        return super().__getitem__(-1 - label)
+
+    def tolist(self):
+        return list(iter(self))
+
+
 def containers(numbers):
     """Numbers as each type that people have vectors in, whose items may be made on access."""
     for array in [numpy.array(numbers, number) for number in (int, numpy.float32, ">f8")]:
         yield from (array, tuple(array), numpy.repeat(array, 2)[::2], array[::-1].copy()[::-1])
-    if pandas is not None:
-        yield pandas.Series(numbers, index=[2, 1, 0])  # subscripts are labels
-        yield pandas.DataFrame([numbers], columns=list("xyz")).iloc[0]
+    yield Column(numbers)
 
 
 def test_vectors_of_any_type(renderer):  # under PYTHONMALLOC=debug: items were once freed
+    places = set()
     for one in containers((1, 0, 3)):
         assert camera(eye=one).eye == clpv.Light(intensity=one).intensity == (1, 0, 3), repr(one)
         assert clpv.Medium(box=(one, [2, 2, 4])).box == ((1, 0, 3), (2, 2, 4)), repr(one)
-        renderer.update(numpy.asarray(one))
+        renderer.update(one)
+        places.add(renderer.volumes()[0].origin)
+    assert len(places) == 1
     assert clpv.Medium(box=numpy.array([[0, 0, 0], [1, 2, 3]])).box == ((0, 0, 0), (1, 2, 3))
 
 
 def test_arrays_of_any_type():
     rows = numpy.array([[0, 0, 1], [1, 0, 3], [2, 1, 0]])
-    given = [rows.astype(object), numpy.asfortranarray(rows), rows.astype(">f4")]
-    if pandas is not None:  # whose tables have a method `mask`
-        table = pandas.DataFrame(rows, index=[2, 1, 0])
-        given += [table, table.astype("Float64"), table.astype(object)]
-    for one in given:
+    for one in rows.astype(object), numpy.asfortranarray(rows), rows.astype(">f4"):
         assert (BASIS.evaluate(one) == BASIS.evaluate(rows)).all()
 
 
@@ -137,7 +139,7 @@ def test_errors_are_those_of_python_too():
     (TypeError, "cannot pickle", lambda s, r: __import__("copy").copy(s)),
     *((clpv.UsageError, f"normals: found .*, allowed: an object of pyopencl's class",
        lambda s, r, wrong=wrong: r.enqueue_light(1, 1, normals=wrong, irradiance=None))
-      for wrong in ("x", 1.5, True, 3, -8, 2**40 + 1, 2**70, THING))
+      for wrong in ("x", 1.5, THING))
 ])  # yapf: disable
 def test_errors_name_what_they_found(error, match, call, scene, renderer):
     with pytest.raises(error, match=match):

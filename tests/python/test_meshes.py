@@ -26,7 +26,7 @@ def test_arrays_are_those_of_their_file(tmp_path):
     scene.add_instance(0, numpy.diag([0.5, 1.0, 2, 1]))
     scene.save(tmp_path / "wall.glb")
     of_file = clpv.Scene(tmp_path / "wall.glb")
-    numpy.testing.assert_array_equal(scene.bounds, of_file.bounds)
+    assert scene.bounds == of_file.bounds == ((-2, 0, -4), (2, 6, -2))
     of_file.cameras, of_file.lights = scene.cameras, scene.lights
     for view in "albedo", "normal", "full":
         numpy.testing.assert_allclose(*(clpv.Renderer(each, cascade_size=4, **SMALL).render(view)
@@ -49,6 +49,12 @@ def test_arrays_are_those_of_their_file(tmp_path):
 def test_bad_arrays_are_rejected_by_name(change, error, words):
     with pytest.raises(error, match=re.escape(words)):
         clpv.Scene.from_arrays(**({"positions": WALL, "triangles": SQUARE} | change))
+
+
+def test_colours_without_alpha_are_opaque():
+    scene = clpv.Scene.from_arrays(WALL, SQUARE, colours=numpy.ones((4, 3)),
+                                   material=clpv.Material(alpha_cutoff=0.5))
+    assert clpv.pathtrace(scene, "albedo", width=2, height=2, samples=1).array.max() == 1
 
 
 def test_float_textures_are_encoded():

@@ -59,7 +59,7 @@ def at_time(thing, time):
 
 
 def facing(direction, eye=(0, 0, 0), up=(0, 1, 0)):
-    """Returns a node's matrix, column by column, that turns -z to a direction, and y towards `up`, and
+    """Returns a node's matrix, column by column, that turns -z to a direction, y towards `up`, and
     moves to `eye`."""
     z = -numpy.array(direction, float) / numpy.linalg.norm(direction)
     x = numpy.cross(up, z)
@@ -230,6 +230,6 @@ def main():
     if packed.exists() and not (place / output.MARKER).exists():
         parser.error(f"--output {place}: found a file {packed}; allowed: none where DIR is new")
     output.target_of(packed)
-    write_suite(output.Folder(place, "lab/scripts/suite"), packed, arguments.model and arguments.model.resolve(),
-                arguments.cache and arguments.cache.resolve(), names)
+    model, cache = (path and path.resolve() for path in (arguments.model, arguments.cache))
+    write_suite(output.Folder(place, "lab/scripts/suite"), packed, model, cache, names)
     return 0

@@ -347,8 +347,8 @@ class CamerasAndLights(unittest.TestCase):
     def test_matrices_face_the_direction(self):
         for direction in (1, 0, 0), (0, 0, 1), (0, 0, -1), (0, -1, 0), (0.3, -2, 0.1), (-1, 0.2, 3):
             matrix = numpy.reshape(suite.facing(direction, (1, 2, 3)), (4, 4)).T
-            turned = direction / numpy.linalg.norm(direction)
-            numpy.testing.assert_allclose(matrix @ (0, 0, -1, 1), (*(turned + (1, 2, 3)), 1), atol=1e-6)
+            ahead = direction / numpy.linalg.norm(direction) + (1, 2, 3)
+            numpy.testing.assert_allclose((matrix @ (0, 0, -1, 1))[:3], ahead, atol=1e-6)
             self.assertAlmostEqual(numpy.linalg.det(matrix), 1)
 
     def test_a_model_with_them_has_the_scene_files_image(self):
