@@ -71,6 +71,8 @@ def test_a_view_that_rests_is_drawn_again_with_more_rays():
             due.shown += 1
     assert drawn == [(0, 288, "2"), (0.4, 720, "4"), (2, 720, "64")]
     assert view_frames.next_client([client, other], 3) is other
+    client.shown = 2
+    assert view_frames.next_client([client, other], 3) is other
     client.touch()
     assert view_frames.next_client([client], client.changed) is client and client.shown == 0
 
@@ -223,12 +225,13 @@ def test_one_clients_messages_end_or_change_no_other(viewer):
         before = made.frames
         bad.send(moved())  # still connected
         assert drawn_after(made, before)
-        for broken in b"\xff" * 100, b"x" * 100000, "text":
+        for broken, code in (b"\xff" * 100, None), (b"x" * 100000, 1009), ("text", None):
             with browser(address) as other:
-                with pytest.raises(ConnectionClosed):
+                with pytest.raises(ConnectionClosed) as closed:
                     other.send(broken)
                     while True:
                         other.recv(timeout=30)
+                assert code in (None, closed.value.rcvd and closed.value.rcvd.code)
         before = made.frames
         good.send(moved(position=(0.28, 0.27, -0.2)))
         assert drawn_after(made, before), "the first client goes on"
