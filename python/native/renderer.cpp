@@ -2,6 +2,7 @@
 // Renderer, Volume and pathtrace.
 #include "clpv/renderer.hpp"
 
+#include <algorithm>
 #include <atomic>
 
 #include "clpv/opencl.hpp"
