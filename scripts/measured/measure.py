@@ -43,10 +43,10 @@ def run(*arguments, program=CLPV):
         file = pathlib.Path(folder) / "result.json"
         command = [str(program), *(argument.replace("FOLDER", folder) for argument in arguments),
                    str(file)]
-        print("scripts/measure: clpv", *arguments, file=sys.stderr)
+        print(f"{sys.argv[0]}: clpv", *arguments, file=sys.stderr)
         code = subprocess.run(command, stdout=subprocess.DEVNULL, check=False, cwd=ROOT).returncode
         if code != 0:
-            print(f"scripts/measure: exit code {code}", file=sys.stderr)
+            print(f"{sys.argv[0]}: exit code {code}", file=sys.stderr)
         if not file.exists():
             sys.exit(code)
         return json.loads(file.read_text(encoding="utf-8"))

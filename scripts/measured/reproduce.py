@@ -21,25 +21,20 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import time
 
 from . import (BUILD, CLPV, RESULTS, ROOT, described, expected, hash_of, model_files, output,
                tables, verdicts)
 from .expected import CLAIMS, PARTS
-from .measure import measured_with, write
+from .measure import measured_with, run, write
 
 LEFT = 5  # exit code
 
 
 def of_table1(arguments):
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "rows.json"
-        subprocess.run([str(CLPV), "bench", "table1", "--scene=scenes/sponza_suns.json",
-                        f"--model={arguments.model}", "--camera=curtains",
-                        f"--repetitions={2 if arguments.quick else 7}",
-                        f"--output={file}"], stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
-        document = json.loads(file.read_text(encoding="utf-8"))
+    document = run("bench", "table1", "--scene=scenes/sponza_suns.json",
+                   f"--model={arguments.model}", "--camera=curtains",
+                   f"--repetitions={2 if arguments.quick else 7}", "--output")
     document["context"].pop("host_name", None)
     return document
 

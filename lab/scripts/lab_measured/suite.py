@@ -22,7 +22,8 @@ import tempfile
 
 import numpy
 
-from measured import CLPV, ROOT, model_files, output
+from measured import ROOT, model_files, output
+from measured.measure import run
 
 SCHEMA, SIZE, NOISE = 1, (240, 135), 0.03
 # Scenes and their cameras (none: all), files of other names, instants [s], layers of truths, and
@@ -114,16 +115,11 @@ def sha256(file):
 
 def ground_truths(name, cameras, model, cache):
     """Traces what is not cached. Returns rows of `clpv quality`: file, camera, noise, spp."""
-    with tempfile.TemporaryDirectory() as folder:
-        report = pathlib.Path(folder) / "report.json"
-        subprocess.run([
-            str(CLPV), "quality", f"scenes/{FILES.get(name, name)}.json", *(f"--camera={camera}"
-                                                           for camera in cameras),
-            *([f"--model={model}"] if model else []), *([f"--cache={cache}"] if cache else []),
-            f"--time={TIMES.get(name, 0)}", f"--width={SIZE[0]}", f"--height={SIZE[1]}",
-            f"--noise={NOISE}", "--preset=fast", "--frames=1", f"--output={report}"
-        ], check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
-        return json.loads(report.read_text())["ground_truths"]
+    return run("quality", f"scenes/{FILES.get(name, name)}.json",
+               *(f"--camera={camera}" for camera in cameras),
+               *([f"--model={model}"] if model else []), *([f"--cache={cache}"] if cache else []),
+               f"--time={TIMES.get(name, 0)}", f"--width={SIZE[0]}", f"--height={SIZE[1]}",
+               f"--noise={NOISE}", "--preset=fast", "--frames=1", "--output")["ground_truths"]
 
 
 def in_halves(source):
