@@ -211,6 +211,7 @@ def paper(arguments):
     answer(frames, out)
     for preset in PRESETS:
         figure4(frames, out, preset)
+    for preset in PRESETS:
         figure5(shadowed, out, preset)
     if not arguments.quick:
         srbf14(along, out)
