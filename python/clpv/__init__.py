@@ -36,25 +36,19 @@ __all__ = [
 ]
 
 
-def ms_of(times, stage):
-    """ms_of(times, stage) -> sum of the medians of a stage over its cascades and lights [ms].
+def ms_of(times: "Sequence[dict[str, Any]]", stage: str) -> float:
+    """Sum of the medians of a stage over its cascades and lights [ms]; 0 if it did not run.
 
-    times: those of Renderer.stats or of JSON by clpv. 0 if the stage did not run. Other values raise UsageError."""
-    try:
-        if isinstance(stage, str):
-            return sum(float(time["median"]) for time in times if time["stage"] == stage)
-    except (TypeError, LookupError, ValueError, OverflowError):
-        pass
-    found = f"stage: found {stage!r}; allowed: a name" if not isinstance(
-        stage, str) else f"times: found {type(times).__name__}; allowed: records as of Renderer.stats"
-    raise importlib.import_module("clpv._native").UsageError(f"ms_of: {found}")
+    times: those of Renderer.stats or of JSON by clpv."""
+    return sum(float(time["median"]) for time in times if time["stage"] == stage)
 
 
 def __getattr__(name):
     """Loads the native module on first use, so that clpv.draw works without it."""
     if name in __all__ or name == "__version__":
         importlib.import_module("clpv._pocl").use()
-        return getattr(importlib.import_module("clpv._native"), name)
+        module = "values" if name in ("Camera", "Light", "Material", "Medium") else "_native"
+        return getattr(importlib.import_module(f"clpv.{module}"), name)
     if name in ("draw", "view"):
         return importlib.import_module(f"clpv.{name}")
     raise AttributeError(f"module 'clpv' has no attribute '{name}'")

@@ -20,12 +20,8 @@ import threading
 import time
 
 import clpv
-from clpv import output
-if __name__ == "__main__":
-    output.name_missing_modules()
-from clpv import view_controls, view_gate  # noqa: E402
-from clpv.view_frames import (  # noqa: E402
-    LEVELS, Client, Renderers, camera_of, next_client, size_of)
+from clpv import view_controls, view_gate
+from clpv.view_frames import LEVELS, Client, Renderers, camera_of, next_client, size_of
 
 # Distance from the eye to the point that a drag turns the camera about, of the scene's diagonal.
 PIVOT = 0.03
@@ -211,45 +207,31 @@ class Viewer:
             print(f"clpv.view: lost a client: {error!r}", file=sys.stderr)
 
 
-def require_free(host, port):
-    """Raises RuntimeError unless an address, of either version of IP, can be listened on."""
-    try:
-        family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        with socket.socket(family, kind) as probe:
-            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            probe.bind(address)
-    except OSError as error:
-        raise RuntimeError(
-            f"{host}:{port}: {error.strerror}; choose another --port or --host") from None
-
-
 def show(scene: "clpv.Scene | str | os.PathLike[str]", *,
          model: "str | os.PathLike[str] | None" = None, host: str = "127.0.0.1", port: int = 8080,
          device: str = "") -> None:
     """Shows a scene or a file in the browser until Ctrl-C. Raises clpv.Error, ImportError without
     viser, RuntimeError for another version of it or an address that is taken."""
     import viser  # noqa: F401
-    require_free(host, port)
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        socket.create_server((host, port), family=family).close()  # viser would take the next port
+    except (OSError, OverflowError) as error:
+        raise RuntimeError(f"{host}:{port}: {error}; choose another --port or --host") from None
     load = None
     if not isinstance(scene, clpv.Scene):
         load = functools.partial(clpv.Scene, scene, model)
         scene = load()
     clpv.Renderer(scene, device, width=16, height=16).release()  # no page where none can render
-    server = view_gate.Gate(host).open(host, port)
+    server, path = view_gate.opened(host, port)
     viewer = Viewer(server, scene, device, load)
-    print(f"clpv.view: http://{f'[{host}]' if ':' in host else host}:{port}", flush=True)
+    address = f"[{host}]" if ":" in host else host
+    print(f"clpv.view: http://{address}:{server.get_port()}{path}", flush=True)
     try:
         while True:
             viewer.step()
     except KeyboardInterrupt:
         server.stop()
-
-
-def port_number(text):
-    """Value of --port. As choices argparse would list all of them."""
-    if not (text.isascii() and text.isdigit() and len(text) <= 5 and 1 <= int(text) <= 65535):
-        raise argparse.ArgumentTypeError(f"found '{text}', allowed: 1..65535")
-    return int(text)
 
 
 def main(arguments=None):
@@ -259,12 +241,9 @@ def main(arguments=None):
     parser.add_argument("--model", help="model file instead of the scene file's")
     parser.add_argument("--device", default="",
                         help="OpenCL device: an index, or a part of its name")
-    parser.add_argument(
-        "--host", default="127.0.0.1", help=
-        "address to listen on (default: %(default)s, this machine only); whoever reaches it controls the viewer"
-    )
-    parser.add_argument("--port", type=port_number, default=8080, metavar="1..65535",
-                        help="(default: %(default)s)")
+    parser.add_argument("--host", default="127.0.0.1",
+                        help="address to listen on (default: %(default)s, this machine only)")
+    parser.add_argument("--port", type=int, default=8080, help="(default: %(default)s)")
     given = parser.parse_args(arguments)
     logging.basicConfig(format="%(name)s: %(message)s")
     logging.getLogger("clpv").setLevel(logging.INFO)

@@ -23,28 +23,31 @@ glm::dvec3 unit(const double* v) {
               w.x, w.y, w.z);
 }
 
-std::unique_ptr<Basis> make(const std::string& name, const py::object& bandwidth,
-                            const py::object& centres) {
-  if (centres.is_none())
-    return make_basis(name,
-                      argument<std::optional<double>>("bandwidth", bandwidth, "a number or None")
-                          .value_or(kDefaultLambda));
-  const DoubleArray given = vectors<DoubleArray>(centres, "centres");
+using Bandwidth = std::variant<double, DoubleArray>;  // of all centres, or of each
+
+std::unique_ptr<Basis> make(const std::string& name, const std::optional<Bandwidth>& bandwidth,
+                            const std::optional<DoubleArray>& centres) {
+  const auto* each = bandwidth ? std::get_if<DoubleArray>(&*bandwidth) : nullptr;
+  if (each && !centres)
+    throw Error(ExitCode::usage, "bandwidth: found shape {}, allowed without centres: a number",
+                shape_text(*each));
+  const double lambda = bandwidth && !each ? std::get<double>(*bandwidth) : kDefaultLambda;
+  if (!centres) return make_basis(name, lambda);
+  require_vectors(*centres, "centres");
   std::vector<glm::dvec3> all;
-  for (py::ssize_t i = 0; i < given.size() / 3; ++i) all.push_back(unit(given.data() + 3 * i));
-  if (bandwidth.is_none()) return make_basis_from_centres(name, all);
-  const DoubleArray lambdas = real_array<DoubleArray>(bandwidth, "bandwidth");
-  if (lambdas.ndim() == 0) return make_basis_from_centres(name, all, *lambdas.data());
-  return make_basis_from_centres(
-      name, all, std::vector<double>(lambdas.data(), lambdas.data() + lambdas.size()));
+  for (py::ssize_t i = 0; i < centres->size() / 3; ++i)
+    all.push_back(unit(centres->data() + 3 * i));
+  if (!each) return make_basis_from_centres(name, all, lambda);
+  return make_basis_from_centres(name, all,
+                                 std::vector<double>(each->data(), each->data() + each->size()));
 }
 
 /// Applies `values_at(w, out)`, which writes `count` numbers, to each direction of an array (...,
 /// 3).
 template <typename Values>
-py::array_t<double> at_each(const char* name, const py::object& directions, int count,
+py::array_t<double> at_each(const char* name, const DoubleArray& given, int count,
                             const Values& values_at) {
-  const DoubleArray given = vectors<DoubleArray>(directions, name);
+  require_vectors(given, name);
   py::array_t<double> made(shape_with_last(given, count));
   for (py::ssize_t i = 0; i < given.size() / 3; ++i)
     values_at(unit(given.data() + 3 * i),
@@ -56,13 +59,10 @@ py::array_t<double> vector_array(const std::vector<double>& values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-DoubleArray coefficients(const Basis& basis, const py::object& given) {
-  DoubleArray c = real_array<DoubleArray>(given, "coefficients");
-  if (c.ndim() != 1 || c.shape(0) != basis.size()) {
-    throw Error(ExitCode::usage, "coefficients: found shape {}, allowed: ({},)", shape_text(c),
-                basis.size());
-  }
-  return c;
+void require_length(const char* what, const DoubleArray& given, std::size_t length) {
+  if (given.ndim() != 1 || given.shape(0) != static_cast<py::ssize_t>(length))
+    throw Error(ExitCode::usage, "{}: found shape {}, allowed: ({},)", what, shape_text(given),
+                length);
 }
 
 /// (n,3): nodes of the quadrature that project() sums over.
@@ -78,14 +78,9 @@ py::array_t<double> directions(const Basis& basis) {
 
 /// A^-1 Int b f dw by quadrature. Takes values, not a function: Python's exit ends daemon threads
 /// that run Python code below C++.
-py::array_t<double> project(const Basis& basis, const py::object& given) {
+py::array_t<double> project(const Basis& basis, const DoubleArray& values) {
   const std::vector<QuadratureNode> nodes = quadrature(basis, octants());
-  const DoubleArray values = real_array<DoubleArray>(given, "values");
-  if (values.ndim() != 1 || values.shape(0) != static_cast<py::ssize_t>(nodes.size())) {
-    throw Error(ExitCode::usage,
-                "values: found shape {}, allowed: ({},), one for each of directions()",
-                shape_text(values), nodes.size());
-  }
+  require_length("values", values, nodes.size());
   const auto wrong = std::find_if_not(values.data(), values.data() + values.size(),
                                       [](double value) { return std::isfinite(value); });
   if (wrong != values.data() + values.size())
@@ -120,15 +115,12 @@ double energy(const Basis& basis, int steps, const std::string& transport,
   return energy_after(basis, std::get<FaceTransport>(made.scheme), steps);
 }
 
-py::dict lobe(const Basis& basis, const py::object& axis, const py::object& given) {
-  const DoubleArray direction = vectors<DoubleArray>(axis, "axis");
-  if (direction.ndim() != 1)
-    throw Error(ExitCode::usage, "axis: found shape {}, allowed: (3,)", shape_text(direction));
-  const glm::dvec3 d = unit(direction.data());
+py::dict lobe(const Basis& basis, const Vec3& axis, const std::optional<DoubleArray>& given) {
+  const glm::dvec3 d = unit(axis.data());
   std::vector<double> c = basis.clamped_cosine(d);
-  if (!given.is_none()) {
-    const DoubleArray array = coefficients(basis, given);
-    c.assign(array.data(), array.data() + array.size());
+  if (given) {
+    require_length("coefficients", *given, c.size());
+    c.assign(given->data(), given->data() + given->size());
   }
   const LobeQuality quality = lobe_quality(basis, c, d);
   return py::dict(py::arg("relative_l2") = quality.relative_l2,
@@ -139,14 +131,14 @@ py::dict lobe(const Basis& basis, const py::object& axis, const py::object& give
 }  // namespace
 
 void add_basis(py::module_& module) {
-  define(module, "bases", &basis_names, "bases() -> list of the names of all bases.");
+  module.def("bases", &basis_names, "Names of all bases.");
   py::class_<Basis> type(
       module, "Basis",
-      "Basis(name='sh2', bandwidth=None, centres=None): N functions b_i on the unit sphere.\n\n"
+      "N functions b_i on the unit sphere.\n\n"
       "bandwidth: lambda in (0, 1) of radial functions (None: 0.25), or one for each centre;\n"
       "centres: array (N, 3), for radial functions of one's own. Directions may have any length.");
-  define_init(type, &make, py::arg("name") = "sh2", py::arg("bandwidth") = py::none(),
-              py::arg("centres") = py::none());
+  type.def(py::init(&make), py::arg("name") = "sh2", py::arg("bandwidth") = py::none(),
+           py::arg("centres") = py::none());
   type.def_property_readonly("name", &Basis::name);
   type.def("__len__", &Basis::size);
   type.def_property_readonly("condition", &Basis::condition,
@@ -168,16 +160,16 @@ void add_basis(py::module_& module) {
   type.def_property_readonly(
       "bandwidths", [](const Basis& b) { return vector_array(b.lambdas()); },
       "Array (N,); (0,) without centres.");
-  define(
-      type, "evaluate",
-      [](const Basis& basis, const py::object& directions) {
+  type.def(
+      "evaluate",
+      [](const Basis& basis, const DoubleArray& directions) {
         return at_each("directions", directions, basis.size(),
                        [&](const glm::dvec3& w, std::span<double> out) { basis.evaluate(w, out); });
       },
-      py::arg("directions"), "evaluate(directions (..., 3)) -> float64 array (..., N): b_i(w).");
-  define(
-      type, "clamped_cosine",
-      [](const Basis& basis, const py::object& axes, const std::optional<int>& table_size) {
+      py::arg("directions"), "b_i(w) of directions (..., 3), as an array (..., N).");
+  type.def(
+      "clamped_cosine",
+      [](const Basis& basis, const DoubleArray& axes, const std::optional<int>& table_size) {
         const Lobes lobes(basis, lobe_options(table_size));
         return at_each("axes", axes, basis.size(), [&](const glm::dvec3& d, std::span<double> out) {
           const std::vector<double> c = lobes(d);
@@ -185,27 +177,27 @@ void add_basis(py::module_& module) {
         });
       },
       py::arg("axes"), py::arg("table_size") = py::none(),
-      "clamped_cosine(axes (..., 3), table_size=None) -> float64 array (..., N): projection of\n"
-      "max(0, w . axis), exact, or along +z and rotated through a table of that many entries as\n"
+      "Projection of max(0, w . axis) for axes (..., 3), as an array (..., N): exact, or along +z "
+      "and rotated through a table of that many entries as\n"
       "in the paper (0: without a table).");
   type.def_property_readonly(
       "mean_error", [](const Basis& b) { return mean_relative_l2(b, Lobes(b, {})); },
       "Mean relative L2 error of exactly projected clamped cosines over all axes.");
-  define(type, "energy", &energy, py::arg("steps"), py::arg("transport") = "sampled",
-         py::arg("table_size") = py::none(),
-         "energy(steps, transport='sampled', table_size=None) -> energy of an isotropic source\n"
-         "after `steps` steps of propagation over its initial one; transport: 'sampled' or\n"
-         "'exact'; table_size as for clamped_cosine().");
-  define(type, "directions", &directions,
-         "directions() -> float64 array (K, 3): directions at which project() takes values of a "
-         "function.");
-  define(type, "project", &project, py::arg("values"),
-         "project(values (K,)) -> float64 array (N,): least-squares projection of a function that\n"
-         "has these values at directions().");
-  define(type, "lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
-         "lobe(axis, coefficients=None) -> dict: errors of a lobe (None: clamped_cosine(axis)) "
-         "against the clamped\n"
-         "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
+  type.def("energy", &energy, py::arg("steps"), py::arg("transport") = "sampled",
+           py::arg("table_size") = py::none(),
+           "Energy of an isotropic source\n"
+           "after `steps` steps of propagation over its initial one; transport: 'sampled' or\n"
+           "'exact'; table_size as for clamped_cosine().");
+  type.def("directions", &directions,
+           "Array (K, 3): directions at which project() takes values of a "
+           "function.");
+  type.def("project", &project, py::arg("values"),
+           "Array (N,): least-squares projection of a function that\n"
+           "has these values at directions().");
+  type.def("lobe", &lobe, py::arg("axis"), py::arg("coefficients") = py::none(),
+           "Errors of a lobe (None: clamped_cosine(axis)) "
+           "against the clamped\n"
+           "cosine: relative_l2, minimum, flux (pi is exact), peak_error_degrees.");
 }
 
 }  // namespace clpv::python

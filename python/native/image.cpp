@@ -24,9 +24,8 @@ std::vector<std::string> usual_channels(py::ssize_t count) {
   return names;
 }
 
-Image image_from(const char* name, const py::object& given,
+Image image_from(const char* name, const FloatArray& array,
                  std::optional<std::vector<std::string>> channels, const std::string& encoding) {
-  const FloatArray array = real_array<FloatArray>(given, name);
   if (array.ndim() != 3 || array.size() == 0 || array.shape(0) > 16384 || array.shape(1) > 16384) {
     throw Error(ExitCode::usage,
                 "{}: found shape {}, allowed: (height, width, channels), up to 16384 x 16384", name,
@@ -60,10 +59,11 @@ std::vector<py::ssize_t> shape_of(const Image& image) {
   return {image.height, image.width, static_cast<py::ssize_t>(image.channels.size())};
 }
 
-/// An Image as it is; anything else as an array of a linear image.
-Image given_image(const char* name, const py::object& given) {
-  return py::isinstance<Image>(given) ? given.cast<Image>()
-                                      : image_from(name, given, std::nullopt, "linear");
+/// An Image as it is; an array as a linear image.
+using ImageOrArray = std::variant<Image, FloatArray>;
+Image given_image(const char* name, const ImageOrArray& given) {
+  const auto* image = std::get_if<Image>(&given);
+  return image ? *image : image_from(name, std::get<FloatArray>(given), std::nullopt, "linear");
 }
 
 void add_comparison(py::module_& module) {
@@ -96,15 +96,15 @@ void add_comparison(py::module_& module) {
                        c.nrmse ? fmt::format("{}", *c.nrmse) : "None",
                        c.identical ? "True" : "False");
   });
-  define(
-      module, "compare",
-      [](const py::object& image, const py::object& reference, float exposure) {
+  module.def(
+      "compare",
+      [](const ImageOrArray& image, const ImageOrArray& reference, float exposure) {
         const Image a = given_image("image", image), b = given_image("reference", reference);
         return interruptible([&] { return compare(a, b, exposure); });
       },
       py::arg("image"), py::arg("reference"), py::arg("exposure") = 0.0f,
-      "compare(image, reference, exposure=0.0) -> Comparison. Both: an Image, or an array\n"
-      "(height, width, channels). exposure [EV]: of linear images, for FLIP. Raises InputError\n"
+      "Errors of an image. Both: an Image, or an array (height, width, channels).\n"
+      "exposure [EV]: of linear images, for FLIP. Raises InputError\n"
       "for other sizes, channels or encodings, and for values that are not finite.");
 }
 
@@ -113,17 +113,14 @@ void add_comparison(py::module_& module) {
 void add_image(py::module_& module) {
   py::class_<Image> type(
       module, "Image", py::buffer_protocol(),
-      "Image(array, channels=None, encoding='linear'): copies an array (height, width,\n"
-      "channels) of real numbers.\n\n"
+      "A copy of an array (height, width, channels) of real numbers.\n\n"
       "numpy.asarray(image) and image.array are float32 views of its pixels, row 0 on top,\n"
       "without a copy; they keep the image alive.");
-  define_init(
-      type,
-      [](const py::object& array, std::optional<std::vector<std::string>> channels,
-         const std::string& encoding) {
-        return image_from("array", array, std::move(channels), encoding);
-      },
-      py::arg("array"), py::arg("channels") = py::none(), py::arg("encoding") = "linear");
+  type.def(py::init([](const FloatArray& array, std::optional<std::vector<std::string>> channels,
+                       const std::string& encoding) {
+             return image_from("array", array, std::move(channels), encoding);
+           }),
+           py::arg("array"), py::arg("channels") = py::none(), py::arg("encoding") = "linear");
   type.def_buffer([](Image& image) {
     const auto shape = shape_of(image);
     const py::ssize_t value = sizeof(float);
@@ -150,8 +147,8 @@ void add_image(py::module_& module) {
       "encoding",
       [](const Image& image) { return image.encoding == Encoding::srgb ? "srgb" : "linear"; },
       "'linear' in light, or 'srgb'.");
-  define(
-      type, "save",
+  type.def(
+      "save",
       [](const Image& image, const std::filesystem::path& path, std::optional<float> exposure) {
         without_gil([&] { save_image(path, image, exposure); });
       },
@@ -159,12 +156,11 @@ void add_image(py::module_& module) {
       "Writes a linear image with channels R, G, B and optionally A: .exr as float32 with\n"
       "metadata, .png tone-mapped (photographic) after multiplication by 2^exposure [EV], on a\n"
       "black background. exposure=None: automatic_exposure().");
+  type.def("automatic_exposure", &automatic_exposure,
+           "Exposure [EV] that brings the logarithmic mean of the luminance of "
+           "lit pixels to 0.14.");
   type.def(
-      "automatic_exposure", &automatic_exposure,
-      "automatic_exposure() -> exposure [EV] that brings the logarithmic mean of the luminance of "
-      "lit pixels to 0.14.");
-  define(
-      type, "display",
+      "display",
       [](const Image& image, std::optional<float> exposure) {
         Image shown = display_image(image, exposure ? *exposure : automatic_exposure(image),
                                     kDisplayCurve, Background::transparent);
@@ -188,19 +184,19 @@ void add_image(py::module_& module) {
                           : display_image(image, automatic_exposure(image), kDisplayCurve));
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
       },
-      "_repr_png_() -> bytes: how notebooks show it, as save() does; None without R, G, B.");
+      "How notebooks show it, as save() does; None without R, G, B.");
   type.def("__repr__", [](const Image& image) {
     return fmt::format("Image({} x {}, {}, {})", image.width, image.height,
                        fmt::join(image.channels, " "),
                        image.encoding == Encoding::srgb ? "srgb" : "linear");
   });
-  define(
-      module, "read_image",
+  module.def(
+      "read_image",
       [](const std::filesystem::path& path) {
         return interruptible([&] { return read_image(path); });
       },
       py::arg("path"),
-      "Reads an .exr, .png or .hdr file with all its channels -> Image. Raises InputError.");
+      "Reads an .exr, .png or .hdr file with all its channels. Raises InputError.");
   add_comparison(module);
 }
 

@@ -4,10 +4,8 @@
 
 #include "module.hpp"
 
-#include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <thread>
@@ -18,54 +16,6 @@
 #include "clpv/version.hpp"
 
 namespace clpv::python {
-
-std::string found(py::handle given) {
-  constexpr std::size_t kLongest = 60;
-  std::string text;
-  try {
-    text = py::repr(given).cast<std::string>();
-  } catch (const py::error_already_set&) {  // by the object's __repr__
-  } catch (const py::cast_error&) {         // lone surrogates
-  }
-  if (!text.empty() && text.size() <= kLongest && text.find('\n') == std::string::npos) return text;
-  return "an object of " + std::string(py::str(py::type::of(given)));
-}
-
-bool is_masked(py::handle given) {
-  return py::isinstance<py::array>(given) &&
-         py::isinstance(given, py::module_::import("numpy.ma").attr("MaskedArray"));
-}
-
-void name_errors(const py::object& scope, const char* name, Self self) {
-  const py::object function = scope.attr(name);
-  const std::string label =
-      self == Self::untyped ? scope.attr("__name__").cast<std::string>() : name;
-  const std::string doc = py::str(function.attr("__doc__"));
-  const auto call = [=](const py::args& args, const py::kwargs& kwargs) {
-    const CallInProgress in_progress;
-    try {
-      return py::object(function(*args, **kwargs));
-    } catch (const py::error_already_set& error) {
-      const std::string message = usage_message(error);
-      if (message.empty() || message.starts_with(label + ":")) throw;
-      std::string spoken = label + ": ";  // as C++ may begin: "lookup source: "
-      std::ranges::replace(spoken, '_', ' ');
-      const std::size_t begin = message.starts_with(spoken) ? spoken.size() : 0;
-      throw Error(ExitCode::usage, "{}: {}", label, message.substr(begin));
-    }
-  };
-  py::options options;
-  options.disable_function_signatures();  // `doc` has it
-  if (self != Self::none)
-    scope.attr(name) =
-        py::cpp_function(call, py::name(name), py::is_method(scope), py::doc(doc.c_str()));
-  else if (PyModule_Check(scope.ptr()))
-    scope.attr(name) =
-        py::cpp_function(call, py::name(name), py::scope(scope), py::doc(doc.c_str()));
-  else
-    scope.attr(name) = py::staticmethod(
-        py::cpp_function(call, py::name(name), py::scope(scope), py::doc(doc.c_str())));
-}
 
 namespace {
 
@@ -155,36 +105,7 @@ void end_running_calls() {
   }
 }
 
-/// Makes copy and pickle name the class; Python's own pickling of some protocols makes objects
-/// without a value.
-void reject_copies(py::module_& module) {
-  for (const auto& [key, value] : py::dict(module.attr("__dict__"))) {
-    if (!PyType_Check(value.ptr()) || PyExceptionClass_Check(value.ptr())) continue;
-    const auto name = "clpv." + key.cast<std::string>();
-    if (value.attr("__dict__").contains("__reduce_ex__")) continue;
-    value.attr("__reduce_ex__") = py::cpp_function(
-        [name](const py::object&, int) -> py::object {
-          throw Error(ExitCode::usage,
-                      "{} cannot be copied or pickled; pass the arguments that make it", name);
-        },
-        py::is_method(value));
-  }
-}
-
 }  // namespace
-
-std::string usage_message(const py::error_already_set& error) {
-  constexpr std::string_view kAllowed = "    1. ", kFound = "Invoked with: ";
-  constexpr std::size_t kLongest = 200;
-  if (error.matches(errors.usage)) return py::str(error.value());
-  if (!error.matches(PyExc_TypeError)) return {};
-  const std::string text = py::str(py::str(error.value()).attr("replace")("clpv._native", "clpv"));
-  const std::size_t allowed = text.find(kAllowed), found = text.find(kFound);
-  if (allowed == std::string::npos || found == std::string::npos) return {};
-  return fmt::format(
-      "found {}, allowed: {}", text.substr(found + kFound.size(), kLongest),
-      text.substr(allowed + kAllowed.size(), text.find('\n', allowed) - allowed - kAllowed.size()));
-}
 
 CallInProgress::CallInProgress() {
   if (exiting && std::this_thread::get_id() != exiting_thread) {
@@ -311,14 +232,10 @@ PYBIND11_MODULE(_native, module) {
   add_scene(module);
   add_image(module);
   add_renderer(module);
-  add_opencl(module);
   add_basis(module);
-  reject_copies(module);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_running_calls));
-  define(module, "options", &all_options,
-         "options() -> list of dict: name, help, allowed values and default of each option of "
-         "Renderer.");
-  define(module, "devices", &devices,
-         "devices() -> list of dict: all OpenCL devices; clpv can use those whose list "
-         "`missing` is empty.");
+  module.def("options", &all_options,
+             "Name, help, allowed values and default of each option of Renderer.");
+  module.def("devices", &devices,
+             "All OpenCL devices; clpv can use those whose list `missing` is empty.");
 }

@@ -8,11 +8,9 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <chrono>
-#include <concepts>
 #include <cstring>
 #include <filesystem>
 #include <future>
-#include <limits>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -25,8 +23,11 @@
 #include "clpv/opencl.hpp"
 #include "clpv/renderer.hpp"
 #include "clpv/scene.hpp"
+#include "options/show.hpp"
+#include "scene/scene.hpp"
 #include "support/error.hpp"
 #include "support/interrupt.hpp"
+#include "support/named_enum.hpp"
 
 namespace clpv::python {
 
@@ -44,118 +45,45 @@ class CallInProgress {
   CallInProgress& operator=(const CallInProgress&) = delete;
 };
 
-/// Returns the message of a UsageError, or pybind11's for arguments that do not fit a function, as
-/// value found and value allowed; empty for other exceptions.
-std::string usage_message(const py::error_already_set& error);
-
-/// A column of a table as a list in the order of its items, since its subscripts may be labels.
-/// Other objects as they are.
-inline py::object plain(const py::handle& given) {
-  const bool column = PySequence_Check(given.ptr()) && py::hasattr(given, "tolist");
-  return column ? given.attr("tolist")() : py::reinterpret_borrow<py::object>(given);
-}
-
-/// A value for a message: short ones as Python writes them, others by their type.
-std::string found(py::handle given);
-
-/// True for NumPy's masked arrays, whose hidden numbers would count. Tables of pandas have a method
-/// `mask` too.
-bool is_masked(py::handle given);
-
-/// The value of a property, converted. Throws Error(usage).
-template <typename T>
-T argument(const char* name, const py::object& given, const char* allowed) {
-  try {
-    return given.cast<T>();
-  } catch (const py::cast_error&) {
-    throw Error(ExitCode::usage, "{}: found {}, allowed: {}", name, found(given), allowed);
-  }
-}
-
-enum class Self { none, typed, untyped };  ///< untyped: of __init__, whose object is not made yet
-
-/// Replaces function `name` of a class or module by one whose errors begin with its name.
-void name_errors(const py::object& scope, const char* name, Self self);
-
-/// Scope::def with errors that begin with the function's name.
-template <typename Scope, typename Function, typename... Extra>
-void define(Scope& scope, const char* name, const Function& function, const Extra&... extra) {
-  constexpr Self self = std::is_same_v<Scope, py::module_> ? Self::none : Self::typed;
-  scope.def(name, function, extra...);
-  name_errors(scope, name, self);
-}
-
-/// class_::def_static, likewise.
-template <typename Type, typename Function, typename... Extra>
-void define_static(Type& type, const char* name, const Function& function, const Extra&... extra) {
-  type.def_static(name, function, extra...);
-  name_errors(type, name, Self::none);
-}
-
-/// The constructor by a factory function, likewise.
-template <typename Type, typename Function, typename... Extra>
-void define_init(Type& type, const Function& factory, const Extra&... extra) {
-  type.def(py::init(factory), extra...);
-  name_errors(type, "__init__", Self::untyped);
-}
+/// The class of renderers. In a forked child the driver's threads are missing: releasing its
+/// objects there could wait for them without end.
+struct ReleaseUnlessForked {
+  void operator()(Renderer* renderer) const;
+};
+using RendererClass = py::class_<Renderer, std::unique_ptr<Renderer, ReleaseUnlessForked>>;
 
 void add_errors(py::module_& module);
 void add_scene(py::module_& module);
-void add_material(py::module_& module);
-void add_meshes(py::class_<Scene>& type);
-/// Adds replace(), copies and pickling to a class of immutable values, given its constructor's
-/// arguments, which are also its attributes.
-void add_copies(const py::object& type, const std::vector<const char*>& members);
-void add_points(py::class_<Scene>& type);
-/// Number of bounces, 0 for 'all'. Throws Error(usage) for another text.
-int bounces_of(const std::variant<int, std::string>& given);
+void add_meshes(py::module_& module, py::class_<Scene>& type);
 void add_image(py::module_& module);
 void add_renderer(py::module_& module);
-void add_opencl(py::module_& module);  ///< after add_renderer()
+void add_opencl(py::module_& module, RendererClass& type);
 void add_basis(py::module_& module);
 
-using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
-using DoubleArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+/// Number of bounces, 0 for 'all'. Throws Error(usage) for another text.
+int bounces_of(const std::variant<int, std::string>& given);
+
+/// An argument that NumPy takes for an array of real numbers. Converted to T, row by row.
+template <typename T>
+struct Array : py::array_t<T, py::array::c_style | py::array::forcecast> {
+  using Base = py::array_t<T, py::array::c_style | py::array::forcecast>;
+  using Base::Base;
+};
+using FloatArray = Array<float>;
+using DoubleArray = Array<double>;
 
 /// The shape of an array, as Python writes it.
 inline std::string shape_text(const py::array& array) {
   return py::str(array.attr("shape"));
 }
 
-/// An array of another type of numbers. Raises what NumPy raises: a warning that is an error, or
-/// MemoryError.
-template <typename Array>
-Array converted(const py::array& array) {
-  return Array(static_cast<const py::object&>(array));
-}
-
-/// Converts anything that NumPy accepts as an array of real numbers, also numbers that are objects;
-/// copies only if it must. Throws Error(usage) otherwise.
-template <typename Array>
-Array real_array(const py::object& given, const char* what) {
-  const bool masked = is_masked(given);
-  py::array any = masked ? py::array() : py::array::ensure(given);
-  if (any && any.dtype().kind() == 'O' && any.size() > 0)
-    any = py::array::ensure(any.attr("tolist")());  // by the types of its items; text is none
-  if (masked || !any ||
-      std::string_view("fiub").find(any.dtype().kind()) == std::string_view::npos) {
-    throw Error(ExitCode::usage, "{}: found {}, allowed: an array of real numbers", what,
-                masked                  ? "a masked array"
-                : any && any.ndim() > 0 ? "an array of " + std::string(py::str(any.dtype()))
-                                        : found(given));
-  }
-  return converted<Array>(any);
-}
-
-/// Like real_array(), for vectors of three: shape (..., 3).
-template <typename Array>
-Array vectors(const py::object& given, const char* what) {
-  Array array = real_array<Array>(given, what);
-  if (array.ndim() > 0 && array.shape(array.ndim() - 1) == 3) return array;
+/// Throws Error(usage) unless the last axis of an array has three numbers.
+inline void require_vectors(const py::array& array, const char* what) {
+  if (array.ndim() > 0 && array.shape(array.ndim() - 1) == 3) return;
   throw Error(ExitCode::usage, "{}: found shape {}, allowed: (..., 3)", what, shape_text(array));
 }
 
-/// The shape of vectors(), with the last axis replaced.
+/// The shape of an array of vectors, with the last axis replaced.
 inline std::vector<py::ssize_t> shape_with_last(const py::array& vectors, py::ssize_t last) {
   std::vector<py::ssize_t> shape(vectors.shape(), vectors.shape() + vectors.ndim());
   shape.back() = last;
@@ -174,7 +102,7 @@ inline py::array_t<float> array_of(std::vector<float> values,
 
 using Vectors = std::span<const std::array<float, 3>>;
 
-/// The vectors of vectors().
+/// The vectors of an array.
 inline Vectors span_of(const FloatArray& array) {
   return {reinterpret_cast<const std::array<float, 3>*>(array.data()),
           static_cast<std::size_t>(array.size()) / 3};
@@ -185,10 +113,6 @@ inline py::array_t<float> array_of(Vectors values, const std::vector<py::ssize_t
   if (!values.empty()) std::memcpy(result.mutable_data(), values.data(), values.size_bytes());
   return result;
 }
-
-/// Red, green, blue; or one number for all of them.
-using Colour = std::variant<double, Vec3>;
-Vec3 colour_of(const Colour& given);
 
 inline py::tuple tuple_of(const Vec3& v) {
   return py::make_tuple(v[0], v[1], v[2]);
@@ -274,39 +198,152 @@ auto interruptible(const Work& work) {
   return interruptible(work, [] {});
 }
 
-/// Converts arguments of type T. Unlike pybind11's, rejects objects made by __new__ without
-/// __init__, which hold no T.
+/// Fields of a class of python/clpv/values.py, in C++.
 template <typename T>
-class InitialisedCaster : public py::detail::type_caster_base<T> {
- public:
-  bool load(py::handle source, bool convert) {
-    if (py::isinstance<T>(source)) {
-      auto* object = reinterpret_cast<py::detail::instance*>(source.ptr());
-      const auto* type = py::detail::get_type_info(typeid(T));
-      if (!object->get_value_and_holder(type).holder_constructed()) {
-        throw Error(ExitCode::usage, "{}: __init__ was not called",
-                    std::string(py::str(py::type::of(source).attr("__name__"))));
-      }
-    }
-    return py::detail::type_caster_base<T>::load(source, convert);
-  }
+struct Fields;
+
+template <>
+struct Fields<Camera> {
+  static constexpr auto kName = py::detail::const_name("Camera");
+  static constexpr auto kAll =
+      std::tuple(std::pair("eye", &Camera::eye), std::pair("target", &Camera::target),
+                 std::pair("up", &Camera::up), std::pair("fov", &Camera::vertical_fov_degrees),
+                 std::pair("near", &Camera::near), std::pair("name", &Camera::name),
+                 std::pair("light", &Camera::light));
 };
 
-struct PythonFrame;
-struct PythonVolume;
+template <>
+struct Fields<Light> {
+  static constexpr auto kName = py::detail::const_name("Light");
+  static constexpr auto kAll = std::tuple(
+      std::pair("kind", &Light::kind), std::pair("position", &Light::position),
+      std::pair("direction", &Light::direction), std::pair("intensity", &Light::intensity),
+      std::pair("range", &Light::range), std::pair("inner_cone", &Light::inner_cone_degrees),
+      std::pair("outer_cone", &Light::outer_cone_degrees), std::pair("name", &Light::name));
+};
 
-template <typename T, typename... Classes>
-concept OneOf = (std::same_as<T, Classes> || ...);
-/// Classes of the module.
-template <typename T>
-concept Wrapped = OneOf<T, Basis, Camera, Comparison, Image, Light, Material, Medium, Renderer,
-                        Scene, opencl::Event, opencl::Volumes, PythonFrame, PythonVolume>;
+template <>
+struct Fields<Medium> {
+  static constexpr auto kName = py::detail::const_name("Medium");
+  static constexpr auto kAll = std::tuple(
+      std::pair("scattering", &Medium::scattering), std::pair("absorption", &Medium::absorption),
+      std::pair("anisotropy", &Medium::anisotropy), std::pair("box", &Medium::box));
+};
+
+template <>
+struct Fields<Material> {
+  static constexpr auto kName = py::detail::const_name("Material");
+  static constexpr auto kAll = std::tuple(
+      std::pair("base_colour", &Material::base_colour), std::pair("emission", &Material::emission),
+      std::pair("texture", &Material::texture), std::pair("alpha_cutoff", &Material::alpha_cutoff),
+      std::pair("double_sided", &Material::double_sided));
+};
 
 }  // namespace clpv::python
 
 namespace pybind11::detail {
 
-template <clpv::python::Wrapped T>
-class type_caster<T> : public clpv::python::InitialisedCaster<T> {};
+/// Not text, complex numbers, and masked arrays, whose hidden numbers would count. Numbers that are
+/// objects, as columns of pandas have, count by their own types. Integers take no fractions.
+template <typename T>
+struct pyobject_caster<clpv::python::Array<T>> {
+  PYBIND11_TYPE_CASTER(clpv::python::Array<T>, const_name("ArrayLike"));
+
+  bool load(handle given, bool) {
+    const bool masked = isinstance(given, module_::import("numpy.ma").attr("MaskedArray"));
+    array any = masked ? array() : array::ensure(given);
+    if (any && any.dtype().kind() == 'O' && any.size() > 0)
+      any = array::ensure(any.attr("tolist")());
+    const std::string_view kinds = std::is_integral_v<T> ? "iu" : "fiub";
+    const bool real = any && (any.size() == 0 || kinds.find(any.dtype().kind()) != kinds.npos);
+    if (masked || given.is_none() || !real) return false;
+    value = clpv::python::Array<T>(static_cast<const object&>(any));  // raises NumPy's errors
+    return true;
+  }
+
+ private:
+  clpv::python::CallInProgress in_progress_;  // NumPy's copies release the GIL
+};
+
+/// A column of a table counts in the order of its items: its subscripts may be labels.
+template <>
+struct type_caster<clpv::Vec3> : array_caster<clpv::Vec3, double, false, 3> {
+  static constexpr auto name = const_name("Vector");
+
+  bool load(handle given, bool convert) {
+    const bool column = hasattr(given, "tolist");
+    const auto items = column ? given.attr("tolist")() : reinterpret_borrow<object>(given);
+    return array_caster::load(items, convert);
+  }
+};
+
+template <>
+struct type_caster<clpv::Transform>
+    : array_caster<clpv::Transform, std::array<double, 4>, false, 4> {
+  static constexpr auto name = const_name("ArrayLike");
+};
+
+/// An enumeration by the name of a value.
+template <clpv::NamedEnum E>
+struct type_caster<E> {
+  PYBIND11_TYPE_CASTER(E, (const_name<std::is_same_v<E, clpv::View>>("View", "str")));
+
+  bool load(handle given, bool) {
+    if (!isinstance<str>(given)) return false;
+    value =
+        clpv::named<E>(std::is_same_v<E, clpv::View> ? "view" : "kind", given.cast<std::string>());
+    return true;
+  }
+  static handle cast(E given, return_value_policy, handle) {
+    return str(std::string(clpv::name_of(given))).release();
+  }
+};
+
+/// Texels as an array (height, width, 4) of uint8.
+template <>
+struct type_caster<clpv::Material::Texture> {
+  PYBIND11_TYPE_CASTER(clpv::Material::Texture, const_name("NDArray"));
+
+  bool load(handle given, bool) {
+    const auto texels = array_t<std::uint8_t, array::c_style | array::forcecast>::ensure(given);
+    if (!texels || texels.ndim() != 3 || texels.shape(2) != 4) return false;
+    value = {static_cast<std::uint32_t>(texels.shape(1)),
+             static_cast<std::uint32_t>(texels.shape(0)),
+             {texels.data(), texels.data() + texels.size()}};
+    return true;
+  }
+  static handle cast(const clpv::Material::Texture& given, return_value_policy, handle) {
+    array_t<std::uint8_t> made({ssize_t(given.height), ssize_t(given.width), ssize_t(4)});
+    std::memcpy(made.mutable_data(), given.rgba.data(), given.rgba.size());
+    return made.release();
+  }
+};
+
+/// Values, whose classes are Python's.
+template <typename T>
+requires requires {
+  clpv::python::Fields<T>::kAll;
+}
+struct type_caster<T> {
+  PYBIND11_TYPE_CASTER(T, clpv::python::Fields<T>::kName);
+  using Fields = clpv::python::Fields<T>;
+
+  static object python_class() { return module_::import("clpv.values").attr(Fields::kName.text); }
+  bool load(handle given, bool) {
+    if (!isinstance(given, python_class())) return false;
+    const auto set = [&](const char* name, auto& member) {
+      member = given.attr(name).template cast<std::decay_t<decltype(member)>>();
+    };
+    std::apply([&](const auto&... each) { (set(each.first, value.*each.second), ...); },
+               Fields::kAll);
+    return true;
+  }
+  static handle cast(const T& given, return_value_policy, handle) {
+    dict all;
+    std::apply([&](const auto&... each) { ((all[each.first] = given.*each.second), ...); },
+               Fields::kAll);
+    return python_class()(**all).release();
+  }
+};
 
 }  // namespace pybind11::detail

@@ -36,8 +36,7 @@ void add_classes(py::module_& module) {
       "int_ptr", [](const opencl::Event& e) { return number_of(e.get()); },
       "The cl_event, for pyopencl.Event.from_int_ptr(int_ptr, retain=True). It lives as long as "
       "this object.");
-  define(event, "wait", &wait_for,
-         "wait(): waits for the commands. Raises ResourceError if they failed.");
+  event.def("wait", &wait_for, "Waits for the commands. Raises ResourceError if they failed.");
 
   py::class_<PythonFrame> frame(
       module, "DeviceFrame",
@@ -61,15 +60,15 @@ void add_classes(py::module_& module) {
   frame.def_property_readonly(
       "int_ptr", [](const PythonFrame& f) { return number_of(f.frame.done.get()); },
       "The cl_event of the whole frame.");
-  define(
-      frame, "wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
-      "wait(): waits for the frame. Raises ResourceError if it failed.");
+  frame.def(
+      "wait", [](const PythonFrame& f) { wait_for(f.frame.done); },
+      "Waits for the frame. Raises ResourceError if it failed.");
 
   py::class_<opencl::Volumes> volumes(module, "DeviceVolumes",
                                       "Light for a kernel: arguments CLPV_RADIANCE of "
                                       "Renderer.lookup_source(), in the order of arguments().");
-  define(
-      volumes, "arguments",
+  volumes.def(
+      "arguments",
       [](const opencl::Volumes& v) {
         const py::module_ numpy = py::module_::import("numpy");
         py::list all;
@@ -80,34 +79,27 @@ void add_classes(py::module_& module) {
         if (v.occluded != nullptr) all.append(number_of(v.occluded));
         return py::tuple(all);
       },
-      "arguments() -> (grids, cascades, unit, packed[, occluded]): memory as integers, a "
+      "(grids, cascades, unit, packed[, occluded]): memory as integers, a "
       "numpy.uint32 and a numpy.float32.");
 }
 
 }  // namespace
 
-void add_opencl(py::module_& module) {
+void add_opencl(py::module_& module, RendererClass& type) {
   add_classes(module);
-  const py::object type = module.attr("Renderer");
-  const auto add = [&](const char* name, const auto& function, const auto&... extra) {
-    type.attr(name) = py::cpp_function(function, py::name(name), py::is_method(type), extra...);
-    name_errors(type, name, Self::typed);
-  };
-  add(
+  type.def(
       "enqueue",
-      [](Renderer& renderer, const std::string& view, const std::optional<CameraChoice>& camera,
-         double time, const ImageSize& size) {
-        const View what = named<View>("view", view);
+      [](Renderer& renderer, View view, const std::optional<CameraChoice>& camera, double time,
+         const ImageSize& size) {
         return interruptible([&] {
-          return PythonFrame{renderer.enqueue(what, camera.value_or(CameraChoice()), time, size)};
+          return PythonFrame{renderer.enqueue(view, camera.value_or(CameraChoice()), time, size)};
         });
       },
       py::keep_alive<0, 1>(), py::arg("view") = "full", py::arg("camera") = py::none(),
       py::arg("time") = 0.0, py::arg("size") = py::none(),
-      "enqueue(view='full', camera=None, time=0.0, size=None) -> DeviceFrame: render() without\n"
-      "reading the image back.\n\n"
+      "render() without reading the image back.\n\n"
       "Does not wait for all of the frame (docs/api.md); not for view 'cells'.");
-  add(
+  type.def(
       "enqueue_light",
       [](Renderer& renderer, int width, int height, const py::object& normals,
          const py::object& positions, const py::object& depths, const py::object& irradiance,
@@ -129,20 +121,19 @@ void add_opencl(py::module_& module) {
       py::arg("normals"), py::arg("positions") = py::none(), py::arg("depths") = py::none(),
       py::arg("irradiance"), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
       py::arg("time") = 0.0,
-      "enqueue_light(width, height, *, normals, positions=None, depths=None, irradiance, ...)\n"
-      "-> DeviceEvent: light() in device memory.\n\n"
+      "light() in device memory.\n\n"
       "Buffers of the renderer's context, as pyopencl's buffers or arrays, or integers: normals\n"
       "and positions float4 per pixel (w unused), or depths float; irradiance receives float4.\n"
       "Raises UsageError for others, and for buffers that are too small.");
-  add(
+  type.def(
       "device_volumes",
       [](Renderer& renderer) { return interruptible([&] { return renderer.device_volumes(); }); },
       py::keep_alive<0, 1>(),
-      "device_volumes() -> DeviceVolumes of the last frame or light(). Raises UsageError as "
+      "Light of the last frame or light() for kernels. Raises UsageError as "
       "radiance().");
-  add(
+  type.def(
       "lookup_source", [](const Renderer& renderer) { return renderer.lookup_source(); },
-      "lookup_source() -> str: OpenCL C for the start of a program, clpv_irradiance() and "
+      "OpenCL C for the start of a program, clpv_irradiance() and "
       "clpv_radiance() at a point for kernels with\nthe parameters CLPV_RADIANCE (docs/api.md).");
 }
 

@@ -39,34 +39,21 @@ inline py::object buffer_of(const py::object& given, const char* what) {
   return given.attr("base_data");
 }
 
-/// An integer that can be the address of an object of a driver; else 0.
-inline std::uintptr_t address_of(const py::object& number) {
-  constexpr std::uintptr_t kFirstPage = 4096;
-  if (!py::isinstance<py::int_>(number) || py::isinstance<py::bool_>(number)) return 0;
-  const auto address = static_cast<std::uintptr_t>(PyLong_AsUnsignedLongLong(number.ptr()));
-  if (PyErr_Occurred() != nullptr) {  // negative, or larger than an address
-    PyErr_Clear();
-    return 0;
-  }
-  return address < kFirstPage || address % alignof(void*) != 0 ? 0 : address;
-}
-
-/// Handle of an object of pyopencl, which has int_ptr, or of an integer; null for None. An object
-/// of another class is rejected, since drivers crash on a handle of another kind; an integer that
-/// can be an address is trusted. Throws Error(usage).
+/// Handle of an object of pyopencl, which has int_ptr, or of an integer, which is trusted; null for
+/// None. An object of another class is rejected, since drivers crash on a handle of another kind.
+/// Throws Error(usage).
 template <typename Handle>
 Handle handle_of(const py::object& given, const char* what, const char* pyopencl_class) {
   if (given.is_none()) return nullptr;
   const py::object from = std::is_same_v<Handle, cl_mem> ? buffer_of(given, what) : given;
   const bool object = py::hasattr(from, "int_ptr") && is_of_class(from, pyopencl_class);
-  const py::object number = object ? py::object(from.attr("int_ptr")) : from;
-  const std::uintptr_t address = address_of(number);
-  if (address == 0) {
+  if (!object && !py::isinstance<py::int_>(from)) {
     throw Error(ExitCode::usage,
                 "{}: found {}, allowed: an object of pyopencl's class {}, or its int_ptr", what,
-                found(given), pyopencl_class);
+                std::string(py::str(py::type::of(given))), pyopencl_class);
   }
-  return reinterpret_cast<Handle>(address);
+  const py::object number = object ? py::object(from.attr("int_ptr")) : from;
+  return reinterpret_cast<Handle>(number.cast<std::uintptr_t>());
 }
 
 }  // namespace clpv::python

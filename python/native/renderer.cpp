@@ -2,6 +2,7 @@
 // Renderer, Volume and pathtrace.
 #include "clpv/renderer.hpp"
 
+#include <algorithm>
 #include <atomic>
 
 #include "clpv/opencl.hpp"
@@ -18,15 +19,11 @@ struct PythonVolume {
   py::array_t<float> coefficients;
 };
 
-namespace {
+void ReleaseUnlessForked::operator()(Renderer* renderer) const {
+  if (!forked_from_device_use()) delete renderer;
+}
 
-/// In a forked child the driver's threads are missing: releasing its objects there could wait for
-/// them without end.
-struct ReleaseUnlessForked {
-  void operator()(Renderer* renderer) const {
-    if (!forked_from_device_use()) delete renderer;
-  }
-};
+namespace {
 
 std::string option_text(const std::string& name, const py::handle& value) {
   py::detail::make_caster<bool> flag;
@@ -35,7 +32,7 @@ std::string option_text(const std::string& name, const py::handle& value) {
   const bool number = PyNumber_Check(value.ptr()) && !PySequence_Check(value.ptr());
   if (number || py::isinstance<py::str>(value)) return py::str(value);
   throw Error(ExitCode::usage, "Renderer: {}: found {}, allowed: a text, a number, True or False",
-              name, found(value));
+              name, std::string(py::str(py::type::of(value))));
 }
 
 /// Options from keyword arguments: cascade_size=12.5 is option cascade-size.
@@ -72,21 +69,13 @@ py::dict dict_of(const Stats& stats) {
   return all;
 }
 
-std::vector<View> views_of(const std::variant<std::string, std::vector<std::string>>& given) {
-  if (const auto* name = std::get_if<std::string>(&given)) return {named<View>("view", *name)};
-  std::vector<View> all;
-  for (const std::string& name : std::get<std::vector<std::string>>(given))
-    all.push_back(named<View>("view", name));
-  return all;
-}
-
 using OfPoints = std::vector<std::array<float, 3>> (Renderer::*)(Vectors, Vectors);
 
 /// Calls `function` for points and a vector of each; `what` names the vectors.
-py::array_t<float> at_points(Renderer& renderer, OfPoints function, const py::object& points,
-                             const py::object& given, const char* what) {
-  const FloatArray positions = vectors<FloatArray>(points, "points"),
-                   along = vectors<FloatArray>(given, what);
+py::array_t<float> at_points(Renderer& renderer, OfPoints function, const FloatArray& positions,
+                             const FloatArray& along, const char* what) {
+  require_vectors(positions, "points");
+  require_vectors(along, what);
   const auto shape = shape_with_last(positions, 3);
   if (along.ndim() > 1 && shape != shape_with_last(along, 3)) {
     throw Error(ExitCode::usage, "{}: found shape {}, allowed: (3,) or that of points, {}", what,
@@ -98,44 +87,39 @@ py::array_t<float> at_points(Renderer& renderer, OfPoints function, const py::ob
 }
 
 /// Light of a G-buffer of NumPy arrays.
-py::array_t<float> light(Renderer& renderer, const py::object& normals, const py::object& positions,
-                         const py::object& depths, const std::optional<Vec3>& eye,
+py::array_t<float> light(Renderer& renderer, const FloatArray& normals,
+                         const std::optional<FloatArray>& positions,
+                         const std::optional<FloatArray>& depths, const std::optional<Vec3>& eye,
                          const std::optional<CameraChoice>& camera, double time) {
-  const FloatArray n = vectors<FloatArray>(normals, "normals");
-  const auto require_image = [&](const py::array& array, py::ssize_t axes, const char* what) {
-    if (array.ndim() == axes && array.shape(0) == n.shape(0) && array.shape(1) == n.shape(1))
-      return;
-    throw Error(ExitCode::usage, "{}: found shape {}, allowed: ({}, {}{})", what, shape_text(array),
-                n.shape(0), n.shape(1), axes == 3 ? ", 3" : "");
+  const auto require = [](const char* what, const py::array& array,
+                          const std::vector<py::ssize_t>& shape) {
+    if (std::equal(shape.begin(), shape.end(), array.shape(), array.shape() + array.ndim())) return;
+    throw Error(ExitCode::usage, "{}: found shape {}, allowed: {}", what, shape_text(array),
+                std::string(py::str(py::tuple(py::cast(shape)))));
   };
-  if (n.ndim() != 3) {
+  if (normals.ndim() != 3 || normals.shape(2) != 3)
     throw Error(ExitCode::usage, "normals: found shape {}, allowed: (height, width, 3)",
-                shape_text(n));
-  }
-  if (positions.is_none() == depths.is_none())
+                shape_text(normals));
+  if (positions.has_value() == depths.has_value())
     throw Error(ExitCode::usage, "positions and depths: found {}, allowed: one of them",
-                depths.is_none() ? "neither" : "both");
+                depths ? "both" : "neither");
   if (eye && camera)
     throw Error(ExitCode::usage, "light: found eye and camera, allowed: one of both");
-  const int limit = std::numeric_limits<int>::max();
-  GBuffer surfaces{.width = static_cast<int>(std::min<py::ssize_t>(n.shape(1), limit)),
-                   .height = static_cast<int>(std::min<py::ssize_t>(n.shape(0), limit)),
-                   .normals = span_of(n)};
-  FloatArray p, d;
-  if (!positions.is_none()) {
-    p = vectors<FloatArray>(positions, "positions");
-    require_image(p, 3, "positions");
-    surfaces.positions = span_of(p);
+  GBuffer surfaces{.width = static_cast<int>(normals.shape(1)),
+                   .height = static_cast<int>(normals.shape(0)),
+                   .normals = span_of(normals)};
+  if (positions) {
+    require("positions", *positions, shape_with_last(normals, 3));
+    surfaces.positions = span_of(*positions);
   } else {
-    d = real_array<FloatArray>(depths, "depths");
-    require_image(d, 2, "depths");
-    surfaces.depths = std::span(d.data(), static_cast<std::size_t>(d.size()));
+    require("depths", *depths, {normals.shape(0), normals.shape(1)});
+    surfaces.depths = std::span(depths->data(), static_cast<std::size_t>(depths->size()));
   }
   const auto found = interruptible([&] {
     return eye ? renderer.light(surfaces, *eye, time)
                : renderer.light(surfaces, camera_choice(camera), time);
   });
-  return array_of(found, shape_with_last(n, 3));
+  return array_of(found, shape_with_last(normals, 3));
 }
 
 std::vector<PythonVolume> volumes(Renderer& renderer) {
@@ -175,110 +159,98 @@ void add_volume(py::module_& module) {
 
 void add_renderer(py::module_& module) {
   add_volume(module);
-  py::class_<Renderer, std::unique_ptr<Renderer, ReleaseUnlessForked>> type(
+  RendererClass type(
       module, "Renderer",
-      "Renderer(scene, device='', *, context=None, queue=None, **options): renders frames of\n"
-      "one scene on one OpenCL device.\n\n"
+      "Renders frames of one scene on one OpenCL device.\n\n"
       "device: an index, 'PLATFORM:DEVICE' or a part of the name; empty: CLPV_DEVICE, else the\n"
       "first usable one. context, queue: of pyopencl, or their int_ptr; the renderer works there.\n"
       "The queue is in-order. options: those of `clpv render` with _ for - (and lambda_);\n"
       "options() lists them. bool is on or off. Results that do not change are cached from frame\n"
       "to frame. Calls from several threads run one after the other. Raises UsageError,\n"
       "DeviceError, ResourceError.");
-  define_init(
-      type,
-      [](const Scene& scene, const std::string& device, const py::object& context,
-         const py::object& queue, const py::kwargs& given) {
-        const Options options = options_of(given);
-        const bool own = context.is_none() && queue.is_none();
-        if (!own && !device.empty())
-          throw Error(ExitCode::usage,
-                      "device: found one and a context or queue, allowed: one of both");
-        const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
-                                  handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
-        note_device_use();
-        return interruptible([&] {
-          return own ? Renderer(scene, options, device) : Renderer(scene, options, where);
-        });
-      },
-      py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
-      py::arg("queue") = py::none());
-  define(
-      type, "render",
-      [](Renderer& renderer, const std::string& view, const std::optional<CameraChoice>& camera,
-         double time, const ImageSize& size) {
-        const View what = named<View>("view", view);
+  type.def(py::init([](const Scene& scene, const std::string& device, const py::object& context,
+                       const py::object& queue, const py::kwargs& given) {
+             const Options options = options_of(given);
+             const bool own = context.is_none() && queue.is_none();
+             if (!own && !device.empty())
+               throw Error(ExitCode::usage,
+                           "device: found one and a context or queue, allowed: one of both");
+             const opencl::Queue where{handle_of<cl_context>(context, "context", kContextClass),
+                                       handle_of<cl_command_queue>(queue, "queue", kQueueClass)};
+             note_device_use();
+             return interruptible([&] {
+               return own ? Renderer(scene, options, device) : Renderer(scene, options, where);
+             });
+           }),
+           py::arg("scene"), py::arg("device") = "", py::kw_only(), py::arg("context") = py::none(),
+           py::arg("queue") = py::none());
+  type.def(
+      "render",
+      [](Renderer& renderer, View view, const std::optional<CameraChoice>& camera, double time,
+         const ImageSize& size) {
         return interruptible(
-            [&] { return renderer.render(what, camera_choice(camera), time, size); });
+            [&] { return renderer.render(view, camera_choice(camera), time, size); });
       },
       py::arg("view") = "full", py::arg("camera") = py::none(), py::arg("time") = 0.0,
       py::arg("size") = py::none(),
-      "render(view='full', camera=None, time=0.0, size=None) -> Image (height, width, 4),\n"
-      "linear R, G, B, A.\n\n"
+      "A frame as an image (height, width, 4), linear R, G, B, A.\n\n"
       "view: full, direct, indirect, medium [W/m^2/sr], irradiance [W/m^2], albedo, normal,\n"
       "depth [m], or cells: irradiance with the finest cascade's cells as spheres; camera: a\n"
       "Camera, or the name of one of the scene (None: its first); time [s] of an animated scene;\n"
       "size: (width, height), None for options width and height.");
-  define(
-      type, "update",
+  type.def(
+      "update",
       [](Renderer& renderer, const Vec3& eye, double time) {
         interruptible([&] { renderer.update(eye, time); });
       },
       py::arg("eye"), py::arg("time") = 0.0,
-      "update(eye, time=0.0): lights cascades about `eye` [m] without a frame, for irradiance(),\n"
+      "Lights cascades about `eye` [m] without a frame, for irradiance(),\n"
       "radiance(), volumes() and device_volumes().");
   const auto release = [](Renderer& renderer) { interruptible([&] { renderer.release(); }); };
-  define(type, "release", release,
-         "release(): frees the device's memory; the next call that lights or renders allocates it "
-         "again. A `with` block ends with it.");
-  type.def("__enter__", [](const py::object& self) { return self; });
+  type.def("release", release,
+           "Frees the device's memory; the next call that lights or renders allocates it "
+           "again. A `with` block ends with it.");
+  type.def("__enter__", [](Renderer& self) -> Renderer& { return self; });
   type.def("__exit__", [release](Renderer& renderer, const py::args&) { release(renderer); });
-  define(
-      type, "show",
-      [](Renderer& renderer, const std::string& view) {
-        const View what = named<View>("view", view);
-        return interruptible([&] { return renderer.show(what); });
+  type.def(
+      "show",
+      [](Renderer& renderer, View view) {
+        return interruptible([&] { return renderer.show(view); });
       },
-      py::arg("view"),
-      "show(view) -> Image: another view of the last frame, without rendering it again.");
-  define(
-      type, "light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
+      py::arg("view"), "Another view of the last frame, without rendering it again.");
+  type.def(
+      "light", &light, py::arg("normals"), py::kw_only(), py::arg("positions") = py::none(),
       py::arg("depths") = py::none(), py::arg("eye") = py::none(), py::arg("camera") = py::none(),
       py::arg("time") = 0.0,
-      "light(normals, *, positions=None, depths=None, eye=None, camera=None, time=0.0) ->\n"
-      "float32 array (height, width, 3).\n\n"
       "Irradiance of indirect light [W/m^2] on the pixels of a G-buffer, with the near field, as\n"
       "view 'irradiance' has it: normals (height, width, 3) of any length; positions [m] of their\n"
       "shape, or depths (height, width) [m] of `camera`, a Camera or a name (None: the scene's\n"
       "first). Cascades surround `eye`, or the camera's. Pixels with a normal of 0, a depth that\n"
       "is not positive or a number that is not finite have no surface, and no light.");
-  define(
-      type, "irradiance",
-      [](Renderer& renderer, const py::object& points, const py::object& normals) {
+  type.def(
+      "irradiance",
+      [](Renderer& renderer, const FloatArray& points, const FloatArray& normals) {
         return at_points(renderer, &Renderer::irradiance, points, normals, "normals");
       },
       py::arg("points"), py::arg("normals"),
-      "irradiance(points, normals) -> float32 array of the points' shape: indirect light\n"
-      "[W/m^2], red, green, blue.\n\n"
+      "Indirect light [W/m^2], red, green, blue, as an array of the points' shape.\n\n"
       "points [m] and normals (of any length): arrays (..., 3), or one normal. Of the volumes of\n"
       "the last frame, light() or update(), without option near; 0 outside of the cascades.\n"
       "Computed on the device.");
-  define(
-      type, "radiance",
-      [](Renderer& renderer, const py::object& points, const py::object& directions) {
+  type.def(
+      "radiance",
+      [](Renderer& renderer, const FloatArray& points, const FloatArray& directions) {
         return at_points(renderer, &Renderer::radiance, points, directions, "directions");
       },
       py::arg("points"), py::arg("directions"),
-      "radiance(points, directions) -> float32 array of the points' shape: indirect light\n"
-      "[W/m^2/sr], red, green, blue.\n\n"
+      "Indirect light [W/m^2/sr], red, green, blue, as an array of the points' shape.\n\n"
       "points [m] and directions in which the light travels (of any length): arrays (..., 3), or\n"
       "one direction. As irradiance(), of the same volumes, on the device; negative where nine\n"
       "harmonics undershoot. Raises UsageError without transport 'sweep', and for layout 'image'\n"
       "with gather 'all'.");
   type.def("__repr__",
            [](const Renderer& renderer) { return "Renderer(" + renderer.description() + ")"; });
-  define(type, "volumes", &volumes,
-         "volumes() -> list of Volume of the last frame, finest cascade first.");
+  type.def("volumes", &volumes, "Light of the last frame, finest cascade first.");
   type.def_property_readonly(
       "stats",
       [](const Renderer& renderer) {
@@ -289,14 +261,17 @@ void add_renderer(py::module_& module) {
       "host's work in it, without waiting), and each stage on the device that ran ('propagate',\n"
       "'gather', ...); 'build': compilation so far [ms]; numbers of 'launches' (kernels, fills\n"
       "and copies) and of 'waits' for the device; 'device_bytes', 'peak_device_bytes'.");
-  define(
-      module, "pathtrace",
-      [](const Scene& scene, const std::variant<std::string, std::vector<std::string>>& view,
+  add_opencl(module, type);
+  module.def("_views", &names_of<View>, "Names of all views.");
+  module.def(
+      "pathtrace",
+      [](const Scene& scene, const std::variant<View, std::vector<View>>& view,
          const std::optional<CameraChoice>& camera, int width, int height,
          const std::variant<int, std::string>& bounces, std::uint32_t samples, double noise,
          std::uint64_t seed, int threads, double time,
          const std::optional<py::function>& progress) {
-        const std::vector<View> views = views_of(view);
+        const View* one = std::get_if<View>(&view);
+        const auto views = one ? std::vector{*one} : std::get<std::vector<View>>(view);
         TraceOptions options{width, height, bounces_of(bounces), samples, noise, seed, threads,
                              time,  {}};
         note_device_use();
@@ -315,7 +290,7 @@ void add_renderer(py::module_& module) {
       py::arg("width") = 960, py::arg("height") = 540, py::arg("bounces") = "all",
       py::arg("samples") = 0, py::arg("noise") = 0.02, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("time") = 0.0, py::arg("progress") = py::none(),
-      "pathtrace(scene, view='full', ...) -> Image (height, width, 4): ground truth on the CPU.\n\n"
+      "Ground truth on the CPU, as an image (height, width, 4).\n\n"
       "view: as of render(), or a list of several, which become layers of the image: channels\n"
       "'indirect.R' and so on; bounces: reflections between light and visible surface, 'all' or 0\n"
       "for all; samples: paths per pixel, 0 for as many as `noise` (relative standard error of\n"

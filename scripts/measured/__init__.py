@@ -20,7 +20,6 @@ RESULTS = ROOT / "results"
 os.environ["MPLCONFIGDIR"] = os.environ.get("MPLCONFIGDIR") or str(BUILD / "matplotlib")  # not in HOME
 sys.path.insert(0, str(ROOT / "python"))
 from clpv import output  # noqa: E402
-output.name_missing_modules()
 
 
 def native():

@@ -55,27 +55,25 @@ def draw_errors(series, target):
     save(figure, target, 110)
 
 
-def described(name, bandwidth):
-    """Returns the numbers of a basis; None if clpv rejects this lambda."""
+def measures(name, bandwidth):
+    """Condition, mean error and energy of a basis; nothing if clpv rejects this lambda."""
     try:
         basis = clpv.Basis(name, bandwidth)
+        return [(bandwidth, basis.condition, basis.mean_error, basis.energy(24))]
     except clpv.UsageError:
-        return None
-    return {"lambda": bandwidth, "condition": basis.condition, "mean_relative_l2": basis.mean_error,
-            "energy_sampled_8": basis.energy(8), "energy_sampled_24": basis.energy(24)}
+        return []
 
 
 def draw_lambda(target):
-    curves = {name: [point for point in (described(name, value) for value in LAMBDAS) if point]
+    curves = {name: list(zip(*(point for value in LAMBDAS for point in measures(name, value))))
               for name in BASES}
     figure, panels = style.panels(3, 3, (4.27, 4.2))
-    titles = {"condition": "condition number of A",
-              "mean_relative_l2": "clamped cosine: relative L2 error, mean over all axes",
-              "energy_sampled_24": "energy after 24 steps, sampled transport"}
-    for panel, (key, title) in zip(panels, titles.items()):
+    titles = ("condition number of A", "clamped cosine: relative L2 error, mean over all axes",
+              "energy after 24 steps, sampled transport")
+    for k, (panel, title) in enumerate(zip(panels, titles), 1):
         for i, (name, points) in enumerate(curves.items()):
-            panel.plot([p["lambda"] for p in points], [p[key] for p in points], marker="o",
-                       markersize=3, label=name, color=style.colour(i))
+            panel.plot(points[0], points[k], marker="o", markersize=3, label=name,
+                       color=style.colour(i))
         panel.set_title(title, fontsize=10)
         panel.set_xlabel("lambda")
         panel.axvline(0.25, color=style.LINE, lw=2, zorder=0)

@@ -2,22 +2,6 @@
 """Numbers of the paper's claims, for docs/bases.md and docs/paper/figures.md: a function for each
 part of scripts/reproduce.
 
-lobes    errors of clamped cosines in the paper's sets, in other sets that fit its description, and
-         in searched centres
-lambdas  verdicts on lobes along +z, and on the difference of both bases' light at `curtains`, by
-         lambda
-tables   errors and energies of rotated lobes, by the number of table entries
-light    difference of sh2 and srbf8v2 with `--preset paper`, and the error of both against path
-         tracing, by steps, size of the smallest cascade and texels of the RSM; camera `curtains`
-views    errors of sh2 and srbf8v2 against path tracing, paired, in four cameras under three suns,
-         by steps and size of the smallest cascade
-texels   difference of neighbouring texels of an RSM, by size of the cascade; camera `curtains`
-shadows  contrast of indirect light on the floor with and without indirect shadows, and of path
-         tracing; camera `columns`
-arcade   shadows of the arcade's columns and curtains in the irradiance of the wall behind it, by a
-         sun along the nave
-lit      share of pixels without direct light, in each camera
-
 All but lobes and tables are of Sponza. `arguments`: model, out (output.Folder) and
 quick, of scripts/reproduce. """
 import itertools
@@ -133,7 +117,7 @@ def lambdas(arguments):
                                    for name in ("srbf4", "srbf8v1", "srbf8v3")),
             "similar": abs(errors["srbf8v2"] - of_sh2) <= SIMILAR * of_sh2,
             "difference": clpv.compare(image, image_of_sh2).nrmse,
-            "error": clpv.compare(image, views_of.truth("curtains")).nrmse
+            "error": views_of.error(image, "curtains")
         })
     return rows
 
@@ -146,13 +130,10 @@ def tables(_):
                                         TABLE_SIZES):
         basis = clpv.Basis(name)
         lobe = basis.lobe(ALONG_Z, basis.clamped_cosine(ALONG_Z, size))
-        row = {
-            "basis": name, "entries": size, "up": lobe["relative_l2"],
-            "peak_error_degrees": lobe["peak_error_degrees"],
-            "energy_sampled_8": basis.energy(8, table_size=size),
-            "energy_sampled_24": basis.energy(24, table_size=size)
-        }
-        rows.append(row)
+        rows.append({"basis": name, "entries": size, "up": lobe["relative_l2"],
+                     "peak_error_degrees": lobe["peak_error_degrees"],
+                     "energy_sampled_8": basis.energy(8, table_size=size),
+                     "energy_sampled_24": basis.energy(24, table_size=size)})
     return rows
 
 
@@ -180,26 +161,22 @@ class Views:
     def image(self, camera, **options):
         return self.renderer(**options).render("indirect", camera)
 
+    def error(self, image, camera):
+        return clpv.compare(image, self.truth(camera)).nrmse
+
 
 def light(arguments):
     """Over steps, cascades and RSMs: how far apart the bases are, and how far off each is."""
     views_of = Views(arguments)
-    rows = []
+    rows, constant = [], {"lobe_time": "host"} if arguments.quick else {}
     for size, texels, steps in itertools.product(SIZES, TEXELS[:1] if arguments.quick else TEXELS,
                                                  STEPS):
-        images = [
-            views_of.image("curtains", preset="paper", basis=name, cascade_size=size,
-                           rsm_size=texels, iterations=steps,
-                           **({"lobe_time": "host"} if arguments.quick else {})) for name in BASES
-        ]
-        row = {
-            "cascade_size": size, "rsm_size": texels, "iterations": steps,
-            "difference": clpv.compare(images[1], images[0]).nrmse, **{
-                name: clpv.compare(image, views_of.truth("curtains")).nrmse
-                for name, image in zip(BASES, images)
-            }
-        }
-        rows.append(row)
+        images = [views_of.image("curtains", preset="paper", basis=name, cascade_size=size,
+                                 rsm_size=texels, iterations=steps, **constant) for name in BASES]
+        rows.append({"cascade_size": size, "rsm_size": texels, "iterations": steps,
+                     "difference": clpv.compare(images[1], images[0]).nrmse,
+                     **{name: views_of.error(image, "curtains")
+                        for name, image in zip(BASES, images)}})
     return rows
 
 
@@ -230,22 +207,16 @@ def views(arguments):
                 found = clpv.compare(renderer.render("indirect", camera),
                                      views_of.truth(camera, noise=NOISE_OF_PAIRS))
                 errors[name][camera] = found.nrmse
-                rows.append({
-                    "camera": camera, "basis": name, "cascade-size": str(size),
-                    "iterations": str(steps), "nrmse": found.nrmse,
-                    "energy_ratio": found.energy_ratio
-                })
-        apart = {
-            camera: errors["sh2"][camera] - errors["srbf8v2"][camera]
-            for camera in errors["sh2"]
-        }
+                rows.append({"camera": camera, "basis": name, "cascade-size": str(size),
+                             "iterations": str(steps), "nrmse": found.nrmse,
+                             "energy_ratio": found.energy_ratio})
+        apart = {camera: error - errors["srbf8v2"][camera]
+                 for camera, error in errors["sh2"].items()}
         differences = np.array(list(apart.values()))
-        better = int((differences > 0).sum())
-        summary.append({
-            "cascade_size": size, "iterations": steps, "mean": differences.mean(),
-            "standard_error": differences.std(ddof=1) / math.sqrt(len(apart)),
-            "srbf8v2_better": better, "views": len(apart), "apart": apart
-        })
+        summary.append({"cascade_size": size, "iterations": steps, "mean": differences.mean(),
+                        "standard_error": differences.std(ddof=1) / math.sqrt(len(apart)),
+                        "srbf8v2_better": int((differences > 0).sum()), "views": len(apart),
+                        "apart": apart})
     return {"summary": summary, "rows": rows}
 
 
@@ -378,7 +349,3 @@ def lit(arguments):
     return rows
 
 
-CLAIMS = {
-    "lobes": lobes, "lambdas": lambdas, "tables": tables, "light": light, "views": views,
-    "texels": texels, "shadows": shadows, "arcade": arcade, "lit": lit
-}

@@ -6,25 +6,15 @@ Only the standard library.
 
 import json
 import pathlib
-import typing
 
 
-class Part(typing.NamedTuple):
-    """A part of scripts/reproduce. `file`: of results/docs. `tolerances`: by the end of a number's
-    name: absolute, relative; None: no number has an expected value. `model`: needs Sponza.
-    `quick`: belongs to a quick run too."""
-    file: str
-    tolerances: dict | None
-    model: bool
-    quick: bool
-
-
-# Lobes are computed in double on the host. Tables are read in float, where fused multiply-adds
-# decide single entries. Light: devices round differently, and the ground truth has a noise of 0.02
-# (views: 0.05).
-PARTS = {name: Part(**part) for name, part in json.loads(
-    pathlib.Path(__file__).with_name("parts.json").read_text(encoding="utf-8")).items()}
-CLAIMS = [name for name, part in PARTS.items() if part.file == "claims"]
+# Parts of scripts/reproduce. `file`: of results/docs. `tolerances`: by the end of a number's name:
+# absolute, relative; null: no number has an expected value. `model`: needs Sponza. `quick`: belongs
+# to a quick run too. Lobes are computed in double on the host. Tables are read in float, where
+# fused multiply-adds decide single entries. Light: devices round differently, and the ground truth
+# has a noise of 0.02 (views: 0.05).
+PARTS = json.loads(pathlib.Path(__file__).with_name("parts.json").read_text(encoding="utf-8"))
+CLAIMS = [name for name, part in PARTS.items() if part["file"] == "claims"]
 # Fields that name a row, and fields that are no results.
 IDENTITY = ("basis", "lobe", "transport", "n", "over", "lambdas", "lambda", "entries",
             "cascade_size", "rsm_size", "iterations", "cascade-size", "image", "options", "camera",
@@ -61,13 +51,13 @@ def compared(name, result):
     """{place: what is compared of a part's result}."""
     if name == "figures":
         result = result["rows"] or None
-    return {place(name): result} if PARTS[name].tolerances else {}
+    return {place(name): result} if PARTS[name]["tolerances"] else {}
 
 
 def recorded(read):
     """{part: its result} of the record."""
-    return {name: read(f"docs/{part.file}").get(name) if part.file == "claims"
-            else read(f"docs/{part.file}") for name, part in PARTS.items()}
+    files = {name: read("docs/" + part["file"]) for name, part in PARTS.items()}
+    return {name: file.get(name) if name in CLAIMS else file for name, file in files.items()}
 
 
 def found(results):
@@ -79,7 +69,7 @@ def found(results):
 
 def tolerance(name, value):
     part = next(part for key, part in PARTS.items() if name.startswith(place(key) + "/"))
-    absolute, relative = next(allowed for end, allowed in part.tolerances.items()
+    absolute, relative = next(allowed for end, allowed in part["tolerances"].items()
                               if name.endswith(end))
     return float(f"{max(absolute, relative * abs(value)):.2g}")
 
@@ -87,8 +77,8 @@ def tolerance(name, value):
 def expected(read):
     """expected.json: {number: [value, tolerance]}, and the file of each part."""
     return {
-        "files": {place(name): f"results/docs/{part.file}.json"
-                  for name, part in PARTS.items() if part.tolerances},
+        "files": {place(name): "results/docs/" + part["file"] + ".json"
+                  for name, part in PARTS.items() if part["tolerances"]},
         "numbers": {name: [float(f"{value:.6g}"), tolerance(name, value)]
                     for name, value in found(recorded(read)).items() if value is not None},
     }
@@ -97,20 +87,15 @@ def expected(read):
 def left(document, measured, whole=()):
     """Lines for numbers of `measured` that left their tolerance or are not expected, and for those
     of parts measured as a whole that are missing."""
-    lines = []
-    for name in document["numbers"]:
-        if name not in measured and any(name.startswith(f"{part}/") for part in whole):
-            lines.append(f"{name}: found none; allowed: {document['numbers'][name][0]:g}")
-    for name, value in measured.items():
-        if value is None:
-            if name in document["numbers"]:
-                lines.append(f"{name}: found null; allowed: {document['numbers'][name][0]:g}")
-            continue
-        if name not in document["numbers"]:
-            lines.append(
-                f"{name}: found {value:.6g}; allowed: a number of results/paper/expected.json")
-            continue
-        wanted, allowed = document["numbers"][name]
-        if not abs(value - wanted) <= allowed:
-            lines.append(f"{name}: found {value:.6g}; allowed: {wanted:g} +- {allowed:g}")
+    lines, parts = [], tuple(f"{part}/" for part in whole)
+    for name, (wanted, allowed) in document["numbers"].items():
+        found = measured.get(name)
+        if found is None and (name in measured or name.startswith(parts)):
+            kind = "null" if name in measured else "none"
+            lines.append(f"{name}: found {kind}; allowed: {wanted:g}")
+        elif found is not None and not abs(found - wanted) <= allowed:
+            lines.append(f"{name}: found {found:.6g}; allowed: {wanted:g} +- {allowed:g}")
+    lines += [f"{name}: found {value:.6g}; allowed: a number of results/paper/expected.json"
+              for name, value in measured.items()
+              if value is not None and name not in document["numbers"]]
     return lines

@@ -12,14 +12,12 @@ srbf14             srbf14 with rotated lobes and sampled transport, and with exa
 
 These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md
 describes them. """
-import io
 import itertools
 import pathlib
 import subprocess
 import tempfile
 
 import numpy as np
-from matplotlib import pyplot
 
 from . import CLPV, ROOT, native
 from . import claims
@@ -57,7 +55,7 @@ class Frames:
         self.scene, self.camera = scene, camera
         self.size = {"width": arguments.width, "height": arguments.height}
         self.view = f"Sponza, camera {camera}, exposure {EXPOSURE:+g} EV"
-        self.rendered, self.pairs = {}, []
+        self.rendered = {}
         self.always = {}  # options of all frames of a preset with steps
 
     def frame(self, view, **options):
@@ -97,9 +95,6 @@ def sheet(path, title, columns, tiles):
 def pair(frames, view="full", **options):
     """Returns captioned tiles of both bases and of their difference."""
     images = [frames.image(view, basis=basis, **options) for basis in BASES]
-    frames.pairs.append(
-        (f"{frames.view}, {view}: " + ", ".join(f"{name} {value}"
-                                                for name, value in options.items()), images))
     return [*zip(images, BASES), (difference(*images), f"difference x{AMPLIFY}")]
 
 
@@ -112,17 +107,20 @@ def figure1(frames, out):
         tile for preset in PRESETS
         for tile in with_caption(pair(frames, preset=preset), f"--preset {preset}")
     ]
-    sheet(out.file("figure1.jpg"), f"Figure 1: two bases by either preset ({frames.view})", 3, tiles)
+    sheet(out.file("figure1.jpg"), f"Figure 1: two bases by either preset ({frames.view})", 3,
+          tiles)
 
 
 def answer(frames, out):
-    truth, tiles = clpv.pathtrace(frames.scene, "indirect", frames.camera, **frames.size, noise=NOISE), []
+    tiles, truth = [], clpv.pathtrace(frames.scene, "indirect", frames.camera, **frames.size,
+                                      noise=NOISE)
     for preset, basis in itertools.product(PRESETS, BASES):
         image = frames.frame("indirect", basis=basis, preset=preset, bounces=1)
         error = f"NRMSE {100 * clpv.compare(image, truth).nrmse:.0f} %"
         tiles.append((image.display(EXPOSURE + 1), f"{basis}, --preset {preset}: {error}"))
     tiles.insert(len(BASES), (truth.display(EXPOSURE + 1), "path traced"))
-    sheet(out.file("answer.jpg"), f"Indirect light of one bounce: Sponza, {frames.camera}", 3, tiles)
+    sheet(out.file("answer.jpg"), f"Indirect light of one bounce: Sponza, {frames.camera}", 3,
+          tiles)
 
 
 def figure4(frames, out, preset):
@@ -134,8 +132,8 @@ def figure4(frames, out, preset):
                               f"{size:g} m, {steps} iterations")
     sheet(
         out.file(f"figure4-{preset}.jpg"),
-        f"Figure 4 by --preset {preset}: edge of the smallest cascade, propagation steps ({frames.view})",
-        3, tiles)
+        f"Figure 4 by --preset {preset}: edge of the smallest cascade, propagation steps "
+        f"({frames.view})", 3, tiles)
 
 
 def figure5(frames, out, preset):
@@ -196,8 +194,8 @@ def basis_figures(out):
 
 
 def paper(arguments):
-    """Sheets and pairs of full frames of Figures 1, 4 and 5, Figures 2, 3 and 6, and brightness.
-    Without a model Figures 2, 3 and 6 alone."""
+    """Files of Figures 1, 4 and 5, and of 2, 3 and 6, and brightness. Without a model Figures 2, 3
+    and 6 only."""
     out = arguments.out
     lobe_files = basis_figures(out)
     if not arguments.model:
@@ -209,33 +207,14 @@ def paper(arguments):
     shadowed = Frames(nave, arguments, "arcade")
     if arguments.quick:  # the light of run-time lobes within 2e-4, five times as fast
         frames.always = shadowed.always = {"lobe_time": "host"}
-    sheets = []
-    for name, made, draw in (
-        ("figure1", frames, lambda: figure1(frames, out)),
-        ("answer", frames, lambda: answer(frames, out)),
-            *((f"figure4-{preset}", frames, lambda preset=preset: figure4(frames, out, preset))
-              for preset in PRESETS),
-            *((f"figure5-{preset}", shadowed, lambda preset=preset: figure5(shadowed, out, preset))
-              for preset in PRESETS)):
-        made.pairs = []
-        draw()
-        sheets.append({
-            "name": name, "file": f"{name}.jpg",
-            "pairs": [saved(out, f"{name}-{i}", *pair) for i, pair in enumerate(made.pairs)]
-        })
-    if arguments.quick:
-        return {"sheets": sheets, "lobes": lobe_files, "rows": []}
-    srbf14(along, out)
-    sheets.append({"name": "srbf14", "file": "srbf14.jpg", "pairs": []})
-    return {"sheets": sheets, "lobes": lobe_files, "rows": brightness(along)}
-
-
-def saved(out, name, caption, images):
-    """Writes both images of a pair as JPEG."""
-    files = []
-    for basis, pixels in zip(BASES, images):
-        files.append(f"{name}-{basis}.jpg")
-        made = io.BytesIO()
-        pyplot.imsave(made, pixels[..., :3], format="jpg", pil_kwargs={"quality": 88})
-        out.write(files[-1], made.getvalue())
-    return {"caption": caption, "left": files[0], "right": files[1]}
+    figure1(frames, out)
+    answer(frames, out)
+    for preset in PRESETS:
+        figure4(frames, out, preset)
+    for preset in PRESETS:
+        figure5(shadowed, out, preset)
+    if not arguments.quick:
+        srbf14(along, out)
+    sheets = [name for name in out.written if "/" not in name]
+    return {"sheets": sheets, "lobes": lobe_files,
+            "rows": [] if arguments.quick else brightness(along)}

@@ -109,20 +109,6 @@ def table(report):
     return "\n".join(lines)
 
 
-def arguments_of(arguments):
-    parser = argparse.ArgumentParser(prog="scripts/gpu", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-o", "--output", required=True, type=pathlib.Path)
-    parser.add_argument("--device", help="as of clpv --device")
-    parser.add_argument("--clpv", type=pathlib.Path, default=CLPV)
-    parser.add_argument("--before", type=pathlib.Path, help="an older program")
-    parser.add_argument("--model", type=pathlib.Path)
-    parser.add_argument("--first", default="", help="stages to check first")
-    parser.add_argument("--minutes", type=float, default=9)
-    parser.add_argument("--quick", action="store_true")
-    return parser.parse_args(arguments)
-
-
 def measure(options, folder):
     clock = Clock(options.minutes)
     device = ["--device", options.device] if options.device else []
@@ -160,8 +146,18 @@ def measure(options, folder):
     return report
 
 
-def main(arguments=None):
-    options = arguments_of(arguments)
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/gpu", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", required=True, type=pathlib.Path)
+    parser.add_argument("--device", help="as of clpv --device")
+    parser.add_argument("--clpv", type=pathlib.Path, default=CLPV)
+    parser.add_argument("--before", type=pathlib.Path, help="an older program")
+    parser.add_argument("--model", type=pathlib.Path)
+    parser.add_argument("--first", default="", help="stages to check first")
+    parser.add_argument("--minutes", type=float, default=9)
+    parser.add_argument("--quick", action="store_true")
+    options = parser.parse_args()
     output.target_of(options.output)  # found before the work
     with tempfile.TemporaryDirectory() as folder:
         report = measure(options, pathlib.Path(folder))

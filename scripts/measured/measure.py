@@ -18,6 +18,7 @@ its packages.
 """
 import argparse
 import datetime
+import functools
 import itertools
 import json
 import os
@@ -32,7 +33,7 @@ from . import (CLPV, LAB, RESULTS, ROOT, bake, charts, described, json_lines, la
 
 FRAME_COUNT = 9
 NAME = "[A-Za-z0-9][A-Za-z0-9._-]*"  # name of a folder in results/
-PARTS = ["frames", *rows.DOCS_SUITES, *rows.QUALITY_FILES, "quality-media", "bake", "bake-leaks", "leaks", "rooms"]
+IMAGES = ROOT / "docs/images"
 
 
 def run(*arguments, program=CLPV):
@@ -42,10 +43,10 @@ def run(*arguments, program=CLPV):
         file = pathlib.Path(folder) / "result.json"
         command = [str(program), *(argument.replace("FOLDER", folder) for argument in arguments),
                    str(file)]
-        print("scripts/measure: clpv", *arguments, file=sys.stderr)
+        print(f"{sys.argv[0]}: clpv", *arguments, file=sys.stderr)
         code = subprocess.run(command, stdout=subprocess.DEVNULL, check=False, cwd=ROOT).returncode
         if code != 0:
-            print(f"scripts/measure: exit code {code}", file=sys.stderr)
+            print(f"{sys.argv[0]}: exit code {code}", file=sys.stderr)
         if not file.exists():
             sys.exit(code)
         return json.loads(file.read_text(encoding="utf-8"))
@@ -83,84 +84,31 @@ def measured_with(device):
             "device": device["name"], "driver": f"{device['platform']} {device['driver']}"}
 
 
-def measure_docs(folder, model, parts):
-    """`parts`: names of files in results/docs."""
-    for name in rows.OF_LAB:
-        if name in parts and not LAB.exists():
-            print(f"scripts/measure: skipped: {name}: the lab is not built (-DCLPV_LAB=ON)",
-                  file=sys.stderr)
-            parts = [part for part in parts if part != name]
-    sponza = [f"--model={model}", "--camera=curtains"]
-    tiny = run("render", "scenes/cornell.json", "--width=16", "--height=9",
-               "--output=FOLDER/frame.png", "--stats")
-    measured = measured_with(tiny["device"])
-    if "frames" in parts:
-        frames = []
-        for varied in rows.FRAMES.values():
-            options = [f"--{name}={value}" for name, value in varied.items()]
-            stats = run("render", "scenes/sponza_suns.json", *sponza, *options,
-                        f"--frames={FRAME_COUNT}", "--output=FOLDER/frame.png", "--stats")
-            frames.append({"given": varied, "times": stats["times"]})
-        write(folder, "frames", {"measured": measured, "frames": frames})
-    for suite, options in rows.DOCS_SUITES.items():
-        if suite not in parts:
-            continue
-        words = options.split()
-        if words[:1] == ["sponza"]:
-            words = ["--scene=scenes/sponza_suns.json", *sponza, *words[1:]]
-        document = run("bench", suite, *words, "--output")
-        write(folder, suite, {"measured": measured, **document})
-    if "quality-centres" in parts:
-        search_centres(sponza)
-    for name in filter(parts.count, rows.QUALITY_FILES):
-        measure_quality(folder, name, model, measured)
-    if "quality-media" in parts:
-        measure_media(folder, model, measured)
-    if "bake" in parts:
-        write(folder, "bake", {"measured": measured, "rows": bake.measure(model),
-                               "part": bake.measure_part()})
-        charts.draw_probes(ROOT / "docs/images/probes.png")
-        charts.draw_spheres(ROOT / "docs/images/spheres.jpg")
-    if "bake-leaks" in parts:
-        write(folder, "bake-leaks", {"measured": measured, "rows": bake.measure_leaks()})
-    if "leaks" in parts:
-        write(folder, "leaks", {"measured": measured, "leaks": leaks.measure(**rows.LEAKS)})
-    if "rooms" in parts:
-        write(folder, "rooms", {"measured": measured, "rows": rooms.measure()})
-        rooms.draw(ROOT / "docs/images/rooms.jpg")
-    if "quality-grid" in parts or "quality-grid-published" in parts:
-        charts.draw_errors({
-            label: json.loads((folder / f"{name}.json").read_text())["variants"]
-            for label, name in (("clpv, --preset fast", "quality-grid"),
-                                ("published scheme, sh2 in buffers", "quality-grid-published"))
-        }, ROOT / "docs/images/front.png")
-
-
 def search_centres(sponza):
     (ROOT / "out").mkdir(exist_ok=True)
-    subprocess.run([str(LAB), "normals", "scenes/sponza_suns.json", *sponza, "-o", "out/normals.json"],
-                   stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
+    subprocess.run([str(LAB), "normals", "scenes/sponza_suns.json", *sponza, "-o",
+                    "out/normals.json"], stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
     lab("clpv_lab.search", "8", "-o", rows.SEARCHED)
     lab("clpv_lab.search", "8", "-o", rows.SEARCHED_NORMALS, "--weights=out/normals.json")
 
 
-def measure_quality(folder, name, model, measured):
+def measure_quality(name, model):
     arguments, runs = rows.QUALITY_FILES[name]
+    if name in rows.OF_LAB:
+        search_centres(sponza_of(model))
     cells, variants = [], []
     given = scenes_of(arguments, model)
     if not any(argument.startswith("--preset") for argument in given):
-        given.append(
-            "--preset=best")  # bases and transports that a run does not name keep their defaults
+        given.append("--preset=best")  # bases and transports that a run does not name keep defaults
     for options in runs:
         vary = [f"--vary={option}={value}" for option, value in options.items()]
         document = run("quality", *given, *vary, "--output")
         cells += document["cells"]
         variants += document["variants"]
-    write(folder, name,
-          {"measured": measured, "given": arguments, "cells": cells, "variants": variants})
+    return {"given": arguments, "cells": cells, "variants": variants}
 
 
-def measure_media(folder, model, measured):
+def measure_media(model):
     cells = []
     for each in rows.MEDIA:
         for count, view in itertools.product(each["bounces"], each["views"]):
@@ -168,7 +116,71 @@ def measure_media(folder, model, measured):
                          "--spp=256", f"--bounces={count}", f"--view={view}", "--output")
             cells += [{**cell, "medium": each["medium"], "bounces": count, "view": view}
                       for cell in report["cells"]]
-    write(folder, "quality-media", {"measured": measured, "cells": cells})
+    return {"cells": cells}
+
+
+def sponza_of(model):
+    return [f"--model={model}", "--camera=curtains"]
+
+
+def measure_frames(model):
+    rows_of = []
+    for varied in rows.FRAMES.values():
+        stats = run("render", "scenes/sponza_suns.json", *sponza_of(model),
+                    *(f"--{name}={value}" for name, value in varied.items()),
+                    f"--frames={FRAME_COUNT}", "--output=FOLDER/frame.png", "--stats")
+        rows_of.append({"given": varied, "times": stats["times"]})
+    return {"frames": rows_of}
+
+
+def measure_suite(name, model):
+    words = rows.DOCS_SUITES[name].split()
+    if words[:1] == ["sponza"]:
+        words = ["--scene=scenes/sponza_suns.json", *sponza_of(model), *words[1:]]
+    return run("bench", name, *words, "--output")
+
+
+def draw_front():
+    charts.draw_errors({
+        label: json.loads((RESULTS / f"docs/{name}.json").read_text())["variants"]
+        for label, name in (("clpv, --preset fast", "quality-grid"),
+                            ("published scheme, sh2 in buffers", "quality-grid-published"))
+    }, IMAGES / "front.png")
+
+
+# Files of results/docs, each with a function of Sponza's model that measures it; and what is drawn
+# after them.
+PARTS = {
+    "frames": measure_frames,
+    **{name: functools.partial(measure_suite, name) for name in rows.DOCS_SUITES},
+    **{name: functools.partial(measure_quality, name) for name in rows.QUALITY_FILES},
+    "quality-media": measure_media,
+    "bake": lambda model: {"rows": bake.measure(model), "part": bake.measure_part()},
+    "bake-leaks": lambda _: {"rows": bake.measure_leaks()},
+    "leaks": lambda _: {"leaks": leaks.measure(**rows.LEAKS)},
+    "rooms": lambda _: {"rows": rooms.measure()},
+}
+DRAWN = {
+    "bake": [lambda: charts.draw_probes(IMAGES / "probes.png"),
+             lambda: charts.draw_spheres(IMAGES / "spheres.jpg")],
+    "rooms": [lambda: rooms.draw(IMAGES / "rooms.jpg")],
+    "quality-grid": [draw_front], "quality-grid-published": [draw_front]
+}
+
+
+def measure_docs(model, parts):
+    """`parts`: names of files in results/docs."""
+    tiny = run("render", "scenes/cornell.json", "--width=16", "--height=9",
+               "--output=FOLDER/frame.png", "--stats")
+    measured = measured_with(tiny["device"])
+    for name in parts:
+        if name in rows.OF_LAB and not LAB.exists():
+            print(f"scripts/measure: skipped: {name}: the lab is not built (-DCLPV_LAB=ON)",
+                  file=sys.stderr)
+            continue
+        write(RESULTS / "docs", name, {"measured": measured, **PARTS[name](model)})
+        for draw in DRAWN.get(name, []):
+            draw()
 
 
 def main():
@@ -194,8 +206,8 @@ def main():
         parser.error(f"NAME {arguments.name}: allowed: letters, digits, '.', '_' and '-'")
     folder = RESULTS / arguments.name
     if arguments.name == "docs":
-        measure_docs(folder, pathlib.Path(arguments.model).resolve(), arguments.part or PARTS)
-        print("results/docs is written; scripts/tables and lab/scripts/tables write the tables of the docs")
+        measure_docs(pathlib.Path(arguments.model).resolve(), arguments.part or PARTS)
+        print("results/docs is written; scripts/tables and lab/scripts/tables write the tables")
     else:
         measure_device(output.Folder(folder, "scripts/measure"))
         print(f"results/{arguments.name} is written; results/README.md says how to send it")

@@ -21,25 +21,20 @@ import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import time
 
 from . import (BUILD, CLPV, RESULTS, ROOT, described, expected, hash_of, model_files, output,
                tables, verdicts)
 from .expected import CLAIMS, PARTS
-from .measure import measured_with, write
+from .measure import measured_with, run, write
 
 LEFT = 5  # exit code
 
 
 def of_table1(arguments):
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "rows.json"
-        subprocess.run([str(CLPV), "bench", "table1", "--scene=scenes/sponza_suns.json",
-                        f"--model={arguments.model}", "--camera=curtains",
-                        f"--repetitions={2 if arguments.quick else 7}",
-                        f"--output={file}"], stdout=subprocess.DEVNULL, check=True, cwd=ROOT)
-        document = json.loads(file.read_text(encoding="utf-8"))
+    document = run("bench", "table1", "--scene=scenes/sponza_suns.json",
+                   f"--model={arguments.model}", "--camera=curtains",
+                   f"--repetitions={2 if arguments.quick else 7}", "--output")
     document["context"].pop("host_name", None)
     return document
 
@@ -50,13 +45,13 @@ def result_of(name, arguments):
 
     if name == "table1":
         return of_table1(arguments)
-    return figures.paper(arguments) if name == "figures" else claims.CLAIMS[name](arguments)
+    return figures.paper(arguments) if name == "figures" else getattr(claims, name)(arguments)
 
 
 def parts_of(arguments):
     """Names of the parts that can be measured."""
     return [name for name, part in PARTS.items()
-            if (arguments.model or not part.model) and (part.quick or not arguments.quick)]
+            if (arguments.model or not part["model"]) and (part["quick"] or not arguments.quick)]
 
 
 def devices():
@@ -159,34 +154,13 @@ def record(done, out):
     if "figures" in done:
         figures = done["figures"]["result"]
         write(folder, "figures", {"measured": now, "rows": figures["rows"]})
-        for sheet in figures["sheets"]:
-            image = (out.path / sheet["file"]).read_bytes()
-            output.write(ROOT / "docs/images" / sheet["file"], image)
+        for name in figures["sheets"]:
+            output.write(ROOT / "docs/images" / name, (out.path / name).read_bytes())
 
 
 def uri(file):
     kind = {"jpg": "jpeg", "png": "png"}[file.suffix.lstrip(".")]
     return f"data:image/{kind};base64," + base64.b64encode(file.read_bytes()).decode("ascii")
-
-
-def turned():
-    """Values of rotated lobes on a grid of directions: 25 polar angles, 48 azimuths."""
-    import numpy
-    from . import native
-
-    clpv = native()
-    theta, phi = numpy.meshgrid(numpy.linspace(0, numpy.pi, 25),
-                                numpy.arange(48) * 2 * numpy.pi / 48, indexing="ij")
-    directions = numpy.stack((numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi),
-                              numpy.cos(theta)), axis=-1)
-    lobes = []
-    for name in ("sh2", "sh3", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14",
-                 "bins24", "bins96"):
-        basis = clpv.Basis(name)
-        values = basis.evaluate(directions.reshape(-1, 3)) @ basis.clamped_cosine((-2, 1, -3), 256)
-        lobes.append({"name": name, "rows": 25, "columns": 48,
-                      "values": [round(float(value), 3) for value in values]})
-    return lobes
 
 
 def page(arguments, done, left, checked, unmeasured):
@@ -201,9 +175,8 @@ def page(arguments, done, left, checked, unmeasured):
                 for name in dict.fromkeys(each["section"] for each in claims)]
     figures = done["figures"]["result"] if "figures" in done else {"sheets": [], "lobes": []}
     out = arguments.out.path
-    sheets = [{"name": sheet["name"], "uri": uri(out / sheet["file"]),
-               "pairs": [{**pair, "left": uri(out / pair["left"]), "right": uri(out / pair["right"])}
-                         for pair in sheet["pairs"]]} for sheet in figures["sheets"]]
+    sheets, lobes = ([{"name": name, "uri": uri(out / name)} for name in figures[kind]]
+                     for kind in ("sheets", "lobes"))
     device = subprocess.run([str(CLPV), "devices"], stdout=subprocess.PIPE, text=True, check=False,
                             cwd=ROOT).stdout.splitlines()[:1]
     minutes = [["part", "minutes"],
@@ -213,9 +186,7 @@ def page(arguments, done, left, checked, unmeasured):
         subtitle=", ".join([f"clpv {described()}", "quick run" if arguments.quick else "whole run",
                             *device, time.strftime("%Y-%m-%d")]),
         left=left, checked=checked, unmeasured=unmeasured, parts=minutes, sections=sections,
-        sheets=sheets, turned=turned(),
-        lobes=[{"name": name, "uri": uri(out / name)} for name in figures["lobes"]],
-        width=arguments.width, colours=report.page_colours(),
+        sheets=sheets, lobes=lobes, colours=report.page_colours(),
         tables=[(f"With indirect shadows ({here})", tables.TABLES["table1-shadows"]()),
                 (f"Without indirect shadows ({here})", tables.TABLES["table1-no-shadows"]())])
     arguments.out.write("index.html", html)

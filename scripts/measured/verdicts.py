@@ -14,7 +14,7 @@ import pathlib
 import statistics
 
 from . import rows as known
-from .cells import Form
+from .cells import Form, found as row
 
 CLAIMS = json.loads(pathlib.Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
 SIMILAR = 0.1  # 'similar': errors that differ by a tenth at most
@@ -29,11 +29,6 @@ NAMES = {
     "paper sh2": "sh2", "paper srbf8v2": "srbf8v2", "paper sh2 64 16": "sh2 in 64^3 cells",
     "best": "the defaults", "64": "the defaults in 64^3 cells"
 }
-
-
-def row(rows, **fields):
-    return next(each for each in rows
-                if all(each.get(key) == value for key, value in fields.items()))
 
 
 # Functions that the expressions of verdicts.json call.
@@ -319,7 +314,8 @@ def of_layouts(read):
                           for layout, storage in (("image", "half"), ("soa", "float")))
         numbers = image["coefficients"]
         yield {"basis": basis, "image": CHANNELS_AND_LINKS * math.ceil(numbers / 4),
-               "buffers": CHANNELS_AND_LINKS * numbers, "times": image["median"] / buffers["median"]}
+               "buffers": CHANNELS_AND_LINKS * numbers,
+               "times": image["median"] / buffers["median"]}
 
 
 # Verdicts.

@@ -8,7 +8,6 @@ import tempfile
 import unittest
 
 from support import bench_document, row, variant
-from clpv import output
 from clpv.draw import documents, report
 import numpy
 

@@ -40,6 +40,8 @@ class Stop(logging.Handler):
 logging.getLogger("clpv").addHandler(Stop())
 logging.getLogger("clpv").setLevel(logging.DEBUG)
 try:
-""" + "    ".join(RENDER.splitlines(keepends=True)) + "\nexcept KeyError as error:\n    print(error)",
+""" + "    ".join(RENDER.splitlines(keepends=True)) + """
+except KeyError as error:
+    print(error)""",
                 tmp_path)
     assert ended.stdout == "'stopped'\n", ended.stderr

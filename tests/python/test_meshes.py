@@ -12,6 +12,7 @@ import clpv
 import clpv._trimesh
 from conftest import ROOT, SMALL, run_python
 
+NO_TRIMESH = "trimesh is not installed (pip install trimesh)"
 SQUARE = numpy.array([[0, 1, 2], [0, 2, 3]])
 WALL = numpy.array([[-2, 0, -2], [2, 0, -2], [2, 3, -2], [-2, 3, -2]], dtype=float)
 
@@ -25,7 +26,7 @@ def test_arrays_are_those_of_their_file(tmp_path):
     scene.add_instance(0, numpy.diag([0.5, 1.0, 2, 1]))
     scene.save(tmp_path / "wall.glb")
     of_file = clpv.Scene(tmp_path / "wall.glb")
-    numpy.testing.assert_array_equal(scene.bounds, of_file.bounds)
+    assert scene.bounds == of_file.bounds == ((-2, 0, -4), (2, 6, -2))
     of_file.cameras, of_file.lights = scene.cameras, scene.lights
     for view in "albedo", "normal", "full":
         numpy.testing.assert_allclose(*(clpv.Renderer(each, cascade_size=4, **SMALL).render(view)
@@ -36,24 +37,24 @@ def test_arrays_are_those_of_their_file(tmp_path):
     ({"positions": WALL[:, :2]}, clpv.InputError, "positions: found shape (4, 2); allowed: (n, 3)"),
     ({"positions": WALL[0]}, clpv.InputError, "positions: found shape (3,)"),
     ({"positions": WALL * numpy.nan}, clpv.InputError, "positions[0]: found nan in component 0"),
-    ({"positions": WALL.astype(complex)}, TypeError, "positions: found an array of complex128"),
-    ({"positions": [[0, 0, 0], "x"]}, (TypeError, ValueError), ""),
-    ({"triangles": SQUARE.astype(float)
-      }, TypeError, "triangles: found an array of float64, allowed: integers"),
+    ({"positions": WALL.astype(complex)}, TypeError, "positions: ArrayLike"),
+    ({"triangles": SQUARE.astype(float)}, TypeError, "triangles: ArrayLike"),
     ({"triangles": SQUARE - 1}, clpv.InputError, "triangles[0]: found index -1"),
     ({"triangles": SQUARE + 2**32}, clpv.InputError, "triangles[0]: found index 4294967296"),
     ({"triangles": SQUARE + 1}, clpv.InputError, "triangles[1]: found index 4; allowed: 0 to 3"),
-    ({"triangles": numpy.broadcast_to(numpy.uint8(0), (2**31, 3))
-      }, clpv.InputError, "triangles: found 2147483648 rows"),
-    ({"colours": numpy.zeros(
-        (4, 3), numpy.uint8)}, TypeError, "colours: found an array of uint8, allowed: floats"),
+    ({"colours": WALL[:, :2]}, clpv.InputError, "found shape (4, 2); allowed: (n, 4) or (n, 3)"),
     ({"normals": WALL[:3]}, clpv.InputError, "normals: found 3 elements; allowed: 4"),
-    ({"transform": numpy.eye(3)
-      }, clpv.InputError, "transform: found shape (3, 3); allowed: (4, 4)"),
+    ({"transform": numpy.eye(3)}, TypeError, "transform: "),
 ])
 def test_bad_arrays_are_rejected_by_name(change, error, words):
     with pytest.raises(error, match=re.escape(words)):
         clpv.Scene.from_arrays(**({"positions": WALL, "triangles": SQUARE} | change))
+
+
+def test_colours_without_alpha_are_opaque():
+    scene = clpv.Scene.from_arrays(WALL, SQUARE, colours=numpy.ones((4, 3)),
+                                   material=clpv.Material(alpha_cutoff=0.5))
+    assert clpv.pathtrace(scene, "albedo", width=2, height=2, samples=1).array.max() == 1
 
 
 def test_float_textures_are_encoded():
@@ -103,7 +104,7 @@ def test_a_saved_scene_is_the_same(name, tmp_path):
 
 
 def test_scene_of_trimesh():
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
+    trimesh = pytest.importorskip("trimesh", reason=NO_TRIMESH)
     box = trimesh.creation.box((1, 1, 1))
     given = trimesh.Scene()
     given.add_geometry(box, geom_name="box")
@@ -118,7 +119,7 @@ def test_scene_of_trimesh():
 
 
 def test_colours_of_trimesh():
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
+    trimesh = pytest.importorskip("trimesh", reason=NO_TRIMESH)
     look = clpv._trimesh._arguments  # pylint: disable=protected-access
     box = trimesh.creation.box((1, 1, 1))
     box.visual.face_colors = [[10 * face, 255, 0, 255] for face in range(12)]
@@ -140,15 +141,16 @@ def test_colours_of_trimesh():
     (None, {"base_colour": (1, 1, 1, 0.3), "alpha_cutoff": 0.2}),
     (None, {"emission": (0.2, 0.4, 0.6), "double_sided": True})])
 def test_a_scene_of_trimesh_is_its_file(colour, material, tmp_path):
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (pip install trimesh)")
+    trimesh = pytest.importorskip("trimesh", reason=NO_TRIMESH)
     file = tmp_path / "a.glb"
     clpv.Scene.from_arrays(WALL, SQUARE, normals=WALL * 0 + (0.6, 0, 0.8),
                            colours=colour and numpy.array([colour] * len(WALL)),
                            material=clpv.Material(**material)).save(file)
     camera = clpv.Camera(eye=(0.2, 1, 3), target=(0, 1.5, -2))
     for view in "albedo", "normal", "direct":
+        scenes = clpv.Scene.from_trimesh(trimesh.load(file)), clpv.Scene(file)
         found, expected = (clpv.pathtrace(each, view, camera, width=9, height=9, samples=1).array
-                           for each in (clpv.Scene.from_trimesh(trimesh.load(file)), clpv.Scene(file)))
+                           for each in scenes)
         numpy.testing.assert_allclose(found, expected, atol=0.005)  # rounding of 8 bits
 
 

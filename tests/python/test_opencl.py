@@ -14,9 +14,8 @@ MISSING = "pyopencl is not installed (Debian: apt install python3-pyopencl)"
 
 
 def test_handles_of_another_kind_are_named(scene):
-    with pytest.raises(
-            TypeError,
-            match="queue: found 'queue', allowed: an object of pyopencl's class CommandQueue, or its int_ptr"):
+    allowed = "allowed: an object of pyopencl's class"
+    with pytest.raises(TypeError, match=f"queue: found .*str.*, {allowed} CommandQueue, or its"):
         clpv.Renderer(scene, queue="queue", **SMALL)
 
     class Context:  # as pyopencl's, whose handle a driver would take for a queue and crash
@@ -25,12 +24,10 @@ def test_handles_of_another_kind_are_named(scene):
     for name, given in [("queue", Context()), ("context", type("CommandQueue", (Context,), {})())]:
         if name == "context":
             given.__class__ = type("Buffer", (), {"int_ptr": 4096})
-        with pytest.raises(TypeError, match=f"{name}: found .*, allowed: an object of pyopencl's class"):
+        with pytest.raises(TypeError, match=f"{name}: found .*, {allowed}"):
             clpv.Renderer(scene, **{name: given}, **SMALL)
     with pytest.raises(ValueError, match="device: found one and a context or queue"):
         clpv.Renderer(scene, "0", queue=1, **SMALL)
-    with pytest.raises(TypeError, match="__init__ was not called"):
-        clpv.DeviceEvent.__new__(clpv.DeviceEvent).wait()
 
 
 def test_frames_and_light_in_pyopencls_queue(scene, renderer):

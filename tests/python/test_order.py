@@ -6,7 +6,7 @@ import numpy
 import pytest
 
 import clpv
-from conftest import CORNELL, SMALL
+from conftest import SMALL
 
 WALL = numpy.array([[0.1, 0.1, 0.1], [0.4, 0.1, 0.1], [0.4, 0.4, 0.2]])
 TRIANGLE = [[0, 1, 2]]

@@ -5,7 +5,6 @@ import inspect
 import json
 import os
 import re
-import signal
 import subprocess
 import time
 

@@ -11,7 +11,8 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 os.environ.setdefault("CLPV_BUILD_DIR", os.environ["CLPV_BUILD"])
 sys.path.insert(0, str(ROOT / "scripts"))
-pytest.importorskip("jinja2", reason="all of it: Jinja2 is not installed (Debian: apt install python3-jinja2)")
+pytest.importorskip("jinja2",
+                    reason="all of it: Jinja2 is not installed (Debian: apt install python3-jinja2)")
 from measured import reproduce, verdicts  # noqa: E402
 
 

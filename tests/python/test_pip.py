@@ -9,8 +9,10 @@ import pytest
 import clpv
 from conftest import BUILD, ROOT
 
-pytest.importorskip("scikit_build_core", reason="all of it: scikit-build-core is not installed (pip install scikit-build-core)")
-pytest.importorskip("pip", reason="all of it: pip is not installed (Debian: apt install python3-pip)")
+pytest.importorskip("scikit_build_core",
+                    reason="all of it: scikit-build-core is not installed (pip install scikit-build-core)")
+pytest.importorskip("pip",
+                    reason="all of it: pip is not installed (Debian: apt install python3-pip)")
 
 
 def test_pip_install(tmp_path):

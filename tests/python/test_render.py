@@ -74,19 +74,6 @@ def test_stats(scene):
     assert all(time["min"] == time["median"] == time["max"] > time["mad"] == 0 for time in light)
 
 
-def test_irradiance_takes_arrays_of_any_layout(renderer):
-    renderer.render()
-    points = np.random.default_rng(1).uniform(0.1, 0.4, (5, 7, 3))
-    normals = np.broadcast_to([0.0, -2.0, 0.0], points.shape)  # strides of 0
-    light = renderer.irradiance(points, normals)
-    assert light.shape == points.shape and light.dtype == np.float32 and light.max() > 0
-    assert np.array_equal(renderer.irradiance(np.asfortranarray(points), normals), light)
-    assert np.array_equal(renderer.irradiance(points[::2, ::3], normals[::2, ::3]), light[::2, ::3])
-    assert np.array_equal(renderer.irradiance(points.astype(np.float32).tolist(), normals), light)
-    assert renderer.irradiance([0.2, 0.2, 0.2], [0, 1, 0]).shape == (3,)
-    assert renderer.irradiance(np.zeros((0, 3)), np.zeros((0, 3))).shape == (0, 3)
-
-
 def test_threads_share_a_renderer(renderer):
     renderer.render()
     points = np.random.default_rng(1).uniform(0.1, 0.4, (3000, 3))
@@ -103,18 +90,14 @@ def test_threads_share_a_renderer(renderer):
     assert len(found) == 4 and all(np.array_equal(each, expected) for each in found)
 
 
-def test_errors_have_their_kind(tmp_path, scene, renderer):
-    with pytest.raises(clpv.InputError, match="nowhere"):
-        clpv.Scene("/nowhere/scene.json")
-    with pytest.raises(clpv.UsageError, match="unknown option 'no-such'"):
-        clpv.Renderer(scene, no_such=1)
-    with pytest.raises(clpv.UsageError, match="lambda: found '7'"):
-        clpv.Renderer(scene, lambda_=7)
-    with pytest.raises(clpv.DeviceError):
-        clpv.Renderer(scene, device="no device of this name")
-    with pytest.raises(clpv.ResourceError):
-        renderer.render().save(tmp_path / "no folder" / "image.exr")
-    with pytest.raises(clpv.UsageError, match="channels: found 1 names"):
-        clpv.Image(np.zeros((2, 2, 3)), channels=["R"])
+def test_a_comparison_has_gain_and_identity(renderer):
     errors = clpv.compare(renderer.render().array * 2, renderer.render())
     assert errors.best_gain == pytest.approx(0.5) and not errors.identical
+
+
+def test_sizes_and_release(scene):
+    with clpv.Renderer(scene, **SMALL) as renderer:
+        assert renderer.render(size=(30, 20)).array.shape == (20, 30, 4)
+    assert renderer.stats["device_bytes"] < 1e6
+    both = clpv.pathtrace(scene, ["indirect", "albedo"], width=4, height=3, samples=1)
+    assert both.channels[:2] == ("indirect.R", "indirect.G") and both.array.shape == (3, 4, 8)

@@ -47,9 +47,9 @@ class Outputs(InFolder):
         made.write("b/c", "1")
         before = sorted(self.folder.rglob("*"))
         for words, call in (
-                ("not a regular", lambda: output.target_of(self.folder)),
-                ("no folder", lambda: output.write(self.folder / "none/file", "")),
-                ("no folder", lambda: output.write(self.file / "x", "")),
+                ("a regular file", lambda: output.target_of(self.folder)),
+                ("a folder that exists", lambda: output.write(self.folder / "none/file", "")),
+                ("a folder that exists", lambda: output.write(self.file / "x", "")),
                 ("allowed: another", lambda: output.target_of(self.folder / "hard", self.file)),
                 ("scripts/b wrote", lambda: output.Folder(made.path, "scripts/b")),
                 ("scripts/b wrote", lambda: output.Folder(self.folder, "scripts/b"))):

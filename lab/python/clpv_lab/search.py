@@ -15,11 +15,10 @@ import pathlib
 import sys
 import warnings
 
+import numpy as np
+
 from clpv import output
-if __name__ == "__main__":
-    output.name_missing_modules()
-import numpy as np  # noqa: E402
-from clpv.draw import documents  # noqa: E402
+from clpv.draw import documents
 
 NORM = 2 * np.pi / 3  # integral of max(0, w . d)^2
 AXES = np.concatenate([np.eye(3), -np.eye(3)])

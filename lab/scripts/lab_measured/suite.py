@@ -12,15 +12,18 @@ and oiiotool; traces the ground truths that `clpv quality` has not cached, a min
 time each. Sponza's model is not included. """
 import argparse
 import hashlib
+import io
 import json
 import math
 import pathlib
 import subprocess
+import tarfile
 import tempfile
 
 import numpy
 
-from measured import CLPV, ROOT, model_files, output
+from measured import ROOT, model_files, output
+from measured.measure import run
 
 SCHEMA, SIZE, NOISE = 1, (240, 135), 0.03
 # Scenes and their cameras (none: all), files of other names, instants [s], layers of truths, and
@@ -56,26 +59,16 @@ def at_time(thing, time):
     return values
 
 
-def facing(direction, up=(0, 1, 0)):
-    """Returns the quaternion x, y, z, w that turns -z to a direction, and y towards `up`."""
+def facing(direction, eye=(0, 0, 0), up=(0, 1, 0)):
+    """Returns a node's matrix, column by column, that turns -z to a direction, y towards `up`, and
+    moves to `eye`."""
     z = -numpy.array(direction, float) / numpy.linalg.norm(direction)
     x = numpy.cross(up, z)
     if numpy.linalg.norm(x) < 1e-6:
         x = numpy.cross((0, 0, 1), z)
     x /= numpy.linalg.norm(x)
-    m = numpy.stack([x, numpy.cross(z, x), z], axis=1)
-    w = math.sqrt(max(0, 1 + m[0, 0] + m[1, 1] + m[2, 2])) / 2
-    if w > 1e-3:
-        return [
-            *(numpy.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]]) / (4 * w)), w
-        ]
-    i = int(numpy.argmax(numpy.diag(m)))
-    j, k = (i + 1) % 3, (i + 2) % 3
-    q = [0.0, 0.0, 0.0, 0.0]
-    q[i] = math.sqrt(max(0, 1 + m[i, i] - m[j, j] - m[k, k])) / 2
-    q[j], q[k], q[3] = (m[i, j] + m[j, i]) / (4 * q[i]), (m[i, k] + m[k, i]) / (4 * q[i]), (
-        m[k, j] - m[j, k]) / (4 * q[i])
-    return q
+    axes = [[*x, 0], [*numpy.cross(z, x), 0], [*z, 0], [*eye, 1]]
+    return [float(number) for column in axes for number in column]
 
 
 def views_gltf(scene, time=0):
@@ -84,8 +77,8 @@ def views_gltf(scene, time=0):
     for camera in (at_time(camera, time) for camera in scene["cameras"]):
         eye, target = numpy.array(camera["eye"], float), numpy.array(camera["target"], float)
         nodes.append({
-            "name": camera["name"], "camera": len(cameras), "translation": (unit * eye).tolist(),
-            "rotation": [float(q) for q in facing(target - eye)]
+            "name": camera["name"], "camera": len(cameras),
+            "matrix": facing(target - eye, unit * eye)
         })
         cameras.append({
             "name": camera["name"], "type": "perspective", "perspective": {
@@ -98,7 +91,7 @@ def views_gltf(scene, time=0):
             raise ValueError(
                 f"light {light.get('name')}: found {light['kind']}; allowed: directional")
         nodes.append({
-            "name": light["name"], "rotation": [float(q) for q in facing(light["direction"])],
+            "name": light["name"], "matrix": facing(light["direction"]),
             "extensions": {"KHR_lights_punctual": {"light": len(lights)}}
         })
         lights.append({
@@ -122,16 +115,11 @@ def sha256(file):
 
 def ground_truths(name, cameras, model, cache):
     """Traces what is not cached. Returns rows of `clpv quality`: file, camera, noise, spp."""
-    with tempfile.TemporaryDirectory() as folder:
-        report = pathlib.Path(folder) / "report.json"
-        subprocess.run([
-            str(CLPV), "quality", f"scenes/{FILES.get(name, name)}.json", *(f"--camera={camera}"
-                                                           for camera in cameras),
-            *([f"--model={model}"] if model else []), *([f"--cache={cache}"] if cache else []),
-            f"--time={TIMES.get(name, 0)}", f"--width={SIZE[0]}", f"--height={SIZE[1]}",
-            f"--noise={NOISE}", "--preset=fast", "--frames=1", f"--output={report}"
-        ], check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
-        return json.loads(report.read_text())["ground_truths"]
+    return run("quality", f"scenes/{FILES.get(name, name)}.json",
+               *(f"--camera={camera}" for camera in cameras),
+               *([f"--model={model}"] if model else []), *([f"--cache={cache}"] if cache else []),
+               f"--time={TIMES.get(name, 0)}", f"--width={SIZE[0]}", f"--height={SIZE[1]}",
+               f"--noise={NOISE}", "--preset=fast", "--frames=1", "--output")["ground_truths"]
 
 
 def in_halves(source):
@@ -181,6 +169,18 @@ def add_scene(folder, name, sponza, cache):
     }, views
 
 
+def packed_files(folder):
+    """Bytes of a tar of the files written into an output.Folder, without owners and times."""
+    packed = io.BytesIO()
+    with tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as archive:
+        for name in sorted(set(folder.written)):
+            entry = tarfile.TarInfo(f"{folder.path.name}/{name}")
+            entry.size, entry.mode = (folder.path / name).stat().st_size, 0o644
+            with open(folder.path / name, "rb") as file:
+                archive.addfile(entry, file)
+    return packed.getvalue()
+
+
 def write_suite(folder, tar, sponza, cache, names):
     """`folder`: output.Folder; `tar`: a file."""
     scenes, views = {}, []
@@ -199,8 +199,7 @@ def write_suite(folder, tar, sponza, cache, names):
             folder.write(str(file.relative_to(ROOT / root)), file.read_bytes())
     for file in ROOT / "lab/docs/score.md", ROOT / "LICENSE":
         folder.write(file.name, file.read_bytes())
-    packed = output.tar_of(folder.path.name, {name: (folder.path / name).read_bytes()
-                                              for name in sorted(set(folder.written))})
+    packed = packed_files(folder)
     if len(packed) > LARGEST:
         raise output.Failure(f"{tar}: found {len(packed)} bytes; allowed: {LARGEST}")
     output.write(tar, packed)
@@ -227,6 +226,6 @@ def main():
     if packed.exists() and not (place / output.MARKER).exists():
         parser.error(f"--output {place}: found a file {packed}; allowed: none where DIR is new")
     output.target_of(packed)
-    write_suite(output.Folder(place, "lab/scripts/suite"), packed, arguments.model and arguments.model.resolve(),
-                arguments.cache and arguments.cache.resolve(), names)
+    model, cache = (path and path.resolve() for path in (arguments.model, arguments.cache))
+    write_suite(output.Folder(place, "lab/scripts/suite"), packed, model, cache, names)
     return 0

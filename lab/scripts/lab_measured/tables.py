@@ -1,9 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Tables of lab/docs, from lab/results/quality and results/docs."""
+"""Writes the tables of measured numbers in the lab's pages, between <!-- table: NAME --> and
+<!-- end -->, from lab/results and results.
+
+    lab/scripts/tables            rewrites them in lab/
+    lab/scripts/tables --check    changes nothing; fails if one of them differs from the results
+    lab/scripts/tables --list     names of all tables
+"""
 import json
 
 from clpv import ms_of
-from measured import ROOT, bake as probes
+from measured import ROOT, bake as probes, tables
 from measured.cells import found, load, number, percent, shown, table
 from measured.verdicts import sentence
 
@@ -158,3 +164,7 @@ def bake_verdicts():
         lines.append([f"`{a}` beats `{b}`", sentence("", points),
                       ", ".join(text for _, _, text in points)])
     return lines
+
+
+def main():
+    return tables.main(lambda: tables.pages(sorted((ROOT / "lab").glob("**/*.md"))), __doc__)

@@ -344,13 +344,12 @@ class CamerasAndLights(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "no key at 2 s"):
             suite.at_time({"name": "walk", "interpolation": "smooth", "keys": light["keys"]}, 2)
 
-    def test_rotations_face_the_direction(self):
+    def test_matrices_face_the_direction(self):
         for direction in (1, 0, 0), (0, 0, 1), (0, 0, -1), (0, -1, 0), (0.3, -2, 0.1), (-1, 0.2, 3):
-            *v, w = suite.facing(direction)
-            v, forward = numpy.array(v), numpy.array([0, 0, -1.0])
-            turned = forward + 2 * numpy.cross(v, numpy.cross(v, forward) + w * forward)
-            numpy.testing.assert_allclose(turned, direction / numpy.linalg.norm(direction),
-                                          atol=1e-6)
+            matrix = numpy.reshape(suite.facing(direction, (1, 2, 3)), (4, 4)).T
+            ahead = direction / numpy.linalg.norm(direction) + (1, 2, 3)
+            numpy.testing.assert_allclose((matrix @ (0, 0, -1, 1))[:3], ahead, atol=1e-6)
+            self.assertAlmostEqual(numpy.linalg.det(matrix), 1)
 
     def test_a_model_with_them_has_the_scene_files_image(self):
         scene = json.loads((ROOT / "scenes/cornell.json").read_text())

@@ -6,13 +6,10 @@ import json
 import pathlib
 import sys
 
-from clpv.output import Failure, name_missing_modules, printable, target_of, write
-name_missing_modules()
-from clpv.draw import viewer  # noqa: E402
-from clpv_lab.score import page, suite  # noqa: E402
-from clpv_lab.score.exr import BadImage  # noqa: E402
-
-RUN_TIME, BAD_INPUT = 1, 3
+from clpv.draw import viewer
+from clpv.output import BAD_INPUT, RUN_TIME, Failure, target_of, write
+from clpv_lab.score import page, suite
+from clpv_lab.score.exr import BadImage
 
 
 def table(score):
@@ -26,7 +23,7 @@ def table(score):
 
 def report(score):
     """Prints to stderr what is suspected in images, and where errors are undefined."""
-    method = printable(score["method"])
+    method = suite.printable(score["method"])
     for row in score["views"]:
         for suspicion in row["suspected"]:
             print(f"clpv_lab.score: {method}: {row['view']} {suspicion}", file=sys.stderr)
@@ -74,12 +71,12 @@ def main(arguments, program="python3 -m clpv_lab.score"):
         if given.output:
             write(given.output, json.dumps(scores[0], indent=1, allow_nan=False) + "\n")
     except (BadImage, Failure) as error:
-        print(f"clpv_lab.score: {printable(error)}", file=sys.stderr)
+        print(f"clpv_lab.score: {suite.printable(error)}", file=sys.stderr)
         return getattr(error, "code", BAD_INPUT)
     try:
         for score in scores:
             report(score)
-            names = [printable(score["method"])] if len(scores) > 1 else []
+            names = [suite.printable(score["method"])] if len(scores) > 1 else []
             sys.stdout.write("\n".join([*names, table(score), ""]))
         sys.stdout.flush()
     except (OSError, AttributeError) as error:  # a full disk; None where stdout is closed

@@ -24,6 +24,11 @@ UNKNOWN = type(None)
 FIELDS = {"name": str, "truth": str, "noise": (*NUMBER, UNKNOWN), "exposure": NUMBER}  # fields of a view
 
 
+def printable(text):
+    """Foreign text for a terminal: control characters become `?`."""
+    return "".join(c if c.isprintable() else "?" for c in str(text))
+
+
 def is_valid(value, kind):
     if kind is str:
         return isinstance(value, str) and value.isprintable() and value != ""
