@@ -52,38 +52,27 @@ void reject_ranks_except(CLI::App& app, const std::vector<std::string>& names) {
   }
 }
 
-/// Throws Error(usage) that suggests the closest command for an unknown one.
-void reject_misspelt_command(const CLI::App& app) {
+/// Throws Error(usage) for an unknown command.
+void reject_unknown_command(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining();
   const auto word =
       std::ranges::find_if(words, [](const std::string& w) { return !w.starts_with('-'); });
   if (word == words.end()) return;
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) {
+  for (const CLI::App* command : app.get_subcommands({}))
     if (!command->get_group().empty()) names.push_back(command->get_name());
-  }
-  if (const std::string meant = nearest(*word, names); !meant.empty())
-    throw Error(ExitCode::usage, "unknown command '{}'; did you mean {}?", *word, meant);
-  if (*word == "view")
-    throw Error(ExitCode::usage, "unknown command 'view': the viewer is python3 -m clpv.view");
-  throw Error(ExitCode::usage, "unknown command '{}'; allowed: {}", *word, fmt::join(names, ", "));
+  throw Error(ExitCode::usage, "unknown command '{}'; allowed: {}; the viewer is {}", *word,
+              fmt::join(names, ", "), "python3 -m clpv.view");
 }
 
-/// Throws Error(usage) for an unknown option of the command, with the closest one.
+/// Throws Error(usage) for an unknown option of the command.
 void reject_unknown_option(const CLI::App& app) {
-  const CLI::App& command = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
-  std::vector<std::string> names;
-  for (const CLI::App* owner : {&command, &app}) {
-    for (const CLI::Option* option : owner->get_options())
-      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
+  const std::vector<CLI::App*> named = app.get_subcommands();
   for (const std::string& word : app.remaining(true)) {
-    const std::string given = word.substr(0, word.find('='));
-    if (!word.starts_with('-')) continue;
-    const std::string meant = nearest(given, names);
-    throw Error(ExitCode::usage, "{}unknown option '{}'; {}",
-                &command == &app ? "" : command.get_name() + ": ", given,
-                meant.empty() ? "--help-all lists those allowed" : "did you mean " + meant + "?");
+    if (word.starts_with('-'))
+      throw Error(ExitCode::usage, "{}unknown option '{}'; --help-all lists those allowed",
+                  named.empty() ? "" : named.front()->get_name() + ": ",
+                  word.substr(0, word.find('=')));
   }
 }
 
@@ -185,7 +174,7 @@ void parse_command_line(CLI::App& app, int argc, const char* const* argv) {
     reject_unknown_option(app);
     throw;
   } catch (const CLI::RequiredError&) {
-    if (app.get_subcommands().empty()) reject_misspelt_command(app);
+    if (app.get_subcommands().empty()) reject_unknown_command(app);
     reject_unknown_option(app);
     throw;
   } catch (const CLI::ArgumentMismatch& error) {

@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kFullBytes = 1 << 20;  // less cannot hold a kernel and its temporary files
-
 constexpr const char* kVariable = "POCL_CACHE_DIR";
 
 /// A scratch folder until this process ends; a fork of it leaves the folder alone.
@@ -70,14 +68,6 @@ void choose_driver_cache() {
 std::optional<fs::path> driver_cache_folder() {
   const char* set = std::getenv(kVariable);
   return set != nullptr && *set != '\0' ? std::optional<fs::path>(set) : std::nullopt;
-}
-
-bool driver_cache_is_full() {
-  const auto folder = driver_cache_folder();
-  if (!folder) return false;
-  std::error_code failed;
-  const fs::space_info space = fs::space(*folder, failed);
-  return !failed && space.available < kFullBytes;
 }
 
 CompiledMarks::CompiledMarks(const Device& device) {

@@ -23,9 +23,6 @@ void choose_driver_cache();
 /// POCL_CACHE_DIR; nothing before choose_driver_cache().
 std::optional<std::filesystem::path> driver_cache_folder();
 
-/// Returns true if the disk of that folder has no space left.
-bool driver_cache_is_full();
-
 /// Marks of programs whose kernels PoCL has compiled, in PoCL's cache folder: they disappear with
 /// it. Later runs start no helpers, which would set up the scene and the frame for nothing. Only
 /// PoCL compiles at the first launch and caches the result for all processes, so other drivers have

@@ -15,7 +15,6 @@
 #include <thread>
 
 #include "device/cl_error.hpp"
-#include "device/driver_cache.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
 #include "support/input_file.hpp"
@@ -148,14 +147,6 @@ bool blames_text(const std::string& log) {
   return std::regex_search(log, place);
 }
 
-/// A hint if the log shows that the driver cannot write its cache.
-std::string cache_advice(const std::string& log) {
-  if (log.find("No space left") != std::string::npos || driver_cache_is_full())
-    return "\nthe disk of the driver's cache is full; POCL_CACHE_DIR names another folder for "
-           "PoCL's";
-  return {};
-}
-
 /// The compiler's log, or a note that the driver has none.
 std::string build_log(const cl::Program& program, const Device& device) {
   try {
@@ -218,9 +209,8 @@ cl::Program build_program(const cl::Context& context, const Device& device,
         options.erase(0, kStandard.size());
       } else {
         throw Error(ExitCode::run_time,
-                    "kernels/{} does not build on {} (driver {}) with '{}': {}\n{}{}", source.file,
-                    device.name, device.driver, options, cl_error_name(error.err()), log,
-                    cache_advice(log));
+                    "kernels/{} does not build on {} (driver {}) with '{}': {}\n{}", source.file,
+                    device.name, device.driver, options, cl_error_name(error.err()), log);
       }
     }
   }

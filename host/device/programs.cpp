@@ -148,7 +148,6 @@ void Programs::compile_with_helpers() {
   if (!helpers) return;
   while (helpers->wait()) {
     stop_if_interrupted("kernels were being compiled");
-    build_one_compiled(helpers->claims());
     // Some are described later.
     progress.reach(std::min(helpers->claims().finished_count(), kernels));
   }
@@ -166,19 +165,6 @@ std::unique_ptr<Helpers> Programs::started_helpers() const {
   } catch (const Error& error) {
     log_warning("{}: this process compiles all kernels itself", error.what());
     return nullptr;
-  }
-}
-
-/// Builds a program whose kernels helpers have compiled, from the driver's cache, while they
-/// compile others.
-void Programs::build_one_compiled(const Claims& claims) {
-  for (const auto& entry : programs_) {
-    Program& program = *entry.second;
-    if (program.built() != nullptr || program.kernels.empty()) continue;
-    const bool compiled = std::ranges::all_of(program.kernels, [&](const std::string& kernel) {
-      return claims.finished(name_of_claim(program.key, kernel));
-    });
-    if (compiled) return build(program);
   }
 }
 

@@ -90,7 +90,6 @@ class Programs {
   void note_compiling(const Program& program, double ms);
   void compile_with_helpers();
   std::unique_ptr<Helpers> started_helpers() const;
-  void build_one_compiled(const Claims& claims);
 
   const Device& device_;
   const cl::Context& context_;

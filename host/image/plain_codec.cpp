@@ -267,14 +267,14 @@ class PlainExr : public PlainDecoder {
       const std::string type = text();
       const std::size_t size = little_endian(bytes_, at_), end = at_ + 4 + size;
       at_ += 4;
-      if (name == "compression" && bytes_[at_] != 0) return kOthers;
-      if (name == "dataWindow") {
+      if (name == "compression" && type == name && bytes_[at_] != 0) return kOthers;
+      if (name == "dataWindow" && type == "box2i") {
         const auto side = [&](std::size_t from) {
           return little_endian<std::int32_t>(bytes_, at_ + from + 8) -
                  little_endian<std::int32_t>(bytes_, at_ + from) + 1;
         };
         image_.width = side(0), image_.height = side(4);
-      } else if (name == "channels") {
+      } else if (name == "channels" && type == "chlist") {
         while (bytes_[at_] != 0) {
           image_.channels.push_back(text());
           if (little_endian(bytes_, at_) != kFloat || little_endian(bytes_, at_ + 8) != 1 ||
@@ -287,7 +287,8 @@ class PlainExr : public PlainDecoder {
       }
       at_ = end;
     }
-    return {};
+    const std::size_t rows = (bytes_.size() - at_) / sizeof(std::uint64_t);
+    return std::int64_t{image_.height} <= static_cast<std::int64_t>(rows) ? "" : "no table of rows";
   }
   std::string read(float* pixels) override {
     const auto width = static_cast<std::size_t>(image_.width), channels = image_.channels.size(),

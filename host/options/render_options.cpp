@@ -250,20 +250,6 @@ std::vector<OptionDescription> list_options(const RenderOptions& options) {
   return list;
 }
 
-namespace {
-
-/// Suggests the closest option.
-[[noreturn]] void reject_unknown(std::string_view name) {
-  std::vector<std::string> names;
-  for (const OptionDescription& option : list_options(RenderOptions{}))
-    names.push_back(option.name);
-  const std::string meant = nearest(name, names);
-  throw Error(ExitCode::usage, "unknown option '{}'{}", name,
-              meant.empty() ? "" : "; did you mean " + meant + "?");
-}
-
-}  // namespace
-
 void set_option(RenderOptions& options, std::string_view name, std::string_view value) {
   bool known = false;
   for_each_option(
@@ -276,7 +262,7 @@ void set_option(RenderOptions& options, std::string_view name, std::string_view 
         }
       });
   if (name == "basis") options.centres.clear();
-  if (!known) reject_unknown(name);
+  if (!known) throw Error(ExitCode::usage, "unknown option '{}'", name);
   if (name == "preset") apply_preset(options, options.preset);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "support/interrupt.hpp"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -30,27 +29,6 @@ void say(const char* text) {
   static_cast<void>(written);  // nowhere to report a failure
 }
 
-// A duplicate of stderr while it is muted, else -1.
-std::atomic<int> muted_stderr{-1};
-
-/// Sends stderr nowhere: a compiler whose linker got the same signal reports an error too.
-/// Async-signal-safe.
-void mute_stderr() {
-  if (muted_stderr >= 0) return;
-  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (nowhere < 0) return;
-  muted_stderr = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
-  if (muted_stderr >= 0) ::dup2(nowhere, STDERR_FILENO);
-  ::close(nowhere);
-}
-
-void unmute_stderr() {
-  const int stderr_before = muted_stderr.exchange(-1);
-  if (stderr_before < 0) return;
-  ::dup2(stderr_before, STDERR_FILENO);
-  ::close(stderr_before);
-}
-
 /// Ends the process by the signal's default action; async-signal-safe.
 void end_by(int signal) {
   remove_unfinished_outputs();
@@ -66,7 +44,6 @@ static void on_signal(int signal) {
     say("\nclpv: stopping after ");
     say(what);
     say("; once more to stop now\n");
-    mute_stderr();
   }
 }
 
@@ -93,7 +70,6 @@ Uninterruptible::Uninterruptible(const char* what) : outer_(uninterruptible.exch
 
 Uninterruptible::~Uninterruptible() {
   uninterruptible = outer_;
-  if (outer_ == nullptr) unmute_stderr();
 }
 
 StopScope::StopScope(const StopRequest* stop) : outer_(std::exchange(thread_stop, stop)) {}

@@ -19,7 +19,7 @@ class Interrupted : public std::runtime_error {
 void catch_interrupts();
 
 /// Work that cannot be interrupted, during its lifetime: a signal then logs "stopping after
-/// `what`", and further words on stderr are lost until the work ends.
+/// `what`".
 class Uninterruptible {
  public:
   explicit Uninterruptible(const char* what);

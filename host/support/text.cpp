@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
@@ -35,22 +34,6 @@ Character first_character(std::string_view text) {
   const bool valid =
       code >= kLowest[bytes] && code <= 0x10ffff && !(code >= 0xd800 && code < 0xe000);
   return valid ? Character{code, bytes} : Character{};
-}
-
-/// Levenshtein distance: number of inserted, deleted and replaced letters.
-std::size_t edits(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
 }
 
 bool is_control(std::uint32_t code) {
@@ -139,17 +122,6 @@ std::string float_literal(double value) {
   std::string text = fmt::format("{:.9g}", single);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return std::signbit(single) ? "(" + text + "f)" : text + "f";
-}
-
-std::string nearest(std::string_view misspelt, const std::vector<std::string>& names) {
-  constexpr std::size_t kMaxEdits = 2;  // "rendr" and "qualtiy" have one and two
-  std::string found;
-  std::size_t fewest = kMaxEdits + 1;
-  for (const std::string& name : names) {
-    if (const std::size_t count = edits(misspelt, name); count < fewest)
-      fewest = count, found = name;
-  }
-  return found;
 }
 
 }  // namespace clpv

@@ -42,10 +42,6 @@ std::string float_literal(double value);
 /// Returns `text` without blanks at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// Returns the name that is nearest to a misspelt one: the one of the fewest inserted, deleted and
-/// replaced letters, at most two; "" if none is that near.
-std::string nearest(std::string_view misspelt, const std::vector<std::string>& names);
-
 /// Parses all of `text` as a finite decimal number, such as "-2", "+1.5", ".5" or "1e-3"; returns
 /// nothing if it is none or out of range. All numbers in text are read by it, but those of JSON.
 template <typename Number>

@@ -107,32 +107,6 @@ TEST(Api, CamerasOfASceneCanBeChanged) {
   EXPECT_EQ(scene.cameras()[0].vertical_fov_degrees, 37.3);
 }
 
-TEST(Api, AChangedLightRecomputesOnlyItsLight) {
-  Scene scene(kCornell);
-  Renderer renderer(scene, test::small_options());
-  const Image before = renderer.render(View::indirect);
-  std::vector<Light> lights = scene.lights();
-  ASSERT_FALSE(lights.empty());
-  for (Light& light : lights) {
-    for (double& channel : light.intensity) channel *= 3;
-  }
-  scene.set_lights(lights);
-  const Image brighter = renderer.render(View::indirect);
-  EXPECT_NEAR(mean(brighter.pixels, 1), 3 * mean(before.pixels, 1), 0.01 * mean(before.pixels, 1));
-  const Stats stats = renderer.stats();
-  EXPECT_GT(ms_of(stats.times, "propagate"), 0);
-  EXPECT_GT(ms_of(stats.times, "rasterize-rsm"), 0);
-  for (const char* kept : {"rasterize-shadow", "blockers", "visibility"})
-    EXPECT_EQ(ms_of(stats.times, kept), 0) << kept;
-  scene.set_lights(lights);
-  renderer.render();
-  EXPECT_EQ(ms_of(renderer.stats().times, "propagate"), 0) << "the same lights";
-  Renderer fresh(scene, test::small_options());
-  EXPECT_EQ(fresh.render(View::indirect).pixels, brighter.pixels);
-  scene.set_lights({});
-  EXPECT_EQ(mean(renderer.render().pixels, 1), 0) << "dark";
-}
-
 TEST(Api, LightsKeepTheirNumbers) {
   Scene scene(kCornell);
   const Light spot{LightKind::spot, {1, 2, 3}, {0, 0, -2}, {1, 2, 4}, 5, 20, 60, "a"};
@@ -402,15 +376,6 @@ TEST(ApiCalls, MeshesThatComeLaterFitTheCascades) {
   for (Scene* each : {&scene, &built})
     each->add_mesh({.positions = corners, .triangles = triangles});
   EXPECT_EQ(early.render().metadata, Renderer(built, test::small_options()).render().metadata);
-}
-
-TEST(ApiCalls, HelpersCompileTheProgramsOfTheMedium) {
-  RenderRequest request;
-  request.scene = kCornell;
-  request.changes.medium = ClpvMedium{};
-  request.changes.medium->anisotropy = 0.5f;
-  request.changes.medium->extinction[0] = 0.25f;
-  EXPECT_THAT(compilation_of(request, {}, "").helpers, Contains("--medium=0,0.25,0.5"));
 }
 
 // Options of a bake's frames are not the ones that its user gave.

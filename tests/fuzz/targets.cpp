@@ -24,7 +24,6 @@
 #include "basis/basis.hpp"
 #include "cli/commands.hpp"
 #include "cli/options.hpp"
-#include "device/program_cache.hpp"
 #include "image/compare.hpp"
 #include "image/image_header.hpp"
 #include "image/image_io.hpp"
@@ -34,7 +33,6 @@
 #include "scene/load.hpp"
 #include "sequence/times_file.hpp"
 #include "support/error.hpp"
-#include "support/fingerprint.hpp"
 #include "support/log.hpp"
 #include "tests/support/random_options.hpp"
 #include "tests/support/run_program.hpp"
@@ -300,23 +298,6 @@ void points(std::string_view bytes) {
   read_or_reject({ExitCode::bad_input}, [&] { read_points(path); });
 }
 
-/// A file of a compiled program, with a right hash put on where the first byte is odd: taken whole
-/// or not at all, never an error. A program that is taken is the one in the file.
-void program_cache(std::string_view given) {
-  log_to_stderr(LogLevel::error);
-  if (given.empty()) return;
-  std::string bytes(given.substr(1));
-  if (given[0] & 1) {
-    bytes.insert(0, "clpv program 2\n");
-    const std::uint64_t hash = Fingerprint().add(std::string_view(bytes)).value();
-    bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
-  }
-  const ProgramCache cache(folder().path());
-  folder().write(cache.file_of("key").filename().string(), bytes);
-  const auto binary = cache.load("key");
-  if (binary && binary->size() > bytes.size()) std::abort();
-}
-
 /// A line of times.jsonl: skipped, or a frame's times that are written as they were read.
 void times(std::string_view bytes) {
   const auto line = frame_line(std::string(bytes));
@@ -333,9 +314,8 @@ Target chosen_target() {
       {"centres", centres}, {"command_line", command_line},
       {"glb", glb},         {"gltf", gltf},
       {"image", image},     {"options", options},
-      {"points", points},   {"program_cache", program_cache},
-      {"scene", scene},     {"texture", texture},
-      {"times", times}};
+      {"points", points},   {"scene", scene},
+      {"texture", texture}, {"times", times}};
   const char* name = std::getenv("CLPV_FUZZ_TARGET");
   const auto found = kTargets.find(name != nullptr ? name : "");
   if (found != kTargets.end()) return found->second;

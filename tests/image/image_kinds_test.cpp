@@ -328,13 +328,6 @@ TEST(ExrParts, HaveUniqueNamesAndOneDisplayWindow) {
                         "(23, 12)"));
 }
 
-TEST(ExrKinds, RowsOfAnotherSizeAreRejected) {
-  std::string bytes = test::exr_file({grey(kDisplay)});
-  const std::size_t row = 24 * 3 * 4, size_of_last = bytes.size() - row - 4;
-  bytes.replace(size_of_last, 4, test::bytes_of<std::int32_t>({10}));
-  EXPECT_THAT(rejection("a.exr", bytes), HasSubstr("row 12: found 10 bytes; allowed: 288"));
-}
-
 TEST(ExrKinds, CubeMapsAndSampledChannelsAreRejected) {
   test::ExrPart cube = grey(kDisplay);
   cube.attributes = test::exr_attribute("envmap", "envmap", "\1");

@@ -170,30 +170,6 @@ TEST_F(OutputFile, NamesMayHaveTheirWholeLength) {
   EXPECT_NE(message.find("File name too long"), std::string::npos) << message;
 }
 
-TEST_F(OutputFile, OneFileHasOneUse) {
-  write_file(folder_ / "scene.json", std::string_view("{}"));
-  fs::create_symlink("scene.json", folder_ / "link.json");
-  fs::create_hard_link(folder_ / "scene.json", folder_ / "hard.json");
-  fs::create_symlink("new.exr", folder_ / "link.exr");
-  fs::create_directory(folder_ / "below");
-  const std::vector<NamedFile> inputs{{"SCENE", folder_ / "scene.json"}, {"--model", ""}};
-  check_outputs(
-      {{"--output", folder_ / "new.exr"}, {"--stats", folder_ / "new.json"}, {"--log", ""}},
-      inputs);
-  for (const char* same : {"scene.json", "below/../scene.json", "link.json", "hard.json"}) {
-    const std::string message = error_of(ExitCode::usage, [&] {
-      check_outputs({{"--stats", folder_ / same}}, inputs);
-    });
-    EXPECT_NE(message.find("--stats"), std::string::npos) << message;
-    EXPECT_NE(message.find("SCENE"), std::string::npos) << message;
-  }
-  for (const char* same : {"new.exr", "./new.exr", "link.exr"}) {
-    error_of(ExitCode::usage, [&] {
-      check_outputs({{"--output", folder_ / "new.exr"}, {"--stats", folder_ / same}}, {});
-    });
-  }
-}
-
 TEST_F(OutputFile, NpyHasNumPysHeaderAndTheValues) {
   const std::vector<float> values{1, -2, 3.5f, 4, 5, 1e-30f};
   const std::size_t shape[] = {3, 1, 2}, line[] = {6};

@@ -71,14 +71,6 @@ TEST(Printable, ErrorsAndXmlAre) {
   EXPECT_EQ(xml_escaped("<a\x01&\x1b\n>"), "&lt;a?&amp;?\n>");
 }
 
-TEST(Nearest, HasAtMostTwoEdits) {
-  const std::vector<std::string> names{"basis", "bases", "grid"};
-  EXPECT_EQ(nearest("bsis", names), "basis");
-  EXPECT_EQ(nearest("gird", names), "grid");
-  EXPECT_EQ(nearest("bass", names), "basis") << "the first of two";
-  EXPECT_EQ(nearest("width", names), "");
-}
-
 TEST(InFileName, HasOnlyPlainCharactersAndTellsNamesApart) {
   std::set<std::string> parts;
   const std::string wide = "\xc3\xbc", longer(65, 'a');
@@ -119,10 +111,6 @@ TEST(Process, ReturnsOutputAndExitCode) {
   EXPECT_EQ(ended.code, 7);
   EXPECT_EQ(ended.output, "out\nerr\n");
   EXPECT_EQ(Process("/bin/sh", {"-c", "kill -9 $$"}).end().code, 128 + 9);
-}
-
-TEST(Process, ArgumentsGoThroughNoShell) {
-  EXPECT_EQ(Process("/bin/echo", {"$HOME; 'a'  b"}).end().output, "$HOME; 'a'  b\n");
 }
 
 TEST(Process, ReadsWhatItIsFed) {
@@ -216,24 +204,6 @@ TEST(Process, ChildrenEndWithTheirParent) {
   EXPECT_FALSE(std::filesystem::exists(late));
 }
 
-TEST(InheritedState, IsUndone) {
-  EXPECT_EQ(in_fork([] {
-              sigset_t all, now;
-              sigfillset(&all);
-              ::sigprocmask(SIG_SETMASK, &all, nullptr);
-              std::signal(SIGCHLD, SIG_IGN);
-              ::close(STDOUT_FILENO);
-              reset_inherited_state();
-              ::sigprocmask(SIG_SETMASK, nullptr, &now);
-              if (sigismember(&now, SIGTERM) != 0) return 1;
-              if (std::signal(SIGCHLD, SIG_DFL) != SIG_DFL) return 2;
-              // A file that opens must not become stdout, nor what is printed vanish.
-              if (::open("/dev/null", O_RDONLY) <= STDERR_FILENO) return 3;
-              return ::write(STDOUT_FILENO, "x", 1) < 0 ? 0 : 4;
-            }),
-            0);
-}
-
 // Numbers on the command line: one parser reads those of all options of all commands.
 
 TEST(ParseNumber, IsDecimalAndFinite) {
@@ -306,21 +276,6 @@ TEST(Numbers, OfAllOptionsAreReadAlike) {
     }
   }
   EXPECT_GT(numeric, 60);
-}
-
-TEST(Numbers, OfVectors) {
-  const std::string before = "render none.json -o none.exr --target 0,0,0 ";
-  for (const char* good : {"0,2,0.5", "'0, 2, 0.5'", "' 0,2,.5'", "+0,2e0,5e-1"})
-    EXPECT_EQ(test::run_here(before + "--eye=" + good).exit_code, 3) << good << ": no such scene";
-  for (const char* bad : {"'0 2 0.5'", "0,2", "0,2,0,5", "0;2;0.5", "0,2,inf", "0,nan,1", "0,2,0x1",
-                          "0,,1", "0,2,0.5,", ",2,0.5", "0,2,1e999"}) {
-    const test::Outcome outcome = test::run_here(before + "--eye=" + bad);
-    EXPECT_EQ(outcome.exit_code, 2) << bad;
-    EXPECT_THAT(outcome.err, HasSubstr("--eye"));
-  }
-  for (const char* bad : {"--sun=1,-1,0,5,10", "--sun=1,-1", "--sun=1,-1,0.5,inf", "--medium=nan",
-                          "--medium=0.05,0.01,1", "--medium=inf", "--medium=0,05,0,01"})
-    EXPECT_EQ(test::run_here(before + "--eye 0,0,1 " + bad).exit_code, 2) << bad;
 }
 
 }  // namespace

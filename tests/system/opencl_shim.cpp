@@ -2,15 +2,13 @@
 // A device that fails on command: preloaded (LD_PRELOAD) before the OpenCL loader, it passes every
 // call on, but for one.
 //
-//   CLPV_SHIM=CALL:N:CODE    the N-th call (from 1; * is every one) of clCreateBuffer, ... returns
-//                            that OpenCL code
+//   CLPV_SHIM=CALL:N:CODE    the N-th call (from 1) of clCreateBuffer, ... returns that OpenCL code
 //   CLPV_SHIM_COMPILER=no    devices have no compiler
 //   CLPV_SHIM_CLOCK=ticks    events have ticks of 42 ns
 //   CLPV_SHIM_CLOCK=short    events last 1/42 of their time
 //   CLPV_SHIM_CLOCK=late     the same, once a kernel ran
 //   CLPV_SHIM_CLOCK=swap     events end before they start, once a kernel ran
 //   CLPV_SHIM_CLOCK=still    events end when they start, once a kernel ran
-//   CLPV_SHIM_KERNELS=no     kernels do not run, for the host's time alone: markers instead
 //   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that
 //                            were not released
 //
@@ -44,7 +42,7 @@ bool fails(const char* kind, const char* name, cl_int& code) {
   if (std::sscanf(wish, "%63[^:]:%15[^:]:%15s", which, when, what) != 3) return false;
   const bool by_name = std::string(which) == name, by_kind = std::string(which) == kind;
   if (!by_name && !by_kind) return false;
-  if (std::string(when) != "*" && std::atol(when) != (by_name ? of_name : of_kind)) return false;
+  if (std::atol(when) != (by_name ? of_name : of_kind)) return false;
   code = std::atoi(what);
   return true;
 }
@@ -168,8 +166,6 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint 
                               cl_uint waits, const cl_event* events, cl_event* event) {
   CLPV_MAY_FAIL("enqueue", clEnqueueNDRangeKernel);
   kernel_ran = true;
-  static const bool skips = std::getenv("CLPV_SHIM_KERNELS") != nullptr;
-  if (skips) return clEnqueueMarkerWithWaitList(queue, 0, nullptr, event);
   return failed ? code
                 : call(queue, kernel, dimensions, offset, global, local, waits, events, event);
 }
@@ -194,11 +190,6 @@ cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem memory, const void* pa
   CLPV_MAY_FAIL("enqueue", clEnqueueFillBuffer);
   return failed ? code
                 : call(queue, memory, pattern, pattern_size, offset, size, waits, events, event);
-}
-
-cl_int clFinish(cl_command_queue queue) {
-  CLPV_MAY_FAIL("finish", clFinish);
-  return failed ? code : call(queue);
 }
 
 }  // extern "C"

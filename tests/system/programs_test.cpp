@@ -106,8 +106,8 @@ TEST(Programs, AParentThatIgnoresSIGCHLDChangesNothing) {
   folder.write("film.mp4", "old");
   const std::string ignoring = "cd " + folder.path().string() +
                                " && PATH=" + (folder / "bin").string() +
-                               ":$PATH exec env --ignore-signal=CHLD --block-signal=TERM "
-                               "timeout -s KILL 300 " CLPV_PROGRAM;
+                               ":$PATH exec timeout -s KILL 300 "  // which resets SIGCHLD
+                               "env --ignore-signal=CHLD --block-signal=TERM " CLPV_PROGRAM;
   const test::Outcome film = test::run(ignoring + " sequence " + kTiny + kSmallSteps +
                                        "--frames 1 --fps 1 -o frames --video film.mp4");
   EXPECT_EQ(film.exit_code, 1) << film.err;
