@@ -15,7 +15,7 @@
 //          binned        entries: index in `list`, smallest key
 //          counts        CLPV_LISTED and so on. With more entries than most_entered, `starts` and
 //                        `binned` are incomplete: every tile then draws the whole list, slowly
-//          fresh         1: tiles start empty; 0: they continue from `keys` and `seen`
+//          clear         1: tiles start empty; 0: they continue from `keys` and `seen`
 //          only_depth    1: a shadow map, which needs no `seen`
 //          vertices, triangles, materials, textures, texels   the scene, for masked materials
 // In, out: keys, seen    key, and number in the scene, of the nearest triangle: CLPV_TILE numbers
@@ -33,7 +33,7 @@
 #if W == 1
 __attribute__((reqd_work_group_size(CLPV_TILE, CLPV_TILE, 1)))
 #endif
-__kernel void draw_tiles(__constant const ClpvView* views, const uint fresh, const uint only_depth,
+__kernel void draw_tiles(__constant const ClpvView* views, const uint clear, const uint only_depth,
                          __global const ClpvRasterTriangle* list, __global const uint* starts,
                          __global const uint2* binned, __global const uint* counts,
                          const uint most_entered, __global const ClpvVertex* vertices,
@@ -50,7 +50,7 @@ __kernel void draw_tiles(__constant const ClpvView* views, const uint fresh, con
   const uint at = get_group_id(2) * tiles_in(view) + y * tiles_x + x;
   const bool sorted = counts[CLPV_ENTERED] <= most_entered && counts[CLPV_ENTERED_TOO_MANY] == 0;
   const uint start = starts[at * CLPV_SLICES], end = starts[(at + 1) * CLPV_SLICES];
-  if (!fresh && sorted && start == end) return;
+  if (!clear && sorted && start == end) return;
   const Scene scene = {vertices, triangles, materials, textures, texels};
   const float far_key = is_orthographic(view) ? view.far_depth : -1.0f / view.far_depth;
 #if W == 1
@@ -59,8 +59,8 @@ __kernel void draw_tiles(__constant const ClpvView* views, const uint fresh, con
   __local float of_pixels[CLPV_TILE_PIXELS], of_rows[CLPV_TILE];
   const Shared shared = {candidates, &count, of_pixels, of_rows};
   const uint place = tile_row(at, first_row, vector);
-  Pixel pixel = {fresh ? INFINITY : keys[place],
-                 fresh || only_depth ? UINT_MAX : seen[place],
+  Pixel pixel = {clear ? INFINITY : keys[place],
+                 clear || only_depth ? UINT_MAX : seen[place],
                  (int)get_global_id(0),
                  (int)get_global_id(1),
                  (int)vector,
@@ -81,9 +81,9 @@ __kernel void draw_tiles(__constant const ClpvView* views, const uint fresh, con
                      far_key,   only_depth != 0};
   for (int row = 0; row < CLPV_ROWS; ++row) {
     const uint from = tile_row(at, row, 0);
-    near_keys[row] = fresh ? (realW)(INFINITY) : keys[from];
+    near_keys[row] = clear ? (realW)(INFINITY) : keys[from];
     if (only_depth) continue;
-    nearest[row] = fresh ? (uintW)(UINT_MAX) : seen[from];
+    nearest[row] = clear ? (uintW)(UINT_MAX) : seen[from];
   }
   if (sorted) {
     draw_binned(view, tile, list, binned, start, end, scene);

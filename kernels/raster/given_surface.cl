@@ -35,12 +35,12 @@ __kernel void given_surface(const uint count, __global const Place* given_places
   if (i >= count) return;
   const Place place = given_places[i];
   const float4 normal = unit_normal(given_normals[i]);
-  const bool lit = normal.x != 0.0f || normal.y != 0.0f || normal.z != 0.0f;
+  const bool has_normal = normal.x != 0.0f || normal.y != 0.0f || normal.z != 0.0f;
 #if CLPV_POINTS
-  const bool seen = lit && is_finite(place.x) && is_finite(place.y) && is_finite(place.z);
+  const bool seen = has_normal && is_finite(place.x) && is_finite(place.y) && is_finite(place.z);
   places[i] = seen ? (float4)(place.x, place.y, place.z, 1.0f) : (float4)(0.0f, 0.0f, 0.0f, 0.0f);
 #else
-  const bool seen = lit && is_finite(place) && place > 0.0f;
+  const bool seen = has_normal && is_finite(place) && place > 0.0f;
   places[i] = seen ? place : 0.0f;
 #endif
   normals[i] = seen ? normal : (float4)(0.0f, 0.0f, 0.0f, 0.0f);

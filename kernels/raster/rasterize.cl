@@ -179,8 +179,8 @@ __kernel void enter_wide(__constant const ClpvView* views, __global const uint* 
       __global uint* entry = entries + CLPV_ENTRY_WORDS * (wide[i].entry + k);
       if ((largest_in_tile(edge_at(r, 0, px, py)) | largest_in_tile(edge_at(r, 1, px, py)) |
            largest_in_tile(edge_at(r, 2, px, py))) >= 0) {
-        enter(entry, (first + y * tiles_x + x) * CLPV_SLICES + slice, index, as_uint(r->nearest),
-              slice_counts);
+        add_entry(entry, (first + y * tiles_x + x) * CLPV_SLICES + slice, index,
+                  as_uint(r->nearest), slice_counts);
       } else {
         entry[0] = CLPV_NO_SLICE;
       }

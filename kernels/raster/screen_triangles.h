@@ -3,7 +3,7 @@
 // those to draw.
 #pragma once
 
-#include "raster/enter_tiles.h"
+#include "raster/tile_entries.h"
 #include "raster/project.h"
 
 // W triangles of the scene, projected to the screen.

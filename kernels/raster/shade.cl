@@ -8,7 +8,7 @@
 //            light, views, count   the light and its views; count 0: no shadows
 //            which, map            the view whose receivers to light, and its shadow map: depths
 //                                  [m]
-//            fresh                 1: overwrite `direct`; 0: add to it
+//            clear                 1: overwrite `direct`; 0: add to it
 //   In, out: direct                E_direct [W/m^2] per pixel
 //   A work-item lights W pixels of a row.
 // shade
@@ -22,7 +22,7 @@
 __kernel void light_surfaces(const ClpvView camera, __global const float* depths,
                              __global const float4* normals, const ClpvLight light,
                              __global const ClpvView* views, const uint count, const uint which,
-                             __global const float* map, const uint fresh, __global float4* direct) {
+                             __global const float* map, const uint clear, __global float4* direct) {
   const PixelRow p = find_pixel_row(camera);
   if (p.count == 0) return;
   Surfaces seen;
@@ -34,7 +34,7 @@ __kernel void light_surfaces(const ClpvView camera, __global const float* depths
   const VecLanes lanes = unpack(lit, irradiance);
   for (uint i = 0; i < p.count; ++i) {
     const float4 added = (float4)(lanes.x[i], lanes.y[i], lanes.z[i], 0.0f);
-    direct[seen.first + i] = fresh ? added : direct[seen.first + i] + added;
+    direct[seen.first + i] = clear ? added : direct[seen.first + i] + added;
   }
 }
 

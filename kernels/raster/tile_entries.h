@@ -58,8 +58,8 @@ static inline uint slice_of(const ClpvView view, const uint kind, const float ne
 }
 
 // Writes an entry for triangle `index` of the list, as the next one of a tile's slice.
-static inline void enter(__global uint* entry, const uint slice, const uint index,
-                         const uint nearest, volatile __global uint* slice_counts) {
+static inline void add_entry(__global uint* entry, const uint slice, const uint index,
+                             const uint nearest, volatile __global uint* slice_counts) {
   entry[0] = slice;
   entry[1] = atomic_inc(slice_counts + slice);
   entry[2] = index;
@@ -75,7 +75,7 @@ static inline Edge side_of(const RasterWords* words, const int i, const int lane
 
 // Writes entries of a triangle from `at` on, one for each tile of its box that it may cover.
 // Returns the index after the last one.
-static inline uint enter_all(const ClpvView view, const RasterWords* words, const int lane,
+static inline uint add_entries(const ClpvView view, const RasterWords* words, const int lane,
                              const uint index, uint at, const Entries to) {
   const uint tiles_x = tiles_across(view), first = to.view * tiles_in(view),
              nearest = (uint)words->word[CLPV_NEAREST_WORD][lane];
@@ -83,9 +83,9 @@ static inline uint enter_all(const ClpvView view, const RasterWords* words, cons
       slice_of(view, (uint)words->word[CLPV_TRIANGLE_WORD][lane], as_float(nearest));
   const TileRange tiles = tiles_of(words, lane);
   if (tiles.left == tiles.right && tiles.top == tiles.bottom) {
-    enter(to.entries + CLPV_ENTRY_WORDS * at,
-          (first + tiles.top * tiles_x + tiles.left) * CLPV_SLICES + slice, index, nearest,
-          to.slice_counts);
+    add_entry(to.entries + CLPV_ENTRY_WORDS * at,
+              (first + tiles.top * tiles_x + tiles.left) * CLPV_SLICES + slice, index, nearest,
+              to.slice_counts);
     return at + 1;
   }
   const int left = tiles.left * CLPV_TILE, top = tiles.top * CLPV_TILE;
@@ -97,10 +97,10 @@ static inline uint enter_all(const ClpvView view, const RasterWords* words, cons
   for (int y = tiles.top; y <= tiles.bottom; ++y) {
     long a_here = a_left, b_here = b_left, c_here = c_left;
     for (int x = tiles.left; x <= tiles.right; ++x) {
-      if ((a_here | b_here | c_here) >= 0) {
-        enter(to.entries + CLPV_ENTRY_WORDS * at++,
-              (first + y * tiles_x + x) * CLPV_SLICES + slice, index, nearest, to.slice_counts);
-      }
+      if ((a_here | b_here | c_here) >= 0)
+        add_entry(to.entries + CLPV_ENTRY_WORDS * at++,
+                  (first + y * tiles_x + x) * CLPV_SLICES + slice, index, nearest,
+                  to.slice_counts);
       a_here += CLPV_TILE * a.step_x, b_here += CLPV_TILE * b.step_x,
           c_here += CLPV_TILE * c.step_x;
     }
@@ -193,7 +193,7 @@ CLPV_INLINE void list_lanes(const ClpvView view, const RasterWords* words, const
       }
       at += tiles;
     } else if (room_for_entries) {
-      at = enter_all(view, words, lane, index, at, entries);
+      at = add_entries(view, words, lane, index, at, entries);
     }
     ++index;
   }
