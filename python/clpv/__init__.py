@@ -27,6 +27,8 @@ as W/sr.
     Error, UsageError, InputError, DeviceError, ResourceError, ValidationError
 """
 import importlib
+from collections.abc import Sequence
+from typing import Any
 
 __all__ = [
     "Basis", "Camera", "Comparison", "DeviceError", "DeviceEvent", "DeviceFrame", "DeviceVolumes",
@@ -36,7 +38,7 @@ __all__ = [
 ]
 
 
-def ms_of(times: "Sequence[dict[str, Any]]", stage: str) -> float:
+def ms_of(times: Sequence[dict[str, Any]], stage: str) -> float:
     """Sum of the medians of a stage over its cascades and lights [ms]; 0 if it did not run.
 
     times: those of Renderer.stats or of JSON by clpv."""

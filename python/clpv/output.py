@@ -36,12 +36,14 @@ def write(path, data):
     target = target_of(path)
     made = target.with_name(f".{os.getpid()}.part")
     try:
-        made.write_bytes(data.encode("utf-8") if isinstance(data, str) else data)
+        with open(made, "xb") as file:  # follows no link
+            file.write(data.encode("utf-8") if isinstance(data, str) else data)
         if target.exists():
             shutil.copymode(target, made)
         os.rename(made, target)
     except OSError as error:
-        made.unlink(missing_ok=True)
+        if not isinstance(error, FileExistsError):
+            made.unlink(missing_ok=True)
         raise Failure(f"{path}: cannot be written: {error.strerror}") from None
 
 

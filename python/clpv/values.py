@@ -71,7 +71,7 @@ class _Value:
             convert, allowed = KINDS.get(field.name) or KINDS[field.type]
             try:
                 made = None if given is None and field.default is None else convert(given)
-            except (TypeError, ValueError) as error:
+            except (TypeError, ValueError, OverflowError) as error:
                 if isinstance(error, _native.InputError):  # of a texture's content
                     raise
                 raise _native.UsageError(f"{type(self).__name__}: {field.name}: found {given!r}, "
@@ -87,6 +87,9 @@ class _Value:
 
     def __hash__(self):
         return hash(self._key())
+
+    def __reduce__(self):  # copies convert their fields again: arrays stay read-only
+        return type(self), tuple(vars(self).values())
 
     def replace(self, **changes):
         """A copy with other values of some fields."""

@@ -23,11 +23,18 @@ glm::dvec3 unit(const double* v) {
               w.x, w.y, w.z);
 }
 
+void require_length(const char* what, const DoubleArray& given, std::size_t length) {
+  if (given.ndim() != 1 || given.shape(0) != static_cast<py::ssize_t>(length))
+    throw Error(ExitCode::usage, "{}: found shape {}, allowed: ({},)", what, shape_text(given),
+                length);
+}
+
 using Bandwidth = std::variant<double, DoubleArray>;  // of all centres, or of each
 
 std::unique_ptr<Basis> make(const std::string& name, const std::optional<Bandwidth>& bandwidth,
                             const std::optional<DoubleArray>& centres) {
   const auto* each = bandwidth ? std::get_if<DoubleArray>(&*bandwidth) : nullptr;
+  if (each && each->ndim() == 0) return make(name, Bandwidth(*each->data()), centres);
   if (each && !centres)
     throw Error(ExitCode::usage, "bandwidth: found shape {}, allowed without centres: a number",
                 shape_text(*each));
@@ -38,6 +45,7 @@ std::unique_ptr<Basis> make(const std::string& name, const std::optional<Bandwid
   for (py::ssize_t i = 0; i < centres->size() / 3; ++i)
     all.push_back(unit(centres->data() + 3 * i));
   if (!each) return make_basis_from_centres(name, all, lambda);
+  require_length("bandwidth", *each, all.size());
   return make_basis_from_centres(name, all,
                                  std::vector<double>(each->data(), each->data() + each->size()));
 }
@@ -57,12 +65,6 @@ py::array_t<double> at_each(const char* name, const DoubleArray& given, int coun
 
 py::array_t<double> vector_array(const std::vector<double>& values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
-}
-
-void require_length(const char* what, const DoubleArray& given, std::size_t length) {
-  if (given.ndim() != 1 || given.shape(0) != static_cast<py::ssize_t>(length))
-    throw Error(ExitCode::usage, "{}: found shape {}, allowed: ({},)", what, shape_text(given),
-                length);
 }
 
 /// (n,3): nodes of the quadrature that project() sums over.

@@ -34,7 +34,7 @@ LEFT = 5  # exit code
 def of_table1(arguments):
     document = run("bench", "table1", "--scene=scenes/sponza_suns.json",
                    f"--model={arguments.model}", "--camera=curtains",
-                   f"--repetitions={2 if arguments.quick else 7}", "--output")
+                   f"--repetitions={2 if arguments.quick else 7}", "--output", right=True)
     document["context"].pop("host_name", None)
     return document
 
