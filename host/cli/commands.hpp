@@ -70,8 +70,7 @@ std::span<const Command> all_commands();
 void add_commands(CLI::App& app, Shared& shared,
                   std::span<const Command> commands = all_commands());
 
-/// Parses and runs the command. Throws CLI::Error, and Error(usage) that suggests the closest
-/// command.
+/// Parses and runs the command. Throws CLI::Error, and Error(usage) for unknown ones.
 void parse_command_line(CLI::App& app, int argc, const char* const* argv);
 
 /// The program without signal handling: parses, runs the command and logs errors to stderr. Returns

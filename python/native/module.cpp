@@ -217,6 +217,17 @@ py::list devices() {
   return all;
 }
 
+/// Rejects copies and pickles: Python's protocols 0 and 1 make objects without a value.
+void reject_copies(const py::module_& module) {
+  for (const auto& [key, type] : py::dict(module.attr("__dict__"))) {
+    if (!PyType_Check(type.ptr()) || PyExceptionClass_Check(type.ptr())) continue;
+    const auto name = key.cast<std::string>();
+    type.attr("__reduce_ex__") = py::cpp_function(
+        [name](const py::object&, int) { throw py::type_error("cannot pickle clpv." + name); },
+        py::is_method(type));
+  }
+}
+
 }  // namespace
 }  // namespace clpv::python
 
@@ -233,6 +244,7 @@ PYBIND11_MODULE(_native, module) {
   add_image(module);
   add_renderer(module);
   add_basis(module);
+  reject_copies(module);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_running_calls));
   module.def("options", &all_options,
              "Name, help, allowed values and default of each option of Renderer.");

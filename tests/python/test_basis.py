@@ -35,6 +35,6 @@ def test_a_function_of_the_basis_is_its_own_projection():
 
 def test_own_centres():
     centres = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -2, 0]]
-    basis = clpv.Basis("mine", bandwidth=0.3, centres=centres)
+    basis = clpv.Basis("mine", bandwidth=np.float32(0.3), centres=centres)
     assert len(basis) == 4 and basis.name == "mine"
     assert np.allclose(basis.centres[3], [0, -1, 0]) and np.allclose(basis.bandwidths, 0.3)

@@ -137,6 +137,7 @@ def test_errors_are_those_of_python_too():
     (clpv.ResourceError, "none/a.exr", lambda s, r: r.render().save("/none/a.exr")),
     (MemoryError, "", lambda s, r: r.irradiance(ENDLESS, ENDLESS)),
     (TypeError, "cannot pickle", lambda s, r: __import__("copy").copy(s)),
+    (TypeError, "cannot pickle", lambda s, r: __import__("pickle").dumps(s, 0)),
     *((clpv.UsageError, f"normals: found .*, allowed: an object of pyopencl's class",
        lambda s, r, wrong=wrong: r.enqueue_light(1, 1, normals=wrong, irradiance=None))
       for wrong in ("x", 1.5, THING))
@@ -150,6 +151,9 @@ def test_errors_name_what_they_found(error, match, call, scene, renderer):
     (clpv.UsageError, "nothing", lambda: clpv.Basis("nothing")),
     (clpv.UsageError, "1.5", lambda: clpv.Basis("srbf4", bandwidth=1.5)),
     (clpv.UsageError, "direction: found", lambda: clpv.Basis("mine", centres=[[0, 0, 0]])),
+    (clpv.UsageError, "bandwidth: found shape (2,), allowed: (3,)",
+     lambda: clpv.Basis("mine", bandwidth=[.2, .2], centres=numpy.eye(3))),
+    (clpv.UsageError, "allowed: three numbers", lambda: clpv.Camera((10**400, 0, 0), (0, 0, 0))),
     (clpv.UsageError, "centres: found shape", lambda: clpv.Basis("mine", centres=[[1, 0]])),
     (clpv.UsageError, "bandwidth: found shape", lambda: clpv.Basis("srbf4", [0.1, 0.2])),
     (clpv.UsageError, "transport: found 'sweep'", lambda: BASIS.energy(8, "sweep")),
