@@ -26,7 +26,7 @@
     FIELD(ClpvEmitter, size) FIELD(ClpvEmitter, rows) FIELD(ClpvEmitter, first)                    \
     FIELD(ClpvEmitter, side)                                                                       \
   FIELD(ClpvInjection, view) FIELD(ClpvInjection, grid) FIELD(ClpvInjection, colour_scale)         \
-    FIELD(ClpvInjection, first) FIELD(ClpvInjection, volume)                                       \
+    FIELD(ClpvInjection, first) FIELD(ClpvInjection, volume) FIELD(ClpvInjection, cascade)         \
   FIELD(ClpvView, eye) FIELD(ClpvView, orthographic) FIELD(ClpvView, right)                        \
     FIELD(ClpvView, half_width) FIELD(ClpvView, up) FIELD(ClpvView, half_height)                   \
     FIELD(ClpvView, forward) FIELD(ClpvView, near_depth) FIELD(ClpvView, width)                    \

@@ -85,7 +85,7 @@ CLPV_INLINE FaceFluxes find_tilts(const FaceFluxes share) {
 #pragma unroll
   for (int a = 0; a < CLPV_CELL_FACES; ++a) {
     const realW t = 1.0f / share.c[a] - 1.0f;
-    tilt.c[a] = (share.c[a] > ZERO) & (t > (realW)(CLPV_LEAST_TILT)) ? t : ZERO;
+    tilt.c[a] = ((share.c[a] > ZERO) & (t > (realW)(CLPV_LEAST_TILT))) ? t : ZERO;
   }
   return tilt;
 }

@@ -62,6 +62,10 @@ KINDS = {
 }
 
 
+def _made(kind, fields):
+    return kind(**fields)
+
+
 class _Value:
     """Converts its fields. A value of another kind raises UsageError."""
 
@@ -89,7 +93,7 @@ class _Value:
         return hash(self._key())
 
     def __reduce__(self):  # copies convert their fields again: arrays stay read-only
-        return type(self), tuple(vars(self).values())
+        return _made, (type(self), vars(self))
 
     def replace(self, **changes):
         """A copy with other values of some fields."""

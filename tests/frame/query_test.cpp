@@ -166,7 +166,7 @@ TEST(UnreachedSurfaces, AreReported) {
 }
 
 TEST_F(PointsFile, QueryAddsLightToEachPoint) {
-  folder.write("p.csv", "0.28,0.27,0.3,0,-1,0\n900,0,0,0,1,0\n");
+  folder.write("p.csv", "0.28,0.45,0.3,0,-1,0\n900,0,0,0,1,0\n");
   const auto query = [&](const std::string& more) {
     return run_here("query " + kCornell + kSmallSweep +
                         "--points p.csv --width 48 --height 27 --rsm-size 64" + more,
@@ -176,7 +176,7 @@ TEST_F(PointsFile, QueryAddsLightToEachPoint) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("1 of 2 points lie outside the cascades"));
   EXPECT_THAT(outcome.out,
-              AllOf(::testing::StartsWith("x,y,z,nx,ny,nz,red,green,blue\n0.28,0.27,0.3,0,-1,0,"),
+              AllOf(::testing::StartsWith("x,y,z,nx,ny,nz,red,green,blue\n0.28,0.45,0.3,0,-1,0,"),
                     ::testing::EndsWith("900,0,0,0,1,0,0,0,0\n")));
   const double red = std::atof(outcome.out.c_str() + outcome.out.find("0,-1,0,") + 7);
   EXPECT_GT(red, 0.01);

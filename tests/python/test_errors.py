@@ -151,7 +151,7 @@ def test_errors_name_what_they_found(error, match, call, scene, renderer):
     (clpv.UsageError, "nothing", lambda: clpv.Basis("nothing")),
     (clpv.UsageError, "1.5", lambda: clpv.Basis("srbf4", bandwidth=1.5)),
     (clpv.UsageError, "direction: found", lambda: clpv.Basis("mine", centres=[[0, 0, 0]])),
-    (clpv.UsageError, "bandwidth: found shape (2,), allowed: (3,)",
+    (clpv.UsageError, r"bandwidth: found shape \(2,\), allowed: \(3,\)",
      lambda: clpv.Basis("mine", bandwidth=[.2, .2], centres=numpy.eye(3))),
     (clpv.UsageError, "allowed: three numbers", lambda: clpv.Camera((10**400, 0, 0), (0, 0, 0))),
     (clpv.UsageError, "centres: found shape", lambda: clpv.Basis("mine", centres=[[1, 0]])),

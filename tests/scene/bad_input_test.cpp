@@ -341,8 +341,8 @@ TEST_F(CameraByNumbers, NotesNameOnlyWhatIsShown) {
     return run("pathtrace " + model + " --spp 1 --width 4 --height 4 -o a.exr" + more).err;
   };
   const std::string eye = " --eye 0,0,3 --target 0,0,0", sun = " --sun 0,-1,-1";
-  EXPECT_THAT(notes(""), AllOf(HasSubstr("added one that frames"), HasSubstr("added a sun")));
-  EXPECT_THAT(notes(eye), AllOf(Not(HasSubstr("added one that frames")), HasSubstr("added a sun")));
+  EXPECT_THAT(notes(""), AllOf(HasSubstr("added one outside"), HasSubstr("added a sun")));
+  EXPECT_THAT(notes(eye), AllOf(Not(HasSubstr("added one outside")), HasSubstr("added a sun")));
   EXPECT_THAT(notes(eye + sun), Not(HasSubstr("added")));
 }
 

@@ -116,11 +116,8 @@ class Odd(test_score.Suite):
             self.assertEqual(self.ours(), found, name)
 
     def test_files_that_both_reject(self):
-        window = struct.pack("<4i", 0, 0, test_score.SIZE[0] - 1, test_score.SIZE[1] - 1)
         nan = numpy.full_like(self.alpha, numpy.nan)
         for name, data in {
-                "duplicate attribute":
-                    self.made(more=attribute(b"displayWindow", b"box2i", window)),
                 "cube map": self.made(more=attribute(b"envmap", b"envmap", b"\1")),
                 "version": self.edited(lambda data, _: data.__setitem__(4, 3)),
                 "flag": self.edited(lambda data, _: data.__setitem__(5, 0x20)),
