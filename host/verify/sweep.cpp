@@ -184,8 +184,8 @@ SharedVolume random_reflectors(int n, std::mt19937& random) {
   for (double& value : volume->values) value = std::max(0.0f, uniform(random));
   reference::for_each_cell(n, [&](const glm::ivec3& p) {
     for (int side = 0; side < kCellFaces; ++side) {
-      volume->at(CLPV_REFLECTOR_SHARE, side, p.x, p.y, p.z) =
-          p.z % 3 == 0 ? 1 : 0.6f + 0.2f * std::abs(uniform(random));
+      const float share = 0.6f + 0.2f * std::abs(uniform(random));
+      volume->at(CLPV_REFLECTOR_SHARE, side, p.x, p.y, p.z) = p.z % 3 == 0 ? 1 : share;
       const double white = volume->value(CLPV_REFLECTOR_WHITE, side, p.x, p.y, p.z);
       for (int channel = 0; channel < 3; ++channel) {
         double& reflected = volume->at(channel, side, p.x, p.y, p.z);

@@ -62,8 +62,8 @@ static inline uint cells_from(uint cells, const int x, const int y, const int z)
   return z > 0 ? (cells & 0x0fu) << 4 : z < 0 ? (cells & 0xf0u) >> 4 : cells;
 }
 
-// Of the cells that all eight sample points about `at` see, the key of the nearest one. `at`:
-// [cells] from the first centre, in a grid of n^3 cells.
+// Key of the nearest cell to `at` that all eight sample points about `at` see. `at`: [cells] from
+// the first centre, in a grid of n^3 cells.
 static inline uint nearest_in_sight(__global const uchar* occluded, const int n, const float3 at) {
   const int highest = max(n - 2, 0), end = 4 * highest + 3;
   const float3 p = clamp(at, 0.0f, (float)(n - 1));
