@@ -57,8 +57,8 @@ SweptCascade along_24(SweptCascade cascade) {
   return cascade;
 }
 
-/// Normal of the triangles of a face (kernels/sweep/bounce.cl). `share`, `white`: of all faces.
-glm::dvec3 face_normal(const std::vector<double>& share, const std::vector<double>& white,
+/// Normal of the triangles of a face (kernels/sweep/bounce.cl). `share`, `area`: of all faces.
+glm::dvec3 face_normal(const std::vector<double>& share, const std::vector<double>& area,
                        int face) {
   const auto tilt = [&](int side) {
     const double t = share[side] > 0 ? 1 / share[side] - 1 : 0;
@@ -70,8 +70,8 @@ glm::dvec3 face_normal(const std::vector<double>& share, const std::vector<doubl
   along[axis] = face % 2 == 0 ? 1 : -1;
   if (t == 0) return along;
   for (int side = 0; side < kCellFaces; ++side)
-    v[side / 2] += (side % 2 == 0 ? 1 : -1) * white[side] * std::min(tilt(side) / t, 1.0);
-  v[axis] = std::max(white[face], 1e-6) * along[axis];
+    v[side / 2] += (side % 2 == 0 ? 1 : -1) * area[side] * std::min(tilt(side) / t, 1.0);
+  v[axis] = std::max(area[face], 1e-6) * along[axis];
   v = glm::normalize(v);
   const double sides = std::abs(v.x) + std::abs(v.y) + std::abs(v.z) - 1,
                part = t < sides ? t / sides : 1;
@@ -83,10 +83,10 @@ FaceFlux incident_flux_of(const Volume& swept, const Volume& reflectors) {
   return [flux = incident_flux(), &swept, &reflectors](int channel, const glm::ivec3& p) {
     const std::vector<double> bins = swept.cell(channel, p),
                               share = reflectors.cell(CLPV_REFLECTOR_SHARE, p),
-                              white = reflectors.cell(CLPV_REFLECTOR_WHITE, p);
+                              area = reflectors.cell(CLPV_REFLECTOR_AREA, p);
     std::vector<double> incident(kCellFaces);
     for (int side = 0; side < kCellFaces; ++side) {
-      const glm::dvec3 n = face_normal(share, white, side);
+      const glm::dvec3 n = face_normal(share, area, side);
       for (std::size_t b = 0; b < bins.size(); ++b) {
         double weight = 0;
         for (int axis = 0; axis < 3; ++axis)

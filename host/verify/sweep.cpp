@@ -181,7 +181,11 @@ SharedVolume sparse_light(const Basis& basis, int n, std::mt19937& random) {
 SharedVolume random_reflectors(int n, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(-2, 1);
   auto volume = std::make_shared<reference::Volume>(n, kCellFaces, CLPV_REFLECTOR_CHANNELS);
-  for (double& value : volume->values) value = std::max(0.0f, uniform(random));
+  const auto area = volume->values.begin() +
+                    static_cast<std::ptrdiff_t>(volume->index(CLPV_REFLECTOR_AREA, 0, 0, 0, 0));
+  for (auto value = volume->values.begin(); value != area; ++value)
+    *value = std::max(0.0f, uniform(random));
+  std::copy(area - std::distance(area, volume->values.end()), area, area);
   reference::for_each_cell(n, [&](const glm::ivec3& p) {
     for (int side = 0; side < kCellFaces; ++side) {
       const float share = 0.6f + 0.2f * std::abs(uniform(random));

@@ -15,7 +15,12 @@ enum {
 };
 
 // Channels of reflectors after red, green and blue (face_albedo.cl).
-enum { CLPV_REFLECTOR_SHARE = 3, CLPV_REFLECTOR_WHITE = 4, CLPV_REFLECTOR_CHANNELS = 5 };
+enum {
+  CLPV_REFLECTOR_SHARE = 3,
+  CLPV_REFLECTOR_WHITE = 4,
+  CLPV_REFLECTOR_AREA = 5,
+  CLPV_REFLECTOR_CHANNELS = 6,
+};
 
 // Least tilt 1 / m - 1 of triangles against the grid that is no rounding of their share m
 // (sweep/bounce.cl).

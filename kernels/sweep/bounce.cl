@@ -21,7 +21,7 @@
 // emit (face_normal):
 //   n_a = (1 - t) a + t v, normalised      t = min(1, (1 / m_a - 1) / (|v|_1 - 1))
 //   v = V / |V|, V = W_a a + sum_c min(1, (1 / m_c - 1) / (1 / m_a - 1)) W_c c
-// c: the four faces across a; W: R of albedo 1.
+// c: the four faces across a; W: R_0 of albedo 1, the same in each use of a face.
 // With CLPV_HARMONICS, light of all bands but the first is divided by the share m_a of the face's
 // triangles: |n_a| = m_a (|n_x| + |n_y| + |n_z|), so that the faces of a surface emit the clamped
 // cosine about its normal n in bands 0 and 1.
@@ -91,19 +91,19 @@ CLPV_INLINE FaceFluxes find_tilts(const FaceFluxes share) {
 }
 
 // Part of the surface of face a, of tilt t, that lies on the faces +b and -b: their difference.
-CLPV_INLINE realW across(const FaceFluxes white, const FaceFluxes tilt, const realW per_tilt,
+CLPV_INLINE realW across(const FaceFluxes area, const FaceFluxes tilt, const realW per_tilt,
                          const int b) {
-  return white.c[2 * b] * fmin(tilt.c[2 * b] * per_tilt, ONE) -
-         white.c[2 * b + 1] * fmin(tilt.c[2 * b + 1] * per_tilt, ONE);
+  return area.c[2 * b] * fmin(tilt.c[2 * b] * per_tilt, ONE) -
+         area.c[2 * b + 1] * fmin(tilt.c[2 * b + 1] * per_tilt, ONE);
 }
 
 // Normal of the triangles of face a: a along the grid, else towards the vector area v of those that
 // are tilted as much.
-CLPV_INLINE Vec face_normal(const FaceFluxes white, const FaceFluxes tilt, const int a) {
+CLPV_INLINE Vec face_normal(const FaceFluxes area, const FaceFluxes tilt, const int a) {
   const int axis = a / 2, b = (axis + 1) % 3, c = (axis + 2) % 3;
   const realW t = tilt.c[a], per_tilt = t > ZERO ? 1.0f / t : ZERO;
-  const realW v_a = fmax(white.c[a], (realW)(1e-6f)), v_b = across(white, tilt, per_tilt, b),
-              v_c = across(white, tilt, per_tilt, c);
+  const realW v_a = fmax(area.c[a], (realW)(1e-6f)), v_b = across(area, tilt, per_tilt, b),
+              v_c = across(area, tilt, per_tilt, c);
   const realW per_length = rsqrt(v_a * v_a + v_b * v_b + v_c * v_c),
               sides = per_length * (v_a + fabs(v_b) + fabs(v_c)) - 1.0f,
               part = t < sides ? t / sides : ONE;
@@ -118,7 +118,7 @@ CLPV_INLINE Vec face_normal(const FaceFluxes white, const FaceFluxes tilt, const
 
 // Fluxes on the faces: about the normals of their triangles, which do not receive what leaves them.
 CLPV_INLINE FaceFluxes incident_flux(const Bins bins, const FaceFluxes share,
-                                     const FaceFluxes white) {
+                                     const FaceFluxes area) {
   const FaceFluxes tilt = find_tilts(share);
   realW most = ZERO;
 #pragma unroll
@@ -127,7 +127,7 @@ CLPV_INLINE FaceFluxes incident_flux(const Bins bins, const FaceFluxes share,
   FaceFluxes flux;
 #pragma unroll 1
   for (int a = 0; a < CLPV_CELL_FACES; ++a)
-    flux.c[a] = flux_about(face_normal(white, tilt, a), bins);
+    flux.c[a] = flux_about(face_normal(area, tilt, a), bins);
   return flux;
 }
 
@@ -228,7 +228,7 @@ CLPV_INLINE FaceFluxes load_incident_flux(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN r
                                           const SweepTile* x_bins, const Tile t, const int r) {
   return incident_flux(load_bins(swept + t.first, x_bins, r, t.x, t.y + r, t.z),
                        faces_load(reflectors, CLPV_REFLECTOR_SHARE, t.x, t.y + r, t.z),
-                       faces_load(reflectors, CLPV_REFLECTOR_WHITE, t.x, t.y + r, t.z));
+                       faces_load(reflectors, CLPV_REFLECTOR_AREA, t.x, t.y + r, t.z));
 }
 
 // Light that leaves the faces of the cells in row r of a tile.
@@ -314,6 +314,7 @@ __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflecto
                                    const float white, CLPV_VOLUME_OUT normalised) {
   Tile t = find_tile(own_channel());
   if (t.rows == 0) return;
+  const bool divided = t.channel != CLPV_REFLECTOR_SHARE && t.channel != CLPV_REFLECTOR_AREA;
   t.first = 0;
   SweepTile bins[CLPV_AXIS_BINS];
   load_x_bins(swept, t.x, t.y, t.z, bins);
@@ -321,7 +322,7 @@ __kernel void normalise_reflectors(CLPV_BUFFER_IN swept, CLPV_VOLUME_IN reflecto
     FaceFluxes faces = faces_load(reflectors, t.channel, t.x, t.y + r, t.z);
     const FaceFluxes furnace = load_incident_flux(swept, reflectors, bins, t, r);
 #pragma unroll
-    for (int a = 0; a < CLPV_CELL_FACES && t.channel != CLPV_REFLECTOR_SHARE; ++a)
+    for (int a = 0; a < CLPV_CELL_FACES && divided; ++a)
       faces.c[a] = faces.c[a] / furnace_divisor(furnace.c[a] * (1.0f / white));
     faces_store(normalised, t.channel, t.x, t.y + r, t.z, faces);
   }

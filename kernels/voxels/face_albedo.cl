@@ -10,7 +10,7 @@
 // In:   faces       sums per face (shared/reflectors.h)
 // Out:  reflectors  R in [0, 1], six numbers per cell and channel, in the order of
 //                   shared/reflectors.h. Channel 3: mean share of each face's triangles, 0 on
-//                   faces without one; channel 4: R of albedo 1
+//                   faces without one; channels 4 and 5: R of albedo 1
 // A work-item computes a cell.
 #include "volume/coefficients.h"
 #include "shared/reflectors.h"

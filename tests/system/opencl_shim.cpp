@@ -6,7 +6,7 @@
 //   CLPV_SHIM_COMPILER=no    devices have no compiler
 //   CLPV_SHIM_CLOCK=ticks    events have ticks of 42 ns
 //   CLPV_SHIM_CLOCK=short    events last 1/42 of their time
-//   CLPV_SHIM_CLOCK=late     the same, once a kernel ran
+//   CLPV_SHIM_CLOCK=late     the same, once a kernel ran; each wait for the queue takes 0.1 s more
 //   CLPV_SHIM_CLOCK=swap     events end before they start, once a kernel ran
 //   CLPV_SHIM_CLOCK=still    events end when they start, once a kernel ran
 //   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that
@@ -18,13 +18,17 @@
 #include <dlfcn.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <mutex>
 #include <string>
+#include <thread>
 
 namespace {
+
+using namespace std::chrono_literals;
 
 std::mutex guard;
 std::map<std::string, long> calls;
@@ -45,6 +49,11 @@ bool fails(const char* kind, const char* name, cl_int& code) {
   if (std::atol(when) != (by_name ? of_name : of_kind)) return false;
   code = std::atoi(what);
   return true;
+}
+
+std::string clock_fault() {
+  const char* wish = std::getenv("CLPV_SHIM_CLOCK");
+  return wish == nullptr ? "" : wish;
 }
 
 template <typename Function>
@@ -96,8 +105,7 @@ cl_int clGetDeviceInfo(cl_device_id device, cl_device_info info, size_t size, vo
 cl_int clGetEventProfilingInfo(cl_event event, cl_profiling_info info, size_t size, void* value,
                                size_t* needed) {
   CLPV_NEXT(clGetEventProfilingInfo);
-  const char* wish = std::getenv("CLPV_SHIM_CLOCK");
-  const std::string fault = wish == nullptr ? "" : wish;
+  const std::string fault = clock_fault();
   const bool still = fault == "still";
   if ((still || fault == "swap") && kernel_ran)
     info = !still && info == CL_PROFILING_COMMAND_START ? CL_PROFILING_COMMAND_END
@@ -168,6 +176,13 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint 
   kernel_ran = true;
   return failed ? code
                 : call(queue, kernel, dimensions, offset, global, local, waits, events, event);
+}
+
+cl_int clFinish(cl_command_queue queue) {
+  CLPV_NEXT(clFinish);
+  const cl_int code = call(queue);
+  if (kernel_ran && clock_fault() == "late") std::this_thread::sleep_for(100ms);
+  return code;
 }
 
 cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset,
