@@ -74,25 +74,6 @@ void expect_golden(const Image& image, const std::string& name) {
 static_assert(!std::is_move_constructible_v<Frame> && !std::is_copy_constructible_v<Frame> &&
               !std::is_move_assignable_v<Frame> && !std::is_copy_assignable_v<Frame>);
 
-// A block on a floor, and one small triangle 10 km away.
-TEST(Frame, AFarTriangleChangesNothing) {
-  const auto shown = [](bool far, const ClpvLight& light) {
-    SceneData scene;
-    scene.path = "far";
-    test::add_block_on_floor(scene, {}, test::add_material(scene, glm::vec3(0.6f)));
-    if (far) test::add_triangle(scene, {1e4f, 0, 0}, {1e4f, 1, 0}, {1e4f, 0, 1}, 0);
-    scene.lights = {{"light", light}};
-    scene.cameras = {test::camera_at({4, 4, 5}, {-4, -3.5f, -5})};
-    return render(scene, small_options(scene), Show::full);
-  };
-  for (const ClpvLight& light : {test::directional_light({1, -1, -0.5f}, glm::vec3(10)),
-                                 test::point_light({-3, 4, 2}, glm::vec3(100)),
-                                 test::spot_light({-3, 4, 2}, {3, -4, -2}, 0.3f, 0.6f)}) {
-    const Comparison result = compare(shown(true, light), "with", shown(false, light), "without");
-    EXPECT_LT(result.nrmse.value(), 0.02) << light.kind;
-  }
-}
-
 constexpr float kEdge = 2;  // half the edge of a room, open above [m]
 
 struct Pane {

@@ -138,6 +138,9 @@ def test_errors_are_those_of_python_too():
     (MemoryError, "", lambda s, r: r.irradiance(ENDLESS, ENDLESS)),
     (TypeError, "cannot pickle", lambda s, r: __import__("copy").copy(s)),
     (TypeError, "cannot pickle", lambda s, r: __import__("pickle").dumps(s, 0)),
+    *((TypeError, f"clpv.{kind.__name__}: found no call of __init__",
+       lambda s, r, kind=kind: kind.__new__(kind))
+      for kind in (clpv.Scene, clpv.Renderer, clpv.Image, clpv.Basis, clpv.Volume)),
     *((clpv.UsageError, f"normals: found .*, allowed: an object of pyopencl's class",
        lambda s, r, wrong=wrong: r.enqueue_light(1, 1, normals=wrong, irradiance=None))
       for wrong in ("x", 1.5, THING))
@@ -188,6 +191,13 @@ for call in (lambda: clpv.Material(texture=large), lambda: clpv.Image(large),
 """
     subprocess.run([sys.executable, "-W", "error::RuntimeWarning", "-c", code], check=True,
                    env=os.environ)
+
+
+def test_errors_of_files_have_their_keys(tmp_path):
+    file = tmp_path / "scene.json"
+    file.write_text('{"model": "a.glb", "cameras": [{"name": "a", "vertical_fov_degrees": 0}]}')
+    with pytest.raises(clpv.InputError, match="/cameras/0/vertical_fov_degrees: found 0"):
+        clpv.Scene(file)
 
 
 def test_lost_settings_are_named_when_a_scene_is_saved(tmp_path, caplog):

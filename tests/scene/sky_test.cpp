@@ -187,22 +187,6 @@ TEST(PathTracer, ASmallSunInAMapLightsByItsSolidAngle) {
   EXPECT_NEAR(traced(under(sky), 1, 256), wanted, 0.003 * wanted);
 }
 
-// Light from the floor to a wall and from the wall to the floor: the same paths for as many
-// bounces.
-TEST(SkyFrame, TheSkyCountsAsTheFirstBounce) {
-  SceneData scene = under(constant_sky(glm::vec3(1)));
-  for (int i = 0; i < 3; ++i) scene.materials[0].base_colour[i] = 0.8f;
-  add_black_wall(scene, 1, 1.5f);
-  RenderOptions options = small_frame();
-  const double one = lit(scene, options), truth_one = traced(scene, 1),
-               truth_two = traced(scene, 2);
-  options.bounces = Bounces::two;
-  const double two = lit(scene, options);
-  EXPECT_GT(truth_two, 1.1 * truth_one);
-  EXPECT_NEAR(two - one, truth_two - truth_one, 0.5 * (truth_two - truth_one));
-  EXPECT_NEAR(two, truth_two, 0.15 * truth_two);
-}
-
 TEST(SkyFrame, IsSeenWhereNoSurfaceIs) {
   const Sky sky = map_of(16, 8, [](int x, int y) { return static_cast<float>(x + y); });
   SceneData scene = under(sky);

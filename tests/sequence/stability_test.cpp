@@ -135,21 +135,6 @@ class SteadyFrame : public ::testing::Test {
     irradiance_ = frame_.read(Show::irradiance);
   }
 
-  /// Change by Stability, with the camera at rest.
-  static double change_at_rest(Near near) {
-    RenderOptions options = small_options();
-    options.near = near;
-    const SceneData scene = load_scene(test::scene_file("cornell.json"));
-    const SceneCamera camera = scene.camera("");
-    Frame frame(test_session(), scene, options);
-    Stability stability(test_session(), frame, 0);
-    for (int i = 0; i < 2; ++i) {
-      frame.render(camera);
-      stability.add(i, 0, scene, camera);
-    }
-    return stability.steps().front().change.mean.value();
-  }
-
   SceneData scene_ = load_scene(test::scene_file("cornell.json"));
   SceneCamera camera_ = scene_.camera("");
   Frame frame_{test_session(), scene_, small_options()};
@@ -167,11 +152,6 @@ TEST_F(SteadyFrame, LightChangesLittleAsTheEyeMovesAndAsMuchAsTheLight) {
   EXPECT_LT(across, 0.08);
   for (SceneLight& light : scene_.lights) light.data = scaled(light.data, 1.25f);
   EXPECT_NEAR(after(0).mean.value(), 0.25, 1e-3) << "halves round";
-}
-
-TEST_F(SteadyFrame, TheNearFieldOfACameraAtRestDoesNotChange) {
-  EXPECT_EQ(change_at_rest(Near::off), 0);
-  EXPECT_LT(change_at_rest(Near::traced), 1e-6);
 }
 
 }  // namespace

@@ -170,22 +170,6 @@ TEST_F(OutputFile, NamesMayHaveTheirWholeLength) {
   EXPECT_NE(message.find("File name too long"), std::string::npos) << message;
 }
 
-TEST_F(OutputFile, NpyHasNumPysHeaderAndTheValues) {
-  const std::vector<float> values{1, -2, 3.5f, 4, 5, 1e-30f};
-  const std::size_t shape[] = {3, 1, 2}, line[] = {6};
-  write_npy(folder_ / "a.npy", values, shape);
-  const std::string file = read_file(folder_ / "a.npy");
-  const std::size_t header = file.size() - values.size() * 4;
-  EXPECT_EQ(header % 64, 0u);
-  EXPECT_EQ(std::memcmp(file.data() + header, values.data(), values.size() * 4), 0);
-  EXPECT_TRUE(file.starts_with(std::string("\x93NUMPY\x01\x00", 8)));
-  EXPECT_EQ(file.find("{'descr': '<f4', 'fortran_order': False, 'shape': (3, 1, 2), }"), 10u);
-  EXPECT_EQ(static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]),
-            header - 10);
-  write_npy(folder_ / "b.npy", values, line);
-  EXPECT_NE(read_file(folder_ / "b.npy").find("'shape': (6,), }"), std::string::npos);
-}
-
 TEST(ProgressLine, ShowsShareAndTimeLeft) {
   EXPECT_EQ(progress_line("tracing", 0, 10, 1, 200),
             "tracing [..............................]   0 % ");
