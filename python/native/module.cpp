@@ -219,8 +219,8 @@ py::list devices() {
   return all;
 }
 
-/// Rejects copies and pickles, whose protocols 0 and 1 make objects without a value, and X.__new__(X),
-/// which makes another. X() calls pybind11's function through its slot, which stays.
+/// Rejects copies and pickles, whose protocols 0 and 1 make objects without a value, and
+/// X.__new__(X), which makes another. X() calls pybind11's function through its slot, which stays.
 void reject_empty_objects(const py::module_& module) {
   for (const auto& [key, type] : py::dict(module.attr("__dict__"))) {
     if (!PyType_Check(type.ptr()) || PyExceptionClass_Check(type.ptr())) continue;
@@ -228,10 +228,9 @@ void reject_empty_objects(const py::module_& module) {
     type.attr("__reduce_ex__") = py::cpp_function(
         [name](const py::object&, int) { throw py::type_error("cannot pickle clpv." + name); },
         py::is_method(type));
-    const py::staticmethod made(py::cpp_function(
-        [name, own = type, base = py::object(type.attr("__new__"))](const py::object& cls,
-                                                                    const py::args&,
-                                                                    const py::kwargs&) {
+    const py::staticmethod made(
+        py::cpp_function([name, own = type, base = py::object(type.attr("__new__"))](
+                             const py::object& cls, const py::args&, const py::kwargs&) {
           if (cls.is(own)) throw py::type_error("clpv." + name + ": found no call of __init__");
           return base(cls);
         }));

@@ -14,7 +14,6 @@
 #include <string>
 #include <string_view>
 
-#include "cli/commands.hpp"
 #include "clpv/version.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
