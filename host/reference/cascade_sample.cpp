@@ -68,16 +68,11 @@ struct ClearPoint {
   unsigned seen = 0;
 };
 
-/// The sample point 0.85 cells along `clear` [cells] from `at`, or at its end; nothing without a
-/// way. `shift` is added to it [quarters of a cell].
-std::optional<ClearPoint> clear_point(const glm::dvec3& at, const glm::dvec3& clear, int n,
-                                      const std::uint8_t* occluded, double shift = 0) {
-  constexpr double kMost = 0.85;  // [cells]; below 1: the point is at most one cube away
-  const double length = glm::length(clear);
-  if (length == 0) return std::nullopt;
+/// The sample point at `at` [cells]. `shift` is added to it [quarters of a cell].
+ClearPoint sample_point(const glm::dvec3& at, int n, const std::uint8_t* occluded,
+                        double shift = 0) {
   const int last = std::max(kPoints * (n - 1) - 1, 0);
-  const glm::dvec3 way = glm::clamp(at, 0.0, n - 1.0) + clear * std::min(1.0, kMost / length);
-  const glm::ivec3 point(glm::clamp(double{kPoints} * way + shift, 0.0, double(last)));
+  const glm::ivec3 point(glm::clamp(double{kPoints} * at + shift, 0.0, double(last)));
   ClearPoint found{point / kPoints, point % kPoints};
   if (occluded != nullptr)
     found.seen = ~unsigned{occluded[number_of(found.cube, n) * kPoints * kPoints * kPoints +
@@ -86,18 +81,30 @@ std::optional<ClearPoint> clear_point(const glm::dvec3& at, const glm::dvec3& cl
   return found;
 }
 
-/// The cells that it sees as cells of `cube`: a sample point must see one to count.
-unsigned clear_cells(const std::optional<ClearPoint>& point, const glm::ivec3& cube) {
-  if (!point || point->seen == 0) return kAllPoints;
+/// 0.85 cells along `clear` [cells] from `at`, or its end; nothing without a way.
+std::optional<glm::dvec3> clear_place(const glm::dvec3& at, const glm::dvec3& clear, int n) {
+  constexpr double kMost = 0.85;  // [cells]; below 1: the point is at most one cube away
+  const double length = glm::length(clear);
+  if (length == 0) return std::nullopt;
+  return glm::clamp(at, 0.0, n - 1.0) + clear * std::min(1.0, kMost / length);
+}
+
+/// The cells that it sees as cells of `cube`.
+unsigned cells_from(const ClearPoint& point, const glm::ivec3& cube) {
   unsigned cells = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 in_cube =
-        point->cube - cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        point.cube - cube + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
     const bool shared = glm::all(glm::greaterThanEqual(in_cube, glm::ivec3(0))) &&
                         glm::all(glm::lessThanEqual(in_cube, glm::ivec3(1)));
-    if (shared && (point->seen >> corner & 1) != 0) cells |= 1u << number_of(in_cube, 2);
+    if (shared && (point.seen >> corner & 1) != 0) cells |= 1u << number_of(in_cube, 2);
   }
   return cells;
+}
+
+/// The cells of `cube` of which a sample point must see one to count.
+unsigned clear_cells(const std::optional<ClearPoint>& point, const glm::ivec3& cube) {
+  return point && point->seen != 0 ? cells_from(*point, cube) : kAllPoints;
 }
 
 }  // namespace
@@ -118,11 +125,22 @@ TrilinearSample trilinear_sample(const glm::dvec3& at, int n) {
   return sample;
 }
 
-bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n) {
+bool rounding_decides(const glm::dvec3& at, int n) {
   constexpr double kUnsure = 1e-4;  // above single precision's error at the coordinates of a grid
-  const std::optional<ClearPoint> below = clear_point(at, clear, n, nullptr, -kUnsure),
-                                  above = clear_point(at, clear, n, nullptr, kUnsure);
-  return below && (below->cube != above->cube || below->place != above->place);
+  const ClearPoint below = sample_point(at, n, nullptr, -kUnsure),
+                   above = sample_point(at, n, nullptr, kUnsure);
+  return below.cube != above.cube || below.place != above.place;
+}
+
+bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n) {
+  const std::optional<glm::dvec3> place = clear_place(at, clear, n);
+  return place && rounding_decides(*place, n);
+}
+
+bool see_a_cell(const glm::dvec3& a, const glm::dvec3& b, int n, const std::uint8_t* occluded) {
+  const ClearPoint p = sample_point(a, n, occluded), q = sample_point(b, n, occluded);
+  const glm::ivec3 apart = glm::abs(q.cube - p.cube);
+  return std::max({apart.x, apart.y, apart.z}) > 1 || (p.seen & cells_from(q, p.cube)) != 0;
 }
 
 void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::dvec3& clear, int n,
@@ -130,7 +148,8 @@ void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::
   const glm::ivec3 cube = sample.cell[0];
   const glm::dvec3 t = glm::clamp(at, 0.0, n - 1.0) - glm::dvec3(cube);
   const int number = number_of(cube, n) * kPoints * kPoints * kPoints;
-  const std::optional<ClearPoint> point = clear_point(at, clear, n, occluded);
+  std::optional<ClearPoint> point;
+  if (const auto place = clear_place(at, clear, n)) point = sample_point(*place, n, occluded);
   std::array<double, 8> visible = visible_shares(t, occluded + number, clear_cells(point, cube));
   double total = 0;
   for (std::size_t corner = 0; corner < 8; ++corner)

@@ -34,8 +34,13 @@ TrilinearSample trilinear_sample(const glm::dvec3& at, int n);
 void apply_visibility(TrilinearSample& sample, const glm::dvec3& at, const glm::dvec3& clear, int n,
                       const std::uint8_t* occluded);
 
-/// Returns true if rounding decides which sample point lies along `clear`.
+/// Returns true if rounding decides which sample point lies at `at` [cells], or along `clear`.
+bool rounding_decides(const glm::dvec3& at, int n);
 bool rounding_decides(const glm::dvec3& at, const glm::dvec3& clear, int n);
+
+/// Returns whether the sample points at `a` and `b` [cells] see a cell in common; true if they are
+/// farther apart than cells that have one.
+bool see_a_cell(const glm::dvec3& a, const glm::dvec3& b, int n, const std::uint8_t* occluded);
 
 /// Interpolated coefficients of one channel.
 std::vector<double> interpolated(const Volume& volume, int channel, const TrilinearSample& sample);

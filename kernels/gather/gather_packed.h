@@ -20,6 +20,7 @@
 
 #include "gather/cascades.h"
 #include "volume/coefficients.h"
+#include "volume/seen_cells.h"
 
 // Steps from a record to its neighbours; 0 in a grid of one cell.
 enum {
@@ -111,14 +112,6 @@ CLPV_INLINE float8 corner_weights(const float x, const float y, const float z) {
 // Least visible share of the weights for which they count.
 __constant const float min_visible = 1.0f / 64.0f;
 
-// Cells of a cube, a bit each, as cells of the cube that `steps` lead away from.
-CLPV_INLINE int cells_from(int cells, const int steps) {
-  const int x = steps & 3, y = steps >> 2 & 3, z = steps >> 4;
-  cells = x == 2 ? (cells & 0x55) << 1 : x == 0 ? (cells & 0xaa) >> 1 : cells;
-  cells = y == 2 ? (cells & 0x33) << 2 : y == 0 ? (cells & 0xcc) >> 2 : cells;
-  return z == 2 ? (cells & 0x0f) << 4 : z == 0 ? (cells & 0xf0) >> 4 : cells;
-}
-
 enum { CLPV_ALL_POINTS = 511 };  // cells that none lacks: every sample point counts
 
 // Cells, a bit each, of which a sample point must see one to count.
@@ -126,8 +119,9 @@ CLPV_INLINE int clear_cells(__global const uchar* occluded, const SamplePoints* 
                             const int i) {
   const int cube = points->clear_cube[i], point = points->clear_point[i];
   if (cube < 0) return CLPV_ALL_POINTS;
-  const int seen = ~occluded[(size_t)cube * 64 + (point >> 6)] & 255;
-  return seen != 0 ? cells_from(seen, point & 63) : CLPV_ALL_POINTS;
+  const uint seen = ~(uint)occluded[(size_t)cube * 64 + (point >> 6)] & 255u;
+  if (seen == 0) return CLPV_ALL_POINTS;
+  return (int)cells_from(seen, (point & 3) - 1, (point >> 2 & 3) - 1, (point >> 4 & 3) - 1);
 }
 
 __constant const int8 cell_bits = (int8)(1, 2, 4, 8, 16, 32, 64, 128);

@@ -9,7 +9,9 @@
 //   d(w) = q (L(p' + R w, -w) - L(p', -w))   else, q the weight of the correction (miss_weight)
 //   p' = p + h s n_g                         n_g: lift_normal() (shared/normal.h)
 //
-// Nothing stands on the way from p' + R w to the middle between it and p (gather_packed.h).
+// Nothing stands on the way from p' + R w to the middle between it and p (gather_packed.h), unless
+// they are behind another surface: where that middle and the point 0.85 R from p towards the eye
+// see no cell in common, p + R w takes the place of p' + R w.
 // h: CLPV_GATHER_OFFSET. R and s: edge of a cell of the cascades at p, blended like their light.
 // near_trace.cl finds hits, near_light.cl their radiance; radiance.h has L. near_filter.cl adds D
 // to the irradiance E that is gathered at p.
@@ -37,6 +39,48 @@ CLPV_INLINE float miss_weight(const Sampled* field, const float4 arriving, const
   return in >= least_arriving * out ? 1.0f : in / (least_arriving * out);
 }
 
+#if CLPV_VISIBLE
+// Whether sample points of visibility at p and q [m] see a cell in common; true if they are farther
+// apart than cells that have one.
+static inline bool see_a_cell(const ClpvGrid grid, __global const uchar* occluded, const float3 p,
+                              const float3 q) {
+  const float3 origin = (float3)(grid.origin[0], grid.origin[1], grid.origin[2]);
+  const float per_quarter = 4.0f / grid.cell;
+  const int highest = max(4 * CLPV_GRID - 5, 0);
+  const int3 a = clamp(convert_int3((p - origin) * per_quarter - 2.0f), 0, highest),
+             b = clamp(convert_int3((q - origin) * per_quarter - 2.0f), 0, highest),
+             steps = (b >> 2) - (a >> 2);
+  if (max(abs(steps.x), max(abs(steps.y), abs(steps.z))) > 1u) return true;
+  const uint there = seen_cells(occluded, CLPV_GRID, b.x, b.y, b.z);
+  return (seen_cells(occluded, CLPV_GRID, a.x, a.y, a.z) &
+          cells_from(there, steps.x, steps.y, steps.z)) != 0;
+}
+#endif
+
+// Mask of the `wanted` lanes where the points `at` [m] see a cell that those 0.85 R along `eye`
+// see, in the finest cascade that lights them; of all lanes without a way to the eye.
+CLPV_INLINE intW in_sight(CLPV_RADIANCE, const NearPoints* p, const Vec eye, const Vec at,
+                          const intW wanted) {
+#if CLPV_VISIBLE
+  const realW far = sqrt(vec_dot(eye, eye)), most = 0.85f * p->reach;
+  const Vec clear = vec_add_scaled(p->position, far > most ? most / far : ONE, eye);
+  const VecLanes a = unpack(wanted, clear), b = unpack(wanted, at);
+  float reach[W], seen[W];
+  store_lanes(wanted & (far > ZERO) ? p->reach : ZERO, reach);
+  for (int i = 0; i < W; ++i) {
+    seen[i] = 1.0f;
+    if (!(reach[i] > 0.0f)) continue;
+    uint c = 0;
+    while (c + 1 < cascades && grids[c + 1].cell <= 1.0001f * reach[i]) ++c;
+    const float3 there = (float3)(a.x[i], a.y[i], a.z[i]), here = (float3)(b.x[i], b.y[i], b.z[i]);
+    seen[i] = see_a_cell(grids[c], CLPV_OCCLUDED_OF(c), there, here) ? 1.0f : 0.0f;
+  }
+  return load_lanes(seen) > ZERO;
+#else
+  return (intW)(-1);
+#endif
+}
+
 __kernel void near(const ClpvView view, __global const float* points,
                    __global const realW* directions, __global const float* distances,
                    __global const float* radiances, __global float* light, CLPV_RADIANCE) {
@@ -49,9 +93,10 @@ __kernel void near(const ClpvView view, __global const float* points,
     for (uint i = 0; i < CLPV_NEAR_LIGHT_PLANES; ++i) store_lanes(ZERO, light + i * r.plane + r.at);
     return;
   }
+  const Vec eye = towards_eye(view, p.position);
   RadianceField here, there;
-  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.lift,
-                  towards_eye(view, p.position), lit, &here);
+  sample_radiance(CLPV_PASS_RADIANCE, p.position, (realW)(CLPV_GATHER_OFFSET), p.lift, eye, lit,
+                  &here);
   const VecLanes n = unpack(lit, p.normal);
   float trusts[W], x[W], y[W], z[W];
   for (int i = 0; i < W; ++i) {
@@ -65,15 +110,19 @@ __kernel void near(const ClpvView view, __global const float* points,
   store_plane_vectors(vec(load_lanes(x), load_lanes(y), load_lanes(z)),
                       light + CLPV_NEAR_GATHERED * r.plane, r.plane, r.at);
   const realW trust = load_lanes(trusts);
-  const Vec lifted = vec_add_scaled(p.position, (realW)(CLPV_GATHER_OFFSET) * p.reach, p.lift);
   Vec sum = vec(ZERO, ZERO, ZERO);
+  const realW off_surface = (realW)(CLPV_GATHER_OFFSET) * p.reach;
   float4 volumes[W];
   for (int i = 0; i < W; ++i) volumes[i] = 0.0f;
   for (uint k = 0; k < CLPV_NEAR_RAYS; ++k) {
     const Vec w = find_near_directions(directions, r, &p, k);
     const intW hit = load_lanes(distances + k * r.plane + r.at) < (realW)(INFINITY);
     const intW missed = lit & (hit == 0) & (trust > ZERO);
-    const Vec end = vec_add_scaled(lifted, p.reach, w),
+    const Vec off = vec_add_scaled(vec_times(w, p.reach), off_surface, p.lift),
+              middle = vec_add_scaled(p.position, (realW)(0.5f), off);
+    const intW open = in_sight(CLPV_PASS_RADIANCE, &p, eye, middle, missed);
+    const Vec from = vec_add_scaled(p.position, off_surface, vec_masked(open, p.lift)),
+              end = vec_add_scaled(from, p.reach, w),
               clear = vec_times(vec_minus(p.position, end), (realW)(0.5f));
     sample_radiance(CLPV_PASS_RADIANCE, end, ZERO, p.normal, clear, missed, &there);
     const VecLanes back = unpack(lit, vec_times(w, (realW)(-1.0f)));

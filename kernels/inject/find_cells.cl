@@ -29,6 +29,7 @@
 #include "shared/subsampling.h"
 #include "raster/surface.h"
 #include "shared/view_injection.h"
+#include "volume/seen_cells.h"
 
 #define CLPV_MIN_COSINE 0.1f  // bounds the area of a surfel that is seen edge-on
 
@@ -54,14 +55,6 @@ static inline float blocked_share(const ClpvView view, const ClpvGrid grid, cons
 }
 
 #if CLPV_VISIBLE
-// Cells of a cube, a bit each, as cells of the cube that the steps (x, y, z), each -1, 0 or 1, lead
-// away from.
-static inline uint cells_from(uint cells, const int x, const int y, const int z) {
-  cells = x > 0 ? (cells & 0x55u) << 1 : x < 0 ? (cells & 0xaau) >> 1 : cells;
-  cells = y > 0 ? (cells & 0x33u) << 2 : y < 0 ? (cells & 0xccu) >> 2 : cells;
-  return z > 0 ? (cells & 0x0fu) << 4 : z < 0 ? (cells & 0xf0u) >> 4 : cells;
-}
-
 // Key of the nearest cell to `at` that all eight sample points about `at` see. `at`: [cells] from
 // the first centre, in a grid of n^3 cells.
 static inline uint nearest_in_sight(__global const uchar* occluded, const int n, const float3 at) {
@@ -74,10 +67,7 @@ static inline uint nearest_in_sight(__global const uchar* occluded, const int n,
   for (int i = 0; i < 8; ++i) {
     const int u = clamp(a + (i & 1), 0, end), v = clamp(b + (i >> 1 & 1), 0, end),
               w = clamp(c + (i >> 2), 0, end);
-    const int cube = ((w >> 2) * n + (v >> 2)) * n + (u >> 2),
-              point = ((w & 3) * 4 + (v & 3)) * 4 + (u & 3);
-    seen &= cells_from(~(uint)occluded[64 * (size_t)cube + point] & 255u, (u >> 2) - x,
-                       (v >> 2) - y, (w >> 2) - z);
+    seen &= cells_from(seen_cells(occluded, n, u, v, w), (u >> 2) - x, (v >> 2) - y, (w >> 2) - z);
   }
   float least = MAXFLOAT;
   uint key = CLPV_NO_CELL;
