@@ -10,21 +10,22 @@ about y, `slit` has a slit of half a cell in a wall, `door` has two rooms with a
 one of them open to the sun, `corner` has two walls and a floor, `legs` a floor on four thin legs.
 Each is lit by a sun, an even sky or a lamp outside.
 """
+import base64
 import itertools
 import json
 import math
 import pathlib
+import struct
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from clpv import output  # noqa: E402
-from modelling.gltf import Document
-from modelling.mesh import Mesh
 
 CELL = 12.5 / 32
 LOWER, UPPER = (-2, 0, -2), (2, 3, 2)
 GREY = (0.8, 0.8, 0.8)
 TURN = 20  # degrees
+STEP = 2.0**-13  # of positions [m], so that the last bit of a machine's sine changes nothing
 SUN = [0.4, -1, 0.3]
 # Distance of the outer from the inner sheet in cells; None: one sheet.
 WALLS = {"sheet": None, "wall0.03": 0.03, "wall0.1": 0.1, "wall0.5": 0.5, "wall1": 1, "wall2": 2,
@@ -124,6 +125,26 @@ LIGHTS = {
 }
 
 
+def model(faces, offset, double_sided):
+    """A glTF document of grey quadrilaterals; its buffer is a data URI."""
+    corners = [[round(v / STEP) * STEP for v in face[i]]
+               for face in faces for i in (0, 1, 2, 0, 2, 3)]
+    data = b"".join(struct.pack("<3f", *corner) for corner in corners)
+    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    return {
+        "asset": {"version": "2.0", "generator": "clpv scenes/generate_leaks.py"},
+        "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "translation": offset}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [*GREY, 1], "metallicFactor": 0},
+                       "doubleSided": double_sided}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(corners),
+                       "type": "VEC3", "min": list(map(min, zip(*corners))),
+                       "max": list(map(max, zip(*corners)))}],
+        "bufferViews": [{"buffer": 0, "byteLength": len(data)}],
+        "buffers": [{"byteLength": len(data), "uri": uri}]
+    }
+
+
 def write(folder, offset=(0, 0, 0), names=None, double_sided=True):
     """Writes the shapes named, all by default, moved by `offset` [m]. `double_sided`: surfaces have
     no back."""
@@ -132,16 +153,11 @@ def write(folder, offset=(0, 0, 0), names=None, double_sided=True):
     for name, faces in shapes():
         if names and name not in names:
             continue
-        mesh = Mesh()
-        for corners in faces + [ground]:
-            mesh.quad("grey", corners)
-        document = Document("clpv scenes/generate_leaks.py")
-        document.material("grey", GREY, double_sided=double_sided)
-        document.node(name, document.mesh(name, mesh), translation=offset)
-        document.write(file(name + ".glb"))
+        document = model(faces + [ground], offset, double_sided)
+        output.write(file(name + ".gltf"), json.dumps(document) + "\n")
         for light, values in LIGHTS.items():
             scene = {
-                "model": name + ".glb", **values, "cameras": [{
+                "model": name + ".gltf", **values, "cameras": [{
                     "name": "in", "eye": [-1, 1.6, -1.2], "target": [1, 1.2, 1.3],
                     "vertical_fov_degrees": 90
                 }], "cascades": {"count": 3, "size_metres": 12.5}

@@ -263,8 +263,7 @@ Moments joined(const std::vector<ProbeFormat>& formats) {
 
 namespace {
 
-constexpr double kBacks = 0.25;  // share of all directions
-constexpr std::size_t kHash = 16;
+constexpr double kBacks = 0.25;                    // share of all directions
 constexpr std::uint64_t kMaxOldBlocks = 1u << 30;  // bytes
 constexpr std::chrono::hours kMaxAge(24 * 30);
 
@@ -357,15 +356,12 @@ std::optional<BlockLight> BlockCache::read(std::size_t block, std::size_t number
   if (!folder_) return std::nullopt;
   const std::size_t size = numbers * sizeof(glm::vec3);
   BlockLight light;
-  const std::size_t head = kHash + sizeof light.noise + sizeof light.samples;
-  const auto bytes = folder_->read(name_of(block), head + size);
+  const std::size_t head = sizeof light.noise + sizeof light.samples;
+  const auto bytes = folder_->read_checked(name_of(block));
   if (!bytes || bytes->size() != head + size) return std::nullopt;
-  if (Fingerprint().add(std::string_view(*bytes).substr(kHash)).hex() != bytes->substr(0, kHash))
-    return std::nullopt;  // damaged
   light.integrals.resize(numbers);
-  const char* from = bytes->data() + kHash;
-  std::memcpy(&light.noise, from, sizeof light.noise);
-  std::memcpy(&light.samples, from + sizeof light.noise, sizeof light.samples);
+  std::memcpy(&light.noise, bytes->data(), sizeof light.noise);
+  std::memcpy(&light.samples, bytes->data() + sizeof light.noise, sizeof light.samples);
   if (numbers > 0) std::memcpy(light.integrals.data(), bytes->data() + head, size);
   return light;
 }
@@ -378,8 +374,7 @@ void BlockCache::write(std::size_t block, const BlockLight& light) {
   };
   add(&light.noise, sizeof light.noise), add(&light.samples, sizeof light.samples);
   add(light.integrals.data(), light.integrals.size() * sizeof(glm::vec3));
-  const std::string problem =
-      folder_->write(name_of(block), Fingerprint().add(bytes).hex() + bytes);
+  const std::string problem = folder_->write_checked(name_of(block), std::move(bytes));
   if (problem.empty()) return;
   log_warning("{}: an interrupted bake will begin again", problem);
   folder_.reset();

@@ -150,7 +150,6 @@ void add_commands(CLI::App& app, Shared& shared, std::span<const Command> comman
     added->group(command.group);
     group_options(*added);
   }
-  if (shared.additions.command != nullptr) shared.additions.command(app, shared);
   add_prepare(app, shared);
   reject_ranks_except(app, {"quality", "sequence", "pathtrace"});
   app.footer(

@@ -17,8 +17,7 @@
 
 namespace clpv {
 
-// Additions of another program to the commands: the lab (lab/README.md) adds methods to `quality`,
-// and commands.
+// Additions of another program to the commands: the lab (lab/README.md) adds methods to `quality`.
 
 struct Shared;
 /// Adds a command to the program.
@@ -44,7 +43,6 @@ class QualityAddition {
 
 struct Additions {
   std::shared_ptr<QualityAddition> quality;  ///< null: none
-  AddCommand* command = nullptr;             ///< null: none
 };
 
 /// State shared by all commands.

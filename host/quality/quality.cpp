@@ -113,16 +113,6 @@ std::string quality_key(const GroundTruth& truth, const Device& device,
   return print.add(name_of(show)).add(frames).add(truth.exposure).hex();
 }
 
-namespace {
-
-constexpr const char* kFingerprint = "fingerprint";  // hash of a cached cell's other values
-
-std::string fingerprint_of(const nlohmann::json& cell) {
-  return Fingerprint().add(cell.dump()).hex();
-}
-
-}  // namespace
-
 QualityStore::QualityStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   warn_of(folder_.problem());
 }
@@ -135,25 +125,19 @@ void QualityStore::warn_of(const std::string& problem) {
 
 std::optional<QualityCell> QualityStore::find(const std::string& key) const {
   const std::string name = key + ".json";
-  const auto kept = folder_.read(name);
+  const auto kept = folder_.read_checked(name);
   if (!kept) return std::nullopt;
   try {
-    nlohmann::json json = nlohmann::json::parse(*kept);
-    const std::string found = json.at(kFingerprint);
-    json.erase(kFingerprint);
-    if (found == fingerprint_of(json)) return cell_from_json(json);
-    log_warning("{}: damaged; measured again", (folder_.path() / name).string());
+    return cell_from_json(nlohmann::json::parse(*kept));
   } catch (const nlohmann::json::exception& error) {
     log_warning("{}: {}; measured again", (folder_.path() / name).string(), error.what());
+    return std::nullopt;
   }
-  return std::nullopt;
 }
 
 void QualityStore::keep(const std::string& key, const QualityCell& cell) {
   if (!writable_) return;
-  nlohmann::json json = to_json(cell);
-  json[kFingerprint] = fingerprint_of(json);
-  warn_of(folder_.write(key + ".json", json.dump(2) + "\n"));
+  warn_of(folder_.write_checked(key + ".json", to_json(cell).dump(2) + "\n"));
 }
 
 namespace {

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "support/error.hpp"
+#include "support/fingerprint.hpp"
+#include "support/log.hpp"
 #include "support/output_file.hpp"
 
 namespace clpv {
@@ -91,6 +93,22 @@ std::string CacheFolder::write(const std::string& name, std::span<const std::byt
     file.write(bytes);
     file.commit();
   });
+}
+
+std::string CacheFolder::write_checked(const std::string& name, std::string bytes) const {
+  const std::string sum = Fingerprint().add(bytes).hex();
+  return write(name, bytes + sum);
+}
+
+std::optional<std::string> CacheFolder::read_checked(const std::string& name) const {
+  std::optional<std::string> bytes = read(name);
+  const std::size_t digits = Fingerprint().hex().size();
+  if (!bytes || bytes->size() < digits) return std::nullopt;
+  const std::string sum = bytes->substr(bytes->size() - digits);
+  bytes->resize(bytes->size() - digits);
+  if (Fingerprint().add(*bytes).hex() == sum) return bytes;
+  log_debug("{}: damaged, or of another version; not used", (path_ / name).string());
+  return std::nullopt;
 }
 
 void CacheFolder::evict(const std::regex& own, std::uint64_t bytes,

@@ -38,6 +38,11 @@ class CacheFolder {
     return write(name, std::as_bytes(std::span(text)));
   }
 
+  /// Writes an entry as write() does, with a checksum, which read_checked() removes. read_checked()
+  /// returns nothing for damaged bytes, too.
+  std::string write_checked(const std::string& name, std::string bytes) const;
+  std::optional<std::string> read_checked(const std::string& name) const;
+
   /// Removes entries that were not written or used for longer than `age`, and the oldest of the
   /// others beyond `bytes` in total. Only files whose whole names match `own`.
   void evict(const std::regex& own, std::uint64_t bytes,

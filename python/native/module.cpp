@@ -189,7 +189,9 @@ void add_errors(py::module_& module) {
     } catch (const Interrupted& interrupted) {
       PyErr_SetString(exiting ? PyExc_SystemExit : PyExc_KeyboardInterrupt, interrupted.what());
     } catch (const Error& error) {
-      PyErr_SetString(errors.of(error.code()), in_python(error.what()).c_str());
+      const bool of_file = error.code() == ExitCode::bad_input;  // whose names stay
+      PyErr_SetString(errors.of(error.code()),
+                      (of_file ? std::string(error.what()) : in_python(error.what())).c_str());
     }
   });
 }
@@ -217,14 +219,24 @@ py::list devices() {
   return all;
 }
 
-/// Rejects copies and pickles: Python's protocols 0 and 1 make objects without a value.
-void reject_copies(const py::module_& module) {
+/// Rejects copies and pickles, whose protocols 0 and 1 make objects without a value, and
+/// X.__new__(X), which makes another. X() calls pybind11's function through its slot, which stays.
+void reject_empty_objects(const py::module_& module) {
   for (const auto& [key, type] : py::dict(module.attr("__dict__"))) {
     if (!PyType_Check(type.ptr()) || PyExceptionClass_Check(type.ptr())) continue;
     const auto name = key.cast<std::string>();
     type.attr("__reduce_ex__") = py::cpp_function(
         [name](const py::object&, int) { throw py::type_error("cannot pickle clpv." + name); },
         py::is_method(type));
+    const py::staticmethod made(
+        py::cpp_function([name, own = type, base = py::object(type.attr("__new__"))](
+                             const py::object& cls, const py::args&, const py::kwargs&) {
+          if (cls.is(own)) throw py::type_error("clpv." + name + ": found no call of __init__");
+          return base(cls);
+        }));
+    const auto* object = reinterpret_cast<PyTypeObject*>(type.ptr());
+    if (PyDict_SetItemString(object->tp_dict, "__new__", made.ptr()) != 0)
+      throw py::error_already_set();
   }
 }
 
@@ -244,7 +256,7 @@ PYBIND11_MODULE(_native, module) {
   add_image(module);
   add_renderer(module);
   add_basis(module);
-  reject_copies(module);
+  reject_empty_objects(module);
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_running_calls));
   module.def("options", &all_options,
              "Name, help, allowed values and default of each option of Renderer.");

@@ -286,7 +286,7 @@ struct type_caster<clpv::Transform>
 /// An enumeration by the name of a value.
 template <clpv::NamedEnum E>
 struct type_caster<E> {
-  PYBIND11_TYPE_CASTER(E, (const_name<std::is_same_v<E, clpv::View>>("View", "str")));
+  PYBIND11_TYPE_CASTER(E, (const_name<std::is_same_v<E, clpv::View>>("_View", "str")));
 
   bool load(handle given, bool) {
     if (!isinstance<str>(given)) return false;

@@ -335,20 +335,6 @@ TEST(OpenCl, EitherOfTwoDevicesInOneContext) {
     EXPECT_EQ(frames[i].done.wait(), CL_SUCCESS);
     EXPECT_EQ(renderers[i].show(View::full).pixels, expected) << devices[i].name;
   }
-  // Memory belongs to the context, not to a device.
-  const cl::Buffer shared(both, CL_MEM_READ_WRITE, 48 * 27 * 16),
-      foreign(one, CL_MEM_READ_WRITE, 48 * 27 * 16);
-  const opencl::GBuffer seen{48, 27, frames[0].normals, nullptr, frames[0].depth, shared()};
-  EXPECT_EQ(renderers[1].enqueue_light(seen, scene.cameras().front()).wait(), CL_SUCCESS);
-  std::vector<float> light(48 * 27 * 4);
-  queues[1].enqueueReadBuffer(shared, CL_TRUE, 0, light.size() * sizeof(float), light.data());
-  EXPECT_EQ(three_of_four(light), three_of_four(renderers[0].show(View::irradiance).pixels));
-  opencl::GBuffer elsewhere = seen;
-  elsewhere.irradiance = foreign();
-  EXPECT_THAT(
-      test::error_of(ExitCode::usage,
-                     [&] { renderers[1].enqueue_light(elsewhere, scene.cameras().front()); }),
-      HasSubstr("irradiance: found a buffer of another context"));
 }
 
 TEST(OpenCl, AContextWithoutAUsableDeviceIsNamed) {

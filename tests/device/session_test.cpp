@@ -193,29 +193,6 @@ TEST(PrefixSums, AreThoseOfTheHost) {
   }
 }
 
-TEST(Session, LaunchesAndWaitsOfAFrameAreCounted) {
-  Session session(choose_device());
-  const Buffer large = session.buffer(4u << 20, "large");
-  session.timeline().clear();
-  session.fill_zero(large, 64);
-  session.copy(large, large, 64, 128);
-  session.write(large, std::vector<float>(100));
-  const auto later = session.read_later(large, 3);
-  EXPECT_EQ(session.timeline().host().launches, 2u);
-  EXPECT_EQ(session.timeline().host().waits, 0u) << "small writes and later reads do not wait";
-  session.write(large, std::vector<float>(1u << 20));
-  session.read<float>(large, 4);
-  session.timeline().enqueued();
-  const HostWork host = session.timeline().host();
-  EXPECT_EQ(host.waits, 2u);
-  EXPECT_GT(host.waited_ms, 0);
-  EXPECT_GT(host.host_ms, 0);
-  EXPECT_TRUE(later->arrived()) << "before the read that waited";
-  EXPECT_EQ(later->values, std::vector<cl_uint>(3));
-  session.timeline().clear();
-  EXPECT_EQ(session.timeline().host().waits, 0u);
-}
-
 // Listing and choosing devices, on synthetic lists and on this machine's list.
 
 Device made_up(int index, int platform, int in_platform, const std::string& name) {

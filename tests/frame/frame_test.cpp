@@ -13,10 +13,12 @@
 
 #include "image/compare.hpp"
 #include "image/image_io.hpp"
+#include "kernels/shared/normal.h"
 #include "options/scene_options.hpp"
 #include "pathtracer/path_tracer.hpp"
 #include "pipeline/frame/cascade.hpp"
 #include "pipeline/frame/frame_lights.hpp"
+#include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/view.hpp"
 #include "pipeline/sweep/sweep_tables.hpp"
 #include "reference/blockers.hpp"
@@ -26,10 +28,12 @@
 #include "scene/sky.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/traced_scenes.hpp"
 
 namespace clpv::frame_test {
 
@@ -74,121 +78,6 @@ void expect_golden(const Image& image, const std::string& name) {
 static_assert(!std::is_move_constructible_v<Frame> && !std::is_copy_constructible_v<Frame> &&
               !std::is_move_assignable_v<Frame> && !std::is_copy_assignable_v<Frame>);
 
-// A block on a floor, and one small triangle 10 km away.
-TEST(Frame, AFarTriangleChangesNothing) {
-  const auto shown = [](bool far, const ClpvLight& light) {
-    SceneData scene;
-    scene.path = "far";
-    test::add_block_on_floor(scene, {}, test::add_material(scene, glm::vec3(0.6f)));
-    if (far) test::add_triangle(scene, {1e4f, 0, 0}, {1e4f, 1, 0}, {1e4f, 0, 1}, 0);
-    scene.lights = {{"light", light}};
-    scene.cameras = {test::camera_at({4, 4, 5}, {-4, -3.5f, -5})};
-    return render(scene, small_options(scene), Show::full);
-  };
-  for (const ClpvLight& light : {test::directional_light({1, -1, -0.5f}, glm::vec3(10)),
-                                 test::point_light({-3, 4, 2}, glm::vec3(100)),
-                                 test::spot_light({-3, 4, 2}, {3, -4, -2}, 0.3f, 0.6f)}) {
-    const Comparison result = compare(shown(true, light), "with", shown(false, light), "without");
-    EXPECT_LT(result.nrmse.value(), 0.02) << light.kind;
-  }
-}
-
-constexpr float kEdge = 2;  // half the edge of a room, open above [m]
-
-struct Pane {
-  std::string name;
-  double factor;
-  json colour;
-  std::string mode;
-  float vertex_alpha;
-  bool open;
-};
-
-SceneData room_below(const Pane* pane) {
-  constexpr float kTurn = 0.70710678f;
-  const test::TemporaryFolder folder;
-  test::GltfBuilder model;
-  model.add("materials", {{"pbrMetallicRoughness", {{"baseColorFactor", {0.6, 0.6, 0.6, 1}}}}});
-  model.square(kEdge)["material"] = 0;
-  for (const glm::vec2 to : {glm::vec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
-    model.add("nodes", {{"mesh", 0},
-                        {"rotation", {-kTurn * to.y, 0, kTurn * to.x, kTurn}},
-                        {"translation", {kEdge * to.x, kEdge, kEdge * to.y}}});
-  }
-  if (pane != nullptr) {
-    model.add(
-        "materials",
-        {{"pbrMetallicRoughness", {{"baseColorFactor", pane->colour}}},
-         {"alphaMode", pane->mode},
-         {"doubleSided", true},
-         {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", pane->factor}}}}}});
-    std::vector<float> colours;
-    for (int i = 0; i < 4; ++i) colours.insert(colours.end(), {1, 1, 1, pane->vertex_alpha});
-    json& primitive = model.square(kEdge);
-    primitive["material"] = 1;
-    primitive["attributes"]["COLOR_0"] = model.accessor<float>("VEC4", colours);
-    model.document["nodes"].back()["translation"] = {0, 2 * kEdge, 0};
-  }
-  SceneData scene = load_scene(model.write(folder));
-  scene.lights = {{"sun", test::directional_light({0.3f, -1, 0.2f}, glm::vec3(10))}};
-  scene.cameras = {test::camera_at({-1.5f, 2, 1.5f}, {1, -0.6f, -1})};
-  return scene;
-}
-
-// Through what stops less than half of light the sun comes in as without a pane: in kernels, in the
-// path tracer, and in the references of rays, shadow maps and blockers.
-TEST(Frame, ThroughAPaneARoomIsLitAsWithoutIt) {
-  struct Found {
-    Image kernels, paths;
-    std::vector<float> sunlit;
-    std::vector<double> blocked;
-    bool above;
-  };
-  const auto found = [](const SceneData& scene) {
-    RenderOptions options = test::small_sweep();
-    options.width = kWidth, options.height = kHeight, options.cascades = 1;
-    pathtracer::PathTracerOptions tracing;
-    tracing.samples = 4;
-    const ClpvGrid grid{{-kEdge, 0, -kEdge}, kEdge / 4, 8, {}};
-    const ClpvLight& sun = scene.lights[0].data;
-    bool uncertain = false;
-    return Found{
-        render(scene, options, Show::full),
-        pathtracer::traced_view(
-            pathtracer::trace_paths(scene, scene.lights,
-                                    camera_view(scene.cameras[0], kWidth, kHeight), tracing),
-            Show::full),
-        reference::rasterize_rsm(
-            scene, sun, directional_rsm_view(sun, grid, {scene.lower, scene.upper}, kHeight))
-            .image.depth,
-        reference::voxelize_blockers(scene, grid).upper.values,
-        reference::nearest_triangle(scene, reference::Materials(scene), {{0, 1, 0}, {0, 1, 0}, 10},
-                                    uncertain)
-            .has_value()};
-  };
-  constexpr double kEqual = 1e-6;  // relative; programs with the look-up of alpha may round
-  const Found without = found(room_below(nullptr));
-  const json clear = {1, 1, 1, 1}, thin = {1, 1, 1, 0.1}, green = {0.2, 1, 0.6, 1};
-  for (const Pane& pane : {Pane{"clear glass", 1, clear, "OPAQUE", 1, true},
-                           {"tinted glass", 0.9, green, "OPAQUE", 1, true},
-                           {"dark glass", 0.8, green, "OPAQUE", 1, false},
-                           {"blending", 0, thin, "BLEND", 1, true},
-                           {"blending by vertices", 0, clear, "BLEND", 0.4f, true},
-                           {"blending to a wall", 0, clear, "BLEND", 0.6f, false},
-                           {"blending glass", 0.4, clear, "BLEND", 0.8f, true},
-                           {"masked", 0, thin, "MASK", 1, true}}) {
-    SCOPED_TRACE(pane.name);
-    const Found with = found(room_below(&pane));
-    const double kernels = compare(with.kernels, "with", without.kernels, "without").nrmse.value(),
-                 paths = compare(with.paths, "with", without.paths, "without").nrmse.value();
-    EXPECT_TRUE(pane.open ? kernels < kEqual : kernels > 0.9) << kernels;
-    EXPECT_TRUE(pane.open ? paths < kEqual : paths > 0.9) << paths;
-    EXPECT_EQ(with.sunlit == without.sunlit, pane.open);
-    EXPECT_EQ(with.blocked == without.blocked, pane.open);
-    EXPECT_NE(with.above, pane.open);
-  }
-}
-
 TEST(Frame, AtriumEqualsItsGoldenImage) {
   const SceneData scene = load_scene(scene_file("atrium.json"));
   expect_golden(render(scene, small_options(scene), Show::full), "atrium");
@@ -203,23 +92,6 @@ TEST(Frame, SponzaEqualsItsGoldenImage) {
   if (sponza().empty()) GTEST_SKIP() << "Sponza is absent; CLPV_SPONZA names it";
   const SceneData scene = load_scene(scene_file("sponza_suns.json"), sponza());
   expect_golden(render(scene, small_options(scene), Show::indirect, "curtains"), "sponza");
-}
-
-TEST(Frame, ManyInOneSessionFitWhereOneDoes) {
-  const SceneData scene = load_scene(scene_file("cornell.json"));
-  RenderOptions options = small_options(scene);
-  Device device = choose_device();
-  {
-    Session session(device);
-    Frame(session, scene, options).render(scene.cameras.front());
-    device.memory_bytes = session.peak_device_bytes() * 3 / 2;
-  }
-  Session session(device);
-  for (const Directions directions : {Directions::of24, Directions::of96}) {
-    options.coarser_directions = directions;
-    Frame(session, scene, options).render(scene.cameras.front());
-  }
-  EXPECT_EQ(session.device_bytes(), 0u);
 }
 
 // Maps of many lights share buffers, which hold seven maps of 512 x 512: the third sun's cascades
@@ -440,6 +312,104 @@ TEST(Cascade, ThoseThatDoNotReachTheSceneAreWarnedOf) {
   ASSERT_EQ(fitted.exit_code + small.exit_code, 0) << fitted.err << small.err;
   EXPECT_THAT(fitted.err, ::testing::Not(::testing::HasSubstr("nothing of the scene")));
   EXPECT_THAT(small.err, ::testing::HasSubstr(warning));
+}
+
+// Smooth meshes: interpolated normals weigh light, triangles decide which side it comes from and
+// what shadows them (kernels/shared/normal.h).
+
+using namespace test;
+using std::numbers::pi;
+
+/// A quad across z of 3 x 2 m with this normal at all vertices.
+SceneData tilted_quad(const glm::vec3& normal) {
+  SceneData scene;
+  scene.path = "smooth";
+  scene.lower = {-1.5f, -1, -0.1f}, scene.upper = {1.5f, 1, 0.1f};
+  add_grey(scene, 0.7f);
+  add_quad(scene, {-1.5f, -1, 0}, {3, 0, 0}, {0, 2, 0}, 0);
+  for (Vertex& v : scene.vertices)
+    for (int c = 0; c < 3; ++c) v.normal[c] = glm::normalize(normal)[c];
+  return scene;
+}
+
+TEST(Smooth, DirectLightIsWeighedByTheNormalOnTheTrianglesSide) {
+  const glm::vec3 normal = glm::normalize(glm::vec3(-0.6f, 0.5f, 1));
+  SceneData scene = tilted_quad(normal);
+  RenderOptions options;
+  options.width = options.height = 8, options.cascades = 1, options.cascade_size = 4;
+  options.rsm_size = 16;
+  const glm::vec3 before_both(0.2f, -0.5f, -1), behind_the_triangle(1, -1, 0.1f),
+      behind_the_normal(-1, 1, -0.1f);
+  for (const glm::vec3& direction : {before_both, behind_the_triangle, behind_the_normal}) {
+    scene.lights = {sun(direction, 10)};
+    Frame frame(test_session(), scene, options);
+    frame.render(camera_at({0, 0, 1}, {0, 0, -1}));
+    const double cosine =
+                     direction == before_both ? -glm::dot(normal, glm::normalize(direction)) : 0,
+                 expected = 0.7 / pi * 10 * cosine;
+    EXPECT_NEAR(mean(frame.read(Show::direct), 0), expected, 1e-3) << direction.z;
+  }
+}
+
+TEST(Smooth, AVirtualPointLightLiesOnItsTriangleWithTheLightThatItsNormalWeighs) {
+  SceneData scene = tilted_quad({0, 0.5f, 1});
+  const SceneLight light = sun({0.2f, -1, -1}, 10);
+  const ClpvGrid cascade{{-4, -4, -4}, 0.25f, 32, {}};
+  Session& session = test_session();
+  const SceneBuffers buffers = upload_scene(session, scene);
+  Rasterizer rasterizer(session, buffers);
+  Surface rsm =
+      make_surface(session, directional_rsm_view(light.data, cascade, buffers.bounds, 256),
+                   RsmFormat::float32, false);
+  rasterizer.rasterize_rsm(light.data, rsm);
+  const SurfaceImage image = read_surface(session, rsm);
+  const glm::dvec3 towards = -glm::normalize(glm::dvec3(0.2, -1, -1));
+  const double weight = glm::dot(glm::normalize(glm::dvec3(0, 0.5, 1)), towards) / towards.z;
+  const double texel = 4.0 * rsm.view.half_width * rsm.view.half_height / (256 * 256);  // [m^2]
+  std::size_t texels = 0;
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    if (image.depth[i] <= 0) continue;
+    ++texels;
+    ASSERT_NEAR(image.normal[i].z, 1, 1e-6);
+    ASSERT_NEAR(image.colour[i].x, 0.7 * 10 * texel * weight, 1e-3 * texel);
+  }
+  EXPECT_GT(texels, 500u);
+}
+
+TEST(Smooth, PathTracingLightsByTheTriangleAndWeighsByTheNormal) {
+  const glm::vec3 normal = glm::normalize(glm::vec3(0, 2, 1));  // 63 degrees off the triangle's
+  SceneData scene = tilted_quad(normal);
+  const ClpvView view = view_of({0, 0, 2}, {0, 0, -1}, {0, 1, 0}, 0.2f, 8, 8);
+  PathTracerOptions options;
+  options.samples = 256;
+  scene.sky = std::make_shared<Sky>(constant_sky(glm::vec3(1)));
+  // The integral of the clamped cosine over the half of directions above the triangle.
+  const double expected = pi * (1 + double{normal.z}) / 2;
+  for (const glm::vec3& e : trace_paths(scene, view, options).irradiance)
+    ASSERT_NEAR(e.x, expected, 0.05 * expected);
+  scene.sky = nullptr;
+  options.samples = 1;
+  scene.lights = {sun({0, -1, 0.1f}, 1)};  // on the normal's side, behind the triangle
+  for (const glm::vec3& e : trace_paths(scene, view, options).direct) ASSERT_EQ(e.x, 0);
+  scene.lights = {sun({0, 0.9f, -1}, 1)};  // before the triangle, behind the normal
+  for (const glm::vec3& e : trace_paths(scene, view, options).direct) ASSERT_EQ(e.x, 0);
+}
+
+TEST(Smooth, GeometricNormalsKeepTheirDirection) {
+  for (int i = 0; i < 1000; ++i) {
+    const double z = (i + 0.5) / 500 - 1, a = 2.4 * i, r = std::sqrt(1 - z * z);
+    const glm::dvec3 n(r * std::cos(a), r * std::sin(a), z);
+    const glm::vec4 stored = stored_normal(-n, n);
+    ASSERT_LT(glm::length(geometric_normal(stored) - n), 1e-3) << i;
+    ASSERT_EQ(stored_normal(n, n).w, 0) << "one normal";
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      glm::dvec3 n(0);
+      n[axis] = sign;
+      EXPECT_EQ(geometric_normal(stored_normal(glm::normalize(glm::dvec3(1, 2, 3)), n)), n);
+    }
+  }
 }
 
 }  // namespace

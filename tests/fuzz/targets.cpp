@@ -27,14 +27,12 @@
 #include "image/compare.hpp"
 #include "image/image_header.hpp"
 #include "image/image_io.hpp"
-#include "options/scene_options.hpp"
 #include "scene/gltf_parts.hpp"
 #include "scene/input.hpp"
 #include "scene/load.hpp"
 #include "sequence/times_file.hpp"
 #include "support/error.hpp"
 #include "support/log.hpp"
-#include "tests/support/random_options.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/tiny_images.hpp"
 
@@ -257,31 +255,6 @@ void command_line(std::string_view bytes) {
     read_or_reject({ExitCode::usage}, [&] { parse_vector(argument, "--option"); });
 }
 
-/// Values of every render option, drawn from the option table by the input's bytes: resolved for a
-/// scene, with basis and transport, without a device.
-void options(std::string_view bytes) {
-  std::size_t next = 0;
-  test::Choices choices([&](std::size_t end) -> std::size_t {
-    std::size_t value = 0;
-    for (std::size_t range = 1; range < end && next < bytes.size(); range *= 256)
-      value = value * 256 + bytes_of(bytes)[next++];
-    return value % end;
-  });
-  OptionValues given;
-  const test::Caps caps{{"table-size", 4096}};  // larger ones only take longer
-  for (const OptionDescription& option : list_options(RenderOptions{})) {
-    if (choices.one_in(2)) continue;
-    if (const std::string value = test::drawn_value(option, choices, caps); !value.empty())
-      given[option.name] = value;
-  }
-  read_or_reject({ExitCode::usage}, [&] {
-    const RenderOptions options = resolve_options(given, SceneData{});
-    const auto basis = make_basis(options);
-    // Exact fluxes are integrals that take seconds under sanitizers.
-    if (options.transport != TransportKind::exact) make_transport(options, *basis);
-  });
-}
-
 // ------------------------------------------------------------------------------------- smaller
 // files
 
@@ -313,9 +286,9 @@ Target chosen_target() {
   static const std::map<std::string_view, Target> kTargets = {
       {"centres", centres}, {"command_line", command_line},
       {"glb", glb},         {"gltf", gltf},
-      {"image", image},     {"options", options},
-      {"points", points},   {"scene", scene},
-      {"texture", texture}, {"times", times}};
+      {"image", image},     {"points", points},
+      {"scene", scene},     {"texture", texture},
+      {"times", times}};
   const char* name = std::getenv("CLPV_FUZZ_TARGET");
   const auto found = kTargets.find(name != nullptr ? name : "");
   if (found != kTargets.end()) return found->second;

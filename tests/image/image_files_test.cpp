@@ -226,10 +226,8 @@ TEST(RadiancePictures, LinesThatCannotBeHonouredAreRejected) {
   for (const auto& [lines, word] :
        {std::pair("FORMAT=32-bit_rle_xyze\n", "FORMAT: found '32-bit_rle_xyze'"),
         {"EXPOSURE=0\n", "EXPOSURE: found '0'"},
-        {"EXPOSURE=nan\n", "EXPOSURE: found 'nan'; allowed: 1 numbers"},
         {"EXPOSURE=1e300\nEXPOSURE=1e300\n", "EXPOSURE: found '1e300'"},
         {"COLORCORR=1 2\n", "COLORCORR: found '1 2'; allowed: 3 numbers"},
-        {"COLORCORR=1 -1 1\n", "COLORCORR: found '1 -1 1'"},
         {"GAMMA=2.2\n", "GAMMA: found '2.2'; allowed: 1"},
         {"PRIMARIES=0 0 0 0 0 0 0 0\n", "three colours and a white"}})
     EXPECT_THAT(rejection(hdr(lines)), HasSubstr(word));

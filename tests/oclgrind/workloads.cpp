@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "clpv/renderer.hpp"
-#include "device/kernel.hpp"
 #include "device/session.hpp"
 #include "pipeline/raster/rasterize.hpp"
 #include "pipeline/raster/view.hpp"
@@ -13,21 +12,6 @@
 
 namespace clpv {
 namespace {
-
-/// Runs the kernels of controls.cl. CLPV_KERNEL_DIR names their folder.
-void controls() {
-  constexpr std::size_t kItems = 8, kGroup = 4, kBytes = kItems * sizeof(cl_int);
-  Session session(choose_device());
-  const ProgramSource source{"controls.cl"};
-  const Buffer written = session.buffer(kBytes, "written"),
-               unwritten = session.buffer(kBytes, "unwritten");
-  session.fill_zero(written, kBytes);
-
-  Kernel(session, source, "sound").set(written).launch(kItems, kGroup);
-  Kernel(session, source, "racy").set(written).launch(kItems, kGroup);
-  Kernel(session, source, "uninitialised").set(unwritten, written).launch(kItems, kGroup);
-  session.queue().finish();
-}
 
 /// Draws shadow maps in two parts, as those of scenes of many more triangles.
 void hidden_clusters(const char* file) {
@@ -98,9 +82,8 @@ void points(const char* file) {
 
 int main(int count, char** arguments) {
   const std::string_view name = count > 1 ? arguments[1] : "";
-  if (name == "controls") return clpv::controls(), 0;
   if (name == "hidden_clusters" && count == 3) return clpv::hidden_clusters(arguments[2]), 0;
   if (name == "points" && count == 3) return clpv::points(arguments[2]), 0;
-  std::fprintf(stderr, "usage: %s controls | hidden_clusters SCENE | points SCENE\n", arguments[0]);
+  std::fprintf(stderr, "usage: %s hidden_clusters SCENE | points SCENE\n", arguments[0]);
   return 2;
 }

@@ -129,13 +129,6 @@ TYPED_TEST(EachNamedEnum, HasAUniqueNameForEachValue) {
 
 using ::testing::HasSubstr;
 
-TEST(Presets, BestIsTheDefaults) {
-  RenderOptions options;
-  set_option(options, "preset", "best");
-  EXPECT_EQ(to_json(options), to_json(RenderOptions{}));
-  EXPECT_EQ(to_json(options)["preset"], "best");
-}
-
 TEST(Presets, KeepOptionsThatTheyDoNotSet) {
   RenderOptions options;
   set_option(options, "shadow-size", "77");

@@ -35,15 +35,11 @@ def test_arrays_are_those_of_their_file(tmp_path):
 
 @pytest.mark.parametrize("change, error, words", [
     ({"positions": WALL[:, :2]}, clpv.InputError, "positions: found shape (4, 2); allowed: (n, 3)"),
-    ({"positions": WALL[0]}, clpv.InputError, "positions: found shape (3,)"),
-    ({"positions": WALL * numpy.nan}, clpv.InputError, "positions[0]: found nan in component 0"),
     ({"positions": WALL.astype(complex)}, TypeError, "positions: ArrayLike"),
     ({"triangles": SQUARE.astype(float)}, TypeError, "triangles: ArrayLike"),
     ({"triangles": SQUARE - 1}, clpv.InputError, "triangles[0]: found index -1"),
     ({"triangles": SQUARE + 2**32}, clpv.InputError, "triangles[0]: found index 4294967296"),
-    ({"triangles": SQUARE + 1}, clpv.InputError, "triangles[1]: found index 4; allowed: 0 to 3"),
     ({"colours": WALL[:, :2]}, clpv.InputError, "found shape (4, 2); allowed: (n, 4) or (n, 3)"),
-    ({"normals": WALL[:3]}, clpv.InputError, "normals: found 3 elements; allowed: 4"),
     ({"transform": numpy.eye(3)}, TypeError, "transform: "),
 ])
 def test_bad_arrays_are_rejected_by_name(change, error, words):
@@ -114,8 +110,6 @@ def test_scene_of_trimesh():
     assert scene.bounds == ((-0.5, -0.5, -0.5), (3.5, 0.5, 0.5))
     assert "24 triangles" in repr(scene)
     assert "12 triangles" in repr(clpv.Scene.from_trimesh(box))
-    with pytest.raises(TypeError, match="from_trimesh: given: found int"):
-        clpv.Scene.from_trimesh(3)
 
 
 def test_colours_of_trimesh():
@@ -128,12 +122,6 @@ def test_colours_of_trimesh():
     assert numpy.ptp(given["colours"][:3], axis=0).max() == 0 and given["colours"][33, 1] == 1
     assert given["colours"][33, 0] == pytest.approx(110 / 255)  # linear
     assert "12 triangles" in repr(clpv.Scene.from_trimesh(box))
-    pbr = trimesh.visual.material.PBRMaterial(baseColorFactor=[0.5, 1, 0, 1], alphaMode="MASK",
-                                              emissiveFactor=[0, 2, 0], doubleSided=True)
-    box.visual = trimesh.visual.TextureVisuals(uv=numpy.zeros((8, 2)), material=pbr)
-    material = look(box)["material"]
-    assert material.base_colour == pytest.approx((0.5, 1, 0, 1), abs=0.003)
-    assert material.emission == (0, 2, 0) and material.alpha_cutoff == 0.5 and material.double_sided
 
 
 @pytest.mark.parametrize("colour, material", [

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The package as users meet it: the program of the documentation, stubs, interrupts, import without
 the native module."""
+import ast
 import inspect
 import json
 import os
+import pathlib
 import re
 import subprocess
 import time
@@ -35,6 +37,13 @@ def test_every_name_has_a_docstring():
         for inner, value in vars(member).items() if inspect.isclass(member) else []:
             if not inner.startswith("_") and callable(value):
                 assert value.__doc__, f"{name}.{inner}"
+
+
+def test_the_stubs_have_no_names_of_their_own():
+    stub = ast.parse(pathlib.Path(clpv.__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+    stored = {node.id for node in ast.walk(stub) if isinstance(node, ast.Name)
+              and isinstance(node.ctx, ast.Store) and not node.id.startswith("_")}
+    assert stored <= set(dir(clpv))
 
 
 def test_draw_imports_without_the_native_module():

@@ -77,21 +77,6 @@ TEST(Rasterize, LightSeesBothSides) {
   }
 }
 
-TEST(Rasterize, DepthOfATiltedPlane) {
-  SceneData scene;  // z = -5 + x / 2 - y / 4
-  add_quad(scene, {-20, -20, -10}, {40, 0, 20}, {0, 40, -10}, add_material(scene));
-  const ClpvView view = small_camera(64, 48);
-  const SurfaceImage image = drawn(scene, view);
-  for (unsigned y = 0; y < view.height; ++y) {
-    for (unsigned x = 0; x < view.width; ++x) {
-      const double sx = (2 * (x + 0.5) / view.width - 1) * view.half_width;
-      const double sy = (1 - 2 * (y + 0.5) / view.height) * view.half_height;
-      const double depth = 5 / (1 + 0.5 * sx - 0.25 * sy);  // -d = -5 + d sx / 2 - d sy / 4
-      ASSERT_NEAR(image.depth[y * view.width + x], depth, 2e-6 * depth) << x << "," << y;
-    }
-  }
-}
-
 /// How often each pixel of `view` is covered by the triangles of `scene`, drawn one at a time.
 std::vector<int> coverage(const SceneData& scene, const ClpvView& view) {
   std::vector<int> count(static_cast<std::size_t>(view.width) * view.height, 0);

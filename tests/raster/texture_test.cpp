@@ -131,23 +131,6 @@ TEST(Texture, WrapModesRepeatMirrorAndClamp) {
   EXPECT_THAT(from_minus_half(CLPV_WRAP_CLAMP), close({0, 0, 0, 1, 0, 1, 1, 1}));
 }
 
-/// One texel a pixel, each with three other bytes.
-TEST(Texture, EveryByteIsDecoded) {
-  constexpr unsigned kTexels = 86;
-  std::vector<std::uint8_t> rgba;
-  for (unsigned i = 0; i < kTexels; ++i) {
-    for (unsigned c = 0; c < 4; ++c)
-      rgba.push_back(static_cast<std::uint8_t>(c < 3 ? std::min(3 * i + c, 255u) : 255));
-  }
-  const SurfaceImage image = image_of(textured(texture(kTexels, 1, rgba)), kTexels, {0, 0}, {1, 1});
-  for (unsigned i = 0; i < kTexels; ++i) {
-    for (unsigned c = 0; c < 3; ++c)
-      EXPECT_NEAR(image.colour[i][static_cast<int>(c)], linear_from_srgb(std::min(3 * i + c, 255u)),
-                  1e-6)
-          << 3 * i + c;
-  }
-}
-
 TEST(Texture, SmallTexelsAreAveragedByMipLevels) {
   Texture fine = texture(64, 64, {});
   for (unsigned i = 0; i < 64 * 64; ++i) {

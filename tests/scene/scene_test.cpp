@@ -195,39 +195,6 @@ TEST_F(SceneTest, ABareModelGetsACameraAndASun) {
   }
 }
 
-// This project's scenes: their generators reproduce the committed files, which match their
-// descriptions.
-
-namespace fs = std::filesystem;
-
-const fs::path kScenes = fs::path(CLPV_SOURCE_DIR) / "scenes";
-
-class Generator : public testing::TestWithParam<const char*> {};
-
-TEST_P(Generator, ReproducesTheCommittedFiles) {
-  if (test::run("python3 -c 'import sys; sys.exit(sys.version_info < (3, 9))'").exit_code != 0) {
-    GTEST_SKIP() << "python3 is not 3.9 or later (Debian: apt install python3)";
-  }
-  const std::string name = GetParam();
-  const test::TemporaryFolder folder;
-  const test::Outcome outcome =
-      test::run("PYTHONDONTWRITEBYTECODE=1 python3 " +
-                (kScenes / ("generate_" + name + ".py")).string() + " " + folder.path().string());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  int files = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path())) {
-    const fs::path file = entry.path().filename();
-    if (file == ".clpv-output") continue;  // lists the files
-    EXPECT_TRUE(test::read_file(entry.path()) == test::read_file(kScenes / file))
-        << file << " differs from the committed one";
-    ++files;
-  }
-  EXPECT_EQ(files, name == "atrium" ? 5 : 6) << "models and scene files";
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenes, Generator, testing::Values("atrium", "cornell"),
-                         [](const auto& info) { return std::string(info.param); });
-
 // Cameras and lights of scene files that move by keys.
 
 using ::testing::FloatNear;

@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Output files are complete or absent; headers of .npy files.
+// Output files are complete or absent; lines of progress.
 #include "support/output_file.hpp"
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <pty.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
-#include <cstdlib>
-#include <cstring>
-#include <future>
 #include <iterator>
 
-#include "support/array_files.hpp"
 #include "support/input_file.hpp"
 #include "support/interrupt.hpp"
-#include "support/log.hpp"
 #include "support/progress.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/run_program.hpp"
@@ -170,22 +162,6 @@ TEST_F(OutputFile, NamesMayHaveTheirWholeLength) {
   EXPECT_NE(message.find("File name too long"), std::string::npos) << message;
 }
 
-TEST_F(OutputFile, NpyHasNumPysHeaderAndTheValues) {
-  const std::vector<float> values{1, -2, 3.5f, 4, 5, 1e-30f};
-  const std::size_t shape[] = {3, 1, 2}, line[] = {6};
-  write_npy(folder_ / "a.npy", values, shape);
-  const std::string file = read_file(folder_ / "a.npy");
-  const std::size_t header = file.size() - values.size() * 4;
-  EXPECT_EQ(header % 64, 0u);
-  EXPECT_EQ(std::memcmp(file.data() + header, values.data(), values.size() * 4), 0);
-  EXPECT_TRUE(file.starts_with(std::string("\x93NUMPY\x01\x00", 8)));
-  EXPECT_EQ(file.find("{'descr': '<f4', 'fortran_order': False, 'shape': (3, 1, 2), }"), 10u);
-  EXPECT_EQ(static_cast<unsigned char>(file[8]) + 256u * static_cast<unsigned char>(file[9]),
-            header - 10);
-  write_npy(folder_ / "b.npy", values, line);
-  EXPECT_NE(read_file(folder_ / "b.npy").find("'shape': (6,), }"), std::string::npos);
-}
-
 TEST(ProgressLine, ShowsShareAndTimeLeft) {
   EXPECT_EQ(progress_line("tracing", 0, 10, 1, 200),
             "tracing [..............................]   0 % ");
@@ -195,48 +171,6 @@ TEST(ProgressLine, ShowsShareAndTimeLeft) {
   EXPECT_NE(progress_line("tracing", 12, 10, 60, 200).find("100 % 0:00 left"), std::string::npos);
   EXPECT_EQ(progress_line("tracing", 5, 10, 90, 10).size(), 10u);
   EXPECT_EQ(progress_line("a\x1b[2Jb", 5, 10, 90, 8), "a?[2Jb [");
-}
-
-/// Output that a process with this TERM and NO_COLOR draws on a terminal in 1.2 s.
-std::string drawn_with(const char* terminal, const char* no_color) {
-  int master = -1;
-  const pid_t child = ::forkpty(&master, nullptr, nullptr, nullptr);
-  if (child == 0) {
-    log_to_stderr(LogLevel::info);
-    ::setenv("TERM", terminal, 1);
-    ::setenv("NO_COLOR", no_color, 1);
-    {
-      Progress progress("tracing", 10);
-      ::usleep(1100000);
-      progress.skip(8);
-      progress.advance();
-    }
-    ::_exit(0);
-  }
-  std::string text;
-  char bytes[256];
-  for (ssize_t count; (count = ::read(master, bytes, sizeof bytes)) > 0;)
-    text.append(bytes, static_cast<std::size_t>(count));
-  ::close(master);
-  ::waitpid(child, nullptr, 0);
-  return text;
-}
-
-TEST(ProgressLine, EscapeCodesNeedATerminalThatTakesThem) {
-  if (const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY); terminal >= 0)
-    ::close(terminal);
-  else
-    GTEST_SKIP() << "no pseudo-terminal: /dev/ptmx cannot be opened";
-  const auto draw = [](const char* terminal, const char* no_color) {
-    return std::async(std::launch::async, drawn_with, terminal, no_color);
-  };
-  auto usual = draw("xterm", ""), dumb = draw("dumb", ""), unset = draw("", ""),
-       plain = draw("xterm", "1");
-  EXPECT_THAT(usual.get(), ::testing::AllOf(::testing::HasSubstr("\x1b[K"),
-                                            ::testing::HasSubstr(" 50 % 0:01 left")))
-      << "1 of the 2 that were not skipped";
-  for (auto* quiet : {&dumb, &unset, &plain})
-    EXPECT_EQ(quiet->get(), "") << "a first line comes after 10 s";
 }
 
 TEST(ProgressWords, ShowShareAndTimeLeft) {

@@ -106,7 +106,7 @@ inline std::vector<glm::dvec3> spread_axes(int n) {
 }
 
 /// All but the direction bins: these jump, which quadrature over the whole sphere does not
-/// integrate, and have up to 96 functions, which take long to compile. rotated_lobe_test.cpp and
+/// integrate, and have up to 96 functions, which take long to compile. Tests of direction bins and
 /// the check of propagation have them.
 inline std::vector<std::string> smooth_bases() {
   std::vector<std::string> names = basis_names();

@@ -14,7 +14,6 @@
 #include <string>
 #include <string_view>
 
-#include "cli/commands.hpp"
 #include "clpv/version.hpp"
 #include "support/error.hpp"
 #include "support/fingerprint.hpp"
@@ -161,21 +160,6 @@ int in_fork(const std::function<int()>& act) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-// The kernel then reaps children at once: the first was waited for without end, and one that had
-// failed had status 0.
-TEST(Process, ALostStatusIsAFailure) {
-  EXPECT_EQ(in_fork([] {
-              std::signal(SIGCHLD, SIG_IGN);
-              ::alarm(20);
-              Process polled("/bin/sh", {"-c", "exit 0"});
-              while (polled.running()) ::usleep(1000);
-              const Process::Result ended = Process("/bin/sh", {"-c", "exit 0"}).end();
-              const bool named = ended.output.find("ignores SIGCHLD") != std::string::npos;
-              return polled.end().code == -1 && ended.code == -1 && named ? 7 : 1;
-            }),
-            7);
-}
-
 TEST(Process, ChildrenHaveUsualSignals) {
   EXPECT_EQ(in_fork([] {
               sigset_t all;
@@ -225,57 +209,6 @@ TEST(ParseNumber, IsDecimalAndFinite) {
   for (const char* text : {"16.0", "1e1", "99999999999999999999", "0x10"})
     EXPECT_FALSE(parse_number<int>(text)) << text;
   EXPECT_FALSE(parse_number<unsigned>("-1"));
-}
-
-/// The error of an option with this value; empty if it accepts it.
-std::string error_of_value(CLI::Option& option, const std::string& text) {
-  option.clear();
-  option.add_result(text);
-  try {
-    option.run_callback();
-  } catch (const CLI::Error& error) {
-    return error.what();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::usage);
-    return error.what();
-  }
-  return {};
-}
-
-/// A number that the option takes; empty for options that take words, choices or vectors.
-std::string number_for(CLI::Option& option) {
-  for (const char* other : {"word", "3,0"})
-    if (error_of_value(option, other).empty()) return {};
-  for (const char* number : {"3", "0.3", "40"})
-    if (error_of_value(option, number).empty()) return number;
-  return {};
-}
-
-// A new option that CLI11 converts by itself fails here.
-TEST(Numbers, OfAllOptionsAreReadAlike) {
-  CLI::App app;
-  Shared shared;
-  add_commands(app, shared, all_commands());
-  int numeric = 0;
-  for (CLI::App* command : app.get_subcommands({})) {
-    for (CLI::Option* option : command->get_options()) {
-      if (option->get_items_expected_max() == 0) continue;  // a flag
-      const std::string number = number_for(*option);
-      if (number.empty()) continue;
-      SCOPED_TRACE(command->get_name() + " " + option->get_name());
-      ++numeric;
-      for (const std::string& good : {"+" + number, "00" + number})
-        EXPECT_EQ(error_of_value(*option, good), "");
-      for (const std::string bad :
-           {"nan", "inf", "-inf", "0x3", "1,5", "1e999", " 3", "3 ", "3x"}) {
-        const std::string error = error_of_value(*option, bad);
-        EXPECT_THAT(error, HasSubstr(option->get_name()));
-        EXPECT_THAT(error, HasSubstr("found '" + bad + "', allowed: "));
-        EXPECT_LT(error.size(), 150u) << error;
-      }
-    }
-  }
-  EXPECT_GT(numeric, 60);
 }
 
 }  // namespace

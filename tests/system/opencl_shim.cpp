@@ -12,8 +12,8 @@
 //   CLPV_SHIM_REPORT=FILE    at the end: "CALL COUNT" a line, and "live COUNT", memory objects that
 //                            were not released
 //
-// "memory" is a call's name for all that allocate, "enqueue" for all that put work on the queue,
-// from the first program on: before it, clpv asks whether the clock of events is to be trusted.
+// "memory" is a call's name for all that allocate, "enqueue" for launches of kernels from the first
+// program on: before it, clpv asks whether the clock of events is to be trusted.
 #include <CL/cl.h>
 #include <dlfcn.h>
 
@@ -183,28 +183,6 @@ cl_int clFinish(cl_command_queue queue) {
   const cl_int code = call(queue);
   if (kernel_ran && clock_fault() == "late") std::this_thread::sleep_for(100ms);
   return code;
-}
-
-cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset,
-                           size_t size, void* to, cl_uint waits, const cl_event* events,
-                           cl_event* event) {
-  CLPV_MAY_FAIL("enqueue", clEnqueueReadBuffer);
-  return failed ? code : call(queue, memory, blocking, offset, size, to, waits, events, event);
-}
-
-cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocking, size_t offset,
-                            size_t size, const void* from, cl_uint waits, const cl_event* events,
-                            cl_event* event) {
-  CLPV_MAY_FAIL("enqueue", clEnqueueWriteBuffer);
-  return failed ? code : call(queue, memory, blocking, offset, size, from, waits, events, event);
-}
-
-cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem memory, const void* pattern,
-                           size_t pattern_size, size_t offset, size_t size, cl_uint waits,
-                           const cl_event* events, cl_event* event) {
-  CLPV_MAY_FAIL("enqueue", clEnqueueFillBuffer);
-  return failed ? code
-                : call(queue, memory, pattern, pattern_size, offset, size, waits, events, event);
 }
 
 }  // extern "C"

@@ -91,7 +91,7 @@ TEST_F(Starved, OfDeviceMemoryAtSomeAllocations) {
 }
 
 TEST_F(Starved, OfItsDeviceAtSomeEnqueues) {
-  expect_reported_at_some("enqueue", 301, "-2", "CL_DEVICE_NOT_AVAILABLE");
+  expect_reported_at_some("enqueue", 41, "-2", "CL_DEVICE_NOT_AVAILABLE");
 }
 
 TEST_F(Starved, OfItsDeviceAtTheStart) {

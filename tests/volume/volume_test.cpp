@@ -129,28 +129,5 @@ TEST(Accumulator, UsesTheReportedMemory) {
   }
 }
 
-/// soa's planes lie an odd number of halves apart, and rows of eight are stored at any. (PoCL 3.1's
-/// own vstore_half8 crashed just here, where sh3 takes more registers than there are.)
-TEST(VolumeLayouts, RowsOfHalvesBeginAtAnyAddress) {
-  const auto basis = make_basis("sh3");
-  const int grid = 24;
-  const Transport transport = make_transport(TransportKind::sampled, *basis, {}, Blocking::areas);
-  const VolumeShape shape{grid, basis->size(), 3},
-      corners{grid + 1, blocking_size(Blocking::areas, *basis), 1};
-  const auto run = [&](Storage storage) {
-    const VolumeFormat format{Layout::soa, storage};
-    Volume injected(test_session(), shape, "injected", format),
-        accumulated(test_session(), shape, "sum", format),
-        geometry(test_session(), corners, "geometry", format);
-    injected.write(test_session(), random_values(shape));
-    geometry.write(test_session(), random_values(corners));
-    Propagator propagator(test_session(), *basis, transport, {.grid = grid, .format = format});
-    // Twice: the second result must not depend on the first.
-    for (int i = 0; i < 2; ++i) propagator.propagate({injected, &geometry, accumulated}, 2);
-    return accumulated.read(test_session());
-  };
-  expect_near(run(Storage::float16), run(Storage::float32), 4e-3);
-}
-
 }  // namespace
 }  // namespace clpv::volume_test

@@ -251,7 +251,7 @@ def main(arguments=None):
     over.add_argument("--over", choices=("all", "axes"), default="all",
                       help="directions of the cosines (default: all alike)")
     over.add_argument("--weights", metavar="FILE",
-                      help="directions with weights, of clpv-lab normals")
+                      help="directions with weights")
     parser.add_argument("--lambdas", choices=("none", "one", "each"), default="one",
                         help="lambdas to optimise (default: one)")
     parser.add_argument("--lambda", dest="start_lambda", type=float, default=0.25, metavar="L",

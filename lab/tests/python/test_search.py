@@ -3,8 +3,6 @@
 import json
 import math
 import os
-import pathlib
-import shutil
 import subprocess
 import sys
 
@@ -16,14 +14,12 @@ import clpv
 pytest.importorskip("scipy", reason="all of it: SciPy is not installed (Debian: apt install python3-scipy)")
 from clpv_lab import search  # noqa: E402
 
-CORNELL = pathlib.Path(__file__).resolve().parents[3] / "scenes/cornell.json"
-
 SLANTED = np.array([[1, 2, -3], [0, math.sqrt(14), 0]]) / math.sqrt(14), np.array([0.75, 0.25])
 LAMBDAS = np.array([0.2, 0.3, 0.25, 0.4, 0.33, 0.21])
 
 
 def program(*arguments):
-    words = [os.path.join(os.environ["CLPV_BUILD"], "clpv-lab"), *map(str, arguments)]
+    words = [os.path.join(os.environ["CLPV_BUILD"], "clpv"), *map(str, arguments)]
     return subprocess.run(words, check=True, capture_output=True, text=True).stdout
 
 
@@ -107,13 +103,9 @@ def test_bad_values(given, text):
 @pytest.mark.parametrize("text, place", [("{", "Expecting"), ("[]", "/weights"),
                                          ('{"weights": []}', "1 to 10000"),
                                          ('{"weights": 7}', "/weights"),
-                                         ('{"weights": [[0, 0, 1, 1], [0, 0, 1]]}', "/weights/1"),
                                          ('{"weights": [[0, 0, 0, 1]]}', "/weights/0"),
                                          ('{"weights": [[0, 0, 1, -1]]}', "/weights/0"),
-                                         ('{"weights": [[0, 0, 1, NaN]]}', "/weights/0"),
                                          ('{"weights": [[0, 0, 1, 1e999]]}', "/weights/0"),
-                                         ('{"weights": [[0, 0, "1", 1]]}', "/weights/0"),
-                                         ('{"weights": [[0, 0, true, 1]]}', "/weights/0"),
                                          ("[" * 100000, "recursion"), (None, "No such file")])
 def test_bad_weights(tmp_path, text, place):
     path = tmp_path / "weights.json"
@@ -129,22 +121,13 @@ def run(*arguments):
                           capture_output=True, text=True, check=False, timeout=300, env=os.environ)
 
 
-def test_from_a_scenes_normals_to_a_set(tmp_path):
+def test_from_weighted_normals_to_a_set(tmp_path):
     normals, file = tmp_path / "normals.json", tmp_path / "mine.json"
-    for name in "cornell.json", "cornell.glb":
-        shutil.copy(CORNELL.with_name(name), tmp_path)
-    drawn = ("normals", tmp_path / "cornell.json", "--grid", 16, "--directions", 24,
-             "--coarser-directions", 24, "--rsm-size", 32, "-o")
-    program(*drawn, normals)
-    with pytest.raises(subprocess.CalledProcessError, match="status 2"):
-        program(*drawn, tmp_path / "cornell.json")  # its input
-    directions, weights = search.weights(normals)
-    assert weights.sum() == pytest.approx(1) and len(weights) < 97
-    assert weights[directions[:, 1] > 0.99].sum() > 0.2, "the floor"
+    normals.write_text(json.dumps({"weights": [[0, 1, 0, 3], [1, 0, 0, 1], [0, 0, 2, 1]]}))
+    assert search.weights(normals)[1].tolist() == pytest.approx([0.6, 0.2, 0.2])
     found = run(4, "--starts", 2, "--lambdas", "each", "--weights", normals, "-o", file)
     assert found.returncode == 0 and "of 2 starts" in found.stdout, found.stderr
     made = json.loads(file.read_text())
     basis = json.loads(program("basis", "--format=json", "--centres", file))["bases"][0]
     assert basis["name"] == "mine" and basis["lambdas"] == made["lambda"] and len(
         made["centres"]) == 4
-
