@@ -40,20 +40,23 @@ CLPV_INLINE float miss_weight(const Sampled* field, const float4 arriving, const
 }
 
 #if CLPV_VISIBLE
-// Whether sample points of visibility at p and q [m] see a cell in common; true if they are farther
-// apart than cells that have one.
-static inline bool see_a_cell(const ClpvGrid grid, __global const uchar* occluded, const float3 p,
-                              const float3 q) {
-  const float3 origin = (float3)(grid.origin[0], grid.origin[1], grid.origin[2]);
-  const float per_quarter = 4.0f / grid.cell;
-  const int highest = max(4 * CLPV_GRID - 5, 0);
-  const int3 a = clamp(convert_int3((p - origin) * per_quarter - 2.0f), 0, highest),
-             b = clamp(convert_int3((q - origin) * per_quarter - 2.0f), 0, highest),
-             steps = (b >> 2) - (a >> 2);
-  if (max(abs(steps.x), max(abs(steps.y), abs(steps.z))) > 1u) return true;
-  const uint there = seen_cells(occluded, CLPV_GRID, b.x, b.y, b.z);
-  return (seen_cells(occluded, CLPV_GRID, a.x, a.y, a.z) &
-          cells_from(there, steps.x, steps.y, steps.z)) != 0;
+// Sample point of visibility about p [m] along an axis [quarters of cells].
+static inline int quarter_at(const ClpvGrid grid, const int axis, const float p) {
+  const float at = (p - grid.origin[axis]) * (4.0f / grid.cell) - 2.0f;
+  return (int)clamp(at, 0.0f, (float)max(4 * CLPV_GRID - 5, 0));
+}
+
+// Whether sample points of visibility at points i of p and q [m] see a cell in common; true if they
+// are farther apart than cells that have one.
+static inline bool see_a_cell(const ClpvGrid grid, __global const uchar* occluded,
+                              const VecLanes* p, const VecLanes* q, const int i) {
+  const int a = quarter_at(grid, 0, p->x[i]), b = quarter_at(grid, 1, p->y[i]),
+            c = quarter_at(grid, 2, p->z[i]), u = quarter_at(grid, 0, q->x[i]),
+            v = quarter_at(grid, 1, q->y[i]), w = quarter_at(grid, 2, q->z[i]);
+  const int x = (u >> 2) - (a >> 2), y = (v >> 2) - (b >> 2), z = (w >> 2) - (c >> 2);
+  if (max(abs(x), max(abs(y), abs(z))) > 1u) return true;
+  return (seen_cells(occluded, CLPV_GRID, a, b, c) &
+          cells_from(seen_cells(occluded, CLPV_GRID, u, v, w), x, y, z)) != 0;
 }
 #endif
 
@@ -64,16 +67,15 @@ CLPV_INLINE intW in_sight(CLPV_RADIANCE, const NearPoints* p, const Vec eye, con
 #if CLPV_VISIBLE
   const realW far = sqrt(vec_dot(eye, eye)), most = 0.85f * p->reach;
   const Vec clear = vec_add_scaled(p->position, far > most ? most / far : ONE, eye);
-  const VecLanes a = unpack(wanted, clear), b = unpack(wanted, at);
+  const VecLanes there = unpack(wanted, clear), here = unpack(wanted, at);
   float reach[W], seen[W];
-  store_lanes(wanted & (far > ZERO) ? p->reach : ZERO, reach);
+  store_lanes((wanted & (far > ZERO)) ? p->reach : ZERO, reach);
   for (int i = 0; i < W; ++i) {
     seen[i] = 1.0f;
     if (!(reach[i] > 0.0f)) continue;
     uint c = 0;
     while (c + 1 < cascades && grids[c + 1].cell <= 1.0001f * reach[i]) ++c;
-    const float3 there = (float3)(a.x[i], a.y[i], a.z[i]), here = (float3)(b.x[i], b.y[i], b.z[i]);
-    seen[i] = see_a_cell(grids[c], CLPV_OCCLUDED_OF(c), there, here) ? 1.0f : 0.0f;
+    seen[i] = see_a_cell(grids[c], CLPV_OCCLUDED_OF(c), &there, &here, i) ? 1.0f : 0.0f;
   }
   return load_lanes(seen) > ZERO;
 #else
