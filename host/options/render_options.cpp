@@ -18,6 +18,7 @@ namespace clpv {
 namespace {
 
 // Upper limits, beyond any practical use: a mistyped value fails before memory is allocated.
+constexpr double kLeastCells = 3;  // with fewer no light arrives
 constexpr double kMaxCells = 512, kMaxSteps = 4096, kMaxBounceSweeps = 64, kMaxTexels = 8192;
 // Edge of a cascade [m]. With 512 cells of the smallest, products of a cell's edges are far from a
 // float's limits; the largest holds every scene (bounds::kCoordinate).
@@ -130,7 +131,7 @@ void for_each_option(Options& o, Visit&& visit) {
   visit("storage", o.storage, "number format of volumes; arithmetic is float", Named{});
   visit("iterations", o.iterations, "propagation steps per cascade; ignored by --transport sweep",
         Range{0, kMaxSteps});
-  visit("grid", o.grid, "cells along each axis of a cascade", Range{1, kMaxCells});
+  visit("grid", o.grid, "cells along each axis of a cascade", Range{kLeastCells, kMaxCells});
   visit("cascades", o.cascades, "number of cascades, each twice as large as the previous one",
         Range{1, kMaxCascades});
   visit("cascade-size", o.cascade_size,

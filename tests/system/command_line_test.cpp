@@ -85,7 +85,7 @@ TEST(HostileCommandLines, OfFrames) {
       "render " + kCornell + " -o @/out.exr ",
       {
           {"--view inside", {"--view: found 'inside', allowed: full,direct,"}},
-          {"--grid 0x10", {"grid", "0x10", "1..512"}},
+          {"--grid 0x10", {"grid", "0x10", "3..512"}},
           {"--cascade-size 1e-30 --view cells", {"cascade-size", "1e-06..10000000"}},
           {"--eye 1e7,0,0 --target 0,0,0 --cascade-size 3", {"cascade-size: found 3", "or more"}},
           {"--iterations 24",
