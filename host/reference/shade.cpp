@@ -132,7 +132,8 @@ double visibility(const ShadowMap& map, const glm::dvec3& position, const glm::d
   const ProjectedPoint at = project(map.view, position);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   const double edge = pixel_edge(map.view, at.depth);
-  const double lift = edge * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
+  const double lift = edge * std::min(CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine,
+                                      CLPV_SHADOW_LIFT_DEPTH * cosine);
   const double rounding = edge * double{CLPV_SHADOW_ROUNDING_TEXELS} +
                           std::abs(at.depth) * double{CLPV_SHADOW_ROUNDING_DEPTH} +
                           (std::abs(position.x) + std::abs(position.y) + std::abs(position.z)) *

@@ -61,7 +61,8 @@ CLPV_INLINE void find_receivers(const ClpvView view, const Vec offset, const Vec
   r->slope_y = edge_y * along_y;
   r->a = vec_dot_unfused(normal, forward) + r->per_depth * across;
   r->b = vec_dot_unfused(normal, offset) - (1.0f - r->per_depth) * across;
-  r->lift = edge * (CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine);
+  r->lift = edge * fmin(CLPV_SHADOW_LIFT_FLAT + CLPV_SHADOW_LIFT_SLOPED * sine,
+                        CLPV_SHADOW_LIFT_DEPTH * cosine);
   r->rounding = edge * CLPV_SHADOW_ROUNDING_TEXELS +
                 fabs(vec_dot_unfused(offset, forward)) * CLPV_SHADOW_ROUNDING_DEPTH;
 }

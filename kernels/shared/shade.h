@@ -19,9 +19,11 @@ enum {
 };
 
 // Lift of a receiver along its normal [texels of the shadow map at its depth]: a constant, and a
-// part times the sine of the light's angle to the normal.
+// part times the sine of the light's angle to the normal. At grazing light it is less: occluders
+// that are farther in front of the receiver, along the light, than the filter is wide cast shadows.
 #define CLPV_SHADOW_LIFT_FLAT 0.25f
 #define CLPV_SHADOW_LIFT_SLOPED 0.5f
+#define CLPV_SHADOW_LIFT_DEPTH 3.0f  // [texels]
 
 // A receiver below a surface of the map (shadow.h) has no lift, but for rounding: in texels of the
 // map, and relative to its depth.

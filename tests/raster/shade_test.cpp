@@ -324,6 +324,26 @@ TEST(Shadow, ShadowsKeepTouchingWhatCastsThem) {
   }
 }
 
+TEST(Shadow, GrazingLightDoesNotPassUnderWhatIsFarTowardsIt) {
+  // A roof half a texel above a floor of a curved mesh, 6 texels away along the light.
+  SurfaceImage image = floor_image();
+  for (glm::vec4& normal : image.normal)
+    normal = stored_normal(glm::normalize(glm::dvec3(0.1, 1, 0)), kUp);
+  const double angle = 85.0 / 180 * pi, height = 0.5 * kTexel;
+  const glm::dvec3 direction(std::sin(angle), -std::cos(angle), 0);
+  const Geometry casting = [&](const glm::dvec3& o, const glm::dvec3& d) {
+    const double t = plane_at(o, d, kUp, height);
+    return nearer(plane_at(o, d, kUp, 0), (o + t * d).x < 0 ? t : 0);
+  };
+  const std::vector<double> e = lit(image, {sun(direction, 7, casting)});
+  const double beyond = (CLPV_SHADOW_TAPS / std::cos(angle) + 1) * kTexel;
+  for (std::size_t pixel = 0; pixel < e.size(); ++pixel) {
+    const double x = point_of(image, pixel).x;
+    if (x < -beyond) ASSERT_EQ(e[pixel], 0.0) << "light under the roof at x " << x;
+    if (x > beyond) ASSERT_GT(e[pixel], 0.0) << "x " << x;
+  }
+}
+
 // A floor that the light grazes at up to 87 degrees; and a room whose walls are oblique to the six
 // views.
 TEST(Shadow, SixViewsOfAPointLightShowNoSeamsAndDoNotShadowTheirReceiver) {
