@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reads OpenEXR images with NumPy alone: scanlines, uncompressed, ZIP or ZIPS. Other files need the
-module OpenEXR (PyPI)."""
+"""Reads OpenEXR images with NumPy alone: scanlines, uncompressed, ZIP or ZIPS."""
 import struct
 import zlib
 
@@ -42,18 +41,14 @@ def header(data):
     return attributes, at + 1
 
 
-def check_sampling(name, x, y):
-    if (x, y) != (1, 1):
-        raise ValueError(f"channel {name} sampled every {x} x {y} pixels")
-
-
 def channel_list(value):
     """Returns [(name, type)] in the order of the pixels."""
     at, found = 0, []
     while value[at]:
         end = value.index(0, at)
         kind, x, y = struct.unpack_from("<i4x2i", value, end + 1)
-        check_sampling(value[at:end].decode(), x, y)
+        if (x, y) != (1, 1):
+            raise ValueError(f"channel {value[at:end].decode()} sampled every {x} x {y} pixels")
         found.append((value[at:end].decode(), TYPES[kind]))
         at = end + 17
     names = [name for name, _ in found]
@@ -149,49 +144,6 @@ def to_rec709(file, planes, chromaticities):
             planes.update(zip(names, converted.astype(numpy.float32)))
 
 
-def merged(file, parts):
-    """Channels of all parts {name: planes}, as 'PART.CHANNEL'; those of the only part with R, G and
-    B also as they are, where no other has the name."""
-    planes = {}
-    for part, channels in parts.items():
-        for channel, plane in channels.items():
-            name = channel if channel.startswith(f"{part}.") else f"{part}.{channel}"
-            if name in planes:
-                raise BadImage(f"{file}: part '{part}', channel '{channel}': found {name} twice; "
-                               "allowed: unique names of parts and layers")
-            planes[name] = plane
-    shown = [channels for channels in parts.values() if all(name in channels for name in "RGB")]
-    return {**shown[0], **planes} if len(shown) == 1 else planes
-
-
-def by_openexr(file):
-    try:
-        import OpenEXR
-    except ImportError:
-        raise BadImage(
-            f"{file}: found a tiled, deep, multi-part or differently compressed EXR; allowed: scanlines, "
-            "uncompressed, ZIP or ZIPS, or install OpenEXR (PyPI)") from None
-    if not hasattr(OpenEXR, "File"):
-        raise BadImage(f"{file}: found OpenEXR {OpenEXR.__version__}; allowed: at least 3.3 (PyPI)")
-    parts = {}
-    with OpenEXR.File(str(file), separate_channels=True) as image:
-        for part in image.parts:
-            for name, channel in part.channels.items():
-                check_sampling(name, channel.xSampling, channel.ySampling)
-            planes = {
-                name: channel.pixels.astype(numpy.float32)
-                for name, channel in part.channels.items()
-            }
-            data, display = (tuple(int(edge) for corner in part.header[name] for edge in corner)
-                             for name in ("dataWindow", "displayWindow"))
-            planes = in_display(file, planes, data, display)
-            to_rec709(file, planes, part.header.get("chromaticities", REC709))
-            parts[part.name()] = planes
-    if not parts:
-        raise BadImage(f"{file}: found no readable part; allowed: 1 or more")
-    return merged(file, parts) if len(parts) > 1 else planes
-
-
 def read(file):
     """Returns the channels {name: float32 array of height x width} of the display window, R, G and B
     those of Rec. 709. Throws BadImage, also where pixels are missing."""
@@ -211,7 +163,8 @@ def read(file):
         if attributes.get("envmap") == CUBE_MAP:
             raise BadImage(f"{file}: found a cube map (attribute envmap); allowed: flat images")
         if version & NOT_SCANLINES or attributes["compression"][0] not in ROWS:
-            return by_openexr(file)
+            raise BadImage(f"{file}: found a tiled, deep, multi-part or differently compressed EXR; "
+                           "allowed: scanlines, uncompressed, ZIP or ZIPS")
         planes = in_display(file, scanlines(data, attributes, at),
                             window(attributes["dataWindow"]), window(attributes["displayWindow"]))
         if "chromaticities" in attributes:
