@@ -95,25 +95,26 @@ class Odd(test_score.Suite):
 
     def test_files_that_both_read_alike(self):
         foreign, (width, height) = struct.pack("<8f", *REC2020), test_score.SIZE
-        padded = {name: numpy.pad(plane, 4, constant_values=9)
-                  for name, plane in self.planes.items()}
         for name, data in {
                 "plain": self.made(), "ZIPS": self.compressed(b""),
                 "long names": self.edited(lambda data, _: data.__setitem__(5, 4)),
                 "lines from the bottom": self.with_lines_downwards(),
                 "chromaticities of another type":
                     self.made(more=attribute(b"chromaticities", b"string", foreign)),
-                "primaries": self.made(more=attribute(b"chromaticities", b"chromaticities",
-                                                      foreign)),
                 "environment, flat": self.made(more=attribute(b"envmap", b"envmap", b"\0")),
-                "overscan": self.made(padded, data=(-4, -4, width + 3, height + 3),
-                                      display=(0, 0, width - 1, height - 1)),
                 "window elsewhere": self.made(data=(-10, -20, width - 11, height - 21))
         }.items():
             self.file.write_bytes(data)
             found = self.theirs()
             self.assertIsNotNone(found, name)
             self.assertEqual(self.ours(), found, name)
+
+    def test_other_windows_and_primaries_are_named(self):
+        foreign = attribute(b"chromaticities", b"chromaticities", struct.pack("<8f", *REC2020))
+        for words, options in (("chromaticities", {"more": foreign}),
+                               ("dataWindow", {"display": (0, 0, 9, 9)})):
+            self.made(**options)
+            self.assertIn(words, self.rejected())
 
     def test_files_that_both_reject(self):
         nan = numpy.full_like(self.alpha, numpy.nan)

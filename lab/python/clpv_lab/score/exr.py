@@ -15,8 +15,6 @@ TYPES = {0: numpy.dtype("<u4"), 1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
 ROWS = {0: 1, 2: 1, 3: 16}  # rows of a chunk, by compression: none, ZIPS, ZIP
 REC709 = 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.3290  # x and y of red, green, blue and white
 SAME_CHROMATICITY = 1e-3  # standards state three or four digits
-BRADFORD = numpy.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367],
-                        [0.0389, -0.0685, 1.0296]])  # cone responses of CIE XYZ
 
 
 class BadImage(Exception):
@@ -102,51 +100,9 @@ def window(value):
     return struct.unpack("<4i", value)
 
 
-def in_display(file, planes, data, display):
-    """Cuts planes of the data window to the display window, which must lie in it."""
-    left, top, right, bottom = display
-    if data[0] > left or data[1] > top or data[2] < right or data[3] < bottom:
-        raise BadImage(
-            f"{file}: found only pixels {data[:2]} to {data[2:]} (dataWindow); allowed: all of "
-            f"{display[:2]} to {display[2:]} (displayWindow)")
-    rows = slice(top - data[1], bottom - data[1] + 1)
-    columns = slice(left - data[0], right - data[0] + 1)
-    return {name: plane[rows, columns] for name, plane in planes.items()}
-
-
-def xyz(chromaticities):
-    """Returns the matrix from RGB to XYZ and the white (SMPTE RP 177)."""
-    x, y = numpy.reshape(chromaticities, (4, 2)).T
-    columns = numpy.array([x, y, 1 - x - y])
-    white = columns[:, 3] / y[3]
-    return columns[:, :3] * numpy.linalg.solve(columns[:, :3], white), white
-
-
-def to_rec709(file, planes, chromaticities):
-    """Converts R, G and B of each layer in place, white adapted by Bradford's transform."""
-    if numpy.abs(numpy.subtract(chromaticities, REC709)).max() < SAME_CHROMATICITY:
-        return
-    try:
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            (source, white), (target, wanted) = xyz(chromaticities), xyz(REC709)
-            gain = BRADFORD @ wanted / (BRADFORD @ white)
-            matrix = numpy.linalg.solve(
-                target, numpy.linalg.solve(BRADFORD, gain[:, None] * BRADFORD) @ source)
-    except numpy.linalg.LinAlgError:
-        matrix = numpy.full((3, 3), numpy.nan)
-    if not numpy.isfinite(matrix).all():
-        raise BadImage(f"{file}: found chromaticities {tuple(chromaticities)}; allowed: three "
-                       "colours and a white")
-    for prefix in {name[:-1] for name in planes if name == "R" or name.endswith(".R")}:
-        names = [prefix + colour for colour in "RGB"]
-        if all(name in planes for name in names):
-            converted = numpy.einsum("ij,jyx->iyx", matrix, [planes[name] for name in names])
-            planes.update(zip(names, converted.astype(numpy.float32)))
-
-
 def read(file):
-    """Returns the channels {name: float32 array of height x width} of the display window, R, G and B
-    those of Rec. 709. Throws BadImage, also where pixels are missing."""
+    """Returns the channels {name: float32 array of height x width}, R, G and B those of Rec. 709.
+    Throws BadImage."""
     if file.exists() and not file.is_file():
         raise BadImage(f"{file}: found no regular file; allowed: an EXR file")
     try:
@@ -165,11 +121,14 @@ def read(file):
         if version & NOT_SCANLINES or attributes["compression"][0] not in ROWS:
             raise BadImage(f"{file}: found a tiled, deep, multi-part or differently compressed EXR; "
                            "allowed: scanlines, uncompressed, ZIP or ZIPS")
-        planes = in_display(file, scanlines(data, attributes, at),
-                            window(attributes["dataWindow"]), window(attributes["displayWindow"]))
+        if attributes["dataWindow"] != attributes["displayWindow"]:
+            raise BadImage(f"{file}: found pixels {window(attributes['dataWindow'])} (dataWindow); "
+                           "allowed: those of the displayWindow")
         if "chromaticities" in attributes:
-            to_rec709(file, planes, struct.unpack("<8f", attributes["chromaticities"]))
-        return planes
+            found = struct.unpack("<8f", attributes["chromaticities"])
+            if not numpy.allclose(found, REC709, rtol=0, atol=SAME_CHROMATICITY):
+                raise BadImage(f"{file}: found chromaticities {found}; allowed: Rec. 709")
+        return scanlines(data, attributes, at)
     except (struct.error, zlib.error, IndexError, KeyError, ValueError, TypeError, RuntimeError,
             MemoryError, OverflowError) as error:
         raise BadImage(f"{file}: damaged EXR ({type(error).__name__}: {error})") from None
