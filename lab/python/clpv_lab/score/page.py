@@ -25,7 +25,7 @@ def compared(suite_folder, methods, only):
     """HTML of the viewer and the table, then what is suspected. `methods`: (title, folder)."""
     shown, rows, methods = [], [], list(methods)
     for view in suite.chosen(suite.read_suite(suite_folder), only):
-        truth, alpha, _ = suite.read_truth(suite_folder, view)
+        truth, alpha = suite.read_truth(suite_folder, view)
         images = [viewer.entry("path tracing", truth)]
         for title, folder in methods:
             read = suite.read_view(suite_folder, view, suite.frames_of(folder, view["name"]))
