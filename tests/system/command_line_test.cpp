@@ -148,8 +148,7 @@ TEST(HostileCommandLines, OfDevices) {
   for (const std::string device : {"99", "'no such thing'", "7:7", "-1"})
     expect_rejected(
         {device, "--device=" + device + " check --stage sizes", 4, {words_of(device).front()}});
-  expect_rejected(
-      {"by the environment", "check --stage sizes", 4, {"'99'"}, {}, "CLPV_DEVICE=99"});
+  expect_rejected({"by the environment", "check --stage sizes", 4, {"'99'"}, {}, "CLPV_DEVICE=99"});
 }
 
 TEST(HostileSurroundings, Outputs) {
