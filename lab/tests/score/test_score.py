@@ -280,15 +280,6 @@ class Files(unittest.TestCase):
 
 
 class CamerasAndLights(unittest.TestCase):
-    def test_keys_are_interpolated(self):
-        light = {"keys": [{"time": 0, "direction": [1, 0, 0], "illuminance_lux": 2},
-                          {"time": 4, "direction": [0, 1, 0], "illuminance_lux": 4}]}
-        halfway = suite.at_time(light, 2)
-        numpy.testing.assert_allclose(halfway["direction"], [0.5 ** 0.5, 0.5 ** 0.5, 0])
-        self.assertEqual(halfway["illuminance_lux"], 3)
-        with self.assertRaisesRegex(ValueError, "no key at 2 s"):
-            suite.at_time({"name": "walk", "interpolation": "smooth", "keys": light["keys"]}, 2)
-
     def test_a_model_with_them_has_the_scene_files_image(self):
         scene = json.loads((ROOT / "scenes/cornell.json").read_text())
         data = (ROOT / "scenes/cornell.glb").read_bytes()
