@@ -10,7 +10,7 @@ import json
 
 from clpv import ms_of
 from measured import ROOT, bake as probes, tables
-from measured.cells import found, load, number, percent, shown, table
+from measured.cells import Form, found, load, number, percent, shown, table
 from measured.verdicts import sentence
 
 from . import standing as benchmark
@@ -49,7 +49,7 @@ def scores():
             lines.append([
                 document["method"], scene,
                 str(len(rows)), *(percent(mean_of(name), 1) for name in ("nrmse", "bias", "noise")),
-                f"{mean_of('energy_ratio'):.3f}", f"{mean_of('flip'):.3f}"
+                *(Form().format("{0:.3f}", mean_of(name)) for name in ("energy_ratio", "flip"))
             ])
     return lines
 

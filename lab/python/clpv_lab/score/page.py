@@ -16,9 +16,7 @@ def entry_with_error(title, frames, view, truth, alpha):
     """Entry of the mean of frames, with its map of FLIP."""
     image = numpy.mean([rgb for rgb, _ in frames], axis=0)
     valid = suite.shared(alpha, frames)
-    return viewer.entry(
-        title, image,
-        numpy.where(valid, errors.flip_map(image, truth, valid, view["exposure"]), 0))
+    return viewer.entry(title, image, errors.flip_map(image, truth, valid, view["exposure"]))
 
 
 def compared(suite_folder, methods, only):
