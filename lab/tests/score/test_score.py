@@ -270,10 +270,11 @@ class Files(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder) / "a.exr", pathlib.Path(folder) / "b.exr"
             write(source, layered(image, numpy.ones(SIZE[::-1])))
-            for kind, compression in (("half", "zip"), ("float", "zips"), ("half", "none")):
-                subprocess.run(
-                    ["oiiotool", source, "-d", kind, "--compression", compression, "-o", target],
-                    check=True)
+            for kind, compression, order in (("half", "zip", "decreasingY"),
+                                             ("float", "zips", "increasingY"),
+                                             ("half", "none", "decreasingY")):
+                subprocess.run(["oiiotool", source, "-d", kind, "--compression", compression,
+                                "--attrib", "openexr:lineOrder", order, "-o", target], check=True)
                 expected = image.astype(numpy.float16) if kind == "half" else image
                 numpy.testing.assert_array_equal(exr.colours(exr.read(target), target)[0], expected)
 
