@@ -92,6 +92,14 @@ void add_meshes(py::module_& module, py::class_<Scene>& type) {
                    return scene;
                  },
                  "A scene of one mesh, number 0, as add_mesh() describes it.");
+  type.def_static(
+      "from_trimesh",
+      [](const py::object& given) {
+        return py::module_::import("clpv._trimesh").attr("scene_of_trimesh")(given).cast<Scene>();
+      },
+      py::arg("given"),
+      "A scene of a trimesh.Trimesh or trimesh.Scene, [m], y up: geometry, instances, colours and\n"
+      "base-colour textures.");
   type.def(
       "add_instance",
       [](Scene& scene, int mesh, const Transform& transform) {

@@ -121,6 +121,7 @@ def test_errors_are_those_of_python_too():
     (clpv.UsageError, "kind: found 'sun', allowed: directional",
      lambda s, r: setattr(s, "lights", [clpv.Light("sun")])),
     (clpv.UsageError, "channels: found 1 names", lambda s, r: clpv.Image(NUMBERS, ["R"])),
+    (clpv.UsageError, "from_trimesh: given: found int", lambda s, r: clpv.Scene.from_trimesh(3)),
     (clpv.InputError, "nowhere", lambda s, r: clpv.Scene("/nowhere/scene.json")),
     (clpv.InputError, r"texture: \[0, 1\]: found 1.5; allowed: 0 to 1",
      lambda s, r: clpv.Material(texture=TEXTURE)),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Scenes from arrays: a file's bytes, moving meshes, rejected arrays."""
+"""Scenes from arrays: a file's bytes, moving meshes, rejected arrays; trimesh where it is
+installed."""
 import gc
 import re
 import threading
@@ -8,8 +9,10 @@ import numpy
 import pytest
 
 import clpv
+import clpv._trimesh
 from conftest import ROOT, SMALL, run_python
 
+NO_TRIMESH = "trimesh is not installed (pip install trimesh)"
 SQUARE = numpy.array([[0, 1, 2], [0, 2, 3]])
 WALL = numpy.array([[-2, 0, -2], [2, 0, -2], [2, 3, -2], [-2, 3, -2]], dtype=float)
 
@@ -94,6 +97,49 @@ def test_a_saved_scene_is_the_same(name, tmp_path):
         numpy.testing.assert_allclose(found[1], found[0], rtol=1e-3, atol=1e-4 * found[0].max())
     with pytest.raises(clpv.UsageError, match="found extension '.obj', allowed: .glb"):
         scene.save(tmp_path / "saved.obj")
+
+
+def test_scene_of_trimesh():
+    trimesh = pytest.importorskip("trimesh", reason=NO_TRIMESH)
+    box = trimesh.creation.box((1, 1, 1))
+    given = trimesh.Scene()
+    given.add_geometry(box, geom_name="box")
+    given.graph.update("second", matrix=trimesh.transformations.translation_matrix((3, 0, 0)),
+                       geometry="box")
+    scene = clpv.Scene.from_trimesh(given)
+    assert scene.bounds == ((-0.5, -0.5, -0.5), (3.5, 0.5, 0.5))
+    assert "24 triangles" in repr(scene)
+    assert "12 triangles" in repr(clpv.Scene.from_trimesh(box))
+
+
+def test_colours_of_trimesh():
+    trimesh = pytest.importorskip("trimesh", reason=NO_TRIMESH)
+    look = clpv._trimesh._arguments  # pylint: disable=protected-access
+    box = trimesh.creation.box((1, 1, 1))
+    box.visual.face_colors = [[10 * face, 255, 0, 255] for face in range(12)]
+    given = look(box)
+    assert given["positions"].shape == (36, 3) and given["colours"].shape == (36, 4)
+    assert numpy.ptp(given["colours"][:3], axis=0).max() == 0 and given["colours"][33, 1] == 1
+    assert given["colours"][33, 0] == pytest.approx(110 / 255)  # linear
+    assert "12 triangles" in repr(clpv.Scene.from_trimesh(box))
+
+
+@pytest.mark.parametrize("colour, material", [
+    (None, {}), ((0.5, 0.25, 1), {}), ((0.5, 0.25, 1, 1), {"base_colour": (0.4, 0.6, 0.8, 1)}),
+    (None, {"base_colour": (1, 1, 1, 0.3), "alpha_cutoff": 0.2}),
+    (None, {"emission": (0.2, 0.4, 0.6), "double_sided": True})])
+def test_a_scene_of_trimesh_is_its_file(colour, material, tmp_path):
+    trimesh = pytest.importorskip("trimesh", reason=NO_TRIMESH)
+    file = tmp_path / "a.glb"
+    clpv.Scene.from_arrays(WALL, SQUARE, normals=WALL * 0 + (0.6, 0, 0.8),
+                           colours=colour and numpy.array([colour] * len(WALL)),
+                           material=clpv.Material(**material)).save(file)
+    camera = clpv.Camera(eye=(0.2, 1, 3), target=(0, 1.5, -2))
+    for view in "albedo", "normal", "direct":
+        scenes = clpv.Scene.from_trimesh(trimesh.load(file)), clpv.Scene(file)
+        found, expected = (clpv.pathtrace(each, view, camera, width=9, height=9, samples=1).array
+                           for each in scenes)
+        numpy.testing.assert_allclose(found, expected, atol=0.005)  # rounding of 8 bits
 
 
 def test_the_example_of_arrays_runs(tmp_path):
