@@ -7,6 +7,10 @@ import numpy
 
 MAGIC, VERSION, LONG_NAMES = 20000630, 2, 0x400
 NOT_SCANLINES = 0x1a00  # in the version: tiled, deep, several parts
+KINDS = {"channels": "chlist", "compression": "compression", "dataWindow": "box2i",
+         "displayWindow": "box2i", "lineOrder": "lineOrder", "chromaticities": "chromaticities",
+         "envmap": "envmap"}  # types of attributes that are read
+CUBE_MAP, LINE_ORDERS = b"\1", (b"\0", b"\1")
 TYPES = {0: numpy.dtype("<u4"), 1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
 ROWS = {0: 1, 2: 1, 3: 16}  # rows of a chunk, by compression: none, ZIPS, ZIP
 REC709 = 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.3290  # x and y of red, green, blue and white
@@ -18,17 +22,20 @@ class BadImage(Exception):
 
 
 def header(data):
-    """Returns attributes {name: bytes} and the offset behind them."""
-    at, attributes = 8, {}
+    """Returns attributes {name: bytes}, of the types that they should have, and the offset behind
+    them."""
+    at, attributes, names = 8, {}, set()
     while data[at]:
         end = data.index(0, at)
         kind = data.index(0, end + 1)
         size = struct.unpack_from("<i", data, kind + 1)[0]
-        name = data[at:end].decode()
-        if size < 0:
-            raise ValueError(f"attribute {name} of {size} bytes")
+        name, type_name = data[at:end].decode(), data[end + 1:kind].decode()
+        if size < 0 or name in names:
+            raise ValueError(f"attribute {name}: duplicate, or of {size} bytes")
+        names.add(name)
+        if KINDS.get(name) == type_name:
+            attributes[name] = data[kind + 5:kind + 5 + size]
         at = kind + 5 + size
-        attributes[name] = data[kind + 5:at]
     return attributes, at + 1
 
 
@@ -42,6 +49,9 @@ def channel_list(value):
             raise ValueError(f"channel {value[at:end].decode()} sampled every {x} x {y} pixels")
         found.append((value[at:end].decode(), TYPES[kind]))
         at = end + 17
+    names = [name for name, _ in found]
+    if names != sorted(set(names)):
+        raise ValueError(f"channels {', '.join(names)}: not unique and sorted")
     return found
 
 
@@ -67,6 +77,8 @@ def scanlines(data, attributes, at):
     planes = {name: numpy.empty((height, width), numpy.float32) for name, _ in channels}
     compression = attributes["compression"][0]
     rows = ROWS[compression]
+    if attributes["lineOrder"] not in LINE_ORDERS:
+        raise ValueError(f"lineOrder {attributes['lineOrder']}")
     for i, offset in enumerate(struct.unpack_from(f"<{-(-height // rows)}Q", data, at)):
         y, size = struct.unpack_from("<2i", data, offset)
         first, count = rows * i, min(rows, height - rows * i)
@@ -104,6 +116,8 @@ def read(file):
         if version & ~NOT_SCANLINES & ~LONG_NAMES != VERSION:
             raise BadImage(f"{file}: found EXR of version {version:#x}; allowed: {VERSION}")
         attributes, at = header(data)
+        if attributes.get("envmap") == CUBE_MAP:
+            raise BadImage(f"{file}: found a cube map (attribute envmap); allowed: flat images")
         if version & NOT_SCANLINES or attributes["compression"][0] not in ROWS:
             raise BadImage(f"{file}: found a tiled, deep, multi-part or differently compressed EXR; "
                            "allowed: scanlines, uncompressed, ZIP or ZIPS")
