@@ -141,20 +141,10 @@ TEST(BaselineFilter, InterpolatesBetweenThinnedPixels) {
     EXPECT_NEAR(image.at(i).x, std::clamp(static_cast<float>(i % 32), 2.0f, 30.0f), 1e-3f) << i;
 }
 
-/// A closed cube of edge 2 m seen from inside; its walls emit radiance 2.
-SceneData furnace() {
-  SceneData scene;
-  scene.path = "furnace";
-  const unsigned wall = test::add_grey(scene, 0.5f);
-  for (float& e : scene.materials[wall].emissive) e = 2;
-  test::add_box(scene, glm::vec3(0), 2, wall);
-  return scene;
-}
-
 // A closed room with a box, whose surfaces emit the same radiance: rays that end nowhere would lose
 // light. Intervals end at walls and at the box, probes lie behind walls and in the box.
 TEST(BaselineRadianceCascades, FurnaceIsEvenlyLit) {
-  SceneData scene = furnace();
+  SceneData scene = test::furnace(0.5f, 2, 2);
   test::add_box(scene, {1.01f, 0.81f, 1.13f}, -0.7f, 0);
   const SceneCamera camera = camera_at({1, 1.5f, 1.8f}, {0, -0.6f, -1.5f});
   const baselines::View view(scene, camera, 16, 9, 1, 2);
@@ -175,7 +165,7 @@ TEST(BaselineRejection, NamesWhatAMethodDoesNotHave) {
     return test::error_of(ExitCode::usage,
                           [&] { require_baseline(baseline, scene, bounces, show); });
   };
-  const SceneData lit = load_scene(scene_file("cornell.json")), glowing = furnace();
+  const SceneData lit = load_scene(scene_file("cornell.json")), glowing = test::furnace(0.5f, 2);
   EXPECT_THAT(reason(Baseline::vpl, glowing, 1, Show::indirect), HasSubstr("emissive"));
   EXPECT_THAT(reason(Baseline::ddgi_first, lit, 2, Show::indirect),
               HasSubstr("allowed: bounces 1"));

@@ -123,7 +123,7 @@ class Viewer:
             self.scene.lights = [sun]
         elif self.load:
             self.scene = self.renderers.scene = self.load()
-            self.renderers.kept.clear()
+            self.renderers.kept.cache_clear()
         else:
             self.scene.lights = self.lights
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Which frames the viewer (clpv.view) draws, for whom, and when."""
 import collections
+import functools
 import math
 import time
 
@@ -33,17 +34,12 @@ class Renderers:
     """Renderers by size and options; the ones used last are kept."""
 
     def __init__(self, scene, device):
-        self.scene, self.device, self.kept = scene, device, collections.OrderedDict()
+        self.scene = scene
+        self.kept = functools.lru_cache(MAX_RENDERERS)(lambda size, options: clpv.Renderer(
+            self.scene, device, width=size[0], height=size[1], **dict(options)))
 
     def get(self, size, options):
-        key = size, tuple(sorted(options.items()))
-        if key not in self.kept:
-            while len(self.kept) >= MAX_RENDERERS:
-                self.kept.popitem(last=False)
-            self.kept[key] = clpv.Renderer(self.scene, self.device, width=size[0], height=size[1],
-                                           **options)
-        self.kept.move_to_end(key)
-        return self.kept[key]
+        return self.kept(size, tuple(sorted(options.items())))
 
 
 class Rate:

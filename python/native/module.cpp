@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <mutex>
 #include <thread>
@@ -28,28 +29,7 @@ PyObject* new_error(py::module_& module, const char* name, const char* doc,
   return made;
 }
 
-struct Errors {
-  PyObject *base, *usage, *bad_input, *device, *run_time, *validation;
-  PyObject* of(ExitCode code) const {
-    switch (code) {
-      case ExitCode::usage:
-        return usage;
-      case ExitCode::bad_input:
-        return bad_input;
-      case ExitCode::device:
-        return device;
-      case ExitCode::run_time:
-        return run_time;
-      case ExitCode::validation:
-        return validation;
-      case ExitCode::ok:
-        break;
-    }
-    return base;
-  }
-};
-
-Errors errors;  // filled once, by add_errors
+std::array<PyObject*, 6> errors;  // by exit code; filled once, by add_errors
 
 // State of this process, guarded by the GIL.
 int running = 0;                   // CallsInProgress of process `counted`
@@ -164,25 +144,25 @@ bool forked_from_device_use() {
 
 void add_errors(py::module_& module) {
   const auto builtin = [](PyObject* type) { return py::reinterpret_borrow<py::object>(type); };
-  errors.base = new_error(module, "Error",
-                          "Any failure of clpv; str() names place, value found and value allowed.",
-                          py::make_tuple(builtin(PyExc_Exception)));
-  const py::object base = builtin(errors.base);
-  const auto add = [&](const char* name, const char* doc, PyObject* also) {
-    return new_error(module, name, doc, py::make_tuple(base, builtin(also)));
+  const auto add = [&](ExitCode code, const char* name, const char* doc, const auto&... bases) {
+    errors[static_cast<std::size_t>(code)] =
+        new_error(module, name, doc, py::make_tuple(builtin(bases)...));
   };
-  errors.usage = new_error(
-      module, "UsageError",
+  add(ExitCode::ok, "Error",
+      "Any failure of clpv; str() names place, value found and value allowed.", PyExc_Exception);
+  PyObject* const base = errors[0];
+  add(ExitCode::usage, "UsageError",
       "Unknown option, value out of range, or argument of another kind; a ValueError and a "
       "TypeError.",
-      py::make_tuple(base, builtin(PyExc_ValueError), builtin(PyExc_TypeError)));
-  errors.bad_input = add("InputError", "Invalid scene, image, or other input.", PyExc_ValueError);
-  errors.device = add("DeviceError", "No OpenCL device, or one without a required capability.",
-                      PyExc_RuntimeError);
-  errors.run_time =
-      add("ResourceError", "Out of memory, or a file that cannot be written.", PyExc_RuntimeError);
-  errors.validation =
-      add("ValidationError", "A result differs from its reference.", PyExc_RuntimeError);
+      base, PyExc_ValueError, PyExc_TypeError);
+  add(ExitCode::bad_input, "InputError", "Invalid scene, image, or other input.", base,
+      PyExc_ValueError);
+  add(ExitCode::device, "DeviceError", "No OpenCL device, or one without a required capability.",
+      base, PyExc_RuntimeError);
+  add(ExitCode::run_time, "ResourceError", "Out of memory, or a file that cannot be written.", base,
+      PyExc_RuntimeError);
+  add(ExitCode::validation, "ValidationError", "A result differs from its reference.", base,
+      PyExc_RuntimeError);
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
@@ -190,7 +170,7 @@ void add_errors(py::module_& module) {
       PyErr_SetString(exiting ? PyExc_SystemExit : PyExc_KeyboardInterrupt, interrupted.what());
     } catch (const Error& error) {
       const bool of_file = error.code() == ExitCode::bad_input;  // whose names stay
-      PyErr_SetString(errors.of(error.code()),
+      PyErr_SetString(errors[static_cast<std::size_t>(error.code())],
                       (of_file ? std::string(error.what()) : in_python(error.what())).c_str());
     }
   });

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Measured numbers: scripts/measure and scripts/reproduce measure them, scripts/tables and
-scripts/charts show them.
+"""Measured numbers: scripts/measure and scripts/reproduce measure them and draw charts,
+scripts/tables shows them.
 
 rows.py has what is measured, once for both.
 """

@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Charts and pictures of the docs.
-
-    scripts/charts lambda -o FILE.png     condition, error and energy of SRBF bases over the
-                                          bandwidth; lambdas that clpv rejects are missing
-    scripts/charts probes -o FILE.png     results/docs/bake.json: error of light probes over bytes
-    scripts/charts spheres -o FILE.jpg    spheres that baked probes light, and by path tracing
+"""Charts and pictures of the docs, which scripts/measure and lab/scripts/standing draw.
 
 Needs a build, Debian's Python and the packages of scripts/setup."""
-import argparse
+import io
 import json
 import math
-import pathlib
 import sys
 
 import numpy
+from matplotlib import pyplot
 
 from . import CLPV, RESULTS, ROOT, bake, native, output
 
@@ -23,14 +18,24 @@ from clpv.draw import style  # noqa: E402
 sys.path.insert(0, str(ROOT / "examples"))
 import probes  # noqa: E402  pylint: disable=wrong-import-position
 
-BASES = ("srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14")
 FORMATS = ("sh2", "zh3", "sh3", "srbf8v2", "ambient-cube", "ambient-cube-mean")
-LAMBDAS = [round(0.05 * i, 2) for i in range(1, 15)]
 
 # Moving objects of draw_spheres: centres and radius [m], reflectance; probes; size of a picture.
 SPHERES = [(x, y, z) for x in (-6.5, -4, -1.5, 1.5) for z, y in ((-2.9, 1.2), (-0.3, 2.6), (1.9, 1.2))]
 RADIUS, WHITE, SPACING, SHOWN = 0.45, 0.8, 1, (400, 225)
 PATHS = 256
+# Pictures of draw_frame: view, exposure over the scene's [EV], options of `clpv render`. Steps
+# without iterations leave injected light as it is. rsm: what the sun sees of a cascade.
+FRAME = {
+    "direct": ("direct", 0, {}),
+    "rsm": ("direct", 0, {}),
+    "injected": ("cells", -0.5, {"transport": "sampled", "iterations": 0}),
+    "swept": ("cells", -1.5, {}),
+    "irradiance": ("irradiance", -1.5, {"near": "off"}),
+    "near": ("irradiance", -1.5, {"near": "traced"}),
+    "full": ("full", 0, {"near": "traced"}),
+}
+CASCADE = 25  # edge of the finest cascade [m], in scenes/atrium.json
 
 
 def save(figure, target, dpi):
@@ -53,39 +58,6 @@ def draw_errors(series, target):
     style.logarithmic(axis.xaxis)
     axis.legend()
     save(figure, target, 110)
-
-
-def measures(name, bandwidth):
-    """Condition, mean error and energy of a basis; nothing if clpv rejects this lambda."""
-    try:
-        basis = clpv.Basis(name, bandwidth)
-        return [(bandwidth, basis.condition, basis.mean_error, basis.energy(24))]
-    except clpv.UsageError:
-        return []
-
-
-def draw_lambda(target):
-    curves = {name: list(zip(*(point for value in LAMBDAS for point in measures(name, value))))
-              for name in BASES}
-    figure, panels = style.panels(3, 3, (4.27, 4.2))
-    titles = ("condition number of A", "clamped cosine: relative L2 error, mean over all axes",
-              "energy after 24 steps, sampled transport")
-    for k, (panel, title) in enumerate(zip(panels, titles), 1):
-        for i, (name, points) in enumerate(curves.items()):
-            panel.plot(points[0], points[k], marker="o", markersize=3, label=name,
-                       color=style.colour(i))
-        panel.set_title(title, fontsize=10)
-        panel.set_xlabel("lambda")
-        panel.axvline(0.25, color=style.LINE, lw=2, zorder=0)
-    style.logarithmic(panels[0].yaxis)
-    panels[0].axhline(1e7, color=style.INK, linestyle="--")
-    panels[1].axhline(0.354, color=style.INK, linestyle=":", label="sh2")
-    panels[1].axhline(0.088, color=style.INK, linestyle="--", label="sh3")
-    panels[1].set_ylim(0, 0.7)
-    panels[2].axhline(1, color=style.INK, linestyle="--")
-    panels[2].set_ylim(0, 2)
-    panels[1].legend(fontsize=8)
-    save(figure, target, 80)
 
 
 def draw_probes(target):
@@ -157,14 +129,16 @@ def draw_spheres(target):
     made.save(target, 100)
 
 
-CHARTS = {"lambda": draw_lambda, "probes": draw_probes, "spheres": draw_spheres}
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("chart", choices=CHARTS)
-    parser.add_argument("-o", "--output", required=True, type=pathlib.Path, metavar="FILE")
-    arguments = parser.parse_args()
-    CHARTS[arguments.chart](output.target_of(arguments.output))
-    return 0
+def draw_frame(folder):
+    """A frame of the atrium stage by stage: frame-NAME.jpg of docs/frame.md."""
+    from .claims import from_the_sun  # measures by it, too
+    scene = clpv.Scene(ROOT / "scenes/atrium.json")
+    camera = next(each for each in scene.cameras if each.name == "nave")
+    above = from_the_sun(camera, scene.lights[0].direction, CASCADE)
+    for name, (view, exposure, options) in FRAME.items():
+        size = (360, 360) if name == "rsm" else (640, 360)
+        image = clpv.Renderer(scene, **options).render(view, above if name == "rsm" else camera,
+                                                       size=size)
+        made, pixels = io.BytesIO(), image.display(scene.exposure + exposure)[..., :3]
+        pyplot.imsave(made, pixels, format="jpg", pil_kwargs={"quality": 80, "optimize": True})
+        output.write(folder / f"frame-{name}.jpg", made.getvalue())

@@ -12,6 +12,7 @@ srbf14             srbf14 with rotated lobes and sampled transport, and with exa
 
 These are clpv's renderings of the paper's captions, not the paper's images; docs/paper/figures.md
 describes them. """
+import functools
 import itertools
 import pathlib
 import subprocess
@@ -55,19 +56,17 @@ class Frames:
         self.scene, self.camera = scene, camera
         self.size = {"width": arguments.width, "height": arguments.height}
         self.view = f"Sponza, camera {camera}, exposure {EXPOSURE:+g} EV"
-        self.rendered = {}
         self.always = {}  # options of all frames of a preset with steps
+
+    @functools.cache
+    def rendered(self, **options):
+        always = self.always if options.get("preset") == "paper" else {}
+        renderer = clpv.Renderer(self.scene, **self.size, **{**always, **options})
+        return {"full": renderer.render("full", self.camera), "indirect": renderer.show("indirect")}
 
     def frame(self, view, **options):
         """The frame as an Image."""
-        key = tuple(options.items())
-        if key not in self.rendered:
-            always = self.always if options.get("preset") == "paper" else {}
-            renderer = clpv.Renderer(self.scene, **self.size, **{**always, **options})
-            self.rendered[key] = {
-                "full": renderer.render("full", self.camera), "indirect": renderer.show("indirect")
-            }
-        return self.rendered[key][view]
+        return self.rendered(**options)[view]
 
     def image(self, view="full", **options):
         """Pixels for a display, transparent without a surface."""

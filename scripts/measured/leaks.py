@@ -12,7 +12,6 @@ are those of `clpv render`. Needs a build.
 """
 import argparse
 import itertools
-import json
 import math
 import pathlib
 import sys
@@ -111,13 +110,6 @@ def number_of(bounces):
     return bounces if bounces in ("all", "direct") else int(bounces)
 
 
-def value_of(text):
-    try:
-        return json.loads(text)
-    except ValueError:
-        return text
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -136,7 +128,7 @@ def main():
         name, equals, value = other.removeprefix("--").partition("=")
         if not equals:
             parser.error(f"{other}: allowed: --OPTION=VALUE of clpv render")
-        options[name.replace("-", "_")] = value_of(value)
+        options[name.replace("-", "_")] = value
     columns = [(light, number_of(n)) for light in arguments.lights.split(",")
                for n in arguments.bounces.split(",")]
     if arguments.output:

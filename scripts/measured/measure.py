@@ -174,6 +174,7 @@ PARTS = {
     "rooms": lambda _: {"rows": rooms.measure()},
 }
 DRAWN = {
+    "frames": [lambda: charts.draw_frame(IMAGES)],
     "bake": [lambda: charts.draw_probes(IMAGES / "probes.png"),
              lambda: charts.draw_spheres(IMAGES / "spheres.jpg")],
     "rooms": [lambda: rooms.draw(IMAGES / "rooms.jpg")],

@@ -2,11 +2,13 @@
 """The paper's claims judged by rule, for results/paper/claims.json and docs/paper/figures.md.
 
 verdicts.json has the claims, in the order of docs/paper/figures.md. `rows`: a list in results/docs
-("claims/lambdas"), or the name of a function here and its arguments; a row for each point of the
-claim's axis. `at`: key of a row's place on the axis, or a form of it. `holds`: expression of a
-row's members: True, False, or None for 'not resolved'. `numbers`: form of a row. The verdict is a
-sentence made from the outcomes. Only the standard library.
+("claims/lambdas"), the rows of a table, or the name of a function here and its arguments; a row for
+each point of the claim's axis, but for those that `where` leaves out. `at`: key of a row's place on
+the axis, or a form of it. `holds`: expression of a row's members: True, False, or None for 'not
+resolved'. `numbers`: form of a row. Both have `sets`, too: errors of all sets by name. The verdict
+is a sentence made from the outcomes. Only the standard library.
 """
+import functools
 import itertools
 import json
 import math
@@ -14,14 +16,12 @@ import pathlib
 import statistics
 
 from . import rows as known
-from .cells import Form, found as row
+from .cells import ROWS, Form, found as row
 
 CLAIMS = json.loads(pathlib.Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
 SIMILAR = 0.1  # 'similar': errors that differ by a tenth at most
 ABOUT = 1.5  # 'about': within this factor
 SPREADS = 3  # medians differ if they are this many median absolute deviations apart
-OF_THE_PAPER = "srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "srbf14"
-OTHERS = "srbf4", "srbf8v1", "srbf8v3"
 ROTATED = "srbf14", "sh2", "srbf4", "srbf8v1", "srbf8v2", "srbf8v3"
 DRIVERS = {"PoCL 3.1": "docs/table1", "Intel": "intel-2026.22-epyc-2-cores/table1"}
 BASES = "sh2", "srbf4", "srbf8v2"
@@ -62,19 +62,6 @@ def sets(read):
     return {each["basis"]: each for each in read("docs/claims")["lobes"]["sets"]}
 
 
-def of_sets(read, names):
-    return [sets(read)[name] for name in names]
-
-
-def beside_srbf14(read):
-    return [{**sets(read)[name], "srbf14": sets(read)["srbf14"]["mean"]} for name in ("sh3", "sh5")]
-
-
-def guesses(read):
-    return [{**each, "sh2": sets(read)["sh2"]["up"]} for name, each in sets(read).items()
-            if name in OTHERS or ":" in name]
-
-
 def width(value):
     """Half width of G at half its maximum [degrees]."""
     return math.degrees(
@@ -99,7 +86,8 @@ def energies(read):
 
 def with_srbf14(read):
     """And the least error of the other sets."""
-    return [{**each, "least": min(each[name] for name in (*OF_THE_PAPER[:-1], "sh2"))}
+    others = "srbf4", "srbf8v1", "srbf8v2", "srbf8v3", "sh2"
+    return [{**each, "least": min(each[name] for name in others)}
             for each in read("docs/claims")["lambdas"] if each["srbf14"] is not None]
 
 
@@ -277,14 +265,6 @@ def of_both_schemes(read):
               for basis in ("sh2", "srbf4", "srbf6", "srbf8v1", "srbf8v2", "srbf8v3"))]
 
 
-def searched(read):
-    """The best error of a search and the bound, by number of functions."""
-    rows = read("docs/claims")["lobes"]["searched"]
-    for n in dict.fromkeys(each["n"] for each in rows):
-        yield {"n": n, "error": row(rows, n=n, over="all", lambdas="one")["error"],
-               "bound": row(rows, n=n, over="all", lambdas="none")["bound"]}
-
-
 def of_centres(read):
     """Mean E by centres for Sponza's normals, and by each other set."""
     found, general = (row(read("docs/quality-centres")["variants"],
@@ -321,21 +301,24 @@ def of_layouts(read):
 # Verdicts.
 
 
-def rows_of(read, given):
-    name, arguments = (given, {}) if isinstance(given, str) else given
+def rows_of(read, name, arguments=None):
     if "/" in name:
-        file, member = name.split("/")
-        return read(f"docs/{file}")[member]
-    return globals()[name](read, **arguments)
+        file, *members = name.split("/")
+        return functools.reduce(lambda found, member: found[member], members, read(f"docs/{file}"))
+    return globals()[name](read, **arguments or {}) if name in globals() else ROWS[name]()
 
 
 def points(read, claim):
     """(place, outcome, numbers) of a claim's rows."""
-    for each in rows_of(read, claim["rows"]):
-        outcome = eval(claim["holds"], {**each, **WORDS})
+    given = [claim["rows"]] if isinstance(claim["rows"], str) else claim["rows"]
+    for each in rows_of(read, *given):
+        members = {**each, **WORDS, "sets": sets(read)}
+        if not eval(claim.get("where", "True"), members):
+            continue
+        outcome = eval(claim["holds"], members)
         yield (each.get(claim["at"], claim["at"].format(**each)),
                None if outcome is None else bool(outcome),  # perhaps NumPy's Boolean
-               Form().format(claim["numbers"], **each))
+               Form().format(claim["numbers"], **{**each, "sets": sets(read)}))
 
 
 def sentence(axis, found):

@@ -9,14 +9,11 @@
 #include <cstdlib>
 #include <functional>
 #include <limits>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "cli/render_request.hpp"
-#include "clpv/log.hpp"
 #include "clpv/opencl.hpp"
-#include "clpv/pathtrace.hpp"
 #include "clpv/renderer.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
@@ -236,38 +233,9 @@ TEST(Api, ARendererThatWasMovedFromIsNamed) {
   EXPECT_EQ(second.render().width, 48);
 }
 
-// Calls of the public interface in any order, messages, and light without a frame.
-
-using ::testing::Contains;
+// Calls of the public interface in any order, and light without a frame.
 
 const Vec3 kEye{0.3, 0.25, 0.2}, kElsewhere{-0.4, 0.5, 0.1};
-
-TEST(ApiCalls, TheLibraryPrintsNothingAndTheReceiverGetsAll) {
-  all_devices();  // chooses PoCL's cache, which keeps its place
-  const test::Variable cache("CLPV_PROGRAM_CACHE", "on"),
-      nowhere("XDG_CACHE_HOME", "/dev/null/nowhere");
-  std::mutex mutex;
-  std::vector<std::pair<LogLevel, std::string>> received;
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  set_log(
-      [&](LogLevel level, const std::string& message) {
-        const std::lock_guard lock(mutex);
-        received.emplace_back(level, message);
-      },
-      LogLevel::debug);
-  {
-    Renderer(Scene(kCornell), test::few_steps()).render();
-    TraceOptions options;
-    options.width = options.height = 4, options.samples = 1;
-    pathtrace(Scene(kCornell), View::full, {}, options);
-  }
-  set_log({});
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_THAT(received, Contains(testing::Pair(LogLevel::warning, HasSubstr("are not cached"))));
-  EXPECT_THAT(received, Contains(testing::Pair(LogLevel::debug, HasSubstr("kernels/"))));
-}
 
 TEST(ApiCalls, HasTheLightOfAFrame) {
   const Scene scene(kCornell);

@@ -9,6 +9,7 @@
 #include "clpv/renderer.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/gltf_builder.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace clpv::light_test {
@@ -16,6 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using Vectors = std::vector<std::array<float, 3>>;
+using test::colours;
 using test::kCornell;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
@@ -31,13 +33,6 @@ Camera camera_of(const Scene& scene) {
   return scene.cameras().front();
 }
 
-Vectors colours(const Image& image) {
-  Vectors all;
-  for (std::size_t i = 0; i < image.pixels.size(); i += 4)
-    all.push_back({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]});
-  return all;
-}
-
 /// G-buffer and irradiance of a frame.
 struct Seen {
   int width, height;
@@ -47,9 +42,9 @@ struct Seen {
   Seen(Renderer& renderer, const CameraChoice& camera, double seconds = 0) {
     const Image image = renderer.render(View::irradiance, camera, seconds);
     width = image.width, height = image.height;
-    irradiance = colours(image);
-    normals = colours(renderer.show(View::normal));
-    for (const auto& depth : colours(renderer.show(View::depth))) depths.push_back(depth[0]);
+    irradiance = colours(image.pixels);
+    normals = colours(renderer.show(View::normal).pixels);
+    for (const auto& depth : colours(renderer.show(View::depth).pixels)) depths.push_back(depth[0]);
   }
   GBuffer buffer() const {
     return {.width = width, .height = height, .normals = normals, .depths = depths};

@@ -17,6 +17,7 @@
 
 #include "device/device.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -49,13 +50,6 @@ struct Owned {
   }
 };
 
-Vectors three_of_four(const std::vector<float>& numbers) {
-  Vectors all;
-  for (std::size_t i = 0; i < numbers.size(); i += 4)
-    all.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
-  return all;
-}
-
 TEST(OpenCl, FramesInACallersQueueAreThoseOfItsOwn) {
   const Owned own;
   const Scene scene(kCornell);
@@ -70,10 +64,10 @@ TEST(OpenCl, FramesInACallersQueueAreThoseOfItsOwn) {
   clGetEventInfo(frame.done.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status,
                  nullptr);
   EXPECT_EQ(status, CL_COMPLETE) << "after a read in the same queue";
-  EXPECT_EQ(three_of_four(own.read(frame.irradiance, 4 * pixels)),
-            three_of_four(other.show(View::irradiance).pixels));
-  EXPECT_EQ(three_of_four(own.read(frame.normals, 4 * pixels)),
-            three_of_four(other.show(View::normal).pixels));
+  EXPECT_EQ(test::colours(own.read(frame.irradiance, 4 * pixels)),
+            test::colours(other.show(View::irradiance).pixels));
+  EXPECT_EQ(test::colours(own.read(frame.normals, 4 * pixels)),
+            test::colours(other.show(View::normal).pixels));
   EXPECT_EQ(own.read(frame.depth, pixels)[700], other.show(View::depth).at(700 % 48, 700 / 48, 0));
   EXPECT_GT(ms_of(renderer.stats().times, "gather"), 0);
   EXPECT_EQ(renderer.show(View::full).pixels, full.pixels);
@@ -148,9 +142,9 @@ TEST(OpenCl, LightFromAndToBuffersIsThatOfTheHost) {
   const Camera camera = scene.cameras().front();
   const opencl::Frame frame = renderer.enqueue(View::full, camera);
   const cl::Buffer light(own.context, CL_MEM_WRITE_ONLY, 48 * 27 * 16 + 4);
-  const Vectors expected = three_of_four(own.read(frame.irradiance, 48 * 27 * 4));
+  const Vectors expected = test::colours(own.read(frame.irradiance, 48 * 27 * 4));
   renderer.enqueue_light({48, 27, frame.normals, nullptr, frame.depth, light()}, camera).wait();
-  EXPECT_EQ(three_of_four(own.read(light(), 48 * 27 * 4)), expected);
+  EXPECT_EQ(test::colours(own.read(light(), 48 * 27 * 4)), expected);
 
   Vectors positions, normals;
   for (int i = 0; i < 48 * 27; ++i) {
@@ -163,7 +157,7 @@ TEST(OpenCl, LightFromAndToBuffersIsThatOfTheHost) {
   const opencl::Event done = renderer.enqueue_light({48, 27, n(), p(), nullptr, light()}, eye);
   EXPECT_EQ(done.wait(), CL_SUCCESS);
   EXPECT_EQ(
-      three_of_four(own.read(light(), 48 * 27 * 4)),
+      test::colours(own.read(light(), 48 * 27 * 4)),
       renderer.light({.width = 48, .height = 27, .normals = normals, .positions = positions}, eye));
 }
 
@@ -197,7 +191,7 @@ TEST(OpenCl, ACallersKernelLooksLightUp) {
     kernel.setArg(6, sizeof(cl_mem), &volumes.packed);
     if (volumes.occluded != nullptr) kernel.setArg(7, sizeof(cl_mem), &volumes.occluded);
     own.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(50));
-    const Vectors values = three_of_four(own.read(found(), 50 * 2 * 4));
+    const Vectors values = test::colours(own.read(found(), 50 * 2 * 4));
     const Vectors irradiance = renderer.irradiance(points, along),
                   radiance = renderer.radiance(points, along);
     for (std::size_t i = 0; i < 50; ++i) {

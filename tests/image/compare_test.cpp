@@ -10,11 +10,11 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "image/image_io.hpp"
 #include "image/tone_map.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/run_here.hpp"
 
 namespace clpv::compare_test {
@@ -186,9 +186,7 @@ Image plain(const glm::vec3& colour) {
   return drawn(32, 24, [&](int, int) { return colour; });
 }
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
+using test::mean;
 
 TEST(Flip, PlainColours) {
   EXPECT_EQ(mean(flip(plain({0.2f, 0.5f, 0.7f}), plain({0.2f, 0.5f, 0.7f}))), 0);

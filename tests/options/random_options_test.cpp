@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
-#include <functional>
 #include <map>
 #include <random>
 #include <string>
@@ -34,17 +33,16 @@ using ::testing::HasSubstr;
 /// A sequence of choices, from a random generator.
 class Choices {
  public:
-  /// `below(end)` returns a number from 0 to end - 1.
-  explicit Choices(std::function<std::size_t(std::size_t end)> below) : below_(std::move(below)) {}
+  explicit Choices(int seed) : random_(static_cast<std::uint64_t>(seed)) {}
 
-  bool one_in(std::size_t count) { return below_(count) == 0; }
+  bool one_in(std::size_t count) { return below(count) == 0; }
   template <typename List>
   const auto& of(const List& list) {
-    return list[below_(std::size(list))];
+    return list[below(std::size(list))];
   }
   double between(double minimum, double maximum) {
     constexpr std::size_t kSteps = 1 << 16;
-    return minimum + (maximum - minimum) * static_cast<double>(below_(kSteps + 1)) / kSteps;
+    return minimum + (maximum - minimum) * static_cast<double>(below(kSteps + 1)) / kSteps;
   }
   /// Uniform in the logarithm. Requires minimum > 0.
   double scale_between(double minimum, double maximum) {
@@ -52,7 +50,8 @@ class Choices {
   }
 
  private:
-  std::function<std::size_t(std::size_t end)> below_;
+  std::size_t below(std::size_t end) { return random_() % end; }
+  std::mt19937_64 random_;
 };
 
 /// Upper bounds of options that only cost time or memory.
@@ -291,8 +290,7 @@ class RandomOptions : public ::testing::Test {
                                [&](const std::string& option) { return names(message, option); });
   }
 
-  std::mt19937_64 random_{static_cast<std::uint64_t>(number_from("CLPV_RANDOM_SEED", 1))};
-  Choices choices_{[this](std::size_t end) { return random_() % end; }};
+  Choices choices_{number_from("CLPV_RANDOM_SEED", 1)};
   TemporaryFolder folder_;
   std::vector<std::string> scenes_;
   std::map<int, int> codes_;

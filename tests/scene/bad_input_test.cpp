@@ -7,6 +7,7 @@
 
 #include "image/image_io.hpp"
 #include "tests/support/gltf_builder.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/run_here.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/scenes.hpp"
@@ -325,11 +326,8 @@ TEST_F(CameraByNumbers, TheSunReplacesAllLights) {
   const std::string outside = " --eye 0.278,0.273,-0.8 --target 0.278,0.273,0.28" + kSmall;
   const Image dim = image("render " + kCornell + outside + " --sun 0,0,1,2 --view direct"),
               bright = image("render " + kCornell + outside + " --sun 0,0,1,8 --view direct");
-  double sums[2] = {};
-  for (std::size_t i = 0; i < dim.pixels.size(); i += 4)
-    sums[0] += dim.pixels[i], sums[1] += bright.pixels[i];
-  EXPECT_GT(sums[0], 0);
-  EXPECT_NEAR(sums[1] / sums[0], 4, 1e-3);
+  EXPECT_GT(mean(dim.pixels, 0), 0);
+  EXPECT_NEAR(mean(bright.pixels, 0) / mean(dim.pixels, 0), 4, 1e-3);
   EXPECT_EQ(bright.metadata.at("sun"), "0,0,1,8");
 }
 

@@ -33,6 +33,7 @@ class OutputFile : public testing::Test {
 };
 
 using test::error_of;
+using test::mode_of;
 using test::read_file;
 using ::testing::HasSubstr;
 
@@ -67,12 +68,6 @@ TEST_F(OutputFile, FollowsASymbolicLinkToAFileOrToNone) {
     EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
     EXPECT_EQ(read_file(folder_ / "target"), text);
   }
-}
-
-mode_t mode_of(const fs::path& path) {
-  struct stat found {};
-  EXPECT_EQ(::stat(path.c_str(), &found), 0);
-  return found.st_mode & 07777;
 }
 
 // Overwriting a private file once made it readable for all.

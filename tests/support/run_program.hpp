@@ -2,6 +2,7 @@
 // Runs a command in a process and returns its output.
 #pragma once
 
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -78,6 +79,12 @@ struct Outcome {
 inline std::string read_file(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Mode bits of a file, or of a link.
+inline mode_t mode_of(const std::filesystem::path& path) {
+  struct stat found {};
+  return ::lstat(path.c_str(), &found) == 0 ? found.st_mode & 07777 : 0;
 }
 
 /// `command` through the shell: "VARIABLE=value PROGRAM arguments".

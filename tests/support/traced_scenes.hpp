@@ -47,13 +47,13 @@ inline SceneLight lamp(const glm::vec3& position, float intensity) {
   return {"lamp", point_light(position, glm::vec3(intensity))};
 }
 
-/// Walls of a unit cube, seen from inside, that emit E and reflect a.
-inline SceneData furnace(float albedo, float emitted) {
+/// Walls of a cube, seen from inside, that emit E and reflect a.
+inline SceneData furnace(float albedo, float emitted, float edge = 1) {
   SceneData scene;
   scene.path = "furnace";
   add_grey(scene, albedo);
   for (float& e : scene.materials[0].emissive) e = emitted;
-  add_box(scene, glm::vec3(0), 1, 0);
+  add_box(scene, glm::vec3(0), edge, 0);
   return scene;
 }
 

@@ -19,6 +19,7 @@
 #include "pipeline/raster/view.hpp"
 #include "scene/load.hpp"
 #include "scene/sky.hpp"
+#include "tests/support/numbers.hpp"
 #include "tests/support/on_device.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "tests/support/scenes.hpp"
@@ -81,12 +82,6 @@ std::vector<float> irradiance(const SceneData& scene, const SceneCamera& camera,
   std::vector<float> green;
   for (std::size_t i = 1; i < pixels.size(); i += 4) green.push_back(pixels[i]);
   return green;
-}
-
-double mean(const std::vector<float>& values) {
-  double sum = 0;
-  for (const float value : values) sum += double{value};
-  return sum / static_cast<double>(values.size());
 }
 
 /// Shares of the pixels in % that are below 0.7 and above 1.3 of the median of the 9 x 9 pixels
@@ -154,10 +149,7 @@ double traced_mean(const SceneData& scene, const SceneCamera& camera, Bounces bo
   const Image truth =
       traced_view(trace_paths(scene, scene.lights, camera_view(camera, kWidth, kHeight), options),
                   Show::irradiance);
-  double sum = 0;
-  for (std::size_t i = 1; i < truth.pixels.size(); i += truth.channels.size())
-    sum += double{truth.pixels[i]};
-  return sum / (kWidth * kHeight);
+  return mean(truth.pixels, 1);
 }
 
 // A room with a lamp has the light of path tracing, and no lines along its edges.
@@ -368,10 +360,7 @@ double leak(const SceneData& scene, const glm::vec3& eye, Bounces bounces, Near 
   Frame frame(test_session(), scene, options);
   SceneCamera camera = camera_at(eye, {1, -0.2f, 1.2f});
   frame.render(camera);
-  const std::vector<float> pixels = frame.read(Show::irradiance);
-  double sum = 0;
-  for (std::size_t i = 0; i < pixels.size(); i += 4) sum += double{pixels[i]};
-  return sum / (static_cast<double>(pixels.size()) / 4) * glm::length(kSun);
+  return mean(frame.read(Show::irradiance), 0) * glm::length(kSun);
 }
 
 // By all bounces 0.32 without closed links, 0.023 if light starts half a cell off turned sheets.
@@ -416,10 +405,7 @@ std::vector<float> direct_light(const SceneData& scene, const SceneCamera& camer
 double direct_leak(const SceneData& scene, unsigned shadow_size) {
   const std::vector<float> pixels =
       direct_light(scene, camera_at({-1, 1.6f, -1.2f}, {1, -0.2f, 1.2f}), shadow_size);
-  double sum = 0;
-  for (std::size_t i = 0; i < pixels.size(); i += 4) sum += double{pixels[i]};
-  const double light = 0.8 / std::numbers::pi * static_cast<double>(pixels.size()) / 4;
-  return sum / light * glm::length(kSun);
+  return mean(pixels, 0) * std::numbers::pi / 0.8 * glm::length(kSun);
 }
 
 // A shadow map has texels between two sheets; where one of the inner sheets meets another, 0.002 of

@@ -31,6 +31,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using test::kSmallSteps;
 using test::kTiny;
+using test::mode_of;
 using test::must_run_here;
 using test::read_file;
 using test::run_here;
@@ -40,13 +41,6 @@ using ::testing::Not;
 
 // ---------------------------------------------------------------------------------------------------
 // caches
-
-/// Mode bits of a file.
-mode_t mode_of(const fs::path& path) {
-  struct stat found {};
-  EXPECT_EQ(::lstat(path.c_str(), &found), 0) << path;
-  return found.st_mode & 07777;
-}
 
 struct CacheTest : ::testing::Test {
   test::TemporaryFolder folder;

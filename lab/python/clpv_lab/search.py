@@ -167,10 +167,6 @@ def search(count, over="all", lambdas="one", start_lambda=0.25, max_condition=2e
     require("lambda", start_lambda, *LAMBDAS)
     require("max_condition", max_condition, 1, MAX_CONDITION)
     require("starts", starts, 1, 100000)
-    for name, value, allowed in (("lambdas", lambdas, ("none", "one", "each")),
-                                 ("over", over, ("all", "axes"))):
-        if isinstance(value, str) and value not in allowed:
-            raise ValueError(f"{name}: found '{value}', allowed: {', '.join(allowed)}")
     if isinstance(over, str):
         over = (None, None) if over == "all" else (AXES, np.full(6, 1 / 6))
     objective, unknowns = Objective(*over), Unknowns(count, lambdas, start_lambda)

@@ -26,37 +26,13 @@ from measured import ROOT, model_files, output
 from measured.measure import run
 
 SCHEMA, SIZE, NOISE = 1, (240, 135), 0.03
-# Scenes and their cameras (none: all), files of other names, instants [s], layers of truths, and
-# what suite.json says of units and conventions.
+# Scenes and their cameras (none: all), files of other names, instants [s], cameras and lights then,
+# layers of truths, and what suite.json says of units and conventions.
 DATA = json.loads(pathlib.Path(__file__).with_suffix(".json").read_text(encoding="utf-8"))
 SCENES, FILES, TIMES, LAYERS = (DATA[name] for name in ("scenes", "files", "times", "layers"))
 LARGEST = 64 * 2**20  # bytes of the tar
 SCORER = (("python", "clpv/output.py", "clpv/draw/viewer.*"),
           ("lab/python", "clpv_lab/score/*.py", "clpv_lab/score/*.html"))  # files by their root
-
-
-def at_time(thing, time):
-    """A camera or light of a scene file with the values of its keys at a time. Raises ValueError
-    for a camera between keys."""
-    keys = thing.get("keys", [])
-    values = {name: value for name, value in thing.items() if name not in ("keys", "interpolation")}
-    for name in {name for key in keys for name in key} - {"time"}:
-        places = [(key["time"], numpy.array(key[name], float)) for key in keys if name in key]
-        before = max((place for place in places if place[0] <= time), default=places[0],
-                     key=lambda place: place[0])
-        after = min((place for place in places if place[0] >= time), default=places[-1],
-                    key=lambda place: place[0])
-        share = (time - before[0]) / (after[0] - before[0]) if after[0] > before[0] else 0
-        if share and thing.get("interpolation") == "smooth":
-            raise ValueError(f"camera {thing['name']}: no key at {time} s")
-        value = (1 - share) * before[1] + share * after[1]
-        if name == "direction" and share:  # along the great circle
-            a, b = (v / numpy.linalg.norm(v) for v in (before[1], after[1]))
-            angle = math.acos(numpy.clip(a @ b, -1, 1))
-            value = (math.sin(
-                (1 - share) * angle) * a + math.sin(share * angle) * b) / math.sin(angle)
-        values[name] = value.tolist()
-    return values
 
 
 def facing(direction, eye=(0, 0, 0), up=(0, 1, 0)):
@@ -71,10 +47,10 @@ def facing(direction, eye=(0, 0, 0), up=(0, 1, 0)):
     return [float(number) for column in axes for number in column]
 
 
-def views_gltf(scene, time=0):
+def views_gltf(scene):
     """glTF of a scene file's cameras and directional lights, in metres."""
     unit, nodes, cameras, lights = scene.get("metres_per_unit", 1), [], [], []
-    for camera in (at_time(camera, time) for camera in scene["cameras"]):
+    for camera in scene["cameras"]:
         eye, target = numpy.array(camera["eye"], float), numpy.array(camera["target"], float)
         nodes.append({
             "name": camera["name"], "camera": len(cameras),
@@ -86,7 +62,7 @@ def views_gltf(scene, time=0):
                 "aspectRatio": SIZE[0] / SIZE[1], "znear": 0.05
             }
         })
-    for light in (at_time(light, time) for light in scene["lights"]):
+    for light in scene["lights"]:
         if light["kind"] != "directional":
             raise ValueError(
                 f"light {light.get('name')}: found {light['kind']}; allowed: directional")
@@ -138,6 +114,7 @@ def in_halves(source):
 def add_scene(folder, name, sponza, cache):
     """Writes a scene's files into an output.Folder. Returns its entry and those of its views."""
     scene = json.loads((ROOT / f"scenes/{FILES.get(name, name)}.json").read_text())
+    scene.update(DATA["at_their_time"].get(name, {}))
     ours = scene["model"] != "Sponza.gltf"
     model = ROOT / "scenes" / scene["model"] if ours else sponza
     if ours:
@@ -147,7 +124,7 @@ def add_scene(folder, name, sponza, cache):
         camera["name"]: camera
         for camera in scene["cameras"] if not SCENES[name] or camera["name"] in SCENES[name]
     }
-    gltf = views_gltf({**scene, "cameras": list(cameras.values())}, TIMES.get(name, 0))
+    gltf = views_gltf({**scene, "cameras": list(cameras.values())})
     folder.write(f"cameras/{name}.gltf", json.dumps(gltf, indent=1) + "\n")
     views = []
     for traced in ground_truths(name, cameras, None if ours else sponza, cache):

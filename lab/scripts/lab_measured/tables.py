@@ -6,11 +6,12 @@
     lab/scripts/tables --check    changes nothing; fails if one of them differs from the results
     lab/scripts/tables --list     names of all tables
 """
+import functools
 import json
 
 from clpv import ms_of
 from measured import ROOT, bake as probes, tables
-from measured.cells import found, load, number, percent, shown, table
+from measured.cells import TABLES, Form, found, load, number, percent, shown, table
 from measured.verdicts import sentence
 
 from . import standing as benchmark
@@ -49,7 +50,7 @@ def scores():
             lines.append([
                 document["method"], scene,
                 str(len(rows)), *(percent(mean_of(name), 1) for name in ("nrmse", "bias", "noise")),
-                f"{mean_of('energy_ratio'):.3f}", f"{mean_of('flip'):.3f}"
+                *(Form().format("{0:.3f}", mean_of(name)) for name in ("energy_ratio", "flip"))
             ])
     return lines
 
@@ -95,19 +96,8 @@ def light_ms(cell):
         ms_of(cell["times"], stage) for stage in benchmark.SHARED)
 
 
-@table
-def standing_small():
-    return standing_lines("small")
-
-
-@table
-def standing_time_of_large():
-    return standing_lines("small_with_time_of_large")
-
-
-@table
-def standing_large():
-    return standing_lines("large")
+for name, group in (("small", "small"), ("time-of-large", "small_with_time_of_large"), ("large", "large")):
+    TABLES[f"standing-{name}"] = functools.partial(standing_lines, group)
 
 
 @table

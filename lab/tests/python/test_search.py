@@ -91,8 +91,7 @@ def test_the_same_seed_gives_the_same_set():
     "given, text",
     [({"count": 0}, "count: found 0, allowed: 1 to 64"), ({"count": 65}, "65"),
      ({"start_lambda": math.nan}, "lambda: found nan"), ({"max_condition": 1e8}, "1e+07"),
-     ({"starts": 0}, "starts"), ({"lambdas": "two"}, "none, one, each"),
-     ({"over": "poles"}, "all, axes"),
+     ({"starts": 0}, "starts"),
      ({"count": 20, "lambdas": "none", "start_lambda": 0.05, "starts": 2}, "none of 2 starts")])
 def test_bad_values(given, text):
     with pytest.raises(ValueError) as raised:

@@ -2,7 +2,12 @@
 """Errors of an image against a ground truth, as `clpv compare` computes them."""
 import numpy
 
-from clpv_lab.score import flip
+try:
+    import flip_evaluator  # of FLIP's authors, on PyPI
+except ImportError:
+    flip_evaluator = None
+
+PIXELS_PER_DEGREE = 67.0206  # 3840 pixels over 0.7 m, seen from 0.7 m
 
 
 def root_of_ratio(power, of):
@@ -37,7 +42,7 @@ def errors(frames, truth, valid, exposure):
                                power), "best_gain": gain, "nrmse_best_gain": nrmse_best_gain,
         "energy_ratio": lit.sum() / len(lit) / total if total else None
     }
-    if exposure is not None:
+    if exposure is not None and flip_evaluator:
         result["flip"] = numpy.mean(
             [flip_map(frame, truth, valid, exposure)[valid].mean() for frame in frames])
     if len(lit) > 1:
@@ -51,10 +56,20 @@ def errors(frames, truth, valid, exposure):
     return result
 
 
+def displayed(linear, exposure):
+    """sRGB-encoded values of linear radiance at an exposure [EV], after tone curve ACES."""
+    x = numpy.clip(2.0 ** exposure * linear, 0, 1e6)
+    y = numpy.clip(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0, 1)
+    return numpy.where(y <= 0.0031308, 12.92 * y, 1.055 * y**(1 / 2.4) - 0.055)
+
+
 def flip_map(image, truth, valid, exposure):
-    """FLIP of each pixel; invalid ones are black in both."""
-    shown = [
-        flip.displayed(numpy.where(valid[..., None], values, 0).astype(float), exposure)
-        for values in (image, truth)
-    ]
-    return flip.flip(*shown)
+    """FLIP (Andersson et al. 2020) of each pixel, 0 to 1; invalid ones are black in both. None
+    without the package flip-evaluator."""
+    if not flip_evaluator:
+        return None
+    shown = [displayed(numpy.where(valid[..., None], values, 0).astype(float), exposure)
+             for values in (truth, image)]
+    found = flip_evaluator.evaluate(*(each.astype(numpy.float32) for each in shown), "LDR", True,
+                                    False, True, {"ppd": PIXELS_PER_DEGREE})
+    return numpy.where(valid, found[0][..., 0], 0)

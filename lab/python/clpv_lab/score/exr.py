@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reads OpenEXR images with NumPy alone: scanlines, uncompressed, ZIP or ZIPS. Other files need the
-module OpenEXR (PyPI)."""
+"""Reads OpenEXR images with NumPy alone: scanlines, uncompressed, ZIP or ZIPS."""
 import struct
 import zlib
 
@@ -16,8 +15,6 @@ TYPES = {0: numpy.dtype("<u4"), 1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
 ROWS = {0: 1, 2: 1, 3: 16}  # rows of a chunk, by compression: none, ZIPS, ZIP
 REC709 = 0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.3290  # x and y of red, green, blue and white
 SAME_CHROMATICITY = 1e-3  # standards state three or four digits
-BRADFORD = numpy.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367],
-                        [0.0389, -0.0685, 1.0296]])  # cone responses of CIE XYZ
 
 
 class BadImage(Exception):
@@ -42,18 +39,14 @@ def header(data):
     return attributes, at + 1
 
 
-def check_sampling(name, x, y):
-    if (x, y) != (1, 1):
-        raise ValueError(f"channel {name} sampled every {x} x {y} pixels")
-
-
 def channel_list(value):
     """Returns [(name, type)] in the order of the pixels."""
     at, found = 0, []
     while value[at]:
         end = value.index(0, at)
         kind, x, y = struct.unpack_from("<i4x2i", value, end + 1)
-        check_sampling(value[at:end].decode(), x, y)
+        if (x, y) != (1, 1):
+            raise ValueError(f"channel {value[at:end].decode()} sampled every {x} x {y} pixels")
         found.append((value[at:end].decode(), TYPES[kind]))
         at = end + 17
     names = [name for name, _ in found]
@@ -107,94 +100,9 @@ def window(value):
     return struct.unpack("<4i", value)
 
 
-def in_display(file, planes, data, display):
-    """Cuts planes of the data window to the display window, which must lie in it."""
-    left, top, right, bottom = display
-    if data[0] > left or data[1] > top or data[2] < right or data[3] < bottom:
-        raise BadImage(
-            f"{file}: found only pixels {data[:2]} to {data[2:]} (dataWindow); allowed: all of "
-            f"{display[:2]} to {display[2:]} (displayWindow)")
-    rows = slice(top - data[1], bottom - data[1] + 1)
-    columns = slice(left - data[0], right - data[0] + 1)
-    return {name: plane[rows, columns] for name, plane in planes.items()}
-
-
-def xyz(chromaticities):
-    """Returns the matrix from RGB to XYZ and the white (SMPTE RP 177)."""
-    x, y = numpy.reshape(chromaticities, (4, 2)).T
-    columns = numpy.array([x, y, 1 - x - y])
-    white = columns[:, 3] / y[3]
-    return columns[:, :3] * numpy.linalg.solve(columns[:, :3], white), white
-
-
-def to_rec709(file, planes, chromaticities):
-    """Converts R, G and B of each layer in place, white adapted by Bradford's transform."""
-    if numpy.abs(numpy.subtract(chromaticities, REC709)).max() < SAME_CHROMATICITY:
-        return
-    try:
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            (source, white), (target, wanted) = xyz(chromaticities), xyz(REC709)
-            gain = BRADFORD @ wanted / (BRADFORD @ white)
-            matrix = numpy.linalg.solve(
-                target, numpy.linalg.solve(BRADFORD, gain[:, None] * BRADFORD) @ source)
-    except numpy.linalg.LinAlgError:
-        matrix = numpy.full((3, 3), numpy.nan)
-    if not numpy.isfinite(matrix).all():
-        raise BadImage(f"{file}: found chromaticities {tuple(chromaticities)}; allowed: three "
-                       "colours and a white")
-    for prefix in {name[:-1] for name in planes if name == "R" or name.endswith(".R")}:
-        names = [prefix + colour for colour in "RGB"]
-        if all(name in planes for name in names):
-            converted = numpy.einsum("ij,jyx->iyx", matrix, [planes[name] for name in names])
-            planes.update(zip(names, converted.astype(numpy.float32)))
-
-
-def merged(file, parts):
-    """Channels of all parts {name: planes}, as 'PART.CHANNEL'; those of the only part with R, G and
-    B also as they are, where no other has the name."""
-    planes = {}
-    for part, channels in parts.items():
-        for channel, plane in channels.items():
-            name = channel if channel.startswith(f"{part}.") else f"{part}.{channel}"
-            if name in planes:
-                raise BadImage(f"{file}: part '{part}', channel '{channel}': found {name} twice; "
-                               "allowed: unique names of parts and layers")
-            planes[name] = plane
-    shown = [channels for channels in parts.values() if all(name in channels for name in "RGB")]
-    return {**shown[0], **planes} if len(shown) == 1 else planes
-
-
-def by_openexr(file):
-    try:
-        import OpenEXR
-    except ImportError:
-        raise BadImage(
-            f"{file}: found a tiled, deep, multi-part or differently compressed EXR; allowed: scanlines, "
-            "uncompressed, ZIP or ZIPS, or install OpenEXR (PyPI)") from None
-    if not hasattr(OpenEXR, "File"):
-        raise BadImage(f"{file}: found OpenEXR {OpenEXR.__version__}; allowed: at least 3.3 (PyPI)")
-    parts = {}
-    with OpenEXR.File(str(file), separate_channels=True) as image:
-        for part in image.parts:
-            for name, channel in part.channels.items():
-                check_sampling(name, channel.xSampling, channel.ySampling)
-            planes = {
-                name: channel.pixels.astype(numpy.float32)
-                for name, channel in part.channels.items()
-            }
-            data, display = (tuple(int(edge) for corner in part.header[name] for edge in corner)
-                             for name in ("dataWindow", "displayWindow"))
-            planes = in_display(file, planes, data, display)
-            to_rec709(file, planes, part.header.get("chromaticities", REC709))
-            parts[part.name()] = planes
-    if not parts:
-        raise BadImage(f"{file}: found no readable part; allowed: 1 or more")
-    return merged(file, parts) if len(parts) > 1 else planes
-
-
 def read(file):
-    """Returns the channels {name: float32 array of height x width} of the display window, R, G and B
-    those of Rec. 709. Throws BadImage, also where pixels are missing."""
+    """Returns the channels {name: float32 array of height x width}, R, G and B those of Rec. 709.
+    Throws BadImage."""
     if file.exists() and not file.is_file():
         raise BadImage(f"{file}: found no regular file; allowed: an EXR file")
     try:
@@ -211,12 +119,16 @@ def read(file):
         if attributes.get("envmap") == CUBE_MAP:
             raise BadImage(f"{file}: found a cube map (attribute envmap); allowed: flat images")
         if version & NOT_SCANLINES or attributes["compression"][0] not in ROWS:
-            return by_openexr(file)
-        planes = in_display(file, scanlines(data, attributes, at),
-                            window(attributes["dataWindow"]), window(attributes["displayWindow"]))
+            raise BadImage(f"{file}: found a tiled, deep, multi-part or differently compressed EXR; "
+                           "allowed: scanlines, uncompressed, ZIP or ZIPS")
+        if attributes["dataWindow"] != attributes["displayWindow"]:
+            raise BadImage(f"{file}: found pixels {window(attributes['dataWindow'])} (dataWindow); "
+                           "allowed: those of the displayWindow")
         if "chromaticities" in attributes:
-            to_rec709(file, planes, struct.unpack("<8f", attributes["chromaticities"]))
-        return planes
+            found = struct.unpack("<8f", attributes["chromaticities"])
+            if not numpy.allclose(found, REC709, rtol=0, atol=SAME_CHROMATICITY):
+                raise BadImage(f"{file}: found chromaticities {found}; allowed: Rec. 709")
+        return scanlines(data, attributes, at)
     except (struct.error, zlib.error, IndexError, KeyError, ValueError, TypeError, RuntimeError,
             MemoryError, OverflowError) as error:
         raise BadImage(f"{file}: damaged EXR ({type(error).__name__}: {error})") from None

@@ -16,16 +16,14 @@ def entry_with_error(title, frames, view, truth, alpha):
     """Entry of the mean of frames, with its map of FLIP."""
     image = numpy.mean([rgb for rgb, _ in frames], axis=0)
     valid = suite.shared(alpha, frames)
-    return viewer.entry(
-        title, image,
-        numpy.where(valid, errors.flip_map(image, truth, valid, view["exposure"]), 0))
+    return viewer.entry(title, image, errors.flip_map(image, truth, valid, view["exposure"]))
 
 
 def compared(suite_folder, methods, only):
     """HTML of the viewer and the table, then what is suspected. `methods`: (title, folder)."""
     shown, rows, methods = [], [], list(methods)
     for view in suite.chosen(suite.read_suite(suite_folder), only):
-        truth, alpha, _ = suite.read_truth(suite_folder, view)
+        truth, alpha = suite.read_truth(suite_folder, view)
         images = [viewer.entry("path tracing", truth)]
         for title, folder in methods:
             read = suite.read_view(suite_folder, view, suite.frames_of(folder, view["name"]))

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy
 
-from clpv_lab.score import errors, exr, mistakes
+from clpv_lab.score import errors, exr
 from clpv_lab.score.exr import BadImage
 
 SCHEMA = 1
@@ -94,15 +94,9 @@ def read_image(file, truth, layer=LIGHT):
 
 
 def read_truth(folder, view, layer=LIGHT):
-    """Returns colours and alpha of a layer, and the colours of layers that mistakes are known by
-    {name: colours}."""
+    """Returns colours and alpha of a layer."""
     file = folder / view["truth"]
-    planes = exr.read(file)
-    known = [name for name in mistakes.LAYERS if layer == LIGHT and f"{name}.R" in planes]
-    return *exr.colours(planes, file, layer), {
-        name: exr.colours(planes, file, name)[0]
-        for name in known
-    }
+    return exr.colours(exr.read(file), file, layer)
 
 
 def inputs(folders, suite_folder):
@@ -118,17 +112,17 @@ def shared(alpha, images):
 
 
 def read_view(folder, view, files, layer=LIGHT):
-    """Returns what score_view() takes: view, truth, its alpha, its other layers, and images with
-    their alpha, of `files`."""
-    truth, alpha, others = read_truth(folder, view, layer)
+    """Returns what score_view() takes: view, truth, its alpha, and images with their alpha, of
+    `files`."""
+    truth, alpha = read_truth(folder, view, layer)
     images = [read_image(file, truth, layer) for file in files]
     if not shared(alpha, images).any():
         raise BadImage(
             f"{files[0]}: found no pixel with alpha above 0 where the truth has a surface")
-    return view, truth, alpha, others, images
+    return view, truth, alpha, images
 
 
-def score_view(view, truth, alpha, others, images, layer=LIGHT):
+def score_view(view, truth, alpha, images, layer=LIGHT):
     valid = shared(alpha, images)
     frames = numpy.stack([rgb for rgb, _ in images])
     exposure = view["exposure"] if layer == LIGHT else None
@@ -138,10 +132,8 @@ def score_view(view, truth, alpha, others, images, layer=LIGHT):
         for name, value in found.items()
     }
     missing = 1 - valid.sum() / (alpha > 0).sum()
-    suspected = mistakes.suspicions(frames.mean(axis=0), truth, valid, others, view["noise"])
-    if missing > 0.02:
-        suspected.append(
-            f"has no surface in {100 * missing:.0f} % of the truth's: other camera or scene")
+    suspected = [f"has no surface in {100 * missing:.0f} % of the truth's: other camera or scene"
+                 ] if missing > 0.02 else []
     return {
         "view": view["name"], **rounded, "frames": len(images), "truth_noise": view["noise"],
         "suspected": suspected
