@@ -54,8 +54,8 @@ std::unique_ptr<Basis> load_basis(const std::string& path, double lambda) {
     lambdas.assign(centres.size(), file["lambda"].get<double>());
   }
   try {
-    return make_basis_from_centres(
-        file.value("name", std::filesystem::path(path).stem().string()), centres, lambdas);
+    return make_basis_from_centres(file.value("name", std::filesystem::path(path).stem().string()),
+                                   centres, lambdas);
   } catch (const Error& error) {
     throw Error(ExitCode::bad_input, "{}: {}", path, error.what());
   }
